@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: MIT
+#
+# The two ways that a folder becomes a target: sk_library and sk_unit_tests. A target's link line
+# is also its include rule (tests/cli/include_rules checks what a link line cannot).
+
+# sk_compile_options(TARGET): language level and warnings of our own code.
+function(sk_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wcast-align
+                         $<$<BOOL:${SK_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    # g++ 12 sees overlapping copies in "a" + std::string() that are not there (GCC bug 105651)
+    target_compile_options(${target} PRIVATE -Wno-restrict)
+  endif()
+endfunction()
+
+# sk_library(TARGET SOURCES... ): a static library of this folder, included by its path below
+# compiler/ or runtime/src/.
+function(sk_library target)
+  add_library(${target} STATIC ${ARGN})
+  sk_compile_options(${target})
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+endfunction()
+
+# sk_unit_tests(TARGET SOURCES... ): the *_test.cpp files of this folder as one program, linked
+# with the folder's TARGET and Catch2, registered with CTest.
+function(sk_unit_tests target)
+  if(NOT SK_BUILD_TESTS)
+    return()
+  endif()
+  add_executable(${target}_test ${ARGN})
+  sk_compile_options(${target}_test)
+  target_link_libraries(${target}_test PRIVATE ${target} sk_test_main)
+  add_test(NAME ${target} COMMAND ${target}_test)
+endfunction()

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+#
+# sk_add_kernels: .sk files as sources of a target. Used by this project and, installed beside
+# StreamKernelConfig.cmake, by every project that uses it. It must not assume that skc is built here.
+include_guard(GLOBAL)
+cmake_policy(VERSION 3.25)
+
+# sk_add_kernels(<target> <file.sk>...
+#                [TARGETS <fragment|compute|native>...]     what skc emits for (default: skc's own)
+#                [INCLUDE_DIRECTORIES <folder>...]          searched by #include in .sk files
+#                [OPTIONS <option>...])                     further options of skc
+#
+# Compiles each file at build time, again when it or a file that it includes has changed, and adds
+# the result to <target>. The target's own sources then include a kernel's header by the path of its
+# .sk file: "heat.sk.hpp", "solver/heat.sk.hpp"; files outside of the source folder by their name.
+# To be called in the folder that makes the target, which also links sk::runtime.
+function(sk_add_kernels target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "TARGETS;INCLUDE_DIRECTORIES;OPTIONS")
+  sk_check_kernel_target("${target}")
+  if(NOT arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "sk_add_kernels(${target}): give one .sk file or more")
+  endif()
+
+  set(options ${arg_OPTIONS})
+  if(arg_TARGETS)
+    list(JOIN arg_TARGETS "," targets)
+    list(APPEND options "--target=${targets}")
+  endif()
+  foreach(folder IN LISTS arg_INCLUDE_DIRECTORIES)
+    file(REAL_PATH "${folder}" folder BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
+    list(APPEND options "-I${folder}")
+  endforeach()
+
+  foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
+    sk_add_kernel_file("${target}" "${file}" "${options}")
+  endforeach()
+endfunction()
+
+# sk_check_kernel_target(TARGET): stops where sk_add_kernels cannot add sources to it.
+function(sk_check_kernel_target target)
+  if(NOT TARGET "${target}")
+    message(FATAL_ERROR "sk_add_kernels(${target}): there is no target '${target}'; "
+                        "call add_executable or add_library first")
+  endif()
+  get_target_property(type "${target}" TYPE)
+  get_target_property(imported "${target}" IMPORTED)
+  if(imported OR NOT type MATCHES "^(EXECUTABLE|STATIC_LIBRARY|SHARED_LIBRARY|MODULE_LIBRARY|OBJECT_LIBRARY)$")
+    message(FATAL_ERROR "sk_add_kernels(${target}): '${target}' compiles no sources; "
+                        "give an executable or a library of this project")
+  endif()
+  get_target_property(folder "${target}" SOURCE_DIR)
+  if(NOT folder STREQUAL CMAKE_CURRENT_SOURCE_DIR)
+    message(FATAL_ERROR "sk_add_kernels(${target}): '${target}' is made in ${folder}; call sk_add_kernels there")
+  endif()
+endfunction()
+
+# sk_add_kernel_file(TARGET FILE OPTIONS): one file's command, outputs and include path.
+function(sk_add_kernel_file target file options)
+  cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE OUTPUT_VARIABLE source)
+  if(NOT EXISTS "${source}" OR IS_DIRECTORY "${source}")
+    get_source_file_property(generated "${source}" GENERATED)
+    if(NOT generated)
+      message(FATAL_ERROR "sk_add_kernels(${target}): no such file: ${source}")
+    endif()
+  endif()
+  cmake_path(GET source EXTENSION LAST_ONLY extension)
+  if(NOT extension STREQUAL ".sk")
+    message(FATAL_ERROR "sk_add_kernels(${target}): not a .sk file: ${source}")
+  endif()
+
+  # The tree of outputs mirrors the source folder. What lies outside gets a folder of its own, so that
+  # files of one name never meet.
+  set(tree "${CMAKE_CURRENT_BINARY_DIR}/${target}.sk")
+  cmake_path(IS_PREFIX CMAKE_CURRENT_SOURCE_DIR "${source}" NORMALIZE inside)
+  cmake_path(GET source PARENT_PATH folder)
+  if(inside)
+    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" OUTPUT_VARIABLE below)
+    cmake_path(SET output NORMALIZE "${tree}/${below}")
+  else()
+    string(MD5 hash "${folder}")
+    string(SUBSTRING "${hash}" 0 8 hash)
+    set(output "${tree}/outside-${hash}")
+    target_include_directories(${target} PRIVATE "${output}")
+  endif()
+  string(REGEX REPLACE "/\\.?$" "" output "${output}")
+  cmake_path(GET source FILENAME name)
+  file(MAKE_DIRECTORY "${output}")
+
+  # Ninja holds that the depfile's first target is the first output.
+  add_custom_command(
+    OUTPUT "${output}/${name}.hpp" "${output}/${name}.cpp"
+    COMMAND sk::skc ${options} -o "${output}" "--depfile=${output}/${name}.d" "${source}"
+    DEPENDS "${source}" "$<TARGET_FILE:sk::skc>"
+    DEPFILE "${output}/${name}.d"
+    COMMENT "skc ${file}"
+    VERBATIM)
+  target_sources(${target} PRIVATE "${output}/${name}.cpp" "${output}/${name}.hpp")
+  target_include_directories(${target} PRIVATE "${tree}")
+endfunction()
+
+# sk_find_skc([PLACE...]): makes sk::skc of an installed skc: the one that SK_SKC names, else the one
+# in these folders, else the one on PATH.
+function(sk_find_skc)
+  if(SK_SKC)
+    set(skc "${SK_SKC}")
+    if(NOT EXISTS "${skc}")
+      message(FATAL_ERROR "StreamKernel: SK_SKC names no file: ${skc}")
+    endif()
+  else()
+    find_program(skc skc HINTS ${ARGN} NO_CACHE NO_CMAKE_FIND_ROOT_PATH)
+    if(NOT skc)
+      message(FATAL_ERROR "StreamKernel: no skc found on PATH; give one by -DSK_SKC=<file>, "
+                          "or build it (-DSK_BUILD_COMPILER=ON)")
+    endif()
+  endif()
+  add_executable(sk::skc IMPORTED GLOBAL)
+  set_target_properties(sk::skc PROPERTIES IMPORTED_LOCATION "${skc}")
+endfunction()

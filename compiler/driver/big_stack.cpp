@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#include "driver/big_stack.hpp"
+
+#include <cstddef>
+
+#include <pthread.h>
+
+namespace skc::driver {
+namespace {
+
+constexpr std::size_t stackBytes = std::size_t{512} << 20;   // address space; only used pages cost memory
+
+struct Job {
+  const std::function<int()>* work;
+  int status = 1;
+};
+
+void* runJob(void* pointer) {
+  auto* job = static_cast<Job*>(pointer);
+  job->status = (*job->work)();
+  return nullptr;
+}
+
+}  // namespace
+
+int withBigStack(const std::function<int()>& work) {
+  Job job{&work};
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_t thread{};
+  const bool started = pthread_attr_setstacksize(&attributes, stackBytes) == 0 &&
+                       pthread_create(&thread, &attributes, runJob, &job) == 0;
+  pthread_attr_destroy(&attributes);
+  if (!started) return work();   // no address space to spare: the ordinary stack must do
+  pthread_join(thread, nullptr);
+  return job.status;
+}
+
+}  // namespace skc::driver

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "driver/glsl_listing.hpp"
+
+#include <set>
+
+#include "assemble/assemble.hpp"
+#include "assemble/reduce_plan.hpp"
+#include "assemble/reduce_program.hpp"
+
+namespace skc::driver {
+namespace {
+
+using sk::assemble::Profile;
+
+/// The variant of streams that lie as they are and share one shape, as most calls have it.
+sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel) {
+  sk::assemble::Variant variant;
+  for (const sk::program::Parameter& parameter : kernel.parameters) {
+    sk::assemble::StreamAccess access;
+    if (parameter.role == sk::program::Role::Gather) {
+      access.addressing = sk::assemble::Addressing::Plane;
+      access.nearby = parameter.reach >= 0;
+    }
+    variant.access.push_back(access);
+  }
+  return variant;
+}
+
+/// Every program that folds a 1024 x 1024 stream to a value, once.
+std::string reductionListing(const Profile& profile, const sk::program::Reduction& reduction) {
+  sk::assemble::Placement input;
+  input.extent = {1024, 1024, 1, 1};
+  std::string text;
+  std::set<sk::assemble::ReduceVariant> seen;
+  for (const sk::assemble::ReducePass& pass :
+       sk::assemble::planReduction(input, sk::assemble::valuePlacement(), {.textureSize = 16384})) {
+    if (!seen.insert(pass.variant).second) continue;
+    if (!text.empty()) text += "\n";
+    text += sk::assemble::reduceProgram(profile, reduction, pass.variant);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string glslListing(const emit::Program& program, std::string_view profileName) {
+  const Profile& profile = *sk::assemble::findProfile(profileName);
+  std::string text;
+  for (const emit::Unit& unit : program.units()) {
+    if (!text.empty()) text += "\n";
+    text += unit.reduction ? reductionListing(profile, *unit.reduction)
+                           : sk::assemble::fragmentProgram(profile, unit.kernel, plainVariant(unit.kernel));
+  }
+  return text;
+}
+
+}  // namespace skc::driver

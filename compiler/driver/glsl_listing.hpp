@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+//
+// --emit=glsl: the whole programs as the runtime assembles them, for streams that all lie as 2-D
+// textures of one shape.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "emit/program.hpp"
+
+namespace skc::driver {
+
+std::string glslListing(const emit::Program& program, std::string_view profile);
+
+}  // namespace skc::driver

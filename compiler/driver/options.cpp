@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "driver/options.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "assemble/assemble.hpp"
+#include "transforms/transforms.hpp"
+
+namespace skc::driver {
+namespace {
+
+const std::map<std::string, Emit> emits = {
+    {"stubs", Emit::Stubs}, {"glsl", Emit::Glsl}, {"ir", Emit::Ir}, {"ast", Emit::Ast}};
+
+std::string profileNames() {
+  std::string names;
+  for (const sk::assemble::Profile& profile : sk::assemble::profiles()) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", profile.name);
+  }
+  return names;
+}
+
+std::string transformList() {
+  std::string names;
+  for (const std::string_view name : skc::transformNames()) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+  }
+  return names;
+}
+
+/// A message for a value that is not allowed, or "".
+std::string checkEmit(const std::string& value) {
+  if (emits.contains(value)) return {};
+  if (value == "cpp" || value == "plan") return fmt::format("'{}' is not part of this version", value);
+  return fmt::format("'{}' is none of stubs, glsl, ir, ast", value);
+}
+
+std::string checkProfile(const std::string& value) {
+  if (sk::assemble::findProfile(value)) return {};
+  return fmt::format("'{}' is none of {}", value, profileNames());
+}
+
+std::string checkTarget(const std::string& value) {
+  if (value == "fragment") return {};
+  if (value == "compute" || value == "native") return fmt::format("'{}' is not part of this version; use fragment", value);
+  return fmt::format("'{}' is no target; use fragment", value);
+}
+
+std::string checkTransform(const std::string& value) {
+  const auto names = skc::transformNames();
+  if (value == "all" || std::find(names.begin(), names.end(), value) != names.end()) return {};
+  return fmt::format("'{}' is no transform; use all, {}", value, transformList());
+}
+
+/// `skc a/x.sk b/x.sk -o out` would write out/x.sk.hpp twice.
+std::string duplicateStem(const std::vector<std::string>& files) {
+  std::map<std::string, std::string> seen;
+  for (const std::string& file : files) {
+    const std::string name = file.substr(file.find_last_of('/') + 1);
+    const auto [entry, isNew] = seen.emplace(name, file);
+    if (!isNew) return fmt::format("'{}' and '{}' would both be written to {}.hpp; compile them apart", entry->second, file, name);
+  }
+  return {};
+}
+
+}  // namespace
+
+CommandLine parseCommandLine(int argc, const char* const* argv) {
+  Options options;
+  std::string emit = "stubs", color = "auto";
+  std::vector<std::string> targets;
+  CLI::App app{"skc: compiles StreamKernel files (.sk) to GLSL, descriptors and C++ stubs.\n"
+               "FILE.sk becomes FILE.sk.hpp and FILE.sk.cpp.",
+               "skc"};
+  app.get_formatter()->column_width(30);
+  app.set_version_flag("--version", "skc " SKC_VERSION);
+  app.add_option("FILE", options.files, ".sk files to compile")->required();
+  app.add_option("-o", options.outputDirectory, "Write the stubs to this directory (default: the current one)")
+      ->type_name("DIR");
+  app.add_option("--emit", emit, "What to emit: stubs, or glsl, ir, ast on standard output")
+      ->check(checkEmit, "")->type_name("KIND");
+  app.add_option("--target", targets, "Targets to compile for: fragment")
+      ->delimiter(',')->check(checkTarget, "")->type_name("LIST");
+  app.add_option("--profile", options.profile, "Version of GLSL that --emit=glsl prints: " + profileNames())
+      ->check(checkProfile, "")->type_name("NAME");
+  app.add_option("--kernel", options.kernel, "Emit only this kernel or reduce")->type_name("NAME");
+  app.add_option("-I", options.includeDirectories, "Look for #include files in this directory")
+      ->type_name("DIR")->allow_extra_args(false);
+  app.add_option("-D", options.definitions, "Define a macro")->type_name("NAME[=VALUE]")->allow_extra_args(false);
+  app.add_option("-W", options.warnings, "Warnings, as Clang names them; -Werror makes them errors")
+      ->type_name("NAME")->allow_extra_args(false);
+  app.add_option("--depfile", options.depfile, "Write the files that the stubs depend on, as a Makefile rule")
+      ->type_name("FILE");
+  app.add_option("--print-after", options.printAfter, "Print the IR after this transform: all, " + transformList())
+      ->check(checkTransform, "")->type_name("NAME");
+  app.add_option("--color", color, "Colour the messages: auto, always, never")
+      ->check(CLI::IsMember({"auto", "always", "never"}))->type_name("WHEN");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    app.exit(success);
+    return {std::nullopt, 0};
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "skc: {}\nsee 'skc --help'\n", error.what());
+    return {std::nullopt, 1};
+  }
+  const std::string clash = options.emit == Emit::Stubs ? duplicateStem(options.files) : "";
+  options.emit = emits.at(emit);
+  if (options.emit == Emit::Stubs && !clash.empty()) {
+    fmt::print(stderr, "skc: {}\n", clash);
+    return {std::nullopt, 1};
+  }
+  options.color = color == "always" || (color == "auto" && isatty(STDERR_FILENO));
+  return {std::move(options), 0};
+}
+
+}  // namespace skc::driver

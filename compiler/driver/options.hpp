@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// The command line of skc.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace skc::driver {
+
+enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Ast };
+
+struct Options {
+  std::vector<std::string> files;
+  std::string outputDirectory = ".";
+  Emit emit = Emit::Stubs;
+  std::string profile = "glsl330";          ///< of --emit=glsl
+  std::string kernel;                       ///< of --emit=glsl and ir; empty: all
+  std::vector<std::string> includeDirectories, definitions, warnings;
+  std::string depfile;                      ///< empty: none
+  std::string printAfter;                   ///< a transform, "all", or empty
+  bool color = false;
+};
+
+/// The options, or the exit status where there is nothing to compile: 0 after --help and --version,
+/// 1 after a mistake, which is on standard error by then.
+struct CommandLine {
+  std::optional<Options> options;
+  int status = 0;
+};
+CommandLine parseCommandLine(int argc, const char* const* argv);
+
+}  // namespace skc::driver

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "emit/elements.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace skc::emit {
+namespace {
+
+using namespace ir;
+
+std::uint32_t alignUp(std::uint32_t offset, std::uint32_t alignment) {
+  return (offset + alignment - 1) / alignment * alignment;
+}
+
+std::string joinPath(const std::string& outer, const std::string& inner) {
+  return inner.empty() ? outer : outer + "." + inner;
+}
+
+}  // namespace
+
+ElementLayout elementLayout(const Module& module, const TypeNames& types, Type type) {
+  if (type.isArithmetic()) {
+    const std::uint32_t component = type.isBool() ? 1 : 4;
+    return {{{"", "", type, 0}}, component * type.width, component};
+  }
+  assert(type.kind == Type::Kind::Struct && "the frontend lets no other type be an element");
+  ElementLayout layout;
+  const std::vector<StructField>& fields = module.structs[type.index].fields;
+  for (std::uint32_t i = 0; i < fields.size(); ++i) {
+    const ElementLayout inner = elementLayout(module, types, fields[i].type);
+    layout.size = alignUp(layout.size, inner.alignment);
+    for (const Plane& plane : inner.planes) {
+      layout.planes.push_back({joinPath(types.fieldName(type.index, i), plane.path),
+                               joinPath(fields[i].name, plane.member), plane.type,
+                               layout.size + plane.offset});
+    }
+    layout.size += inner.size;
+    layout.alignment = std::max(layout.alignment, inner.alignment);
+  }
+  layout.size = alignUp(layout.size, layout.alignment);
+  return layout;
+}
+
+}  // namespace skc::emit

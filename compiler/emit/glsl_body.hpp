@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+//
+// The GLSL text of one kernel (program::Kernel::declarations and body): structs, constants, polyfills
+// and functions in the subset that GLSL 3.30 and ESSL 3.00 share. Streams are reached through
+// functions that the assembler writes between the two; neither they nor main() are made here.
+#pragma once
+
+#include <string>
+
+#include "emit/glsl_expr.hpp"
+
+namespace skc::emit {
+
+struct GlslBody {
+  std::string declarations;   ///< structs, and the constants that borders and identities name
+  std::string body;
+};
+
+GlslBody glslBody(const GlslContext& context);
+
+}  // namespace skc::emit

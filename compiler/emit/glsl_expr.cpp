@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "emit/glsl_expr.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "emit/stream_uses.hpp"
+#include "ir/print.hpp"
+#include "support/overloaded.hpp"
+#include "support/text.hpp"
+
+namespace skc::emit {
+namespace {
+
+using namespace ir;
+
+struct Parts {
+  std::string text;
+  Precedence precedence = Precedence::Primary;
+};
+
+Parts signedText(std::string text) {
+  const bool isNegative = text.front() == '-';
+  return {std::move(text), isNegative ? Precedence::Unary : Precedence::Primary};
+}
+
+/// True for large numbers that say more in hexadecimal: 0x7f800000, 0x00ffffff.
+bool isBitPattern(std::uint32_t bits) {
+  const std::uint32_t low = bits & 0xffffU;
+  return bits > 0xffffU && (low == 0 || low == 0xffffU);
+}
+
+Parts literalText(Type type, std::uint32_t bits) {
+  switch (type.scalar) {
+    case Scalar::Bool: return {bits != 0 ? "true" : "false"};
+    case Scalar::Int: {
+      const auto value = static_cast<std::int32_t>(bits);
+      // GLSL has no negative literals, and 2147483648 is no int
+      if (value == std::numeric_limits<std::int32_t>::min()) return {"-2147483647 - 1", Precedence::Additive};
+      if (isBitPattern(bits) && value > 0) return {fmt::format("0x{:08x}", bits)};
+      return signedText(std::to_string(value));
+    }
+    case Scalar::Uint:
+      return {isBitPattern(bits) ? fmt::format("0x{:08x}u", bits) : fmt::format("{}u", bits)};
+    case Scalar::Float: break;
+  }
+  const float value = std::bit_cast<float>(bits);
+  if (!std::isfinite(value)) return {fmt::format("uintBitsToFloat(0x{:08x}u)", bits)};
+  return signedText(shortestFloat(value));
+}
+
+/// The built-in that compares vectors; empty for other operators.
+std::string_view comparison(BinaryOp op) {
+  switch (op) {
+    case BinaryOp::Less: return "lessThan";
+    case BinaryOp::LessEqual: return "lessThanEqual";
+    case BinaryOp::Greater: return "greaterThan";
+    case BinaryOp::GreaterEqual: return "greaterThanEqual";
+    case BinaryOp::Equal: return "equal";
+    case BinaryOp::NotEqual: return "notEqual";
+    case BinaryOp::Add:
+    case BinaryOp::Sub:
+    case BinaryOp::Mul:
+    case BinaryOp::Div:
+    case BinaryOp::Rem:
+    case BinaryOp::BitAnd:
+    case BinaryOp::BitOr:
+    case BinaryOp::BitXor:
+    case BinaryOp::ShiftLeft:
+    case BinaryOp::ShiftRight:
+    case BinaryOp::LogicalAnd:
+    case BinaryOp::LogicalOr: break;
+  }
+  return {};
+}
+
+bool isNonNegative(const Expr& expr) {
+  const auto* n = std::get_if<Literal>(&expr.node);
+  return n != nullptr && static_cast<std::int32_t>(n->bits) >= 0;
+}
+
+class GlslExpr {
+ public:
+  GlslExpr(const GlslContext& context, std::optional<FunctionId> function)
+      : context_(context), function_(function) {}
+
+  std::string text(const Expr& expr, Precedence around = Precedence::Lowest) const {
+    const Parts whole = parts(expr);
+    return whole.precedence < around ? "(" + whole.text + ")" : whole.text;
+  }
+
+ private:
+  Parts parts(const Expr& expr) const {
+    return match(expr.node, [&](const auto& node) { return print(expr.type, node); });
+  }
+
+  Parts print(Type type, const Literal& n) const { return literalText(type, n.bits); }
+  Parts print(Type, const VarRef& n) const { return {context_.names.variable(*function_, n.var)}; }
+  Parts print(Type, const ConstantRef& n) const { return {context_.names.constant(n.constant)}; }
+  Parts print(Type type, const Unary& n) const {
+    if (n.op == UnaryOp::LogicalNot && type.isVector()) return {"not(" + text(*n.operand) + ")"};
+    return {std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary), Precedence::Unary};
+  }
+  Parts print(Type type, const Binary& n) const {
+    const bool isVector = n.lhs->type.isVector();
+    if (isVector && !comparison(n.op).empty())
+      return {fmt::format("{}{}", comparison(n.op), pair(*n.lhs, *n.rhs))};
+    if (isVector && (n.op == BinaryOp::LogicalAnd || n.op == BinaryOp::LogicalOr)) {
+      return {context_.polyfills.logical(n.op, type.width) + pair(*n.lhs, *n.rhs)};
+    }
+    if (n.op == BinaryOp::Rem && n.lhs->type.scalar == Scalar::Int &&
+        !(isNonNegative(*n.lhs) && isNonNegative(*n.rhs))) {
+      return {context_.polyfills.remainder(n.lhs->type, n.rhs->type) + pair(*n.lhs, *n.rhs)};
+    }
+    const Precedence precedence = precedenceOf(n.op);
+    const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
+    return {fmt::format("{} {} {}", operand(n.op, *n.lhs, precedence), spelling(n.op),
+                        operand(n.op, *n.rhs, tighter)),
+            precedence};
+  }
+  Parts print(Type type, const Select& n) const {
+    if (n.cond->type.isVector()) {
+      if (type.isFloat()) return {fmt::format("mix({}, {}, {})", text(*n.no), text(*n.yes), text(*n.cond))};
+      return {fmt::format("{}({}, {}, {})", context_.polyfills.select(type), text(*n.cond), text(*n.yes),
+                          text(*n.no))};
+    }
+    return {fmt::format("{} ? {} : {}", text(*n.cond, Precedence::LogicalOr),
+                        text(*n.yes, Precedence::LogicalOr), text(*n.no, Precedence::Conditional)),
+            Precedence::Conditional};
+  }
+  Parts print(Type type, const Convert& n) const {
+    return {context_.types.glsl(type) + "(" + text(*n.operand) + ")"};
+  }
+  Parts print(Type type, const Construct& n) const { return {context_.types.glsl(type) + list(n.args)}; }
+  Parts print(Type, const Swizzle& n) const {
+    std::string components;
+    for (std::uint8_t component : n.components) components += "xyzw"[component];
+    return {text(*n.base, Precedence::Primary) + "." + components};
+  }
+  Parts print(Type, const Member& n) const {
+    return {text(*n.base, Precedence::Primary) + "." + context_.types.fieldName(n.base->type.index, n.field)};
+  }
+  Parts print(Type, const Index& n) const {
+    return {text(*n.base, Precedence::Primary) + "[" + text(*n.index) + "]"};
+  }
+  Parts print(Type, const Call& n) const { return {context_.names.function(n.callee) + list(n.args)}; }
+  Parts print(Type, const IntrinsicCall& n) const {
+    const IntrinsicRow& entry = row(n.intrinsic);
+    const Type argument = n.args[0]->type;
+    context_.polyfills.intrinsic(n.intrinsic, argument);
+    const bool usesVectorColumn = argument.isVector() && !entry.glslVector.empty();
+    const std::string_view pattern = usesVectorColumn ? entry.glslVector : entry.glsl;
+    if (pattern.find('$') == std::string_view::npos) return {std::string(pattern) + list(n.args)};
+    if (pattern == "$0") return parts(*n.args[0]);
+    return fromPattern(withTypes(pattern, argument), n.args);
+  }
+  Parts print(Type, const GatherRead& n) const {
+    return {call("sk_at", n.stream) + "(" + text(*n.index) + ")"};
+  }
+  Parts print(Type, const NeighborRead& n) const {
+    return {call("sk_near", n.stream) + "(" + text(*n.offset) + ")"};
+  }
+  Parts print(Type, const IndexOf& n) const {
+    const bool isInput = n.stream.space == StreamRef::Space::KernelParameter &&
+                         context_.kernel.params[n.stream.id].role == ParamRole::Input;
+    return {(isInput ? call("sk_index", n.stream) : "sk_index") + "()"};
+  }
+  Parts print(Type, const ExtentOf& n) const { return {call("sk_extent", n.stream) + "()"}; }
+
+  /// "sk_at_u"; the domain has the shape of the first output.
+  std::string call(std::string_view function, StreamRef stream) const {
+    const bool isDomain = stream.space == StreamRef::Space::Domain;
+    const std::uint32_t param = isDomain ? domainParam(context_.kernel) : stream.id;
+    return fmt::format("{}_{}", function, context_.names.symbol(param));
+  }
+
+  std::string operand(BinaryOp outer, const Expr& expr, Precedence around) const {
+    const auto* inner = std::get_if<Binary>(&expr.node);
+    const bool clearer =
+        inner != nullptr && !inner->lhs->type.isVector() && bracketsForClarity(outer, inner->op);
+    return text(expr, clearer ? Precedence::Unary : around);
+  }
+
+  std::string pair(const Expr& a, const Expr& b) const { return "(" + text(a) + ", " + text(b) + ")"; }
+
+  std::string list(const std::vector<ExprPtr>& items) const {
+    std::vector<std::string> texts;
+    for (const ExprPtr& item : items) texts.push_back(text(*item));
+    return "(" + join(texts, ", ") + ")";
+  }
+
+  /// "($0 * $1 + $2)" with the arguments put in; the outer brackets go where they are not needed.
+  Parts fromPattern(std::string_view pattern, const std::vector<ExprPtr>& args) const {
+    const bool isBracketed = pattern.front() == '(' && pattern.back() == ')';
+    if (isBracketed) pattern = pattern.substr(1, pattern.size() - 2);
+    std::string result;
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+      if (pattern[i] != '$') {
+        result += pattern[i];
+        continue;
+      }
+      const char before = i == 0 ? ' ' : pattern[i - 1];
+      const char after = i + 2 < pattern.size() ? pattern[i + 2] : ' ';
+      const bool isArgument = before == '(' || after == ')' || after == ',';
+      const Expr& arg = *args[static_cast<std::size_t>(pattern[++i] - '0')];
+      result += text(arg, isArgument ? Precedence::Lowest : Precedence::Unary);
+    }
+    return {result, isBracketed ? Precedence::Conditional : Precedence::Primary};
+  }
+
+  const GlslContext& context_;
+  std::optional<FunctionId> function_;
+};
+
+}  // namespace
+
+std::string glslExpr(const GlslContext& context, std::optional<FunctionId> function, const Expr& expr,
+                     Precedence around) {
+  return GlslExpr(context, function).text(expr, around);
+}
+
+}  // namespace skc::emit

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// The functions that a body needs beside the user's because GLSL 3.30 lacks them: collected while
+// expressions are printed, each once, in the order of first use.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ir/ir.hpp"
+
+namespace skc::emit {
+
+class Polyfills {
+ public:
+  /// The function of an intrinsic's row, for this type of its first argument.
+  void intrinsic(ir::Intrinsic intrinsic, ir::Type argument);
+  /// && or || of two bool vectors; returns the function's name.
+  std::string logical(ir::BinaryOp op, int width);
+  /// A choice by component between two vectors of int, uint or bool; returns the function's name.
+  std::string select(ir::Type type);
+  /// C++'s % of ints; returns the function's name. GLSL's is undefined where an operand is negative.
+  std::string remainder(ir::Type lhs, ir::Type rhs);
+
+  /// Their definitions.
+  const std::vector<std::string>& functions() const { return functions_; }
+
+ private:
+  void add(std::string function);
+  std::vector<std::string> functions_;
+};
+
+/// A pattern of intrinsics.def with $T $I $U $B replaced by the types of the argument's width.
+std::string withTypes(std::string_view pattern, ir::Type argument);
+
+}  // namespace skc::emit

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+//
+// Promise: the polyfills of scalars compute what C++ computes. Their GLSL is C++, too, once the
+// built-ins that they call are declared; so it is compiled and run against <cmath>.
+//
+// Bounds: frexp, ldexp and modf are exact, so results are compared by their bits (NaN as NaN), all on
+// random bit patterns, denormals among them (the host keeps them). fmod is exact while the quotient
+// is below 2^24 and the product with y is exact, which small integers are.
+#include "emit/polyfills.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "emit/tool_folder.hpp"
+#include "ir/kernel_maker.hpp"
+
+namespace skc::emit {
+namespace {
+
+using namespace ir;
+
+constexpr std::string_view before = R"(
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+using uint = std::uint32_t;
+using std::clamp, std::floor, std::isinf, std::min, std::trunc;
+float intBitsToFloat(int i) { return std::bit_cast<float>(i); }
+float uintBitsToFloat(uint u) { return std::bit_cast<float>(u); }
+int floatBitsToInt(float f) { return std::bit_cast<int>(f); }
+uint floatBitsToUint(float f) { return std::bit_cast<uint>(f); }
+float mix(float a, float b, bool c) { return c ? b : a; }
+)";
+
+constexpr std::string_view after = R"(
+int wrong = 0;
+void same(const char* what, float x, float y, float got, float wanted) {
+  const bool equal = std::isnan(wanted) ? std::isnan(got) : floatBitsToUint(got) == floatBitsToUint(wanted);
+  if (!equal && ++wrong < 20) std::printf("%s(%a, %a) = %a, not %a\n", what, x, y, got, wanted);
+}
+void check(float x, int e) {
+  int exponent = 0;
+  const float mantissa = std::frexp(x, &exponent);
+  if (!std::isfinite(x)) exponent = 0;
+  same("frexp exponent", x, 0, float(sk_frexp_exponent(x)), float(exponent));
+  same("frexp mantissa", x, 0, sk_frexp_mantissa(x), mantissa);
+  const float scaled = std::ldexp(x, e);
+  if (scaled == 0 || !std::isfinite(scaled) || std::isnormal(scaled)) same("ldexp", x, float(e), sk_ldexp(x, e), scaled);
+  float whole = 0;
+  same("modf", x, 0, sk_modf_fraction(x), std::modf(x, &whole));
+}
+int main() {
+  std::mt19937 random(7);
+  for (int i = 0; i < 2000000; ++i) check(uintBitsToFloat(random()), int(random() % 700) - 350);
+  const float special[] = {0.0f, -0.0f, INFINITY, -INFINITY, NAN, 1.0f, -1.0f, 0.5f, 1e-45f, 1.17549421e-38f, 3.4028235e38f};
+  for (float x : special) {
+    for (int e = -400; e <= 400; ++e) check(x, e);
+    for (float y : special) {
+      if (std::fabs(x) <= 1 && (y == 1 || y == 0.5f || !std::isnormal(y))) {
+        const bool isDenormal = y != 0 && std::isfinite(y) && !std::isnormal(y);
+        if (!isDenormal) same("fmod", x, y, sk_fmod(x, y) + 0.0f, std::fmod(x, y) + 0.0f);
+      }
+    }
+    same("fmod", INFINITY, x, sk_fmod(INFINITY, x), NAN);
+  }
+  for (int x = -500; x <= 500; ++x) {
+    for (int y = -9; y <= 9; ++y) same("fmod", float(x), float(y), sk_fmod(float(x), float(y)) + 0.0f, std::fmod(float(x), float(y)) + 0.0f);
+  }
+  return wrong;
+}
+)";
+
+TEST_CASE("polyfills compute what C++ computes") {
+  Polyfills polyfills;
+  for (const IntrinsicRow& entry : intrinsicRows()) polyfills.intrinsic(entry.id, floatType);
+  REQUIRE(polyfills.functions().size() == 6);
+  std::string text(before);
+  for (const std::string& function : polyfills.functions()) text += function + "\n";
+  const ToolFolder folder("polyfills");
+  folder.write("polyfills.cpp", text + std::string(after));
+  CHECK(folder.complaints(std::string(SK_CXX_COMPILER) +
+                          " -std=c++20 -O1 polyfills.cpp -o polyfills && ./polyfills") == "");
+}
+
+}  // namespace
+}  // namespace skc::emit

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "emit/program.hpp"
+
+#include <deque>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "emit/elements.hpp"
+#include "emit/glsl_body.hpp"
+#include "emit/stream_uses.hpp"
+#include "ir/print.hpp"
+
+namespace skc::emit {
+
+using namespace ir;
+
+/// What the descriptors' views point to. Nothing here moves once it is made.
+struct Program::Storage {
+  std::deque<std::string> strings;
+  std::deque<std::vector<sk::program::Field>> fields;
+  std::deque<std::pair<Type, sk::program::Element>> elements;
+  std::deque<std::vector<sk::program::Parameter>> parameters;
+  std::vector<std::string_view> sources;
+  std::deque<sk::program::Reduction> reductions;
+  std::vector<Unit> units;
+
+  std::string_view keep(std::string text) { return strings.emplace_back(std::move(text)); }
+
+  const sk::program::Element* find(Type type) const {
+    for (const auto& [known, element] : elements) {
+      if (known == type) return &element;
+    }
+    return nullptr;
+  }
+};
+
+namespace {
+
+static_assert(static_cast<int>(Scalar::Float) == static_cast<int>(sk::program::Scalar::Float));
+static_assert(static_cast<int>(ParamRole::Accumulator) == static_cast<int>(sk::program::Role::Accumulator));
+static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program::Boundary::Border));
+
+/// A template only because Storage is private.
+template <class Storage>
+class Builder {
+ public:
+  Builder(const Module& module, Storage& storage) : module_(module), types_(module), storage_(storage) {}
+
+  void run() {
+    for (const std::string& source : module_.sources) storage_.sources.push_back(storage_.keep(source));
+    for (KernelId id = 0; id < module_.kernels.size(); ++id) add(id);
+  }
+
+ private:
+  void add(KernelId id) {
+    const Kernel& kernel = module_.kernels[id];
+    const KernelNames names(module_, kernel, types_);
+    Polyfills polyfills;
+    const GlslContext context{module_, types_, names, kernel, polyfills};
+    const StreamUses uses = streamUses(module_, kernel);
+    GlslBody text = glslBody(context);
+    std::vector<sk::program::Parameter>& parameters = storage_.parameters.emplace_back();
+    for (std::uint32_t i = 0; i < kernel.params.size(); ++i)
+      parameters.push_back(parameter(context, i, uses.params[i]));
+    Unit unit{.id = id,
+              .kernel = {.name = storage_.keep(qualifier(kernel.scope) + kernel.name),
+                         .entry = storage_.keep(names.function(kernel.entry)),
+                         .declarations = storage_.keep(std::move(text.declarations)),
+                         .body = storage_.keep(std::move(text.body)),
+                         .parameters = parameters,
+                         .sources = storage_.sources,
+                         .usesIndex = uses.domainIndex}};
+    if (kernel.reduction) {
+      const std::string& combine = names.function(*kernel.reduction->combine);
+      unit.reduction = &storage_.reductions.emplace_back(
+          sk::program::Reduction{unit.kernel, storage_.keep(combine), kernel.reduction->seeded});
+    }
+    storage_.units.push_back(unit);
+  }
+
+  sk::program::Parameter parameter(const GlslContext& context, std::uint32_t index, const StreamUse& use) {
+    const KernelParam& param = context.kernel.params[index];
+    const auto constant = [&](const ExprPtr& expr) {
+      return expr ? storage_.keep(glslExpr(context, std::nullopt, *expr)) : std::string_view();
+    };
+    return {.name = storage_.keep(param.name),
+            .symbol = storage_.keep(context.names.symbol(index)),
+            .role = static_cast<sk::program::Role>(param.role),
+            .element = &element(param.type),
+            .rank = param.rank,
+            .boundary = static_cast<sk::program::Boundary>(param.boundary),
+            .border = constant(param.border),
+            .identity = constant(param.identity),
+            .usesIndex = use.index,
+            .usesExtent = use.extent,
+            .usesAt = use.at,
+            .usesNear = use.near,
+            .reach = use.reach};
+  }
+
+  const sk::program::Element& element(Type type) {
+    if (const sk::program::Element* known = storage_.find(type)) return *known;
+    const ElementLayout layout = elementLayout(module_, types_, type);
+    std::vector<sk::program::Field>& fields = storage_.fields.emplace_back();
+    for (const Plane& plane : layout.planes) {
+      fields.push_back({.path = storage_.keep(plane.path),
+                        .scalar = static_cast<sk::program::Scalar>(plane.type.scalar),
+                        .width = plane.type.width,
+                        .offset = plane.offset});
+    }
+    sk::program::Element made{.name = storage_.keep(print(module_, type)),
+                              .glsl = storage_.keep(types_.glsl(type)),
+                              .size = layout.size,
+                              .fields = fields};
+    return storage_.elements.emplace_back(type, made).second;
+  }
+
+  const Module& module_;
+  TypeNames types_;
+  Storage& storage_;
+};
+
+}  // namespace
+
+Program::Program(const Module& module) : storage_(std::make_unique<Storage>()) {
+  Builder<Storage>(module, *storage_).run();
+}
+Program::Program(Program&&) noexcept = default;
+Program& Program::operator=(Program&&) noexcept = default;
+Program::~Program() = default;
+
+std::span<const Unit> Program::units() const { return storage_->units; }
+
+}  // namespace skc::emit

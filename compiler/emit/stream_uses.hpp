@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// How a kernel's functions use its streams: the flags of program::Parameter and program::Kernel.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ir/ir.hpp"
+
+namespace skc::emit {
+
+struct StreamUse {
+  bool index = false;
+  bool extent = false;
+  bool at = false;
+  bool near = false;
+  std::int32_t reach = -1;   ///< largest |offset| of constant neighbour reads; -1 if one is not constant
+};
+
+struct StreamUses {
+  std::vector<StreamUse> params;
+  bool domainIndex = false;
+};
+
+StreamUses streamUses(const ir::Module& module, const ir::Kernel& kernel);
+
+/// The parameter whose shape is the domain's: the first output; of a reduce, the accumulator.
+std::uint32_t domainParam(const ir::Kernel& kernel);
+
+}  // namespace skc::emit

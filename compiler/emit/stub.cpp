@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "emit/stub.hpp"
+
+#include <fmt/format.h>
+
+#include "emit/stub_parts.hpp"
+#include "support/text.hpp"
+
+namespace skc::emit {
+namespace {
+
+using namespace ir;
+
+std::string parameter(const Module& module, const KernelParam& param, const std::vector<std::string>& scope) {
+  const std::string type = cppType(module, param.type, scope);
+  switch (param.role) {
+    case ParamRole::Uniform:
+      return param.type.isArithmetic() ? fmt::format("{} {}", type, param.name)
+                                       : fmt::format("const {}& {}", type, param.name);
+    case ParamRole::Input:
+    case ParamRole::Gather: return fmt::format("const sk::In<{}>& {}", type, param.name);
+    case ParamRole::Output:
+    case ParamRole::Accumulator: break;
+  }
+  return fmt::format("const sk::Out<{}>& {}", type, param.name);
+}
+
+}  // namespace
+
+std::vector<Form> formsOf(const Kernel& kernel) {
+  if (kernel.reduction) return {Form::ReduceToValue, Form::ReduceToStream};
+  return {Form::Run};
+}
+
+std::string resultType(const Module& module, const Kernel& kernel, Form form,
+                       const std::vector<std::string>& scope) {
+  return form == Form::ReduceToValue ? cppType(module, kernel.params[1].type, scope) : "void";
+}
+
+std::string parameterList(const Module& module, const Kernel& kernel, Form form,
+                          const std::vector<std::string>& scope) {
+  std::vector<std::string> list;
+  for (const KernelParam& param : kernel.params) {
+    const bool isReturned = param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
+    if (!isReturned) list.push_back(parameter(module, param, scope));
+  }
+  return join(list, ", ") + ") const";
+}
+
+Stub emitStub(const Module& module, const Program& program, std::string_view fileName) {
+  const std::vector<Callable> list = callables(module, program);
+  return {stubHeader(module, program, list, fileName), stubSource(module, program, list, fileName)};
+}
+
+}  // namespace skc::emit

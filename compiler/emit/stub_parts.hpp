@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// Private to emitStub: the two files, and what both of them print alike.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "emit/cpp_names.hpp"
+
+namespace skc::emit {
+
+std::string stubHeader(const ir::Module& module, const Program& program,
+                       const std::vector<Callable>& callables, std::string_view fileName);
+std::string stubSource(const ir::Module& module, const Program& program,
+                       const std::vector<Callable>& callables, std::string_view fileName);
+
+/// A function of a callable: a kernel has one, a reduce one that returns a value and one that fills a
+/// stream.
+enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream };
+std::vector<Form> formsOf(const ir::Kernel& kernel);
+
+/// How the types of a function are written inside namespace `scope`.
+std::string resultType(const ir::Module& module, const ir::Kernel& kernel, Form form,
+                       const std::vector<std::string>& scope);
+/// What follows the opening bracket: "float k, const sk::In<float>& u, const sk::Out<float>& v) const".
+std::string parameterList(const ir::Module& module, const ir::Kernel& kernel, Form form,
+                          const std::vector<std::string>& scope);
+
+}  // namespace skc::emit

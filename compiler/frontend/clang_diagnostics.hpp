@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+//
+// Our diagnostics through Clang's engine: the same form, carets, colours, limits and -W switches.
+#pragma once
+
+#include <clang/Basic/Diagnostic.h>
+
+#include "support/diagnostics.hpp"
+
+namespace skc::frontend {
+
+class ClangDiagnostics : public Diagnostics {
+ public:
+  explicit ClangDiagnostics(clang::DiagnosticsEngine& engine) : engine_(engine) {}
+
+  void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments = {}) override;
+  bool hasErrors() const override { return engine_.hasErrorOccurred(); }
+
+ private:
+  clang::DiagnosticsEngine& engine_;
+};
+
+}  // namespace skc::frontend

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/frontend.hpp"
+
+#include <filesystem>
+#include <ostream>
+#include <system_error>
+
+#include <clang/AST/ASTConsumer.h>
+#include <clang/AST/ASTContext.h>
+#include <clang/Basic/TargetInfo.h>
+#include <clang/Frontend/CompilerInstance.h>
+#include <clang/Frontend/CompilerInvocation.h>
+#include <clang/Frontend/TextDiagnosticPrinter.h>
+#include <clang/Frontend/Utils.h>
+#include <clang/Lex/Preprocessor.h>
+#include <clang/Parse/Parser.h>
+#include <clang/Sema/Sema.h>
+#include <llvm/Support/MemoryBuffer.h>
+#include <llvm/Support/raw_os_ostream.h>
+
+#include "frontend/clang_diagnostics.hpp"
+#include "frontend/lower_module.hpp"
+#include "frontend/prelude.hpp"
+#include "frontend/token_editor.hpp"
+
+namespace skc::frontend {
+namespace {
+
+/// Larger files are no kernels that somebody wrote; Clang would take minutes over them.
+constexpr std::uintmax_t largestFile = std::uintmax_t{4} << 20;
+
+std::vector<std::string> compilerArguments(const Options& options, const std::string& path) {
+  std::vector<std::string> arguments = {
+      "-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++", "-std=c++20",
+      "-nostdsysteminc", "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=integer", "-cl-single-precision-constant",
+      "-Wno-undefined-internal", "-Wno-undefined-inline",
+      // a mistaken -W or a long cascade must not bury the first message
+      "-ferror-limit", "20", "-fmessage-length=0"};
+  for (const std::string& directory : options.includeDirectories) arguments.push_back("-I" + directory);
+  for (const std::string& definition : options.definitions) arguments.push_back("-D" + definition);
+  for (const std::string& warning : options.warnings) arguments.push_back("-W" + warning);
+  if (options.color) arguments.push_back("-fcolor-diagnostics");
+  arguments.push_back(path);
+  return arguments;
+}
+
+}  // namespace
+
+class Frontend::Unit {
+ public:
+  explicit Unit(Options options) : options_(std::move(options)) {
+    compiler_.createDiagnostics();
+    diagnostics_ = std::make_unique<ClangDiagnostics>(compiler_.getDiagnostics());
+  }
+
+  ~Unit() {
+    if (parsing_) compiler_.getDiagnosticClient().EndSourceFile();
+  }
+
+  std::optional<ir::Module> compile(const std::string& path) {
+    path_ = path;
+    if (!isReadable(path) || !setUp(path)) return std::nullopt;
+    EditedTokens edited = editTokens(lex(), compiler_.getPreprocessor(), *diagnostics_);
+    if (diagnostics_->hasErrors()) return std::nullopt;
+    parse(edited.tokens);
+    if (diagnostics_->hasErrors()) return std::nullopt;
+    ir::Module module = lowerModule(compiler_.getSema(), edited.syntax, path, *diagnostics_);
+    if (diagnostics_->hasErrors()) return std::nullopt;
+    return module;
+  }
+
+  void dumpAst(std::ostream& out) const {
+    if (!compiler_.hasASTContext()) return;
+    llvm::raw_os_ostream stream(out);
+    const clang::SourceManager& sources = compiler_.getSourceManager();
+    for (const clang::Decl* declaration : compiler_.getASTContext().getTranslationUnitDecl()->decls()) {
+      if (declaration->isImplicit() || sources.isInSystemHeader(declaration->getLocation())) continue;
+      declaration->dump(stream);
+    }
+  }
+
+  std::vector<std::string> dependencies() const {
+    std::vector<std::string> files{path_};
+    for (const std::string& file : dependencyCollector_->getDependencies()) {
+      if (file != path_) files.push_back(file);
+    }
+    return files;
+  }
+
+  Diagnostics& diagnostics() { return *diagnostics_; }
+
+ private:
+  bool isReadable(const std::string& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) return fail(Diag::FileMissing, path);
+    if (std::filesystem::is_directory(status)) return fail(Diag::FileIsDirectory, path);
+    auto buffer = llvm::MemoryBuffer::getFile(path);
+    if (!buffer) {
+      diagnostics_->report(Diag::FileUnreadable, {}, {path, buffer.getError().message()});
+      return false;
+    }
+    const llvm::StringRef text = (*buffer)->getBuffer();
+    if (text.size() > largestFile) {
+      diagnostics_->report(Diag::FileTooLarge, {}, {path, std::to_string(text.size())});
+      return false;
+    }
+    if (text.contains('\0')) return fail(Diag::FileIsBinary, path);
+    if (text.trim().empty()) return fail(Diag::FileIsEmpty, path);
+    return true;
+  }
+
+  bool fail(Diag diag, const std::string& path) {
+    diagnostics_->report(diag, {}, {path});
+    return false;
+  }
+
+  bool setUp(const std::string& path) {
+    const std::vector<std::string> arguments = compilerArguments(options_, path);
+    std::vector<const char*> pointers;
+    for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
+    if (!clang::CompilerInvocation::CreateFromArgs(compiler_.getInvocation(), pointers, compiler_.getDiagnostics())) {
+      return false;
+    }
+    // again, now with the options of the command line
+    compiler_.createDiagnostics();
+    diagnostics_ = std::make_unique<ClangDiagnostics>(compiler_.getDiagnostics());
+    compiler_.setTarget(
+        clang::TargetInfo::CreateTargetInfo(compiler_.getDiagnostics(), compiler_.getInvocation().TargetOpts));
+    compiler_.createFileManager();
+    compiler_.createSourceManager(compiler_.getFileManager());
+    dependencyCollector_ = std::make_shared<clang::DependencyCollector>();
+    compiler_.addDependencyCollector(dependencyCollector_);
+    compiler_.createPreprocessor(clang::TU_Complete);
+    clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
+    preprocessor.setPredefines(preprocessor.getPredefines() + preludeText());
+    compiler_.createASTContext();
+    compiler_.setASTConsumer(std::make_unique<clang::ASTConsumer>());
+    compiler_.createSema(clang::TU_Complete, nullptr);
+    compiler_.getDiagnosticClient().BeginSourceFile(compiler_.getLangOpts(), &preprocessor);
+    parsing_ = true;
+    return compiler_.InitializeSourceManager(compiler_.getFrontendOpts().Inputs.front());
+  }
+
+  std::vector<clang::Token> lex() {
+    clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
+    preprocessor.EnterMainSourceFile();
+    std::vector<clang::Token> tokens;
+    do {
+      preprocessor.Lex(tokens.emplace_back());
+    } while (tokens.back().isNot(clang::tok::eof));
+    return tokens;
+  }
+
+  /// What clang::ParseAST does, but from tokens instead of the main file.
+  void parse(const std::vector<clang::Token>& tokens) {
+    clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
+    clang::Parser parser(preprocessor, compiler_.getSema(), /*SkipFunctionBodies=*/false);
+    preprocessor.EnterTokenStream(tokens, /*DisableMacroExpansion=*/true, /*IsReinject=*/false);
+    parser.Initialize();
+    clang::Parser::DeclGroupPtrTy group;
+    clang::Sema::ModuleImportState imports;
+    for (bool atEnd = parser.ParseFirstTopLevelDecl(group, imports); !atEnd;
+         atEnd = parser.ParseTopLevelDecl(group, imports)) {
+    }
+  }
+
+  Options options_;
+  std::string path_;
+  clang::CompilerInstance compiler_;
+  std::unique_ptr<ClangDiagnostics> diagnostics_;
+  std::shared_ptr<clang::DependencyCollector> dependencyCollector_;
+  bool parsing_ = false;
+};
+
+Frontend::Frontend(const Options& options) : unit_(std::make_unique<Unit>(options)) {}
+Frontend::~Frontend() = default;
+
+std::optional<ir::Module> Frontend::compile(const std::string& path) { return unit_->compile(path); }
+void Frontend::dumpAst(std::ostream& out) const { unit_->dumpAst(out); }
+std::vector<std::string> Frontend::dependencies() const { return unit_->dependencies(); }
+Diagnostics& Frontend::diagnostics() { return unit_->diagnostics(); }
+
+}  // namespace skc::frontend

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+//
+// What the frontend makes of bodies: the IR that is printed, mostly about effects and their order.
+// Messages are tests/diagnostics' business.
+#include "frontend/frontend.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+#include <catch2/catch.hpp>
+#include <unistd.h>
+
+#include "ir/print.hpp"
+#include "ir/validate.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using skc::frontend::Frontend;
+
+/// A .sk file that lasts as long as the object.
+class SourceFile {
+ public:
+  explicit SourceFile(const std::string& text) {
+    static int count = 0;
+    path_ = fs::temp_directory_path() / ("skc_frontend_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".sk");
+    std::ofstream(path_) << text;
+  }
+  ~SourceFile() { fs::remove(path_); }
+  std::string path() const { return path_.string(); }
+
+ private:
+  fs::path path_;
+};
+
+/// The body of the last function, without the surrounding braces and indentation.
+std::string lowered(const std::string& text) {
+  const SourceFile file(text);
+  Frontend frontend({});
+  const std::optional<skc::ir::Module> module = frontend.compile(file.path());
+  REQUIRE(module);
+  CHECK(skc::ir::validate(*module, skc::ir::Stage::Lowered) == "");
+  std::string printed = skc::ir::print(*module, module->functions.back());
+  printed = printed.substr(printed.find("{\n") + 2);
+  printed = printed.substr(0, printed.rfind("}"));
+  std::string result;
+  for (std::size_t at = 0; at < printed.size();) {
+    const std::size_t end = printed.find('\n', at);
+    std::string line = printed.substr(at, end - at);
+    line.erase(0, std::min(line.size(), std::size_t{2}));
+    result += line + "\n";
+    at = end + 1;
+  }
+  return result;
+}
+
+std::string inKernel(const std::string& body) {
+  return lowered("float f(float& x) { x += 1; return x; }\n"
+                 "kernel void k(int n, float4 w, float x<>, [[wrap]] float u[][], out float v<>) {\n" + body + "\n}\n");
+}
+
+}  // namespace
+
+TEST_CASE("effects become statements in front, in C++'s order", "[frontend]") {
+  CHECK(inKernel("int i = 0; v = w[i++] * 2;") ==
+        "int i = 0;\nint t = i;\ni += 1;\nv = w[t] * 2.0;\n");
+  CHECK(inKernel("int i = 0; i = ++i + 1; v = i;") == "int i = 0;\ni += 1;\ni = i + 1;\nv = float(i);\n");
+  CHECK(inKernel("v = x; float y = v + f(v);") ==
+        "v = x;\nfloat t#6 = v;\nfloat t#5;\nt#5 = f(v);\nfloat y = t#6 + t#5;\n");
+  CHECK(inKernel("float a, b; a = b = x; v = a;") == "float a;\nfloat b;\nb = x;\na = b;\nv = a;\n");
+}
+
+TEST_CASE("a side's effects happen only where it is evaluated", "[frontend]") {
+  CHECK(inKernel("v = x; if (x > 0 && f(v) > 1) v = 0;") ==
+        "v = x;\nbool t#6 = x > 0.0;\nif (t#6) {\n  float t#5;\n  t#5 = f(v);\n  t#6 = t#5 > 1.0;\n}\n"
+        "if (t#6) {\n  v = 0.0;\n}\n");
+  CHECK(inKernel("v = x; v = x > 0 ? x : v;") == "v = x;\nv = x > 0.0 ? x : v;\n");
+}
+
+TEST_CASE("loops keep their shape", "[frontend]") {
+  CHECK(inKernel("v = 0; for (int i = 0; i < n; ++i) { if (i == 2) continue; v += i; }") ==
+        "v = 0.0;\nfor (int i = 0; i < n; i += 1) {\n  if (i == 2) {\n    continue;\n  }\n  v += float(i);\n}\n");
+  CHECK(inKernel("v = x; do { v *= 2; } while (v < 8);") == "v = x;\ndo {\n  v *= 2.0;\n} while (v < 8.0);\n");
+  // a condition with effects moves into the body
+  CHECK(inKernel("v = 0; int i = 0; while (i++ < n) v += 1;").find("while (true)") != std::string::npos);
+}
+
+TEST_CASE("vector comparisons are masks, and conditions see through them", "[frontend]") {
+  CHECK(inKernel("v = any(w < x) ? 1 : 0;") == "v = float(any(w < float4{x}) ? 1 : 0);\n");
+  CHECK(inKernel("bool4 m = bool4(w > 1); v = m.x;") == "bool4 m = w > float4{1.0};\nv = float(m.x);\n");
+}
+
+TEST_CASE("gathers are indexed with x first", "[frontend]") {
+  CHECK(inKernel("int2 p = indexof(v).xy; v = u[p.y][p.x] + u[p] + neighbor(u, 1, -1);") ==
+        "int2 p = indexof(domain).xy;\nv = u[int2{p.x, p.y}] + u[p] + neighbor(u, int2{1, -1});\n");
+}
+
+TEST_CASE("literals are rounded once", "[frontend]") {
+  // 1 + 2^-24 + 2^-54: through double it would be a tie and round to 1
+  CHECK(inKernel("v = 1.00000005960464483090177;") == "v = 1.0000001;\n");
+  CHECK(inKernel("v = 0.1 + x;") == "v = 0.1 + x;\n");
+  CHECK(inKernel("v = 1;") == "v = 1.0;\n");
+}
+
+TEST_CASE("dependencies are the main file and what it includes", "[frontend]") {
+  const SourceFile included("float twice(float x) { return 2 * x; }\n");
+  const SourceFile main("#include \"" + included.path() + "\"\nkernel void k(float x<>, out float v<>) { v = twice(x); }\n");
+  Frontend frontend({});
+  REQUIRE(frontend.compile(main.path()));
+  CHECK(frontend.dependencies() == std::vector<std::string>{main.path(), included.path()});
+}

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: MIT
+//
+// Calls: of intrinsics (chosen from the table by their arguments' types), of gathers, of the user's
+// functions and kernels.
+#include <algorithm>
+#include <cassert>
+
+#include <clang/AST/DeclCXX.h>
+#include <clang/AST/ExprCXX.h>
+
+#include "frontend/function_lowering.hpp"
+#include "ir/build.hpp"
+
+namespace skc::frontend {
+
+using clang::SourceLocation;
+using ir::ExprPtr;
+using ir::Scalar;
+
+ExprPtr FunctionLowering::VisitCallExpr(const clang::CallExpr* e) {
+  const clang::FunctionDecl* callee = e->getDirectCallee();
+  if (!callee) module_.fail(Diag::Pointer, e->getBeginLoc(), {e->getCallee()->getType().getAsString()});
+  return module_.isPrelude(callee) ? intrinsicCall(e, callee) : userCall(e, callee);
+}
+
+/// a[i] of a gather, or an operator of a struct: assignment copies, others are the user's functions.
+ExprPtr FunctionLowering::VisitCXXOperatorCallExpr(const clang::CXXOperatorCallExpr* e) {
+  const clang::FunctionDecl* callee = e->getDirectCallee();
+  if (!callee) return VisitExpr(e);
+  if (module_.isPrelude(callee)) return gatherRead(e);
+  if (e->getOperator() == clang::OO_Equal && callee->isTrivial()) {
+    ExprPtr right = value(e->getArg(1));
+    ExprPtr target = place(e->getArg(0));
+    ExprPtr result = ir::clone(*target);
+    emit(module_.loc(e->getBeginLoc()), ir::Assign{std::move(target), std::nullopt, std::move(right)});
+    return result;
+  }
+  return userCall(e, callee);
+}
+
+// ---- intrinsics -----------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
+  const llvm::StringRef name = callee->getName();
+  if (name.starts_with("__sk_make_")) return vectorConstructor(e, module_.type(e->getType(), e->getBeginLoc()));
+  if (name == "indexof") return indexOrExtent(e, true);
+  if (name == "extentof") return indexOrExtent(e, false);
+  if (name == "neighbor") return neighbor(e);
+  if (name == "sincos" || name == "modf" || name == "frexp") return outParameterIntrinsic(e, name);
+  if (name == "select") {
+    Exprs args = valuesInOrder({e->getArg(0), e->getArg(1), e->getArg(2)});
+    const ir::Type type = module_.type(e->getType(), e->getBeginLoc());
+    ExprPtr cond = toBool(std::move(args[0]));
+    for (std::size_t i = 1; i < 3; ++i) {
+      if (type.isArithmetic()) args[i] = splat(convert(std::move(args[i]), type.scalar), type.width);
+    }
+    if (cond->type.isVector() && (!type.isVector() || cond->type.width != type.width)) {
+      module_.fail(Diag::NoIntrinsic, e->getBeginLoc(), {"select", module_.spelling(cond->type) + ", " + module_.spelling(type)});
+    }
+    return select(std::move(cond), std::move(args[1]), std::move(args[2]), e->getBeginLoc());
+  }
+  return tableIntrinsic(e, name);
+}
+
+/// float4(v.xy, 0, 1): components that add up, or one scalar for all.
+ExprPtr FunctionLowering::vectorConstructor(const clang::CallExpr* e, ir::Type type) {
+  const SourceLocation where = e->getBeginLoc();
+  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()));
+  int width = 0;
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    if (!args[i]->type.isArithmetic()) {
+      module_.fail(Diag::VectorComponent, e->getArg(static_cast<unsigned>(i))->getBeginLoc(),
+                   {module_.spelling(type), module_.spelling(args[i]->type)});
+    }
+    width += args[i]->type.width;
+    args[i] = convert(std::move(args[i]), type.scalar);
+  }
+  if (args.size() == 1 && args[0]->type == type) return std::move(args[0]);
+  const bool isSplat = args.size() == 1 && width == 1;
+  if (width != type.width && !isSplat) {
+    module_.fail(Diag::VectorWidth, where, {module_.spelling(type), std::to_string(type.width), std::to_string(width)});
+  }
+  return make(type, where, ir::Construct{std::move(args)});
+}
+
+namespace {
+
+constexpr int impossible = 1000;
+
+/// What it costs to hand `from` to a parameter `to`; conversions lose nothing but ulps, as in C++.
+int conversionCost(ir::Type from, ir::Type to) {
+  if (from == to) return 0;
+  if (!from.isArithmetic() || !to.isArithmetic()) return impossible;
+  int cost = 0;
+  if (from.width != to.width) {
+    if (from.width != 1) return impossible;
+    cost += 20;
+  }
+  if (from.scalar == to.scalar) return cost;
+  switch (to.scalar) {
+    case Scalar::Float: return cost + (from.scalar == Scalar::Bool ? 3 : 1);
+    case Scalar::Uint: return from.scalar == Scalar::Float ? impossible : cost + 2;
+    case Scalar::Int: return from.scalar == Scalar::Float ? impossible : cost + (from.scalar == Scalar::Bool ? 1 : 3);
+    case Scalar::Bool: return from.scalar == Scalar::Int && from.isVector() ? cost : impossible;   // a mask
+  }
+  return impossible;
+}
+
+struct Match {
+  ir::Intrinsic intrinsic;
+  ir::IntrinsicOverload overload;
+};
+
+/// The cheapest overload with the result that Clang's prelude declares.
+std::optional<Match> bestMatch(llvm::StringRef name, ir::Type result, const std::vector<ExprPtr>& args) {
+  std::optional<Match> best;
+  int bestCost = impossible;
+  for (const ir::IntrinsicRow& row : ir::intrinsicRows()) {
+    if (row.spelling != std::string_view(name)) continue;
+    for (ir::IntrinsicOverload& overload : ir::overloads(row.id)) {
+      if (overload.result != result || overload.arguments.size() != args.size()) continue;
+      int cost = 0;
+      for (std::size_t i = 0; i < args.size() && cost < impossible; ++i) {
+        cost += conversionCost(args[i]->type, overload.arguments[i]);
+      }
+      if (cost < bestCost) {
+        bestCost = cost;
+        best = Match{row.id, std::move(overload)};
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+ExprPtr FunctionLowering::tableIntrinsic(const clang::CallExpr* e, llvm::StringRef name) {
+  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()));
+  std::optional<Match> match = bestMatch(name, module_.type(e->getType(), e->getBeginLoc()), args);
+  if (!match) {
+    std::string types;
+    for (const ExprPtr& arg : args) types += (types.empty() ? "" : ", ") + module_.spelling(arg->type);
+    module_.fail(Diag::NoIntrinsic, e->getBeginLoc(), {std::string_view(name), types});
+  }
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    const ir::Type wanted = match->overload.arguments[i];
+    args[i] = splat(convert(std::move(args[i]), wanted.scalar), wanted.width);
+  }
+  return intrinsic(match->intrinsic, match->overload.result, e->getBeginLoc(), std::move(args));
+}
+
+ExprPtr FunctionLowering::intrinsic(ir::Intrinsic which, ir::Type result, SourceLocation where, Exprs args) {
+  return make(result, where, ir::IntrinsicCall{which, std::move(args)});
+}
+
+/// sincos(x, s, c), modf(x, whole), frexp(x, e): assignments of values without effects.
+ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::StringRef name) {
+  const SourceLocation where = e->getBeginLoc();
+  const Loc loc = module_.loc(where);
+  ExprPtr x = value(e->getArg(0));
+  if (!x->type.isFloat()) module_.fail(Diag::NoIntrinsic, where, {std::string_view(name), module_.spelling(x->type)});
+  // the argument is read twice, and an out argument may be the very same variable
+  const ir::VarId kept = temporary(x->type, loc);
+  const ir::Type type = x->type;
+  emit(loc, ir::Declare{kept, std::move(x)});
+  const auto apply = [&](ir::Intrinsic which, ir::Type result) {
+    return intrinsic(which, result, where, ir::exprs(ir::varRef(function_, kept, loc)));
+  };
+  const auto store = [&](unsigned argument, ExprPtr stored) {
+    emit(loc, ir::Assign{place(e->getArg(argument)), std::nullopt, std::move(stored)});
+  };
+  if (name == "sincos") {
+    store(1, apply(ir::Intrinsic::Sin, type));
+    store(2, apply(ir::Intrinsic::Cos, type));
+    return ir::literal(false, loc);
+  }
+  if (name == "modf") {
+    store(1, apply(ir::Intrinsic::Trunc, type));
+    return apply(ir::Intrinsic::ModfFraction, type);
+  }
+  store(1, apply(ir::Intrinsic::FrexpExponent, type.withScalar(Scalar::Int)));
+  return apply(ir::Intrinsic::FrexpMantissa, type);
+}
+
+// ---- streams --------------------------------------------------------------------------------------
+
+namespace {
+
+/// Looks through the copies that C++ makes of a gather handed over by value.
+const clang::Expr* withoutCopies(const clang::Expr* e) {
+  while (true) {
+    e = e->IgnoreParenImpCasts();
+    if (const auto* construct = llvm::dyn_cast<clang::CXXConstructExpr>(e); construct && construct->getNumArgs() == 1) {
+      e = construct->getArg(0);
+    } else if (const auto* temporary = llvm::dyn_cast<clang::MaterializeTemporaryExpr>(e)) {
+      e = temporary->getSubExpr();
+    } else {
+      return e;
+    }
+  }
+}
+
+}  // namespace
+
+/// The Gather, Element or output variable that `e` names, if it is no more than that name.
+std::optional<ir::VarId> FunctionLowering::streamVariable(const clang::Expr* e) const {
+  const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(withoutCopies(e));
+  if (!reference) return std::nullopt;
+  const auto found = variables_.find(reference->getDecl());
+  if (found == variables_.end()) return std::nullopt;
+  const ir::VarRole role = function_.variables[found->second].role;
+  if (role != ir::VarRole::Gather && role != ir::VarRole::Element) return std::nullopt;
+  return found->second;
+}
+
+ir::VarId FunctionLowering::gatherVariable(const clang::Expr* e) {
+  const auto stream = streamVariable(e);
+  if (!stream || function_.variables[*stream].role != ir::VarRole::Gather) {
+    module_.fail(Diag::NotAGather, e->getBeginLoc());
+  }
+  return *stream;
+}
+
+/// indexof(p) and extentof(p): of a stream parameter; an output's are those of the domain.
+ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) {
+  const clang::Expr* argument = withoutCopies(e->getArg(0));
+  const SourceLocation where = argument->getBeginLoc();
+  const std::string_view name = isIndex ? "indexof" : "extentof";
+  const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(argument);
+  const ParamSyntax* syntax = reference ? module_.syntax().param(reference->getDecl()->getLocation()) : nullptr;
+  if (!syntax || syntax->role == ir::ParamRole::Uniform) module_.fail(Diag::NotAStream, where, {name});
+  const auto found = variables_.find(reference->getDecl());
+  if (found == variables_.end()) throw Abandoned{};
+  const bool isGather = syntax->role == ir::ParamRole::Gather;
+  if (isIndex && isGather) module_.fail(Diag::IndexOfGather, where, {function_.variables[found->second].name});
+  ir::StreamRef stream{ir::StreamRef::Space::Variable, found->second};
+  if (syntax->role == ir::ParamRole::Output) {
+    stream = {ir::StreamRef::Space::Domain, 0};
+  } else if (syntax->role == ir::ParamRole::Accumulator) {
+    module_.fail(Diag::NotAStream, where, {name});
+  }
+  const ir::Type type = ir::Type::of(Scalar::Int, 4);
+  if (isIndex) return make(type, where, ir::IndexOf{stream});
+  return make(type, where, ir::ExtentOf{stream});
+}
+
+/// neighbor(a, dx), neighbor(a, dx, dy), neighbor(a, int2)
+ExprPtr FunctionLowering::neighbor(const clang::CallExpr* e) {
+  const SourceLocation where = e->getBeginLoc();
+  const ir::VarId stream = gatherVariable(e->getArg(0));
+  const ir::Variable gather = function_.variables[stream];
+  Exprs offsets = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin() + 1, e->arg_end()));
+  ExprPtr offset;
+  if (offsets.size() == 1) {
+    offset = std::move(offsets[0]);
+  } else {
+    offset = make(ir::Type::of(Scalar::Int, gather.rank), where, ir::Construct{std::move(offsets)});
+  }
+  return make(gather.type, where,
+              ir::NeighborRead{{ir::StreamRef::Space::Variable, stream}, std::move(offset)});
+}
+
+/// a[i], a[i][j], a[int2], a[float2]: int indices with x, the fastest, first. Floats name the nearest
+/// element.
+ExprPtr FunctionLowering::gatherRead(const clang::CXXOperatorCallExpr* e) {
+  const SourceLocation where = e->getBeginLoc();
+  std::vector<const clang::Expr*> written{e->getArg(1)};
+  const clang::Expr* object = e->getArg(0)->IgnoreParenImpCasts();
+  if (const auto* temporary = llvm::dyn_cast<clang::MaterializeTemporaryExpr>(object)) {
+    object = temporary->getSubExpr()->IgnoreParenImpCasts();
+  }
+  while (const auto* outer = llvm::dyn_cast<clang::CXXOperatorCallExpr>(object)) {
+    written.insert(written.begin(), outer->getArg(1));
+    object = outer->getArg(0)->IgnoreParenImpCasts();
+  }
+  const ir::VarId stream = gatherVariable(object);
+  const ir::Variable gather = function_.variables[stream];
+  for (const clang::Expr* index : written) {
+    const auto* comma = llvm::dyn_cast<clang::BinaryOperator>(index->IgnoreParenImpCasts());
+    if (comma && comma->getOpcode() == clang::BO_Comma) module_.fail(Diag::CommaIndex, comma->getOperatorLoc(), {gather.name});
+  }
+  Exprs values = valuesInOrder(written);
+  for (ExprPtr& index : values) {
+    const Loc loc = index->loc;
+    if (index->type.isFloat()) {
+      const ir::Type type = index->type.withScalar(Scalar::Int);
+      index = ir::makeExpr(type, ir::IntrinsicCall{ir::Intrinsic::Nearest, ir::exprs(std::move(index))}, loc);
+    }
+    index = convert(std::move(index), Scalar::Int);
+  }
+  ExprPtr index;
+  if (values.size() == 1) {
+    index = std::move(values[0]);
+  } else {
+    std::reverse(values.begin(), values.end());
+    index = make(ir::Type::of(Scalar::Int, gather.rank), where, ir::Construct{std::move(values)});
+  }
+  assert(index->type.width == gather.rank);   // the prelude declares nothing else
+  return make(gather.type, where, ir::GatherRead{{ir::StreamRef::Space::Variable, stream}, std::move(index)});
+}
+
+}  // namespace skc::frontend

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: MIT
+//
+// Leaves, casts, members and initialisers: expressions without effects of their own.
+#include <clang/AST/ASTContext.h>
+#include <clang/AST/DeclCXX.h>
+#include <clang/AST/ExprCXX.h>
+#include <clang/Basic/SourceManager.h>
+#include <clang/Lex/Lexer.h>
+#include <llvm/ADT/APFloat.h>
+
+#include "frontend/clang_loc.hpp"
+#include "frontend/function_lowering.hpp"
+#include "ir/build.hpp"
+
+namespace skc::frontend {
+
+using clang::SourceLocation;
+using ir::ExprPtr;
+
+ExprPtr FunctionLowering::make(ir::Type type, SourceLocation where, ir::Expr::Node node) {
+  return ir::makeExpr(type, std::move(node), module_.loc(where));
+}
+
+ExprPtr FunctionLowering::literal(ir::Type type, std::uint32_t bits, SourceLocation where) {
+  return make(type, where, ir::Literal{bits});
+}
+
+// ---- what stands for its operand ------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitParenExpr(const clang::ParenExpr* e) { return value(e->getSubExpr()); }
+ExprPtr FunctionLowering::VisitConstantExpr(const clang::ConstantExpr* e) { return value(e->getSubExpr()); }
+ExprPtr FunctionLowering::VisitExprWithCleanups(const clang::ExprWithCleanups* e) { return value(e->getSubExpr()); }
+ExprPtr FunctionLowering::VisitMaterializeTemporaryExpr(const clang::MaterializeTemporaryExpr* e) {
+  return value(e->getSubExpr());
+}
+ExprPtr FunctionLowering::VisitSubstNonTypeTemplateParmExpr(const clang::SubstNonTypeTemplateParmExpr* e) {
+  return value(e->getReplacement());
+}
+/// `a != b` where only == is declared.
+ExprPtr FunctionLowering::VisitCXXRewrittenBinaryOperator(const clang::CXXRewrittenBinaryOperator* e) {
+  return value(e->getSemanticForm());
+}
+ExprPtr FunctionLowering::VisitCXXDefaultArgExpr(const clang::CXXDefaultArgExpr* e) { return value(e->getExpr()); }
+ExprPtr FunctionLowering::VisitCXXDefaultInitExpr(const clang::CXXDefaultInitExpr* e) { return value(e->getExpr()); }
+
+// ---- leaves ---------------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitIntegerLiteral(const clang::IntegerLiteral* e) {
+  const ir::Type type = module_.type(e->getType(), e->getLocation());
+  return literal(type, static_cast<std::uint32_t>(e->getValue().getZExtValue()), e->getLocation());
+}
+
+ExprPtr FunctionLowering::VisitFloatingLiteral(const clang::FloatingLiteral* e) { return floatLiteral(e); }
+
+/// Rounded once, from the text: through double, a literal could be rounded twice.
+ExprPtr FunctionLowering::floatLiteral(const clang::FloatingLiteral* e) {
+  llvm::APFloat exact = e->getValue();
+  bool inexact = false;
+  exact.convert(llvm::APFloat::IEEEsingle(), llvm::APFloat::rmNearestTiesToEven, &inexact);
+  llvm::SmallString<32> buffer;
+  std::string text = clang::Lexer::getSpelling(module_.sources().getSpellingLoc(e->getLocation()), buffer,
+                                               module_.sources(), module_.context().getLangOpts()).str();
+  std::erase(text, '\'');
+  const bool isHex = text.starts_with("0x") || text.starts_with("0X");
+  while (!text.empty() && (text.back() == 'f' || text.back() == 'F' || text.back() == 'l' || text.back() == 'L')) {
+    if (isHex && text.find_first_of("pP") == std::string::npos) break;
+    text.pop_back();
+  }
+  llvm::APFloat direct(llvm::APFloat::IEEEsingle());
+  auto status = direct.convertFromString(text, llvm::APFloat::rmNearestTiesToEven);
+  if (status) {
+    exact = direct;
+    if (*status & (llvm::APFloat::opOverflow | llvm::APFloat::opUnderflow)) {
+      module_.diagnostics().report(Diag::LiteralRange, locOf(e->getLocation()),
+                                   {text, direct.isInfinity() ? "infinity" : direct.isZero() ? "0" : "a denormal"});
+    }
+  } else {
+    llvm::consumeError(status.takeError());
+  }
+  return literal(ir::Type::of(ir::Scalar::Float), static_cast<std::uint32_t>(exact.bitcastToAPInt().getZExtValue()),
+                 e->getLocation());
+}
+
+ExprPtr FunctionLowering::VisitCXXBoolLiteralExpr(const clang::CXXBoolLiteralExpr* e) {
+  return literal(ir::Type::of(ir::Scalar::Bool), e->getValue() ? 1 : 0, e->getLocation());
+}
+
+ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
+  const clang::ValueDecl* declared = e->getDecl();
+  const SourceLocation where = e->getLocation();
+  if (const auto found = variables_.find(declared); found != variables_.end()) {
+    const ir::Variable& variable = function_.variables[found->second];
+    if (variable.role == ir::VarRole::Gather) module_.fail(Diag::GatherAsValue, where);
+    return make(variable.type, where, ir::VarRef{found->second});
+  }
+  if (const auto* enumerator = llvm::dyn_cast<clang::EnumConstantDecl>(declared)) {
+    const ir::Type type = module_.type(e->getType(), where);
+    return literal(type, static_cast<std::uint32_t>(enumerator->getInitVal().getExtValue()), where);
+  }
+  if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declared)) {
+    abandonIfUnknown(e);
+    return module_.constant(variable, where);
+  }
+  if (llvm::isa<clang::FunctionDecl>(declared)) module_.fail(Diag::Pointer, where, {declared->getType().getAsString()});
+  return VisitExpr(e);
+}
+
+ExprPtr FunctionLowering::VisitCXXThisExpr(const clang::CXXThisExpr* e) {
+  return make(function_.variables[*this_].type, e->getLocation(), ir::VarRef{*this_});
+}
+
+namespace {
+
+bool isKernelInteger(clang::QualType type) {
+  if (type->isEnumeralType()) return true;
+  const auto* builtin = type->getAs<clang::BuiltinType>();
+  if (!builtin) return false;
+  return builtin->getKind() == clang::BuiltinType::Int || builtin->getKind() == clang::BuiltinType::UInt ||
+         builtin->getKind() == clang::BuiltinType::Bool || builtin->getKind() == clang::BuiltinType::Char32;
+}
+
+}  // namespace
+
+/// An integer constant whose own type kernels may not have, such as sizeof or 'a'; null if `e` is none.
+ExprPtr FunctionLowering::integerConstant(const clang::Expr* e, ir::Type type) {
+  clang::Expr::EvalResult result;
+  if (e->isValueDependent() || !e->EvaluateAsInt(result, module_.context())) return nullptr;
+  return literal(type, static_cast<std::uint32_t>(result.Val.getInt().getExtValue()), e->getBeginLoc());
+}
+
+// ---- casts ----------------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
+  const clang::Expr* operand = e->getSubExpr();
+  const SourceLocation where = e->getBeginLoc();
+  switch (e->getCastKind()) {
+    case clang::CK_NoOp:
+    case clang::CK_LValueToRValue:
+    case clang::CK_ConstructorConversion: return value(operand);
+    case clang::CK_FloatingCast: return value(operand);     // a double literal in float's place
+    case clang::CK_IntegralCast:
+      if (!isKernelInteger(operand->getType())) {
+        if (ExprPtr constant = integerConstant(e, module_.type(e->getType(), where))) return constant;
+      }
+      return convert(value(operand), module_.type(e->getType(), where).scalar);
+    case clang::CK_IntegralToFloating:
+      if (!isKernelInteger(operand->getType())) {
+        if (ExprPtr constant = integerConstant(operand, ir::Type::of(ir::Scalar::Int))) {
+          return convert(std::move(constant), ir::Scalar::Float);
+        }
+      }
+      return convert(value(operand), module_.type(e->getType(), where).scalar);
+    case clang::CK_FloatingToIntegral:
+    case clang::CK_IntegralToBoolean:
+    case clang::CK_FloatingToBoolean:
+    case clang::CK_BooleanToSignedIntegral: return convert(value(operand), module_.type(e->getType(), where).scalar);
+    case clang::CK_VectorSplat: return splat(value(operand), module_.type(e->getType(), where).width);
+    case clang::CK_BitCast: return vectorBitCast(e);
+    case clang::CK_ToVoid: {
+      discarded(operand);
+      return ir::literal(false, module_.loc(where));
+    }
+    default: break;
+  }
+  if (e->getType()->isPointerType() || operand->getType()->isPointerType()) {
+    module_.fail(Diag::Pointer, where, {e->getType().getAsString()});
+  }
+  return VisitExpr(e);
+}
+
+/// Between integer vectors of one width: int and uint keep their bits, masks and bools their truth.
+ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
+  const ir::Type from = module_.type(e->getSubExpr()->getType(), e->getBeginLoc());
+  const ir::Type to = module_.type(e->getType(), e->getBeginLoc());
+  const bool isImplicit = llvm::isa<clang::ImplicitCastExpr>(e);
+  if (!from.isVector() || !to.isVector() || from.width != to.width || from.isFloat() || to.isFloat()) {
+    module_.fail(isImplicit ? Diag::MixedVectors : Diag::BitCast, e->getBeginLoc(), {module_.spelling(to)});
+  }
+  ExprPtr operand = value(e->getSubExpr());
+  if (from.isBool() && !to.isBool()) return convert(mask(std::move(operand)), to.scalar);
+  return convert(std::move(operand), to.scalar);
+}
+
+namespace {
+
+/// -int4(b), as comparisons of vectors give it: 0 or -1 in each component.
+ExprPtr* maskedBool(ir::Expr& e) {
+  auto* negate = std::get_if<ir::Unary>(&e.node);
+  if (!negate || negate->op != ir::UnaryOp::Negate) return nullptr;
+  auto* conversion = std::get_if<ir::Convert>(&negate->operand->node);
+  return conversion && conversion->operand->type.isBool() && e.type.isVector() ? &conversion->operand : nullptr;
+}
+
+}  // namespace
+
+ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
+  if (!e->type.isArithmetic() || e->type.scalar == scalar) return e;
+  if (scalar == ir::Scalar::Bool) return toBool(std::move(e));
+  const Loc loc = e->loc;
+  if (const auto* constant = std::get_if<ir::Literal>(&e->node)) {
+    // `v = 1` reads better as 1.0 than as float(1); every int is rounded as the device would
+    if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Float) {
+      return ir::literal(static_cast<float>(static_cast<std::int32_t>(constant->bits)), loc);
+    }
+    if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Uint) return ir::literal(constant->bits, loc);
+    if (e->type.scalar == ir::Scalar::Uint && scalar == ir::Scalar::Float) {
+      return ir::literal(static_cast<float>(constant->bits), loc);
+    }
+  }
+  return ir::convert(scalar, std::move(e), loc);
+}
+
+ExprPtr FunctionLowering::splat(ExprPtr e, int width) {
+  if (e->type.width == width) return e;
+  const Loc loc = e->loc;
+  const ir::Type type = ir::Type::of(e->type.scalar, width);
+  return ir::construct(type, ir::exprs(std::move(e)), loc);
+}
+
+ExprPtr FunctionLowering::mask(ExprPtr boolVector) {
+  const Loc loc = boolVector->loc;
+  return ir::unary(ir::UnaryOp::Negate, ir::convert(ir::Scalar::Int, std::move(boolVector), loc), loc);
+}
+
+ExprPtr FunctionLowering::toBool(ExprPtr e) {
+  if (e->type.isBool()) return e;
+  if (ExprPtr* inner = maskedBool(*e)) return std::move(*inner);
+  const Loc loc = e->loc;
+  if (!e->type.isArithmetic()) throw Abandoned{};
+  return ir::convert(ir::Scalar::Bool, std::move(e), loc);
+}
+
+// ---- parts ----------------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitExtVectorElementExpr(const clang::ExtVectorElementExpr* e) {
+  llvm::SmallVector<std::uint32_t, 4> indices;
+  e->getEncodedElementAccess(indices);
+  ExprPtr base = value(e->getBase());
+  ir::Swizzle swizzle;
+  for (const std::uint32_t index : indices) swizzle.components.push_back(static_cast<std::uint8_t>(index));
+  if (swizzle.components.size() > 4) module_.fail(Diag::SwizzleTooLong, e->getAccessorLoc());
+  const ir::Type type = ir::Type::of(base->type.scalar, static_cast<int>(swizzle.components.size()));
+  swizzle.base = std::move(base);
+  return make(type, e->getAccessorLoc(), std::move(swizzle));
+}
+
+ExprPtr FunctionLowering::VisitMemberExpr(const clang::MemberExpr* e) {
+  const auto* field = llvm::dyn_cast<clang::FieldDecl>(e->getMemberDecl());
+  if (!field) {
+    if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(e->getMemberDecl())) {
+      return module_.constant(variable, e->getMemberLoc());
+    }
+    return VisitExpr(e);
+  }
+  if (e->isArrow() && !llvm::isa<clang::CXXThisExpr>(e->getBase()->IgnoreParenImpCasts())) {
+    module_.fail(Diag::Pointer, e->getOperatorLoc(), {e->getBase()->getType().getAsString()});
+  }
+  ExprPtr base = value(e->getBase());
+  const ir::Type type = module_.structAt(base->type.index).fields[field->getFieldIndex()].type;
+  return make(type, e->getMemberLoc(), ir::Member{std::move(base), field->getFieldIndex()});
+}
+
+ExprPtr FunctionLowering::VisitArraySubscriptExpr(const clang::ArraySubscriptExpr* e) {
+  const clang::Expr* array = e->getBase();
+  if (const auto* decay = llvm::dyn_cast<clang::ImplicitCastExpr>(array);
+      decay && decay->getCastKind() == clang::CK_ArrayToPointerDecay) {
+    array = decay->getSubExpr();
+  }
+  Exprs parts;
+  parts.push_back(value(array));
+  ir::Block effects;
+  parts.push_back(valueInto(e->getIdx(), effects));
+  if (!effects.empty()) {
+    // the element is read or written after the index's effects: the array itself is not copied
+    keepInPlace(parts[0]);
+    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+  }
+  const ir::Type outer = parts[0]->type;
+  if (outer.kind != ir::Type::Kind::Array && !outer.isVector()) {
+    module_.fail(Diag::Pointer, e->getBeginLoc(), {e->getBase()->getType().getAsString()});
+  }
+  const ir::Type type = outer.isVector() ? outer.component() : module_.arrayAt(outer.index).element;
+  return make(type, e->getBeginLoc(), ir::Index{std::move(parts[0]), std::move(parts[1])});
+}
+
+// ---- initialisers ---------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitInitListExpr(const clang::InitListExpr* e) {
+  const clang::InitListExpr* list = e->isSemanticForm() || !e->getSemanticForm() ? e : e->getSemanticForm();
+  if (list->isTransparent()) return value(list->getInit(0));
+  const ir::Type type = module_.type(list->getType(), list->getBeginLoc());
+  if (type.isScalar()) {
+    return list->getNumInits() == 0 ? zero(type, list->getBeginLoc()) : value(list->getInit(0));
+  }
+  return aggregate(type, list->inits(), list->getArrayFiller(), list->getBeginLoc());
+}
+
+ExprPtr FunctionLowering::VisitCXXParenListInitExpr(const clang::CXXParenListInitExpr* e) {
+  std::vector<const clang::Expr*> inits(e->getInitExprs().begin(), e->getInitExprs().end());
+  return aggregate(module_.type(e->getType(), e->getBeginLoc()), inits, nullptr, e->getBeginLoc());
+}
+
+/// A struct, array or vector from its parts; what no initialiser names is zero (or the filler).
+ExprPtr FunctionLowering::aggregate(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits, const clang::Expr*,
+                                    SourceLocation where) {
+  Exprs args = valuesInOrder(inits);
+  if (type.isVector()) {
+    int width = 0;
+    for (ExprPtr& arg : args) {
+      arg = convert(std::move(arg), type.scalar);
+      width += arg->type.width;
+    }
+    for (; width < type.width; ++width) args.push_back(zero(type.component(), where));
+  } else if (type.kind == ir::Type::Kind::Struct) {
+    const std::vector<ir::StructField> fields = module_.structAt(type.index).fields;
+    for (std::size_t i = args.size(); i < fields.size(); ++i) args.push_back(zero(fields[i].type, where));
+  } else {
+    const ir::Array array = module_.arrayAt(type.index);
+    for (std::size_t i = args.size(); i < array.length; ++i) args.push_back(zero(array.element, where));
+  }
+  return make(type, where, ir::Construct{std::move(args)});
+}
+
+ExprPtr FunctionLowering::zero(ir::Type type, SourceLocation where) {
+  if (type.isScalar()) return literal(type, 0, where);
+  if (type.isVector()) return splat(literal(type.component(), 0, where), type.width);
+  return aggregate(type, {}, nullptr, where);
+}
+
+ExprPtr FunctionLowering::VisitImplicitValueInitExpr(const clang::ImplicitValueInitExpr* e) {
+  return zero(module_.type(e->getType(), e->getBeginLoc()), e->getBeginLoc());
+}
+
+ExprPtr FunctionLowering::VisitCXXScalarValueInitExpr(const clang::CXXScalarValueInitExpr* e) {
+  return zero(module_.type(e->getType(), e->getBeginLoc()), e->getBeginLoc());
+}
+
+ExprPtr FunctionLowering::VisitCXXConstructExpr(const clang::CXXConstructExpr* e) {
+  const clang::CXXConstructorDecl* constructor = e->getConstructor();
+  if (constructor->isCopyOrMoveConstructor() && e->getNumArgs() == 1) return value(e->getArg(0));
+  if (constructor->isDefaultConstructor() && !constructor->isUserProvided()) {
+    return defaultStruct(constructor->getParent(), e->getBeginLoc());
+  }
+  module_.fail(Diag::Constructor, e->getBeginLoc(), {constructor->getParent()->getNameAsString()});
+}
+
+/// `Hit h;` where Hit's members have initialisers, and `Hit()`: the rest is zero.
+ExprPtr FunctionLowering::defaultStruct(const clang::CXXRecordDecl* record, SourceLocation where) {
+  const ir::Type type = module_.type(module_.context().getRecordType(record), where);
+  Exprs args;
+  for (const clang::FieldDecl* field : record->fields()) {
+    if (const clang::Expr* init = field->getInClassInitializer()) {
+      args.push_back(value(init));
+    } else {
+      args.push_back(zero(module_.type(field->getType(), where), where));
+    }
+  }
+  return make(type, where, ir::Construct{std::move(args)});
+}
+
+// ---- everything else ------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitExpr(const clang::Expr* e) {
+  const SourceLocation where = e->getBeginLoc();
+  switch (e->getStmtClass()) {
+    case clang::Stmt::LambdaExprClass: module_.fail(Diag::Lambda, where);
+    case clang::Stmt::CXXNewExprClass:
+    case clang::Stmt::CXXDeleteExprClass: module_.fail(Diag::DynamicAllocation, where);
+    case clang::Stmt::StringLiteralClass: module_.fail(Diag::Expression, where, {"a string"});
+    default: break;
+  }
+  if (e->getType()->isIntegralOrEnumerationType()) {
+    if (ExprPtr constant = integerConstant(e, module_.type(e->getType(), where))) return constant;
+  }
+  module_.fail(Diag::Expression, where, {"this kind of expression"});
+}
+
+ExprPtr FunctionLowering::VisitStmt(const clang::Stmt* s) {
+  module_.fail(Diag::Statement, s->getBeginLoc(), {"this kind of statement"});
+}
+
+}  // namespace skc::frontend

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/module_lowering.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <clang/AST/ASTContext.h>
+#include <clang/AST/DeclCXX.h>
+#include <clang/AST/DeclTemplate.h>
+#include <clang/Basic/SourceManager.h>
+#include <clang/Sema/Sema.h>
+
+#include "frontend/clang_loc.hpp"
+#include "frontend/function_lowering.hpp"
+#include "frontend/lower_module.hpp"
+#include "frontend/prelude.hpp"
+#include "ir/build.hpp"
+
+namespace skc::frontend {
+
+using clang::SourceLocation;
+
+ir::Module lowerModule(clang::Sema& sema, const DeclarationSyntax& syntax, const std::string& file,
+                       Diagnostics& diagnostics) {
+  return ModuleLowering(sema, syntax, diagnostics).run(file);
+}
+
+ir::Module ModuleLowering::run(const std::string& file) {
+  module_.file = file;
+  module_.sources.push_back(file);
+  sourceIndex_[file] = 0;
+  declarations(context().getTranslationUnitDecl());
+  if (module_.kernels.empty() && !diagnostics_.hasErrors()) diagnostics_.report(Diag::NoKernels, {}, {file});
+  if (!diagnostics_.hasErrors()) pairReductions();
+  return std::move(module_);
+}
+
+/// In the order of the file, so that the stub lists kernels as their author did.
+void ModuleLowering::declarations(const clang::DeclContext* scope) {
+  for (const clang::Decl* declaration : scope->decls()) {
+    if (declaration->isImplicit() || isPrelude(declaration)) continue;
+    try {
+      if (const auto* inner = llvm::dyn_cast<clang::NamespaceDecl>(declaration)) {
+        declarations(inner);
+      } else if (const auto* linkage = llvm::dyn_cast<clang::LinkageSpecDecl>(declaration)) {
+        declarations(linkage);
+      } else if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declaration)) {
+        if (variable->getName().starts_with("__sk_constant")) {
+          generated_[variable->getName().str()] = variable;
+        } else {
+          constant(variable, variable->getLocation());
+        }
+      } else if (const auto* function = llvm::dyn_cast<clang::FunctionDecl>(declaration)) {
+        if (!function->isThisDeclarationADefinition() || function->isDependentContext()) continue;
+        if (const KernelSyntax* kernelSyntax = syntax_.kernel(function->getLocation())) {
+          kernel(function, *kernelSyntax);
+        } else {
+          this->function(function, function->getLocation());
+        }
+      }
+    } catch (const Abandoned&) {
+      // reported; the other declarations may hold errors of their own
+    }
+  }
+}
+
+// ---- kernels ------------------------------------------------------------------------------------
+
+void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const KernelSyntax& syntax) {
+  const SourceLocation where = declaration->getLocation();
+  if (!declaration->getReturnType()->isVoidType()) {
+    fail(Diag::KernelResult, where, {syntax.isReduce ? "reduce" : "kernel", declaration->getNameAsString()});
+  }
+  ir::Kernel kernel;
+  kernel.name = declaration->getNameAsString();
+  kernel.scope = scopeOf(declaration);
+  kernel.signature = syntax.signature;
+  kernel.loc = loc(where);
+  kernel.entry = function(declaration, where);
+  for (unsigned i = 0; i < declaration->getNumParams(); ++i) {
+    kernel.params.push_back(kernelParam(declaration->getParamDecl(i), functionAt(kernel.entry).variables[i]));
+  }
+  if (syntax.isReduce) kernel.reduction.emplace();
+  checkKernelShape(kernel, where);
+  module_.kernels.push_back(std::move(kernel));
+}
+
+ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaration, const ir::Variable& variable) {
+  const ParamSyntax* syntax = syntax_.param(declaration->getLocation());
+  ir::KernelParam param;
+  param.name = declaration->getNameAsString();
+  param.role = syntax ? syntax->role : ir::ParamRole::Uniform;
+  param.type = variable.type;
+  param.loc = loc(declaration->getLocation());
+  if (param.type.kind == ir::Type::Kind::Array) {
+    fail(Diag::ArrayParameter, declaration->getLocation(), {param.name});
+  }
+  if (param.type.kind == ir::Type::Kind::Struct) {
+    for (const ir::StructField& field : module_.structs[param.type.index].fields) {
+      if (field.type.kind == ir::Type::Kind::Array) {
+        fail(Diag::ArrayInElement, declaration->getLocation(), {param.name, field.name});
+      }
+    }
+  }
+  if (syntax) {
+    param.rank = syntax->rank;
+    param.boundary = syntax->boundary;
+    if (!syntax->border.empty()) param.border = generatedConstant(syntax->border);
+    if (!syntax->identity.empty()) param.identity = generatedConstant(syntax->identity);
+  }
+  return param;
+}
+
+void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation where) {
+  const auto count = [&](ir::ParamRole role) {
+    return std::count_if(kernel.params.begin(), kernel.params.end(),
+                         [&](const ir::KernelParam& param) { return param.role == role; });
+  };
+  if (!kernel.reduction) {
+    if (count(ir::ParamRole::Output) == 0) fail(Diag::KernelWithoutOutput, where, {kernel.name});
+    return;
+  }
+  if (kernel.params.size() != 2 || kernel.params[0].role != ir::ParamRole::Input ||
+      kernel.params[1].role != ir::ParamRole::Accumulator) {
+    fail(Diag::ReduceParameters, where, {kernel.name});
+  }
+}
+
+/// Where an accumulator's type differs from the element's, an overload that folds two accumulators
+/// says how partial results combine.
+void ModuleLowering::pairReductions() {
+  std::vector<bool> isCombination(module_.kernels.size(), false);
+  for (ir::Kernel& kernel : module_.kernels) {
+    if (!kernel.reduction || kernel.params[0].type == kernel.params[1].type) continue;
+    for (std::size_t i = 0; i < module_.kernels.size(); ++i) {
+      const ir::Kernel& other = module_.kernels[i];
+      if (!other.reduction || other.name != kernel.name || other.scope != kernel.scope) continue;
+      if (other.params[0].type == kernel.params[1].type && other.params[1].type == kernel.params[1].type) {
+        kernel.reduction->combine = other.entry;
+        isCombination[i] = true;
+      }
+    }
+  }
+}
+
+ir::ExprPtr ModuleLowering::generatedConstant(const std::string& name) {
+  const auto found = generated_.find(name);
+  if (found == generated_.end()) throw Abandoned{};
+  return constantValue(found->second, /*inlined=*/true);
+}
+
+// ---- constants ----------------------------------------------------------------------------------
+
+ir::ExprPtr ModuleLowering::constant(const clang::VarDecl* declaration, SourceLocation use) {
+  const clang::VarDecl* definition = declaration->getCanonicalDecl();
+  if (failedConstants_.contains(definition)) {
+    if (constantsInProgress_.contains(declaration)) fail(Diag::NotConstant, use);   // its value names itself
+    throw Abandoned{};   // told already
+  }
+  if (!definition->getType().isConstQualified()) {
+    failedConstants_.insert(definition);
+    fail(Diag::MutableGlobal, use, {definition->getNameAsString()});
+  }
+  auto found = constants_.find(definition);
+  if (found == constants_.end()) {
+    failedConstants_.insert(definition);   // until it has succeeded
+    ir::ExprPtr value = constantValue(declaration, inlineConstants_);
+    failedConstants_.erase(definition);
+    ir::Constant entry{definition->getNameAsString(), value->type, std::move(value), loc(definition->getLocation())};
+    found = constants_.emplace(definition, static_cast<ir::ConstantId>(module_.constants.size())).first;
+    module_.constants.push_back(std::move(entry));
+  }
+  const ir::Constant& entry = module_.constants[found->second];
+  if (inlineConstants_) return ir::clone(*entry.value);
+  auto reference = std::make_unique<ir::Expr>();
+  reference->type = entry.type;
+  reference->loc = loc(use);
+  reference->node = ir::ConstantRef{found->second};
+  return reference;
+}
+
+/// `inlined`: the value names no other constant, since it will stand outside the kernel's body.
+ir::ExprPtr ModuleLowering::constantValue(const clang::VarDecl* declaration, bool inlined) {
+  const clang::Expr* init = declaration->getAnyInitializer();
+  constantsInProgress_.insert(declaration);
+  if (!init) fail(Diag::ConstantWithoutValue, declaration->getLocation(), {declaration->getNameAsString()});
+  const bool before = std::exchange(inlineConstants_, inlined);
+  FunctionLowering lowering(*this);
+  ir::ExprPtr value;
+  try {
+    value = lowering.constantInitializer(init);
+  } catch (const Abandoned&) {
+    inlineConstants_ = before;
+    throw;
+  }
+  inlineConstants_ = before;
+  constantsInProgress_.erase(declaration);
+  if (!value) value = evaluated(init);
+  if (!value) fail(Diag::NotConstant, init->getBeginLoc());
+  return value;
+}
+
+/// A scalar that Clang can compute where GLSL could not, such as a call of a constexpr function.
+ir::ExprPtr ModuleLowering::evaluated(const clang::Expr* init) {
+  clang::Expr::EvalResult result;
+  if (!init->EvaluateAsRValue(result, context()) || result.HasSideEffects) return nullptr;
+  const ir::Type type = this->type(init->getType(), init->getBeginLoc());
+  if (!type.isScalar()) return nullptr;
+  std::uint32_t bits = 0;
+  if (result.Val.isFloat()) {
+    llvm::APFloat rounded = result.Val.getFloat();
+    bool inexact = false;
+    rounded.convert(llvm::APFloat::IEEEsingle(), llvm::APFloat::rmNearestTiesToEven, &inexact);
+    bits = static_cast<std::uint32_t>(rounded.bitcastToAPInt().getZExtValue());
+  } else if (result.Val.isInt()) {
+    bits = static_cast<std::uint32_t>(result.Val.getInt().getExtValue());
+  } else {
+    return nullptr;
+  }
+  return ir::makeExpr(type, ir::Literal{bits}, loc(init->getBeginLoc()));
+}
+
+// ---- functions ----------------------------------------------------------------------------------
+
+ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, SourceLocation use) {
+  const clang::FunctionDecl* definition = declaration->getDefinition();
+  if (!definition) fail(Diag::FunctionWithoutBody, use, {declaration->getNameAsString()});
+  const auto found = functions_.find(definition);
+  if (found != functions_.end()) {
+    switch (found->second.progress) {
+      case Progress::Lowering: fail(Diag::Recursion, use, {declaration->getNameAsString()});
+      case Progress::Failed: throw Abandoned{};
+      case Progress::Done: return found->second.id;
+    }
+  }
+  if (const auto* method = llvm::dyn_cast<clang::CXXMethodDecl>(definition)) {
+    if (llvm::isa<clang::CXXConstructorDecl>(method) || llvm::isa<clang::CXXDestructorDecl>(method)) {
+      fail(Diag::Constructor, use, {method->getParent()->getNameAsString()});
+    }
+    if (method->isVirtual()) fail(Diag::VirtualFunction, use, {method->getNameAsString()});
+  }
+  functions_[definition] = {0, Progress::Lowering};
+  try {
+    FunctionLowering lowering(*this);
+    ir::Function lowered = lowering.function(definition);
+    // callees were added meanwhile: the table is in an order in which everything is defined before use
+    const auto id = static_cast<ir::FunctionId>(module_.functions.size());
+    module_.functions.push_back(std::move(lowered));
+    functions_[definition] = {id, Progress::Done};
+    return id;
+  } catch (const Abandoned&) {
+    functions_[definition].progress = Progress::Failed;
+    throw;
+  }
+}
+
+// ---- types --------------------------------------------------------------------------------------
+
+namespace {
+
+std::optional<ir::Scalar> scalarOf(const clang::BuiltinType* builtin) {
+  switch (builtin->getKind()) {
+    case clang::BuiltinType::Bool:
+    case clang::BuiltinType::Char32: return ir::Scalar::Bool;   // components of bool vectors
+    case clang::BuiltinType::Int: return ir::Scalar::Int;
+    case clang::BuiltinType::UInt: return ir::Scalar::Uint;
+    case clang::BuiltinType::Float: return ir::Scalar::Float;
+    default: return std::nullopt;
+  }
+}
+
+}  // namespace
+
+ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
+  const clang::QualType canonical = qualified.getCanonicalType().getUnqualifiedType();
+  if (canonical->isVoidType()) return ir::Type::voidType();
+  if (canonical->isPointerType() || canonical->isMemberPointerType() || canonical->isNullPtrType() ||
+      canonical->isFunctionType()) {
+    fail(Diag::Pointer, use, {qualified.getUnqualifiedType().getAsString()});
+  }
+  if (canonical->isReferenceType()) fail(Diag::ReferenceType, use, {qualified.getAsString()});
+  if (const auto* enumeration = canonical->getAs<clang::EnumType>()) {
+    return type(enumeration->getDecl()->getIntegerType(), use);
+  }
+  if (const auto* builtin = canonical->getAs<clang::BuiltinType>()) {
+    if (const auto scalar = scalarOf(builtin)) return ir::Type::of(*scalar);
+    const bool isDouble = builtin->getKind() == clang::BuiltinType::Double;
+    fail(isDouble ? Diag::DoubleType : Diag::ScalarType, use, {qualified.getUnqualifiedType().getAsString()});
+  }
+  if (const auto* vector = canonical->getAs<clang::ExtVectorType>()) {
+    const auto* element = vector->getElementType()->getAs<clang::BuiltinType>();
+    const auto scalar = element ? scalarOf(element) : std::nullopt;
+    const unsigned width = vector->getNumElements();
+    if (scalar && width >= 2 && width <= 4) return ir::Type::of(*scalar, static_cast<int>(width));
+    fail(Diag::ScalarType, use, {qualified.getAsString()});
+  }
+  if (const auto* array = context().getAsConstantArrayType(canonical)) {
+    return arrayType(type(array->getElementType(), use), array->getSize().getZExtValue(), use);
+  }
+  if (const clang::CXXRecordDecl* record = canonical->getAsCXXRecordDecl()) return structType(record, use);
+  fail(Diag::ScalarType, use, {qualified.getAsString()});
+}
+
+int ModuleLowering::gatherRank(clang::QualType qualified, SourceLocation use, ir::Type& element) {
+  const clang::CXXRecordDecl* record = qualified.getNonReferenceType()->getAsCXXRecordDecl();
+  if (!record || !isPrelude(record)) return 0;
+  const auto* instance = llvm::dyn_cast<clang::ClassTemplateSpecializationDecl>(record);
+  if (!instance) return 0;
+  for (int rank = 1; rank <= 4; ++rank) {
+    if (instance->getName() != gatherTemplateName(rank)) continue;
+    element = type(instance->getTemplateArgs()[0].getAsType(), use);
+    return rank;
+  }
+  return 0;
+}
+
+ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, SourceLocation use) {
+  const clang::CXXRecordDecl* record = declaration->getDefinition();
+  if (!record) fail(Diag::IncompleteType, use, {declaration->getNameAsString()});
+  const auto found = structs_.find(record);
+  if (found != structs_.end()) return ir::Type::structType(found->second);
+  if (record->isLambda()) fail(Diag::Lambda, use);
+  if (isPrelude(record)) fail(Diag::GatherAsValue, use);
+  const std::string name = record->getNameAsString();
+  if (record->isUnion()) fail(Diag::Union, use, {name});
+  if (record->isPolymorphic()) fail(Diag::VirtualFunction, use, {name});
+  if (record->getNumBases() != 0 || !record->hasTrivialCopyConstructor() || record->hasUserDeclaredConstructor() ||
+      record->hasNonTrivialDestructor()) {
+    fail(Diag::StructNotPlain, use, {name});
+  }
+  if (record->field_empty()) fail(Diag::StructEmpty, use, {name});
+  ir::Struct entry;
+  entry.name = name.empty() ? "Anonymous" : name;
+  entry.scope = scopeOf(record);
+  entry.loc = loc(record->getLocation());
+  for (const clang::FieldDecl* field : record->fields()) {
+    if (field->isBitField() || field->getName().empty()) fail(Diag::StructNotPlain, field->getLocation(), {name});
+    entry.fields.push_back({field->getNameAsString(), type(field->getType(), field->getLocation())});
+  }
+  const auto index = static_cast<std::uint32_t>(module_.structs.size());
+  module_.structs.push_back(std::move(entry));
+  structs_[record] = index;
+  return ir::Type::structType(index);
+}
+
+ir::Type ModuleLowering::arrayType(ir::Type element, std::uint64_t length, SourceLocation use) {
+  constexpr std::uint64_t longest = 4096;
+  if (length == 0 || length > longest) fail(Diag::ArrayLength, use, {std::to_string(length), std::to_string(longest)});
+  if (element.kind == ir::Type::Kind::Array) fail(Diag::ArrayOfArrays, use);
+  const ir::Array entry{element, static_cast<std::uint32_t>(length)};
+  const auto found = std::find(module_.arrays.begin(), module_.arrays.end(), entry);
+  const auto index = static_cast<std::uint32_t>(found - module_.arrays.begin());
+  if (found == module_.arrays.end()) module_.arrays.push_back(entry);
+  return ir::Type::arrayType(index);
+}
+
+std::string ModuleLowering::spelling(ir::Type type) const {
+  constexpr const char* scalars[] = {"bool", "int", "uint", "float"};
+  switch (type.kind) {
+    case ir::Type::Kind::Void: return "void";
+    case ir::Type::Kind::Scalar: return scalars[static_cast<int>(type.scalar)];
+    case ir::Type::Kind::Vector: return fmt::format("{}{}", scalars[static_cast<int>(type.scalar)], type.width);
+    case ir::Type::Kind::Struct: return module_.structs[type.index].name;
+    case ir::Type::Kind::Array: {
+      const ir::Array& array = module_.arrays[type.index];
+      return fmt::format("{}[{}]", spelling(array.element), array.length);
+    }
+  }
+  return {};
+}
+
+// ---- places -------------------------------------------------------------------------------------
+
+clang::ASTContext& ModuleLowering::context() const { return sema_.getASTContext(); }
+clang::SourceManager& ModuleLowering::sources() const { return sema_.getSourceManager(); }
+
+bool ModuleLowering::isPrelude(const clang::Decl* declaration) const {
+  return sources().isInSystemHeader(declaration->getLocation());
+}
+
+std::vector<std::string> ModuleLowering::scopeOf(const clang::Decl* declaration) const {
+  std::vector<std::string> scope;
+  for (const clang::DeclContext* outer = declaration->getDeclContext(); outer; outer = outer->getParent()) {
+    const auto* space = llvm::dyn_cast<clang::NamespaceDecl>(outer);
+    if (space && !space->isAnonymousNamespace()) scope.push_back(space->getNameAsString());
+  }
+  std::reverse(scope.begin(), scope.end());
+  return scope;
+}
+
+Loc ModuleLowering::loc(SourceLocation location) {
+  Loc result = locOf(location);
+  const clang::PresumedLoc presumed = sources().getPresumedLoc(sources().getExpansionLoc(location));
+  if (presumed.isInvalid()) return result;
+  result.line = presumed.getLine();
+  const auto [entry, isNew] =
+      sourceIndex_.emplace(presumed.getFilename(), static_cast<std::uint32_t>(module_.sources.size()));
+  if (isNew) module_.sources.push_back(entry->first);
+  result.file = entry->second;
+  return result;
+}
+
+void ModuleLowering::fail(Diag diag, SourceLocation where, std::initializer_list<std::string_view> arguments) {
+  diagnostics_.report(diag, locOf(where), arguments);
+  throw Abandoned{};
+}
+
+}  // namespace skc::frontend

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/parameter_editor.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <clang/Lex/Preprocessor.h>
+
+#include "frontend/clang_loc.hpp"
+#include "frontend/prelude.hpp"
+#include "frontend/token_cursor.hpp"
+
+namespace skc::frontend {
+
+using clang::Token;
+namespace tok = clang::tok;
+
+/// What one parameter's tokens said.
+struct ParameterEditor::Parts {
+  Token qualifier;                 ///< `out` or `reduce`, or unset
+  bool hasQualifier = false;
+  Tokens type;
+  Token name;
+  bool isElement = false;          ///< `<>`
+  int rank = 0;                    ///< pairs of empty brackets
+  Token open, close;               ///< the first and the last of them
+  Tokens value;                    ///< after `=`
+  Token boundary;                  ///< the word in [[...]]
+  bool hasBoundary = false;
+  Tokens border;                   ///< between the parentheses of border(...)
+  Tokens rest;                     ///< what follows the name of an ordinary parameter
+  ParamSyntax syntax;
+};
+
+namespace {
+
+/// Splits the tokens between the parentheses at commas outside any bracket.
+std::vector<std::vector<Token>> splitAtCommas(const std::vector<Token>& declared) {
+  std::vector<std::vector<Token>> parts(1);
+  int depth = 0;
+  for (std::size_t i = 1; i + 1 < declared.size(); ++i) {
+    const Token& token = declared[i];
+    if (token.isOneOf(tok::l_paren, tok::l_square, tok::l_brace)) ++depth;
+    if (token.isOneOf(tok::r_paren, tok::r_square, tok::r_brace)) --depth;
+    if (token.is(tok::comma) && depth == 0) {
+      parts.emplace_back();
+    } else {
+      parts.back().push_back(token);
+    }
+  }
+  if (parts.size() == 1 && parts.front().empty()) parts.clear();
+  return parts;
+}
+
+bool isKind(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind kind) {
+  return at < tokens.size() && tokens[at].is(kind);
+}
+
+bool isNamedWord(const Token& token, std::initializer_list<llvm::StringRef> words) {
+  for (llvm::StringRef word : words) {
+    if (isWord(token, word)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind kind) {
+  Tokens out{declared.front()};
+  const std::vector<Tokens> parameters = splitAtCommas(declared);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Token& following = i + 1 < parameters.size() && !parameters[i + 1].empty() ? parameters[i + 1].front()
+                                                                                      : declared.back();
+    if (parameters[i].empty()) {
+      diagnostics_.report(Diag::EmptyParameter, locOf(following));
+      continue;
+    }
+    if (out.size() > 1) out.push_back(make(tok::comma, parameters[i].front().getLocation()));
+    editParameter(parameters[i], kind, out);
+  }
+  out.push_back(declared.back());
+  return out;
+}
+
+void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, Tokens& out) {
+  Parts parts;
+  std::size_t at = 0;
+  if (kind == FunctionKind::Helper) {
+    // An ordinary parameter goes to Clang as it is, default arguments, templates and all.
+    bool ours = isNamedWord(parameter.front(), {"out", "inout"}) && parameter.size() > 2;
+    for (std::size_t i = 0; i + 1 < parameter.size(); ++i) {
+      if (parameter[i].is(tok::l_square)) ours = true;
+      if (parameter[i].is(tok::less) && parameter[i + 1].isOneOf(tok::greater, tok::greaterequal)) ours = true;
+    }
+    if (!ours) {
+      out.insert(out.end(), parameter.begin(), parameter.end());
+      return;
+    }
+  }
+  if (!takeAttributes(parameter, at, parts)) return;
+  takeQualifier(parameter, at, parts);
+  if (!takeDeclarator(parameter, at, parts)) return;
+  if (!takeSuffix(parameter, at, parts)) return;
+  if (!resolveRole(parts, kind)) return;
+  print(parts, kind, out);
+}
+
+/// [[clamp]] [[wrap]] [[mirror]] [[border(v)]]
+bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  while (isKind(parameter, at, tok::l_square) && isKind(parameter, at + 1, tok::l_square)) {
+    at += 2;
+    if (at >= parameter.size()) {
+      diagnostics_.report(Diag::ParameterAttribute, locOf(parameter.back()), {""});
+      return false;
+    }
+    parts.boundary = parameter[at];
+    parts.hasBoundary = true;
+    const Token& name = parameter[at++];
+    if (isWord(name, "clamp")) parts.syntax.boundary = ir::Boundary::Clamp;
+    else if (isWord(name, "wrap")) parts.syntax.boundary = ir::Boundary::Wrap;
+    else if (isWord(name, "mirror")) parts.syntax.boundary = ir::Boundary::Mirror;
+    else if (isWord(name, "border")) {
+      parts.syntax.boundary = ir::Boundary::Border;
+      if (!takeBorder(parameter, at, parts)) return false;
+    } else {
+      diagnostics_.report(Diag::ParameterAttribute, locOf(name), {preprocessor_.getSpelling(name)});
+      return false;
+    }
+    if (!isKind(parameter, at, tok::r_square) || !isKind(parameter, at + 1, tok::r_square)) {
+      diagnostics_.report(Diag::AttributeEnd, locOf(at < parameter.size() ? parameter[at] : parameter.back()));
+      return false;
+    }
+    at += 2;
+  }
+  return true;
+}
+
+bool ParameterEditor::takeBorder(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  int depth = 0;
+  if (isKind(parameter, at, tok::l_paren)) {
+    do {
+      if (parameter[at].is(tok::l_paren)) ++depth;
+      if (parameter[at].is(tok::r_paren)) --depth;
+      parts.border.push_back(parameter[at++]);
+    } while (depth > 0 && at < parameter.size());
+  }
+  if (depth != 0 || parts.border.size() < 3) {
+    diagnostics_.report(Diag::BorderValue, locOf(parts.boundary));
+    return false;
+  }
+  return true;
+}
+
+/// A qualifier is one only before a type and a name: `out x<>` declares a stream of the type `out`.
+void ParameterEditor::takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  const auto isWordOrScope = [&](std::size_t i) {
+    return i < parameter.size() && (parameter[i].getIdentifierInfo() || parameter[i].is(tok::coloncolon));
+  };
+  if (!isWordOrScope(at + 1) || !isWordOrScope(at + 2)) return;
+  if (isNamedWord(parameter[at], {"out", "inout", "reduce", "iter", "vout", "spec", "kernel"})) {
+    parts.qualifier = parameter[at++];
+    parts.hasQualifier = true;
+  }
+}
+
+/// Type tokens and the name: the name is the last identifier before `<>`, `[`, `=` or the end.
+bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  const std::size_t begin = at;
+  std::size_t end = parameter.size();
+  for (std::size_t i = begin; i < parameter.size(); ++i) {
+    const bool stream = parameter[i].is(tok::less) &&
+                        (i + 1 == parameter.size() || parameter[i + 1].isOneOf(tok::greater, tok::greaterequal) ||
+                         (i > begin + 1 && parameter[i - 1].is(tok::identifier)));
+    if (stream || parameter[i].isOneOf(tok::l_square, tok::equal)) {
+      end = i;
+      break;
+    }
+  }
+  if (end < begin + 2 || parameter[end - 1].isNot(tok::identifier)) {
+    const Token& place = begin < parameter.size() ? parameter[begin] : parameter.back();
+    diagnostics_.report(Diag::ParameterShape, locOf(place));
+    return false;
+  }
+  parts.type.assign(parameter.begin() + static_cast<std::ptrdiff_t>(begin),
+                    parameter.begin() + static_cast<std::ptrdiff_t>(end) - 1);
+  parts.name = parameter[end - 1];
+  at = end;
+  return true;
+}
+
+bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  const std::string name = nameOf(parts.name);
+  bool equal = false;
+  if (isKind(parameter, at, tok::less)) {
+    ++at;
+    if (!isKind(parameter, at, tok::greater) && !isKind(parameter, at, tok::greaterequal)) {
+      const Token& place = at < parameter.size() ? parameter[at] : parameter.back();
+      diagnostics_.report(Diag::StreamBrackets, locOf(place), {name});
+      return false;
+    }
+    equal = parameter[at++].is(tok::greaterequal);   // `total<>= 0` lexes as < >= 0
+    parts.isElement = true;
+  }
+  while (isKind(parameter, at, tok::l_square)) {
+    const Token& bracket = parameter[at++];
+    if (!isKind(parameter, at, tok::r_square)) {
+      const bool closed = std::any_of(parameter.begin() + static_cast<std::ptrdiff_t>(at), parameter.end(),
+                                      [](const Token& token) { return token.is(tok::r_square); });
+      diagnostics_.report(closed ? Diag::ArrayParameter : Diag::GatherBrackets, locOf(bracket), {name});
+      return false;
+    }
+    parts.close = parameter[at++];
+    if (parts.rank++ == 0) parts.open = bracket;
+  }
+  if (!equal && isKind(parameter, at, tok::equal)) {
+    equal = true;
+    ++at;
+  }
+  if (equal) {
+    parts.value.assign(parameter.begin() + static_cast<std::ptrdiff_t>(at), parameter.end());
+    at = parameter.size();
+    if (parts.value.empty()) {
+      diagnostics_.report(Diag::IdentityValue, locOf(parameter.back()), {name});
+      return false;
+    }
+  }
+  if (at < parameter.size()) {
+    diagnostics_.report(Diag::ParameterExtra, locOf(parameter[at]), {preprocessor_.getSpelling(parameter[at]), name});
+    return false;
+  }
+  return true;
+}
+
+/// The table of DESIGN's parameters: qualifier, `<>` and brackets decide together.
+bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
+  const std::string name = nameOf(parts.name);
+  const Loc place = locOf(parts.name);
+  const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments) {
+    diagnostics_.report(diag, place, arguments);
+    return false;
+  };
+  const std::string qualifier = parts.hasQualifier ? nameOf(parts.qualifier) : "";
+  if (qualifier == "iter" || qualifier == "vout" || qualifier == "spec" || qualifier == "kernel") {
+    diagnostics_.report(Diag::QualifierUnknown, locOf(parts.qualifier), {qualifier});
+    return false;
+  }
+  if (parts.isElement && parts.rank > 0) return fail(Diag::StreamAndGather, {name});
+  if (parts.rank > 2) return fail(Diag::GatherRank, {name, std::to_string(parts.rank)});
+  if (parts.hasBoundary && (parts.rank == 0 || !qualifier.empty())) {
+    diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.boundary), {nameOf(parts.boundary), name});
+    return false;
+  }
+  if (!parts.value.empty() && qualifier != "reduce") return fail(Diag::DefaultArgument, {name});
+  if (kind == FunctionKind::Helper) {
+    if (parts.isElement) return fail(Diag::StreamInHelper, {name});
+    if (parts.rank > 0 && !qualifier.empty()) return fail(Diag::ScatterOutput, {name});
+    if (qualifier == "reduce") return fail(Diag::AccumulatorOutsideReduce, {name});
+    parts.syntax.role = parts.rank > 0 ? ir::ParamRole::Gather
+                        : qualifier.empty() ? ir::ParamRole::Uniform : ir::ParamRole::Output;
+  } else if (qualifier == "out" || qualifier == "inout") {
+    if (parts.rank > 0) return fail(Diag::ScatterOutput, {name});
+    if (!parts.isElement || qualifier == "inout") return fail(Diag::OutputBrackets, {name});
+    if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name});
+    parts.syntax.role = ir::ParamRole::Output;
+  } else if (qualifier == "reduce") {
+    if (!parts.isElement) return fail(Diag::AccumulatorBrackets, {name});
+    if (kind == FunctionKind::Kernel) return fail(Diag::AccumulatorOutsideReduce, {name});
+    parts.syntax.role = ir::ParamRole::Accumulator;
+  } else {
+    parts.syntax.role = parts.isElement ? ir::ParamRole::Input
+                        : parts.rank > 0 ? ir::ParamRole::Gather : ir::ParamRole::Uniform;
+  }
+  parts.syntax.rank = static_cast<std::uint8_t>(parts.rank);
+  return true;
+}
+
+void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) {
+  const clang::SourceLocation place = parts.name.getLocation();
+  ParamSyntax syntax = parts.syntax;
+  if (!parts.border.empty()) syntax.border = generateConstant(parts.type, parts.border, place);
+  if (!parts.value.empty()) syntax.identity = generateConstant(parts.type, parts.value, place);
+  const clang::SourceLocation start = parts.type.front().getLocation();
+  switch (syntax.role) {
+    case ir::ParamRole::Gather:
+      // Three places of their own: Clang finds its way back to a template's name by its location
+      out.push_back(word(gatherTemplateName(syntax.rank), place));
+      out.push_back(make(tok::less, parts.open.getLocation()));
+      out.insert(out.end(), parts.type.begin(), parts.type.end());
+      out.push_back(make(tok::greater, parts.close.getLocation()));
+      break;
+    case ir::ParamRole::Output:
+    case ir::ParamRole::Accumulator:
+      out.insert(out.end(), parts.type.begin(), parts.type.end());
+      out.push_back(make(tok::amp, place));
+      break;
+    case ir::ParamRole::Input:
+    case ir::ParamRole::Uniform:
+      if (parts.type.front().isNot(tok::kw_const)) out.push_back(word("const", start));
+      out.insert(out.end(), parts.type.begin(), parts.type.end());
+      break;
+  }
+  out.push_back(parts.name);
+  if (kind != FunctionKind::Helper || syntax.role == ir::ParamRole::Gather) {
+    syntax_.add(place, std::move(syntax));
+  }
+}
+
+/// `static const T __sk_constant3 __attribute__((unused)) = value;` in front of the function.
+std::string ParameterEditor::generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place) {
+  std::string name = fmt::format("__sk_constant{}", constants_++);
+  before_.push_back(word("static", place));
+  before_.push_back(word("const", place));
+  before_.insert(before_.end(), type.begin(), type.end());
+  before_.push_back(word(name, place));
+  before_.push_back(word("__attribute__", place));
+  before_.push_back(make(tok::l_paren, place));
+  before_.push_back(make(tok::l_paren, place));
+  before_.push_back(word("unused", place));
+  before_.push_back(make(tok::r_paren, place));
+  before_.push_back(make(tok::r_paren, place));
+  before_.push_back(make(tok::equal, place));
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    Token token = value[i];
+    if (token.is(tok::identifier) && isKind(value, i + 1, tok::l_paren) && isVectorTypeName(nameOf(token))) {
+      token.setIdentifierInfo(preprocessor_.getIdentifierInfo(vectorConstructorName(nameOf(token))));
+    }
+    before_.push_back(token);
+  }
+  before_.push_back(make(tok::semi, place));
+  return name;
+}
+
+Token ParameterEditor::make(tok::TokenKind kind, clang::SourceLocation place) const {
+  Token token;
+  token.startToken();
+  token.setKind(kind);
+  token.setLocation(place);
+  token.setLength(0);
+  return token;
+}
+
+/// An identifier or keyword with this spelling.
+Token ParameterEditor::word(llvm::StringRef name, clang::SourceLocation place) const {
+  clang::IdentifierInfo* info = preprocessor_.getIdentifierInfo(name);
+  Token token = make(info->getTokenID(), place);
+  token.setIdentifierInfo(info);
+  return token;
+}
+
+}  // namespace skc::frontend

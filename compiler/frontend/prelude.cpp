@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/prelude.hpp"
+
+#include <array>
+#include <map>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ir/intrinsics.hpp"
+
+namespace skc::frontend {
+namespace {
+
+struct VectorFamily {
+  std::string_view scalar;   ///< as the user writes it
+  std::string_view element;  ///< as Clang holds it
+};
+
+// Vectors of `bool` have no swizzles in Clang, so their components are char32_t, a type that nothing
+// else uses and that has the size of the masks that vector comparisons give.
+constexpr std::array<VectorFamily, 4> families = {{
+    {"float", "float"}, {"int", "int"}, {"uint", "unsigned"}, {"bool", "char32_t"}}};
+
+/// The class of values that a signature letter admits, as far as a result type depends on it.
+bool countsForResult(char letter) {
+  return std::string_view("FfVNnSQR").find(letter) != std::string_view::npos;
+}
+
+/// Letters between the parentheses of the first signature, and of every later one, by position.
+std::vector<std::string> lettersByPosition(const std::vector<std::string_view>& signatures) {
+  std::vector<std::string> positions;
+  for (std::string_view text : signatures) {
+    std::size_t position = 0;
+    for (char c : text.substr(text.find('('))) {
+      if (c == '(' || c == ')' || c == ',') continue;
+      if (positions.size() <= position) positions.emplace_back();
+      positions[position++] += c;
+    }
+  }
+  return positions;
+}
+
+/// `pow`, F(F,F): "template <class A, class B> __sk_F<A, B> pow(A, B);"
+std::string declare(std::string_view name, const std::vector<std::string_view>& signatures) {
+  const char result = signatures.front().front();
+  const std::vector<std::string> positions = lettersByPosition(signatures);
+  if (result == 'w') return fmt::format("float3 {}(float3, float3);\n", name);
+  std::string parameters, arguments, deciding;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const char type = static_cast<char>('A' + i);
+    bool counts = true;
+    for (char letter : positions[i]) {
+      // asfloat takes int or uint; mix takes a weight or a mask, which does not shape the result
+      counts = counts && (countsForResult(letter) || (positions.size() == 1));
+    }
+    parameters += fmt::format("{}class {}", i == 0 ? "" : ", ", type);
+    arguments += fmt::format("{}{}", i == 0 ? "" : ", ", type);
+    if (counts) deciding += fmt::format("{}{}", deciding.empty() ? "" : ", ", type);
+  }
+  std::string type;
+  switch (result) {
+    case 'F': type = fmt::format("__sk_F<{}>", deciding); break;
+    case 'I': type = fmt::format("__sk_I<{}>", deciding); break;
+    case 'U': type = fmt::format("__sk_U<{}>", deciding); break;
+    case 'B':
+    case 'C': type = fmt::format("__sk_B<{}>", deciding); break;
+    case 'N':
+    case 'S': type = fmt::format("__sk_N<{}>", deciding); break;
+    case 'f': type = "float"; break;
+    case 'b': type = "bool"; break;
+  }
+  return fmt::format("template <{}> {} {}({});\n", parameters, type, name, arguments);
+}
+
+std::string vectorTypes() {
+  std::string text = "typedef unsigned uint;\n";
+  for (const VectorFamily& family : families) {
+    for (int width = 2; width <= 4; ++width) {
+      text += fmt::format("typedef {0} {1}{2} __attribute__((ext_vector_type({2})));\n"
+                          "template <class... A> {1}{2} __sk_make_{1}{2}(A...);\n",
+                          family.element, family.scalar, width);
+    }
+  }
+  return text;
+}
+
+/// __sk_traits<T>: the float, int, uint and bool types of T's width.
+std::string typeTraits() {
+  std::string text = "template <class T> struct __sk_traits;\n";
+  for (const VectorFamily& family : families) {
+    for (int width = 1; width <= 4; ++width) {
+      const std::string suffix = width == 1 ? "" : std::to_string(width);
+      text += fmt::format("template <> struct __sk_traits<{0}{1}> {{ using F = float{1}; using I = int{1}; "
+                          "using U = uint{1}; using B = bool{1}; }};\n",
+                          family.scalar, suffix);
+    }
+  }
+  text += "template <> struct __sk_traits<double> : __sk_traits<float> {};\n"
+          "template <> struct __sk_traits<char32_t> : __sk_traits<bool> {};\n"
+          "template <class... A> using __sk_N = decltype((A() + ...));\n"
+          "template <class A> using __sk_one = __sk_traits<A>;\n"
+          "template <class... A> struct __sk_sum : __sk_traits<decltype((A() + ...))> {};\n"
+          "template <class A> struct __sk_sum<A> : __sk_traits<A> {};\n"
+          "template <class... A> using __sk_F = typename __sk_sum<A...>::F;\n"
+          "template <class... A> using __sk_I = typename __sk_sum<A...>::I;\n"
+          "template <class... A> using __sk_U = typename __sk_sum<A...>::U;\n"
+          "template <class... A> using __sk_B = typename __sk_sum<A...>::B;\n";
+  return text;
+}
+
+constexpr std::string_view gathersAndStreams = R"(
+template <class T> struct gather_1d {
+  T operator[](int) const; T operator[](uint) const; T operator[](float) const;
+};
+template <class T> struct gather_2d {
+  gather_1d<T> operator[](int) const; gather_1d<T> operator[](uint) const;
+  gather_1d<T> operator[](float) const; T operator[](int2) const; T operator[](float2) const;
+};
+template <class T> T neighbor(gather_1d<T> a, int dx);
+template <class T> T neighbor(gather_2d<T> a, int dx, int dy = 0);
+template <class T> T neighbor(gather_2d<T> a, int2 offset);
+template <class T> int4 indexof(const T& stream);
+template <class T> int4 extentof(const T& stream);
+template <class M, class A, class B> __sk_N<A, B> select(M condition, A yes, B no);
+template <class T> T select(bool condition, T yes, T no);
+template <class T> void sincos(T x, T& sine, T& cosine);
+template <class T> T modf(T x, T& whole);
+template <class T> T frexp(T x, __sk_I<T>& exponent);
+)";
+
+std::string intrinsics() {
+  // One declaration for each name and number of arguments, over the signatures of all their rows.
+  std::map<std::pair<std::string_view, std::size_t>, std::vector<std::string_view>> overloads;
+#define SKC_INTRINSIC(Name, spelling, signatures, glsl, glslVector, polyfill) \
+  {                                                                          \
+    std::string_view all = signatures;                                       \
+    while (!all.empty()) {                                                   \
+      std::string_view one = all.substr(0, all.find(' '));                   \
+      all.remove_prefix(std::min(all.size(), one.size() + 1));               \
+      std::size_t arity = 1;                                                 \
+      for (char c : one) arity += c == ',';                                  \
+      overloads[{spelling, arity}].push_back(one);                           \
+    }                                                                        \
+  }
+#include "ir/intrinsics.def"
+#undef SKC_INTRINSIC
+  std::string text;
+  for (const auto& [key, signatures] : overloads) {
+    if (!key.first.empty()) text += declare(key.first, signatures);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string preludeText() {
+  return fmt::format("# 1 \"sk-prelude\" 1 3\n{}{}{}{}# 1 \"<command line>\" 2\n", vectorTypes(), typeTraits(),
+                     gathersAndStreams, intrinsics());
+}
+
+bool isVectorTypeName(std::string_view name) {
+  if (name.size() < 4) return false;
+  const char width = name.back();
+  if (width < '2' || width > '4') return false;
+  for (const VectorFamily& family : families) {
+    if (name.substr(0, name.size() - 1) == family.scalar) return true;
+  }
+  return false;
+}
+
+std::string vectorConstructorName(std::string_view name) { return fmt::format("__sk_make_{}", name); }
+
+std::string gatherTemplateName(int rank) { return fmt::format("gather_{}d", rank); }
+
+}  // namespace skc::frontend

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// What the token editor learned from Brook's declarations and Clang cannot say: which functions are
+// kernels, and how each parameter was declared. Keyed by the place of the name's token, which is
+// also the location of the FunctionDecl or ParmVarDecl.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include <clang/Basic/SourceLocation.h>
+
+#include "ir/ir.hpp"
+
+namespace skc::frontend {
+
+struct KernelSyntax {
+  bool isReduce = false;
+  std::string signature;             ///< the declaration on one line, as written
+};
+
+struct ParamSyntax {
+  ir::ParamRole role = ir::ParamRole::Uniform;
+  std::uint8_t rank = 0;
+  ir::Boundary boundary = ir::Boundary::Clamp;
+  std::string border;                ///< name of the generated constant that holds [[border(v)]]
+  std::string identity;              ///< name of the generated constant that holds `= identity`
+};
+
+class DeclarationSyntax {
+ public:
+  void add(clang::SourceLocation name, KernelSyntax kernel) { kernels_[name.getRawEncoding()] = std::move(kernel); }
+  void add(clang::SourceLocation name, ParamSyntax param) { params_[name.getRawEncoding()] = std::move(param); }
+
+  const KernelSyntax* kernel(clang::SourceLocation name) const { return find(kernels_, name); }
+  const ParamSyntax* param(clang::SourceLocation name) const { return find(params_, name); }
+
+ private:
+  template <class Map>
+  static const typename Map::mapped_type* find(const Map& map, clang::SourceLocation name) {
+    const auto found = map.find(name.getRawEncoding());
+    return found == map.end() ? nullptr : &found->second;
+  }
+
+  std::unordered_map<std::uint32_t, KernelSyntax> kernels_;
+  std::unordered_map<std::uint32_t, ParamSyntax> params_;
+};
+
+}  // namespace skc::frontend

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/token_editor.hpp"
+
+#include <fmt/format.h>
+
+#include <clang/Basic/SourceManager.h>
+#include <clang/Lex/Preprocessor.h>
+
+#include "frontend/clang_loc.hpp"
+#include "frontend/parameter_editor.hpp"
+#include "frontend/prelude.hpp"
+#include "frontend/token_cursor.hpp"
+
+namespace skc::frontend {
+namespace {
+
+using clang::Token;
+namespace tok = clang::tok;
+
+/// Walks the declarations of the file; one function for each kind that needs a change.
+class Editor {
+ public:
+  Editor(const std::vector<Token>& tokens, clang::Preprocessor& preprocessor, Diagnostics& diagnostics)
+      : preprocessor_(preprocessor), diagnostics_(diagnostics), cursor_(tokens) {}
+
+  EditedTokens run() {
+    copyPrelude();
+    while (!cursor_.at(tok::eof)) editDeclaration();
+    out_.push_back(cursor_.take());
+    return {std::move(out_), std::move(syntax_)};
+  }
+
+ private:
+  void copyPrelude() {
+    const clang::SourceManager& sources = preprocessor_.getSourceManager();
+    while (!cursor_.at(tok::eof) && sources.isInSystemHeader(cursor_.peek().getLocation())) {
+      out_.push_back(cursor_.take());
+    }
+  }
+
+  bool atWord(llvm::StringRef word) const { return isWord(cursor_.peek(), word); }
+
+  /// `kernel` is a word like any other unless a declaration starts with it: `kernel void f`.
+  bool atDeclarationWord(llvm::StringRef word) const {
+    return atWord(word) && startsType(cursor_.peek(1));
+  }
+  static bool startsType(const Token& token) {
+    return token.is(tok::identifier) || token.is(tok::coloncolon) || token.getIdentifierInfo() != nullptr;
+  }
+
+  void editDeclaration() {
+    if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) return editKernel();
+    if (atDeclarationWord("stream")) {
+      diagnostics_.report(Diag::StreamDeclaration, locOf(cursor_.peek()));
+      return copyDeclaration();
+    }
+    if (cursor_.at(tok::kw_namespace)) return copyUntilBodyOrEnd();
+    if (cursor_.at(tok::kw_template)) return editTemplate();
+    copyDeclaration();
+  }
+
+  /// `namespace a {` opens a scope whose declarations follow like any other; its `}` is copied as an
+  /// empty declaration.
+  void copyUntilBodyOrEnd() {
+    while (!cursor_.at(tok::eof)) {
+      const bool last = cursor_.at(tok::l_brace) || cursor_.at(tok::semi);
+      copyToken();
+      if (last) return;
+    }
+  }
+
+  void editTemplate() {
+    copyToken();
+    if (cursor_.at(tok::less)) {
+      int depth = 0;
+      do {
+        if (cursor_.at(tok::less)) ++depth;
+        if (cursor_.at(tok::greater)) --depth;
+        copyToken();
+      } while (depth > 0 && !cursor_.at(tok::eof));
+    }
+    if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) {
+      diagnostics_.report(Diag::KernelTemplate, locOf(cursor_.peek()));
+    }
+  }
+
+  void editKernel() {
+    const Token start = cursor_.take();
+    KernelSyntax kernel;
+    kernel.isReduce = isWord(start, "reduce");
+    std::vector<Token> head;       // result type and name
+    while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());
+    if (head.size() < 2 || head.back().isNot(tok::identifier) || !cursor_.at(tok::l_paren)) {
+      const Token& place = head.empty() || cursor_.at(tok::l_paren) ? start : cursor_.peek();
+      diagnostics_.report(Diag::KernelHead, locOf(place), {kernel.isReduce ? "reduce" : "kernel"});
+      return copyDeclaration();
+    }
+    ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, out_);
+    const std::vector<Token> declared = cursor_.takeParenthesized();
+    if (declared.empty()) {
+      diagnostics_.report(Diag::UnclosedParameters, locOf(head.back()), {nameOf(head.back())});
+      return;
+    }
+    const std::vector<Token> edited = parameters.edit(declared, kernel.isReduce ? FunctionKind::Reduce
+                                                                                : FunctionKind::Kernel);
+    kernel.signature = signature(start, head, declared);
+    syntax_.add(head.back().getLocation(), std::move(kernel));
+    out_.insert(out_.end(), head.begin(), head.end());
+    out_.insert(out_.end(), edited.begin(), edited.end());
+    if (cursor_.at(tok::l_brace)) return copyBraces();
+    if (cursor_.at(tok::semi)) return copyToken();
+    diagnostics_.report(Diag::KernelBody, locOf(cursor_.peek()), {nameOf(head.back())});
+    copyDeclaration();
+  }
+
+  /// Any other declaration: copied, but for the parameter list of a function.
+  void copyDeclaration() {
+    bool initializer = false;
+    bool record = false;
+    bool function = false;
+    while (!cursor_.at(tok::eof)) {
+      const Token& token = cursor_.peek();
+      if (token.is(tok::semi)) return copyToken();
+      if (token.is(tok::r_brace)) return copyToken();
+      if (token.is(tok::equal)) initializer = true;
+      if (token.isOneOf(tok::kw_struct, tok::kw_class, tok::kw_union, tok::kw_enum)) record = true;
+      if (token.is(tok::l_brace)) {
+        copyBraces();
+        if (!initializer && (function || !record)) return;
+        continue;
+      }
+      if (token.is(tok::l_paren) && !initializer && !function && !out_.empty() &&
+          out_.back().is(tok::identifier)) {
+        function = true;
+        const Token name = out_.back();
+        const std::vector<Token> declared = cursor_.takeParenthesized();
+        if (declared.empty()) {
+          diagnostics_.report(Diag::UnclosedParameters, locOf(name), {nameOf(name)});
+          return;
+        }
+        ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, out_);
+        const std::vector<Token> edited = parameters.edit(declared, FunctionKind::Helper);
+        out_.insert(out_.end(), edited.begin(), edited.end());
+        continue;
+      }
+      copyToken();
+    }
+  }
+
+  void copyBraces() {
+    int depth = 0;
+    do {
+      if (cursor_.at(tok::l_brace)) ++depth;
+      if (cursor_.at(tok::r_brace)) --depth;
+      copyToken();
+    } while (depth > 0 && !cursor_.at(tok::eof));
+  }
+
+  /// Copies one token; `float4(` becomes a call of its constructor function.
+  void copyToken() {
+    Token token = cursor_.take();
+    if (token.is(tok::identifier) && cursor_.at(tok::l_paren) && isVectorTypeName(nameOf(token))) {
+      token.setIdentifierInfo(preprocessor_.getIdentifierInfo(vectorConstructorName(nameOf(token))));
+    }
+    out_.push_back(token);
+  }
+
+  std::string signature(const Token& start, const std::vector<Token>& head, const std::vector<Token>& declared) {
+    std::string text = preprocessor_.getSpelling(start);
+    for (const std::vector<Token>* part : {&head, &declared}) {
+      for (const Token& token : *part) {
+        if (token.hasLeadingSpace() || token.isAtStartOfLine()) text += ' ';
+        text += preprocessor_.getSpelling(token);
+      }
+    }
+    return text;
+  }
+
+  clang::Preprocessor& preprocessor_;
+  Diagnostics& diagnostics_;
+  TokenCursor cursor_;
+  std::vector<Token> out_;
+  DeclarationSyntax syntax_;
+  int constants_ = 0;
+};
+
+}  // namespace
+
+EditedTokens editTokens(const std::vector<Token>& tokens, clang::Preprocessor& preprocessor,
+                        Diagnostics& diagnostics) {
+  return Editor(tokens, preprocessor, diagnostics).run();
+}
+
+}  // namespace skc::frontend

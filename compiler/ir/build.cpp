@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: MIT
+#include "ir/build.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include "support/overloaded.hpp"
+
+namespace skc::ir {
+
+// ---- expressions ------------------------------------------------------------------------------
+
+ExprPtr makeExpr(Type type, Expr::Node node, Loc loc) {
+  return std::make_unique<Expr>(Expr{type, loc, std::move(node)});
+}
+
+ExprPtr literal(float value, Loc loc) {
+  return makeExpr(Type::of(Scalar::Float), Literal{std::bit_cast<std::uint32_t>(value)}, loc);
+}
+ExprPtr literal(std::int32_t value, Loc loc) {
+  return makeExpr(Type::of(Scalar::Int), Literal{static_cast<std::uint32_t>(value)}, loc);
+}
+ExprPtr literal(std::uint32_t value, Loc loc) {
+  return makeExpr(Type::of(Scalar::Uint), Literal{value}, loc);
+}
+ExprPtr literal(bool value, Loc loc) {
+  return makeExpr(Type::of(Scalar::Bool), Literal{value ? 1U : 0U}, loc);
+}
+
+ExprPtr literalOf(Type type, int value, Loc loc) {
+  if (type.isVector()) return construct(type, exprs(literalOf(type.component(), value, loc)), loc);
+  switch (type.scalar) {
+    case Scalar::Bool: return literal(value != 0, loc);
+    case Scalar::Int: return literal(std::int32_t{value}, loc);
+    case Scalar::Uint: return literal(static_cast<std::uint32_t>(value), loc);
+    case Scalar::Float: break;
+  }
+  return literal(static_cast<float>(value), loc);
+}
+
+ExprPtr varRef(const Function& function, VarId var, Loc loc) {
+  return makeExpr(function.variables[var].type, VarRef{var}, loc);
+}
+
+ExprPtr constantRef(const Module& module, ConstantId constant, Loc loc) {
+  return makeExpr(module.constants[constant].type, ConstantRef{constant}, loc);
+}
+
+ExprPtr unary(UnaryOp op, ExprPtr operand, Loc loc) {
+  const Type type = operand->type;
+  return makeExpr(type, Unary{op, std::move(operand)}, loc);
+}
+
+bool isComparison(BinaryOp op) {
+  switch (op) {
+    case BinaryOp::Less:
+    case BinaryOp::LessEqual:
+    case BinaryOp::Greater:
+    case BinaryOp::GreaterEqual:
+    case BinaryOp::Equal:
+    case BinaryOp::NotEqual: return true;
+    case BinaryOp::Add:
+    case BinaryOp::Sub:
+    case BinaryOp::Mul:
+    case BinaryOp::Div:
+    case BinaryOp::Rem:
+    case BinaryOp::BitAnd:
+    case BinaryOp::BitOr:
+    case BinaryOp::BitXor:
+    case BinaryOp::ShiftLeft:
+    case BinaryOp::ShiftRight:
+    case BinaryOp::LogicalAnd:
+    case BinaryOp::LogicalOr: break;
+  }
+  return false;
+}
+
+Type binaryType(BinaryOp op, Type lhs, Type rhs) {
+  if (isComparison(op)) return lhs.isVector() ? lhs.withScalar(Scalar::Bool) : Type::of(Scalar::Bool);
+  if (op == BinaryOp::ShiftLeft || op == BinaryOp::ShiftRight) return lhs;
+  return rhs.isVector() ? rhs : lhs;
+}
+
+ExprPtr binary(BinaryOp op, ExprPtr lhs, ExprPtr rhs, Loc loc) {
+  const Type type = binaryType(op, lhs->type, rhs->type);
+  return makeExpr(type, Binary{op, std::move(lhs), std::move(rhs)}, loc);
+}
+
+ExprPtr select(ExprPtr cond, ExprPtr yes, ExprPtr no, Loc loc) {
+  const Type type = yes->type;
+  return makeExpr(type, Select{std::move(cond), std::move(yes), std::move(no)}, loc);
+}
+
+ExprPtr convert(Scalar scalar, ExprPtr operand, Loc loc) {
+  const Type type = operand->type.withScalar(scalar);
+  if (type == operand->type) return operand;
+  return makeExpr(type, Convert{std::move(operand)}, loc);
+}
+
+ExprPtr construct(Type type, std::vector<ExprPtr> args, Loc loc) {
+  return makeExpr(type, Construct{std::move(args)}, loc);
+}
+
+ExprPtr swizzle(ExprPtr base, std::string_view components, Loc loc) {
+  constexpr std::string_view names = "xyzwrgbastpq";
+  Swizzle node;
+  for (char name : components) {
+    assert(names.find(name) != std::string_view::npos);
+    node.components.push_back(static_cast<std::uint8_t>(names.find(name) % 4));
+  }
+  const Type type = Type::of(base->type.scalar, static_cast<int>(node.components.size()));
+  node.base = std::move(base);
+  return makeExpr(type, std::move(node), loc);
+}
+
+ExprPtr member(const Module& module, ExprPtr base, std::uint32_t field, Loc loc) {
+  const Type type = module.structs[base->type.index].fields[field].type;
+  return makeExpr(type, Member{std::move(base), field}, loc);
+}
+
+ExprPtr index(const Module& module, ExprPtr base, ExprPtr index, Loc loc) {
+  const Type type = base->type.isVector() ? base->type.component() : module.arrays[base->type.index].element;
+  return makeExpr(type, Index{std::move(base), std::move(index)}, loc);
+}
+
+ExprPtr call(const Module& module, FunctionId callee, std::vector<ExprPtr> args, Loc loc) {
+  return makeExpr(module.functions[callee].result, Call{callee, std::move(args)}, loc);
+}
+
+ExprPtr intrinsic(Intrinsic intrinsic, std::vector<ExprPtr> args, Loc loc) {
+  std::vector<Type> types;
+  for (const ExprPtr& arg : args) types.push_back(arg->type);
+  const std::optional<Type> type = resultType(intrinsic, types);
+  assert(type && "the arguments match no signature of the intrinsic");
+  return makeExpr(type.value_or(Type::voidType()), IntrinsicCall{intrinsic, std::move(args)}, loc);
+}
+
+ExprPtr gatherRead(Type element, StreamRef stream, ExprPtr index, Loc loc) {
+  return makeExpr(element, GatherRead{stream, std::move(index)}, loc);
+}
+ExprPtr neighborRead(Type element, StreamRef stream, ExprPtr offset, Loc loc) {
+  return makeExpr(element, NeighborRead{stream, std::move(offset)}, loc);
+}
+ExprPtr indexOf(StreamRef stream, Loc loc) {
+  return makeExpr(Type::of(Scalar::Int, 4), IndexOf{stream}, loc);
+}
+ExprPtr extentOf(StreamRef stream, Loc loc) {
+  return makeExpr(Type::of(Scalar::Int, 4), ExtentOf{stream}, loc);
+}
+
+VarId rootOf(const Expr& place) {
+  if (const auto* n = std::get_if<Member>(&place.node)) return rootOf(*n->base);
+  if (const auto* n = std::get_if<Index>(&place.node)) return rootOf(*n->base);
+  if (const auto* n = std::get_if<Swizzle>(&place.node)) return rootOf(*n->base);
+  return std::get<VarRef>(place.node).var;
+}
+
+namespace {
+
+std::vector<ExprPtr> cloneAll(const std::vector<ExprPtr>& list) {
+  std::vector<ExprPtr> copy;
+  copy.reserve(list.size());
+  for (const ExprPtr& expr : list) copy.push_back(clone(expr));
+  return copy;
+}
+
+Expr::Node cloneNode(const Expr::Node& node) {
+  using N = Expr::Node;
+  return match(
+      node, [](const Literal& n) -> N { return n; }, [](const VarRef& n) -> N { return n; },
+      [](const ConstantRef& n) -> N { return n; },
+      [](const Unary& n) -> N { return Unary{n.op, clone(n.operand)}; },
+      [](const Binary& n) -> N { return Binary{n.op, clone(n.lhs), clone(n.rhs)}; },
+      [](const Select& n) -> N { return Select{clone(n.cond), clone(n.yes), clone(n.no)}; },
+      [](const Convert& n) -> N { return Convert{clone(n.operand)}; },
+      [](const Construct& n) -> N { return Construct{cloneAll(n.args)}; },
+      [](const Swizzle& n) -> N { return Swizzle{clone(n.base), n.components}; },
+      [](const Member& n) -> N { return Member{clone(n.base), n.field}; },
+      [](const Index& n) -> N { return Index{clone(n.base), clone(n.index)}; },
+      [](const Call& n) -> N { return Call{n.callee, cloneAll(n.args)}; },
+      [](const IntrinsicCall& n) -> N { return IntrinsicCall{n.intrinsic, cloneAll(n.args)}; },
+      [](const GatherRead& n) -> N { return GatherRead{n.stream, clone(n.index)}; },
+      [](const NeighborRead& n) -> N { return NeighborRead{n.stream, clone(n.offset)}; },
+      [](const IndexOf& n) -> N { return n; }, [](const ExtentOf& n) -> N { return n; });
+}
+
+Stmt::Node cloneNode(const Stmt::Node& node) {
+  using N = Stmt::Node;
+  return match(
+      node, [](const Declare& n) -> N { return Declare{n.var, clone(n.init)}; },
+      [](const Assign& n) -> N { return Assign{clone(n.place), n.op, clone(n.value)}; },
+      [](const CallStmt& n) -> N { return CallStmt{n.callee, cloneAll(n.args), clone(n.result)}; },
+      [](const If& n) -> N { return If{clone(n.cond), clone(n.then), clone(n.otherwise)}; },
+      [](const Loop& n) -> N {
+        return Loop{n.kind, clone(n.init), clone(n.cond), clone(n.step), clone(n.body)};
+      },
+      [](const Switch& n) -> N {
+        Switch copy{clone(n.value), {}};
+        for (const Case& one : n.cases)
+          copy.cases.push_back({one.values, one.isDefault, clone(one.body), one.loc});
+        return copy;
+      },
+      [](const Break& n) -> N { return n; }, [](const Continue& n) -> N { return n; },
+      [](const Return& n) -> N { return Return{clone(n.value)}; },
+      [](const Scope& n) -> N { return Scope{clone(n.body)}; });
+}
+
+}  // namespace
+
+ExprPtr clone(const Expr& expr) { return makeExpr(expr.type, cloneNode(expr.node), expr.loc); }
+ExprPtr clone(const ExprPtr& expr) { return expr ? clone(*expr) : nullptr; }
+
+// ---- statements -------------------------------------------------------------------------------
+
+Stmt declare(VarId var, ExprPtr init, Loc loc) { return {loc, Declare{var, std::move(init)}}; }
+Stmt assign(ExprPtr place, ExprPtr value, Loc loc) {
+  return {loc, Assign{std::move(place), std::nullopt, std::move(value)}};
+}
+Stmt assign(ExprPtr place, BinaryOp op, ExprPtr value, Loc loc) {
+  return {loc, Assign{std::move(place), op, std::move(value)}};
+}
+Stmt callStmt(FunctionId callee, std::vector<ExprPtr> args, ExprPtr result, Loc loc) {
+  return {loc, CallStmt{callee, std::move(args), std::move(result)}};
+}
+Stmt ifStmt(ExprPtr cond, Block then, Block otherwise, Loc loc) {
+  return {loc, If{std::move(cond), std::move(then), std::move(otherwise)}};
+}
+Stmt forLoop(Block init, ExprPtr cond, Block step, Block body, Loc loc) {
+  return {loc, Loop{LoopKind::For, std::move(init), std::move(cond), std::move(step), std::move(body)}};
+}
+Stmt whileLoop(ExprPtr cond, Block body, Loc loc) {
+  return {loc, Loop{LoopKind::While, {}, std::move(cond), {}, std::move(body)}};
+}
+Stmt doWhileLoop(Block body, ExprPtr cond, Loc loc) {
+  return {loc, Loop{LoopKind::DoWhile, {}, std::move(cond), {}, std::move(body)}};
+}
+Stmt switchStmt(ExprPtr value, std::vector<Case> cases, Loc loc) {
+  return {loc, Switch{std::move(value), std::move(cases)}};
+}
+Stmt breakStmt(Loc loc) { return {loc, Break{}}; }
+Stmt continueStmt(Loc loc) { return {loc, Continue{}}; }
+Stmt returnStmt(ExprPtr value, Loc loc) { return {loc, Return{std::move(value)}}; }
+Stmt scope(Block body, Loc loc) { return {loc, Scope{std::move(body)}}; }
+
+Stmt clone(const Stmt& stmt) { return {stmt.loc, cloneNode(stmt.node)}; }
+
+Block clone(const Block& block) {
+  Block copy;
+  copy.reserve(block.size());
+  for (const Stmt& stmt : block) copy.push_back(clone(stmt));
+  return copy;
+}
+
+// ---- declarations -----------------------------------------------------------------------------
+
+VarId addVariable(Function& function, std::string name, Type type, VarRole role, Loc loc) {
+  const auto id = static_cast<VarId>(function.variables.size());
+  function.variables.push_back({.name = std::move(name), .type = type, .role = role, .loc = loc});
+  if (role != VarRole::Local) {
+    assert(function.parameterCount == id && "parameters come before locals");
+    ++function.parameterCount;
+  }
+  return id;
+}
+
+Type arrayOf(Module& module, Type element, std::uint32_t length) {
+  const Array array{element, length};
+  const auto found = std::find(module.arrays.begin(), module.arrays.end(), array);
+  const auto id = static_cast<std::uint32_t>(found - module.arrays.begin());
+  if (found == module.arrays.end()) module.arrays.push_back(array);
+  return Type::arrayType(id);
+}
+
+Function clone(const Function& function) {
+  return {.name = function.name,
+          .result = function.result,
+          .variables = function.variables,
+          .parameterCount = function.parameterCount,
+          .body = clone(function.body),
+          .loc = function.loc};
+}
+
+}  // namespace skc::ir

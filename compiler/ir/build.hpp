@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// Terse constructors of the IR's nodes. Types are derived from the operands; what comes out is
+// checked by `validate`, not here.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ir/ir.hpp"
+
+namespace skc::ir {
+
+// ---- expressions ------------------------------------------------------------------------------
+
+ExprPtr makeExpr(Type type, Expr::Node node, Loc loc = {});
+
+/// Literals of scalar type.
+ExprPtr literal(float value, Loc loc = {});
+ExprPtr literal(std::int32_t value, Loc loc = {});
+ExprPtr literal(std::uint32_t value, Loc loc = {});
+ExprPtr literal(bool value, Loc loc = {});
+/// `value` converted to the type: a Literal of a scalar, a splat of a vector.
+ExprPtr literalOf(Type type, int value, Loc loc = {});
+
+ExprPtr varRef(const Function& function, VarId var, Loc loc = {});
+ExprPtr constantRef(const Module& module, ConstantId constant, Loc loc = {});
+ExprPtr unary(UnaryOp op, ExprPtr operand, Loc loc = {});
+ExprPtr binary(BinaryOp op, ExprPtr lhs, ExprPtr rhs, Loc loc = {});
+ExprPtr select(ExprPtr cond, ExprPtr yes, ExprPtr no, Loc loc = {});
+/// The operand itself if it has that component type already.
+ExprPtr convert(Scalar scalar, ExprPtr operand, Loc loc = {});
+ExprPtr construct(Type type, std::vector<ExprPtr> args, Loc loc = {});
+/// Components by name: "x", "xyz", "bgr".
+ExprPtr swizzle(ExprPtr base, std::string_view components, Loc loc = {});
+ExprPtr member(const Module& module, ExprPtr base, std::uint32_t field, Loc loc = {});
+ExprPtr index(const Module& module, ExprPtr base, ExprPtr index, Loc loc = {});
+ExprPtr call(const Module& module, FunctionId callee, std::vector<ExprPtr> args, Loc loc = {});
+/// The arguments match one of the row's signatures.
+ExprPtr intrinsic(Intrinsic intrinsic, std::vector<ExprPtr> args, Loc loc = {});
+ExprPtr gatherRead(Type element, StreamRef stream, ExprPtr index, Loc loc = {});
+ExprPtr neighborRead(Type element, StreamRef stream, ExprPtr offset, Loc loc = {});
+ExprPtr indexOf(StreamRef stream, Loc loc = {});
+ExprPtr extentOf(StreamRef stream, Loc loc = {});
+
+/// The type of a binary operation on operands of these types.
+Type binaryType(BinaryOp op, Type lhs, Type rhs);
+/// True for < <= > >= == !=.
+bool isComparison(BinaryOp op);
+
+/// Several expressions as one list of arguments.
+template <class... E>
+std::vector<ExprPtr> exprs(E... items) {
+  std::vector<ExprPtr> list;
+  list.reserve(sizeof...(E));
+  (list.push_back(std::move(items)), ...);
+  return list;
+}
+
+/// The variable at the root of a place.
+VarId rootOf(const Expr& place);
+
+ExprPtr clone(const Expr& expr);
+ExprPtr clone(const ExprPtr& expr);   ///< null stays null
+
+// ---- statements -------------------------------------------------------------------------------
+
+Stmt declare(VarId var, ExprPtr init = nullptr, Loc loc = {});
+Stmt assign(ExprPtr place, ExprPtr value, Loc loc = {});
+Stmt assign(ExprPtr place, BinaryOp op, ExprPtr value, Loc loc = {});
+Stmt callStmt(FunctionId callee, std::vector<ExprPtr> args, ExprPtr result = nullptr, Loc loc = {});
+Stmt ifStmt(ExprPtr cond, Block then, Block otherwise = {}, Loc loc = {});
+Stmt forLoop(Block init, ExprPtr cond, Block step, Block body, Loc loc = {});
+Stmt whileLoop(ExprPtr cond, Block body, Loc loc = {});
+Stmt doWhileLoop(Block body, ExprPtr cond, Loc loc = {});
+Stmt switchStmt(ExprPtr value, std::vector<Case> cases, Loc loc = {});
+Stmt breakStmt(Loc loc = {});
+Stmt continueStmt(Loc loc = {});
+Stmt returnStmt(ExprPtr value = nullptr, Loc loc = {});
+Stmt scope(Block body, Loc loc = {});
+
+/// Several statements as one block.
+template <class... S>
+Block block(S... items) {
+  Block list;
+  list.reserve(sizeof...(S));
+  (list.push_back(std::move(items)), ...);
+  return list;
+}
+
+Stmt clone(const Stmt& stmt);
+Block clone(const Block& block);
+
+// ---- declarations -----------------------------------------------------------------------------
+
+/// Adds a variable. Parameters (every role but Local) come before all locals.
+VarId addVariable(Function& function, std::string name, Type type, VarRole role = VarRole::Local,
+                  Loc loc = {});
+/// The array type of this element and length: the module's entry for it, made at need.
+Type arrayOf(Module& module, Type element, std::uint32_t length);
+
+Function clone(const Function& function);
+
+}  // namespace skc::ir

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: constructors derive types as C++ and GLSL do, a clone is equal and separate, and the walk
+// reaches every node.
+#include "ir/build.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "ir/evaluate.hpp"
+#include "ir/kernel_maker.hpp"
+#include "ir/print.hpp"
+#include "ir/walk.hpp"
+
+namespace skc::ir {
+namespace {
+
+TEST_CASE("types follow from operands") {
+  const Type float3 = Type::of(Scalar::Float, 3);
+  const auto vector = [&] { return literalOf(float3, 1); };
+  CHECK(binary(BinaryOp::Mul, literal(2.0F), vector())->type == float3);
+  CHECK(binary(BinaryOp::Mul, vector(), literal(2.0F))->type == float3);
+  CHECK(binary(BinaryOp::Less, vector(), vector())->type == Type::of(Scalar::Bool, 3));
+  CHECK(binary(BinaryOp::Equal, literal(1), literal(1))->type == Type::of(Scalar::Bool));
+  CHECK(binary(BinaryOp::ShiftLeft, literal(1), literal(1U))->type == intType);
+  CHECK(swizzle(vector(), "zx")->type == Type::of(Scalar::Float, 2));
+  CHECK(swizzle(vector(), "r")->type == floatType);
+  CHECK(convert(Scalar::Int, vector())->type == Type::of(Scalar::Int, 3));
+  CHECK(intrinsic(Intrinsic::Dot, exprs(vector(), vector()))->type == floatType);
+}
+
+TEST_CASE("converting to the same component type is nothing") {
+  ExprPtr value = literal(1.0F);
+  const Expr* before = value.get();
+  CHECK(convert(Scalar::Float, std::move(value)).get() == before);
+}
+
+TEST_CASE("arrays are entered once") {
+  Module module = testModule();
+  CHECK(arrayOf(module, floatType, 5) == arrayOf(module, floatType, 5));
+  CHECK(arrayOf(module, floatType, 6) != arrayOf(module, floatType, 5));
+  CHECK(module.arrays.size() == 2);
+}
+
+/// A module with every kind of statement and most kinds of expressions.
+Module everything() {
+  Module module = testModule();
+  KernelMaker k(module, "all");
+  const VarId u = k.gather("u", floatType, 1);
+  const VarId x = k.input("x", floatType);
+  const VarId r = k.output("r", floatType);
+  const VarId i = k.local("i", intType);
+  const VarId s = k.local("s", floatType);
+  Block loopBody =
+      block(ifStmt(binary(BinaryOp::Less, k.ref(i), literal(2)), block(continueStmt()), block(breakStmt())),
+            assign(k.ref(s), BinaryOp::Add, gatherRead(floatType, KernelMaker::stream(u), k.ref(i))));
+  std::vector<Case> cases;
+  cases.push_back({{1, 2}, false, block(breakStmt()), {}});
+  cases.push_back({{}, true, block(scope(block(assign(k.ref(s), unary(UnaryOp::Negate, k.ref(x)))))), {}});
+  k.finish(block(
+      declare(s, intrinsic(Intrinsic::Sin, exprs(k.ref(x)))),
+      forLoop(block(declare(i, literal(0))), binary(BinaryOp::Less, k.ref(i), literal(9)),
+              block(assign(k.ref(i), BinaryOp::Add, literal(1))), std::move(loopBody)),
+      whileLoop(literal(false),
+                block(assign(k.ref(s), neighborRead(floatType, KernelMaker::stream(u), literal(1))))),
+      doWhileLoop(
+          block(assign(k.ref(s), convert(Scalar::Float, swizzle(indexOf(KernelMaker::stream(x)), "x")))),
+          literal(false)),
+      switchStmt(swizzle(extentOf(KernelMaker::stream(u)), "x"), std::move(cases)),
+      assign(k.ref(r), select(literal(true), k.ref(s), k.ref(x))), returnStmt()));
+  return module;
+}
+
+TEST_CASE("a clone prints the same and shares nothing") {
+  Module module = everything();
+  const std::string before = print(module);
+  Function copy = clone(module.functions[0]);
+  walkExprs(module.functions[0].body, [](Expr& expr) {
+    if (auto* n = std::get_if<Literal>(&expr.node)) n->bits = 1;
+  });
+  CHECK(print(module) != before);
+  module.functions[0] = std::move(copy);
+  CHECK(print(module) == before);
+}
+
+TEST_CASE("the walk reaches every expression and statement") {
+  Module module = everything();
+  int literals = 0;
+  int statements = 0;
+  const Block& body = module.functions[0].body;
+  walkExprs(body, [&](const Expr& expr) { literals += std::holds_alternative<Literal>(expr.node) ? 1 : 0; });
+  walkStmts(body, [&](const Stmt&) { ++statements; });
+  CHECK(literals == 8);
+  CHECK(statements == 18);
+}
+
+TEST_CASE("rewriting goes from the inside to the outside") {
+  Module module = testModule();
+  ExprPtr sum = binary(BinaryOp::Add, binary(BinaryOp::Mul, literal(2), literal(3)), literal(4));
+  rewriteExprs(sum, [&](ExprPtr& slot) {
+    if (const auto bits = evaluate(module, *slot, Constants::Keep))
+      slot = literal(static_cast<std::int32_t>(*bits));
+  });
+  CHECK(std::get<Literal>(sum->node).bits == 10);
+}
+
+}  // namespace
+}  // namespace skc::ir

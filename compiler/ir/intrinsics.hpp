@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// The table of intrinsics (intrinsics.def) as an enumeration and rows, and its column of signatures
+// as types: what a call with given arguments gives, and every overload that there is.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "ir/type.hpp"
+
+namespace skc::ir {
+
+enum class Intrinsic : std::uint16_t {
+#define SKC_INTRINSIC(Name, spelling, signatures, glsl, glslVector, polyfill) Name,
+#include "ir/intrinsics.def"
+#undef SKC_INTRINSIC
+};
+
+struct IntrinsicRow {
+  Intrinsic id;
+  std::string_view name, spelling, signatures, glsl, glslVector, polyfill;
+};
+const IntrinsicRow& row(Intrinsic intrinsic);
+/// All rows, in the order of the table.
+std::span<const IntrinsicRow> intrinsicRows();
+
+struct IntrinsicOverload {
+  Type result;
+  std::vector<Type> arguments;
+  bool operator==(const IntrinsicOverload&) const = default;
+};
+/// Every overload that the row's signatures stand for, without repetitions.
+std::vector<IntrinsicOverload> overloads(Intrinsic intrinsic);
+
+/// The type of a call with arguments of exactly these types; nothing if no signature has them.
+std::optional<Type> resultType(Intrinsic intrinsic, std::span<const Type> arguments);
+
+}  // namespace skc::ir

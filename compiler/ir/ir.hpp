@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+//
+// The intermediate representation: small, typed, structured. What it means:
+//
+//   * A Module holds struct types, constants, functions and kernels. Everything is named by an
+//     index into the table that owns it (StructId, FunctionId ...), never by pointer.
+//   * An expression is a tree with one parent, has a type and no side effect: evaluating it twice,
+//     or not at all, changes nothing but time. Effects live in statements only. `&&`, `||` and `?:`
+//     evaluate their right operands only when needed, as in C++.
+//   * No conversion is implicit: the operands of a binary operator have one type, except that one
+//     of them may be a scalar of the other's component type (GLSL's scalar-vector operators; not
+//     for comparisons). Shifts take a count of the same component type's integer family.
+//     Comparisons of vectors are componentwise and give a bool vector.
+//   * A place (left side, or argument of an InOut parameter) is a VarRef of a mutable variable,
+//     or a Member, Index or Swizzle without repeated components of a place.
+//   * One loop node keeps the shape that its author wrote. `continue` goes to `step`, then `cond`.
+//   * A function's parameters are its first `parameterCount` variables. `In` is a copy;
+//     `InOut` copies in and out, and no variable is bound to two InOut parameters of one call.
+//     `Gather` and `Element` parameters stand for streams: they may only be used by the stream
+//     expressions (GatherRead, NeighborRead, IndexOf, ExtentOf) or handed to another function;
+//     an Element may be read by VarRef too.
+//   * Each kernel has an entry function, with one variable per kernel parameter, in order. After
+//     `specialize-gathers`, no function but an entry has Gather parameters, and every StreamRef
+//     names a kernel parameter; the functions that a kernel reaches are then its own.
+//
+// `validate` (validate.hpp) is this text made executable.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "ir/intrinsics.hpp"
+#include "ir/type.hpp"
+#include "support/loc.hpp"
+
+namespace skc::ir {
+
+using VarId = std::uint32_t;
+using FunctionId = std::uint32_t;
+using ConstantId = std::uint32_t;
+using KernelId = std::uint32_t;
+
+// clang-format off: one node a line
+
+// ---- expressions ------------------------------------------------------------------------------
+
+struct Expr;
+using ExprPtr = std::unique_ptr<Expr>;
+
+/// A scalar; vectors of literals are Constructs. `bits` holds bool 0/1, int32, uint32 or float32 bits.
+struct Literal { std::uint32_t bits; };
+struct VarRef { VarId var; };
+struct ConstantRef { ConstantId constant; };
+
+enum class UnaryOp : std::uint8_t { Negate, BitNot, LogicalNot };
+struct Unary { UnaryOp op; ExprPtr operand; };   ///< LogicalNot of a bool vector is componentwise
+
+enum class BinaryOp : std::uint8_t {
+  Add, Sub, Mul, Div, Rem, BitAnd, BitOr, BitXor, ShiftLeft, ShiftRight,
+  Less, LessEqual, Greater, GreaterEqual, Equal, NotEqual, LogicalAnd, LogicalOr,
+};
+struct Binary { BinaryOp op; ExprPtr lhs, rhs; };
+
+/// cond ? yes : no. A scalar condition evaluates one side; a bool vector selects by component.
+struct Select { ExprPtr cond, yes, no; };
+/// Changes the component type: C++'s conversion, `bool(x)` is `x != 0`. Same width.
+struct Convert { ExprPtr operand; };
+/// A vector from scalars and vectors whose components add up to its width, or from one scalar
+/// (splat); a struct from all its members; an array from all its elements.
+struct Construct { std::vector<ExprPtr> args; };
+struct Swizzle { ExprPtr base; std::vector<std::uint8_t> components; };   ///< of a vector; 1 to 4
+struct Member { ExprPtr base; std::uint32_t field; };
+struct Index { ExprPtr base, index; };           ///< of an array or a vector; an int or uint
+struct Call { FunctionId callee; std::vector<ExprPtr> args; };   ///< no InOut parameters, not void
+struct IntrinsicCall { Intrinsic intrinsic; std::vector<ExprPtr> args; };
+
+/// A stream: a variable of this function (Gather or Element role), or, after specialize-gathers,
+/// a parameter of the kernel. Domain (IndexOf and ExtentOf only) is the kernel's domain itself: what
+/// an output, a gather's current index, or an Element without a stream behind it stands for.
+struct StreamRef {
+  enum class Space : std::uint8_t { Variable, KernelParameter, Domain };
+  Space space;
+  std::uint32_t id;
+  bool operator==(const StreamRef&) const = default;
+};
+struct GatherRead { StreamRef stream; ExprPtr index; };       ///< int (rank 1), int2 .. int4; x fastest
+struct NeighborRead { StreamRef stream; ExprPtr offset; };    ///< likewise
+struct IndexOf { StreamRef stream; };                         ///< int4
+struct ExtentOf { StreamRef stream; };                        ///< int4
+
+struct Expr {
+  using Node = std::variant<Literal, VarRef, ConstantRef, Unary, Binary, Select, Convert, Construct,
+                            Swizzle, Member, Index, Call, IntrinsicCall, GatherRead, NeighborRead,
+                            IndexOf, ExtentOf>;
+  Type type;
+  Loc loc;
+  Node node;
+};
+
+// ---- statements -------------------------------------------------------------------------------
+
+struct Stmt;
+using Block = std::vector<Stmt>;
+
+struct Declare { VarId var; ExprPtr init; };                        ///< init may be null
+struct Assign { ExprPtr place; std::optional<BinaryOp> op; ExprPtr value; };  ///< place (op)= value
+/// Calls a function for its effect; `result` (may be null) is the place that takes its value.
+/// The argument of a Gather parameter, and of an Element parameter that stands for a stream, is a
+/// VarRef of this function's own Gather or Element variable.
+struct CallStmt { FunctionId callee; std::vector<ExprPtr> args; ExprPtr result; };
+struct If { ExprPtr cond; Block then, otherwise; };
+enum class LoopKind : std::uint8_t { For, While, DoWhile };
+/// init; loop { (cond unless DoWhile); body; step; (cond if DoWhile) }. `init` and `step` are empty
+/// unless For; a null cond is true. `init` declares variables that live as long as the loop.
+struct Loop { LoopKind kind; Block init; ExprPtr cond; Block step; Block body; };
+struct Case { std::vector<std::int64_t> values; bool isDefault = false; Block body; Loc loc; };
+/// Falls through as in C++; its cases are one scope, as in C++.
+struct Switch { ExprPtr value; std::vector<Case> cases; };
+struct Break {};
+struct Continue {};
+struct Return { ExprPtr value; };                                   ///< null in a void function
+struct Scope { Block body; };
+
+struct Stmt {
+  using Node = std::variant<Declare, Assign, CallStmt, If, Loop, Switch, Break, Continue, Return, Scope>;
+  Loc loc;
+  Node node;
+};
+
+// clang-format on
+
+// ---- declarations -----------------------------------------------------------------------------
+
+enum class VarRole : std::uint8_t { Local, In, InOut, Element, Gather };
+struct Variable {
+  std::string name;
+  Type type;               ///< Gather: the element's type
+  VarRole role = VarRole::Local;
+  std::uint8_t rank = 0;   ///< Gather: 1 to 4
+  bool isConst = false;
+  Loc loc;
+};
+
+struct Function {
+  std::string name;                    ///< as in the source, without namespaces
+  Type result;                         ///< may be void
+  std::vector<Variable> variables;     ///< parameters first
+  std::uint32_t parameterCount = 0;
+  Block body;
+  Loc loc;
+};
+
+struct Constant { std::string name; Type type; ExprPtr value; Loc loc; };
+
+enum class ParamRole : std::uint8_t { Uniform, Input, Output, Gather, Accumulator };
+enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };
+struct KernelParam {
+  std::string name;
+  ParamRole role;
+  Type type;                           ///< of one element
+  std::uint8_t rank = 0;               ///< Gather
+  Boundary boundary = Boundary::Clamp; ///< Gather
+  ExprPtr border;                      ///< Gather with Border: constant expression
+  ExprPtr identity;                    ///< Accumulator: constant expression, or null
+  Loc loc;
+};
+
+/// How partial results of a reduce combine; set by derive-combine (frontend: where the user wrote
+/// an overload that folds two accumulators).
+struct Reduction {
+  std::optional<FunctionId> combine;   ///< void (In A x, InOut A total); may be the entry itself
+  bool seeded = false;                 ///< see sk::program::Reduction
+};
+
+struct Kernel {
+  std::string name;                    ///< without namespaces
+  std::vector<std::string> scope;      ///< enclosing namespaces, outermost first
+  std::string signature;               ///< the declaration as written, on one line
+  FunctionId entry;                    ///< void; variables 0..n-1 are the parameters:
+                                       ///< Uniform In, Input Element, Output and Accumulator InOut,
+                                       ///< Gather Gather
+  std::vector<KernelParam> params;     ///< of a reduce: an Input, then an Accumulator
+  std::optional<Reduction> reduction;  ///< set for `reduce`
+  Loc loc;
+};
+
+struct Module {
+  std::string file;                    ///< path of the main file as given
+  std::vector<std::string> sources;    ///< Loc::file indexes this
+  std::vector<Struct> structs;
+  std::vector<Array> arrays;
+  std::vector<Constant> constants;
+  std::vector<Function> functions;
+  std::vector<Kernel> kernels;
+};
+
+}  // namespace skc::ir

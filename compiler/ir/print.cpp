@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "ir/print.hpp"
+
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "support/overloaded.hpp"
+#include "support/text.hpp"
+
+namespace skc::ir {
+namespace {
+
+class StmtPrinter {
+ public:
+  StmtPrinter(const Module& module, const Function& function) : module_(module), function_(function) {}
+
+  std::string text(const Block& block, int depth) const {
+    std::string result;
+    for (const Stmt& stmt : block) result += text(stmt, depth);
+    return result;
+  }
+
+ private:
+  std::string text(const Stmt& stmt, int depth) const {
+    const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+    return match(
+        stmt.node, [&](const Declare&) { return indent + simple(stmt) + ";\n"; },
+        [&](const Assign&) { return indent + simple(stmt) + ";\n"; },
+        [&](const CallStmt&) { return indent + simple(stmt) + ";\n"; },
+        [&](const If& n) {
+          const std::string otherwise = n.otherwise.empty() ? "" : " else " + braces(n.otherwise, depth);
+          return fmt::format("{}if ({}) {}{}\n", indent, expr(n.cond), braces(n.then, depth), otherwise);
+        },
+        [&](const Loop& n) { return indent + loop(n, depth) + "\n"; },
+        [&](const Switch& n) {
+          std::string cases;
+          for (const Case& one : n.cases) cases += label(one, indent) + text(one.body, depth + 2);
+          return fmt::format("{0}switch ({1}) {{\n{2}{0}}}\n", indent, expr(n.value), cases);
+        },
+        [&](const Break&) { return indent + "break;\n"; },
+        [&](const Continue&) { return indent + "continue;\n"; },
+        [&](const Return& n) { return indent + (n.value ? "return " + expr(n.value) : "return") + ";\n"; },
+        [&](const Scope& n) { return indent + braces(n.body, depth) + "\n"; });
+  }
+
+  /// A statement that fits in the head of a `for`, without its semicolon; others in braces.
+  std::string simple(const Stmt& stmt) const {
+    if (const auto* n = std::get_if<Declare>(&stmt.node)) {
+      const Variable& var = function_.variables[n->var];
+      const std::string name = print(module_, function_, *nameExpr(n->var, var.type));
+      const std::string init = n->init ? " = " + expr(n->init) : "";
+      return (var.isConst ? "const " : "") + print(module_, var.type) + " " + name + init;
+    }
+    if (const auto* n = std::get_if<Assign>(&stmt.node)) {
+      return fmt::format("{} {}= {}", expr(n->place), n->op ? spelling(*n->op) : "", expr(n->value));
+    }
+    if (const auto* n = std::get_if<CallStmt>(&stmt.node)) {
+      std::vector<std::string> args;
+      for (const ExprPtr& arg : n->args) args.push_back(expr(arg));
+      return fmt::format("{}{}({})", n->result ? expr(n->result) + " = " : "",
+                         module_.functions[n->callee].name, join(args, ", "));
+    }
+    return "{ " + text(stmt, 0) + " }";
+  }
+
+  std::string loop(const Loop& n, int depth) const {
+    const std::string cond = n.cond ? expr(n.cond) : "true";
+    switch (n.kind) {
+      case LoopKind::While: return fmt::format("while ({}) {}", cond, braces(n.body, depth));
+      case LoopKind::DoWhile: return fmt::format("do {} while ({});", braces(n.body, depth), cond);
+      case LoopKind::For: break;
+    }
+    return fmt::format("for ({}; {}; {}) {}", simpleList(n.init), cond, simpleList(n.step),
+                       braces(n.body, depth));
+  }
+
+  std::string simpleList(const Block& block) const {
+    std::vector<std::string> texts;
+    for (const Stmt& stmt : block) texts.push_back(simple(stmt));
+    return join(texts, ", ");
+  }
+
+  std::string label(const Case& one, const std::string& indent) const {
+    std::string text;
+    for (std::int64_t value : one.values) text += fmt::format("{}  case {}:\n", indent, value);
+    return one.isDefault ? text + indent + "  default:\n" : text;
+  }
+
+  std::string braces(const Block& block, int depth) const {
+    if (block.empty()) return "{}";
+    return "{\n" + text(block, depth + 1) + std::string(static_cast<std::size_t>(2 * depth), ' ') + "}";
+  }
+
+  static ExprPtr nameExpr(VarId var, Type type) {
+    return std::make_unique<Expr>(Expr{type, {}, VarRef{var}});
+  }
+  std::string expr(const ExprPtr& e) const { return print(module_, function_, *e); }
+
+  const Module& module_;
+  const Function& function_;
+};
+
+std::string printVariable(const Module& module, const Variable& var) {
+  return fmt::format("  {}: {} {}{}\n", var.name, spelling(var.role), print(module, var.type),
+                     var.rank > 0 ? fmt::format(" rank {}", var.rank) : "");
+}
+
+std::string printParam(const Module& module, const KernelParam& param, std::size_t number) {
+  const auto constant = [&](const ExprPtr& e) { return print(module, Function{}, *e); };
+  std::string text =
+      fmt::format("  ${} {}: {} {}", number, param.name, spelling(param.role), print(module, param.type));
+  if (param.role == ParamRole::Gather) {
+    text += fmt::format(" rank {} {}", param.rank, spelling(param.boundary));
+  }
+  if (param.border) text += "(" + constant(param.border) + ")";
+  if (param.identity) text += " = " + constant(param.identity);
+  return text + "\n";
+}
+
+std::string printKernel(const Module& module, const Kernel& kernel) {
+  std::string text = fmt::format("{} {}{}: entry @{}", kernel.reduction ? "reduce" : "kernel",
+                                 qualifier(kernel.scope), kernel.name, kernel.entry);
+  if (kernel.reduction && kernel.reduction->combine)
+    text += fmt::format(", combine @{}", *kernel.reduction->combine);
+  if (kernel.reduction && kernel.reduction->seeded) text += ", seeded";
+  text += "\n";
+  for (std::size_t i = 0; i < kernel.params.size(); ++i) text += printParam(module, kernel.params[i], i);
+  return text + "\n";
+}
+
+std::string printStruct(const Module& module, const Struct& type) {
+  std::string text = fmt::format("struct {}{} {{\n", qualifier(type.scope), type.name);
+  for (const StructField& field : type.fields) {
+    text += fmt::format("  {} {};\n", print(module, field.type), field.name);
+  }
+  return text + "};\n\n";
+}
+
+}  // namespace
+
+std::string print(const Module& module, const Function& function) {
+  std::string text;
+  for (const Variable& var : function.variables) text += printVariable(module, var);
+  return text + "{\n" + StmtPrinter(module, function).text(function.body, 1) + "}\n";
+}
+
+std::string print(const Module& module) {
+  std::string text = fmt::format("module {}\n\n", module.file);
+  for (const Struct& type : module.structs) text += printStruct(module, type);
+  for (const Constant& constant : module.constants) {
+    text += fmt::format("const {} {} = {};\n\n", print(module, constant.type), constant.name,
+                        print(module, Function{}, *constant.value));
+  }
+  for (const Kernel& kernel : module.kernels) text += printKernel(module, kernel);
+  for (std::size_t i = 0; i < module.functions.size(); ++i) {
+    const Function& function = module.functions[i];
+    text += fmt::format("function @{} {} -> {}\n{}\n", i, function.name, print(module, function.result),
+                        print(module, function));
+  }
+  return text;
+}
+
+}  // namespace skc::ir

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// The IR as text for --emit=ir and --print-after: C-like, complete, the same for the same module.
+// Nothing reads it back.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "ir/ir.hpp"
+
+namespace skc::ir {
+
+std::string print(const Module& module);
+std::string print(const Module& module, const Function& function);
+std::string print(const Module& module, const Function& function, const Expr& expr);
+/// "float3", "geometry::Hit", "float[5]": as the .sk file writes it.
+std::string print(const Module& module, Type type);
+
+/// "+", "<<", "&&".
+std::string_view spelling(BinaryOp op);
+std::string_view spelling(UnaryOp op);
+/// "float", "int3".
+std::string spelling(Scalar scalar, int width = 1);
+std::string_view spelling(VarRole role);
+std::string_view spelling(ParamRole role);
+std::string_view spelling(Boundary boundary);
+/// "a::b::" for {"a", "b"}.
+std::string qualifier(const std::vector<std::string>& scope);
+
+}  // namespace skc::ir

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+//
+// Expressions of the IR as text, with as few brackets as a person would write.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "ir/precedence.hpp"
+#include "ir/print.hpp"
+#include "support/overloaded.hpp"
+#include "support/text.hpp"
+
+namespace skc::ir {
+namespace {
+
+/// The name of a variable; with its number where the function has several of that name.
+std::string nameOf(const Function& function, VarId var) {
+  if (var >= function.variables.size()) return "var#" + std::to_string(var);
+  const std::string& name = function.variables[var].name;
+  const auto count = std::count_if(function.variables.begin(), function.variables.end(),
+                                   [&](const Variable& other) { return other.name == name; });
+  return count == 1 ? name : name + "#" + std::to_string(var);
+}
+
+std::string literalText(Type type, std::uint32_t bits) {
+  switch (type.scalar) {
+    case Scalar::Bool: return bits != 0 ? "true" : "false";
+    case Scalar::Int: return std::to_string(static_cast<std::int32_t>(bits));
+    case Scalar::Uint: return std::to_string(bits) + "u";
+    case Scalar::Float: break;
+  }
+  const float value = std::bit_cast<float>(bits);
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value < 0 ? "-inf" : "inf";
+  return shortestFloat(value);
+}
+
+class ExprPrinter {
+ public:
+  ExprPrinter(const Module& module, const Function& function) : module_(module), function_(function) {}
+
+  std::string text(const Expr& expr, Precedence context = Precedence::Lowest) const {
+    const auto [inner, precedence] = parts(expr);
+    return precedence < context ? "(" + inner + ")" : inner;
+  }
+
+ private:
+  struct Parts {
+    std::string text;
+    Precedence precedence = Precedence::Primary;
+  };
+
+  Parts parts(const Expr& expr) const {
+    return match(
+        expr.node, [&](const Literal& n) { return Parts{literalText(expr.type, n.bits)}; },
+        [&](const VarRef& n) { return Parts{nameOf(function_, n.var)}; },
+        [&](const ConstantRef& n) { return Parts{module_.constants[n.constant].name}; },
+        [&](const Unary& n) {
+          return Parts{std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary),
+                       Precedence::Unary};
+        },
+        [&](const Binary& n) { return binary(n); },
+        [&](const Select& n) {
+          return Parts{text(*n.cond, Precedence::LogicalOr) + " ? " + text(*n.yes, Precedence::LogicalOr) +
+                           " : " + text(*n.no, Precedence::Conditional),
+                       Precedence::Conditional};
+        },
+        [&](const Convert& n) { return Parts{print(module_, expr.type) + "(" + text(*n.operand) + ")"}; },
+        [&](const Construct& n) { return Parts{print(module_, expr.type) + list(n.args, '{', '}')}; },
+        [&](const Swizzle& n) {
+          std::string components;
+          for (std::uint8_t component : n.components) components += "xyzw"[component];
+          return Parts{text(*n.base, Precedence::Primary) + "." + components};
+        },
+        [&](const Member& n) {
+          const Struct& type = module_.structs[n.base->type.index];
+          return Parts{text(*n.base, Precedence::Primary) + "." + type.fields[n.field].name};
+        },
+        [&](const Index& n) {
+          return Parts{text(*n.base, Precedence::Primary) + "[" + text(*n.index) + "]"};
+        },
+        [&](const Call& n) { return Parts{module_.functions[n.callee].name + list(n.args, '(', ')')}; },
+        [&](const IntrinsicCall& n) {
+          const IntrinsicRow& entry = row(n.intrinsic);
+          return Parts{std::string(entry.spelling.empty() ? entry.name : entry.spelling) +
+                       list(n.args, '(', ')')};
+        },
+        [&](const GatherRead& n) { return Parts{stream(n.stream) + "[" + text(*n.index) + "]"}; },
+        [&](const NeighborRead& n) {
+          return Parts{"neighbor(" + stream(n.stream) + ", " + text(*n.offset) + ")"};
+        },
+        [&](const IndexOf& n) { return Parts{"indexof(" + stream(n.stream) + ")"}; },
+        [&](const ExtentOf& n) { return Parts{"extentof(" + stream(n.stream) + ")"}; });
+  }
+
+  Parts binary(const Binary& n) const {
+    const Precedence precedence = precedenceOf(n.op);
+    const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
+    return {operand(n.op, *n.lhs, precedence) + " " + std::string(spelling(n.op)) + " " +
+                operand(n.op, *n.rhs, tighter),
+            precedence};
+  }
+
+  std::string operand(BinaryOp outer, const Expr& expr, Precedence context) const {
+    const auto* inner = std::get_if<Binary>(&expr.node);
+    const bool clearer = inner != nullptr && bracketsForClarity(outer, inner->op);
+    return text(expr, clearer ? Precedence::Unary : context);
+  }
+
+  std::string list(const std::vector<ExprPtr>& items, char open, char close) const {
+    std::vector<std::string> texts;
+    for (const ExprPtr& item : items) texts.push_back(text(*item));
+    return open + join(texts, ", ") + close;
+  }
+
+  /// `$u` is the kernel's parameter u, for the first kernel that has this entry function.
+  std::string stream(StreamRef ref) const {
+    switch (ref.space) {
+      case StreamRef::Space::Variable: return nameOf(function_, ref.id);
+      case StreamRef::Space::KernelParameter: return "$" + std::to_string(ref.id);
+      case StreamRef::Space::Domain: break;
+    }
+    return "domain";
+  }
+
+  const Module& module_;
+  const Function& function_;
+};
+
+}  // namespace
+
+std::string print(const Module& module, const Function& function, const Expr& expr) {
+  return ExprPrinter(module, function).text(expr);
+}
+
+}  // namespace skc::ir

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "ir/reach.hpp"
+
+#include <algorithm>
+
+#include "ir/walk.hpp"
+
+namespace skc::ir {
+namespace {
+
+enum class Mark : std::uint8_t { New, Open, Done };
+
+/// Depth first over the calls; false where a call leads back to a function that is not done.
+bool visit(const Module& module, FunctionId id, std::vector<Mark>& marks, std::vector<FunctionId>& order) {
+  if (id >= marks.size() || marks[id] == Mark::Done) return true;
+  if (marks[id] == Mark::Open) return false;
+  marks[id] = Mark::Open;
+  for (FunctionId callee : callees(module.functions[id])) {
+    if (!visit(module, callee, marks, order)) return false;
+  }
+  marks[id] = Mark::Done;
+  order.push_back(id);
+  return true;
+}
+
+}  // namespace
+
+std::vector<FunctionId> callees(const Function& function) {
+  std::vector<FunctionId> found;
+  const auto add = [&](FunctionId id) {
+    if (std::find(found.begin(), found.end(), id) == found.end()) found.push_back(id);
+  };
+  walkStmts(function.body, [&](const Stmt& stmt) {
+    if (const auto* n = std::get_if<CallStmt>(&stmt.node)) add(n->callee);
+  });
+  walkExprs(function.body, [&](const Expr& expr) {
+    if (const auto* n = std::get_if<Call>(&expr.node)) add(n->callee);
+  });
+  return found;
+}
+
+std::vector<FunctionId> functionsOf(const Module& module, const Kernel& kernel) {
+  std::vector<Mark> marks(module.functions.size(), Mark::New);
+  std::vector<FunctionId> order;
+  visit(module, kernel.entry, marks, order);
+  if (kernel.reduction && kernel.reduction->combine) visit(module, *kernel.reduction->combine, marks, order);
+  return order;
+}
+
+std::optional<FunctionId> findRecursion(const Module& module) {
+  std::vector<Mark> marks(module.functions.size(), Mark::New);
+  std::vector<FunctionId> order;
+  for (FunctionId id = 0; id < module.functions.size(); ++id) {
+    if (!visit(module, id, marks, order)) return id;
+  }
+  return std::nullopt;
+}
+
+}  // namespace skc::ir

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+//
+// The call graph: who calls whom, and which functions a kernel needs.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "ir/ir.hpp"
+
+namespace skc::ir {
+
+/// The functions that a function calls, each once, in the order in which they are found.
+std::vector<FunctionId> callees(const Function& function);
+
+/// The functions that a kernel needs, each once, callees before their callers: its entry, its
+/// combining function and all that these reach.
+std::vector<FunctionId> functionsOf(const Module& module, const Kernel& kernel);
+
+/// A function that reaches itself, if there is one.
+std::optional<FunctionId> findRecursion(const Module& module);
+
+}  // namespace skc::ir

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+//
+// The words of print.hpp: operators, roles and types as the .sk file writes them.
+#include <array>
+
+#include "ir/print.hpp"
+
+namespace skc::ir {
+
+std::string_view spelling(BinaryOp op) {
+  constexpr std::array<std::string_view, 18> names = {"+",  "-", "*",  "/", "%",  "&",  "|",  "^",  "<<",
+                                                      ">>", "<", "<=", ">", ">=", "==", "!=", "&&", "||"};
+  return names[static_cast<std::size_t>(op)];
+}
+
+std::string_view spelling(UnaryOp op) {
+  constexpr std::array<std::string_view, 3> names = {"-", "~", "!"};
+  return names[static_cast<std::size_t>(op)];
+}
+
+std::string spelling(Scalar scalar, int width) {
+  constexpr std::array<std::string_view, 4> names = {"bool", "int", "uint", "float"};
+  return std::string(names[static_cast<std::size_t>(scalar)]) + (width > 1 ? std::to_string(width) : "");
+}
+
+std::string_view spelling(VarRole role) {
+  constexpr std::array<std::string_view, 5> names = {"local", "in", "inout", "element", "gather"};
+  return names[static_cast<std::size_t>(role)];
+}
+
+std::string_view spelling(ParamRole role) {
+  constexpr std::array<std::string_view, 5> names = {"uniform", "input", "output", "gather", "accumulator"};
+  return names[static_cast<std::size_t>(role)];
+}
+
+std::string_view spelling(Boundary boundary) {
+  constexpr std::array<std::string_view, 4> names = {"clamp", "wrap", "mirror", "border"};
+  return names[static_cast<std::size_t>(boundary)];
+}
+
+std::string qualifier(const std::vector<std::string>& scope) {
+  std::string text;
+  for (const std::string& name : scope) text += name + "::";
+  return text;
+}
+
+std::string print(const Module& module, Type type) {
+  switch (type.kind) {
+    case Type::Kind::Void: return "void";
+    case Type::Kind::Scalar:
+    case Type::Kind::Vector: return spelling(type.scalar, type.width);
+    case Type::Kind::Struct: {
+      const Struct& entry = module.structs[type.index];
+      return qualifier(entry.scope) + entry.name;
+    }
+    case Type::Kind::Array: break;
+  }
+  const Array& array = module.arrays[type.index];
+  return print(module, array.element) + "[" + std::to_string(array.length) + "]";
+}
+
+}  // namespace skc::ir

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+#include "ir/validate.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "ir/build.hpp"
+#include "ir/reach.hpp"
+#include "ir/validate_rules.hpp"
+#include "support/overloaded.hpp"
+
+namespace skc::ir {
+namespace {
+
+/// Puts the place in front of a violation that comes out of `check`.
+template <class Fn>
+void within(const std::string& place, Fn&& check) {
+  try {
+    check();
+  } catch (const Violation& violation) {
+    throw Violation{place + ": " + violation.text};
+  }
+}
+
+// ---- statements -------------------------------------------------------------------------------
+
+class FunctionChecker {
+ public:
+  FunctionChecker(const Module& module, Stage stage, const Function& function, const Kernel* kernel)
+      : function_(function),
+        visible_(function.variables.size(), false),
+        declared_(function.variables.size(), false),
+        context_{.module = module,
+                 .stage = stage,
+                 .function = &function,
+                 .visible = &visible_,
+                 .kernel = kernel,
+                 .constantLimit = module.constants.size()} {}
+
+  void check() {
+    require(function_.parameterCount <= function_.variables.size(),
+            "there are more parameters than variables");
+    for (std::size_t i = 0; i < function_.variables.size(); ++i) {
+      const Variable& var = function_.variables[i];
+      within(fmt::format("'{}'", var.name), [&] { checkVariable(var, i < function_.parameterCount); });
+      visible_[i] = i < function_.parameterCount;
+    }
+    block(function_.body);
+  }
+
+ private:
+  void checkVariable(const Variable& var, bool isParameter) const {
+    checkType(context_.module, var.type);
+    require(!var.type.isVoid(), "a variable has no type");
+    require(isParameter == (var.role != VarRole::Local),
+            "parameters are the first variables, locals the others");
+    const bool isGather = var.role == VarRole::Gather;
+    require(isGather ? var.rank >= 1 && var.rank <= 4 : var.rank == 0,
+            "gathers have rank 1 to 4, others none");
+  }
+
+  void block(const Block& statements) {
+    const std::vector<bool> outside = visible_;
+    for (const Stmt& stmt : statements) checkStmt(stmt);
+    visible_ = outside;
+  }
+
+  void checkStmt(const Stmt& stmt) {
+    within(fmt::format("line {}", stmt.loc.line), [&] { match(stmt.node, [&](const auto& n) { rule(n); }); });
+  }
+
+  void rule(const Declare& n) {
+    require(n.var < function_.variables.size(), "a declared variable is not in the table");
+    const Variable& var = function_.variables[n.var];
+    require(var.role == VarRole::Local, fmt::format("parameter '{}' is declared", var.name));
+    require(!declared_[n.var], fmt::format("'{}' is declared twice", var.name));
+    require(n.init != nullptr || !var.isConst, fmt::format("constant '{}' has no value", var.name));
+    if (n.init) {
+      checkExpr(context_, *n.init);
+      require(n.init->type == var.type, fmt::format("'{}' is initialised with another type", var.name));
+    }
+    declared_[n.var] = true;
+    visible_[n.var] = true;
+  }
+  void rule(const Assign& n) {
+    checkPlace(context_, *n.place);
+    checkExpr(context_, *n.value);
+    if (!n.op) return require(n.place->type == n.value->type, "a value of another type is assigned");
+    const bool isPlain =
+        !isComparison(*n.op) && *n.op != BinaryOp::LogicalAnd && *n.op != BinaryOp::LogicalOr;
+    require(isPlain, "a comparison is no compound assignment");
+    checkBinary(*n.op, n.place->type, n.value->type, n.place->type);
+  }
+  void rule(const CallStmt& n) {
+    checkArguments(context_, n.callee, n.args, true);
+    if (!n.result) return;
+    checkPlace(context_, *n.result);
+    require(n.result->type == context_.module.functions[n.callee].result, "a call's result has another type");
+  }
+  void rule(const If& n) {
+    condition(*n.cond);
+    block(n.then);
+    block(n.otherwise);
+  }
+  void rule(const Loop& n) {
+    const bool isFor = n.kind == LoopKind::For;
+    require(isFor || (n.init.empty() && n.step.empty()), "only a for loop has an init and a step");
+    const std::vector<bool> outside = visible_;
+    for (const Stmt& stmt : n.init) checkStmt(stmt);
+    if (n.cond) condition(*n.cond);
+    ++loops_;
+    block(n.body);
+    --loops_;
+    block(n.step);
+    visible_ = outside;
+  }
+  void rule(const Switch& n) {
+    checkExpr(context_, *n.value);
+    require(n.value->type.isScalar() && n.value->type.isInteger(), "the value of a switch is no int or uint");
+    std::vector<std::int64_t> seen;
+    int defaults = 0;
+    const std::vector<bool> outside = visible_;   // the cases of a switch are one scope
+    ++switches_;
+    for (const Case& one : n.cases) {
+      defaults += one.isDefault ? 1 : 0;
+      for (std::int64_t value : one.values) {
+        require(std::find(seen.begin(), seen.end(), value) == seen.end(), "a switch has a case twice");
+        seen.push_back(value);
+      }
+      for (const Stmt& stmt : one.body) checkStmt(stmt);
+    }
+    --switches_;
+    visible_ = outside;
+    require(defaults <= 1, "a switch has two defaults");
+  }
+  void rule(const Break&) const { require(loops_ + switches_ > 0, "a break is in no loop or switch"); }
+  void rule(const Continue&) const { require(loops_ > 0, "a continue is in no loop"); }
+  void rule(const Return& n) const {
+    const Type type = n.value ? n.value->type : Type::voidType();
+    if (n.value) checkExpr(context_, *n.value);
+    require(type == function_.result, "a return has another type than the function");
+  }
+  void rule(const Scope& n) { block(n.body); }
+
+  void condition(const Expr& expr) const {
+    checkExpr(context_, expr);
+    require(expr.type == Type::of(Scalar::Bool), "a condition is no bool");
+  }
+
+  const Function& function_;
+  std::vector<bool> visible_;
+  std::vector<bool> declared_;
+  ExprContext context_;
+  int loops_ = 0;
+  int switches_ = 0;
+};
+
+// ---- kernels ----------------------------------------------------------------------------------
+
+VarRole roleInEntry(ParamRole role) {
+  switch (role) {
+    case ParamRole::Uniform: return VarRole::In;
+    case ParamRole::Input: return VarRole::Element;
+    case ParamRole::Gather: return VarRole::Gather;
+    case ParamRole::Output:
+    case ParamRole::Accumulator: break;
+  }
+  return VarRole::InOut;
+}
+
+void checkConstant(const Module& module, Stage stage, const Expr& expr, Type type) {
+  checkExpr({.module = module, .stage = stage, .constantLimit = module.constants.size()}, expr);
+  require(expr.type == type, "a constant has another type than its parameter");
+}
+
+void checkParam(const Module& module, Stage stage, const KernelParam& param, const Variable& var) {
+  require(var.role == roleInEntry(param.role), "the entry's variable has another role");
+  require(var.type == param.type && var.rank == param.rank, "the entry's variable has another type or rank");
+  const bool wantsBorder = param.role == ParamRole::Gather && param.boundary == Boundary::Border;
+  require(wantsBorder == (param.border != nullptr), "a border value and the border mode go together");
+  require(param.role == ParamRole::Accumulator || !param.identity, "only an accumulator has an identity");
+  if (param.border) checkConstant(module, stage, *param.border, param.type);
+  if (param.identity) checkConstant(module, stage, *param.identity, param.type);
+}
+
+void checkReduction(const Module& module, const Kernel& kernel) {
+  require(kernel.params.size() == 2 && kernel.params[0].role == ParamRole::Input &&
+              kernel.params[1].role == ParamRole::Accumulator,
+          "a reduce has an input, then an accumulator");
+  if (!kernel.reduction->combine) return;
+  require(*kernel.reduction->combine < module.functions.size(), "the combining function is not in the table");
+  const Function& combine = module.functions[*kernel.reduction->combine];
+  const Type accumulator = kernel.params[1].type;
+  require(combine.result.isVoid() && combine.parameterCount == 2 &&
+              combine.variables[0].type == accumulator && combine.variables[1].type == accumulator &&
+              combine.variables[1].role == VarRole::InOut,
+          "the combining function does not fold two accumulators");
+}
+
+void checkKernel(const Module& module, Stage stage, const Kernel& kernel) {
+  require(kernel.entry < module.functions.size(), "the entry is not in the table");
+  const Function& entry = module.functions[kernel.entry];
+  require(entry.result.isVoid(), "the entry returns a value");
+  require(entry.parameterCount == kernel.params.size(), "the entry has too many or too few parameters");
+  bool hasAccumulator = false;
+  for (std::size_t i = 0; i < kernel.params.size(); ++i) {
+    hasAccumulator = hasAccumulator || kernel.params[i].role == ParamRole::Accumulator;
+    within(kernel.params[i].name, [&] { checkParam(module, stage, kernel.params[i], entry.variables[i]); });
+  }
+  require(hasAccumulator == kernel.reduction.has_value(), "a reduce and an accumulator go together");
+  if (kernel.reduction) checkReduction(module, kernel);
+}
+
+// ---- module -----------------------------------------------------------------------------------
+
+/// After specialize-gathers: the kernel of each function, at most one.
+std::vector<const Kernel*> owners(const Module& module) {
+  std::vector<const Kernel*> owner(module.functions.size(), nullptr);
+  for (const Kernel& kernel : module.kernels) {
+    for (FunctionId id : functionsOf(module, kernel)) {
+      require(owner[id] == nullptr, fmt::format("function @{} belongs to two kernels", id));
+      owner[id] = &kernel;
+      const Function& function = module.functions[id];
+      for (std::size_t i = 0; id != kernel.entry && i < function.parameterCount; ++i) {
+        const VarRole role = function.variables[i].role;
+        require(role != VarRole::Gather && role != VarRole::Element,
+                fmt::format("function @{} still takes a stream", id));
+      }
+    }
+  }
+  return owner;
+}
+
+void checkTables(const Module& module, Stage stage) {
+  for (const Struct& type : module.structs) {
+    for (const StructField& field : type.fields) {
+      within("struct " + type.name, [&] { checkType(module, field.type); });
+    }
+  }
+  for (const Array& array : module.arrays) {
+    within("array", [&] { checkType(module, array.element); });
+    require(array.length > 0, "an array has no elements");
+  }
+  for (std::size_t i = 0; i < module.constants.size(); ++i) {
+    const Constant& constant = module.constants[i];
+    within("constant " + constant.name, [&] {
+      require(constant.value != nullptr, "it has no value");
+      checkExpr({.module = module, .stage = stage, .constantLimit = i}, *constant.value);
+      require(constant.value->type == constant.type, "its value has another type");
+    });
+  }
+}
+
+}  // namespace
+
+std::string validate(const Module& module, Stage stage) {
+  try {
+    checkTables(module, stage);
+    require(!findRecursion(module), "a function calls itself");
+    for (const Kernel& kernel : module.kernels) {
+      within("kernel " + kernel.name, [&] { checkKernel(module, stage, kernel); });
+    }
+    std::vector<const Kernel*> owner(module.functions.size(), nullptr);
+    if (stage == Stage::Specialized) owner = owners(module);
+    for (std::size_t i = 0; i < module.functions.size(); ++i) {
+      const Function& function = module.functions[i];
+      within(fmt::format("function @{} '{}'", i, function.name),
+             [&] { FunctionChecker(module, stage, function, owner[i]).check(); });
+    }
+  } catch (const Violation& violation) {
+    return violation.text;
+  }
+  return {};
+}
+
+}  // namespace skc::ir

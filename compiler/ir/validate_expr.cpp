@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "ir/build.hpp"
+#include "ir/print.hpp"
+#include "ir/validate_rules.hpp"
+#include "ir/walk.hpp"
+
+namespace skc::ir {
+
+void require(bool holds, const std::string& text) {
+  if (!holds) throw Violation{text};
+}
+
+void checkType(const Module& module, Type type) {
+  switch (type.kind) {
+    case Type::Kind::Void: return;
+    case Type::Kind::Scalar: return require(type.width == 1, "a scalar has width 1");
+    case Type::Kind::Vector: return require(type.width >= 2 && type.width <= 4, "a vector has width 2 to 4");
+    case Type::Kind::Struct:
+      return require(type.index < module.structs.size(), "a struct type is not in the table");
+    case Type::Kind::Array:
+      return require(type.index < module.arrays.size(), "an array type is not in the table");
+  }
+}
+
+namespace {
+
+bool isIndex(Type type) { return type.isScalar() && type.isInteger(); }
+
+/// Equal types, or a scalar beside a vector of the same component.
+bool fitTogether(Type lhs, Type rhs) {
+  return lhs == rhs || (lhs.isArithmetic() && rhs.isArithmetic() && lhs.scalar == rhs.scalar &&
+                        (lhs.isScalar() || rhs.isScalar()));
+}
+
+class ExprChecker {
+ public:
+  explicit ExprChecker(const ExprContext& context) : context_(context), module_(context.module) {}
+
+  void check(const Expr& expr) const {
+    checkType(module_, expr.type);
+    require(!expr.type.isVoid(), "an expression has no type");
+    const bool isCall = std::holds_alternative<Call>(expr.node);
+    if (!isCall) {   // a call's arguments may be streams
+      forEachOperand(expr, [&](const ExprPtr& operand) {
+        require(operand != nullptr, "an operand is missing");
+        check(*operand);
+      });
+    }
+    match(expr.node, [&](const auto& node) { rule(expr.type, node); });
+  }
+
+ private:
+  void rule(Type type, const Literal& n) const {
+    require(type.isScalar(), "a literal is a scalar");
+    require(!type.isBool() || n.bits <= 1, "a bool literal is 0 or 1");
+  }
+  void rule(Type type, const VarRef& n) const {
+    require(context_.function != nullptr, "a constant expression names a variable");
+    require(n.var < context_.function->variables.size(), "a variable is not in the function's table");
+    const Variable& var = context_.function->variables[n.var];
+    require(var.role != VarRole::Gather, fmt::format("gather '{}' is used as a value", var.name));
+    require((*context_.visible)[n.var], fmt::format("'{}' is not visible here", var.name));
+    require(var.type == type, fmt::format("'{}' has another type than its variable", var.name));
+  }
+  void rule(Type type, const ConstantRef& n) const {
+    require(n.constant < context_.constantLimit, "a constant is used before it is declared");
+    require(module_.constants[n.constant].type == type,
+            "a constant's name has another type than the constant");
+  }
+  void rule(Type type, const Unary& n) const {
+    const Type operand = n.operand->type;
+    require(operand == type, fmt::format("'{}' changes its operand's type", spelling(n.op)));
+    switch (n.op) {
+      case UnaryOp::Negate:
+        return require(type.isFloat() || type.isInteger(), "'-' of something that is no number");
+      case UnaryOp::BitNot: return require(type.isInteger(), "'~' of something that is no integer");
+      case UnaryOp::LogicalNot: return require(type.isBool(), "'!' of something that is no bool");
+    }
+  }
+  void rule(Type type, const Binary& n) const { checkBinary(n.op, n.lhs->type, n.rhs->type, type); }
+  void rule(Type type, const Select& n) const {
+    require(n.yes->type == type && n.no->type == type, "the sides of '?:' have other types than the whole");
+    const Type cond = n.cond->type;
+    const bool byComponent = cond.isVector() && type.isVector() && cond.width == type.width;
+    require(cond.isBool() && (cond.isScalar() || byComponent),
+            "the condition of '?:' is no bool of its width");
+  }
+  void rule(Type type, const Convert& n) const {
+    const Type operand = n.operand->type;
+    require(type.isArithmetic() && operand.isArithmetic() && type.width == operand.width,
+            "a conversion changes more than the component type");
+    require(type.scalar != operand.scalar, "a conversion changes nothing");
+  }
+  void rule(Type type, const Construct& n) const {
+    if (type.isVector()) return constructVector(type, n.args);
+    std::vector<Type> members;
+    if (type.kind == Type::Kind::Struct) {
+      for (const StructField& field : module_.structs[type.index].fields) members.push_back(field.type);
+    } else {
+      require(type.kind == Type::Kind::Array, "a scalar is constructed");
+      const Array& array = module_.arrays[type.index];
+      members.assign(array.length, array.element);
+    }
+    require(n.args.size() == members.size(),
+            "a struct or array is constructed from too many or too few values");
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      require(n.args[i]->type == members[i], fmt::format("member {} is constructed from another type", i));
+    }
+  }
+  void constructVector(Type type, const std::vector<ExprPtr>& args) const {
+    int components = 0;
+    for (const ExprPtr& arg : args) {
+      require(arg->type.isArithmetic() && arg->type.scalar == type.scalar,
+              "a vector is constructed from values of another component type");
+      components += arg->type.width;
+    }
+    const bool isSplat = args.size() == 1 && components == 1;
+    require(isSplat || components == type.width,
+            "a vector is constructed from too many or too few components");
+  }
+  void rule(Type type, const Swizzle& n) const {
+    const Type base = n.base->type;
+    require(base.isVector(), "a swizzle of something that is no vector");
+    require(!n.components.empty() && n.components.size() <= 4, "a swizzle has 1 to 4 components");
+    for (std::uint8_t component : n.components)
+      require(component < base.width, "a swizzle leaves its vector");
+    require(type == Type::of(base.scalar, static_cast<int>(n.components.size())),
+            "a swizzle has a wrong type");
+  }
+  void rule(Type type, const Member& n) const {
+    const Type base = n.base->type;
+    require(base.kind == Type::Kind::Struct, "a member of something that is no struct");
+    const std::vector<StructField>& fields = module_.structs[base.index].fields;
+    require(n.field < fields.size(), "a struct has no such member");
+    require(fields[n.field].type == type, "a member has another type than its field");
+  }
+  void rule(Type type, const Index& n) const {
+    const Type base = n.base->type;
+    require(base.isVector() || base.kind == Type::Kind::Array,
+            "an index into something that is no vector or array");
+    require(isIndex(n.index->type), "an index is no int or uint");
+    const Type element = base.isVector() ? base.component() : module_.arrays[base.index].element;
+    require(element == type, "an indexed element has a wrong type");
+  }
+  void rule(Type type, const Call& n) const {
+    require(context_.function != nullptr, "a constant expression calls a function");
+    checkArguments(context_, n.callee, n.args, false);
+    require(module_.functions[n.callee].result == type, "a call has another type than its function's result");
+  }
+  void rule(Type type, const IntrinsicCall& n) const {
+    std::vector<Type> types;
+    for (const ExprPtr& arg : n.args) types.push_back(arg->type);
+    const std::optional<Type> result = resultType(n.intrinsic, types);
+    require(result.has_value(),
+            fmt::format("no signature of '{}' has these arguments", row(n.intrinsic).name));
+    require(*result == type, fmt::format("'{}' has a wrong type", row(n.intrinsic).name));
+  }
+  void rule(Type type, const GatherRead& n) const { read(type, n.stream, n.index->type); }
+  void rule(Type type, const NeighborRead& n) const { read(type, n.stream, n.offset->type); }
+  void rule(Type type, const IndexOf& n) const { shape(type, n.stream); }
+  void rule(Type type, const ExtentOf& n) const { shape(type, n.stream); }
+
+  void read(Type type, StreamRef stream, Type index) const {
+    require(stream.space != StreamRef::Space::Domain, "the domain is read");
+    checkStream(stream);
+    bool isGather = false;
+    Type element;
+    int rank = 0;
+    if (stream.space == StreamRef::Space::Variable) {
+      const Variable& var = context_.function->variables[stream.id];
+      isGather = var.role == VarRole::Gather;
+      element = var.type;
+      rank = var.rank;
+    } else {
+      const KernelParam& param = context_.kernel->params[stream.id];
+      isGather = param.role == ParamRole::Gather;
+      element = param.type;
+      rank = param.rank;
+    }
+    require(isGather, "a stream that is no gather is read by index");
+    require(index == Type::of(Scalar::Int, rank), "the index of a gather is not int of its rank");
+    require(element == type, "a read has another type than the stream's element");
+  }
+
+  void shape(Type type, StreamRef stream) const {
+    require(type == Type::of(Scalar::Int, 4), "indexof and extentof are int4");
+    if (stream.space != StreamRef::Space::Domain) checkStream(stream);
+  }
+
+  void checkStream(StreamRef stream) const {
+    require(context_.function != nullptr, "a constant expression uses a stream");
+    if (context_.stage == Stage::Lowered) {
+      require(stream.space == StreamRef::Space::Variable,
+              "a stream is named as a kernel's parameter too early");
+      require(stream.id < context_.function->variables.size(), "a stream is not in the function's table");
+      const VarRole role = context_.function->variables[stream.id].role;
+      require(role == VarRole::Gather || role == VarRole::Element, "a stream is no gather or element");
+      return;
+    }
+    require(stream.space == StreamRef::Space::KernelParameter, "a stream is no parameter of a kernel");
+    require(context_.kernel != nullptr, "a function that no kernel reaches uses a stream");
+    require(stream.id < context_.kernel->params.size(), "a stream is not among the kernel's parameters");
+    require(context_.kernel->params[stream.id].role != ParamRole::Uniform, "a uniform is used as a stream");
+  }
+
+  const ExprContext& context_;
+  const Module& module_;
+};
+
+/// A VarRef of this function's own Gather or Element variable, for a parameter that is a stream.
+bool isStreamArgument(const ExprContext& context, const Expr& arg, const Variable& parameter) {
+  const auto* ref = std::get_if<VarRef>(&arg.node);
+  if (ref == nullptr || ref->var >= context.function->variables.size()) return false;
+  const Variable& var = context.function->variables[ref->var];
+  return var.role == parameter.role && var.rank == parameter.rank;
+}
+
+}  // namespace
+
+void checkBinary(BinaryOp op, Type lhs, Type rhs, Type result) {
+  const std::string where = fmt::format("'{}'", spelling(op));
+  require(binaryType(op, lhs, rhs) == result, where + " has a wrong type");
+  switch (op) {
+    case BinaryOp::Add:
+    case BinaryOp::Sub:
+    case BinaryOp::Mul:
+    case BinaryOp::Div:
+      require(lhs.isFloat() || lhs.isInteger(), where + " of something that is no number");
+      return require(fitTogether(lhs, rhs), where + " has operands of different types");
+    case BinaryOp::Rem:
+    case BinaryOp::BitAnd:
+    case BinaryOp::BitOr:
+    case BinaryOp::BitXor:
+      require(lhs.isInteger(), where + " of something that is no integer");
+      return require(fitTogether(lhs, rhs), where + " has operands of different types");
+    case BinaryOp::ShiftLeft:
+    case BinaryOp::ShiftRight:
+      require(lhs.isInteger() && rhs.isInteger(), where + " of something that is no integer");
+      return require(rhs.isScalar() || rhs.width == lhs.width, where + " has a count of another width");
+    case BinaryOp::Less:
+    case BinaryOp::LessEqual:
+    case BinaryOp::Greater:
+    case BinaryOp::GreaterEqual:
+      require(lhs.isFloat() || lhs.isInteger(), where + " of something that is no number");
+      return require(lhs == rhs, where + " has operands of different types");
+    case BinaryOp::Equal:
+    case BinaryOp::NotEqual: return require(lhs == rhs, where + " has operands of different types");
+    case BinaryOp::LogicalAnd:
+    case BinaryOp::LogicalOr:
+      return require(lhs.isBool() && lhs == rhs, where + " of something that is no bool");
+  }
+}
+
+void checkExpr(const ExprContext& context, const Expr& expr) { ExprChecker(context).check(expr); }
+
+VarId checkPlace(const ExprContext& context, const Expr& expr) {
+  checkExpr(context, expr);
+  if (const auto* n = std::get_if<Member>(&expr.node)) return checkPlace(context, *n->base);
+  if (const auto* n = std::get_if<Index>(&expr.node)) return checkPlace(context, *n->base);
+  if (const auto* n = std::get_if<Swizzle>(&expr.node)) {
+    unsigned seen = 0;
+    for (std::uint8_t component : n->components) {
+      require((seen & (1U << component)) == 0, "a component is assigned twice");
+      seen |= 1U << component;
+    }
+    return checkPlace(context, *n->base);
+  }
+  const auto* ref = std::get_if<VarRef>(&expr.node);
+  require(ref != nullptr, "a value that is no place is assigned to");
+  const Variable& var = context.function->variables[ref->var];
+  const bool isCopy = var.role == VarRole::Local || var.role == VarRole::In;
+  const bool isMutable = var.role == VarRole::InOut || (isCopy && !var.isConst);
+  require(isMutable, fmt::format("constant '{}' is assigned to", var.name));
+  return ref->var;
+}
+
+void checkArguments(const ExprContext& context, FunctionId callee, const std::vector<ExprPtr>& args,
+                    bool allowInOut) {
+  require(callee < context.module.functions.size(), "a callee is not in the table");
+  const Function& function = context.module.functions[callee];
+  const std::string where = fmt::format("call of '{}': ", function.name);
+  require(args.size() == function.parameterCount, where + "too many or too few arguments");
+  std::vector<VarId> bound;
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    const Variable& parameter = function.variables[i];
+    require(args[i]->type == parameter.type, fmt::format("{}argument {} has another type", where, i));
+    if (parameter.role == VarRole::Gather) {
+      require(isStreamArgument(context, *args[i], parameter),
+              fmt::format("{}argument {} is no gather", where, i));
+    } else if (parameter.role == VarRole::InOut) {
+      require(allowInOut, where + "an expression has an effect");
+      const VarId root = checkPlace(context, *args[i]);
+      for (VarId other : bound)
+        require(other != root, where + "one variable is bound to two InOut parameters");
+      bound.push_back(root);
+    } else {
+      checkExpr(context, *args[i]);
+    }
+  }
+}
+
+}  // namespace skc::ir

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// Everything that skc tells its user about a program, as rows of diagnostics.def. A Diagnostics
+// collects or prints; the frontend's implementation hands them to Clang's engine, so that messages
+// of Clang and ours look the same (file, line, column, caret).
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "support/loc.hpp"
+
+namespace skc {
+
+enum class Severity : std::uint8_t { Error, Warning, Note };
+
+enum class Diag : std::uint16_t {
+#define SKC_DIAGNOSTIC(Name, severity, text) Name,
+#include "support/diagnostics.def"
+#undef SKC_DIAGNOSTIC
+};
+
+struct DiagRow {
+  std::string_view name;
+  Severity severity;
+  std::string_view text;     ///< with %0 .. %9 for the arguments
+};
+const DiagRow& row(Diag diag);
+
+class Diagnostics {
+ public:
+  virtual ~Diagnostics() = default;
+  virtual void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments = {}) = 0;
+  virtual bool hasErrors() const = 0;
+};
+
+/// The row's text with its arguments put in.
+std::string format(Diag diag, std::initializer_list<std::string_view> arguments);
+
+}  // namespace skc

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "support/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+namespace skc {
+
+std::string shortestFloat(float value) {
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  std::string text(buffer.data(), end);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string join(std::span<const std::string> items, std::string_view separator) {
+  std::string result;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) result += separator;
+    result += items[i];
+  }
+  return result;
+}
+
+namespace {
+
+/// A space at which the line may be broken.
+struct BreakPoint {
+  std::size_t position;
+  int cost;   ///< brackets open there, then how tightly the operator before it binds
+};
+
+/// How tightly what ends a word binds: punctuation 0, operators more; nothing for other words.
+std::optional<int> bindingOf(std::string_view word) {
+  if (word.empty()) return std::nullopt;
+  if (word.back() == ',' || word.back() == ';') return 0;
+  constexpr std::string_view levels[] = {
+      " ? : ", " || ", " && ", " | ^ & ", " == != ", " < <= > >= ", " << >> ", " + - ", " * / % "};
+  const std::string spaced = " " + std::string(word) + " ";
+  for (std::size_t level = 0; level < std::size(levels); ++level) {
+    if (levels[level].find(spaced) != std::string_view::npos) return static_cast<int>(level) + 1;
+  }
+  return std::nullopt;
+}
+
+/// Spaces after a comma, a semicolon or a binary operator.
+std::vector<BreakPoint> breakPoints(std::string_view line) {
+  constexpr int perBracket = 16;
+  std::vector<BreakPoint> points;
+  int depth = 0;
+  bool inString = false;
+  std::size_t wordStart = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && (i == 0 || line[i - 1] != '\\')) inString = !inString;
+    if (inString) continue;
+    if (c == '(' || c == '[' || c == '{') ++depth;
+    if (c == ')' || c == ']' || c == '}') --depth;
+    if (c != ' ') continue;
+    const std::optional<int> binding = bindingOf(line.substr(wordStart, i - wordStart));
+    if (binding) points.push_back({i, depth * perBracket + *binding});
+    wordStart = i + 1;
+  }
+  return points;
+}
+
+/// The cheapest break within the limit, and the last of these; none left of `first`.
+std::optional<std::size_t> chooseBreak(std::string_view line, std::size_t first, std::size_t limit) {
+  std::optional<BreakPoint> best;
+  for (const BreakPoint& point : breakPoints(line)) {
+    if (point.position < first || point.position > limit) continue;
+    if (!best || point.cost <= best->cost) best = point;
+  }
+  if (!best) return std::nullopt;
+  return best->position;
+}
+
+}  // namespace
+
+std::string wrapLine(std::string_view line, std::size_t limit, std::size_t continuation) {
+  const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+  const std::string margin(continuation == 0 ? indent + 4 : continuation, ' ');
+  std::string result;
+  std::string rest(line);
+  while (rest.size() > limit) {
+    const std::size_t first = result.empty() ? indent : margin.size();
+    const std::optional<std::size_t> at = chooseBreak(rest, first + (limit - first) / 3, limit);
+    if (!at) break;
+    result += rest.substr(0, *at) + "\n";
+    rest = margin + rest.substr(*at + 1);
+  }
+  return result + rest;
+}
+
+}  // namespace skc

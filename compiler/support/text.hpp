@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+//
+// Small things that every printer of text needs.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace skc {
+
+/// The shortest decimal text that reads back as the same float, with a point or an exponent:
+/// "0.1", "1.0", "1e+30", "-0.0". `value` is finite.
+std::string shortestFloat(float value);
+
+/// The items with `separator` between them.
+std::string join(std::span<const std::string> items, std::string_view separator);
+
+/// Breaks a long line of C-like text after commas and binary operators, where fewest brackets are open
+/// and the operator binds least, into lines of at most `limit` columns where possible. Continuation lines begin
+/// in column `continuation`; 0 means four more than the line itself. String literals are not broken.
+std::string wrapLine(std::string_view line, std::size_t limit = 100, std::size_t continuation = 0);
+
+}  // namespace skc

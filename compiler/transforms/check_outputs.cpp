@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/check_outputs.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "ir/build.hpp"
+#include "support/overloaded.hpp"
+
+namespace skc {
+namespace {
+
+using ir::VarId;
+
+/// Which components of each InOut parameter are written for certain; nothing: no path gets here.
+using Written = std::map<VarId, std::vector<bool>>;
+using Path = std::optional<Written>;
+
+/// What both paths have written.
+Path both(const Path& a, const Path& b) {
+  if (!a) return b;
+  if (!b) return a;
+  Written result = *a;
+  for (auto& [var, components] : result) {
+    const std::vector<bool>& other = b->at(var);
+    for (std::size_t i = 0; i < components.size(); ++i) components[i] = components[i] && other[i];
+  }
+  return result;
+}
+
+/// Follows one function. `summaries` holds what its callees write.
+class Follower {
+ public:
+  Follower(const ir::Module& module, const ir::Function& function, const std::vector<Written>& summaries)
+      : module_(module), function_(function), summaries_(summaries) {}
+
+  Written run() {
+    Written start;
+    for (VarId var = 0; var < function_.parameterCount; ++var) {
+      if (function_.variables[var].role == ir::VarRole::InOut) {
+        start[var].assign(width(function_.variables[var].type), false);
+      }
+    }
+    const Path end = both(follow(function_.body, start), returned_);
+    if (end) return *end;
+    neverReturns_ = true;
+    for (auto& [var, components] : start) components.assign(components.size(), true);
+    return start;
+  }
+
+  bool neverReturns() const { return neverReturns_; }
+
+ private:
+  struct Exits { Path broken, continued; };
+
+  std::size_t width(ir::Type type) const {
+    switch (type.kind) {
+      case ir::Type::Kind::Void: return 0;
+      case ir::Type::Kind::Scalar:
+      case ir::Type::Kind::Vector: return type.width;
+      case ir::Type::Kind::Struct: {
+        std::size_t sum = 0;
+        for (const ir::StructField& field : module_.structs[type.index].fields) sum += width(field.type);
+        return sum;
+      }
+      case ir::Type::Kind::Array: {
+        const ir::Array& array = module_.arrays[type.index];
+        return array.length * width(array.element);
+      }
+    }
+    return 0;
+  }
+
+  /// Positions of a place's components within its root variable.
+  std::vector<std::size_t> components(const ir::Expr& place) const {
+    const auto range = [](std::size_t first, std::size_t count) {
+      std::vector<std::size_t> positions(count);
+      for (std::size_t i = 0; i < count; ++i) positions[i] = first + i;
+      return positions;
+    };
+    if (std::holds_alternative<ir::VarRef>(place.node)) return range(0, width(place.type));
+    if (const auto* swizzle = std::get_if<ir::Swizzle>(&place.node)) {
+      const std::vector<std::size_t> base = components(*swizzle->base);
+      std::vector<std::size_t> positions;
+      for (const std::uint8_t component : swizzle->components) positions.push_back(base[component]);
+      return positions;
+    }
+    if (const auto* member = std::get_if<ir::Member>(&place.node)) {
+      const std::vector<std::size_t> base = components(*member->base);
+      const std::vector<ir::StructField>& fields = module_.structs[member->base->type.index].fields;
+      std::size_t first = 0;
+      for (std::uint32_t i = 0; i < member->field; ++i) first += width(fields[i].type);
+      return {base.begin() + static_cast<std::ptrdiff_t>(first),
+              base.begin() + static_cast<std::ptrdiff_t>(first + width(place.type))};
+    }
+    const auto& index = std::get<ir::Index>(place.node);
+    const std::vector<std::size_t> base = components(*index.base);
+    const auto* literal = std::get_if<ir::Literal>(&index.index->node);
+    const std::size_t size = width(place.type);
+    if (!literal || (literal->bits + 1) * size > base.size()) return base;
+    const auto first = static_cast<std::ptrdiff_t>(literal->bits * size);
+    return {base.begin() + first, base.begin() + first + static_cast<std::ptrdiff_t>(size)};
+  }
+
+  void write(Path& path, const ir::Expr& place, const std::vector<bool>* which = nullptr) const {
+    const auto entry = path->find(ir::rootOf(place));
+    if (entry == path->end()) return;
+    const std::vector<std::size_t> positions = components(place);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      if (!which || i >= which->size() || (*which)[i]) entry->second[positions[i]] = true;
+    }
+  }
+
+  Path follow(const ir::Block& block, Path path) {
+    for (const ir::Stmt& stmt : block) {
+      if (!path) return path;
+      path = match(stmt.node, [&](const auto& node) { return step(node, std::move(path)); });
+    }
+    return path;
+  }
+
+  Path step(const ir::Declare&, Path path) { return path; }
+  Path step(const ir::Assign& assign, Path path) {
+    if (!assign.op) write(path, *assign.place);   // `v += x` alone writes nothing that was not there
+    return path;
+  }
+  Path step(const ir::CallStmt& call, Path path) {
+    const ir::Function& callee = module_.functions[call.callee];
+    for (VarId i = 0; i < callee.parameterCount; ++i) {
+      if (callee.variables[i].role == ir::VarRole::InOut) write(path, *call.args[i], &summaries_[call.callee].at(i));
+    }
+    if (call.result) write(path, *call.result);
+    return path;
+  }
+  Path step(const ir::If& branch, Path path) {
+    const Path otherwise = follow(branch.otherwise, path);
+    return both(follow(branch.then, std::move(path)), otherwise);
+  }
+  Path step(const ir::Scope& scope, Path path) { return follow(scope.body, std::move(path)); }
+  Path step(const ir::Return&, Path path) {
+    returned_ = both(returned_, path);
+    return std::nullopt;
+  }
+  Path step(const ir::Break&, Path path) {
+    exits_->broken = both(exits_->broken, path);
+    return std::nullopt;
+  }
+  Path step(const ir::Continue&, Path path) {
+    exits_->continued = both(exits_->continued, path);
+    return std::nullopt;
+  }
+
+  Path step(const ir::Loop& loop, Path path) {
+    path = follow(loop.init, std::move(path));
+    Exits exits;
+    Exits* outer = std::exchange(exits_, &exits);
+    const Path once = both(follow(loop.body, path), exits.continued);
+    exits_ = outer;
+    if (isAlways(loop.cond)) return exits.broken;   // only `break` leaves it
+    const bool entered = loop.kind == ir::LoopKind::DoWhile || entersAtOnce(loop);
+    return both(entered ? once : both(path, once), exits.broken);
+  }
+
+  Path step(const ir::Switch& choice, Path path) {
+    Exits exits;
+    if (exits_) exits.continued = exits_->continued;
+    Exits* outer = std::exchange(exits_, &exits);
+    Path falling;
+    bool hasDefault = false;
+    for (const ir::Case& one : choice.cases) {
+      hasDefault = hasDefault || one.isDefault;
+      falling = follow(one.body, both(path, falling));
+    }
+    exits_ = outer;
+    if (exits_) exits_->continued = exits.continued;
+    const Path end = both(falling, exits.broken);
+    return hasDefault ? end : both(end, path);
+  }
+
+  static bool isAlways(const ir::ExprPtr& cond) {
+    if (!cond) return true;
+    const auto* literal = std::get_if<ir::Literal>(&cond->node);
+    return literal && literal->bits != 0;
+  }
+
+  /// `for (int i = 0; i < 4; ...)`: the first test holds.
+  bool entersAtOnce(const ir::Loop& loop) const {
+    if (loop.init.size() != 1) return false;
+    const auto* declare = std::get_if<ir::Declare>(&loop.init.front().node);
+    const auto* test = std::get_if<ir::Binary>(&loop.cond->node);
+    if (!declare || !declare->init || !test) return false;
+    const auto* tested = std::get_if<ir::VarRef>(&test->lhs->node);
+    const std::optional<std::int64_t> first = integer(*declare->init);
+    const std::optional<std::int64_t> bound = integer(*test->rhs);
+    if (!tested || tested->var != declare->var || !first || !bound) return false;
+    switch (test->op) {
+      case ir::BinaryOp::Less: return *first < *bound;
+      case ir::BinaryOp::LessEqual: return *first <= *bound;
+      case ir::BinaryOp::Greater: return *first > *bound;
+      case ir::BinaryOp::GreaterEqual: return *first >= *bound;
+      case ir::BinaryOp::NotEqual: return *first != *bound;
+      default: return false;
+    }
+  }
+
+  std::optional<std::int64_t> integer(const ir::Expr& e) const {
+    if (const auto* constant = std::get_if<ir::ConstantRef>(&e.node)) {
+      return integer(*module_.constants[constant->constant].value);
+    }
+    const auto* literal = std::get_if<ir::Literal>(&e.node);
+    if (!literal || !e.type.isInteger()) return std::nullopt;
+    if (e.type.scalar == ir::Scalar::Uint) return literal->bits;
+    return static_cast<std::int32_t>(literal->bits);
+  }
+
+  const ir::Module& module_;
+  const ir::Function& function_;
+  const std::vector<Written>& summaries_;
+  Path returned_;
+  Exits* exits_ = nullptr;
+  bool neverReturns_ = false;
+};
+
+}  // namespace
+
+void checkOutputs(const ir::Module& module, Diagnostics& diagnostics) {
+  // callees stand before their callers in the module
+  std::vector<Written> summaries;
+  for (const ir::Function& function : module.functions) {
+    Follower follower(module, function, summaries);
+    summaries.push_back(follower.run());
+    if (follower.neverReturns()) diagnostics.report(Diag::NeverReturns, function.loc, {function.name});
+  }
+  for (const ir::Kernel& kernel : module.kernels) {
+    for (VarId i = 0; i < kernel.params.size(); ++i) {
+      const ir::KernelParam& param = kernel.params[i];
+      if (param.role != ir::ParamRole::Output) continue;
+      const std::vector<bool>& written = summaries[kernel.entry].at(i);
+      if (std::find(written.begin(), written.end(), false) != written.end()) {
+        diagnostics.report(Diag::OutputNotWritten, param.loc, {param.name});
+      }
+    }
+  }
+}
+
+}  // namespace skc

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: the cases of derive_combine.hpp, each with the identity and the start that it names.
+#include "transforms/derive_combine.hpp"
+
+#include <functional>
+#include <limits>
+
+#include <catch2/catch.hpp>
+
+#include "ir/kernel_maker.hpp"
+#include "ir/print.hpp"
+#include "ir/validate.hpp"
+#include "support/diagnostic_log.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+using enum BinaryOp;
+
+enum : VarId { x, total };
+
+struct Outcome {
+  std::string combine = {};    ///< "entry", the body of a made function, or empty
+  std::string identity = {};   ///< empty if none
+  bool seeded = false;
+  std::string error = {};
+};
+
+using Body = std::function<Block(Module&, KernelMaker&)>;
+
+Outcome derive(Type element, Type accumulator, ExprPtr identity, const Body& body,
+               const std::function<void(Module&)>& prepare = {}) {
+  Module module = testModule();
+  module.structs.push_back({"Stats", {}, {{"sum", floatType}, {"low", floatType}, {"count", intType}}, {}});
+  KernelMaker k(module, "fold", 3);
+  k.input("x", element);
+  k.accumulator("total", accumulator, std::move(identity));
+  k.local("y", floatType);
+  Block statements = body(module, k);
+  k.finish(std::move(statements));
+  if (prepare) prepare(module);
+  REQUIRE(validate(module, Stage::Specialized) == "");
+  DiagnosticLog log;
+  deriveCombine(module, log);
+  if (log.hasErrors()) return {.error = log.entries()[0].text};
+  REQUIRE(validate(module, Stage::Specialized) == "");
+  const Kernel& kernel = module.kernels[0];
+  Outcome outcome{.seeded = kernel.reduction->seeded};
+  REQUIRE(kernel.reduction->combine);
+  const FunctionId combine = *kernel.reduction->combine;
+  const std::string text = print(module, module.functions[combine]);
+  outcome.combine = combine == kernel.entry ? "entry" : text.substr(text.find('{'));
+  if (kernel.params[1].identity) outcome.identity = print(module, Function{}, *kernel.params[1].identity);
+  return outcome;
+}
+
+Outcome derive(const Body& body) { return derive(floatType, floatType, nullptr, body); }
+Block fold(KernelMaker& k, BinaryOp op, ExprPtr value) {
+  return block(assign(k.ref(total), op, std::move(value)));
+}
+
+TEST_CASE("x itself: the entry combines, and without an identity the fold starts with its first element") {
+  const Outcome sum = derive([](Module&, KernelMaker& k) { return fold(k, Add, k.ref(x)); });
+  CHECK(sum.combine == "entry");
+  CHECK(sum.seeded);
+  CHECK(sum.identity == "0.0");
+  const Outcome given = derive(floatType, floatType, literal(0.0F),
+                               [](Module&, KernelMaker& k) { return fold(k, Add, k.ref(x)); });
+  CHECK(given.combine == "entry");
+  CHECK_FALSE(given.seeded);
+}
+
+TEST_CASE("the other ways to write it") {
+  const Body bodies[] = {[](Module&, KernelMaker& k) {
+                           return block(assign(k.ref(total), binary(Mul, k.ref(total), k.ref(x))));
+                         },
+                         [](Module&, KernelMaker& k) {
+                           return block(assign(k.ref(total), binary(Mul, k.ref(x), k.ref(total))));
+                         },
+                         [](Module&, KernelMaker& k) { return fold(k, Mul, k.ref(x)); }};
+  for (const Body& body : bodies) {
+    const Outcome outcome = derive(body);
+    CHECK(outcome.combine == "entry");
+    CHECK(outcome.identity == "1.0");
+  }
+}
+
+TEST_CASE("min and max") {
+  const auto body = [](Intrinsic intrinsicId) {
+    return [intrinsicId](Module&, KernelMaker& k) {
+      return block(assign(k.ref(total), intrinsic(intrinsicId, exprs(k.ref(total), k.ref(x)))));
+    };
+  };
+  CHECK(derive(body(Intrinsic::Min)).identity == "inf");
+  CHECK(derive(body(Intrinsic::Max)).identity == "-inf");
+  CHECK(derive(body(Intrinsic::Fmax)).combine == "entry");
+  CHECK(derive(intType, intType, nullptr, body(Intrinsic::Min)).identity == "2147483647");
+  CHECK(derive(intType, intType, nullptr, body(Intrinsic::Max)).identity == "-2147483648");
+  const Type uint = Type::of(Scalar::Uint);
+  CHECK(derive(uint, uint, nullptr, body(Intrinsic::Min)).identity == "4294967295u");
+  CHECK(derive(uint, uint, nullptr, body(Intrinsic::Max)).identity == "0u");
+}
+
+TEST_CASE("bits and truth") {
+  const auto bits = [](BinaryOp op) {
+    return derive(intType, intType, nullptr, [op](Module&, KernelMaker& k) { return fold(k, op, k.ref(x)); });
+  };
+  CHECK(bits(BitAnd).identity == "-1");
+  CHECK(bits(BitOr).identity == "0");
+  CHECK(bits(BitXor).identity == "0");
+  const auto truth = [](BinaryOp op) {
+    const Type boolType = Type::of(Scalar::Bool);
+    return derive(floatType, boolType, nullptr, [op](Module&, KernelMaker& k) {
+      ExprPtr test = binary(Less, k.ref(x), literal(0.0F));
+      return block(assign(k.ref(total), binary(op, k.ref(total), std::move(test))));
+    });
+  };
+  CHECK(truth(LogicalAnd).identity == "true");
+  CHECK(truth(LogicalOr).identity == "false");
+  CHECK(truth(LogicalAnd).combine == "{\n  total = total && x;\n}\n");
+}
+
+TEST_CASE("something made from x: a function combines, and runs start with the identity") {
+  const Outcome outcome =
+      derive([](Module&, KernelMaker& k) { return fold(k, Add, binary(Mul, k.ref(x), k.ref(x))); });
+  CHECK(outcome.combine == "{\n  total += x;\n}\n");
+  CHECK(outcome.identity == "0.0");
+  CHECK_FALSE(outcome.seeded);
+}
+
+TEST_CASE("through locals, branches and loops") {
+  const Outcome outcome = derive([](Module&, KernelMaker& k) {
+    const VarId y = 2;
+    return block(declare(y, binary(Mul, k.ref(x), k.ref(x))),
+                 ifStmt(binary(Less, k.ref(y), literal(1.0F)), block(assign(k.ref(total), Add, k.ref(y)))));
+  });
+  CHECK(outcome.combine == "{\n  total += x;\n}\n");
+}
+
+TEST_CASE("another type of accumulator, member by member") {
+  const Type stats = Type::structType(0);
+  const Body body = [](Module& m, KernelMaker& k) {
+    const auto field = [&](std::uint32_t i) { return member(m, k.ref(total), i); };
+    return block(assign(field(0), Add, k.ref(x)),
+                 assign(field(1), intrinsic(Intrinsic::Min, exprs(field(1), k.ref(x)))),
+                 assign(field(2), Add, literal(1)));
+  };
+  const Outcome outcome = derive(floatType, stats, nullptr, body);
+  CHECK(outcome.combine ==
+        "{\n  total.sum += x.sum;\n  total.low = min(total.low, x.low);\n  total.count += x.count;\n}\n");
+  CHECK(outcome.identity == "Stats{0.0, inf, 0}");
+  CHECK_FALSE(outcome.seeded);
+}
+
+TEST_CASE("the same type, member by member: still x itself") {
+  const Type stats = Type::structType(0);
+  const Body body = [](Module& m, KernelMaker& k) {
+    const auto field = [&](VarId var, std::uint32_t i) { return member(m, k.ref(var), i); };
+    return block(assign(field(total, 1), intrinsic(Intrinsic::Min, exprs(field(total, 1), field(x, 1)))),
+                 assign(field(total, 0), Add, field(x, 0)));
+  };
+  const Outcome outcome = derive(stats, stats, nullptr, body);
+  CHECK(outcome.combine == "entry");
+  CHECK(outcome.seeded);
+  CHECK(outcome.identity.empty());   // nobody knows where to start `count`
+  const Outcome crossed = derive(stats, stats, nullptr, [](Module& m, KernelMaker& k) {
+    return block(assign(member(m, k.ref(total), 0), Add, member(m, k.ref(x), 1)));
+  });
+  CHECK(crossed.error.find("needs a value to start from") != std::string::npos);
+}
+
+TEST_CASE("vectors, whole and by component") {
+  const Type float2 = Type::of(Scalar::Float, 2);
+  const Outcome whole =
+      derive(floatType, float2, nullptr, [](Module&, KernelMaker& k) { return fold(k, Add, k.ref(x)); });
+  CHECK(whole.combine == "{\n  total += x;\n}\n");
+  CHECK(whole.identity == "float2{0.0}");
+  const Outcome parts = derive(floatType, float2, nullptr, [](Module&, KernelMaker& k) {
+    return block(assign(swizzle(k.ref(total), "x"), Add, k.ref(x)),
+                 assign(swizzle(k.ref(total), "y"), Mul, k.ref(x)));
+  });
+  CHECK(parts.combine == "{\n  total.x += x.x;\n  total.y *= x.y;\n}\n");
+  CHECK(parts.identity == "float2{0.0, 1.0}");
+}
+
+TEST_CASE("a general body on one type combines by itself; without an identity it starts with an element") {
+  const Body last = [](Module&, KernelMaker& k) {
+    return block(ifStmt(binary(Less, k.ref(x), k.ref(total)), block(assign(k.ref(total), k.ref(x)))));
+  };
+  const Outcome outcome = derive(last);
+  CHECK(outcome.combine == "entry");
+  CHECK(outcome.seeded);
+  CHECK(outcome.identity.empty());
+  CHECK_FALSE(derive(floatType, floatType, literal(9.0F), last).seeded);
+}
+
+TEST_CASE("subtraction and division are errors that say what to do") {
+  const auto error = [](BinaryOp op) {
+    return derive([op](Module&, KernelMaker& k) { return fold(k, op, k.ref(x)); }).error;
+  };
+  CHECK(error(Sub) ==
+        "'-' is not associative, so it cannot fold into 'total'; write 'total += ...' and subtract once, "
+        "from the result");
+  CHECK(error(Div) ==
+        "'/' is not associative, so it cannot fold into 'total'; write 'total *= ...' and divide once, by "
+        "the result");
+  const Outcome written = derive([](Module&, KernelMaker& k) {
+    return block(assign(k.ref(total), binary(Sub, k.ref(total), k.ref(x))));
+  });
+  CHECK(written.error.find("'-' is not associative") == 0);
+}
+
+TEST_CASE("a general body on two types needs an overload or an identity") {
+  const Body general = [](Module&, KernelMaker& k) {
+    return block(ifStmt(binary(Less, convert(Scalar::Float, k.ref(x)), k.ref(total)),
+                        block(assign(k.ref(total), convert(Scalar::Float, k.ref(x))))));
+  };
+  CHECK(derive(intType, floatType, literal(0.0F), general).error ==
+        "how partial results of 'fold' combine does not follow from its body; add an overload that folds two "
+        "accumulators: 'reduce void fold(float x<>, reduce float total<>)'");
+}
+
+/// void combine(float a, inout float b) { b += a; }, as the author's overload.
+void addOverload(Module& module) {
+  Function f;
+  f.name = "fold";
+  const VarId a = addVariable(f, "a", floatType, VarRole::In);
+  const VarId b = addVariable(f, "b", floatType, VarRole::InOut);
+  Block statements = block(assign(varRef(f, b), Add, varRef(f, a)));
+  module.kernels[0].reduction->combine = addFunction(module, std::move(f), std::move(statements));
+}
+
+TEST_CASE("the author's overload stays, and an identity must be there or follow") {
+  const Body general = [](Module&, KernelMaker& k) {
+    return block(assign(k.ref(total), binary(Sub, k.ref(total), convert(Scalar::Float, k.ref(x)))),
+                 assign(k.ref(total), k.ref(total)));
+  };
+  CHECK(derive(intType, floatType, literal(0.0F), general, addOverload).combine == "{\n  b += a;\n}\n");
+  CHECK(derive(intType, floatType, nullptr, general, addOverload).error ==
+        "'fold' folds 'int' into 'float', so it needs a value to start from; write 'reduce float total<> = "
+        "...'");
+}
+
+}  // namespace
+}  // namespace skc

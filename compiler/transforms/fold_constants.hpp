@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+//
+// fold-constants: computes what is known, and takes the branches that it decides. Careful rather
+// than thorough: a value is computed only where every device would compute the same one, and names
+// of constants stay, since the driver folds the rest and people read the GLSL.
+//
+//   before   const bool periodic = false;
+//            v = (2.0 * 0.5 - 1.0) * x;  if (periodic && x > 0.0) v = wrapped(x); else v = 2.0 * pi * x;
+//   after    const bool periodic = false;
+//            v = 0.0 * x;  v = 2.0 * pi * x;
+#pragma once
+
+#include "ir/ir.hpp"
+#include "support/diagnostics.hpp"
+
+namespace skc {
+
+void foldConstants(ir::Module& module, Diagnostics& diagnostics);
+
+}  // namespace skc

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/remove_unused.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "ir/build.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+// ---- locals -----------------------------------------------------------------------------------
+
+/// Marks what is read on the way to a place: the indices, not the root.
+void markPlace(const Expr& place, std::vector<bool>& read);
+
+void markRead(const Expr& expr, std::vector<bool>& read) {
+  walkExprs(expr, [&](const Expr& inner) {
+    if (const auto* n = std::get_if<VarRef>(&inner.node)) read[n->var] = true;
+  });
+}
+
+void markPlace(const Expr& place, std::vector<bool>& read) {
+  if (const auto* n = std::get_if<Index>(&place.node)) {
+    markRead(*n->index, read);
+    markPlace(*n->base, read);
+  } else if (const auto* m = std::get_if<Member>(&place.node)) {
+    markPlace(*m->base, read);
+  } else if (const auto* s = std::get_if<Swizzle>(&place.node)) {
+    markPlace(*s->base, read);
+  }
+}
+
+/// Which variables are read; one that is handed to a call counts, since the call may read it, and
+/// one that takes a call's result, since the call stays.
+std::vector<bool> readVariables(const Function& function) {
+  std::vector<bool> read(function.variables.size(), false);
+  walkStmts(function.body, [&](const Stmt& stmt) {
+    if (const auto* n = std::get_if<Assign>(&stmt.node)) {
+      markPlace(*n->place, read);
+      markRead(*n->value, read);
+      return;
+    }
+    forEachOperand(stmt, [&](const ExprPtr& operand) { markRead(*operand, read); });
+  });
+  return read;
+}
+
+bool removeWrites(Block& block, const std::vector<bool>& dead) {
+  const auto writesDead = [&](const Stmt& stmt) {
+    if (const auto* n = std::get_if<Declare>(&stmt.node)) return static_cast<bool>(dead[n->var]);
+    if (const auto* n = std::get_if<Assign>(&stmt.node)) return static_cast<bool>(dead[rootOf(*n->place)]);
+    return false;
+  };
+  bool changed = std::erase_if(block, writesDead) > 0;
+  for (Stmt& stmt : block) {
+    forEachBlock(stmt, [&](Block& inner) { changed = removeWrites(inner, dead) || changed; });
+  }
+  return changed;
+}
+
+void removeDeadLocals(Function& function) {
+  bool changed = true;
+  while (changed) {   // what a dead local was made from may be dead now
+    std::vector<bool> dead = readVariables(function);
+    dead.flip();
+    for (std::size_t i = 0; i < dead.size(); ++i) {
+      dead[i] = dead[i] && function.variables[i].role == VarRole::Local;
+    }
+    changed = removeWrites(function.body, dead);
+  }
+}
+
+// ---- tables -----------------------------------------------------------------------------------
+
+/// Old index to new, for the entries that stay.
+std::vector<std::uint32_t> renumber(const std::vector<bool>& used) {
+  std::vector<std::uint32_t> numbers;
+  std::uint32_t next = 0;
+  for (bool isUsed : used) numbers.push_back(isUsed ? next++ : next);
+  return numbers;
+}
+
+template <class T>
+void keep(std::vector<T>& table, const std::vector<bool>& used) {
+  std::vector<T> kept;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (used[i]) kept.push_back(std::move(table[i]));
+  }
+  table = std::move(kept);
+}
+
+/// fn(expr) for every expression of the module.
+template <class Fn>
+void forEachExpr(Module& module, Fn&& fn) {
+  for (Constant& constant : module.constants) walkExprs(*constant.value, fn);
+  for (Function& function : module.functions) walkExprs(function.body, fn);
+  for (Kernel& kernel : module.kernels) {
+    for (KernelParam& param : kernel.params) {
+      if (param.border) walkExprs(*param.border, fn);
+      if (param.identity) walkExprs(*param.identity, fn);
+    }
+  }
+}
+
+/// fn(type) for every type that an expression or a declaration of a kernel or function has.
+template <class Fn>
+void forEachType(Module& module, Fn&& fn) {
+  forEachExpr(module, [&](Expr& expr) { fn(expr.type); });
+  for (Constant& constant : module.constants) fn(constant.type);
+  for (Function& function : module.functions) {
+    fn(function.result);
+    for (Variable& var : function.variables) fn(var.type);
+  }
+  for (Kernel& kernel : module.kernels) {
+    for (KernelParam& param : kernel.params) fn(param.type);
+  }
+}
+
+void removeFunctions(Module& module) {
+  std::vector<bool> used(module.functions.size(), false);
+  for (const Kernel& kernel : module.kernels) {
+    for (FunctionId id : functionsOf(module, kernel)) used[id] = true;
+  }
+  const std::vector<std::uint32_t> numbers = renumber(used);
+  keep(module.functions, used);
+  forEachExpr(module, [&](Expr& expr) {
+    if (auto* n = std::get_if<Call>(&expr.node)) n->callee = numbers[n->callee];
+  });
+  for (Function& function : module.functions) {
+    walkStmts(function.body, [&](Stmt& stmt) {
+      if (auto* n = std::get_if<CallStmt>(&stmt.node)) n->callee = numbers[n->callee];
+    });
+  }
+  for (Kernel& kernel : module.kernels) {
+    kernel.entry = numbers[kernel.entry];
+    if (kernel.reduction && kernel.reduction->combine) {
+      kernel.reduction->combine = numbers[*kernel.reduction->combine];
+    }
+  }
+}
+
+void removeConstants(Module& module) {
+  std::vector<bool> used(module.constants.size(), false);
+  const auto mark = [&](Expr& expr) {
+    if (const auto* n = std::get_if<ConstantRef>(&expr.node)) used[n->constant] = true;
+  };
+  for (Function& function : module.functions) walkExprs(function.body, mark);
+  for (Kernel& kernel : module.kernels) {
+    for (KernelParam& param : kernel.params) {
+      if (param.border) walkExprs(*param.border, mark);
+      if (param.identity) walkExprs(*param.identity, mark);
+    }
+  }
+  for (std::size_t i = used.size(); i-- > 0;) {   // a constant names only earlier ones
+    if (used[i]) walkExprs(*module.constants[i].value, mark);
+  }
+  const std::vector<std::uint32_t> numbers = renumber(used);
+  keep(module.constants, used);
+  forEachExpr(module, [&](Expr& expr) {
+    if (auto* n = std::get_if<ConstantRef>(&expr.node)) n->constant = numbers[n->constant];
+  });
+}
+
+void removeTypes(Module& module) {
+  std::vector<bool> structs(module.structs.size(), false);
+  std::vector<bool> arrays(module.arrays.size(), false);
+  const auto mark = [&](auto& self, Type type) -> void {
+    if (type.kind == Type::Kind::Struct && !structs[type.index]) {
+      structs[type.index] = true;
+      for (const StructField& field : module.structs[type.index].fields) self(self, field.type);
+    }
+    if (type.kind == Type::Kind::Array && !arrays[type.index]) {
+      arrays[type.index] = true;
+      self(self, module.arrays[type.index].element);
+    }
+  };
+  forEachType(module, [&](Type& type) { mark(mark, type); });
+  const std::vector<std::uint32_t> structNumbers = renumber(structs);
+  const std::vector<std::uint32_t> arrayNumbers = renumber(arrays);
+  const auto apply = [&](Type& type) {
+    if (type.kind == Type::Kind::Struct) type.index = structNumbers[type.index];
+    if (type.kind == Type::Kind::Array) type.index = arrayNumbers[type.index];
+  };
+  keep(module.structs, structs);
+  keep(module.arrays, arrays);
+  for (Struct& type : module.structs) {
+    for (StructField& field : type.fields) apply(field.type);
+  }
+  for (Array& array : module.arrays) apply(array.element);
+  forEachType(module, apply);
+}
+
+}  // namespace
+
+void removeUnused(Module& module, Diagnostics&) {
+  for (Function& function : module.functions) removeDeadLocals(function);   // first: they use the rest
+  removeFunctions(module);
+  removeConstants(module);
+  removeTypes(module);
+}
+
+}  // namespace skc

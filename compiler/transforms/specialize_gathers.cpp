@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/specialize_gathers.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ir/build.hpp"
+#include "ir/walk.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+constexpr StreamRef domain = {StreamRef::Space::Domain, 0};
+
+bool isStream(const Variable& var) { return var.role == VarRole::Gather || var.role == VarRole::Element; }
+
+/// fn(StreamRef&) where the expression uses a stream.
+template <class Fn>
+void withStream(Expr& expr, Fn&& fn) {
+  if (auto* n = std::get_if<GatherRead>(&expr.node)) fn(n->stream);
+  if (auto* n = std::get_if<NeighborRead>(&expr.node)) fn(n->stream);
+  if (auto* n = std::get_if<IndexOf>(&expr.node)) fn(n->stream);
+  if (auto* n = std::get_if<ExtentOf>(&expr.node)) fn(n->stream);
+}
+
+/// fn(callee, arguments) for every call in a block.
+template <class Fn>
+void forEachCall(Block& block, Fn&& fn) {
+  walkStmts(block, [&](Stmt& stmt) {
+    if (auto* n = std::get_if<CallStmt>(&stmt.node)) fn(n->callee, n->args);
+  });
+  walkExprs(block, [&](Expr& expr) {
+    if (auto* n = std::get_if<Call>(&expr.node)) fn(n->callee, n->args);
+  });
+}
+
+class State {
+ public:
+  explicit State(Module& module) : module_(module), uses_(module.functions.size()) {}
+
+  void run() {
+    for (Kernel& kernel : module_.kernels) specialize(kernel);
+    module_.functions = std::move(made_);
+  }
+
+ private:
+  /// What each parameter of a function is bound to; `domain` where it is no stream.
+  using Binding = std::vector<StreamRef>;
+  struct Instance {
+    FunctionId source;
+    Binding binding;
+    FunctionId made;
+  };
+
+  void specialize(Kernel& kernel) {
+    instances_.clear();
+    const FunctionId source = kernel.entry;
+    Binding binding(kernel.params.size(), domain);
+    for (std::uint32_t i = 0; i < binding.size(); ++i) {
+      if (isStream(module_.functions[source].variables[i]))
+        binding[i] = {StreamRef::Space::KernelParameter, i};
+    }
+    kernel.entry = make(source, binding, true);
+    if (kernel.reduction && kernel.reduction->combine) {
+      FunctionId& combine = *kernel.reduction->combine;
+      combine = combine == source ? kernel.entry : instantiate(combine, {domain, domain});
+    }
+    nameInstances(kernel);
+  }
+
+  FunctionId instantiate(FunctionId source, Binding binding) {
+    const std::vector<bool>& uses = usesOf(source);
+    for (std::size_t i = 0; i < binding.size(); ++i) {
+      if (!uses[i]) binding[i] = domain;
+    }
+    for (const Instance& instance : instances_) {
+      if (instance.source == source && instance.binding == binding) return instance.made;
+    }
+    const FunctionId made = make(source, binding, false);
+    instances_.push_back({source, std::move(binding), made});
+    return made;
+  }
+
+  /// A copy of a function with its streams bound; an entry keeps its parameters, others lose gathers.
+  FunctionId make(FunctionId source, const Binding& binding, bool isEntry) {
+    Function function = clone(module_.functions[source]);
+    walkExprs(function.body, [&](Expr& expr) {
+      withStream(expr, [&](StreamRef& stream) {
+        if (stream.space != StreamRef::Space::Variable) return;
+        const bool isGather = function.variables[stream.id].role == VarRole::Gather;
+        // a gather has no index of its own: neighbours are relative to the domain's
+        stream = isGather && std::holds_alternative<IndexOf>(expr.node) ? domain : binding[stream.id];
+      });
+    });
+    forEachCall(function.body, [&](FunctionId& callee, std::vector<ExprPtr>& args) {
+      callee = bindCall(function, binding, callee, args);
+    });
+    if (!isEntry) dropGathers(function);
+    made_.push_back(std::move(function));
+    return static_cast<FunctionId>(made_.size() - 1);
+  }
+
+  /// The instance that a call means; takes the gathers out of its arguments.
+  FunctionId bindCall(const Function& caller, const Binding& binding, FunctionId callee,
+                      std::vector<ExprPtr>& args) {
+    const Function& function = module_.functions[callee];
+    Binding bound(args.size(), domain);
+    std::vector<ExprPtr> kept;
+    for (std::size_t i = 0; i < args.size(); ++i) {
+      const auto* ref = std::get_if<VarRef>(&args[i]->node);
+      if (isStream(function.variables[i]) && ref != nullptr && isStream(caller.variables[ref->var])) {
+        bound[i] = binding[ref->var];
+      }
+      if (function.variables[i].role != VarRole::Gather) kept.push_back(std::move(args[i]));
+    }
+    args = std::move(kept);
+    return instantiate(callee, std::move(bound));
+  }
+
+  static void dropGathers(Function& function) {
+    constexpr VarId dropped = std::numeric_limits<VarId>::max();
+    std::vector<VarId> renumbered;
+    std::vector<Variable> kept;
+    std::uint32_t parameters = 0;
+    for (std::size_t i = 0; i < function.variables.size(); ++i) {
+      Variable& var = function.variables[i];
+      const bool isGather = var.role == VarRole::Gather;
+      if (var.role == VarRole::Element) var.role = VarRole::In;
+      renumbered.push_back(isGather ? dropped : static_cast<VarId>(kept.size()));
+      if (isGather) continue;
+      if (i < function.parameterCount) ++parameters;
+      kept.push_back(std::move(var));
+    }
+    function.variables = std::move(kept);
+    function.parameterCount = parameters;
+    walkExprs(function.body, [&](Expr& expr) {
+      if (auto* n = std::get_if<VarRef>(&expr.node)) n->var = renumbered[n->var];
+    });
+    walkStmts(function.body, [&](Stmt& stmt) {
+      if (auto* n = std::get_if<Declare>(&stmt.node)) n->var = renumbered[n->var];
+    });
+  }
+
+  /// For each parameter: whether it matters which stream it stands for.
+  const std::vector<bool>& usesOf(FunctionId id) {
+    if (!uses_[id].empty()) return uses_[id];
+    Function& function = module_.functions[id];
+    std::vector<bool> uses(function.variables.size(), false);
+    walkExprs(function.body, [&](Expr& expr) {
+      withStream(expr, [&](StreamRef& stream) {
+        if (stream.space == StreamRef::Space::Variable) uses[stream.id] = true;
+      });
+    });
+    forEachCall(function.body, [&](FunctionId callee, std::vector<ExprPtr>& args) {
+      const std::vector<bool>& inner = usesOf(callee);
+      for (std::size_t i = 0; i < args.size(); ++i) {
+        const auto* ref = std::get_if<VarRef>(&args[i]->node);
+        if (inner[i] && ref != nullptr) uses[ref->var] = true;
+      }
+    });
+    uses_[id] = std::move(uses);
+    return uses_[id];
+  }
+
+  /// Where a kernel has several copies of one function, their names say which streams they read.
+  void nameInstances(const Kernel& kernel) {
+    for (const Instance& instance : instances_) {
+      const auto copies = std::count_if(instances_.begin(), instances_.end(), [&](const Instance& other) {
+        return other.source == instance.source;
+      });
+      if (copies == 1) continue;
+      std::string& name = made_[instance.made].name;
+      const std::vector<bool>& uses = usesOf(instance.source);
+      for (std::size_t i = 0; i < instance.binding.size(); ++i) {
+        const StreamRef stream = instance.binding[i];
+        if (!uses[i]) continue;
+        name += stream == domain ? "_here" : "_" + kernel.params[stream.id].name;
+      }
+    }
+  }
+
+  Module& module_;
+  std::vector<Function> made_;
+  std::vector<Instance> instances_;        ///< of the kernel at hand, without its entry
+  std::vector<std::vector<bool>> uses_;    ///< per function, empty until asked for
+};
+
+}  // namespace
+
+void specializeGathers(Module& module, Diagnostics&) { State(module).run(); }
+
+}  // namespace skc

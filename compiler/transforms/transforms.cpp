@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/transforms.hpp"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+#include <string>
+
+#include "ir/print.hpp"
+#include "ir/validate.hpp"
+#include "transforms/derive_combine.hpp"
+#include "transforms/fold_constants.hpp"
+#include "transforms/remove_unused.hpp"
+#include "transforms/specialize_gathers.hpp"
+
+namespace skc {
+namespace {
+
+struct Transform {
+  std::string_view name;
+  void (*run)(ir::Module&, Diagnostics&);
+};
+
+// First the gathers: from then on a function belongs to one kernel, and every later transform may
+// change it without looking at other callers.
+// Folding before deriving, so that what a branch on a literal switches off does not hide the pattern
+// of a fold.
+// Deriving before removing, because it makes functions that use structs.
+// Removing last, because all others leave things without use.
+constexpr Transform transforms[] = {
+    {"specialize-gathers", specializeGathers},
+    {"fold-constants", foldConstants},
+    {"derive-combine", deriveCombine},
+    {"remove-unused", removeUnused},
+};
+
+/// A violation is a bug of ours: says after which transform it appeared, and shows the module.
+void validateOrAbort([[maybe_unused]] const ir::Module& module, [[maybe_unused]] ir::Stage stage,
+                     [[maybe_unused]] std::string_view after) {
+#ifndef NDEBUG
+  const std::string violation = ir::validate(module, stage);
+  if (violation.empty()) return;
+  std::fprintf(stderr, "skc: internal error: invalid IR after %s: %s\n\n%s", std::string(after).c_str(),
+               violation.c_str(), ir::print(module).c_str());
+  std::abort();
+#endif
+}
+
+}  // namespace
+
+std::span<const std::string_view> transformNames() {
+  static constexpr auto names = [] {
+    std::array<std::string_view, std::size(transforms)> list;
+    for (std::size_t i = 0; i < list.size(); ++i) list[i] = transforms[i].name;
+    return list;
+  }();
+  return names;
+}
+
+void runTransforms(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options) {
+  validateOrAbort(module, ir::Stage::Lowered, "the frontend");
+  for (const Transform& transform : transforms) {
+    transform.run(module, diagnostics);
+    if (diagnostics.hasErrors()) return;
+    validateOrAbort(module, ir::Stage::Specialized, transform.name);
+    if (options.after) options.after(transform.name, module);
+  }
+}
+
+}  // namespace skc

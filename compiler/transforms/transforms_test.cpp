@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: the transforms run in the order that transformNames() gives, and stop at an error.
+#include "transforms/transforms.hpp"
+
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ir/kernel_maker.hpp"
+#include "ir/validate.hpp"
+#include "support/diagnostic_log.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+Module sumModule(BinaryOp op) {
+  Module module = testModule();
+  KernelMaker k(module, "sum");
+  const VarId x = k.input("x", floatType);
+  const VarId total = k.accumulator("total", floatType);
+  k.finish(block(assign(k.ref(total), op, k.ref(x))));
+  return module;
+}
+
+TEST_CASE("every transform is told once, in order, with a valid module") {
+  Module module = sumModule(BinaryOp::Add);
+  DiagnosticLog log;
+  std::vector<std::string> told;
+  runTransforms(module, log, {.after = [&](std::string_view name, const Module& now) {
+                  told.emplace_back(name);
+                  CHECK(validate(now, Stage::Specialized).empty());
+                }});
+  CHECK(told == std::vector<std::string>(transformNames().begin(), transformNames().end()));
+  CHECK(told.size() == 4);
+}
+
+TEST_CASE("nothing runs after an error") {
+  Module module = sumModule(BinaryOp::Sub);
+  DiagnosticLog log;
+  std::vector<std::string> told;
+  runTransforms(module, log,
+                {.after = [&](std::string_view name, const Module&) { told.emplace_back(name); }});
+  CHECK(log.hasErrors());
+  CHECK(told == std::vector<std::string>{"specialize-gathers", "fold-constants"});
+}
+
+}  // namespace
+}  // namespace skc

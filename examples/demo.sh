@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# demo.sh [--small] BUILD_DIR OUT_DIR: runs every example on input that it makes itself, then shows what each
+# did, how far it was from double precision, and where the pictures are. Works without a terminal.
+# Exit status 1 where an example failed or missed its bound. --small is for tests: seconds, not half a minute.
+set -uo pipefail
+
+size=512 steps=4000 elements=4000000
+if [[ ${1:-} == --small ]]; then
+  size=96 steps=200 elements=10000
+  shift
+fi
+if (($# != 2)); then
+  echo "usage: demo.sh [--small] BUILD_DIR OUT_DIR" >&2
+  exit 1
+fi
+programs=$1/bin
+out=$2
+if ! mkdir -p "$out" || ! out=$(cd "$out" && pwd); then
+  echo "demo.sh: cannot make the folder '$2'" >&2
+  exit 1
+fi
+summary=$out/summary.tsv
+: >"$summary"
+failed=0
+
+# example NAME ARGUMENTS...: shows the command, runs it in the folder of the pictures, keeps going.
+example() {
+  local name=$1
+  if [[ ! -x $programs/$name ]]; then
+    echo "demo.sh: '$programs/$name' is not built" >&2
+    exit 1
+  fi
+  shift
+  printf '\n> %s%s\n' "$name" "${*:+ $*}"
+  if ! "$programs/$name" "$@" --summary "$summary"; then
+    failed=1
+    if [[ $(tail -n 1 "$summary" | cut -f 1) != "$name" ]]; then
+      printf '%s\tno result\t-\t-\t-\tFAILED\t\n' "$name" >>"$summary"
+    fi
+  fi
+}
+
+programs=$(cd "$programs" 2>/dev/null && pwd) || {
+  echo "demo.sh: '$1' holds no built examples" >&2
+  exit 1
+}
+cd "$out" || exit 1
+example saxpy --size "$elements"
+example edges --size "$size" --output edges.png
+example edges --size "$size" --low 0.01 --high 0.05 --style ink edges_input.png edges_linked.png
+example gray_scott --pattern theta --size "$size" --steps "$steps" --frames 4
+example gray_scott --pattern pi --size "$((size / 2))" --steps "$steps" --colours lagoon
+example gray_scott --pattern mu --size "$((size / 2))" --steps "$steps" --colours dusk
+example stats --made weather.csv
+
+echo
+awk -F '\t' '
+  $7 != "" { device = $7 }
+  { for (i = 1; i <= 6; ++i) { cell[NR, i] = $i; if (length($i) > width[i]) width[i] = length($i) } }
+  function line(a, b, c, d, e, f) {
+    printf "%-*s  %-*s  %*s  %*s  %*s  %s\n", width[1], a, width[2], b, width[3], c, width[4], d, width[5], e, f
+  }
+  END {
+    if (device != "") printf "on %s, against double precision:\n\n", device
+    split("example\tdid\tlargest error\tallowed\ttime\t", head, "\t")
+    for (i = 1; i <= 5; ++i) if (length(head[i]) > width[i]) width[i] = length(head[i])
+    line(head[1], head[2], head[3], head[4], head[5], "")
+    rule = sprintf("%*s", width[1] + width[2] + width[3] + width[4] + width[5] + 16, "")
+    gsub(/ /, "-", rule)
+    print rule
+    for (r = 1; r <= NR; ++r) line(cell[r, 1], cell[r, 2], cell[r, 3], cell[r, 4], cell[r, 5], cell[r, 6])
+  }' "$summary"
+
+printf '\npictures in %s:\n' "$out"
+printf '  %s\n' *.png
+exit "$failed"

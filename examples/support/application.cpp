@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "support/application.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace examples {
+namespace {
+
+/// Messages are one line of printable text, whatever was read from a file.
+std::string oneLine(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  for (std::size_t i = text.find('\n'); i != std::string::npos; i = text.find('\n', i))
+    text.replace(i, 1, "; ");
+  const auto isControl = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  std::replace_if(text.begin(), text.end(), isControl, '?');
+  return text;
+}
+
+std::string duration(double milliseconds) {
+  if (milliseconds >= 1000.0) return fmt::format("{:.1f} s", milliseconds / 1000.0);
+  return fmt::format("{:.{}f} ms", milliseconds, milliseconds >= 100.0 ? 0 : milliseconds >= 10.0 ? 1 : 2);
+}
+
+/// Nearer to its bound, or further past it.
+bool closer(const Verification& a, const Verification& b) {
+  const auto used = [](const Verification& v) {
+    return v.passed() ? v.largest() / std::max(v.bound(), 1e-300) : 1e300;
+  };
+  return used(a) < used(b);
+}
+
+}  // namespace
+
+Application::Application(std::string name, std::string purpose)
+    : name_(std::move(name)), cli_(std::move(purpose), name_) {
+  cli_.add_option("--device", device_,
+                  "where to run: gpu, gpu:1, software, or part of a renderer's name (default: the best)");
+  cli_.add_option("--summary", summary_,
+                  "append what was done and verified to this file, as one line with tabs");
+}
+
+void Application::report(std::string did, std::string where, double milliseconds) {
+  did_ = std::move(did);
+  where_ = std::move(where);
+  milliseconds_ = milliseconds;
+  fmt::print("{}: {} on {} in {}\n", name_, did_, where_, duration(milliseconds_));
+}
+
+void Application::verified(const Verification& verification) {
+  fmt::print("verified {}\n", verification.text());
+  verifications_.push_back(verification);
+}
+
+bool Application::parse(int argc, char** argv, int& status) {
+  try {
+    cli_.parse(argc, argv);
+    return true;
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", cli_.help());
+    status = 0;
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "{}: {}; see {} --help\n", name_, oneLine(error.what()), name_);
+    status = 1;
+  }
+  return false;
+}
+
+int Application::run(int argc, char** argv, const std::function<void()>& body) {
+  int status = 0;
+  if (!parse(argc, argv, status)) return status;
+  try {
+    body();
+    if (!summary_.empty()) writeSummary();
+  } catch (const std::exception& error) {
+    std::fflush(stdout);
+    fmt::print(stderr, "{}: {}\n", name_, oneLine(error.what()));
+    return 1;
+  }
+  return std::all_of(verifications_.begin(), verifications_.end(), [](const auto& v) { return v.passed(); })
+             ? 0
+             : 1;
+}
+
+void Application::writeSummary() const {
+  if (verifications_.empty()) throw std::runtime_error("nothing was verified, so there is nothing to sum up");
+  const Verification& worst = *std::max_element(verifications_.begin(), verifications_.end(), closer);
+  std::ofstream file(summary_, std::ios::app);
+  file << fmt::format("{}\t{}\t{:.2g}\t{:.2g}\t{}\t{}\t{}\n", name_, did_, worst.largest(), worst.bound(),
+                      duration(milliseconds_), worst.passed() ? "ok" : "FAILED", where_);
+  if (!file.flush()) throw std::runtime_error(fmt::format("cannot write '{}'", summary_.string()));
+}
+
+}  // namespace examples

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+//
+// What the main function of every example shares: options, the report of what was verified, and one line
+// on standard error with exit status 1 for every error. It starts no device and knows no kernel.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "support/verification.hpp"
+
+namespace examples {
+
+class Application {
+ public:
+  Application(std::string name, std::string purpose);
+
+  /// For options of the example's own; --help, --device and --summary are there already.
+  CLI::App& options() { return cli_; }
+  /// What --device was given, to make a sk::Device from; empty for the best one.
+  const std::string& device() const { return device_; }
+
+  /// Says what the run did, where, and how long it took there, for the report and the table of demo.sh.
+  void report(std::string did, std::string where, double milliseconds);
+  /// Prints a verification and keeps it for the exit status.
+  void verified(const Verification& verification);
+
+  /// Parses the command line, calls `body`, turns whatever it throws into a message. Returns main's exit
+  /// status: 1 after an error or where a verification missed its bound.
+  int run(int argc, char** argv, const std::function<void()>& body);
+
+ private:
+  bool parse(int argc, char** argv, int& status);
+  void writeSummary() const;
+
+  std::string name_;
+  CLI::App cli_;
+  std::string device_;
+  std::filesystem::path summary_;
+  std::string did_;
+  std::string where_;
+  double milliseconds_ = 0.0;
+  std::vector<Verification> verifications_;
+};
+
+}  // namespace examples

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+//
+// What generated stubs call: arguments with their static types checked and then erased, and the
+// two entry points that run a kernel or a reduction. Applications use it only through the stubs.
+// Descriptors are known by their addresses: they must be constants that outlive every device.
+#pragma once
+
+#include <concepts>
+#include <span>
+#include <type_traits>
+
+#include "sk/program.hpp"
+#include "sk/stream.hpp"
+
+namespace sk {
+
+/// One argument of a call, in the order of the declaration: a host value or a region of a stream.
+struct Argument {
+  const void* value = nullptr;     ///< uniforms: the value, laid out as Element says
+  StreamRegion region = {};        ///< everything else
+};
+
+/// A stream or view whose elements are T. A constraint and no assertion, because it is also what
+/// chooses between overloads of a kernel.
+template <class S, class T>
+concept StreamOf = requires { typename std::remove_cvref_t<S>::value_type; } &&
+                   std::same_as<typename std::remove_cvref_t<S>::value_type, T>;
+
+/// Parameter types of the stubs: any stream or view of T. They last for one call.
+template <class T>
+class In {
+ public:
+  template <StreamOf<T> S>
+  In(const S& stream) : region_(regionOf(stream)) {}
+  const StreamRegion& region() const { return region_; }
+
+ private:
+  StreamRegion region_;
+};
+
+template <class T>
+class Out {
+ public:
+  template <StreamOf<T> S>
+  Out(S&& stream) : region_(regionOf(stream)) {
+    static_assert(isWritable<std::remove_reference_t<S>>,
+                  "StreamKernel: the kernel writes this stream, but it is const");
+  }
+  const StreamRegion& region() const { return region_; }
+
+ private:
+  StreamRegion region_;
+};
+
+/// Runs a kernel over the domain that its outputs fix. Throws sk::Error naming the kernel and the
+/// parameter where the arguments do not fit.
+void run(const program::Kernel& kernel, std::span<const Argument> arguments);
+
+/// Folds `input` to one value, written to `result` (laid out as the accumulator's Element says).
+/// An empty input gives the identity, or throws where there is none.
+void reduce(const program::Reduction& reduction, const StreamRegion& input, void* result);
+
+/// Folds `input` to the smaller stream `output` of the same rank, whose extents divide those of
+/// `input`: each element of `output` folds one block of `input` in row-major order.
+void reduce(const program::Reduction& reduction, const StreamRegion& input, const StreamRegion& output);
+
+}  // namespace sk

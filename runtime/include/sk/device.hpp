@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+//
+// Devices: where streams live and kernels run. A device owns a GL or GL ES context that needs no
+// window, or adopts the one that the application has current.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "sk/shape.hpp"
+#include "sk/stream.hpp"
+#include "sk/types.hpp"
+
+namespace sk {
+
+class DeviceState;  // the runtime's own
+
+struct DeviceOptions {
+  /// Which device: "gpu" or "gpu:N" (the N-th hardware device, from 0), "software", or a part of the
+  /// renderer's name in any case ("llvmpipe", "nvidia"). Empty: environment variable SK_DEVICE, and
+  /// without it the best one, which is the first GPU, or a software renderer where there is none.
+  std::string device = {};
+  /// "glsl330" or "essl300". Empty: environment variable SK_PROFILE, and without it glsl330 where
+  /// the device has OpenGL 3.3, else essl300.
+  std::string profile = {};
+  /// Extents above this are linearised. 0: the device's own limit, which it cannot pass. For tests.
+  std::int32_t textureLimit = 0;
+};
+
+struct DeviceLimits {
+  std::int32_t textureSize = 0;    ///< largest width and height of a texture
+  std::int32_t drawBuffers = 0;    ///< planes that one kernel may write
+  std::int32_t textureUnits = 0;   ///< planes that one kernel may read
+};
+
+/// Move-only. Several may live in a process; one thread may use a device at a time. A call makes the
+/// device's context current on its thread; it puts back the one that was current before, and where
+/// there was none leaves its own.
+class Device {
+ public:
+  /// The best device, or the one that environment variable SK_DEVICE names. Throws sk::Error with
+  /// everything that was tried, why it failed, and what to do.
+  Device();
+  explicit Device(std::string_view device);
+  explicit Device(const DeviceOptions& options);
+  ~Device();
+  Device(Device&& other) noexcept;
+  Device& operator=(Device&& other) noexcept;
+
+  /// A device on the context (GL 3.3 or ES 3.0, or later) that is current on this thread; `device`
+  /// of the options is not looked at. The context must be current at every use and stay alive as
+  /// long as the device. GL state that a call changes is put back before it returns. Neither a query nor
+  /// conditional rendering may be in progress during a call: it would count, or drop, what is drawn.
+  static Device adopt(const DeviceOptions& options = {});
+
+  /// A new stream; its elements are undefined. Throws sk::Error where the shape has no dimension, or
+  /// the device has no room.
+  template <ElementType T>
+  Stream<T> stream(const Shape& shape) {
+    return Stream<T>(createStream(ElementTraits<T>::element(), shape));
+  }
+
+  /// The renderer's name as the driver gives it.
+  const std::string& name() const;
+  /// "glsl330" or "essl300".
+  std::string_view profile() const;
+  const DeviceLimits& limits() const;
+  /// Whether the renderer is a program on the CPU.
+  bool isSoftware() const;
+
+  /// Waits until everything that was asked of the device is done.
+  void finish();
+  /// Lets go of the calling thread, so that another may use the device.
+  void release();
+
+ private:
+  explicit Device(std::unique_ptr<DeviceState> state);
+  detail::StreamOwner createStream(const program::Element& element, const Shape& shape);
+  DeviceState& state() const;
+
+  std::unique_ptr<DeviceState> state_;
+};
+
+}  // namespace sk

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+//
+// What the runtime knows of a compiled .sk file: constant, typed descriptors that `skc` writes into
+// FILE.sk.cpp and that the assembler and the runtime read. This is the whole contract between the
+// compiler and the runtime: nothing is parsed out of GLSL text, and neither side sees the other.
+//
+// The GLSL of a kernel comes in two parts, both in the subset that GLSL 3.30, ESSL 3.00 and later
+// share: declarations (structs and constants) and a body (plain functions). The assembler puts its
+// own uniforms and functions between the two, since those speak of the structs, and the body of
+// them. The body reaches streams only through these functions; `p` stands for Parameter::symbol:
+//
+//   ivec4 sk_index()           index of the current element in the domain, x fastest
+//   ivec4 sk_index_p()         index of the current element in element parameter p   (usesIndex)
+//   ivec4 sk_extent_p()        shape of p's stream, x fastest, missing dimensions 1  (usesExtent)
+//   T     sk_at_p(ivecN i)     element of gather p at i; N is its rank, `int` if 1   (usesAt)
+//   T     sk_near_p(ivecN d)   element of gather p at the current index plus d       (usesNear)
+//
+// Every name that the assembler declares begins with `sk_`; names of the user never do.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace sk::program {
+
+/// Component type of a field. In host memory Bool takes 1 byte (0 or 1), the others 4.
+enum class Scalar : std::uint8_t { Bool, Int, Uint, Float };
+
+/// One plane of an element: a scalar or vector that one texel of one texture holds.
+struct Field {
+  std::string_view path;     ///< member path in GLSL ("t", "a.b"); empty where the element is no struct
+  Scalar scalar;
+  std::uint8_t width;        ///< components, 1 to 4
+  std::uint32_t offset;      ///< bytes from the element's start in host memory
+};
+
+/// An element type: its GLSL spelling and its planes, in declaration order.
+struct Element {
+  std::string_view name;         ///< spelling in the .sk file, for messages: "float2", "Hit"
+  std::string_view glsl;         ///< spelling in GLSL: "vec2", "Hit"
+  std::uint32_t size;            ///< sizeof on the host
+  std::span<const Field> fields; ///< 1 or more
+};
+
+enum class Role : std::uint8_t {
+  Uniform,      ///< `T c`
+  Input,        ///< `T x<>`
+  Output,       ///< `out T r<>`
+  Gather,       ///< `T a[]`, `T a[][]`
+  Accumulator,  ///< `reduce T r<>`
+};
+
+/// What a gather gives for an index outside its stream.
+enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };
+
+struct Parameter {
+  std::string_view name;       ///< as declared, for messages
+  std::string_view symbol;     ///< suffix of the assembler's names for it (a GLSL-safe name that begins
+                               ///< with a letter: GLSL reserves names with two underscores)
+  Role role;
+  const Element* element;
+  std::uint8_t rank = 0;               ///< gathers: 1 to 4; else 0
+  Boundary boundary = Boundary::Clamp; ///< gathers
+  std::string_view border = {};        ///< gathers with Boundary::Border: a GLSL constant expression
+  std::string_view identity = {};      ///< accumulators: a GLSL constant expression; empty if none
+  bool usesIndex = false;      ///< the body calls sk_index_p()
+  bool usesExtent = false;     ///< the body calls sk_extent_p()
+  bool usesAt = false;         ///< the body calls sk_at_p()
+  bool usesNear = false;       ///< the body calls sk_near_p()
+  std::int32_t reach = -1;     ///< largest |offset| of its sk_near_p() calls; -1 if not constant
+};
+
+/// A kernel. Its GLSL entry function takes, in order, every Uniform, Input (by value) and Output
+/// (as `out`) parameter; gathers are no parameters of it.
+struct Kernel {
+  std::string_view name;       ///< qualified, for messages: "heat::diffuse"
+  std::string_view entry;      ///< name of the entry function in `body`
+  std::string_view declarations; ///< structs, and the constants that Parameter::border and identity
+                               ///< name, with #line directives; empty if none
+  std::string_view body;       ///< other constants, and functions, with #line directives
+  std::span<const Parameter> parameters;         ///< in the order of the declaration
+  std::span<const std::string_view> sources;     ///< file of source string number i + 1 in #line
+  bool usesIndex = false;      ///< the body calls sk_index()
+};
+
+/// A reduction: `void entry(E x, inout A total)` folds an element into an accumulator, and
+/// `void combine(A x, inout A total)` the accumulator of a later run of elements into an earlier
+/// one. Both are in `fold.body`; they are the same function where E is A and the operation is its
+/// own combination. `fold.parameters` holds one Input, then one Accumulator.
+struct Reduction {
+  Kernel fold;
+  std::string_view combine;
+  bool seeded;                 ///< a run may start from its first element, taken as the accumulator
+                               ///< (E is A); else it starts from the identity, which then exists
+};
+
+}  // namespace sk::program

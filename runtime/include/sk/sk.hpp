@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+//
+// The public face of StreamKernel: devices, streams, element types, errors. Kernels come from the
+// headers that `skc` writes.
+#pragma once
+
+#include "sk/device.hpp"
+#include "sk/error.hpp"
+#include "sk/shape.hpp"
+#include "sk/stream.hpp"
+#include "sk/types.hpp"

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+//
+// The assembler: puts element fetches, stores, address arithmetic, boundary modes and main() around
+// a kernel's body, for one profile and one choice of layouts. A pure text library without GL, used
+// by the runtime and by `skc --emit=glsl` alike, so that what a user reads is what runs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "assemble/placement.hpp"
+#include "sk/program.hpp"
+
+namespace sk::assemble {
+
+/// Limits and spellings of one version of a target. The rows are in profiles.cpp.
+struct Profile {
+  std::string_view name;        ///< "glsl330", "essl300"
+  std::string_view version;     ///< the #version line
+  bool es;                      ///< precision statements, ES formats and limits
+  int drawBuffers;              ///< guaranteed minimum
+  int textureUnits;             ///< guaranteed minimum for a fragment program
+};
+const Profile* findProfile(std::string_view name);
+std::span<const Profile> profiles();
+
+/// How the texels of the output lie, hence how sk_index() follows from gl_FragCoord. What has to be
+/// drawn is drawnTexels() of placement.hpp.
+enum class Domain : std::uint8_t {
+  Plane,      ///< texel = origin + index.xy: a whole 2-D stream or a rectangle of one
+  Linear,     ///< a whole linearised stream: element number = y << shift | x
+  LinearBox,  ///< a box of a linearised stream: texels outside the box are discarded
+};
+Domain domainOf(const Placement& output);
+
+/// How an element of a stream is found in its texture.
+enum class Addressing : std::uint8_t {
+  Aligned,  ///< inputs only: the texel under the fragment
+  Plane,    ///< texel = index.xy (plus the view's origin)
+  Linear,   ///< element number = dot(index, strides), texel = (number & mask, number >> shift)
+};
+
+struct StreamAccess {
+  Addressing addressing = Addressing::Aligned;
+  bool view = false;     ///< a region of its stream: an origin is added
+  bool nearby = false;   ///< gathers: Parameter::reach is known and below every extent, and no extent
+                         ///< of the domain is above the gather's, so that one step wraps or mirrors
+                         ///< a neighbour's index
+  auto operator<=>(const StreamAccess&) const = default;
+};
+
+/// One way to lay a kernel out. `access` has one entry per parameter, in order (Uniform and Output
+/// entries are not looked at).
+struct Variant {
+  Domain domain = Domain::Plane;
+  bool domainView = false;          ///< Plane: the domain's origin is not (0, 0)
+  std::uint8_t domainRank = 2;      ///< Linear, LinearBox: dimensions that an index is decoded into;
+                                    ///< decodedRank() of the output, or more
+  std::vector<StreamAccess> access;
+  auto operator<=>(const Variant&) const = default;
+};
+
+/// Names of the uniforms that a fragment program declares, where it needs them; P is the parameter's
+/// symbol, and the values are those of a Placement (placement.hpp):
+///   sk_arg_P                       value of uniform parameter P
+///   sk_tex_P | sk_tex0_P sk_tex1_P ...   samplers, one a plane (a single plane has no number)
+///   sk_origin_P  ivec4             first index of the region in its stream, x fastest
+///   sk_shape_P   ivec4             shape of the region, missing dimensions 1
+///   sk_stride_P  ivec4             Linear: elements to step for each dimension of its stream
+///   sk_shift_P   int               Linear: log2 of the texture's width
+/// and for the domain (hence for every output, which has none of its own) the same with
+/// `sk_domain_origin sk_domain_shape sk_domain_stride sk_domain_shift`.
+/// Outputs are `layout(location = n) out`, one a plane, numbered in order of parameters and fields.
+///
+/// Indices and extents are below 2^30. Gathers are not empty: the runtime refuses such a call.
+std::string fragmentProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
+
+/// Name of the sampler of a plane of a parameter, for kernels and reductions alike.
+std::string samplerName(const program::Parameter& parameter, std::size_t plane);
+
+/// The vertex program that covers the viewport with one triangle, from gl_VertexID alone.
+std::string vertexProgram(const Profile& profile);
+
+}  // namespace sk::assemble

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+//
+// Index and number from gl_FragCoord. In a plane the index is a swizzle away, so it is a function;
+// in a linearised stream it takes divisions, so main() computes it once.
+#include "assemble/domain.hpp"
+
+#include <fmt/format.h>
+
+namespace sk::assemble {
+
+DomainText::DomainText(ProgramText& program, Domain domain, bool view, int rank)
+    : program_(program), domain_(domain), view_(view), rank_(rank) {
+  if (domain_ == Domain::LinearBox) defineIndex();
+}
+
+std::string DomainText::index() {
+  defineIndex();
+  return "sk_index()";
+}
+
+std::string DomainText::position(int components) {
+  const bool aligned = domain_ == Domain::Plane && !view_;
+  if (aligned && components == 1) return "int(gl_FragCoord.x)";
+  if (aligned && components == 2) return "ivec2(gl_FragCoord.xy)";
+  static constexpr std::string_view xyzw = "xyzw";
+  const std::string whole = index();
+  return components == 4 ? whole
+                         : fmt::format("{}.{}", whole, xyzw.substr(0, static_cast<std::size_t>(components)));
+}
+
+std::string DomainText::number() {
+  switch (domain_) {
+    case Domain::Plane: {
+      const std::string width = program_.uniform("ivec4", "sk_domain_shape") + ".x";
+      return fmt::format("{0}.y * {1} + {0}.x", index(), width);
+    }
+    case Domain::Linear: return texelNumber();
+    case Domain::LinearBox:
+      program_.require(Function::Ravel);
+      return fmt::format("sk_ravel({}, {})", index(), program_.uniform("ivec4", "sk_domain_step"));
+  }
+  return {};
+}
+
+std::string DomainText::texelNumber() {
+  return fmt::format("int(gl_FragCoord.y) << {} | int(gl_FragCoord.x)",
+                     program_.uniform("int", "sk_domain_shift"));
+}
+
+void DomainText::defineIndex() {
+  static constexpr std::string_view signature = "ivec4 sk_index()";
+  if (program_.isDefined(signature)) return;
+  if (domain_ == Domain::Plane) {
+    const std::string origin = view_ ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
+    program_.function(signature, {fmt::format("return ivec4(ivec2(gl_FragCoord.xy){}, 0, 0);", origin)});
+    return;
+  }
+  program_.prologue(fmt::format("int sk_element = {};", texelNumber()));
+  std::string value = "ivec4(sk_element, 0, 0, 0)";
+  if (rank_ > 1) {
+    program_.require(rank_ == 2 ? Function::Unravel2 : rank_ == 3 ? Function::Unravel3 : Function::Unravel4);
+    value = fmt::format("sk_unravel(sk_element, {})", program_.uniform("ivec4", "sk_domain_stride"));
+  }
+  program_.variable("ivec4", "sk_here");
+  program_.function(signature, {"return sk_here;"});
+  if (domain_ == Domain::Linear) {
+    program_.prologue(fmt::format("sk_here = {};", value));
+    return;
+  }
+  const std::string origin = program_.uniform("ivec4", "sk_domain_origin");
+  const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
+  program_.prologue(fmt::format("sk_here = {} - {};", value, origin));
+  program_.prologue(fmt::format("if (any(greaterThanEqual(uvec4(sk_here), uvec4({})))) discard;", shape));
+}
+
+}  // namespace sk::assemble

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+//
+// Where a fragment is in its domain: the index and the number of the element that it computes, as
+// GLSL expressions. Declares what they need when they are first asked for; discards fragments
+// outside a box before main() does anything else.
+#pragma once
+
+#include <string>
+
+#include "assemble/assemble.hpp"
+#include "assemble/program_text.hpp"
+
+namespace sk::assemble {
+
+class DomainText {
+ public:
+  /// `rank`: of the domain's stream, for domains of linearised streams.
+  DomainText(ProgramText& program, Domain domain, bool view, int rank);
+
+  /// sk_index(), an ivec4.
+  std::string index();
+  /// The first components of the index: an int or an ivec2 to ivec4 expression.
+  std::string position(int components);
+  /// The element's row-major number in the domain: an int expression without the need of brackets
+  /// as an operand of `=`. A box of a linearised stream is numbered by `sk_domain_step`, the strides
+  /// that a whole stream of its shape has.
+  std::string number();
+
+ private:
+  void defineIndex();
+  std::string texelNumber();
+
+  ProgramText& program_;
+  Domain domain_;
+  bool view_;
+  int rank_;
+};
+
+}  // namespace sk::assemble

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+//
+// The GLSL functions that assembled programs share. Integers only, no negative operand of / or %,
+// and no overflow for any index or offset, since indices are not negative and extents below 2^30.
+#include <array>
+#include <utility>
+
+#include "assemble/program_text.hpp"
+
+namespace sk::assemble {
+
+std::string_view text(Function function) {
+  switch (function) {
+    case Function::Unravel2:
+      return R"(
+// Index of element number n, given the strides.
+ivec4 sk_unravel(int sk_n, ivec4 sk_s) {
+  int sk_y = sk_n / sk_s.y;
+  return ivec4(sk_n - sk_y * sk_s.y, sk_y, 0, 0);
+}
+)";
+    case Function::Unravel3:
+      return R"(
+// Index of element number n, given the strides.
+ivec4 sk_unravel(int sk_n, ivec4 sk_s) {
+  int sk_z = sk_n / sk_s.z;
+  sk_n -= sk_z * sk_s.z;
+  int sk_y = sk_n / sk_s.y;
+  return ivec4(sk_n - sk_y * sk_s.y, sk_y, sk_z, 0);
+}
+)";
+    case Function::Unravel4:
+      return R"(
+// Index of element number n, given the strides.
+ivec4 sk_unravel(int sk_n, ivec4 sk_s) {
+  int sk_w = sk_n / sk_s.w;
+  sk_n -= sk_w * sk_s.w;
+  int sk_z = sk_n / sk_s.z;
+  sk_n -= sk_z * sk_s.z;
+  int sk_y = sk_n / sk_s.y;
+  return ivec4(sk_n - sk_y * sk_s.y, sk_y, sk_z, sk_w);
+}
+)";
+    case Function::Ravel:
+      return R"(
+// Number of the element at index i, given the strides.
+int sk_ravel(ivec4 sk_i, ivec4 sk_s) {
+  return sk_i.x * sk_s.x + sk_i.y * sk_s.y + sk_i.z * sk_s.z + sk_i.w * sk_s.w;
+}
+)";
+    case Function::Texel:
+      return R"(
+// Texel of element number n in a texture of width 1 << s.
+ivec2 sk_texel(int sk_n, int sk_s) {
+  return ivec2(sk_n & ((1 << sk_s) - 1), sk_n >> sk_s);
+}
+)";
+    case Function::Wrap:
+      return R"(
+// i + d in a period of n elements, for i >= 0 and any d.
+int sk_wrap(int sk_i, int sk_d, int sk_n) {
+  bool sk_below = sk_d < -sk_i;
+  uint sk_p = uint(sk_i) + uint(sk_d);
+  int sk_r = int((sk_below ? ~sk_p : sk_p) % uint(sk_n));
+  return sk_below ? sk_n - 1 - sk_r : sk_r;
+}
+)";
+    case Function::WrapOnce:
+      return R"(
+// p in a period of n elements, for -n <= p < 2n.
+int sk_wrap(int sk_p, int sk_n) {
+  return sk_p < 0 ? sk_p + sk_n : sk_p < sk_n ? sk_p : sk_p - sk_n;
+}
+)";
+    case Function::Mirror:
+      return R"(
+// i + d mirrored at the ends of n elements, which repeats them, for i >= 0 and any d.
+int sk_mirror(int sk_i, int sk_d, int sk_n) {
+  uint sk_p = uint(sk_i) + uint(sk_d);
+  if (sk_d < -sk_i) sk_p = ~sk_p;
+  uint sk_turns = sk_p / uint(sk_n);
+  int sk_r = int(sk_p - sk_turns * uint(sk_n));
+  return (sk_turns & 1u) == 0u ? sk_r : sk_n - 1 - sk_r;
+}
+)";
+    case Function::MirrorOnce:
+      return R"(
+// p mirrored at the ends of n elements, which repeats them, for -n <= p < 2n.
+int sk_mirror(int sk_p, int sk_n) {
+  return sk_p < 0 ? -1 - sk_p : sk_p < sk_n ? sk_p : sk_n - 1 - (sk_p - sk_n);
+}
+)";
+  }
+  return {};
+}
+
+}  // namespace sk::assemble

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+//
+// sk_at_p and sk_near_p. An index that the body computes may be any int at all; the current index is
+// not negative and, like every extent, below 2^30.
+#include "assemble/gather.hpp"
+
+#include <array>
+#include <cassert>
+
+#include <fmt/format.h>
+
+#include "assemble/planes.hpp"
+
+namespace sk::assemble {
+namespace {
+
+using program::Boundary;
+using program::Parameter;
+
+constexpr std::int32_t largestSafeReach = 1 << 30;
+
+class GatherText {
+ public:
+  GatherText(ProgramText& program, DomainText& domain, const Parameter& parameter, const StreamAccess& access)
+      : program_(program), domain_(domain), parameter_(parameter), access_(access), rank_(parameter.rank) {
+    assert(rank_ >= 1 && rank_ <= 4 && access.addressing != Addressing::Aligned);
+  }
+
+  void defineAt() {
+    std::vector<std::string> lines;
+    bringInside(lines);
+    finish(fmt::format("{} sk_at_{}({} sk_i)", parameter_.element->glsl, parameter_.symbol, vector()), lines);
+  }
+
+  void defineNear() {
+    std::vector<std::string> lines;
+    bringNeighbourInside(lines);
+    finish(fmt::format("{} sk_near_{}({} sk_d)", parameter_.element->glsl, parameter_.symbol, vector()),
+           lines);
+  }
+
+ private:
+  std::string vector() const { return rank_ == 1 ? "int" : fmt::format("ivec{}", rank_); }
+  std::string zero() const { return rank_ == 1 ? "0" : fmt::format("ivec{}(0)", rank_); }
+
+  std::string_view swizzle() const {
+    static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
+    return swizzles[static_cast<std::size_t>(rank_ - 1)];
+  }
+  std::string uniform(std::string_view kind) {
+    return program_.uniform("ivec4", fmt::format("sk_{}_{}", kind, parameter_.symbol));
+  }
+  std::string shape() { return fmt::format("{}{}", uniform("shape"), swizzle()); }
+
+  /// `function` of each component of the operands; "0" and the like have none.
+  std::string componentwise(std::string_view function, const std::vector<std::string>& operands) const {
+    std::vector<std::string> components;
+    for (int c = 0; c < rank_; ++c) {
+      std::vector<std::string> arguments;
+      for (const std::string& operand : operands) {
+        const bool isVector = rank_ > 1 && operand != "0";
+        arguments.push_back(isVector ? fmt::format("{}.{}", operand, "xyzw"[c]) : operand);
+      }
+      components.push_back(fmt::format("{}({})", function, fmt::join(arguments, ", ")));
+    }
+    return rank_ == 1 ? components.front() : call(vector(), components, "      ");
+  }
+
+  /// The operand of componentwise() for the shape.
+  std::string shapeOperand() { return rank_ == 1 ? shape() : uniform("shape"); }
+
+  /// From any index `sk_i` to an index `sk_p` inside, or a return of the border.
+  void bringInside(std::vector<std::string>& lines) {
+    switch (parameter_.boundary) {
+      case Boundary::Clamp:
+        lines.push_back(fmt::format("{} sk_p = clamp(sk_i, {}, {} - 1);", vector(), zero(), shape()));
+        return;
+      case Boundary::Wrap:
+        program_.require(Function::Wrap);
+        define(lines, componentwise("sk_wrap", {"0", "sk_i", shapeOperand()}));
+        return;
+      case Boundary::Mirror:
+        program_.require(Function::Mirror);
+        define(lines, componentwise("sk_mirror", {"0", "sk_i", shapeOperand()}));
+        return;
+      case Boundary::Border:
+        define(lines, "sk_i");
+        returnBorderOutside(lines);
+        return;
+    }
+  }
+
+  /// From any offset `sk_d` to the index `sk_p`, inside, of the current element's neighbour there.
+  void bringNeighbourInside(std::vector<std::string>& lines) {
+    const std::string here = domain_.position(rank_);
+    switch (parameter_.boundary) {
+      case Boundary::Clamp:
+        if (parameter_.reach >= 0 && parameter_.reach <= largestSafeReach) {
+          define(lines, fmt::format("clamp({} + sk_d, {}, {} - 1)", here, zero(), shape()));
+        } else {
+          lines.push_back(fmt::format("{} sk_i = {};", vector(), here));
+          define(lines, fmt::format("sk_i + clamp(sk_d, -sk_i, {} - 1 - sk_i)", shape()));
+        }
+        return;
+      case Boundary::Wrap: fold(lines, here, "sk_wrap", Function::WrapOnce, Function::Wrap); return;
+      case Boundary::Mirror: fold(lines, here, "sk_mirror", Function::MirrorOnce, Function::Mirror); return;
+      case Boundary::Border:
+        // A sum that overflows is negative, hence outside like the sum itself.
+        define(lines, fmt::format("{} + sk_d", here));
+        returnBorderOutside(lines);
+        return;
+    }
+  }
+
+  void fold(std::vector<std::string>& lines, const std::string& here, std::string_view name, Function once,
+            Function any) {
+    program_.require(access_.nearby ? once : any);
+    if (access_.nearby) {
+      define(lines, fmt::format("{} + sk_d", here));
+      lines.push_back(fmt::format("sk_p = {};", componentwise(name, {"sk_p", shapeOperand()})));
+    } else {
+      lines.push_back(fmt::format("{} sk_i = {};", vector(), here));
+      define(lines, componentwise(name, {"sk_i", "sk_d", shapeOperand()}));
+    }
+  }
+
+  void define(std::vector<std::string>& lines, std::string_view value) const {
+    lines.push_back(fmt::format("{} sk_p = {};", vector(), value));
+  }
+
+  /// Negative indices are large unsigned ones.
+  void returnBorderOutside(std::vector<std::string>& lines) {
+    const std::string outside =
+        rank_ == 1 ? fmt::format("uint(sk_p) >= uint({})", shape())
+                   : fmt::format("any(greaterThanEqual(uvec{0}(sk_p), uvec{0}({1})))", rank_, shape());
+    lines.push_back(fmt::format("if ({}) return {};", outside, parameter_.border));
+  }
+
+  std::string texel(std::vector<std::string>& lines) {
+    if (access_.addressing == Addressing::Linear) {
+      if (access_.view) lines.push_back(fmt::format("sk_p += {}{};", uniform("origin"), swizzle()));
+      program_.require(Function::Texel);
+      const std::string shift = program_.uniform("int", fmt::format("sk_shift_{}", parameter_.symbol));
+      return fmt::format("sk_texel({}, {})", number(), shift);
+    }
+    const std::string inside = rank_ == 1 ? "ivec2(sk_p, 0)" : rank_ == 2 ? "sk_p" : "sk_p.xy";
+    return access_.view ? fmt::format("{} + {}.xy", inside, uniform("origin")) : inside;
+  }
+
+  std::string number() {
+    if (rank_ == 1) return "sk_p";
+    const std::string stride = uniform("stride");
+    std::string sum = "sk_p.x";
+    for (int c = 1; c < rank_; ++c) sum += fmt::format(" + sk_p.{0} * {1}.{0}", "xyzw"[c], stride);
+    return sum;
+  }
+
+  void finish(const std::string& signature, std::vector<std::string>& lines) {
+    const std::string place = texel(lines);
+    lines.push_back(fmt::format("return {};", fetch(program_, parameter_, place)));
+    program_.function(signature, lines);
+  }
+
+  ProgramText& program_;
+  DomainText& domain_;
+  const Parameter& parameter_;
+  const StreamAccess& access_;
+  int rank_;
+};
+
+}  // namespace
+
+void defineGather(ProgramText& program, DomainText& domain, const Parameter& parameter,
+                  const StreamAccess& access) {
+  declareSamplers(program, parameter);
+  GatherText gather(program, domain, parameter, access);
+  if (parameter.usesAt) gather.defineAt();
+  if (parameter.usesNear) gather.defineNear();
+}
+
+}  // namespace sk::assemble

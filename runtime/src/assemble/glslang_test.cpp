@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+//
+// glslang accepts every kind of program: profiles x domains x addressing x boundaries x ranks x types,
+// and every pass of a reduction. The programs stay in SK_TEST_FOLDER to be looked at.
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <fmt/format.h>
+#include <catch2/catch.hpp>
+
+#include "assemble/reduce_program.hpp"
+#include "assemble/sample_kernels.hpp"
+
+using namespace sk::assemble;
+using namespace sk::program;
+
+namespace {
+
+/// A folder of programs that one process checks.
+class Programs {
+ public:
+  explicit Programs(std::string_view name) : folder_(std::filesystem::path(SK_TEST_FOLDER) / name) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+
+  void add(std::string_view text, std::string_view stage = "frag") {
+    std::ofstream(folder_ / fmt::format("{:04}.{}", count_++, stage)) << text;
+  }
+
+  /// What glslang complains of.
+  std::string complaints() const {
+    const std::string command =
+        fmt::format("cd '{}' && '{}' *.* > complaints.txt 2>&1", folder_.string(), SK_GLSLANG_VALIDATOR);
+    const bool accepted = std::system(command.c_str()) == 0;
+    std::ifstream file(folder_ / "complaints.txt");
+    std::string line;
+    std::string result;
+    for (int shown = 0; shown < 20 && std::getline(file, line);) {
+      if (!line.starts_with("ERROR") && !line.starts_with("WARNING")) continue;
+      result += line + '\n';
+      ++shown;
+    }
+    return accepted && result.empty() ? "" : "glslang: " + result;
+  }
+
+  int count() const { return count_; }
+
+ private:
+  std::filesystem::path folder_;
+  int count_ = 0;
+};
+
+void checkAccepted(const Programs& programs) {
+  const std::string complaints = programs.complaints();
+  INFO(complaints);
+  CHECK(complaints.empty());
+}
+
+struct Type {
+  const Element* element;
+  std::string_view border;
+};
+const std::array types = {
+    Type{&samples::floatElement, "1.0"},
+    Type{&samples::float3Element, "vec3(0.0, 1.0, 2.0)"},
+    Type{&samples::intElement, "-1"},
+    Type{&samples::int3Element, "ivec3(0)"},
+    Type{&samples::uint2Element, "uvec2(1u, 2u)"},
+    Type{&samples::boolElement, "true"},
+    Type{&samples::bool3Element, "bvec3(true, false, true)"},
+    Type{&samples::hitElement, "Hit(0.0, Place(vec3(0.0), false), -1)"},
+};
+
+struct Place {
+  Domain domain;
+  bool view;
+};
+constexpr std::array domains = {Place{Domain::Plane, false}, Place{Domain::Plane, true},
+                                Place{Domain::Linear, false}, Place{Domain::LinearBox, false}};
+
+constexpr std::array inputs = {StreamAccess{Addressing::Aligned}, StreamAccess{Addressing::Plane},
+                               StreamAccess{Addressing::Plane, true}, StreamAccess{Addressing::Linear},
+                               StreamAccess{Addressing::Linear, true}};
+
+constexpr std::array boundaries = {Boundary::Clamp, Boundary::Wrap, Boundary::Mirror, Boundary::Border};
+
+/// Offsets that are not constant, that are but may pass an extent, and that stay below each.
+struct Neighbours {
+  int reach;
+  bool nearby;
+};
+constexpr std::array neighbours = {Neighbours{-1, false}, Neighbours{2, false}, Neighbours{2, true}};
+
+StreamAccess with(StreamAccess access, bool nearby) {
+  access.nearby = nearby;
+  return access;
+}
+
+void addBoundaries(Programs& programs, const Type& type, int rank, const Place& domain,
+                   const StreamAccess& input, const StreamAccess& gather) {
+  for (const Profile& profile : profiles()) {
+    for (const Boundary boundary : boundaries) {
+      for (const auto [reach, nearby] : neighbours) {
+        const samples::EveryAccess sample(*type.element, type.border, rank, boundary, reach);
+        const Variant variant{.domain = domain.domain,
+                              .domainView = domain.view,
+                              .domainRank = static_cast<std::uint8_t>(rank),
+                              .access = {{}, input, with(gather, nearby), {}, {}}};
+        programs.add(fragmentProgram(profile, sample.kernel(), variant));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("glslang finds what is wrong") {
+  Programs programs("wrong");
+  programs.add("#version 330 core\nvoid main() { int i = 1.0; }\n");
+  CHECK_FALSE(programs.complaints().empty());
+}
+
+TEST_CASE("glslang accepts every layout with every boundary") {
+  Programs programs("layouts");
+  for (const Place& domain : domains) {
+    for (const StreamAccess& input : inputs) {
+      for (const StreamAccess& gather : inputs) {
+        if (gather.addressing == Addressing::Aligned) continue;
+        addBoundaries(programs, types[0], 2, domain, input, gather);
+      }
+    }
+  }
+  REQUIRE(programs.count() == 4 * 5 * 4 * 2 * 4 * 3);
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts every type and rank with every boundary") {
+  Programs programs("types");
+  for (const Type& type : types) {
+    for (const int rank : {1, 2, 3, 4}) {
+      addBoundaries(programs, type, rank, domains[0], inputs[0], inputs[1]);
+      addBoundaries(programs, type, rank, domains[3], inputs[4], inputs[4]);
+    }
+  }
+  REQUIRE(programs.count() == 8 * 4 * 2 * 2 * 4 * 3);
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts kernels that use nothing of the assembler's, and the vertex program") {
+  Programs programs("plain");
+  for (const Profile& profile : profiles()) {
+    programs.add(fragmentProgram(profile, samples::saxpy, {.access = {{}, {}, {}, {}}}));
+    programs.add(fragmentProgram(profile, samples::diffuse, {.access = {{}, {Addressing::Plane}, {}}}));
+    programs.add(vertexProgram(profile), "vert");
+  }
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts every pass of a reduction") {
+  Programs programs("reductions");
+  for (const Profile& profile : profiles()) {
+    for (const Reduction* reduction : {&samples::sum, &samples::firstHit, &samples::countTrue}) {
+      for (const Walk walk : {Walk::Line, Walk::Plane, Walk::Box, Walk::Partials}) {
+        for (const Runs runs : {Runs::OneBlock, Runs::WholeBlocks, Runs::Split}) {
+          for (const auto [domain, view] : domains) {
+            for (const std::uint8_t rank :
+                 {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{3}, std::uint8_t{4}}) {
+              programs.add(reduceProgram(profile, *reduction, {walk, runs, domain, view, rank, rank}));
+            }
+          }
+        }
+      }
+    }
+  }
+  REQUIRE(programs.count() == 2 * 3 * 4 * 3 * 4 * 4);
+  checkAccepted(programs);
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+//
+// Spellings of planes.
+#include "assemble/planes.hpp"
+
+#include <array>
+
+#include <fmt/format.h>
+
+namespace sk::assemble {
+namespace {
+
+using program::Element;
+using program::Field;
+using program::Parameter;
+using program::Scalar;
+
+/// How a plane of a component type is spelled. Bool planes are held as unsigned integers.
+struct Spelling {
+  std::string_view sampler;
+  std::string_view texelScalar;
+  std::string_view texelVector;   ///< without its width
+  std::string_view zero;
+};
+
+constexpr std::array<Spelling, 4> spellings = {{
+    /* Bool  */ {"usampler2D", "uint", "uvec", "0u"},
+    /* Int   */ {"isampler2D", "int", "ivec", "0"},
+    /* Uint  */ {"usampler2D", "uint", "uvec", "0u"},
+    /* Float */ {"sampler2D", "float", "vec", "0.0"},
+}};
+
+const Spelling& spelling(const Field& field) { return spellings[static_cast<std::size_t>(field.scalar)]; }
+
+std::string texelType(const Field& field, int width) {
+  const Spelling& s = spelling(field);
+  return width == 1 ? std::string(s.texelScalar) : fmt::format("{}{}", s.texelVector, width);
+}
+
+/// Textures of 3 components are not renderable: those planes have 4.
+int outputWidth(const Field& field) { return field.width == 3 ? 4 : field.width; }
+
+std::string planeName(std::string_view prefix, const Parameter& parameter, std::size_t plane) {
+  if (parameter.element->fields.size() == 1) return fmt::format("{}_{}", prefix, parameter.symbol);
+  return fmt::format("{}{}_{}", prefix, plane, parameter.symbol);
+}
+
+std::string outputName(const Parameter& parameter, std::size_t plane) {
+  return planeName("sk_out", parameter, plane);
+}
+
+std::string fetchPlane(const Parameter& parameter, std::size_t plane, std::string_view texel) {
+  static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
+  const Field& field = parameter.element->fields[plane];
+  std::string value = fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane), texel,
+                                  swizzles[field.width - 1u]);
+  if (field.scalar != Scalar::Bool) return value;
+  if (field.width == 1) return value + " != 0u";
+  return fmt::format("notEqual({}, uvec{}(0u))", value, field.width);
+}
+
+/// `value`, of the field's type, as its output's type.
+std::string toOutput(const Field& field, std::string value) {
+  if (field.scalar == Scalar::Bool) value = fmt::format("{}({})", texelType(field, field.width), value);
+  if (field.width == 3) value = fmt::format("{}({}, {})", texelType(field, 4), value, spelling(field).zero);
+  return value;
+}
+
+bool outputHasType(const Element& element) {
+  const Field& field = element.fields.front();
+  return !isStruct(element) && field.scalar != Scalar::Bool && field.width != 3;
+}
+
+}  // namespace
+
+std::string samplerName(const Parameter& parameter, std::size_t plane) {
+  return planeName("sk_tex", parameter, plane);
+}
+
+bool isStruct(const Element& element) { return !element.fields.front().path.empty(); }
+
+void declareSamplers(ProgramText& program, const Parameter& parameter) {
+  for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
+    program.uniform(spelling(parameter.element->fields[plane]).sampler, samplerName(parameter, plane));
+  }
+}
+
+void declareOutputs(ProgramText& program, const Parameter& parameter) {
+  for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
+    const Field& field = parameter.element->fields[plane];
+    program.output(texelType(field, outputWidth(field)), outputName(parameter, plane));
+  }
+}
+
+std::string fetch(ProgramText& program, const Parameter& parameter, std::string_view texel) {
+  const Element& element = *parameter.element;
+  if (!isStruct(element)) return fetchPlane(parameter, 0, texel);
+  std::vector<std::string> statements = {fmt::format("{} sk_e;", element.glsl)};
+  for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
+    statements.push_back(
+        fmt::format("sk_e.{} = {};", element.fields[plane].path, fetchPlane(parameter, plane, "sk_t")));
+  }
+  statements.emplace_back("return sk_e;");
+  program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", element.glsl, parameter.symbol), statements);
+  return fmt::format("sk_fetch_{}({})", parameter.symbol, texel);
+}
+
+std::string resultVariable(ProgramText& program, const Parameter& parameter) {
+  if (outputHasType(*parameter.element)) return outputName(parameter, 0);
+  const std::string name = fmt::format("sk_value_{}", parameter.symbol);
+  program.statement(fmt::format("{} {};", parameter.element->glsl, name));
+  return name;
+}
+
+void store(ProgramText& program, const Parameter& parameter, std::string_view variable) {
+  const Element& element = *parameter.element;
+  for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
+    const Field& field = element.fields[plane];
+    const std::string output = outputName(parameter, plane);
+    if (output == variable) continue;
+    const std::string value =
+        isStruct(element) ? fmt::format("{}.{}", variable, field.path) : std::string(variable);
+    program.statement(fmt::format("{} = {};", output, toOutput(field, value)));
+  }
+}
+
+}  // namespace sk::assemble

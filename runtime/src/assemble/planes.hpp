@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+//
+// How the planes of an element are spelled in GLSL: samplers and outputs, fetching an element from
+// its planes and storing it to them. It knows expressions only, nothing of addresses.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "assemble/assemble.hpp"
+#include "assemble/program_text.hpp"
+
+namespace sk::assemble {
+
+/// Whether an element is rebuilt member by member; else it is its only plane.
+bool isStruct(const program::Element& element);
+
+/// Declares the samplers of the parameter's planes.
+void declareSamplers(ProgramText& program, const program::Parameter& parameter);
+
+/// Declares the outputs of the parameter's planes.
+void declareOutputs(ProgramText& program, const program::Parameter& parameter);
+
+/// An expression for the element at a texel, given as an ivec2 expression. Structs are fetched by a
+/// function, which the first such expression of a parameter defines.
+std::string fetch(ProgramText& program, const program::Parameter& parameter, std::string_view texel);
+
+/// An lvalue of the element's type to which main() may compute the parameter's new element: its
+/// output itself where that has the same type, else a local variable that is declared here.
+std::string resultVariable(ProgramText& program, const program::Parameter& parameter);
+
+/// Statements that copy an element-typed variable to the parameter's outputs; none where the
+/// variable is the output.
+void store(ProgramText& program, const program::Parameter& parameter, std::string_view variable);
+
+}  // namespace sk::assemble

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+//
+// The table of profiles: one row a version of a target.
+#include <algorithm>
+#include <array>
+
+#include "assemble/assemble.hpp"
+
+namespace sk::assemble {
+namespace {
+
+constexpr std::array table = {
+    // name      #version           es     draw buffers  texture units (minima that the standards guarantee)
+    Profile{"glsl330", "#version 330 core", false, 8, 16},
+    Profile{"essl300", "#version 300 es", true, 4, 16},
+};
+
+}  // namespace
+
+std::span<const Profile> profiles() { return table; }
+
+const Profile* findProfile(std::string_view name) {
+  const auto row = std::ranges::find(table, name, &Profile::name);
+  return row == table.end() ? nullptr : &*row;
+}
+
+}  // namespace sk::assemble

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+//
+// A fragment program in the making: sections that grow while parameters are laid out, each
+// declaration made by whoever mentions it first, then put in order around the kernel's own text.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "assemble/assemble.hpp"
+
+namespace sk::assemble {
+
+/// Functions of the assembler's own that programs share; their text is in functions.cpp.
+enum class Function : std::uint8_t {
+  Unravel2,    ///< index of an element number in 2, 3 or 4 dimensions; the highest that is
+  Unravel3,    ///< required serves for all
+  Unravel4,
+  Ravel,       ///< element number of an index
+  Texel,       ///< texel of an element number
+  Wrap,        ///< wrapped sum of an index and an offset
+  WrapOnce,    ///< wrapped index that is less than an extent away
+  Mirror,
+  MirrorOnce,
+};
+std::string_view text(Function function);
+
+class ProgramText {
+ public:
+  /// Declares a uniform unless it is declared, and gives its name.
+  std::string uniform(std::string_view type, std::string_view name);
+  /// Declares the output of the next location.
+  void output(std::string_view type, std::string_view name);
+  /// Declares a global variable.
+  void variable(std::string_view type, std::string_view name);
+  /// Defines one of the shared functions unless it is defined.
+  void require(Function function);
+  /// Defines a function unless one of this signature is defined.
+  void function(std::string_view signature, const std::vector<std::string>& statements);
+  bool isDefined(std::string_view signature) const;
+  /// Adds a line to main().
+  void statement(std::string_view line);
+  /// Adds a line to main() before every line that statement() has added and adds.
+  void prologue(std::string_view line);
+
+  /// The whole program. `comment` is its first comment line, without the slashes.
+  std::string finish(const Profile& profile, std::string_view comment, const program::Kernel& kernel) const;
+
+ private:
+  std::vector<std::string> uniforms_;
+  std::vector<std::string> outputs_;
+  std::vector<std::string> variables_;
+  std::vector<std::string> signatures_;
+  std::uint32_t used_ = 0;   ///< bits of Function
+  std::string functions_;
+  std::string prologue_;
+  std::string main_;
+};
+
+/// `name(arguments)`, on one line or, where that is too long, with a line for each argument.
+std::string call(std::string_view name, const std::vector<std::string>& arguments, std::string_view indent);
+
+}  // namespace sk::assemble

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+//
+// The schedule. Elements of a block are numbered row-major, whatever the layout; a first pass folds
+// runs of consecutive ones, and each later pass runs of consecutive partial results, so order is kept
+// and the number of passes is that of a tree over a block's elements.
+#include "assemble/reduce_plan.hpp"
+
+#include <cassert>
+#include <utility>
+
+namespace sk::assemble {
+namespace {
+
+/// A linearised region seen with few axes, x fastest: neighbouring axes are joined where elements and
+/// blocks allow it. Blocks, and the elements of a block, keep their row-major numbers.
+struct Axes {
+  std::uint8_t count = 0;
+  Index4 extent = {1, 1, 1, 1};   ///< of a block
+  Index4 blocks = {1, 1, 1, 1};
+  Index4 stride = {1, 1, 1, 1};
+};
+
+Axes collapse(const Placement& input, const Placement& result) {
+  Axes axes;
+  for (std::size_t d = 0; d < input.extent.size(); ++d) {
+    if (input.extent[d] == 1) continue;
+    const std::int32_t blocks = result.extent[d];
+    const std::int32_t extent = input.extent[d] / blocks;
+    if (axes.count > 0) {
+      const std::size_t below = axes.count - 1u;
+      const bool adjacent = input.stride[d] == axes.stride[below] * axes.extent[below] * axes.blocks[below];
+      if (adjacent && (axes.blocks[below] == 1 || extent == 1)) {
+        axes.extent[below] *= extent;
+        axes.blocks[below] *= blocks;
+        continue;
+      }
+    }
+    axes.extent[axes.count] = extent;
+    axes.blocks[axes.count] = blocks;
+    axes.stride[axes.count] = input.stride[d];
+    ++axes.count;
+  }
+  if (axes.count == 0) axes.count = 1;
+  return axes;
+}
+
+std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a + b - 1) / b; }
+
+class Planner {
+ public:
+  Planner(const Placement& input, const Placement& result, const ReduceLimits& limits, bool aliased)
+      : input_(input), result_(result), limits_(limits), aliased_(aliased) {
+    for (std::size_t d = 0; d < input.extent.size(); ++d) {
+      assert(result.extent[d] > 0 && input.extent[d] > 0 && input.extent[d] % result.extent[d] == 0);
+    }
+    blocks_ = static_cast<std::int32_t>(elements(result.extent));
+    left_ = static_cast<std::int32_t>(elements(input.extent)) / blocks_;
+  }
+
+  std::vector<ReducePass> plan() {
+    addPass(input_.linear ? Walk::Box : Walk::Plane);
+    while (!passes_.back().toResult) addPass(Walk::Partials);
+    return std::move(passes_);
+  }
+
+ private:
+  /// A pass over the `left_` elements or partial results that each block has.
+  void addPass(Walk walk) {
+    const std::int32_t runs = divideUp(left_, limits_.fanIn);
+    const std::int32_t fan = divideUp(left_, runs);   // runs of nearly equal length
+    ReducePass pass{};
+    pass.toResult = runs == 1 && (walk == Walk::Partials || !aliased_);
+    pass.variant.runs = blocks_ == 1 ? Runs::OneBlock : pass.toResult ? Runs::WholeBlocks : Runs::Split;
+    pass.uniforms = {
+        {"sk_fan", false, {fan}}, {"sk_length", false, {left_}}, {"sk_blocks", false, {blocks_}}};
+    setSource(pass, walk);
+    setDomain(pass, pass.toResult ? result_ : partials(runs));
+    left_ = runs;
+    passes_.push_back(std::move(pass));
+  }
+
+  /// Where a pass puts `runs` partial results of each block.
+  Placement partials(std::int32_t runs) const {
+    Placement placement{.linear = true};
+    placement.extent[0] = runs * blocks_;
+    placement.stride = stridesOf(placement.extent);
+    placement.shift = linearShift(placement.extent[0], limits_.textureSize);
+    return placement;
+  }
+
+  void setSource(ReducePass& pass, Walk walk) {
+    pass.variant.walk = walk;
+    if (walk == Walk::Partials) {
+      pass.uniforms.push_back({"sk_shift", false, {sourceShift_}});
+    } else if (walk == Walk::Plane) {
+      setBlocks(pass, {input_.extent[0] / result_.extent[0], input_.extent[1] / result_.extent[1], 1, 1},
+                result_.extent);
+      pass.uniforms.push_back({"sk_origin", true, input_.origin});
+    } else {
+      setLinearSource(pass);
+    }
+  }
+
+  void setLinearSource(ReducePass& pass) const {
+    const Axes axes = collapse(input_, result_);
+    std::int32_t start = 0;
+    for (std::size_t d = 0; d < input_.origin.size(); ++d) start += input_.origin[d] * input_.stride[d];
+    pass.uniforms.push_back({"sk_start", false, {start}});
+    pass.uniforms.push_back({"sk_shift", false, {input_.shift}});
+    if (axes.count == 1 && axes.stride[0] == 1) {
+      pass.variant.walk = Walk::Line;
+      return;
+    }
+    pass.variant.axes = axes.count;
+    setBlocks(pass, axes.extent, axes.blocks);
+    pass.uniforms.push_back({"sk_stride", true, axes.stride});
+  }
+
+  static void setBlocks(ReducePass& pass, const Index4& extent, const Index4& blocks) {
+    pass.uniforms.push_back({"sk_block_shape", true, extent});
+    pass.uniforms.push_back({"sk_block_step", true, stridesOf(extent)});
+    pass.uniforms.push_back({"sk_blocks_step", true, stridesOf(blocks)});
+  }
+
+  void setDomain(ReducePass& pass, const Placement& domain) {
+    pass.variant.domain = domainOf(domain);
+    pass.variant.domainView = !domain.linear && domain.origin != Index4{};
+    const bool usesIndex = pass.variant.walk == Walk::Plane && pass.variant.runs == Runs::WholeBlocks;
+    if (usesIndex || pass.variant.domain == Domain::LinearBox) pass.variant.domainRank = decodedRank(domain);
+    pass.draws = drawnTexels(domain);
+    pass.uniforms.push_back({"sk_domain_origin", true, domain.origin});
+    pass.uniforms.push_back({"sk_domain_shape", true, domain.extent});
+    pass.uniforms.push_back({"sk_domain_stride", true, domain.stride});
+    pass.uniforms.push_back({"sk_domain_shift", false, {domain.shift}});
+    pass.uniforms.push_back({"sk_domain_step", true, stridesOf(domain.extent)});
+    if (pass.toResult) return;
+    sourceShift_ = domain.shift;
+    pass.width = 1 << domain.shift;
+    pass.height = divideUp(domain.extent[0], pass.width);
+    assert(pass.height <= limits_.textureSize);
+  }
+
+  const Placement& input_;
+  const Placement& result_;
+  const ReduceLimits& limits_;
+  bool aliased_;
+  std::int32_t blocks_;
+  std::int32_t left_;               ///< elements or partial results of each block
+  std::int32_t sourceShift_ = 0;    ///< of the partial results' texture
+  std::vector<ReducePass> passes_;
+};
+
+}  // namespace
+
+std::vector<ReducePass> planReduction(const Placement& input, const Placement& result,
+                                      const ReduceLimits& limits, bool aliased) {
+  assert(limits.fanIn >= 2);
+  return Planner(input, result, limits, aliased).plan();
+}
+
+Placement valuePlacement() { return {.linear = true}; }
+
+}  // namespace sk::assemble

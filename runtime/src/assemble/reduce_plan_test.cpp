@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: MIT
+//
+// Runs schedules in C++ over strings. Concatenation is associative and does not commute, so that a
+// block's result is its elements' names in row-major order, or the schedule is wrong. Fragment is the
+// transliteration of what reduceProgram writes; texels that nothing has written may not be read.
+#include "assemble/reduce_plan.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+using namespace sk::assemble;
+
+namespace {
+
+using Name = std::u16string;
+
+struct Texture {
+  Texture(int w, int h)
+      : width(w), height(h), texels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+
+  std::optional<Name>& at(int x, int y) {
+    if (x < 0 || y < 0 || x >= width || y >= height) throw std::out_of_range("texel outside its texture");
+    return texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(x)];
+  }
+
+  int width, height;
+  std::vector<std::optional<Name>> texels;
+};
+
+Index4 operator+(const Index4& a, const Index4& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]};
+}
+Index4 operator-(const Index4& a, const Index4& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]};
+}
+Index4 operator*(const Index4& a, const Index4& b) {
+  return {a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]};
+}
+
+int ravel(const Index4& index, const Index4& strides) {
+  const Index4 p = index * strides;
+  return p[0] + p[1] + p[2] + p[3];
+}
+
+Index4 unravel(int number, const Index4& strides, int rank) {
+  Index4 index{};
+  for (int d = rank - 1; d > 0; --d) {
+    const auto axis = static_cast<std::size_t>(d);
+    index[axis] = number / strides[axis];
+    number -= index[axis] * strides[axis];
+  }
+  index[0] = number;
+  return index;
+}
+
+bool inside(const Index4& index, const Index4& extent) {
+  for (std::size_t d = 0; d < 4; ++d) {
+    if (index[d] < 0 || index[d] >= extent[d]) return false;
+  }
+  return true;
+}
+
+/// One fragment of one pass.
+class Fragment {
+ public:
+  Fragment(const ReducePass& pass, Texture& source, int x, int y)
+      : pass_(pass), source_(source), x_(x), y_(y) {}
+
+  /// Nothing where the fragment is discarded.
+  std::optional<Name> run() {
+    if (!locate()) return {};
+    findRun();
+    startWalk();
+    Name total = fetch(0);
+    for (int k = 1; k < count_; ++k) {
+      step();
+      total += fetch(k);
+    }
+    return total;
+  }
+
+ private:
+  const Index4& vector(std::string_view name) const {
+    const auto value = std::ranges::find(pass_.uniforms, name, &UniformValue::name);
+    if (value == pass_.uniforms.end()) throw std::logic_error(std::string(name));
+    return value->value;
+  }
+  int integer(std::string_view name) const { return vector(name)[0]; }
+
+  bool locate() {
+    const ReduceVariant& v = pass_.variant;
+    if (v.domain == Domain::Plane) {
+      index_ = Index4{x_, y_, 0, 0} - (v.domainView ? vector("sk_domain_origin") : Index4{});
+      number_ = index_[1] * vector("sk_domain_shape")[0] + index_[0];
+      return true;
+    }
+    number_ = y_ << integer("sk_domain_shift") | x_;
+    index_ = unravel(number_, vector("sk_domain_stride"), v.domainRank);
+    if (v.domain == Domain::Linear) return true;
+    index_ = index_ - vector("sk_domain_origin");
+    number_ = ravel(index_, vector("sk_domain_step"));
+    return inside(index_, vector("sk_domain_shape"));
+  }
+
+  void findRun() {
+    count_ = integer("sk_length");
+    switch (pass_.variant.runs) {
+      case Runs::OneBlock: first_ = number_ * integer("sk_fan"); break;
+      case Runs::WholeBlocks: block_ = number_; return;
+      case Runs::Split: {
+        const int run = number_ / integer("sk_blocks");
+        block_ = number_ - run * integer("sk_blocks");
+        first_ = run * integer("sk_fan");
+        break;
+      }
+    }
+    count_ = std::min(integer("sk_fan"), integer("sk_length") - first_);
+  }
+
+  void startWalk() {
+    const bool many = pass_.variant.runs != Runs::OneBlock;
+    switch (pass_.variant.walk) {
+      case Walk::Line: at_ = integer("sk_start") + block_ * integer("sk_length") + first_; return;
+      case Walk::Partials: at_ = first_ * integer("sk_blocks") + block_; return;
+      case Walk::Plane: {
+        Index4 block{};
+        if (pass_.variant.runs == Runs::WholeBlocks) block = index_;
+        if (pass_.variant.runs == Runs::Split) block = unravel(block_, vector("sk_blocks_step"), 2);
+        corner_ = vector("sk_origin") + block * vector("sk_block_shape");
+        const int y = first_ / vector("sk_block_shape")[0];
+        p_ = corner_ + Index4{first_ - y * vector("sk_block_shape")[0], y, 0, 0};
+        return;
+      }
+      case Walk::Box: {
+        const int axes = pass_.variant.axes;
+        at_ = integer("sk_start");
+        if (many) {
+          at_ += ravel(unravel(block_, vector("sk_blocks_step"), axes) * vector("sk_block_shape"),
+                       vector("sk_stride"));
+        }
+        p_ = unravel(first_, vector("sk_block_step"), axes);
+        return;
+      }
+    }
+  }
+
+  void step() {
+    if (pass_.variant.walk == Walk::Plane) {
+      ++p_[0];
+      if (p_[0] == corner_[0] + vector("sk_block_shape")[0]) p_ = {corner_[0], p_[1] + 1, 0, 0};
+    } else if (pass_.variant.walk == Walk::Box) {
+      ++p_[0];
+      for (std::size_t axis = 0; axis + 1 < pass_.variant.axes; ++axis) {
+        if (p_[axis] == vector("sk_block_shape")[axis]) p_[axis] = 0, ++p_[axis + 1];
+      }
+    }
+  }
+
+  const Name& fetch(int k) {
+    switch (pass_.variant.walk) {
+      case Walk::Plane: return element(p_[0], p_[1]);
+      case Walk::Line: return numbered(at_ + k);
+      case Walk::Partials: return numbered(at_ + k * integer("sk_blocks"));
+      case Walk::Box: return numbered(at_ + ravel(p_, vector("sk_stride")));
+    }
+    throw std::logic_error("walk");
+  }
+
+  const Name& numbered(int number) {
+    const int shift = integer("sk_shift");
+    return element(number & ((1 << shift) - 1), number >> shift);
+  }
+
+  const Name& element(int x, int y) {
+    const std::optional<Name>& texel = source_.at(x, y);
+    if (!texel) throw std::logic_error("a texel is read that holds no element");
+    return *texel;
+  }
+
+  const ReducePass& pass_;
+  Texture& source_;
+  int x_, y_;
+  Index4 index_{}, corner_{}, p_{};
+  int number_ = 0, block_ = 0, first_ = 0, count_ = 0, at_ = 0;
+};
+
+/// A region of a stream: a whole one, or a part with margins around it.
+struct Region {
+  Placement placement;
+  int width, height;   ///< of its texture
+
+  std::pair<int, int> texel(const Index4& index) const {
+    const Index4 p = index + placement.origin;
+    if (!placement.linear) return {p[0], p[1]};
+    const int number = ravel(p, placement.stride);
+    return {number & ((1 << placement.shift) - 1), number >> placement.shift};
+  }
+};
+
+/// As the runtime lays streams out; nothing where the stream does not fit in one texture.
+std::optional<Region> layOut(const Index4& extent, int rank, const Index4& before, const Index4& after,
+                             int limit) {
+  const Index4 whole = before + extent + after;
+  Region region{{.view = whole != extent, .origin = before, .extent = extent}, whole[0], whole[1]};
+  if (rank <= 2 && whole[0] <= limit && whole[1] <= limit) return region;
+  Placement& placement = region.placement;
+  placement.linear = true;
+  placement.stride = stridesOf(whole);
+  placement.shift = linearShift(elements(whole), limit);
+  region.width = 1 << placement.shift;
+  region.height = static_cast<int>((elements(whole) + region.width - 1) / region.width);
+  if (region.height > limit) return {};
+  return region;
+}
+
+template <class Visit>
+void forEach(const Index4& extent, Visit visit) {
+  Index4 i{};
+  for (i[3] = 0; i[3] < extent[3]; ++i[3]) {
+    for (i[2] = 0; i[2] < extent[2]; ++i[2]) {
+      for (i[1] = 0; i[1] < extent[1]; ++i[1]) {
+        for (i[0] = 0; i[0] < extent[0]; ++i[0]) visit(Index4(i));
+      }
+    }
+  }
+}
+
+void draw(const ReducePass& pass, Texture& source, Texture& target) {
+  std::set<std::pair<int, int>> drawn;
+  for (const Rect& rect : pass.draws) {
+    for (int y = rect.y; y < rect.y + rect.height; ++y) {
+      for (int x = rect.x; x < rect.x + rect.width; ++x) {
+        if (!drawn.insert({x, y}).second) throw std::logic_error("a texel is drawn twice");
+        if (auto value = Fragment(pass, source, x, y).run()) target.at(x, y) = std::move(value);
+      }
+    }
+  }
+}
+
+/// What the runtime's executor does.
+Texture execute(const std::vector<ReducePass>& passes, Texture source, const Region& result) {
+  for (const ReducePass& pass : passes) {
+    Texture target = pass.toResult ? Texture(result.width, result.height) : Texture(pass.width, pass.height);
+    draw(pass, source, target);
+    source = std::move(target);
+  }
+  return source;
+}
+
+void checkSchedule(const std::vector<ReducePass>& passes, const ReduceLimits& limits, std::int64_t length,
+                   bool aliased) {
+  std::size_t needed = 1;
+  for (std::int64_t left = length; left > limits.fanIn; left = (left + limits.fanIn - 1) / limits.fanIn)
+    ++needed;
+  if (aliased) needed = std::max<std::size_t>(needed, 2);
+  REQUIRE(passes.size() == needed);
+  std::set<ReduceVariant> programs;
+  for (const ReducePass& pass : passes) {
+    programs.insert(pass.variant);
+    REQUIRE(pass.toResult == (&pass == &passes.back()));
+    REQUIRE((pass.width <= limits.textureSize && pass.height <= limits.textureSize));
+  }
+  REQUIRE(programs.size() <= 3);
+}
+
+/// Reduces and compares every element of the result; `blocks` is the result's shape.
+void check(const Region& input, const Region& result, const ReduceLimits& limits, bool aliased = false) {
+  const Index4& extent = input.placement.extent;
+  const Index4& blocks = result.placement.extent;
+  Texture source(input.width, input.height);
+  char16_t name = 0;
+  forEach(extent, [&](const Index4& i) {
+    const auto [x, y] = input.texel(i);
+    source.at(x, y) = Name(1, ++name);
+  });
+  std::vector<Name> expected(static_cast<std::size_t>(elements(blocks)));
+  name = 0;
+  forEach(extent, [&](const Index4& i) {
+    const Index4 block = {i[0] / (extent[0] / blocks[0]), i[1] / (extent[1] / blocks[1]),
+                          i[2] / (extent[2] / blocks[2]), i[3] / (extent[3] / blocks[3])};
+    expected[static_cast<std::size_t>(ravel(block, stridesOf(blocks)))] += ++name;
+  });
+
+  const auto passes = planReduction(input.placement, result.placement, limits, aliased);
+  checkSchedule(passes, limits, elements(extent) / elements(blocks), aliased);
+  Texture output = execute(passes, std::move(source), result);
+  std::size_t written = 0;
+  forEach(blocks, [&](const Index4& b) {
+    const auto [x, y] = result.texel(b);
+    const auto& value = output.at(x, y);
+    if (!value || *value != expected[written++]) FAIL("block " << written - 1 << " is wrong");
+  });
+  const auto all = std::ranges::count_if(output.texels, [](const auto& texel) { return texel.has_value(); });
+  REQUIRE(static_cast<std::size_t>(all) == written);
+}
+
+std::vector<std::int32_t> divisors(std::int32_t n) {
+  std::vector<std::int32_t> result;
+  for (std::int32_t d = 1; d <= n; ++d) {
+    if (n % d == 0) result.push_back(d);
+  }
+  return result;
+}
+
+constexpr Index4 none{};
+
+/// Every block shape, between whole streams, views, and both; and to a value.
+void checkShape(const Index4& extent, int rank, const ReduceLimits& limits) {
+  CAPTURE(extent[0], extent[1], extent[2], extent[3], rank, limits.textureSize, limits.fanIn);
+  Index4 before{}, after{};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(rank); ++d) {
+    before[d] = d % 2 == 0 ? 2 : 1;
+    after[d] = d % 2 == 0 ? 0 : 3;
+  }
+  Index4 rowsBefore{};   // a view of whole rows, planes, ...: its elements are consecutive
+  rowsBefore[static_cast<std::size_t>(rank - 1)] = 3;
+  const Region value{valuePlacement(), 1, 1};
+  const auto inputs = {layOut(extent, rank, none, none, limits.textureSize),
+                       layOut(extent, rank, before, after, limits.textureSize),
+                       layOut(extent, rank, rowsBefore, none, limits.textureSize)};
+  for (const auto& input : inputs) {
+    if (input) check(*input, value, limits);
+  }
+  for (const auto x : divisors(extent[0])) {
+    for (const auto y : divisors(extent[1])) {
+      for (const auto z : divisors(extent[2])) {
+        for (const auto w : divisors(extent[3])) {
+          const Index4 blocks = {x, y, z, w};
+          for (const Index4& margin : {none, before}) {
+            const auto result = layOut(blocks, rank, margin, none, limits.textureSize);
+            for (const auto& input : inputs) {
+              if (input && result) check(*input, *result, limits, margin != none);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("reductions of rank 1 keep the order, for every length to 70") {
+  for (const int limit : {8, 64}) {
+    for (const int fanIn : {2, 3, 32}) {
+      for (int n = 1; n <= 70; ++n) checkShape({n, 1, 1, 1}, 1, {limit, fanIn});
+    }
+  }
+}
+
+TEST_CASE("reductions of long streams keep the order") {
+  for (const int n : {127, 128, 1000, 1021, 1024, 1025, 3600, 4093}) checkShape({n, 1, 1, 1}, 1, {64, 16});
+}
+
+TEST_CASE("reductions of rank 2 keep the order") {
+  const auto lengths = {1, 2, 3, 4, 6, 7, 8, 9, 13, 16, 31, 36, 64, 67};
+  for (const int height : lengths) {
+    for (const int width : lengths) {
+      checkShape({width, height, 1, 1}, 2, {64, 4});
+      if (width * height <= 64) checkShape({width, height, 1, 1}, 2, {8, 3});
+    }
+  }
+}
+
+TEST_CASE("reductions of rank 3 keep the order") {
+  const auto lengths = {1, 2, 3, 5, 6, 8};
+  for (const int depth : lengths) {
+    for (const int height : lengths) {
+      for (const int width : lengths) checkShape({width, height, depth, 1}, 3, {64, 5});
+    }
+  }
+}
+
+TEST_CASE("reductions of rank 4 keep the order") {
+  const auto lengths = {1, 2, 3, 4};
+  for (const int duration : lengths) {
+    for (const int depth : lengths) {
+      for (const int height : lengths) {
+        for (const int width : lengths) checkShape({width, height, depth, duration}, 4, {64, 3});
+      }
+    }
+  }
+}
+
+TEST_CASE("a linearised stream is seen with as few axes as it allows") {
+  const auto walk = [](const Index4& extent, const Index4& blocks) {
+    Placement input{.linear = true, .extent = extent, .stride = stridesOf(extent), .shift = 4};
+    Placement result{.linear = true, .extent = blocks, .stride = stridesOf(blocks), .shift = 4};
+    const ReduceVariant variant = planReduction(input, result, {1024}).front().variant;
+    return std::pair(variant.walk, int{variant.axes});
+  };
+  CHECK(walk({4, 5, 6, 7}, {1, 1, 1, 1}).first == Walk::Line);
+  CHECK(walk({4, 5, 6, 7}, {1, 5, 6, 7}).first == Walk::Line);
+  CHECK(walk({4, 5, 6, 7}, {1, 1, 2, 7}).first == Walk::Line);
+  CHECK(walk({4, 5, 6, 7}, {4, 5, 6, 1}) == std::pair(Walk::Box, 2));
+  CHECK(walk({4, 5, 6, 7}, {4, 5, 1, 1}) == std::pair(Walk::Box, 2));
+  CHECK(walk({4, 6, 6, 7}, {2, 3, 2, 1}) == std::pair(Walk::Box, 4));
+}
+
+TEST_CASE("a reduction to a value takes two programs and the fewest passes") {
+  const Placement square{.extent = {4096, 4096, 1, 1}};
+  const auto passes = planReduction(square, valuePlacement(), {16384, 32});
+  REQUIRE(passes.size() == 5);
+  CHECK(passes[0].variant.walk == Walk::Plane);
+  CHECK((passes[0].width == 1024 && passes[0].height == 512));
+  for (std::size_t i = 1; i < passes.size(); ++i) CHECK(passes[i].variant == passes[1].variant);
+  CHECK(passes.back().draws == std::vector<Rect>{{0, 0, 1, 1}});
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+//
+// What the passes of reductions look like. That they fold in order is reduce_plan_test's business.
+#include "assemble/reduce_program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "assemble/sample_kernels.hpp"
+
+using namespace sk::assemble;
+
+namespace {
+
+const Profile& glsl = *findProfile("glsl330");
+
+std::string mainOf(const sk::program::Reduction& reduction, const ReduceVariant& variant) {
+  const std::string program = reduceProgram(glsl, reduction, variant);
+  return program.substr(program.find("void main"));
+}
+
+}  // namespace
+
+TEST_CASE("the first pass of a reduction to a value") {
+  CHECK(reduceProgram(glsl, samples::sum, {.walk = Walk::Line}) == R"(#version 330 core
+// sum for glsl330: elements of a line, one block
+
+uniform sampler2D sk_tex_x;
+uniform int sk_domain_shift;
+uniform int sk_fan;
+uniform int sk_length;
+uniform int sk_start;
+uniform int sk_shift;
+layout(location = 0) out float sk_out_total;
+
+// Texel of element number n in a texture of width 1 << s.
+ivec2 sk_texel(int sk_n, int sk_s) {
+  return ivec2(sk_n & ((1 << sk_s) - 1), sk_n >> sk_s);
+}
+
+#line 1 1
+void sum(float x, inout float total) {
+  total += x;
+}
+#line 22 0
+
+void main() {
+  int sk_first = (int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x)) * sk_fan;
+  int sk_count = min(sk_fan, sk_length - sk_first);
+  int sk_at = sk_start + sk_first;
+  float sk_total = texelFetch(sk_tex_x, sk_texel(sk_at, sk_shift), 0).x;
+  for (int sk_k = 1; sk_k < sk_count; ++sk_k) {
+    sum(texelFetch(sk_tex_x, sk_texel(sk_at + sk_k, sk_shift), 0).x, sk_total);
+  }
+  sk_out_total = sk_total;
+}
+)");
+}
+
+TEST_CASE("a plane is walked row by row") {
+  CHECK(mainOf(samples::sum, {.walk = Walk::Plane}) == R"(void main() {
+  int sk_first = (int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x)) * sk_fan;
+  int sk_count = min(sk_fan, sk_length - sk_first);
+  ivec2 sk_corner = sk_origin.xy;
+  int sk_y = sk_first / sk_block_shape.x;
+  ivec2 sk_p = sk_corner + ivec2(sk_first - sk_y * sk_block_shape.x, sk_y);
+  int sk_end = sk_corner.x + sk_block_shape.x;
+  float sk_total = texelFetch(sk_tex_x, sk_p, 0).x;
+  for (int sk_k = 1; sk_k < sk_count; ++sk_k) {
+    ++sk_p.x;
+    if (sk_p.x == sk_end) sk_p = ivec2(sk_corner.x, sk_p.y + 1);
+    sum(texelFetch(sk_tex_x, sk_p, 0).x, sk_total);
+  }
+  sk_out_total = sk_total;
+}
+)");
+}
+
+TEST_CASE("small blocks take no division, and a run without a seed starts from the identity") {
+  CHECK(
+      mainOf(samples::countTrue, {.walk = Walk::Plane, .runs = Runs::WholeBlocks, .domain = Domain::Plane}) ==
+      R"(void main() {
+  int sk_count = sk_length;
+  ivec2 sk_corner = sk_origin.xy + sk_index().xy * sk_block_shape.xy;
+  ivec2 sk_p = sk_corner;
+  int sk_end = sk_corner.x + sk_block_shape.x;
+  ivec3 sk_total = ivec3(0);
+  for (int sk_k = 0; sk_k < sk_count; ++sk_k) {
+    countTrue(notEqual(texelFetch(sk_tex_b, sk_p, 0).xyz, uvec3(0u)), sk_total);
+    ++sk_p.x;
+    if (sk_p.x == sk_end) sk_p = ivec2(sk_corner.x, sk_p.y + 1);
+  }
+  sk_out_count = ivec4(sk_total, 0);
+}
+)");
+}
+
+TEST_CASE("later passes combine partial results") {
+  CHECK(mainOf(samples::countTrue, {.walk = Walk::Partials, .runs = Runs::Split}) == R"(void main() {
+  int sk_number = int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x);
+  int sk_run = sk_number / sk_blocks;
+  int sk_block = sk_number - sk_run * sk_blocks;
+  int sk_first = sk_run * sk_fan;
+  int sk_count = min(sk_fan, sk_length - sk_first);
+  int sk_at = sk_first * sk_blocks + sk_block;
+  ivec3 sk_total = texelFetch(sk_tex_count, sk_texel(sk_at, sk_shift), 0).xyz;
+  for (int sk_k = 1; sk_k < sk_count; ++sk_k) {
+    countTrue_combine(texelFetch(sk_tex_count, sk_texel(sk_at + sk_k * sk_blocks, sk_shift), 0).xyz, sk_total);
+  }
+  sk_out_count = ivec4(sk_total, 0);
+}
+)");
+}
+
+TEST_CASE("structs are folded plane by plane") {
+  const std::string text = mainOf(samples::firstHit, {.walk = Walk::Partials, .runs = Runs::WholeBlocks});
+  CHECK(text == R"(void main() {
+  int sk_block = int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x);
+  int sk_count = sk_length;
+  Hit sk_total = sk_fetch_best(sk_texel(sk_block, sk_shift));
+  for (int sk_k = 1; sk_k < sk_count; ++sk_k) {
+    firstHit(sk_fetch_best(sk_texel(sk_block + sk_k * sk_blocks, sk_shift)), sk_total);
+  }
+  sk_out0_best = sk_total.t;
+  sk_out1_best = vec4(sk_total.at.normal, 0.0);
+  sk_out2_best = uint(sk_total.at.inside);
+  sk_out3_best = sk_total.id;
+}
+)");
+}
+
+TEST_CASE("a box is walked axis by axis") {
+  CHECK(mainOf(samples::sum, {.walk = Walk::Box, .runs = Runs::Split, .axes = 3}) == R"(void main() {
+  int sk_number = int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x);
+  int sk_run = sk_number / sk_blocks;
+  int sk_block = sk_number - sk_run * sk_blocks;
+  int sk_first = sk_run * sk_fan;
+  int sk_count = min(sk_fan, sk_length - sk_first);
+  int sk_at = sk_start + sk_ravel(sk_unravel(sk_block, sk_blocks_step) * sk_block_shape, sk_stride);
+  ivec4 sk_p = sk_unravel(sk_first, sk_block_step);
+  float sk_total = texelFetch(sk_tex_x, sk_texel(sk_at + sk_ravel(sk_p, sk_stride), sk_shift), 0).x;
+  for (int sk_k = 1; sk_k < sk_count; ++sk_k) {
+    ++sk_p.x;
+    if (sk_p.x == sk_block_shape.x) { sk_p.x = 0; ++sk_p.y; }
+    if (sk_p.y == sk_block_shape.y) { sk_p.y = 0; ++sk_p.z; }
+    sum(texelFetch(sk_tex_x, sk_texel(sk_at + sk_ravel(sk_p, sk_stride), sk_shift), 0).x, sk_total);
+  }
+  sk_out_total = sk_total;
+}
+)");
+}

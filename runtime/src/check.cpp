@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+//
+// The checks, in the order in which their messages help most.
+#include "check.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "device_state.hpp"
+#include "sk/error.hpp"
+#include "stream_state.hpp"
+
+namespace sk {
+
+namespace {
+
+using program::Element;
+using program::Field;
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+template <class... Values>
+[[noreturn]] void fail(const Kernel& kernel, fmt::format_string<Values...> format, Values&&... values) {
+  throw Error(fmt::format("{}: {}", kernel.name, fmt::format(format, std::forward<Values>(values)...)));
+}
+
+bool isSameField(const Field& a, const Field& b) {
+  return a.scalar == b.scalar && a.width == b.width && a.offset == b.offset;
+}
+
+/// Descriptors of one type may exist several times: in the headers of the runtime and in each .sk.cpp.
+bool isSameElement(const Element& a, const Element& b) {
+  return &a == &b || (a.size == b.size && a.fields.size() == b.fields.size() &&
+                      std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), isSameField));
+}
+
+/// A stream that lives, of the type that the parameter declares.
+StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const StreamRegion& region) {
+  if (region.stream == nullptr) {
+    fail(kernel, "'{}' is a stream that was moved from", parameter.name);
+  }
+  if (region.stream->device == nullptr) {
+    fail(kernel,
+         "'{}' is a stream whose device has been destroyed; keep the device for as long as its streams "
+         "are used",
+         parameter.name);
+  }
+  if (!isSameElement(*region.stream->element, *parameter.element)) {
+    fail(kernel, "'{}' is declared as {}, but its stream holds {}", parameter.name, parameter.element->name,
+         region.stream->element->name);
+  }
+  return *region.stream;
+}
+
+void checkSameDevice(const Kernel& kernel, const Parameter& a, const StreamState& first, const Parameter& b,
+                     const StreamState& second) {
+  if (first.device != second.device) {
+    fail(kernel,
+         "'{}' and '{}' are streams of two devices ('{}' and '{}'); copy one of them through host memory",
+         a.name, b.name, first.device->capabilities.renderer, second.device->capabilities.renderer);
+  }
+}
+
+void checkOutputShape(const Kernel& kernel, const Parameter& first, const Shape& domain,
+                      const Parameter& output, const Shape& shape) {
+  if (shape != domain) {
+    fail(kernel, "the outputs '{}' and '{}' have shapes {} and {}; give them the same shape", first.name,
+         output.name, toString(domain), toString(shape));
+  }
+}
+
+void checkInputShape(const Kernel& kernel, const Parameter& input, const Shape& shape,
+                     const Parameter& output, const Shape& domain) {
+  bool fits = shape.rank() == domain.rank();
+  for (int d = 0; fits && d < shape.rank(); ++d) {
+    fits = shape[d] == domain[d] || shape[d] == 1;
+  }
+  if (!fits) {
+    fail(kernel,
+         "'{}' has shape {}, but the output '{}' has {}; give them the same shape, or extent 1 where "
+         "'{}' repeats",
+         input.name, toString(shape), output.name, toString(domain), input.name);
+  }
+}
+
+void checkGatherShape(const Kernel& kernel, const Parameter& gather, const Shape& shape,
+                      const Shape& domain) {
+  if (shape.rank() != gather.rank) {
+    fail(kernel, "'{}' is declared with {} dimension(s), but its stream has shape {}", gather.name,
+         gather.rank, toString(shape));
+  }
+  if (shape.size() == 0 && domain.size() != 0) {
+    fail(kernel, "'{}' has shape {}: there is no element to read", gather.name, toString(shape));
+  }
+}
+
+bool overlap(const StreamRegion& a, const StreamRegion& b) {
+  if (a.stream != b.stream || a.shape.size() == 0 || b.shape.size() == 0) {
+    return false;
+  }
+  for (int d = 0; d < a.shape.rank(); ++d) {
+    if (a.begin[d] + a.shape[d] <= b.begin[d] || b.begin[d] + b.shape[d] <= a.begin[d]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void checkDisjoint(const Kernel& kernel, std::span<const Argument> arguments, std::size_t output) {
+  for (std::size_t i = 0; i < output; ++i) {
+    if (kernel.parameters[i].role == Role::Output && overlap(arguments[i].region, arguments[output].region)) {
+      fail(kernel,
+           "the outputs '{}' and '{}' overlap: both write elements of one stream; give them different "
+           "streams, or regions that have no element in common",
+           kernel.parameters[i].name, kernel.parameters[output].name);
+    }
+  }
+}
+
+void checkPlanes(const Kernel& kernel, const DeviceState& device, std::size_t written, std::size_t read) {
+  if (written > static_cast<std::size_t>(device.limits.drawBuffers)) {
+    fail(kernel,
+         "the outputs have {} planes (one a scalar, vector, or member of a struct), but this device writes "
+         "{} in one kernel; divide the kernel",
+         written, device.limits.drawBuffers);
+  }
+  if (read > static_cast<std::size_t>(device.limits.textureUnits)) {
+    fail(kernel,
+         "the inputs have {} planes (one a scalar, vector, or member of a struct), but this device reads "
+         "{} in one kernel; divide the kernel",
+         read, device.limits.textureUnits);
+  }
+}
+
+std::size_t firstOutput(const Kernel& kernel) {
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    if (kernel.parameters[i].role == Role::Output) {
+      return i;
+    }
+  }
+  fail(kernel, "no output is declared, so that there is nothing to run over");
+}
+
+}  // namespace
+
+DeviceState& checkCall(const Kernel& kernel, std::span<const Argument> arguments) {
+  const std::span<const Parameter> parameters = kernel.parameters;
+  if (arguments.size() != parameters.size()) {
+    fail(kernel, "{} arguments are given, but {} are declared", arguments.size(), parameters.size());
+  }
+  const std::size_t first = firstOutput(kernel);
+  const Shape& domain = arguments[first].region.shape;
+  StreamState& firstStream = checkStream(kernel, parameters[first], arguments[first].region);
+  std::size_t written = 0;
+  std::size_t read = 0;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& parameter = parameters[i];
+    const StreamRegion& region = arguments[i].region;
+    if (parameter.role == Role::Uniform) {
+      if (arguments[i].value == nullptr) {
+        fail(kernel, "'{}' has no value", parameter.name);
+      }
+      continue;
+    }
+    checkSameDevice(kernel, parameters[first], firstStream, parameter,
+                    checkStream(kernel, parameter, region));
+    if (parameter.role == Role::Output) {
+      written += parameter.element->fields.size();
+      checkOutputShape(kernel, parameters[first], domain, parameter, region.shape);
+      checkDisjoint(kernel, arguments, i);
+      continue;
+    }
+    read += parameter.element->fields.size();
+    if (parameter.role == Role::Gather) {
+      checkGatherShape(kernel, parameter, region.shape, domain);
+    } else {
+      checkInputShape(kernel, parameter, region.shape, parameters[first], domain);
+    }
+  }
+  checkPlanes(kernel, *firstStream.device, written, read);
+  return *firstStream.device;
+}
+
+DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input) {
+  const Kernel& fold = reduction.fold;
+  const Parameter& element = fold.parameters[0];
+  const Parameter& accumulator = fold.parameters[1];
+  DeviceState& device = *checkStream(fold, element, input).device;
+  const std::size_t partial = accumulator.element->fields.size();
+  checkPlanes(fold, device, partial, std::max(element.element->fields.size(), partial));
+  if (input.shape.size() == 0 && accumulator.identity.empty()) {
+    fail(fold, "'{}' has shape {}: there is no element to fold, and '{}' declares no identity", element.name,
+         toString(input.shape), accumulator.name);
+  }
+  return device;
+}
+
+DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input,
+                            const StreamRegion& output) {
+  const Kernel& fold = reduction.fold;
+  const Parameter& element = fold.parameters[0];
+  const Parameter& accumulator = fold.parameters[1];
+  const StreamState& inputStream = checkStream(fold, element, input);
+  const StreamState& outputStream = checkStream(fold, accumulator, output);
+  checkSameDevice(fold, element, inputStream, accumulator, outputStream);
+  bool fits = input.shape.rank() == output.shape.rank();
+  for (int d = 0; fits && d < input.shape.rank(); ++d) {
+    fits = output.shape[d] == 0 ? input.shape[d] == 0 : input.shape[d] % output.shape[d] == 0;
+  }
+  if (!fits) {
+    fail(fold,
+         "'{}' has shape {}, and the output '{}' has {}; give the output as many dimensions, each extent a "
+         "divisor of the input's",
+         element.name, toString(input.shape), accumulator.name, toString(output.shape));
+  }
+  if (output.shape.size() == 0) {
+    return *inputStream.device;
+  }
+  return checkReduction(reduction, input);
+}
+
+}  // namespace sk

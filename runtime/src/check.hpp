@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+//
+// Everything that can be wrong with the arguments of a call, found before any of it runs. Each check
+// throws sk::Error naming the kernel, the parameters and the shapes.
+#pragma once
+
+#include <span>
+
+#include "sk/call.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+class DeviceState;
+
+/// Checks the arguments of a kernel: number, streams, device, element types, ranks, shapes, planes,
+/// outputs that overlap. Returns the device of all of them.
+DeviceState& checkCall(const program::Kernel& kernel, std::span<const Argument> arguments);
+
+/// Checks the input of a reduction, and that an empty one has an identity. Returns its device.
+DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input);
+
+/// The same for a reduction to a stream, and that the output's extents divide the input's.
+DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input,
+                            const StreamRegion& output);
+
+}  // namespace sk

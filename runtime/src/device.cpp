@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+//
+// Devices: what the user and the environment ask for, and the public face of DeviceState.
+#include "sk/device.hpp"
+
+#include <cstdlib>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "assemble/assemble.hpp"
+#include "device_state.hpp"
+#include "gl/commands.hpp"
+#include "sk/error.hpp"
+#include "stream_state.hpp"
+
+namespace sk {
+
+namespace {
+
+/// What the option says, else what the environment says.
+std::string chosen(const std::string& option, const char* variable) {
+  const char* value = std::getenv(variable);
+  return !option.empty() || value == nullptr ? option : value;
+}
+
+std::optional<gl::Api> apiOf(const std::string& profile) {
+  if (profile.empty()) {
+    return std::nullopt;
+  }
+  if (const assemble::Profile* found = assemble::findProfile(profile)) {
+    return found->es ? gl::Api::Es : gl::Api::Gl;
+  }
+  std::string known;
+  for (const assemble::Profile& row : assemble::profiles()) {
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", row.name);
+  }
+  throw Error(
+      fmt::format("there is no profile '{}'; choose one of {} (option or SK_PROFILE)", profile, known));
+}
+
+std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
+  const gl::OpenRequest request{chosen(options.device, "SK_DEVICE"),
+                                apiOf(chosen(options.profile, "SK_PROFILE"))};
+  return std::make_unique<DeviceState>(gl::openContext(request), options.textureLimit);
+}
+
+}  // namespace
+
+Device::Device() : Device(DeviceOptions{}) {}
+Device::Device(std::string_view device) : Device(DeviceOptions{.device = std::string(device)}) {}
+Device::Device(const DeviceOptions& options) : state_(open(options)) {}
+Device::Device(std::unique_ptr<DeviceState> state) : state_(std::move(state)) {}
+Device::~Device() = default;
+Device::Device(Device&& other) noexcept = default;
+Device& Device::operator=(Device&& other) noexcept = default;
+
+Device Device::adopt(const DeviceOptions& options) {
+  return Device(
+      std::make_unique<DeviceState>(gl::adoptContext(apiOf(options.profile)), options.textureLimit));
+}
+
+DeviceState& Device::state() const {
+  if (!state_) {
+    throw Error("the device was moved from");
+  }
+  return *state_;
+}
+
+detail::StreamOwner Device::createStream(const program::Element& element, const Shape& shape) {
+  const DeviceScope scope(state());
+  return detail::StreamOwner(new StreamState(state(), element, shape));
+}
+
+const std::string& Device::name() const { return state().capabilities.renderer; }
+std::string_view Device::profile() const { return state().profile->name; }
+const DeviceLimits& Device::limits() const { return state().limits; }
+bool Device::isSoftware() const { return state().capabilities.isSoftware; }
+
+void Device::finish() {
+  const DeviceScope scope(state());
+  gl::finish();
+  state().throwPendingError();
+}
+
+void Device::release() { state().context.release(); }
+
+}  // namespace sk

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+//
+// A device's beginning and end.
+#include "device_state.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "gl/errors.hpp"
+#include "sk/error.hpp"
+#include "stream_state.hpp"
+
+namespace sk {
+
+DeviceState::DeviceState(gl::OpenedContext&& opened, std::int32_t textureLimit)
+    : context(std::move(opened.context)),
+      capabilities(std::move(opened.capabilities)),
+      profile(assemble::findProfile(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300")),
+      framebuffers(bound),
+      pool(bound, framebuffers),
+      programs(*this) {
+  limits.textureSize = capabilities.textureSize;
+  if (textureLimit > 0 && textureLimit < limits.textureSize) {
+    limits.textureSize = textureLimit;
+  }
+  limits.drawBuffers = capabilities.drawBuffers;
+  limits.textureUnits = capabilities.textureUnits;
+  const gl::CurrentScope current(context);
+  vertexArray = gl::VertexArray::create();
+  if (!context.isAdopted()) {
+    gl::setPassState(capabilities);
+  }
+}
+
+// GL objects are deleted only with their context current. Where it cannot be made current, because
+// another thread has it or the application has ended it, they are left to die with it.
+DeviceState::~DeviceState() {
+  std::optional<gl::CurrentScope> current;
+  try {
+    current.emplace(context);
+  } catch (const Error&) {
+    forgetObjects();
+  }
+  while (firstStream_ != nullptr) {
+    StreamState& stream = *firstStream_;
+    remove(stream);
+    stream.device = nullptr;
+    stream.planes.clear();
+  }
+  if (current) {
+    pool.clear();
+    framebuffers.clear();
+    programs.clear();
+    vertexArray = {};
+  }
+}
+
+void DeviceState::forgetObjects() noexcept {
+  for (StreamState* stream = firstStream_; stream != nullptr; stream = stream->next_) {
+    for (Surface& plane : stream->planes) {
+      plane.forget();
+    }
+  }
+  pool.forget();
+  framebuffers.forget();
+  programs.forget();
+  vertexArray.forget();
+}
+
+void DeviceState::add(StreamState& stream) noexcept {
+  stream.next_ = firstStream_;
+  if (firstStream_ != nullptr) {
+    firstStream_->previous_ = &stream;
+  }
+  firstStream_ = &stream;
+}
+
+void DeviceState::remove(StreamState& stream) noexcept {
+  (stream.previous_ == nullptr ? firstStream_ : stream.previous_->next_) = stream.next_;
+  if (stream.next_ != nullptr) {
+    stream.next_->previous_ = stream.previous_;
+  }
+  stream.previous_ = stream.next_ = nullptr;
+}
+
+std::vector<Surface> DeviceState::takePlanes(const program::Element& element, std::int32_t width,
+                                             std::int32_t height, std::string_view whatFor) {
+  std::vector<Surface> planes;
+  planes.reserve(element.fields.size());
+  for (const program::Field& field : element.fields) {
+    const gl::Format& format = gl::formatOf(field);
+    Surface plane = pool.take(format, width, height);
+    if (!plane) {
+      givePlanes(planes);
+      const std::size_t bytes =
+          format.texelBytes() * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+      throw Error(
+          fmt::format("'{}' has no memory for {}: {} texture(s) of {} x {} texels, one of them of {} MiB",
+                      capabilities.renderer, whatFor, element.fields.size(), width, height, bytes >> 20));
+    }
+    planes.push_back(std::move(plane));
+  }
+  return planes;
+}
+
+void DeviceState::givePlanes(std::vector<Surface>& planes) noexcept {
+  for (Surface& plane : planes) {
+    pool.give(std::move(plane));
+  }
+  planes.clear();
+}
+
+// An application's own mistakes in an adopted context are not ours to report.
+void DeviceState::throwPendingError() {
+  const GLenum error = gl::takeError();
+  const bool isOurs = !context.isAdopted() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
+  if (error != GL_NO_ERROR && isOurs) {
+    throw Error(fmt::format("the driver of '{}' reports {}; what the device's streams hold is undefined",
+                            capabilities.renderer, gl::errorName(error)));
+  }
+}
+
+}  // namespace sk

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+//
+// Framebuffers over several textures, kept by the names of the textures.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <unordered_map>
+
+#include "gl/capabilities.hpp"
+#include "gl/framebuffer.hpp"
+
+namespace sk {
+
+class FramebufferCache {
+ public:
+  explicit FramebufferCache(gl::BoundState& bound) : bound_(bound) {}
+
+  /// The framebuffer that draws to `textures`, 1 to gl::maxDrawBuffers. Throws sk::Error where the
+  /// driver cannot draw to these together.
+  GLuint framebufferName(std::span<const GLuint> textures);
+
+  /// Forgets the framebuffers of a texture that is about to be deleted.
+  void dropTexture(GLuint texture);
+  void clear() { framebuffers_.clear(); }
+  void forget() noexcept;
+
+ private:
+  using Key = std::array<GLuint, gl::maxDrawBuffers>;
+  struct Hash {
+    std::size_t operator()(const Key& key) const;
+  };
+  static constexpr std::size_t capacity = 256;
+
+  gl::BoundState& bound_;
+  std::unordered_map<Key, gl::Framebuffer, Hash> framebuffers_;
+};
+
+}  // namespace sk

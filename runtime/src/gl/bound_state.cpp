@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+//
+// The less frequent half of the tracked bindings.
+#include "gl/bound_state.hpp"
+
+namespace sk::gl {
+
+void BoundState::drawFramebuffer(GLuint name) {
+  if (drawFramebuffer_ != name) {
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name);
+    drawFramebuffer_ = name;
+  }
+}
+
+void BoundState::readFramebuffer(GLuint name) {
+  if (readFramebuffer_ != name) {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, name);
+    readFramebuffer_ = name;
+  }
+}
+
+void BoundState::forget() {
+  program_ = vertexArray_ = drawFramebuffer_ = readFramebuffer_ = unknown;
+  viewport_ = {-1, -1, -1, -1};
+  activeUnit_ = -1;
+  textures_ = unknownUnits();
+}
+
+void BoundState::bindTexture(int unit, GLuint name) {
+  const auto slot = static_cast<std::size_t>(unit);
+  activateUnit(unit);
+  if (isApplications_ && !keptUnits_[slot].kept) {
+    keepUnit(slot);
+  }
+  glBindTexture(GL_TEXTURE_2D, name);
+  textures_[slot] = name;
+}
+
+void BoundState::activateUnit(int unit) {
+  if (activeUnit_ != unit) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    activeUnit_ = unit;
+  }
+}
+
+void BoundState::keepUnit(std::size_t unit) {
+  KeptUnit& kept = keptUnits_[unit];
+  glGetIntegerv(GL_TEXTURE_BINDING_2D, &kept.texture);
+  glGetIntegerv(GL_SAMPLER_BINDING, &kept.sampler);
+  kept.kept = true;
+  glBindSampler(static_cast<GLuint>(unit), 0);
+}
+
+void BoundState::setViewport(const std::array<GLint, 4>& rectangle) const {
+  if (hasManyViewports_) {
+    glViewportIndexedf(0, static_cast<GLfloat>(rectangle[0]), static_cast<GLfloat>(rectangle[1]),
+                       static_cast<GLfloat>(rectangle[2]), static_cast<GLfloat>(rectangle[3]));
+  } else {
+    glViewport(rectangle[0], rectangle[1], rectangle[2], rectangle[3]);
+  }
+}
+
+void BoundState::enterApplication(bool hasManyViewports) {
+  forget();
+  isApplications_ = true;
+  hasManyViewports_ = hasManyViewports;
+}
+
+void BoundState::leaveApplication(GLint activeUnit) {
+  for (std::size_t unit = 0; unit < keptUnits_.size(); ++unit) {
+    KeptUnit& kept = keptUnits_[unit];
+    if (kept.kept) {
+      activateUnit(static_cast<int>(unit));
+      glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(kept.texture));
+      glBindSampler(static_cast<GLuint>(unit), static_cast<GLuint>(kept.sampler));
+      kept = {};
+    }
+  }
+  glActiveTexture(static_cast<GLenum>(activeUnit));
+  isApplications_ = hasManyViewports_ = false;
+  forget();
+}
+
+}  // namespace sk::gl

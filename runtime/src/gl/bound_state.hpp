@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+//
+// What is bound in a context, so that nothing is bound twice. The one place that binds: whoever binds
+// past it, or deletes an object, must call forget(). In an adopted context it also remembers what
+// the application had on the texture units that it takes, and gives it back.
+#pragma once
+
+#include <array>
+
+#include <epoxy/gl.h>
+
+namespace sk::gl {
+
+/// Texture units that may be used: no context that we know has more for a fragment program.
+inline constexpr int maxTextureUnits = 32;
+
+class BoundState {
+ public:
+  void program(GLuint name) {
+    if (program_ != name) {
+      glUseProgram(name);
+      program_ = name;
+    }
+  }
+  void vertexArray(GLuint name) {
+    if (vertexArray_ != name) {
+      glBindVertexArray(name);
+      vertexArray_ = name;
+    }
+  }
+  void texture(int unit, GLuint name) {
+    if (textures_[static_cast<std::size_t>(unit)] != name) {
+      bindTexture(unit, name);
+    }
+  }
+  /// For drawing and for reading.
+  void framebuffer(GLuint name) {
+    if (drawFramebuffer_ != name || readFramebuffer_ != name) {
+      glBindFramebuffer(GL_FRAMEBUFFER, name);
+      drawFramebuffer_ = readFramebuffer_ = name;
+    }
+  }
+  void drawFramebuffer(GLuint name);
+  void readFramebuffer(GLuint name);
+  void viewport(GLint x, GLint y, GLsizei width, GLsizei height) {
+    const std::array<GLint, 4> wanted{x, y, width, height};
+    if (viewport_ != wanted) {
+      setViewport(wanted);
+      viewport_ = wanted;
+    }
+  }
+
+  /// Nothing is known of what is bound.
+  void forget();
+
+  /// From here on this is the application's context: the texture and sampler of a unit are kept as the
+  /// unit is first used, and of several viewports only the first is set.
+  void enterApplication(bool hasManyViewports);
+  /// Gives back what was kept, and the active unit `activeUnit`.
+  void leaveApplication(GLint activeUnit);
+
+ private:
+  void bindTexture(int unit, GLuint name);
+  void activateUnit(int unit);
+  void keepUnit(std::size_t unit);
+  void setViewport(const std::array<GLint, 4>& rectangle) const;
+
+  struct KeptUnit {
+    bool kept = false;
+    GLint texture = 0;
+    GLint sampler = 0;
+  };
+  // No object has this name, so that whatever is bound next is bound.
+  static constexpr GLuint unknown = ~GLuint{0};
+  static constexpr std::array<GLuint, maxTextureUnits> unknownUnits() {
+    std::array<GLuint, maxTextureUnits> units;
+    units.fill(unknown);
+    return units;
+  }
+
+  GLuint program_ = unknown;
+  GLuint vertexArray_ = unknown;
+  GLuint drawFramebuffer_ = unknown;
+  GLuint readFramebuffer_ = unknown;
+  std::array<GLint, 4> viewport_{-1, -1, -1, -1};
+  int activeUnit_ = -1;
+  std::array<GLuint, maxTextureUnits> textures_ = unknownUnits();
+  bool isApplications_ = false;
+  bool hasManyViewports_ = false;
+  std::array<KeptUnit, maxTextureUnits> keptUnits_{};
+};
+
+}  // namespace sk::gl

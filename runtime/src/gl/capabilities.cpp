@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+//
+// Asking a context for its limits, and trying the formats.
+#include "gl/capabilities.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include "gl/bound_state.hpp"
+#include "gl/errors.hpp"
+#include "gl/framebuffer.hpp"
+#include "gl/texture.hpp"
+
+namespace sk::gl {
+
+namespace {
+
+std::string stringOf(GLenum name) {
+  const auto* text = reinterpret_cast<const char*>(glGetString(name));
+  return text == nullptr ? "" : text;
+}
+
+int integerOf(GLenum name) {
+  GLint value = 0;
+  glGetIntegerv(name, &value);
+  return value;
+}
+
+bool isSoftwareRenderer(std::string renderer) {
+  std::transform(renderer.begin(), renderer.end(), renderer.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::string_view names[] = {"llvmpipe", "softpipe", "swrast", "software", "swiftshader", "swr"};
+  return std::any_of(std::begin(names), std::end(names),
+                     [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
+}
+
+int largestTexture() {
+  GLint viewport[2] = {0, 0};
+  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
+  return std::min({integerOf(GL_MAX_TEXTURE_SIZE), viewport[0], viewport[1]});
+}
+
+bool canDrawTo(const Format& format, BoundState& bound) {
+  const Texture texture(bound, format, 1, 1);
+  if (texture.name() == 0) {
+    return false;
+  }
+  const GLuint names[] = {texture.name()};
+  const Framebuffer framebuffer(bound, names);
+  return Framebuffer::isComplete();
+}
+
+}  // namespace
+
+Capabilities readCapabilities() {
+  Capabilities found;
+  found.api = epoxy_is_desktop_gl() ? Api::Gl : Api::Es;
+  found.version = epoxy_gl_version();
+  found.renderer = stringOf(GL_RENDERER);
+  found.driver = stringOf(GL_VERSION);
+  found.isSoftware = isSoftwareRenderer(found.renderer);
+  if (found.version < 30) {
+    return found;
+  }
+  if (found.api == Api::Gl && found.version >= 32) {
+    found.isCompatibility = (integerOf(GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_COMPATIBILITY_PROFILE_BIT) != 0;
+  }
+  found.textureSize = largestTexture();
+  found.drawBuffers =
+      std::min({integerOf(GL_MAX_DRAW_BUFFERS), integerOf(GL_MAX_COLOR_ATTACHMENTS), maxDrawBuffers});
+  found.textureUnits = std::min(integerOf(GL_MAX_TEXTURE_IMAGE_UNITS), maxTextureUnits);
+  return found;
+}
+
+std::string whyUnfit(const Capabilities& capabilities, BoundState& bound) {
+  const bool isGl = capabilities.api == Api::Gl;
+  const int needed = isGl ? 33 : 30;
+  if (capabilities.version < needed) {
+    return fmt::format("it offers {} {}.{} ({}), and {} is needed", isGl ? "OpenGL" : "OpenGL ES",
+                       capabilities.version / 10, capabilities.version % 10, capabilities.driver,
+                       isGl ? "3.3" : "3.0");
+  }
+  if (!isGl && !epoxy_has_gl_extension("GL_EXT_color_buffer_float")) {
+    return "it cannot draw to float textures: GL_EXT_color_buffer_float is missing";
+  }
+  std::string missing;
+  for (const Format& format : formats()) {
+    if (!canDrawTo(format, bound)) {
+      missing += missing.empty() ? "" : ", ";
+      missing += format.name;
+    }
+  }
+  bound.framebuffer(0);
+  bound.texture(0, 0);
+  bound.forget();
+  dropErrors();
+  return missing.empty() ? "" : "it cannot draw to textures of format " + missing;
+}
+
+}  // namespace sk::gl

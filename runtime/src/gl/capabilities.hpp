@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// What the current context can do, and whether that is enough for us.
+#pragma once
+
+#include <string>
+
+#include "gl/context.hpp"
+
+namespace sk::gl {
+
+class BoundState;
+
+struct Capabilities {
+  Api api = Api::Gl;
+  int version = 0;               ///< 10 * major + minor
+  bool isCompatibility = false;  ///< GL with the fixed functions
+  bool isSoftware = false;
+  std::string renderer;
+  std::string driver;            ///< GL_VERSION, as the driver words it
+  int textureSize = 0;           ///< also as a viewport
+  int drawBuffers = 0;
+  int textureUnits = 0;          ///< at most maxTextureUnits
+};
+
+/// Planes that one pass may write at most, whatever the device allows.
+inline constexpr int maxDrawBuffers = 16;
+
+/// Asks the current context.
+Capabilities readCapabilities();
+
+/// Why the current context cannot serve, in words that follow "because"; empty where it can. Tries
+/// to draw to each format, which needs no state but framebuffer 0 and unit 0 put back afterwards.
+std::string whyUnfit(const Capabilities& capabilities, BoundState& bound);
+
+}  // namespace sk::gl

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+//
+// Reading GL's error flags.
+#include "gl/errors.hpp"
+
+namespace sk::gl {
+
+GLenum takeError() {
+  const GLenum first = glGetError();
+  if (first != GL_NO_ERROR) {
+    for (int flag = 0; flag < 16 && glGetError() != GL_NO_ERROR; ++flag) {
+    }
+  }
+  return first;
+}
+
+const char* errorName(GLenum error) {
+  switch (error) {
+    case GL_INVALID_ENUM: return "GL_INVALID_ENUM";
+    case GL_INVALID_VALUE: return "GL_INVALID_VALUE";
+    case GL_INVALID_OPERATION: return "GL_INVALID_OPERATION";
+    case GL_INVALID_FRAMEBUFFER_OPERATION: return "GL_INVALID_FRAMEBUFFER_OPERATION";
+    case GL_OUT_OF_MEMORY: return "GL_OUT_OF_MEMORY";
+    case GL_CONTEXT_LOST: return "GL_CONTEXT_LOST";
+    case GL_NO_ERROR: return "GL_NO_ERROR";
+    default: return "an unknown GL error";
+  }
+}
+
+}  // namespace sk::gl

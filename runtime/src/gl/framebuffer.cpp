@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+//
+// Making a framebuffer.
+#include "gl/framebuffer.hpp"
+
+#include <vector>
+
+#include "gl/bound_state.hpp"
+
+namespace sk::gl {
+
+namespace {
+
+GLuint newFramebuffer() {
+  GLuint name = 0;
+  glGenFramebuffers(1, &name);
+  return name;
+}
+
+}  // namespace
+
+void deleteFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
+
+Framebuffer::Framebuffer(BoundState& bound, std::span<const GLuint> textures) : name_(newFramebuffer()) {
+  bound.framebuffer(name());
+  std::vector<GLenum> attachments;
+  for (const GLuint texture : textures) {
+    attachments.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(attachments.size()));
+    glFramebufferTexture2D(GL_FRAMEBUFFER, attachments.back(), GL_TEXTURE_2D, texture, 0);
+  }
+  glDrawBuffers(static_cast<GLsizei>(attachments.size()), attachments.data());
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+}
+
+void Framebuffer::read(BoundState& bound, const Transfer& transfer, GLint x, GLint y, GLsizei width,
+                       GLsizei height, void* texels) const {
+  bound.framebuffer(name());
+  glReadPixels(x, y, width, height, transfer.format, transfer.type, texels);
+}
+
+bool Framebuffer::readsOnEs(BoundState& bound, const Transfer& transfer) const {
+  bound.framebuffer(name());
+  GLint format = 0;
+  GLint type = 0;
+  glGetIntegerv(GL_IMPLEMENTATION_COLOR_READ_FORMAT, &format);
+  glGetIntegerv(GL_IMPLEMENTATION_COLOR_READ_TYPE, &type);
+  return static_cast<GLenum>(format) == transfer.format && static_cast<GLenum>(type) == transfer.type;
+}
+
+}  // namespace sk::gl

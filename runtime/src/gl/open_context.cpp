@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+//
+// The search for a context that serves. Every failure is kept for the report; nothing is printed.
+#include "gl/open_context.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "gl/bound_state.hpp"
+#include "gl/create_context.hpp"
+#include "gl/displays.hpp"
+#include "gl/saved_state.hpp"
+#include "gl/wanted_device.hpp"
+#include "sk/error.hpp"
+
+namespace sk::gl {
+
+namespace {
+
+/// The attempts of one search, and what came of them.
+class Search {
+ public:
+  explicit Search(const OpenRequest& request)
+      : request_(request), wanted_(WantedDevice::parse(request.device)) {}
+
+  OpenedContext run() {
+    if (const std::string why = whyNoEglLibrary(); !why.empty()) {
+      failed("EGL", why);
+      report();
+    }
+    for (const DisplayCandidate& candidate : displayCandidates()) {
+      std::optional<OpenedContext> opened = isWorthTrying(candidate) ? tryCandidate(candidate) : std::nullopt;
+      if (!opened) {
+        continue;
+      }
+      if (wanted_.kind != WantedDevice::Kind::Best || !opened->capabilities.isSoftware) {
+        return std::move(*opened);
+      }
+      if (!software_) {
+        software_.emplace(std::move(*opened));
+      }
+    }
+    if (!software_) {
+      report();
+    }
+    return std::move(*software_);
+  }
+
+ private:
+  /// Software that was found serves unless a GPU turns up, and that is not looked for on the default
+  /// display, which may be somebody's screen.
+  bool isWorthTrying(const DisplayCandidate& candidate) {
+    using Kind = DisplayCandidate::Kind;
+    if (software_ && (candidate.isSoftware || candidate.kind == Kind::Default)) {
+      return false;
+    }
+    if (candidate.isSoftware && !wanted_.mayBeSoftware()) {
+      return failed(candidate.name, "it is no GPU");
+    }
+    if (wanted_.kind == WantedDevice::Kind::NumberedGpu) {
+      if (candidate.kind != Kind::Device) {
+        return false;
+      }
+      const int number = gpus_++;
+      return number == wanted_.number || failed(candidate.name, fmt::format("it is gpu:{}", number));
+    }
+    return true;
+  }
+
+  std::optional<OpenedContext> tryCandidate(const DisplayCandidate& candidate) {
+    EGLDisplay display = openDisplay(candidate);
+    if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) {
+      failed(candidate.name, fmt::format("it cannot be opened ({})", eglErrorName(eglGetError())));
+      return std::nullopt;
+    }
+    for (const Api api : {Api::Gl, Api::Es}) {
+      if (request_.api.value_or(api) != api) {
+        continue;
+      }
+      if (std::optional<OpenedContext> opened = tryApi(candidate.name, display, api)) {
+        const std::string why = wanted_.whyNot(opened->capabilities);
+        if (why.empty()) {
+          return opened;
+        }
+        failed(candidate.name, why);
+        return std::nullopt;
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// A context that serves, whether it is the one that is wanted or not.
+  std::optional<OpenedContext> tryApi(const std::string& name, EGLDisplay display, Api api) {
+    std::string why = whyNoLibrary(api);
+    if (std::optional<Context> context = why.empty() ? createContext(display, api, why) : std::nullopt) {
+      OpenedContext opened{std::move(*context), {}};
+      why = examine(opened);
+      if (why.empty()) {
+        return opened;
+      }
+    }
+    failed(fmt::format("{} ({})", name, api == Api::Gl ? "OpenGL" : "OpenGL ES"), why);
+    return std::nullopt;
+  }
+
+  /// Reads what the context can do; why that is not enough, or empty.
+  static std::string examine(OpenedContext& opened) {
+    try {
+      const CurrentScope scope(opened.context);
+      opened.capabilities = readCapabilities();
+      BoundState bound;
+      return whyUnfit(opened.capabilities, bound);
+    } catch (const Error& error) {
+      return error.what();
+    }
+  }
+
+  bool failed(const std::string& attempt, const std::string& why) {
+    attempts_ += fmt::format("\n  {}: {}", attempt, why);
+    return false;
+  }
+
+  [[noreturn]] void report() const {
+    const std::string what = request_.device.empty()
+                                 ? "no device was found"
+                                 : fmt::format("no device '{}' was found", request_.device);
+    throw Error(fmt::format(
+        "{}; tried without a window:{}\n"
+        "  what can be done: install a driver (for software rendering on Debian: apt-get install libegl1 "
+        "libgl1 "
+        "libgles2 libgl1-mesa-dri); let the user read and write /dev/dri/renderD*; choose another device by "
+        "SK_DEVICE (gpu, gpu:N, software, or a part of a renderer's name); see what EGL itself says by "
+        "EGL_LOG_LEVEL=debug; or adopt the context of a window (sk::Device::adopt)",
+        what, attempts_));
+  }
+
+  const OpenRequest& request_;
+  WantedDevice wanted_;
+  std::string attempts_;
+  std::optional<OpenedContext> software_;
+  int gpus_ = 0;
+};
+
+std::string whyUnfitSaved(const Capabilities& capabilities) {
+  BoundState bound;
+  if (capabilities.version < 30) {
+    return whyUnfit(capabilities, bound);
+  }
+  const SavedState saved(capabilities, bound);
+  return whyUnfit(capabilities, bound);
+}
+
+}  // namespace
+
+OpenedContext openContext(const OpenRequest& request) { return Search(request).run(); }
+
+OpenedContext adoptContext(std::optional<Api> api) {
+  std::optional<Context> context = Context::current();
+  if (!context) {
+    throw Error("there is no context to adopt; make one current on this thread by EGL or GLX first");
+  }
+  OpenedContext opened{std::move(*context), readCapabilities()};
+  const Api found = opened.capabilities.api;
+  if (api.value_or(found) != found) {
+    throw Error(fmt::format("the context to adopt is one of {}, which profile {} does not run on",
+                            found == Api::Gl ? "OpenGL" : "OpenGL ES",
+                            found == Api::Gl ? "essl300" : "glsl330"));
+  }
+  if (const std::string why = whyUnfitSaved(opened.capabilities); !why.empty()) {
+    throw Error("the current context cannot be adopted: " + why);
+  }
+  return opened;
+}
+
+}  // namespace sk::gl

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// A linked program of a vertex and a fragment shader.
+#pragma once
+
+#include <string>
+
+#include "gl/object_name.hpp"
+
+namespace sk::gl {
+
+inline void deleteProgram(GLuint name) { glDeleteProgram(name); }
+
+class Program {
+ public:
+  Program() = default;
+  /// Compiles and links. Where the driver refuses, the result is empty and `log` has its words.
+  static Program build(const std::string& vertexSource, const std::string& fragmentSource, std::string& log);
+
+  GLuint name() const { return name_.get(); }
+  explicit operator bool() const { return static_cast<bool>(name_); }
+  /// -1 where the program does not use the uniform.
+  GLint location(const std::string& uniform) const { return glGetUniformLocation(name(), uniform.c_str()); }
+  /// Gives a sampler its texture unit; the program must be bound.
+  void setSampler(const std::string& sampler, int unit) const { glUniform1i(location(sampler), unit); }
+  void forget() noexcept { name_.forget(); }
+
+ private:
+  explicit Program(GLuint name) : name_(name) {}
+
+  ObjectName<deleteProgram> name_;
+};
+
+}  // namespace sk::gl

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+//
+// Tables of the state that we set, and what saving and putting back each kind takes.
+#include "gl/saved_state.hpp"
+
+#include <algorithm>
+
+namespace sk::gl {
+
+namespace {
+
+/// Which contexts know a piece of state.
+enum class Needs { Nothing, Gl, Compatibility, Gl32OrEs31 };
+
+bool has(Needs needs, const Capabilities& capabilities) {
+  const bool isGl = capabilities.api == Api::Gl;
+  switch (needs) {
+    case Needs::Nothing: return true;
+    case Needs::Gl: return isGl;
+    case Needs::Compatibility: return capabilities.isCompatibility;
+    case Needs::Gl32OrEs31: return capabilities.version >= (isGl ? 32 : 31);
+  }
+  return false;
+}
+
+struct Toggle {
+  GLenum name;
+  Needs needs;
+};
+
+// All of them are off in a pass.
+constexpr std::array<Toggle, SavedState::toggleCount> toggles{{
+    {GL_DEPTH_TEST, Needs::Nothing},
+    {GL_STENCIL_TEST, Needs::Nothing},
+    {GL_CULL_FACE, Needs::Nothing},
+    {GL_RASTERIZER_DISCARD, Needs::Nothing},
+    {GL_SAMPLE_ALPHA_TO_COVERAGE, Needs::Nothing},
+    {GL_SAMPLE_COVERAGE, Needs::Nothing},
+    {GL_SAMPLE_MASK, Needs::Gl32OrEs31},
+    {GL_COLOR_LOGIC_OP, Needs::Gl},
+    {GL_POLYGON_SMOOTH, Needs::Gl},
+    {GL_CLIP_DISTANCE0, Needs::Gl},
+    {GL_CLIP_DISTANCE1, Needs::Gl},
+    {GL_CLIP_DISTANCE2, Needs::Gl},
+    {GL_CLIP_DISTANCE3, Needs::Gl},
+    {GL_CLIP_DISTANCE4, Needs::Gl},
+    {GL_CLIP_DISTANCE5, Needs::Gl},
+    {GL_CLIP_DISTANCE6, Needs::Gl},
+    {GL_CLIP_DISTANCE7, Needs::Gl},
+    {GL_ALPHA_TEST, Needs::Compatibility},
+    {GL_POLYGON_STIPPLE, Needs::Compatibility},
+}};
+
+struct PixelParameter {
+  GLenum name;
+  GLint value;   ///< in a pass
+  Needs needs;
+};
+
+constexpr std::array<PixelParameter, SavedState::pixelStoreCount> pixelParameters{{
+    {GL_UNPACK_ALIGNMENT, 1, Needs::Nothing},
+    {GL_UNPACK_ROW_LENGTH, 0, Needs::Nothing},
+    {GL_UNPACK_SKIP_ROWS, 0, Needs::Nothing},
+    {GL_UNPACK_SKIP_PIXELS, 0, Needs::Nothing},
+    {GL_UNPACK_IMAGE_HEIGHT, 0, Needs::Nothing},
+    {GL_UNPACK_SKIP_IMAGES, 0, Needs::Nothing},
+    {GL_UNPACK_SWAP_BYTES, 0, Needs::Gl},
+    {GL_UNPACK_LSB_FIRST, 0, Needs::Gl},
+    {GL_PACK_ALIGNMENT, 1, Needs::Nothing},
+    {GL_PACK_ROW_LENGTH, 0, Needs::Nothing},
+    {GL_PACK_SKIP_ROWS, 0, Needs::Nothing},
+    {GL_PACK_SKIP_PIXELS, 0, Needs::Nothing},
+    {GL_PACK_IMAGE_HEIGHT, 0, Needs::Gl},
+    {GL_PACK_SKIP_IMAGES, 0, Needs::Gl},
+    {GL_PACK_SWAP_BYTES, 0, Needs::Gl},
+    {GL_PACK_LSB_FIRST, 0, Needs::Gl},
+}};
+
+/// Whether blending and colour masks are kept for each draw buffer.
+bool hasIndexedDrawBuffers(const Capabilities& c) { return c.api == Api::Gl || c.version >= 32; }
+
+/// Whether there are several viewports, of which glViewport sets all.
+bool hasIndexedViewports(const Capabilities& c) { return c.api == Api::Gl && c.version >= 41; }
+
+bool hasFeedbackPause(const Capabilities& c) { return c.api == Api::Es || c.version >= 40; }
+
+GLint integerOf(GLenum name) {
+  GLint value = 0;
+  glGetIntegerv(name, &value);
+  return value;
+}
+
+void set(GLenum name, bool isOn) { isOn ? glEnable(name) : glDisable(name); }
+
+}  // namespace
+
+void setPassState(const Capabilities& capabilities) {
+  for (const Toggle& toggle : toggles) {
+    if (has(toggle.needs, capabilities)) {
+      glDisable(toggle.name);
+    }
+  }
+  for (const PixelParameter& parameter : pixelParameters) {
+    if (has(parameter.needs, capabilities)) {
+      glPixelStorei(parameter.name, parameter.value);
+    }
+  }
+  if (hasIndexedViewports(capabilities)) {
+    glDisablei(GL_SCISSOR_TEST, 0);
+  } else {
+    glDisable(GL_SCISSOR_TEST);
+  }
+  glDisable(GL_BLEND);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  if (capabilities.api == Api::Gl) {
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glClampColor(GL_CLAMP_READ_COLOR, GL_FALSE);
+  }
+}
+
+SavedState::SavedState(const Capabilities& capabilities, BoundState& bound)
+    : capabilities_(capabilities), bound_(bound) {
+  for (std::size_t i = 0; i < toggles.size(); ++i) {
+    toggles_[i] = has(toggles[i].needs, capabilities) && glIsEnabled(toggles[i].name) == GL_TRUE;
+  }
+  program_ = integerOf(GL_CURRENT_PROGRAM);
+  vertexArray_ = integerOf(GL_VERTEX_ARRAY_BINDING);
+  drawFramebuffer_ = integerOf(GL_DRAW_FRAMEBUFFER_BINDING);
+  readFramebuffer_ = integerOf(GL_READ_FRAMEBUFFER_BINDING);
+  activeUnit_ = integerOf(GL_ACTIVE_TEXTURE);
+  saveViewport();
+  saveDrawBuffers();
+  saveTransfer();
+  pauseFeedback();
+  setPassState(capabilities);
+  bound.enterApplication(hasIndexedViewports(capabilities));
+}
+
+SavedState::~SavedState() {
+  bound_.leaveApplication(activeUnit_);
+  glUseProgram(static_cast<GLuint>(program_));
+  glBindVertexArray(static_cast<GLuint>(vertexArray_));
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(drawFramebuffer_));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(readFramebuffer_));
+  restoreTransfer();
+  restoreDrawBuffers();
+  restoreViewport();
+  for (std::size_t i = 0; i < toggles.size(); ++i) {
+    if (toggles_[i]) {
+      glEnable(toggles[i].name);
+    }
+  }
+  if (isFeedbackPaused_) {
+    glResumeTransformFeedback();
+  }
+}
+
+// GL_POLYGON_MODE answers with two values in compatibility contexts and one in core ones.
+void SavedState::saveViewport() {
+  isScissored_ = glIsEnabled(GL_SCISSOR_TEST) == GL_TRUE;
+  if (hasIndexedViewports(capabilities_)) {
+    glGetFloati_v(GL_VIEWPORT, 0, viewport_.data());
+  } else {
+    glGetFloatv(GL_VIEWPORT, viewport_.data());
+  }
+  if (capabilities_.api == Api::Gl) {
+    glGetIntegerv(GL_POLYGON_MODE, polygonMode_.data());
+  }
+}
+
+void SavedState::restoreViewport() const {
+  if (hasIndexedViewports(capabilities_)) {
+    glViewportIndexedfv(0, viewport_.data());
+    isScissored_ ? glEnablei(GL_SCISSOR_TEST, 0) : glDisablei(GL_SCISSOR_TEST, 0);
+  } else {
+    glViewport(static_cast<GLint>(viewport_[0]), static_cast<GLint>(viewport_[1]),
+               static_cast<GLsizei>(viewport_[2]), static_cast<GLsizei>(viewport_[3]));
+    set(GL_SCISSOR_TEST, isScissored_);
+  }
+  if (capabilities_.isCompatibility) {
+    glPolygonMode(GL_FRONT, static_cast<GLenum>(polygonMode_[0]));
+    glPolygonMode(GL_BACK, static_cast<GLenum>(polygonMode_[1]));
+  } else if (capabilities_.api == Api::Gl) {
+    glPolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygonMode_[0]));
+  }
+}
+
+void SavedState::saveDrawBuffers() {
+  if (!hasIndexedDrawBuffers(capabilities_)) {
+    blend_[0] = glIsEnabled(GL_BLEND) == GL_TRUE;
+    glGetBooleanv(GL_COLOR_WRITEMASK, colorMask_[0].data());
+    return;
+  }
+  for (int i = 0; i < capabilities_.drawBuffers; ++i) {
+    const auto buffer = static_cast<std::size_t>(i);
+    blend_[buffer] = glIsEnabledi(GL_BLEND, static_cast<GLuint>(i)) == GL_TRUE;
+    glGetBooleani_v(GL_COLOR_WRITEMASK, static_cast<GLuint>(i), colorMask_[buffer].data());
+  }
+}
+
+void SavedState::restoreDrawBuffers() const {
+  if (!hasIndexedDrawBuffers(capabilities_)) {
+    set(GL_BLEND, blend_[0]);
+    const auto& mask = colorMask_[0];
+    glColorMask(mask[0], mask[1], mask[2], mask[3]);
+    return;
+  }
+  for (int i = 0; i < capabilities_.drawBuffers; ++i) {
+    const auto& mask = colorMask_[static_cast<std::size_t>(i)];
+    glColorMaski(static_cast<GLuint>(i), mask[0], mask[1], mask[2], mask[3]);
+    if (blend_[static_cast<std::size_t>(i)]) {
+      glEnablei(GL_BLEND, static_cast<GLuint>(i));
+    }
+  }
+}
+
+void SavedState::saveTransfer() {
+  for (std::size_t i = 0; i < pixelParameters.size(); ++i) {
+    if (has(pixelParameters[i].needs, capabilities_)) {
+      glGetIntegerv(pixelParameters[i].name, &pixelStore_[i]);
+    }
+  }
+  packBuffer_ = integerOf(GL_PIXEL_PACK_BUFFER_BINDING);
+  unpackBuffer_ = integerOf(GL_PIXEL_UNPACK_BUFFER_BINDING);
+  if (capabilities_.api == Api::Gl) {
+    clampReadColor_ = integerOf(GL_CLAMP_READ_COLOR);
+  }
+}
+
+void SavedState::restoreTransfer() const {
+  for (std::size_t i = 0; i < pixelParameters.size(); ++i) {
+    if (has(pixelParameters[i].needs, capabilities_)) {
+      glPixelStorei(pixelParameters[i].name, pixelStore_[i]);
+    }
+  }
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, static_cast<GLuint>(packBuffer_));
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, static_cast<GLuint>(unpackBuffer_));
+  if (capabilities_.api == Api::Gl) {
+    glClampColor(GL_CLAMP_READ_COLOR, static_cast<GLenum>(clampReadColor_));
+  }
+}
+
+// A draw while transform feedback runs would be captured by it, and the program cannot change.
+void SavedState::pauseFeedback() {
+  if (hasFeedbackPause(capabilities_) && integerOf(GL_TRANSFORM_FEEDBACK_ACTIVE) != 0 &&
+      integerOf(GL_TRANSFORM_FEEDBACK_PAUSED) == 0) {
+    glPauseTransformFeedback();
+    isFeedbackPaused_ = true;
+  }
+}
+
+}  // namespace sk::gl

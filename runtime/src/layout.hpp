@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// How a stream's elements lie in its textures: as they are where they fit, else linearised. Plain
+// arithmetic, no GL. Shapes are rows first on this side, x first on the assembler's.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "assemble/placement.hpp"
+#include "sk/shape.hpp"
+#include "sk/stream.hpp"
+
+namespace sk {
+
+struct Layout {
+  assemble::Placement whole;             ///< where the stream's elements are
+  std::int32_t width = 0;                ///< of each texture; 0 where the stream is empty
+  std::int32_t height = 0;
+  std::vector<assemble::Rect> draws;     ///< what a pass over the whole stream draws
+};
+
+/// The layout of a stream of this shape where no texture may be wider or higher than `textureLimit`.
+/// Throws sk::Error where it does not fit in one texture, or has no dimension.
+Layout layoutOf(const Shape& shape, std::int32_t textureLimit);
+
+/// Where the elements of a region lie, given the layout of its stream.
+assemble::Placement placementOf(const StreamRegion& region, const Layout& layout);
+
+/// The shape reversed: x first, missing dimensions 1.
+assemble::Index4 xFirst(const Shape& shape);
+
+/// Whether each element of both regions, of equal shape, is at the same texel.
+bool haveSameTexels(const assemble::Placement& a, const assemble::Placement& b);
+
+}  // namespace sk

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+//
+// Binding and drawing.
+#include "pass.hpp"
+
+#include <array>
+
+#include "copy_kernel.hpp"
+#include "device_state.hpp"
+#include "gl/commands.hpp"
+
+namespace sk {
+
+namespace {
+
+using assemble::Placement;
+using assemble::Rect;
+
+void blit(DeviceState& device, Surface& from, const Placement& source, Surface& to, const Placement& target) {
+  const GLuint read = from.framebufferName(device.bound);
+  const GLuint draw = to.framebufferName(device.bound);
+  gl::blit(device.bound, read, {source.origin[0], source.origin[1]}, draw,
+           {target.origin[0], target.origin[1]}, target.extent[0], target.extent[1]);
+}
+
+}  // namespace
+
+int bindPlanes(DeviceState& device, std::span<Surface> planes, int unit) {
+  for (const Surface& plane : planes) {
+    device.bound.texture(unit++, plane.texture.name());
+  }
+  return unit;
+}
+
+GLuint framebufferOf(DeviceState& device, std::span<Surface* const> planes) {
+  if (planes.size() == 1) {
+    return planes[0]->framebufferName(device.bound);
+  }
+  std::array<GLuint, gl::maxDrawBuffers> names{};
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    names[i] = planes[i]->texture.name();
+  }
+  return device.framebuffers.framebufferName(std::span(names).first(planes.size()));
+}
+
+void drawRects(DeviceState& device, std::span<const Rect> rects) {
+  device.bound.vertexArray(device.vertexArray.name());
+  for (const Rect& rect : rects) {
+    device.bound.viewport(rect.x, rect.y, rect.width, rect.height);
+    gl::drawTriangle();
+  }
+}
+
+void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
+                const Placement& domain, std::span<const Rect> rects, GLuint framebuffer) {
+  KernelProgram& program = device.programs.kernelProgram(kernel, operands, domain);
+  device.bound.program(program.program.name());
+  device.bound.framebuffer(framebuffer);
+  int unit = 0;
+  for (KernelProgram::Read& read : program.reads) {
+    const Operand& operand = operands[read.parameter];
+    unit = bindPlanes(device, operand.planes, unit);
+    read.uniforms.set(operand.placement);
+  }
+  for (KernelProgram::Value& value : program.values) {
+    value.uniform.set(operands[value.parameter].value);
+  }
+  program.domain.set(domain);
+  drawRects(device, rects);
+}
+
+void copyRegion(DeviceState& device, const program::Element& element, std::span<Surface> from,
+                const Placement& source, std::span<Surface> to, const Placement& target) {
+  for (std::size_t plane = 0; plane < from.size(); ++plane) {
+    if (!source.linear && !target.linear) {
+      blit(device, from[plane], source, to[plane], target);
+      continue;
+    }
+    const Operand operands[] = {{nullptr, source, from.subspan(plane, 1)}, {}};
+    drawKernel(device, copyKernel(element.fields[plane]), operands, target, assemble::drawnTexels(target),
+               to[plane].framebufferName(device.bound));
+  }
+}
+
+}  // namespace sk

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+//
+// Assembling, compiling and keeping programs.
+#include "program_cache.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "build_log.hpp"
+#include "device_state.hpp"
+#include "sk/error.hpp"
+
+namespace sk {
+
+/// A kernel that is made here, with all that its descriptor refers to.
+struct ProgramCache::IdentityKernel {
+  std::string name;
+  std::string body;
+  program::Parameter parameter;
+  program::Kernel kernel;
+};
+
+ProgramCache::ProgramCache(DeviceState& device) : device_(device) {}
+ProgramCache::~ProgramCache() = default;
+
+KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
+                                           const assemble::Placement& domain) {
+  std::unique_ptr<KernelProgram>& kept = kernels_[variantKey(kernel, operands, domain)];
+  if (!kept) {
+    kept = makeKernelProgram(kernel, chooseVariant(kernel, operands, domain));
+  }
+  return *kept;
+}
+
+std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Kernel& kernel,
+                                                               const assemble::Variant& variant) {
+  auto made = std::make_unique<KernelProgram>();
+  made->program = build(kernel, assemble::fragmentProgram(*device_.profile, kernel, variant));
+  made->domain = PlacementUniforms(made->program, "sk_domain_*");
+  int unit = 0;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const program::Parameter& parameter = kernel.parameters[i];
+    if (parameter.role == program::Role::Uniform) {
+      for (const program::Field& field : parameter.element->fields) {
+        const std::string name =
+            fmt::format("sk_arg_{}{}{}", parameter.symbol, field.path.empty() ? "" : ".", field.path);
+        made->values.push_back({i, gl::FieldUniform(made->program.location(name), field)});
+      }
+    } else if (parameter.role != program::Role::Output) {
+      made->reads.push_back({i, PlacementUniforms(made->program, fmt::format("sk_*_{}", parameter.symbol))});
+      bindSamplers(made->program, parameter, unit);
+    }
+  }
+  return made;
+}
+
+void ProgramCache::bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit) {
+  device_.bound.program(program.name());
+  for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
+    program.setSampler(assemble::samplerName(parameter, plane), unit++);
+  }
+}
+
+gl::Program ProgramCache::build(const program::Kernel& kernel, const std::string& fragmentSource) {
+  const std::string vertexSource = assemble::vertexProgram(*device_.profile);
+  std::string log;
+  gl::Program program = gl::Program::build(vertexSource, fragmentSource, log);
+  if (!program) {
+    log.clear();
+    gl::Program::build(vertexSource, withTellingLines(fragmentSource), log);
+    throw Error(fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
+                            device_.capabilities.renderer, device_.profile->name,
+                            withSourceNames(log, kernel.sources)));
+  }
+  return program;
+}
+
+ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
+                                           const assemble::ReduceVariant& variant) {
+  std::unique_ptr<ReduceProgram>& kept = reductions_[{&reduction, variant}];
+  if (!kept) {
+    auto made = std::make_unique<ReduceProgram>();
+    made->program = build(reduction.fold, assemble::reduceProgram(*device_.profile, reduction, variant));
+    const bool readsPartials = variant.walk == assemble::Walk::Partials;
+    int unit = 0;
+    bindSamplers(made->program, reduction.fold.parameters[readsPartials ? 1 : 0], unit);
+    kept = std::move(made);
+  }
+  return *kept;
+}
+
+gl::IntUniform& ReduceProgram::uniform(const assemble::UniformValue& value) {
+  const auto found = std::find_if(uniforms.begin(), uniforms.end(),
+                                  [&](const auto& known) { return known.first == value.name; });
+  if (found != uniforms.end()) {
+    return found->second;
+  }
+  const std::string name(value.name);
+  return uniforms.emplace_back(name, gl::IntUniform(program.location(name), value.isVector)).second;
+}
+
+const program::Kernel& ProgramCache::identityKernel(const program::Reduction& reduction) {
+  std::unique_ptr<IdentityKernel>& kept = identities_[&reduction];
+  if (!kept) {
+    const program::Parameter& accumulator = reduction.fold.parameters[1];
+    auto made = std::make_unique<IdentityKernel>();
+    made->name = fmt::format("identity of {}", reduction.fold.name);
+    made->body = fmt::format("{}\n#line 1 0\nvoid sk_identity(out {} sk_result) {{ sk_result = {}; }}\n",
+                             reduction.fold.body, accumulator.element->glsl, accumulator.identity);
+    made->parameter = {
+        .name = "result", .symbol = "result", .role = program::Role::Output, .element = accumulator.element};
+    made->kernel = reduction.fold;
+    made->kernel.name = made->name;
+    made->kernel.entry = "sk_identity";
+    made->kernel.body = made->body;
+    made->kernel.parameters = {&made->parameter, 1};
+    made->kernel.usesIndex = false;
+    kept = std::move(made);
+  }
+  return kept->kernel;
+}
+
+void ProgramCache::clear() {
+  kernels_.clear();
+  reductions_.clear();
+  identities_.clear();
+}
+
+void ProgramCache::forget() noexcept {
+  for (auto& [key, kept] : kernels_) {
+    if (kept) {
+      kept->program.forget();
+    }
+  }
+  for (auto& [key, kept] : reductions_) {
+    if (kept) {
+      kept->program.forget();
+    }
+  }
+}
+
+}  // namespace sk

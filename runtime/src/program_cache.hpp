@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+//
+// The programs of a device, assembled and compiled when a variant is first needed and kept in memory
+// until the device ends. Descriptors are known by their addresses: they must outlive the device.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "assemble/reduce_plan.hpp"
+#include "gl/program.hpp"
+#include "gl/uniform.hpp"
+#include "placement_uniforms.hpp"
+#include "sk/program.hpp"
+#include "variant.hpp"
+
+namespace sk {
+
+class DeviceState;
+
+/// One variant of a kernel. Parameters are named by their position.
+struct KernelProgram {
+  struct Value {
+    std::size_t parameter;
+    gl::FieldUniform uniform;
+  };
+  struct Read {
+    std::size_t parameter;
+    PlacementUniforms uniforms;
+  };
+
+  gl::Program program;
+  PlacementUniforms domain;
+  std::vector<Value> values;
+  std::vector<Read> reads;      ///< their planes lie on consecutive texture units, from 0, in this order
+};
+
+/// One variant of a reduction's passes. The planes that it reads lie on units from 0.
+struct ReduceProgram {
+  gl::Program program;
+  std::vector<std::pair<std::string, gl::IntUniform>> uniforms;
+
+  gl::IntUniform& uniform(const assemble::UniformValue& value);
+};
+
+class ProgramCache {
+ public:
+  explicit ProgramCache(DeviceState& device);
+  ~ProgramCache();
+  ProgramCache(const ProgramCache&) = delete;
+  ProgramCache& operator=(const ProgramCache&) = delete;
+
+  /// Both throw sk::Error where the driver refuses the program, with its words.
+  KernelProgram& kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
+                               const assemble::Placement& domain);
+  ReduceProgram& reduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
+
+  /// A kernel without inputs whose only output is the reduction's identity, which must exist.
+  const program::Kernel& identityKernel(const program::Reduction& reduction);
+
+  void clear();
+  void forget() noexcept;
+
+ private:
+  struct IdentityKernel;
+  using ReduceKey = std::pair<const program::Reduction*, assemble::ReduceVariant>;
+
+  std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
+                                                   const assemble::Variant& variant);
+  gl::Program build(const program::Kernel& kernel, const std::string& fragmentSource);
+  void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);
+
+  DeviceState& device_;
+  std::unordered_map<ProgramKey, std::unique_ptr<KernelProgram>, ProgramKeyHash> kernels_;
+  std::map<ReduceKey, std::unique_ptr<ReduceProgram>> reductions_;
+  std::map<const program::Reduction*, std::unique_ptr<IdentityKernel>> identities_;
+};
+
+}  // namespace sk

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+//
+// What streams and views do: life, regions, reading, writing.
+#include "sk/stream.hpp"
+
+#include <fmt/format.h>
+
+#include "device_state.hpp"
+#include "sk/error.hpp"
+#include "stream_state.hpp"
+#include "transfer.hpp"
+
+namespace sk {
+
+namespace {
+
+/// Checks a transfer of `count` elements; the stream, or null where there is nothing to transfer.
+StreamState* checkTransfer(const StreamRegion& region, std::size_t count, const char* what) {
+  StreamState& stream = liveStream(region, what);
+  const std::int64_t size = region.shape.size();
+  if (static_cast<std::size_t>(size) != count) {
+    throw Error(fmt::format("{}: {} element(s) in host memory, but shape {} has {}; give exactly as many",
+                            what, count, toString(region.shape), size));
+  }
+  return size == 0 ? nullptr : &stream;
+}
+
+}  // namespace
+
+StreamState::StreamState(DeviceState& owner, const program::Element& type, const Shape& extents)
+    : device(&owner), element(&type), shape(extents), layout(layoutOf(extents, owner.limits.textureSize)) {
+  if (layout.width > 0) {
+    planes = owner.takePlanes(type, layout.width, layout.height,
+                              fmt::format("a stream of {} of shape {}", type.name, toString(extents)));
+  }
+  owner.add(*this);
+}
+
+StreamState::~StreamState() {
+  if (device != nullptr) {
+    device->givePlanes(planes);
+    device->remove(*this);
+  }
+}
+
+StreamState& liveStream(const StreamRegion& region, std::string_view context) {
+  if (region.stream == nullptr) {
+    throw Error(fmt::format("{}: the stream was moved from", context));
+  }
+  if (region.stream->device == nullptr) {
+    throw Error(
+        fmt::format("{}: the device of this stream of shape {} has been destroyed; keep the device for as "
+                    "long as its streams are used",
+                    context, toString(region.stream->shape)));
+  }
+  return *region.stream;
+}
+
+void detail::StreamDeleter::operator()(StreamState* state) const noexcept { delete state; }
+
+StreamRegion detail::wholeRegion(StreamState* state) {
+  return state == nullptr ? StreamRegion{}
+                          : StreamRegion{state, Index::origin(state->shape.rank()), state->shape};
+}
+
+StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, const Index& end) {
+  if (region.stream == nullptr) {
+    throw Error("domain: the stream was moved from");
+  }
+  const int rank = region.shape.rank();
+  bool isInside = begin.rank() == rank && end.rank() == rank;
+  for (int d = 0; isInside && d < rank; ++d) {
+    isInside = begin[d] >= 0 && begin[d] <= end[d] && end[d] <= region.shape[d];
+  }
+  if (!isInside) {
+    throw Error(fmt::format(
+        "domain: {} (inclusive) to {} (exclusive) is no box inside shape {}; give each a position "
+        "in every dimension, rows first",
+        toString(begin), toString(end), toString(region.shape)));
+  }
+  StreamRegion part = region;
+  for (int d = 0; d < rank; ++d) {
+    part.begin[d] += begin[d];
+    part.shape = part.shape.with(d, end[d] - begin[d]);
+  }
+  return part;
+}
+
+void detail::write(const StreamRegion& region, const void* elements, std::size_t count) {
+  if (StreamState* stream = checkTransfer(region, count, "write")) {
+    const DeviceScope scope(*stream->device);
+    upload(*stream->device, *stream->element, stream->planes, placementOf(region, stream->layout),
+           static_cast<const std::byte*>(elements));
+  }
+}
+
+void detail::read(const StreamRegion& region, void* elements, std::size_t count) {
+  if (StreamState* stream = checkTransfer(region, count, "read")) {
+    const DeviceScope scope(*stream->device);
+    download(*stream->device, *stream->element, stream->planes, placementOf(region, stream->layout),
+             static_cast<std::byte*>(elements));
+  }
+}
+
+StreamTexture detail::textureOf(StreamState* state, int plane) {
+  const StreamState& stream = liveStream({state, {}, {}}, "texture");
+  const auto count = static_cast<int>(stream.element->fields.size());
+  if (plane < 0 || plane >= count) {
+    throw Error(
+        fmt::format("texture: there is no plane {}; {} has {}, from 0", plane, stream.element->name, count));
+  }
+  if (stream.planes.empty()) {
+    return {};
+  }
+  const gl::Texture& texture = stream.planes[static_cast<std::size_t>(plane)].texture;
+  return {texture.name(), texture.format().internalFormat, texture.width(), texture.height(),
+          stream.layout.whole.linear};
+}
+
+}  // namespace sk

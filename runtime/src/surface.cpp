@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+//
+// Taking surfaces from the pool and giving them back.
+#include "surface.hpp"
+
+#include <algorithm>
+
+namespace sk {
+
+GLuint Surface::framebufferName(gl::BoundState& bound) {
+  if (!framebuffer) {
+    const GLuint textures[] = {texture.name()};
+    framebuffer = gl::Framebuffer(bound, textures);
+  }
+  return framebuffer.name();
+}
+
+void Surface::forget() noexcept {
+  texture.forget();
+  framebuffer.forget();
+}
+
+std::uint64_t SurfacePool::key(const gl::Format& format, std::int32_t width, std::int32_t height) {
+  constexpr unsigned sizeBits = 28;
+  return format.index << (2 * sizeBits) | static_cast<std::uint64_t>(width) << sizeBits |
+         static_cast<std::uint64_t>(height);
+}
+
+Surface SurfacePool::take(const gl::Format& format, std::int32_t width, std::int32_t height) {
+  const auto found = idle_.find(key(format, width, height));
+  if (found != idle_.end() && !found->second.empty()) {
+    Surface surface = std::move(found->second.back().surface);
+    found->second.pop_back();
+    bytes_ -= surface.texture.bytes();
+    return surface;
+  }
+  Surface surface{gl::Texture(bound_, format, width, height), {}};
+  if (!surface && bytes_ > 0) {
+    clear();
+    surface.texture = gl::Texture(bound_, format, width, height);
+  }
+  return surface;
+}
+
+// Where the host has no memory for the list, the surface is deleted later with its context: its owner
+// may be a destructor on a thread that has no context.
+void SurfacePool::give(Surface&& surface) noexcept {
+  const gl::Texture& texture = surface.texture;
+  const std::size_t bytes = texture.bytes();
+  try {
+    std::vector<Idle>& shelf = idle_[key(texture.format(), texture.width(), texture.height())];
+    shelf.reserve(shelf.size() + 1);
+    shelf.push_back({std::move(surface), clock_});
+    bytes_ += bytes;
+  } catch (...) {
+    surface.forget();
+  }
+}
+
+void SurfacePool::deleteOlderThan(std::int64_t time) {
+  for (auto shelf = idle_.begin(); shelf != idle_.end();) {
+    std::erase_if(shelf->second, [&](const Idle& idle) {
+      if (idle.since >= time) {
+        return false;
+      }
+      bytes_ -= idle.surface.texture.bytes();
+      framebuffers_.dropTexture(idle.surface.texture.name());
+      return true;
+    });
+    shelf = shelf->second.empty() ? idle_.erase(shelf) : std::next(shelf);
+  }
+  bound_.forget();
+}
+
+void SurfacePool::forget() noexcept {
+  for (auto& [key, shelf] : idle_) {
+    for (Idle& idle : shelf) {
+      idle.surface.forget();
+    }
+  }
+}
+
+}  // namespace sk

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+//
+// Elements between host memory and a region of a stream. A scope of the device must be open.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "assemble/placement.hpp"
+#include "sk/program.hpp"
+#include "surface.hpp"
+
+namespace sk {
+
+class DeviceState;
+
+/// Copies all elements of a region, row-major in host memory, to its planes.
+void upload(DeviceState& device, const program::Element& element, std::span<Surface> planes,
+            const assemble::Placement& region, const std::byte* elements);
+
+/// The other way. Waits for the device. Throws sk::Error where the driver has reported an error since
+/// it was last asked.
+void download(DeviceState& device, const program::Element& element, std::span<Surface> planes,
+              const assemble::Placement& region, std::byte* elements);
+
+}  // namespace sk

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+//
+// The choices of a variant, in one place for both of its forms.
+#include "variant.hpp"
+
+#include <algorithm>
+
+#include "layout.hpp"
+
+namespace sk {
+
+namespace {
+
+using assemble::Addressing;
+using assemble::Placement;
+using assemble::StreamAccess;
+using program::Parameter;
+using program::Role;
+
+constexpr bool isRead(const Parameter& parameter) {
+  return parameter.role == Role::Input || parameter.role == Role::Gather;
+}
+
+/// Whether one step brings a neighbour's index back inside the gather, wherever the domain's index is.
+bool isNearby(const Parameter& gather, const Placement& placement, const Placement& domain) {
+  if (!gather.usesNear || gather.reach < 0) {
+    return false;
+  }
+  for (std::size_t d = 0; d < gather.rank; ++d) {
+    if (gather.reach >= placement.extent[d] || domain.extent[d] > placement.extent[d]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+StreamAccess chooseAccess(const Parameter& parameter, const Placement& placement, const Placement& domain) {
+  StreamAccess access;
+  if (parameter.role == Role::Input && haveSameTexels(placement, domain)) {
+    return access;
+  }
+  access.addressing = placement.linear ? Addressing::Linear : Addressing::Plane;
+  access.view = placement.origin != assemble::Index4{};
+  access.nearby = parameter.role == Role::Gather && isNearby(parameter, placement, domain);
+  return access;
+}
+
+bool isDomainView(const Placement& domain) { return !domain.linear && domain.origin != assemble::Index4{}; }
+
+/// Packs small numbers into the words of a key.
+class KeyBits {
+ public:
+  explicit KeyBits(ProgramKey& key) : key_(key) {}
+
+  void add(std::uint64_t value, unsigned bits) {
+    key_.words[used_ / 64] |= value << used_ % 64;
+    used_ += bits;
+  }
+
+ private:
+  ProgramKey& key_;
+  unsigned used_ = 0;
+};
+
+}  // namespace
+
+std::size_t ProgramKeyHash::operator()(const ProgramKey& key) const {
+  std::uint64_t hash = reinterpret_cast<std::uintptr_t>(key.kernel);
+  for (const std::uint64_t word : key.words) {
+    hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
+assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
+                                const Placement& domain) {
+  assemble::Variant variant;
+  variant.domain = assemble::domainOf(domain);
+  variant.domainView = isDomainView(domain);
+  variant.domainRank = assemble::decodedRank(domain);
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const Parameter& parameter = kernel.parameters[i];
+    variant.access.push_back(isRead(parameter) ? chooseAccess(parameter, operands[i].placement, domain)
+                                               : StreamAccess{});
+  }
+  return variant;
+}
+
+// Each entry is 4 bits, so that none is divided between words.
+ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
+                      const Placement& domain) {
+  ProgramKey key{&kernel, {}};
+  KeyBits bits(key);
+  bits.add(static_cast<std::uint64_t>(assemble::domainOf(domain)) | std::uint64_t{isDomainView(domain)} << 2,
+           4);
+  bits.add(assemble::decodedRank(domain), 4);
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    if (isRead(kernel.parameters[i])) {
+      const StreamAccess access = chooseAccess(kernel.parameters[i], operands[i].placement, domain);
+      bits.add(static_cast<std::uint64_t>(access.addressing) | std::uint64_t{access.view} << 2 |
+                   std::uint64_t{access.nearby} << 3,
+               4);
+    }
+  }
+  return key;
+}
+
+}  // namespace sk

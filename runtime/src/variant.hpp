@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+//
+// Which variant of a kernel a call needs: from where its streams lie, to the assembler's choices and
+// to a key that is quick to look up.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "assemble/assemble.hpp"
+#include "assemble/placement.hpp"
+#include "sk/program.hpp"
+#include "surface.hpp"
+
+namespace sk {
+
+/// One argument of a pass. Uniform parameters have a value, all others a placement and planes.
+struct Operand {
+  const void* value = nullptr;
+  assemble::Placement placement = {};
+  std::span<Surface> planes = {};
+};
+
+/// A program's identity: the address of its descriptor and the packed choices of its variant.
+struct ProgramKey {
+  const program::Kernel* kernel = nullptr;
+  std::array<std::uint64_t, 4> words{};
+
+  bool operator==(const ProgramKey&) const = default;
+};
+
+struct ProgramKeyHash {
+  std::size_t operator()(const ProgramKey& key) const;
+};
+
+/// The variant of `kernel` for operands, one a parameter, over `domain`; `variant` and `key` hold the
+/// same choices. Planes that a kernel reads are few enough for the key (gl::maxTextureUnits).
+assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
+                                const assemble::Placement& domain);
+ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
+                      const assemble::Placement& domain);
+
+}  // namespace sk

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "variant.hpp"
+
+#include <set>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "layout.hpp"
+#include "sk/types.hpp"
+
+using namespace sk;
+using assemble::Addressing;
+using assemble::Domain;
+using assemble::Placement;
+using program::Role;
+
+namespace {
+
+const program::Parameter parameters[] = {
+    {.name = "a", .symbol = "a", .role = Role::Uniform, .element = &ElementTraits<float>::element()},
+    {.name = "x", .symbol = "x", .role = Role::Input, .element = &ElementTraits<float>::element()},
+    {.name = "g",
+     .symbol = "g",
+     .role = Role::Gather,
+     .element = &ElementTraits<float>::element(),
+     .rank = 2,
+     .usesNear = true,
+     .reach = 2},
+    {.name = "r", .symbol = "r", .role = Role::Output, .element = &ElementTraits<float>::element()}};
+
+program::Kernel makeKernel() {
+  program::Kernel kernel;
+  kernel.name = "k";
+  kernel.parameters = parameters;
+  return kernel;
+}
+const program::Kernel kernel = makeKernel();
+
+Placement region(const Shape& stream, const Index& begin, const Shape& shape) {
+  return placementOf({nullptr, begin, shape}, layoutOf(stream, 64));
+}
+Placement whole(const Shape& stream) { return region(stream, Index::origin(stream.rank()), stream); }
+
+struct Chosen {
+  assemble::Variant variant;
+  ProgramKey key;
+};
+Chosen choose(const Placement& x, const Placement& g, const Placement& domain) {
+  const float a = 0;
+  const std::vector<Operand> operands{
+      {&a, {}, {}}, {nullptr, x, {}}, {nullptr, g, {}}, {nullptr, domain, {}}};
+  return {chooseVariant(kernel, operands, domain), variantKey(kernel, operands, domain)};
+}
+
+}  // namespace
+
+TEST_CASE("whole planes of one shape are aligned") {
+  const auto chosen = choose(whole({8, 9}), whole({8, 9}), whole({8, 9})).variant;
+  CHECK(chosen.domain == Domain::Plane);
+  CHECK_FALSE(chosen.domainView);
+  CHECK(chosen.access[1].addressing == Addressing::Aligned);
+  CHECK(chosen.access[2].addressing == Addressing::Plane);
+  CHECK_FALSE(chosen.access[2].view);
+  CHECK(chosen.access[2].nearby);
+}
+
+TEST_CASE("views, repeats and linearised streams are told apart, each with a key of its own") {
+  const Shape plane(8, 9);
+  const Shape line(8, 90);
+  const std::vector<Chosen> all{
+      choose(whole(plane), whole(plane), whole(plane)),
+      choose(region(plane, {1, 1}, {4, 4}), whole(plane), region(plane, {2, 2}, {4, 4})),
+      choose(region(plane, {1, 1}, {4, 4}), whole(plane), region(plane, {1, 1}, {4, 4})),
+      choose(whole({8, 1}), whole(plane), whole(plane)),
+      choose(whole(line), whole(plane), whole(line)),
+      choose(whole(line), whole(line), whole(line)),
+      choose(region(line, {0, 0}, {8, 9}), whole(plane), whole(plane)),
+      choose(region(line, {1, 1}, {2, 9}), region(line, {1, 1}, {2, 9}), region(plane, {0, 0}, {2, 9})),
+      choose(region(line, {1, 1}, {2, 9}), whole(plane), region(line, {1, 1}, {2, 9})),
+      choose(whole(plane), whole({2, 9}), whole(plane)),
+  };
+  CHECK(all[1].variant.domainView);
+  CHECK(all[1].variant.access[1].addressing == Addressing::Plane);
+  CHECK(all[1].variant.access[1].view);
+  CHECK(all[2].variant.access[1].addressing == Addressing::Aligned);
+  CHECK(all[3].variant.access[1].addressing == Addressing::Plane);
+  CHECK(all[4].variant.domain == Domain::Linear);
+  CHECK(all[4].variant.access[1].addressing == Addressing::Aligned);
+  CHECK(all[5].variant.access[2].addressing == Addressing::Linear);
+  CHECK(all[8].variant.domain == Domain::LinearBox);
+  CHECK_FALSE(all[9].variant.access[2].nearby);
+  for (const Chosen& a : all) {
+    for (const Chosen& b : all) {
+      CHECK((a.variant == b.variant) == (a.key == b.key));
+    }
+  }
+}
+
+TEST_CASE("a gather is near only where one step always brings its index back") {
+  CHECK(choose(whole({8, 9}), whole({8, 9}), whole({8, 9})).variant.access[2].nearby);
+  CHECK(choose(whole({3, 3}), whole({3, 3}), whole({3, 3})).variant.access[2].nearby);
+  CHECK_FALSE(choose(whole({2, 9}), whole({2, 9}), whole({2, 9})).variant.access[2].nearby);
+  CHECK_FALSE(choose(whole({8, 9}), whole({8, 8}), whole({8, 9})).variant.access[2].nearby);
+}

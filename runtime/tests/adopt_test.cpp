@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+//
+// Devices on the application's own context: results are right whatever state it left, and the state is
+// as it left it.
+#include <map>
+#include <string>
+#include <vector>
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <catch2/catch.hpp>
+
+#include "elements.hpp"
+#include "gl/displays.hpp"
+#include "sk/sk.hpp"
+#include "test_kernel.hpp"
+
+using namespace sk;
+using namespace sk::test;
+
+namespace {
+
+/// An application's context, current while it lives.
+class Application {
+ public:
+  enum class Kind { Core, Compatibility, Es };
+
+  explicit Application(Kind kind) : kind_(kind) {
+    eglBindAPI(kind == Kind::Es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
+    for (const gl::DisplayCandidate& candidate : gl::displayCandidates()) {
+      if (context_ == EGL_NO_CONTEXT) {
+        display_ = gl::openDisplay(candidate);
+        open();
+      }
+    }
+    REQUIRE(context_ != EGL_NO_CONTEXT);
+    makeCurrent();
+  }
+  ~Application() {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, context_);
+  }
+  Application(const Application&) = delete;
+  Application& operator=(const Application&) = delete;
+
+  void makeCurrent() {
+    REQUIRE(eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_TRUE);
+  }
+  void leave() { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+  bool isEs() const { return kind_ == Kind::Es; }
+  bool isCompatibility() const { return kind_ == Kind::Compatibility; }
+
+ private:
+  void open() {
+    if (display_ == EGL_NO_DISPLAY || eglInitialize(display_, nullptr, nullptr) != EGL_TRUE) {
+      return;
+    }
+    std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, isEs() ? 0 : 3};
+    if (!isEs()) {
+      attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                           isCompatibility() ? EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT
+                                                             : EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
+    }
+    attributes.push_back(EGL_NONE);
+    const EGLint any[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE,
+                          isEs() ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT, EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint count = 0;
+    if (eglChooseConfig(display_, any, &config, 1, &count) == EGL_TRUE && count > 0) {
+      context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes.data());
+    }
+  }
+
+  Kind kind_;
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+GLint integerOf(GLenum name) {
+  GLint values[16] = {};
+  glGetIntegerv(name, values);
+  return values[0];
+}
+
+GLuint compile(GLenum stage, const char* text) {
+  const GLuint shader = glCreateShader(stage);
+  glShaderSource(shader, 1, &text, nullptr);
+  glCompileShader(shader);
+  return shader;
+}
+
+/// Sets as much as can be set to what would spoil a pass.
+void makeHostileState(const Application& application) {
+  const bool isEs = application.isEs();
+  for (const GLenum toggle : {GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE,
+                              GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE}) {
+    glEnable(toggle);
+  }
+  glCullFace(GL_FRONT_AND_BACK);
+  glDepthFunc(GL_NEVER);
+  glStencilFunc(GL_NEVER, 0, 0);
+  glBlendFunc(GL_ZERO, GL_ONE);
+  glScissor(1, 2, 3, 4);
+  glViewport(5, 6, 7, 8);
+  glColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_TRUE);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 8);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 5);
+  glPixelStorei(GL_UNPACK_SKIP_ROWS, 2);
+  glPixelStorei(GL_UNPACK_SKIP_PIXELS, 3);
+  glPixelStorei(GL_PACK_ALIGNMENT, 2);
+  glPixelStorei(GL_PACK_ROW_LENGTH, 7);
+  glPixelStorei(GL_PACK_SKIP_ROWS, 1);
+  GLuint names[2] = {};
+  glGenBuffers(2, names);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, names[0]);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, names[1]);
+  glGenTextures(2, names);
+  GLuint samplers[2] = {};
+  glGenSamplers(2, samplers);
+  for (GLuint unit = 0; unit < 2; ++unit) {
+    glActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(GL_TEXTURE_2D, names[unit]);
+    glBindSampler(unit, samplers[unit]);
+    glSamplerParameteri(samplers[unit], GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  }
+  glActiveTexture(GL_TEXTURE0 + 3);
+  glGenVertexArrays(1, names);
+  glBindVertexArray(names[0]);
+  glGenFramebuffers(2, names);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, names[0]);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, names[1]);
+  if (!isEs) {
+    glEnable(GL_COLOR_LOGIC_OP);
+    glLogicOp(GL_CLEAR);
+    glEnable(GL_CLIP_DISTANCE0);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_POINT);
+    glPixelStorei(GL_UNPACK_SWAP_BYTES, 1);
+    glPixelStorei(GL_PACK_SWAP_BYTES, 1);
+    glClampColor(GL_CLAMP_READ_COLOR, GL_TRUE);
+    glDisablei(GL_BLEND, 1);
+  }
+  if (application.isCompatibility()) {
+    glEnable(GL_ALPHA_TEST);
+    glAlphaFunc(GL_NEVER, 0.0f);
+  }
+  const char* header = isEs ? "#version 300 es\n" : "#version 330\n";
+  const GLuint program = glCreateProgram();
+  glAttachShader(program,
+                 compile(GL_VERTEX_SHADER,
+                         (std::string(header) + "void main() { gl_Position = vec4(0.0); }\n").c_str()));
+  glAttachShader(program, compile(GL_FRAGMENT_SHADER, (std::string(header) + "void main() { }\n").c_str()));
+  glLinkProgram(program);
+  glUseProgram(program);
+  REQUIRE(glGetError() == GL_NO_ERROR);
+}
+
+/// All of it, by name.
+std::map<std::string, GLint> readState(const Application& application) {
+  std::map<std::string, GLint> state;
+#define STATE(name) state[#name] = integerOf(name)
+  STATE(GL_BLEND), STATE(GL_DEPTH_TEST), STATE(GL_STENCIL_TEST), STATE(GL_SCISSOR_TEST), STATE(GL_CULL_FACE);
+  STATE(GL_RASTERIZER_DISCARD), STATE(GL_SAMPLE_ALPHA_TO_COVERAGE), STATE(GL_SAMPLE_COVERAGE);
+  STATE(GL_UNPACK_ALIGNMENT), STATE(GL_UNPACK_ROW_LENGTH), STATE(GL_UNPACK_SKIP_ROWS),
+      STATE(GL_UNPACK_SKIP_PIXELS);
+  STATE(GL_PACK_ALIGNMENT), STATE(GL_PACK_ROW_LENGTH), STATE(GL_PACK_SKIP_ROWS);
+  STATE(GL_PIXEL_PACK_BUFFER_BINDING), STATE(GL_PIXEL_UNPACK_BUFFER_BINDING), STATE(GL_VERTEX_ARRAY_BINDING);
+  STATE(GL_DRAW_FRAMEBUFFER_BINDING), STATE(GL_READ_FRAMEBUFFER_BINDING), STATE(GL_CURRENT_PROGRAM),
+      STATE(GL_ACTIVE_TEXTURE);
+  if (!application.isEs()) {
+    STATE(GL_COLOR_LOGIC_OP), STATE(GL_CLIP_DISTANCE0), STATE(GL_POLYGON_MODE), STATE(GL_UNPACK_SWAP_BYTES);
+    STATE(GL_PACK_SWAP_BYTES), STATE(GL_CLAMP_READ_COLOR);
+    state["blend 1"] = glIsEnabledi(GL_BLEND, 1);
+  }
+  if (application.isCompatibility()) {
+    STATE(GL_ALPHA_TEST);
+  }
+#undef STATE
+  GLint values[4] = {};
+  for (const auto& [name, text] :
+       {std::pair<GLenum, const char*>{GL_VIEWPORT, "viewport"}, {GL_SCISSOR_BOX, "scissor"}}) {
+    glGetIntegerv(name, values);
+    for (int i = 0; i < 4; ++i) {
+      state[text + std::to_string(i)] = values[i];
+    }
+  }
+  GLboolean mask[4] = {};
+  glGetBooleanv(GL_COLOR_WRITEMASK, mask);
+  for (int i = 0; i < 4; ++i) {
+    state["mask" + std::to_string(i)] = mask[i];
+  }
+  const GLint active = integerOf(GL_ACTIVE_TEXTURE);
+  for (GLuint unit = 0; unit < 4; ++unit) {
+    glActiveTexture(GL_TEXTURE0 + unit);
+    state["texture" + std::to_string(unit)] = integerOf(GL_TEXTURE_BINDING_2D);
+    state["sampler" + std::to_string(unit)] = integerOf(GL_SAMPLER_BINDING);
+  }
+  glActiveTexture(static_cast<GLenum>(active));
+  return state;
+}
+
+const TestKernel& mix3() {
+  static const TestKernel kernel(
+      "mix3",
+      "void mix3(float a, float b, Hit h, out float r, out Hit s) { r = a + 10.0 * b; s = Hit(h.t + a, h.id "
+      "+ 1); }\n",
+      {input<float>("a"), input<float>("b"), input<Hit>("h"), output<float>("r"), output<Hit>("s")},
+      hitDeclaration);
+  return kernel;
+}
+
+const TestReduction& sum() {
+  static const TestReduction reduction("sum", "void sum(float x, inout float total) { total += x; }\n",
+                                       {input<float>("x"), accumulator<float>("total", "0.0")}, true);
+  return reduction;
+}
+
+/// Everything that a device does, with results checked.
+void useAll(Device& device) {
+  constexpr std::size_t count = 150;
+  auto a = device.stream<float>(count);
+  auto b = device.stream<float>(count);
+  auto h = device.stream<Hit>(count);
+  auto r = device.stream<float>(count);
+  a.write(std::vector<float>(count, 2.5f));
+  b.write(std::vector<float>(count, -3.0f));
+  h.write(std::vector<Hit>(count, Hit{1.0f, 7}));
+  mix3()(a, b, h, r, h);
+  mix3()(a.domain(5, 10), b.domain(5, 10), h.domain(5, 10), a.domain(5, 10), h.domain(5, 10));
+  CHECK(r.read() == std::vector<float>(count, -27.5f));
+  CHECK(h.read()[4] == Hit{3.5f, 8});
+  CHECK(h.read()[5] == Hit{6.0f, 9});
+  CHECK(a.read()[9] == -27.5f);
+  CHECK(sum().value<float>(r) == -27.5f * count);
+}
+
+}  // namespace
+
+TEST_CASE("a device on the application's context works in any state and puts it back") {
+  const auto kind =
+      GENERATE(Application::Kind::Core, Application::Kind::Compatibility, Application::Kind::Es);
+  const auto limit = GENERATE(0, 16);
+  Application application(kind);
+  makeHostileState(application);
+  const auto before = readState(application);
+  REQUIRE(glGetError() == GL_NO_ERROR);
+  {
+    Device device = Device::adopt({.textureLimit = limit});
+    CHECK(readState(application) == before);
+    CHECK(device.profile() == (application.isEs() ? "essl300" : "glsl330"));
+    useAll(device);
+    CHECK(readState(application) == before);
+    device.finish();
+    CHECK(readState(application) == before);
+  }
+  CHECK(readState(application) == before);
+  CHECK(glGetError() == GL_NO_ERROR);
+}
+
+TEST_CASE("transform feedback of the application is paused, not disturbed") {
+  Application application(Application::Kind::Es);
+  const char* varyings[] = {"v"};
+  const GLuint program = glCreateProgram();
+  glAttachShader(program, compile(GL_VERTEX_SHADER,
+                                  "#version 300 es\nout float v;\nvoid main() { v = float(gl_VertexID); "
+                                  "gl_Position = vec4(0.0); }\n"));
+  glAttachShader(program, compile(GL_FRAGMENT_SHADER, "#version 300 es\nvoid main() { }\n"));
+  glTransformFeedbackVaryings(program, 1, varyings, GL_INTERLEAVED_ATTRIBS);
+  glLinkProgram(program);
+  glUseProgram(program);
+  GLuint buffer = 0;
+  glGenBuffers(1, &buffer);
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer);
+  glBufferData(GL_TRANSFORM_FEEDBACK_BUFFER, 64, nullptr, GL_STREAM_READ);
+  Device device = Device::adopt();
+  glBeginTransformFeedback(GL_TRIANGLES);
+  useAll(device);
+  CHECK(integerOf(GL_TRANSFORM_FEEDBACK_ACTIVE) == 1);
+  CHECK(integerOf(GL_TRANSFORM_FEEDBACK_PAUSED) == 0);
+  CHECK(integerOf(GL_CURRENT_PROGRAM) == static_cast<GLint>(program));
+  glEndTransformFeedback();
+  CHECK(glGetError() == GL_NO_ERROR);
+}
+
+TEST_CASE("the texture of a stream is one of the application's context") {
+  Application application(Application::Kind::Core);
+  Device device = Device::adopt();
+  auto stream = device.stream<float2>({3, 5});
+  std::vector<float2> host(15);
+  for (std::size_t i = 0; i < 15; ++i) {
+    host[i] = {static_cast<float>(i), -static_cast<float>(i)};
+  }
+  stream.write(host);
+  const StreamTexture texture = stream.texture();
+  std::vector<float2> texels(15);
+  glBindTexture(GL_TEXTURE_2D, texture.name);
+  glGetTexImage(GL_TEXTURE_2D, 0, GL_RG, GL_FLOAT, texels.data());
+  CHECK(texels == host);
+  CHECK(texture.internalFormat == GL_RG32F);
+}
+
+TEST_CASE("an adopted context that is not current, or gone, or none") {
+  CHECK(errorOf([] { Device::adopt(); }) ==
+        "there is no context to adopt; make one current on this thread by EGL or GLX first");
+  auto application = std::make_unique<Application>(Application::Kind::Core);
+  CHECK(errorOf([] { Device::adopt({.profile = "essl300"}); }) ==
+        "the context to adopt is one of OpenGL, which profile essl300 does not run on");
+  Device device = Device::adopt();
+  auto stream = device.stream<float>(3);
+  stream.write(std::vector<float>{1, 2, 3});
+  application->leave();
+  CHECK(errorOf([&] { (void)stream.read(); }) ==
+        "the context that the device adopted is not current on this thread; make it current before you use "
+        "the device or its "
+        "streams");
+  {
+    auto destroyedMeanwhile = std::move(stream);
+  }
+  application->makeCurrent();
+  useAll(device);
+  SECTION("the application ends its context first") {
+    application.reset();
+    CHECK(errorOf([&] { device.stream<float>(1); }).find("not current") != std::string::npos);
+  }
+  SECTION("the device ends first") { device = Device(); }
+}
+
+TEST_CASE("a device of our own puts the application's context back") {
+  Application application(Application::Kind::Core);
+  EGLContext mine = eglGetCurrentContext();
+  {
+    Device device;
+    CHECK(eglGetCurrentContext() == mine);
+    useAll(device);
+    CHECK(eglGetCurrentContext() == mine);
+  }
+  CHECK(eglGetCurrentContext() == mine);
+}

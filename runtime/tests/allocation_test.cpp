@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+//
+// A call like one before allocates no host memory: a program of its own, because it counts every
+// allocation by operator new.
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+#include "sk/sk.hpp"
+#include "test_kernel.hpp"
+
+namespace {
+
+std::atomic<long> allocations{0};
+
+void* allocate(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) {
+    return memory;
+  }
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return allocate(size); }
+void* operator new[](std::size_t size) { return allocate(size); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace {
+
+using namespace sk;
+using namespace sk::test;
+
+/// Allocations of one call, after two like it.
+template <class Call>
+long allocationsOf(Call call) {
+  call();
+  call();
+  const long before = allocations;
+  call();
+  return allocations - before;
+}
+
+bool check(const char* what, long found) {
+  std::printf("%s: %ld allocation(s)\n", what, found);
+  return found == 0;
+}
+
+bool checkAll(Device& device) {
+  static const TestKernel saxpy(
+      "saxpy", "void saxpy(float a, float x, float y, out float r) { r = a * x + y; }\n",
+      {uniform<float>("a"), input<float>("x"), input<float>("y"), output<float>("r")});
+  static const TestKernel two(
+      "two", "void two(out float r, out vec2 s) { r = sk_near_g(ivec2(1, 0)); s = vec2(r); }\n",
+      {gather<float>("g", 2), output<float>("r"), output<float2>("s")});
+  auto x = device.stream<float>({40, 50});
+  auto y = device.stream<float>({40, 50});
+  auto r = device.stream<float>({40, 50});
+  auto s = device.stream<float2>({40, 50});
+  auto line = device.stream<float>(3000);
+  auto result = device.stream<float>(3000);
+  float a = 0;
+  const auto view = r.domain({1, 1}, {20, 30});
+  bool isFree = check("planes", allocationsOf([&] { saxpy(++a, x, y, r); }));
+  isFree = check("linearised", allocationsOf([&] { saxpy(a, line, line, result); })) && isFree;
+  isFree =
+      check("a view",
+            allocationsOf([&] { saxpy(a, x.domain({1, 1}, {20, 30}), y.domain({2, 2}, {21, 31}), view); })) &&
+      isFree;
+  isFree = check("two outputs", allocationsOf([&] { two(x, r, s); })) && isFree;
+  return isFree;
+}
+
+}  // namespace
+
+int main() {
+  Device device({.textureLimit = 64});
+  return checkAll(device) ? 0 : 1;
+}

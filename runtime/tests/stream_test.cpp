@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+//
+// What is written to a stream is what is read from it, bit for bit, in every type, shape, layout and
+// profile, as a whole and in parts.
+#include <bit>
+#include <cstring>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "elements.hpp"
+#include "sk/sk.hpp"
+#include "test_kernel.hpp"
+
+using namespace sk;
+using namespace sk::test;
+
+namespace {
+
+Device makeDevice(const std::string& profile, int textureLimit = 0) {
+  return Device({.profile = profile, .textureLimit = textureLimit});
+}
+
+/// Elements of any type with components of 4 bytes, every word a pattern of its own.
+template <class T>
+std::vector<T> patterned(std::size_t count) {
+  const std::vector<std::uint32_t> words = bitPatterns(count * sizeof(T) / 4);
+  std::vector<T> elements(count);
+  if (count > 0) {
+    std::memcpy(elements.data(), words.data(), count * sizeof(T));
+  }
+  return elements;
+}
+
+template <class T>
+bool haveSameBits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a stream gives back what was written", "", float, float2, float3, float4, std::int32_t,
+                   int2, int3, int4, std::uint32_t, uint2, uint3, uint4) {
+  const auto profile = GENERATE(from_range(profileNames));
+  const auto limit = GENERATE(0, 64);
+  Device device = makeDevice(profile, limit);
+  const std::vector<Shape> shapes{
+      {0},       {1},       {7},          {64},           {65},           {1021},  {4096},
+      {3, 5},    {1, 1},    {5, 0},       {64, 64},       {65, 3},        {3, 65}, {2, 3, 4},
+      {1, 1, 1}, {7, 0, 2}, {3, 1, 5, 7}, {13, 11, 3, 2}, {1, 1, 1, 4095}};
+  for (const Shape& shape : shapes) {
+    auto stream = device.stream<TestType>(shape);
+    const auto elements = patterned<TestType>(static_cast<std::size_t>(shape.size()));
+    stream.write(elements);
+    INFO("shape " << toString(shape));
+    CHECK(haveSameBits(stream.read(), elements));
+    std::vector<TestType> memory(elements.size());
+    stream.read(memory);
+    CHECK(haveSameBits(memory, elements));
+  }
+}
+
+TEST_CASE("floats keep their bits: NaN payloads, infinities, denormals, zeros") {
+  const auto profile = GENERATE(from_range(profileNames));
+  Device device = makeDevice(profile);
+  SECTION("chosen ones") {
+    const std::vector<std::uint32_t> words{0x00000000, 0x80000000, 0x00000001, 0x807fffff,
+                                           0x00800000, 0x7f7fffff, 0x7f800000, 0xff800000,
+                                           0x7f800001, 0xffbfffff, 0x7fc00000, 0xffffffff};
+    std::vector<float> floats(words.size());
+    std::memcpy(floats.data(), words.data(), words.size() * 4);
+    auto stream = device.stream<float>(floats.size());
+    stream.write(floats);
+    CHECK(haveSameBits(stream.read(), floats));
+  }
+  SECTION("one in 256 of all there are") {
+    auto stream = device.stream<float>({4096, 4096});
+    const auto floats = patterned<float>(4096u * 4096u);
+    stream.write(floats);
+    CHECK(haveSameBits(stream.read(), floats));
+  }
+}
+
+TEST_CASE("streams of bool take and give bools and bytes") {
+  const auto profile = GENERATE(from_range(profileNames));
+  const auto limit = GENERATE(0, 64);
+  Device device = makeDevice(profile, limit);
+  auto stream = device.stream<bool>(101);
+  std::vector<std::uint8_t> bytes(101);
+  std::vector<bool> bits(101);
+  std::array<bool, 101> bools{};
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bits[i] = bools[i] = (i * i / 7) % 2 == 1;
+    bytes[i] = bools[i] ? static_cast<std::uint8_t>(1 + i) : 0;
+  }
+  SECTION("an array of bool") { stream.write(bools); }
+  SECTION("bytes, of which any but 0 is true") { stream.write(bytes); }
+  SECTION("a std::vector<bool>") { stream.write(bits); }
+  SECTION("what another stream gave") {
+    auto other = device.stream<bool>(101);
+    other.write(bools);
+    stream.write(other.read());
+  }
+  std::array<bool, 101> memory{};
+  stream.read(memory);
+  CHECK(memory == bools);
+  const std::vector<std::uint8_t> read = stream.read();
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    CHECK(read[i] == static_cast<std::uint8_t>(bools[i]));
+  }
+}
+
+TEST_CASE("vectors of bool keep their components") {
+  const auto profile = GENERATE(from_range(profileNames));
+  Device device = makeDevice(profile);
+  auto pairs = device.stream<bool2>(3);
+  const std::vector<bool2> two{{true, false}, {false, true}, {true, true}};
+  pairs.write(two);
+  CHECK(pairs.read() == two);
+  auto triples = device.stream<bool3>({2, 2});
+  const std::vector<bool3> three{
+      {true, false, true}, {false, true, false}, {true, true, true}, {false, false, false}};
+  triples.write(three);
+  CHECK(triples.read() == three);
+}
+
+TEST_CASE("structs keep their members") {
+  const auto profile = GENERATE(from_range(profileNames));
+  const auto limit = GENERATE(0, 64);
+  Device device = makeDevice(profile, limit);
+  const auto count = GENERATE(as<std::size_t>{}, 1, 37, 1031);
+  std::vector<Particle> particles(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto n = static_cast<std::int32_t>(i);
+    particles[i] = {{0.5f * static_cast<float>(n), -1.0f, 3.0f},
+                    n % 3 == 0,
+                    {-n, n * 7},
+                    {n % 2 == 0, true, n % 5 == 0},
+                    0xffffffffu - static_cast<std::uint32_t>(n)};
+  }
+  auto stream = device.stream<Particle>(count);
+  stream.write(particles);
+  CHECK(stream.read() == particles);
+  for (int plane = 0; plane < 5; ++plane) {
+    CHECK(stream.texture(plane).name != 0);
+  }
+}
+
+TEST_CASE("a view writes and reads its box and nothing else") {
+  const auto profile = GENERATE(from_range(profileNames));
+  const auto limit = GENERATE(0, 64);
+  Device device = makeDevice(profile, limit);
+  const auto shape =
+      GENERATE(Shape(100), Shape(40, 30), Shape(3, 200), Shape(6, 7, 8), Shape(50, 40, 2), Shape(3, 4, 5, 6));
+  std::vector<std::int32_t> expected(static_cast<std::size_t>(shape.size()));
+  std::iota(expected.begin(), expected.end(), 0);
+  auto stream = device.stream<std::int32_t>(shape);
+  stream.write(expected);
+  std::mt19937 random(12345);
+  for (int round = 0; round < 12; ++round) {
+    Index begin = Index::origin(shape.rank());
+    Index end = begin;
+    for (int d = 0; d < shape.rank(); ++d) {
+      begin[d] = std::uniform_int_distribution<std::int64_t>(0, shape[d])(random);
+      end[d] = std::uniform_int_distribution<std::int64_t>(begin[d], shape[d])(random);
+    }
+    const auto view = stream.domain(begin, end);
+    std::vector<std::size_t> inside;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      bool isInside = true;
+      auto rest = static_cast<std::int64_t>(i);
+      for (int d = shape.rank() - 1; d >= 0; --d) {
+        isInside = isInside && rest % shape[d] >= begin[d] && rest % shape[d] < end[d];
+        rest /= shape[d];
+      }
+      if (isInside) {
+        inside.push_back(i);
+      }
+    }
+    INFO("shape " << toString(shape) << " from " << toString(begin) << " to " << toString(end));
+    REQUIRE(view.size() == static_cast<std::int64_t>(inside.size()));
+    std::vector<std::int32_t> part = view.read();
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      REQUIRE(part[i] == expected[inside[i]]);
+      part[i] = expected[inside[i]] = -round * 100000 - static_cast<std::int32_t>(i);
+    }
+    view.write(part);
+    REQUIRE(stream.read() == expected);
+  }
+}
+
+TEST_CASE("a view of structs and of a view") {
+  const auto limit = GENERATE(0, 64);
+  Device device = makeDevice("essl300", limit);
+  auto stream = device.stream<Hit>({50, 70});
+  std::vector<Hit> hits(50 * 70);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    hits[i] = {static_cast<float>(i), static_cast<std::int32_t>(i)};
+  }
+  stream.write(hits);
+  const auto view = stream.domain({10, 20}, {45, 65}).domain({5, 1}, {7, 4});
+  CHECK(view.shape() == Shape(2, 3));
+  CHECK(view.read() == std::vector<Hit>{hits[15 * 70 + 21], hits[15 * 70 + 22], hits[15 * 70 + 23],
+                                        hits[16 * 70 + 21], hits[16 * 70 + 22], hits[16 * 70 + 23]});
+  const Stream<Hit>& constant = stream;
+  CHECK(constant.domain({0, 0}, {1, 1}).read() == std::vector<Hit>{hits[0]});
+}
+
+TEST_CASE("a stream tells where its elements are") {
+  Device device({.textureLimit = 64});
+  auto plane = device.stream<float>({3, 5});
+  CHECK(plane.texture().width == 5);
+  CHECK(plane.texture().height == 3);
+  CHECK_FALSE(plane.texture().linear);
+  CHECK(plane.texture().internalFormat == 0x822E);
+  auto linear = device.stream<float4>(1000);
+  CHECK(linear.texture().linear);
+  CHECK(linear.texture().width == 32);
+  CHECK(linear.texture().height == 32);
+  auto empty = device.stream<float>({0, 4});
+  CHECK(empty.texture().name == 0);
+  CHECK(empty.shape() == Shape(0, 4));
+  CHECK(empty.size() == 0);
+}
+
+TEST_CASE("streams and devices move") {
+  Device first;
+  auto a = first.stream<float>(3);
+  a.write(std::vector<float>{1, 2, 3});
+  Device second = std::move(first);
+  auto b = std::move(a);
+  CHECK(b.read() == std::vector<float>{1, 2, 3});
+  auto c = second.stream<float>(2);
+  c.write(std::vector<float>{4, 5});
+  b = std::move(c);
+  CHECK(b.read() == std::vector<float>{4, 5});
+  CHECK(errorOf([&] { first.stream<float>(1); }) == "the device was moved from");
+  CHECK(errorOf([&] { (void)a.read(); }) == "read: the stream was moved from");
+  CHECK(errorOf([&] { a.domain(0, 0); }) == "domain: the stream was moved from");
+  CHECK(errorOf([&] { (void)a.texture(); }) == "texture: the stream was moved from");
+  CHECK(a.size() == 0);
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+//
+// Filling descriptors in.
+#include "test_kernel.hpp"
+
+namespace sk::test {
+
+namespace {
+
+bool calls(std::string_view body, std::string_view function, std::string_view symbol = {}) {
+  const std::string text = std::string(function) + std::string(symbol) + "(";
+  return body.find(text) != std::string_view::npos;
+}
+
+/// "heat_diffuse" for "heat::diffuse".
+std::string entryOf(std::string_view name) {
+  std::string entry(name);
+  if (const std::size_t colons = entry.find("::"); colons != std::string::npos) {
+    entry.replace(colons, 2, "_");
+  }
+  return entry;
+}
+
+}  // namespace
+
+TestKernel::TestKernel(std::string_view name, std::string_view body,
+                       std::vector<program::Parameter> parameters, std::string_view declarations, int reach)
+    : entry_(entryOf(name)), parameters_(std::move(parameters)) {
+  for (program::Parameter& parameter : parameters_) {
+    parameter.usesIndex = calls(body, "sk_index_", parameter.symbol);
+    parameter.usesExtent = calls(body, "sk_extent_", parameter.symbol);
+    parameter.usesAt = calls(body, "sk_at_", parameter.symbol);
+    parameter.usesNear = calls(body, "sk_near_", parameter.symbol);
+    parameter.reach = reach;
+  }
+  kernel_.name = name;
+  kernel_.entry = entry_;
+  kernel_.declarations = declarations;
+  kernel_.body = body;
+  kernel_.parameters = parameters_;
+  kernel_.sources = sources_;
+  kernel_.usesIndex = calls(body, "sk_index");
+}
+
+TestReduction::TestReduction(std::string_view name, std::string_view body,
+                             std::vector<program::Parameter> parameters, bool seeded,
+                             std::string_view declarations, std::string_view combine)
+    : parameters_(std::move(parameters)) {
+  reduction_.fold.name = name;
+  reduction_.fold.entry = name;
+  reduction_.fold.declarations = declarations;
+  reduction_.fold.body = body;
+  reduction_.fold.parameters = parameters_;
+  reduction_.fold.sources = sources_;
+  reduction_.combine = combine.empty() ? name : combine;
+  reduction_.seeded = seeded;
+}
+
+// An odd factor makes the map one to one.
+std::vector<std::uint32_t> bitPatterns(std::size_t count) {
+  std::vector<std::uint32_t> patterns(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    patterns[i] = static_cast<std::uint32_t>(i) * 2654435761u;
+  }
+  return patterns;
+}
+
+}  // namespace sk::test

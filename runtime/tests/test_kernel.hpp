@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+//
+// Kernels and reductions written by hand, with the descriptors that skc would write, for tests of the
+// runtime alone. They must live as long as the devices that run them: make them static.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "sk/call.hpp"
+#include "sk/sk.hpp"
+
+namespace sk::test {
+
+/// The profiles that each test of results is run in.
+inline const std::vector<std::string> profileNames{"glsl330", "essl300"};
+
+template <class T>
+program::Parameter parameter(std::string_view name, program::Role role) {
+  program::Parameter made{
+      .name = name, .symbol = name, .role = role, .element = &ElementTraits<T>::element()};
+  return made;
+}
+template <class T>
+program::Parameter uniform(std::string_view name) {
+  return parameter<T>(name, program::Role::Uniform);
+}
+template <class T>
+program::Parameter input(std::string_view name) {
+  return parameter<T>(name, program::Role::Input);
+}
+template <class T>
+program::Parameter output(std::string_view name) {
+  return parameter<T>(name, program::Role::Output);
+}
+template <class T>
+program::Parameter gather(std::string_view name, int rank,
+                          program::Boundary boundary = program::Boundary::Clamp) {
+  program::Parameter made = parameter<T>(name, program::Role::Gather);
+  made.rank = static_cast<std::uint8_t>(rank);
+  made.boundary = boundary;
+  return made;
+}
+template <class T>
+program::Parameter accumulator(std::string_view name, std::string_view identity = {}) {
+  program::Parameter made = parameter<T>(name, program::Role::Accumulator);
+  made.identity = identity;
+  return made;
+}
+
+template <class T>
+Argument argumentOf(const T& value) {
+  if constexpr (requires { regionOf(value); }) {
+    return {nullptr, regionOf(value)};
+  } else {
+    return {&value, {}};
+  }
+}
+
+/// A kernel whose entry function bears its name ("_" for "::"). What its body uses of a parameter is found
+/// in its text; `reach` is that of all its neighbours.
+class TestKernel {
+ public:
+  TestKernel(std::string_view name, std::string_view body, std::vector<program::Parameter> parameters,
+             std::string_view declarations = {}, int reach = -1);
+  TestKernel(const TestKernel&) = delete;
+  TestKernel& operator=(const TestKernel&) = delete;
+
+  template <class... Arguments>
+  void operator()(const Arguments&... values) const {
+    const std::array<Argument, sizeof...(values)> arguments{argumentOf(values)...};
+    run(kernel_, arguments);
+  }
+  const program::Kernel& kernel() const { return kernel_; }
+
+ private:
+  std::string entry_;
+  std::vector<program::Parameter> parameters_;
+  std::array<std::string_view, 1> sources_{"test.sk"};
+  program::Kernel kernel_;
+};
+
+/// A reduction whose fold bears its name; `combine` is the fold where none is given.
+class TestReduction {
+ public:
+  TestReduction(std::string_view name, std::string_view body, std::vector<program::Parameter> parameters,
+                bool seeded, std::string_view declarations = {}, std::string_view combine = {});
+  TestReduction(const TestReduction&) = delete;
+  TestReduction& operator=(const TestReduction&) = delete;
+
+  template <class A, class S>
+  A value(const S& stream) const {
+    A result{};
+    reduce(reduction_, regionOf(stream), &result);
+    return result;
+  }
+  template <class S, class R>
+  void operator()(const S& stream, const R& result) const {
+    reduce(reduction_, regionOf(stream), regionOf(result));
+  }
+
+ private:
+  std::vector<program::Parameter> parameters_;
+  std::array<std::string_view, 1> sources_{"test.sk"};
+  program::Reduction reduction_;
+};
+
+/// The text of the sk::Error that `action` throws; "nothing was thrown" where it throws none.
+template <class Action>
+std::string errorOf(Action action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+/// Each value a bit pattern of its own: 0, 1, 2 ... spread over all 32 bits.
+std::vector<std::uint32_t> bitPatterns(std::size_t count);
+
+}  // namespace sk::test

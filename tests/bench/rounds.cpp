@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "rounds.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace bench {
+namespace {
+
+/// Milliseconds for `times` times.
+double sample(const Contender& contender, int times) {
+  const auto start = std::chrono::steady_clock::now();
+  contender(times);
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+int timesFor(const Contender& contender, double milliseconds) {
+  sample(contender, 1);  // compiles
+  const double once = sample(contender, 1);
+  return std::clamp(static_cast<int>(std::lround(milliseconds / std::max(once, 1e-3))), 1, 100'000);
+}
+
+}  // namespace
+
+Quartiles quartilesOf(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double part) {
+    const double place = part * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+  };
+  return {at(0.25), at(0.5), at(0.75)};
+}
+
+Comparison compare(const Contender& ours, const Contender& theirs, int rounds, double sampleMilliseconds) {
+  const int times = std::max(timesFor(ours, sampleMilliseconds), timesFor(theirs, sampleMilliseconds));
+  std::vector<double> ratios, oursOnce, theirsOnce;
+  for (int round = 0; round < rounds; ++round) {
+    const double a = sample(ours, times) / times;
+    const double b = sample(theirs, times) / times;
+    ratios.push_back(a / b);
+    oursOnce.push_back(a);
+    theirsOnce.push_back(b);
+  }
+  return {quartilesOf(ratios), quartilesOf(oursOnce), quartilesOf(theirsOnce)};
+}
+
+Quartiles measure(const Contender& contender, int rounds, double sampleMilliseconds) {
+  const int times = timesFor(contender, sampleMilliseconds);
+  std::vector<double> once;
+  for (int round = 0; round < rounds; ++round) once.push_back(sample(contender, times) / times);
+  return quartilesOf(once);
+}
+
+}  // namespace bench

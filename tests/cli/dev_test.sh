@@ -1,0 +1,113 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# ./dev as a newcomer, CI and a machine without rights or network see it. A copy of it runs in an empty
+# folder with stand-ins for apt-get, cmake and ctest that note how they were called.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+mkdir "$place/repo" "$place/bin" "$place/elsewhere"
+cp "$root/dev" "$root/packages.txt" "$root/CMakePresets.json" "$place/repo"
+dev=$place/repo/dev
+calls=$place/calls
+
+# stand_in NAME BODY: a program that notes its arguments, then does BODY.
+stand_in() {
+  printf '#!/bin/bash\necho "%s $*" >>"%s"\n%s\n' "$1" "$calls" "$2" >"$place/bin/$1"
+  chmod +x "$place/bin/$1"
+}
+# run STATUS ARGUMENT...: ./dev from another folder, without a terminal; its text goes to $said.
+run() {
+  local expected=$1 status=0
+  shift
+  : >"$calls"
+  said=$(cd "$place/elsewhere" && PATH="$place/bin:$PATH" "$dev" "$@" 2>&1 </dev/null) || status=$?
+  ((status == expected)) || broken "status $status of ./dev $*, not $expected"
+  [[ $said != *$'\e'* ]] || broken "colours without a terminal"
+}
+broken() { printf 'broken: %s\nit said:\n%s\ncalls:\n%s\n' "$1" "$said" "$(cat "$calls")"; exit 1; }
+says() { [[ $said == *"$1"* ]] || broken "it does not say: $1"; }
+called() { grep -qxF -- "$1" "$calls" || broken "not called: $1"; }
+never_called() { ! grep -q "^$1" "$calls" || broken "called: $1"; }
+
+all_installed='for name in "${@:4}"; do echo "installed $name"; done'
+stand_in sudo 'while [[ $1 == -* ]]; do shift; done; exec "$@"'
+stand_in apt-get ''
+stand_in cmake ''
+stand_in ctest 'echo "100% tests passed, 0 tests failed out of 1"'
+stand_in dpkg-query "$all_installed"
+
+# Help, and commands that do not exist.
+run 0 help
+for command in demo build test bench format lint install; do says "  $command"; done
+run 0
+says 'usage: ./dev COMMAND'
+run 1 biuld
+says "no command 'biuld'"
+says 'usage: ./dev COMMAND'
+run 1 build relaese
+says "no preset 'relaese': release, debug or asan"
+never_called cmake
+
+# All is installed: no apt-get; configure, build, test, whose closing line comes last.
+run 0 test -R saxpy
+never_called apt-get
+called 'cmake --preset release'
+called 'cmake --build --preset release -- --quiet'
+called "ctest --preset release -j $(nproc) -R saxpy"
+[[ ${said##*$'\n'} == '100% tests passed, 0 tests failed out of 1' ]] || broken "the closing line is not ctest's"
+run 0 test asan
+called "ctest --preset asan -j $(nproc)"
+
+# Something is missing: only that is installed, and package lists are not fetched.
+stand_in dpkg-query 'for name in "${@:4}"; do [[ $name == cmake ]] && echo "not-installed $name" || echo "installed $name"; done'
+run 0 build
+says 'installing 1 Debian packages: cmake'
+called 'apt-get -q -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 install --no-install-recommends cmake'
+never_called 'apt-get .* update'
+
+# A bare machine has no package lists: they are fetched, then it is tried again.
+stand_in apt-get 'case $* in *" update") touch "${0%/*}/../lists" ;; *) test -e "${0%/*}/../lists" ;; esac'
+run 0 build
+called 'apt-get -q -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 update'
+
+# No network.
+stand_in apt-get 'echo "E: Could not resolve host"; exit 100'
+run 1 build
+says 'E: Could not resolve host'
+says 'apt-get could not install them'
+never_called cmake
+
+# No right to install: what to install is said, and nothing is tried.
+stand_in sudo 'exit 1'
+as_nobody=()
+((EUID != 0)) || as_nobody=(setpriv --reuid=65534 --clear-groups)
+chmod -R a+rwX "$place"
+: >"$calls"
+if said=$(PATH="$place/bin:$PATH" "${as_nobody[@]}" "$dev" build 2>&1 </dev/null); then broken "it went on"; fi
+says 'no right to install them; as root: apt-get install cmake'
+never_called apt-get
+
+# A system that is not Debian: on with what there is.
+rm "$place/bin/dpkg-query"
+mkdir "$place/plain"
+for tool in bash env dirname readlink mkdir tail nproc cat grep; do ln -s "$(command -v $tool)" "$place/plain"; done
+ln -s "$place/bin/cmake" "$place/bin/ctest" "$place/plain"
+: >"$calls"
+said=$(PATH=$place/plain "$dev" build 2>&1 </dev/null) || broken "it needs apt-get"
+says 'no apt-get here: going on with what there is'
+called 'cmake --preset release'
+
+# A configuration that fails shows why.
+stand_in dpkg-query "$all_installed"
+stand_in cmake 'echo "no C++ compiler found"; exit 1'
+run 1 build
+says 'no C++ compiler found'
+says 'cmake could not configure'
+
+# packages.txt: every line says one package, under a section.
+awk '/^#/ || !NF { next } /^\[(build|lint)\]$/ { section = 1; next }
+     !section || !/^[a-z0-9][a-z0-9.+-]+( +#.*)?$/ { print "packages.txt:" NR ": " $0; bad = 1 }
+     END { exit bad }' "$root/packages.txt"
+echo "./dev does what ./dev help says"

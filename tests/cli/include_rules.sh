@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# Checks what no compiler does: which folder includes which, who sees Clang and GL, that every source
+# names its license, and that no file is too long. Usage: include_rules.sh [ROOT]. Prints each finding as
+# FILE:LINE: what is wrong; status 1 where there is one.
+set -euo pipefail
+cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../..}"
+
+# Folder: what it may include of the guarded headers below. The longest folder that fits counts.
+rules='
+compiler/support      support
+compiler/ir           support ir
+compiler/transforms   support ir transforms
+compiler/emit         support ir transforms emit assemble sk/program.hpp
+compiler/frontend     support ir frontend clang llvm
+compiler/driver       support ir transforms emit frontend driver assemble sk/program.hpp
+runtime/include/sk    sk
+runtime/src           sk assemble gl
+runtime/tests         sk assemble gl epoxy
+runtime/src/assemble  sk/program.hpp assemble
+runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
+examples              sk
+tests                 sk
+tests/bench           sk epoxy
+tests/docs            sk support/diagnostics.def ir/intrinsics.def
+tests/docs            support ir
+'
+guarded='support|ir|transforms|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+longest=600
+
+roots=(compiler runtime examples tests)
+
+# Our own texts; goldens and other files of tests are data.
+sources() { find "${roots[@]}" "$@" -type f | LC_ALL=C sort; }
+
+includes() {
+  sources '(' -name '*.hpp' -o -name '*.cpp' -o -name '*.def' ')' |
+    xargs -r awk -v rules="$rules" -v guarded="^($guarded)\$" '
+      BEGIN {
+        count = split(rules, lines, "\n")
+        for (i = 1; i <= count; ++i) {
+          n = split(lines[i], words, " ")
+          for (j = 2; j <= n; ++j) may[words[1], words[j]] = 1
+          if (n) folders[words[1]] = 1
+        }
+      }
+      function folderOf(file, folder) {
+        for (folder = file; sub("/[^/]*$", "", folder);) if (folder in folders) return folder
+        return ""
+      }
+      # Generated code that a test expects, in a raw string, includes nothing here.
+      FNR == 1 { raw = "" }
+      raw != "" { if (index($0, raw)) raw = ""; next }
+      match($0, /R"[a-z]*\(/) {
+        end = ")" substr($0, RSTART + 2, RLENGTH - 3) "\""
+        if (!index(substr($0, RSTART + RLENGTH), end)) raw = end
+        next
+      }
+      /^[ \t]*#[ \t]*include[ \t]*[<"]/ {
+        name = $0
+        sub(/^[^<"]*[<"]/, "", name)
+        sub(/[>"].*$/, "", name)
+        top = name
+        if (!sub("/.*$", "", top)) next
+        folder = folderOf(FILENAME)
+        # examples/support and the like: a folder of their own that bears a guarded name.
+        if (folder ~ /^(examples|tests)$/ && top == "support") next
+        if (top ~ guarded && !((folder, top) in may) && !((folder, name) in may))
+          printf "%s:%d: %s may not include %s\n", FILENAME, FNR, folder, name
+      }'
+}
+
+license() {
+  { sources '(' -name '*.hpp' -o -name '*.cpp' -o -name '*.def' -o -name '*.cmake' -o -name '*.sh' \
+      -o -name 'CMakeLists.txt' ')'
+    sources -path 'examples/*.sk'
+    find CMakeLists.txt dev cmake .ci -type f
+  } | xargs -r awk 'FNR <= 2 && /SPDX-License-Identifier: MIT/ { named[FILENAME] = 1 }
+                    END { for (i = 1; i < ARGC; ++i)
+                            if (!(ARGV[i] in named)) printf "%s:1: no SPDX-License-Identifier: MIT\n", ARGV[i] }'
+}
+
+lengths() {
+  sources '(' -name '*.hpp' -o -name '*.cpp' -o -name '*.def' -o -name '*.sk' ')' -not -path 'tests/*/cases/*' |
+    xargs -r awk -v longest="$longest" 'FNR == longest + 1 { printf "%s:%d: longer than %d lines\n", FILENAME, FNR, longest }'
+}
+
+findings=$(includes; license; lengths)
+if [[ -n $findings ]]; then
+  printf '%s\n' "$findings"
+  exit 1
+fi
+echo "include rules, licenses and lengths hold in $(sources -name '*.[hc]pp' | wc -l) sources"

@@ -1,0 +1,139 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# skc's command line: what it writes and where, and that every bad input ends with status 1 and one
+# message, never a crash, a hang or silence. What kernels mean is tested elsewhere.
+# Usage: skc_test.sh SKC
+set -euo pipefail
+skc=$(realpath "$1")
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+cd "$place"
+
+# run STATUS ARGUMENT...: its texts go to $out and $err.
+run() {
+  local expected=$1 status=0
+  shift
+  line="skc $*"
+  timeout 20 "$skc" "$@" >out.txt 2>err.txt </dev/null || status=$?
+  out=$(<out.txt)
+  err=$(<err.txt)
+  ((status == expected)) || broken "status $status, not $expected"
+  [[ $err != *$'\e'* && $out != *$'\e'* ]] || broken "colours without a terminal"
+}
+broken() { printf 'broken: %s\n%s\nstandard output:\n%s\nstandard error:\n%s\n' "$1" "$line" "$out" "$err"; exit 1; }
+prints() { [[ $out == *"$1"* ]] || broken "standard output lacks: $1"; }
+says() { [[ $err == *"$1"* ]] || broken "standard error lacks: $1"; }
+silent() { [[ -z $err ]] || broken "standard error is not empty"; }
+
+# refuses MESSAGE ARGUMENT...: one error, status 1, and no output left behind.
+refuses() {
+  local message=$1
+  shift
+  run 1 "$@" -o refused
+  says "$message"
+  (($(grep -c 'error: ' err.txt) <= 1)) || broken "more than one error"
+  [[ -z $out ]] || broken "standard output is not empty"
+  [[ -z $(find refused -type f 2>/dev/null) ]] || broken "an output is left behind"
+}
+
+cat >heat.sk <<'EOF'
+#include "weights.sk"
+kernel void diffuse(float k, [[wrap]] float u[][], out float v<>) {
+  int2 p = indexof(v).xy;
+  v = u[p.y][p.x] + k * WEIGHT * (neighbor(u, 1, 0) - neighbor(u, -1, 0));
+}
+reduce void sum(float x<>, reduce float total<> = 0) { total += x; }
+EOF
+mkdir include
+echo '#define WEIGHT 0.25f' >include/weights.sk
+
+# Help and version.
+run 0 --help
+prints 'FILE'
+for option in -o --emit --target --profile --kernel -I -D -W --depfile --print-after --version; do prints " $option"; done
+run 0 --version
+[[ $out =~ ^skc\ [0-9]+\.[0-9]+\.[0-9]+ ]] || broken "no version"
+
+# Stubs, and the depfile that rebuilds them.
+run 0 -Iinclude heat.sk
+silent
+[[ -s heat.sk.hpp && -s heat.sk.cpp ]] || broken "no stubs beside the caller"
+run 0 -I include -o "a folder" --depfile=heat.d heat.sk
+silent
+cmp -s heat.sk.hpp "a folder/heat.sk.hpp" || broken "the stub depends on where it is written"
+grep -qF 'a\ folder/heat.sk.hpp' heat.d || broken "the depfile lacks the stub: $(<heat.d)"
+grep -qF 'include/weights.sk' heat.d || broken "the depfile lacks the included file: $(<heat.d)"
+
+# What is printed.
+run 0 -Iinclude --emit=glsl heat.sk
+prints '#version 330'
+run 0 -Iinclude --emit=glsl --profile=essl300 --kernel=diffuse heat.sk
+prints '#version 300 es'
+prints 'diffuse'
+[[ $out != *sum* ]] || broken "--kernel=diffuse prints more"
+run 0 -Iinclude --emit=ir heat.sk
+prints 'diffuse'
+run 0 -Iinclude --emit=ast heat.sk
+prints 'diffuse'
+run 0 -Iinclude --print-after=all heat.sk
+prints 'diffuse'
+
+# -D, -W and -Werror.
+echo 'kernel void f(float x<>, out float r<>) { if (x > LIMIT) r = x; }' >partial.sk
+run 0 -DLIMIT=2 partial.sk
+says "warning: output 'r' is not written on every path"
+says 'partial.sk:1:'
+run 1 -DLIMIT=2 -Werror partial.sk
+says "error: output 'r' is not written on every path"
+
+# Command lines that make no sense.
+run 1
+says 'skc: '
+refuses '--nosuch' --nosuch heat.sk
+refuses 'glsll' --emit=glsll heat.sk
+refuses 'glsl990' --emit=glsl --profile=glsl990 heat.sk
+refuses 'quantum' --target=quantum heat.sk
+refuses 'nosuch' --print-after=nosuch heat.sk
+refuses 'nosuch' -Iinclude --emit=glsl --kernel=nosuch heat.sk
+mkdir other
+cp heat.sk other
+refuses 'heat.sk' -Iinclude heat.sk other/heat.sk
+echo 'in the way' >file
+run 1 -Iinclude -o file/below heat.sk
+says 'file/below'
+
+# Files that are none.
+refuses "'missing.sk' does not exist" missing.sk
+refuses "'include' is a directory" include
+: >empty.sk
+refuses "'empty.sk' is empty" empty.sk
+head -c 4096 /dev/urandom >binary.sk
+printf '\0' >>binary.sk
+refuses "'binary.sk' is not a text file" binary.sk
+yes 'kernel void f(float x<>, out float r<>) { r = x; }' | head -c 10485760 >huge.sk || true  # yes ends by SIGPIPE
+refuses "'huge.sk' is 10485760 bytes long" huge.sk
+echo 'float twice(float x) { return 2 * x; }' >none.sk
+refuses "'none.sk' declares no kernel" none.sk
+refuses "'weights.sk' file not found" heat.sk
+
+# Mistakes are reported at their place.
+printf 'kernel void f(float x<>, out float r<>) {\n  r = x + y;\n}\n' >mistake.sk
+refuses "mistake.sk:2:11: error: use of undeclared identifier 'y'" mistake.sk
+
+# Every slip in a declaration: a character left out, or the rest of the file.
+slips=0
+declaration='reduce void f([[wrap]] Hit h<>, reduce Hit best<> = 0) { best = h; }'
+echo 'struct Hit { float t; };' >hit.sk
+for ((i = 0; i < ${#declaration}; ++i)); do
+  for slip in "${declaration:0:i}" "${declaration:0:i}${declaration:i+1}"; do
+    printf '#include "hit.sk"\nkernel void g(float x<>, out float r<>) { r = x; }\n%s\n' "$slip" >slip.sk
+    status=0
+    timeout 20 "$skc" -o slips slip.sk >out.txt 2>err.txt </dev/null || status=$?
+    ((status <= 1)) || { line="skc of: $slip" out='' err=$(<err.txt); broken "status $status"; }
+    ((status == 0)) || grep -q '^[a-z]*\.sk:[0-9]*:[0-9]*: error: ' err.txt ||
+      { line="skc of: $slip" out='' err=$(<err.txt); broken "no message with a place"; }
+    ((++slips))
+  done
+done
+echo "skc's command line holds, with $slips slips in a declaration"

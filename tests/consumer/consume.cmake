@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+#
+# Builds project/ outside of this repository as another project would, runs its kernels, and proves that
+# sk_add_kernels rebuilds what has changed and nothing else. Run by cmake -P with
+#   WAY            find_package (an installation, moved after it was made) or add_subdirectory
+#   WORK           a folder of this test's own
+#   SOURCE BUILD   StreamKernel's source and build folder
+#   SKC            the skc built there
+#   GENERATOR      of the consumer
+#   SETTINGS       -D options that both builds must agree on
+cmake_minimum_required(VERSION 3.25)
+
+# step(WHAT COMMAND...): runs it; its text goes to `output`, and a failure ends the test.
+macro(step what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${what} failed (${status}):\n${output}")
+  endif()
+endmacro()
+
+# built(WHAT [RUNS file...]): builds the consumer, where skc must run for these .sk files only.
+function(built what)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "RUNS")
+  step("building ${what}" ${CMAKE_COMMAND} --build "${WORK}/build")
+  foreach(file scale.sk solver/scale.sk)
+    string(REGEX MATCH " skc ${file}" ran "${output}")
+    if(file IN_LIST arg_RUNS AND NOT ran)
+      message(FATAL_ERROR "${what}: skc did not run for ${file}:\n${output}")
+    elseif(ran AND NOT file IN_LIST arg_RUNS)
+      message(FATAL_ERROR "${what}: skc ran for ${file}:\n${output}")
+    endif()
+  endforeach()
+endfunction()
+
+# prints(EXPECTED): what the consumer computes.
+function(prints expected)
+  step("running the consumer" "${WORK}/build/consumer")
+  if(NOT output STREQUAL expected)
+    message(FATAL_ERROR "the consumer prints '${output}', not '${expected}'")
+  endif()
+endfunction()
+
+# edit(FILE OLD NEW)
+function(edit file old new)
+  file(READ "${WORK}/project/${file}" text)
+  string(REPLACE "${old}" "${new}" changed "${text}")
+  if(changed STREQUAL text)
+    message(FATAL_ERROR "'${old}' is not in ${file}")
+  endif()
+  file(WRITE "${WORK}/project/${file}" "${changed}")
+endfunction()
+
+# relocatable(FOLDER): no text of the installation names a folder of this machine.
+function(relocatable folder)
+  file(GLOB_RECURSE files "${folder}/*.cmake" "${folder}/*.hpp")
+  foreach(file IN LISTS files)
+    file(READ "${file}" text)
+    foreach(place "${SOURCE}" "${BUILD}" "${WORK}")
+      string(FIND "${text}" "${place}" at)
+      if(NOT at EQUAL -1)
+        message(FATAL_ERROR "${file} names ${place}")
+      endif()
+    endforeach()
+  endforeach()
+endfunction()
+
+file(REMOVE_RECURSE "${WORK}")
+file(COPY "${CMAKE_CURRENT_LIST_DIR}/project" DESTINATION "${WORK}")
+
+if(WAY STREQUAL "find_package")
+  step("installing" ${CMAKE_COMMAND} --install "${BUILD}" --prefix "${WORK}/prefix")
+  file(RENAME "${WORK}/prefix" "${WORK}/moved")
+  relocatable("${WORK}/moved")
+  set(place "-DCMAKE_PREFIX_PATH=${WORK}/moved")
+else()
+  set(place "-DSTREAMKERNEL=${SOURCE}" "-DSK_SKC=${SKC}")
+endif()
+step("configuring" ${CMAKE_COMMAND} -G "${GENERATOR}" -S "${WORK}/project" -B "${WORK}/build"
+     ${place} ${SETTINGS})
+
+built("anew" RUNS scale.sk solver/scale.sk)
+prints("3 4 5 6 ")
+built("again without a change")
+edit(common.sk "factor = 2.0f" "factor = 3.0f")
+built("after a change of an included file" RUNS scale.sk solver/scale.sk)
+prints("4.5 6 7.5 9 ")
+edit(scale.sk "factor * a" "2 * factor * a")
+built("after a change of one file" RUNS scale.sk)
+prints("6 9 12 15 ")
+
+# A mistake in a kernel stops the build, with its place.
+edit(scale.sk "* a * x" "* a * y")
+execute_process(COMMAND ${CMAKE_COMMAND} --build "${WORK}/build"
+                RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+if(status EQUAL 0 OR NOT output MATCHES "scale\\.sk:4:[0-9]+: error: ")
+  message(FATAL_ERROR "a mistake in scale.sk gives status ${status} and:\n${output}")
+endif()
+edit(scale.sk "* a * y" "* a * x")
+built("after the mistake" RUNS scale.sk)
+prints("6 9 12 15 ")

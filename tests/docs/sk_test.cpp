@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+//
+// The .sk blocks: what compiles, what does not and with which message, and what comes out of it.
+#include <regex>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "listings.hpp"
+#include "markdown.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using docs::Block;
+
+bool isRejected(const Block& block) { return block.has("error") || block.has("rejected"); }
+
+/// The first error or warning of skc's about `file`.
+std::string firstMessage(const std::string& output, const std::string& file) {
+  for (const std::string& line : docs::linesOf(output)) {
+    static const std::regex pattern(R"re(^([^:]+):\d+:\d+: (?:fatal )?(?:error|warning): (.*?)(?: \[-W[^\]]*\])?$)re");
+    std::smatch parts;
+    if (std::regex_match(line, parts, pattern) && parts[1] == file) return parts[2];
+  }
+  return {};
+}
+
+/// Each program of a listing as a file of its own.
+std::vector<std::string> writePrograms(const std::string& listing, const fs::path& folder, const std::string& prefix) {
+  std::vector<std::string> names;
+  std::string program;
+  const auto flush = [&] {
+    if (program.empty()) return;
+    names.push_back(fmt::format("{}.{}.frag", prefix, names.size()));
+    docs::writeFile(folder / names.back(), program);
+    program.clear();
+  };
+  for (const std::string& line : docs::linesOf(listing)) {
+    if (line.starts_with("#version")) flush();
+    program += line + "\n";
+  }
+  flush();
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("every .sk block compiles, for every profile, to GLSL that glslang accepts", "[sk]") {
+  const fs::path folder = docs::workFolder("compiled");
+  docs::writeNamedFiles(folder);
+  std::string files;
+  for (const Block* block : docs::blocksOf("sk")) {
+    if (isRejected(*block) || block->has("warning")) continue;
+    docs::writeFile(folder / docs::fileName(*block), docs::wholeFile(*block));
+    files += fmt::format(" '{}'", docs::fileName(*block));
+  }
+  std::string programs;
+  for (const std::string profile : {"glsl330", "essl300"}) {
+    const docs::Outcome outcome =
+        docs::run(fmt::format("skc -Werror --emit=glsl --profile={}{} >{}.txt", profile, files, profile), folder);
+    INFO(outcome.output);
+    REQUIRE(outcome.status == 0);
+    for (const std::string& name : writePrograms(docs::readFile(folder / (profile + ".txt")), folder, profile)) {
+      programs += " " + name;
+    }
+  }
+  const docs::Outcome checked = docs::run(fmt::format("'{}'{}", SK_DOCS_GLSLANG, programs), folder);
+  INFO(checked.output);
+  CHECK(checked.status == 0);
+}
+
+TEST_CASE("every block that is shown as wrong gives the message that is quoted above it", "[sk]") {
+  const fs::path folder = docs::workFolder("wrong");
+  std::string command;
+  for (const Block* block : docs::blocksOf("sk")) {
+    if (!isRejected(*block) && !block->has("warning")) continue;
+    const std::string name = docs::fileName(*block);
+    docs::writeFile(folder / name, docs::wholeFile(*block));
+    command += fmt::format("skc --emit=glsl {} >/dev/null; echo 'status' {} $?\n", name, name);
+  }
+  const std::string output = docs::run(command, folder).output;
+  for (const Block* block : docs::blocksOf("sk")) {
+    if (!isRejected(*block) && !block->has("warning")) continue;
+    const std::string name = docs::fileName(*block);
+    INFO(block->place() << ": " << block->section);
+    CHECK(output.find(fmt::format("status {} {}\n", name, isRejected(*block) ? 1 : 0)) != std::string::npos);
+    const std::string message = firstMessage(output, name);
+    if (block->has("rejected")) {
+      CHECK(message != "");
+    } else {
+      CHECK(message == block->quote);
+    }
+  }
+}
+
+TEST_CASE("quoted GLSL and IR are what skc prints", "[sk]") {
+  const fs::path folder = docs::workFolder("quoted");
+  docs::writeNamedFiles(folder);
+  const auto check = [&](const Block& block, const std::string& options) {
+    const std::string kernel = block.value("kernel");
+    const docs::Outcome outcome = docs::run(
+        fmt::format("skc {}{} {}", options, kernel.empty() ? "" : " --kernel=" + kernel, block.value("of")), folder);
+    INFO(block.place() << " is not what skc " << options << " prints:\n" << outcome.output);
+    CHECK(outcome.status == 0);
+    CHECK(docs::quotes(block.text, outcome.output));
+  };
+  for (const Block* block : docs::blocksOf("glsl")) {
+    const std::string profile = block->value("profile");
+    check(*block, "--emit=glsl --profile=" + (profile.empty() ? "glsl330" : profile));
+  }
+  for (const Block* block : docs::blocksOf("ir")) {
+    const std::string after = block->value("after");
+    check(*block, after.empty() ? "--emit=ir" : "--emit=stubs --print-after=" + after);
+  }
+}
+
+TEST_CASE("sessions at the console go as they are shown", "[sk]") {
+  const fs::path folder = docs::workFolder("console");
+  docs::writeNamedFiles(folder);
+  for (const Block* block : docs::blocksOf("console")) {
+    std::string really;
+    for (const std::string& line : docs::linesOf(block->text)) {
+      if (line.starts_with("$ ")) really += line + "\n" + docs::run(line.substr(2), folder).output;
+    }
+    INFO(block->place() << ": what happens is\n" << really);
+    CHECK(docs::quotes(block->text, really));
+    CHECK(docs::linesOf(block->text).size() == docs::linesOf(really).size());
+  }
+}

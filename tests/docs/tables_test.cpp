@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+//
+// The tables of facts against the documents that explain them: every diagnostic has its section in
+// docs/errors.md, every intrinsic its row in docs/language.md, and nothing else has.
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+
+#include "markdown.hpp"
+
+namespace {
+
+struct Row {
+  std::string name, text;
+};
+
+const std::vector<Row> diagnostics = {
+#define SKC_DIAGNOSTIC(Name, severity, text) {#Name, text},
+#include "support/diagnostics.def"
+#undef SKC_DIAGNOSTIC
+};
+
+using Signatures = std::map<std::string, std::set<std::string>>;
+
+std::set<std::string> wordsOf(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+/// Signatures of each spelling, over the rows that share it.
+Signatures intrinsics() {
+  Signatures found;
+  const auto add = [&](const std::string& spelling, const std::string& signatures) {
+    if (!spelling.empty()) found[spelling].merge(wordsOf(signatures));
+  };
+#define SKC_INTRINSIC(Name, spelling, signatures, glsl, glslVector, polyfill) add(spelling, signatures);
+#include "ir/intrinsics.def"
+#undef SKC_INTRINSIC
+  return found;
+}
+
+const docs::Document& document(const std::string& name) {
+  for (const docs::Document& one : docs::documents()) {
+    if (one.name == name) return one;
+  }
+  FAIL("no " << name);
+  return docs::documents().front();
+}
+
+/// "no version of '%0' takes (%1)" as a regular expression.
+std::regex patternOf(const std::string& text) {
+  std::string pattern;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 1 < text.size()) {
+      pattern += ".*";
+      ++i;
+    } else {
+      if (std::string_view("^$\\.*+?()[]{}|").find(text[i]) != std::string_view::npos) pattern += '\\';
+      pattern += text[i];
+    }
+  }
+  return std::regex(pattern);
+}
+
+/// `a` `b` in a cell of a table.
+std::vector<std::string> codesIn(const std::string& cell) {
+  static const std::regex code("`([^`]*)`");
+  std::vector<std::string> codes;
+  for (std::sregex_iterator it(cell.begin(), cell.end(), code), end; it != end; ++it) codes.push_back((*it)[1]);
+  return codes;
+}
+
+}  // namespace
+
+TEST_CASE("docs/errors.md has a section for every diagnostic, in their order", "[tables]") {
+  const docs::Document& errors = document("docs/errors.md");
+  std::vector<std::string> sections;
+  for (const docs::Heading& heading : errors.headings) {
+    if (heading.text == "sk::Error") break;
+    if (heading.level == 3) sections.push_back(heading.text);
+  }
+  for (std::size_t i = 0; i < std::max(sections.size(), diagnostics.size()); ++i) {
+    const std::string section = i < sections.size() ? sections[i] : "(none)";
+    REQUIRE(section == (i < diagnostics.size() ? diagnostics[i].name : "(none)"));   // the first that differs
+  }
+}
+
+TEST_CASE("every section of docs/errors.md quotes its message and shows who gets it", "[tables]") {
+  const docs::Document& errors = document("docs/errors.md");
+  for (const Row& row : diagnostics) {
+    INFO(row.name << ": " << row.text);
+    const auto isHere = [&](const auto& piece) { return piece.section == row.name; };
+    const auto quote = std::find_if(errors.quotes.begin(), errors.quotes.end(), isHere);
+    REQUIRE(quote != errors.quotes.end());
+    INFO(quote->text);
+    CHECK(std::regex_match(quote->text, patternOf(row.text)));
+    if (row.name != "FileUnreadable") {   // which no test can make where it runs as root
+      CHECK(std::find_if(errors.blocks.begin(), errors.blocks.end(), isHere) != errors.blocks.end());
+    }
+  }
+}
+
+TEST_CASE("docs/language.md lists every intrinsic with its signatures", "[tables]") {
+  Signatures listed;
+  for (const docs::Piece& row : document("docs/language.md").rows) {
+    if (row.section != "Intrinsics") continue;
+    const std::size_t second = row.text.find('|', 1);
+    const std::size_t third = row.text.find('|', second + 1);
+    const std::vector<std::string> signatures = codesIn(row.text.substr(second, third - second));
+    for (const std::string& name : codesIn(row.text.substr(0, second))) {
+      INFO(name);
+      CHECK(listed.emplace(name, std::set<std::string>(signatures.begin(), signatures.end())).second);
+    }
+  }
+  const Signatures there = intrinsics();
+  for (const auto& [name, signatures] : there) {
+    INFO(name);
+    CHECK(listed[name] == signatures);
+  }
+  for (const auto& [name, signatures] : listed) {
+    INFO(name);
+    CHECK(there.contains(name));
+  }
+}

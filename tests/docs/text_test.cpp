@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+//
+// What surrounds the code: links lead somewhere, commands exist, and blocks are of kinds that are checked.
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "markdown.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool hasAnchor(const docs::Document& document, const std::string& anchor) {
+  return std::any_of(document.headings.begin(), document.headings.end(),
+                     [&](const docs::Heading& heading) { return docs::anchorOf(heading.text) == anchor; });
+}
+
+const docs::Document* documentAt(const fs::path& path) {
+  for (const docs::Document& document : docs::documents()) {
+    if (document.name == path.string()) return &document;
+  }
+  return nullptr;
+}
+
+/// The first word of a command, behind assignments of variables.
+std::string commandOf(const std::string& line) {
+  std::istringstream words(line);
+  std::string word;
+  while (words >> word && word.find('=') != std::string::npos && word.front() != '-') {
+  }
+  return word;
+}
+
+}  // namespace
+
+TEST_CASE("links lead to files and headings that there are", "[text]") {
+  for (const docs::Document& document : docs::documents()) {
+    for (const docs::Piece& link : document.links) {
+      if (link.text.starts_with("http")) continue;
+      INFO(document.name << ":" << link.line << ": " << link.text);
+      const std::size_t hash = std::min(link.text.find('#'), link.text.size());
+      const fs::path file = hash == 0 ? fs::path(document.name)
+                                      : (fs::path(document.name).parent_path() / link.text.substr(0, hash)).lexically_normal();
+      CHECK(fs::exists(fs::path(SK_DOCS_SOURCE) / file));
+      if (hash == link.text.size()) continue;
+      const docs::Document* target = documentAt(file);
+      CHECK((target && hasAnchor(*target, link.text.substr(hash + 1))));
+    }
+  }
+}
+
+TEST_CASE("headings of a document have anchors of their own", "[text]") {
+  for (const docs::Document& document : docs::documents()) {
+    std::set<std::string> anchors;
+    for (const docs::Heading& heading : document.headings) {
+      INFO(document.name << ":" << heading.line << ": " << heading.text);
+      CHECK(anchors.insert(docs::anchorOf(heading.text)).second);
+    }
+  }
+}
+
+TEST_CASE("commands in sh blocks exist", "[text]") {
+  const std::string help = docs::run("./dev help", SK_DOCS_SOURCE).output;
+  const fs::path folder = docs::workFolder("commands");
+  // what the reader builds, or what a machine without these tools would have
+  const std::set<std::string> known = {"build/release/tests/docs/docs_figures", "./app", "./saxpy", "./edges", "./gray_scott", "./stats", "apt-get", "cd",
+                                       "git", "skc"};
+  for (const docs::Block* block : docs::blocksOf("sh")) {
+    for (const std::string& line : docs::linesOf(block->text)) {
+      if (line.empty() || line.front() == '#') continue;
+      const std::string command = commandOf(line);
+      INFO(block->place() << ": " << line);
+      if (command == "./dev") {
+        std::istringstream words(line.substr(line.find("./dev") + 5));
+        std::string which;
+        words >> which;
+        CHECK(help.find("\n  " + which + " ") != std::string::npos);
+      } else if (!known.contains(command)) {
+        CHECK(docs::run("command -v " + command, folder).status == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("functions in CMake blocks exist", "[text]") {
+  const std::string defined = docs::readFile(fs::path(SK_DOCS_SOURCE) / "compiler/SkKernels.cmake") +
+                              docs::readFile(fs::path(SK_DOCS_SOURCE) / "cmake/SkTargets.cmake") +
+                              docs::readFile(fs::path(SK_DOCS_SOURCE) / "examples/CMakeLists.txt");
+  for (const docs::Block* block : docs::blocksOf("cmake")) {
+    for (const std::string& line : docs::linesOf(block->text)) {
+      const std::string bare = docs::trimmed(line);
+      if (!bare.starts_with("sk_")) continue;
+      INFO(block->place() << ": " << line);
+      CHECK(defined.find("function(" + bare.substr(0, bare.find('(')) + " ") != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("blocks of code are of kinds that are checked", "[text]") {
+  const std::set<std::string> checked = {"sk", "c++", "glsl", "ir", "sh", "console", "cmake"};
+  for (const docs::Document& document : docs::documents()) {
+    if (document.name.starts_with("examples/")) continue;   // usage lines, in words
+    for (const docs::Block& block : document.blocks) {
+      INFO(block.place() << ": '" << block.language << "'");
+      CHECK((checked.contains(block.language) || block.language == "text"));
+    }
+  }
+}

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+//
+// Structs and arrays against the C++ compiler's reading of the same text.
+#include "structs.sk.hpp"
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"   // that the rest is zero is tested
+#include "shared/structs.hpp"
+#pragma GCC diagnostic pop
+#include "support/shared_cases.hpp"
+
+using namespace run_tests;
+
+TEST_CASE("structs and arrays are those of C++") {
+  const Samples<int> samples = pairsOf(-6, 12);
+  onEveryProfile([&](sk::Device& device) {
+    SharedCases<int, int> cases(device, samples);
+#define CHECK_CASE(name) cases.check(#name, structs::run_##name, structs::name);
+    STRUCT_CASES(CHECK_CASE)
+  });
+}

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#include "support/devices.hpp"
+
+#include <map>
+#include <utility>
+
+namespace run_tests {
+
+sk::Device& device(std::string_view profile, bool isSmall) {
+  static std::map<std::pair<std::string, bool>, sk::Device> devices;
+  const std::pair key{std::string(profile), isSmall};
+  auto found = devices.find(key);
+  if (found == devices.end()) {
+    const sk::DeviceOptions options{.profile = key.first, .textureLimit = isSmall ? smallLimit : 0};
+    found = devices.emplace(key, sk::Device(options)).first;
+  }
+  return found->second;
+}
+
+}  // namespace run_tests

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+//
+// Host arrays of test values, streams made of them, and how they are compared: `difference` is ""
+// where two arrays agree, else it names the first element that does not.
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "sk/sk.hpp"
+
+namespace run_tests {
+
+/// Bits that follow from a number alone, the same on every machine (the finaliser of MurmurHash3).
+inline std::uint32_t hashed(std::uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x85ebca6bu;
+  x ^= x >> 13;
+  x *= 0xc2b2ae35u;
+  return x ^ (x >> 16);
+}
+
+/// A value of type T for element i: floats in [-8, 8) with 8 bits of fraction, integers of all sizes.
+template <class T>
+T valueAt(std::uint32_t i) {
+  const std::uint32_t bits = hashed(i * 2654435761u + 12345u);
+  if constexpr (std::is_same_v<T, bool>) {
+    return (bits >> 7) & 1u;
+  } else if constexpr (std::is_same_v<T, float>) {
+    return static_cast<float>(static_cast<int>(bits & 0xfffu) - 2048) / 256.0f;
+  } else if constexpr (std::is_integral_v<T>) {
+    return static_cast<T>(bits >> (i % 5 * 6));
+  } else {
+    using C = decltype(T::x);
+    if constexpr (requires(T v) { v.w; }) {
+      return {valueAt<C>(4 * i), valueAt<C>(4 * i + 1), valueAt<C>(4 * i + 2), valueAt<C>(4 * i + 3)};
+    } else if constexpr (requires(T v) { v.z; }) {
+      return {valueAt<C>(4 * i), valueAt<C>(4 * i + 1), valueAt<C>(4 * i + 2)};
+    } else {
+      return {valueAt<C>(4 * i), valueAt<C>(4 * i + 1)};
+    }
+  }
+}
+
+template <class T>
+std::vector<sk::HostElement<T>> values(std::int64_t count, std::uint32_t seed = 0) {
+  std::vector<sk::HostElement<T>> result(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i] = valueAt<T>(static_cast<std::uint32_t>(i) + seed * 7919u);
+  }
+  return result;
+}
+
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, const sk::Shape& shape, const std::vector<sk::HostElement<T>>& elements) {
+  sk::Stream<T> stream = device.stream<T>(shape);
+  stream.write(elements);
+  return stream;
+}
+
+/// A stream of rank 1 or of the given shape, from a list.
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, const std::vector<sk::HostElement<T>>& elements) {
+  return streamOf<T>(device, {static_cast<std::int64_t>(elements.size())}, elements);
+}
+
+template <class T>
+void show(std::ostream& out, const T& value) {
+  if constexpr (std::is_same_v<T, std::uint8_t> || std::is_same_v<T, bool>) {
+    out << int{value};
+  } else if constexpr (std::is_floating_point_v<T>) {
+    out.precision(9);
+    out << value;
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    out << value;
+  } else if constexpr (requires { value.w; }) {
+    out << '(';
+    for (const auto component : {value.x, value.y, value.z, value.w}) show(out << ' ', component);
+    out << " )";
+  } else if constexpr (requires { value.z; }) {
+    out << '(';
+    for (const auto component : {value.x, value.y, value.z}) show(out << ' ', component);
+    out << " )";
+  } else if constexpr (requires { value.x; value.y; }) {
+    out << '(';
+    for (const auto component : {value.x, value.y}) show(out << ' ', component);
+    out << " )";
+  } else {
+    out << "{...}";
+  }
+}
+
+/// NaN agrees with NaN, and nothing else is forgiven.
+template <class T>
+bool isSame(const T& a, const T& b) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return a == b || (std::isnan(a) && std::isnan(b));
+  } else {
+    return a == b;
+  }
+}
+
+/// "" where `actual` is `expected(i)` for all i in [0, count), by `agree`.
+template <class Actual, class Expected, class Agree>
+std::string difference(const Actual& actual, std::size_t count, const Expected& expected, const Agree& agree) {
+  std::ostringstream out;
+  if (actual.size() != count) {
+    out << actual.size() << " elements, not " << count;
+    return out.str();
+  }
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const typename Actual::value_type wanted = static_cast<typename Actual::value_type>(expected(i));
+    if (agree(actual[i], wanted)) continue;
+    if (wrong++ < 4) {
+      out << (wrong == 1 ? "" : "; ") << '[' << i << "] is ";
+      show(out, actual[i]);
+      show(out << ", not ", wanted);
+    }
+  }
+  if (wrong > 4) out << "; " << wrong << " of " << count << " differ";
+  return out.str();
+}
+
+/// "" where every element is exactly the expected one (NaN for NaN).
+template <class T>
+std::string difference(const std::vector<T>& actual, const std::vector<T>& expected) {
+  return difference(actual, expected.size(), [&](std::size_t i) -> const T& { return expected[i]; }, isSame<T>);
+}
+template <class T, std::invocable<std::size_t> Expected>
+std::string difference(const std::vector<T>& actual, const Expected& expected) {
+  return difference(actual, actual.size(), expected, isSame<T>);
+}
+
+/// "" where every element is within `absolute` or `relative` of the expected one, whichever allows more.
+template <std::invocable<std::size_t> Expected>
+std::string difference(const std::vector<float>& actual, const Expected& expected, double absolute,
+                       double relative) {
+  return difference(actual, actual.size(), [&](std::size_t i) { return static_cast<float>(expected(i)); },
+                    [&](float a, float b) {
+                      const double allowed = std::max(absolute, relative * std::fabs(double{b}));
+                      return isSame(a, b) || std::fabs(double{a} - double{b}) <= allowed;
+                    });
+}
+
+}  // namespace run_tests

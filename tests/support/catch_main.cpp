@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+//
+// The one main() of all unit test programs.
+#define CATCH_CONFIG_MAIN
+#include <catch2/catch.hpp>
