@@ -69,7 +69,7 @@ std::string body(const std::function<Block(KernelMaker&)>& make) {
   return text.substr(head.size());
 }
 
-enum : VarId { x, r, i, j, t };
+constexpr VarId x = 0, r = 1, i = 2, j = 3, t = 4;
 
 Stmt set(KernelMaker& k, float value, std::uint32_t line) {
   return assign(k.ref(r), literal(value), atLine(line));
@@ -182,6 +182,22 @@ TEST_CASE("switches fall through, and the last label has a statement") {
         }) ==
         "\n  switch (2) {\n    case 1: case 2:\n      r = 1.0;\n    case -3: r = 2.0; break;\n"
         "    default: break;\n  }\n}\n");
+}
+
+TEST_CASE("an empty block is no statement for the last label") {
+  CHECK(body([](KernelMaker&) {
+          std::vector<Case> cases;
+          cases.push_back({{1}, false, block(scope({}, atLine(3))), atLine(3)});
+          return block(switchStmt(literal(2), std::move(cases), atLine(2)));
+        }) == "\n  switch (2) {\n    case 1: {} break;\n  }\n}\n");
+}
+
+TEST_CASE("a bracket does not close on a line that only #line numbers alike") {
+  CHECK(body([](KernelMaker& k) {
+          Stmt inner = ifStmt(positive(k), block(set(k, 1, 4)), {}, atLine(3));
+          return block(ifStmt(positive(k), block(std::move(inner)), block(set(k, 2, 5)), atLine(2)),
+                       set(k, 3, 6));
+        }).find("} else {\n#line 5 1\n    r = 2.0;\n  }\n") != std::string::npos);
 }
 
 TEST_CASE("a block of a case closes under its label") {

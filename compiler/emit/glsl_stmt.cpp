@@ -74,6 +74,7 @@ class FunctionWriter {
         },
         [&](const Loop& n) { loop(n, depth, loc, next); }, [&](const Switch& n) { choice(n, depth, loc); },
         [&](const Scope& n) {
+          if (n.body.empty()) return begin(depth, loc, "{}");
           begin(depth, loc, "{");
           closeAfter(n.body, depth, next);
         });
@@ -89,7 +90,7 @@ class FunctionWriter {
   /// if all of it fits; otherwise each of its statements has a line.
   void closeAfter(const Block& body, int depth, std::uint32_t next) {
     const bool wasSplit = std::exchange(isSplit_, !isTrial_ && !fitsOnLine(body, depth));
-    const std::uint32_t openedAt = isSplit_ ? 0 : writer_.line();
+    const std::uint32_t openedAt = isSplit_ ? 0 : writer_.row();
     block(body, depth + 1, next == 0 ? 0 : next - 1);   // the bracket takes a line
     writer_.close(depth, openedAt, "}");
     isSplit_ = wasSplit;
@@ -100,7 +101,7 @@ class FunctionWriter {
     if (body.empty() || !writer_.isAt(body[0].loc)) return true;
     LineWriter trial = writer_.trial();
     FunctionWriter(context_, id_, trial, true).closeAfter(body, depth, 0);
-    return trial.line() == writer_.line();
+    return trial.row() == writer_.row();
   }
 
   /// Begins a statement, on the line at hand if it stood there in the .sk file.
@@ -173,12 +174,12 @@ class FunctionWriter {
   }
 
   void bareIfElse(const If& n, int depth, std::uint32_t next) {
-    const std::uint32_t openedAt = writer_.line();
+    const std::uint32_t openedAt = writer_.row();
     bareBody(n.then, depth, next);
     if (n.otherwise.empty()) return;
     const If* inner = chained(n.otherwise);
     const std::string word = inner != nullptr ? "else " + ifHead(*inner) : "else";
-    if (writer_.line() == openedAt && writer_.isAt(n.otherwise[0].loc)) {
+    if (writer_.row() == openedAt && writer_.isAt(n.otherwise[0].loc)) {
       writer_.append(" " + word);
     } else {
       writer_.endLine();
@@ -212,7 +213,7 @@ class FunctionWriter {
   /// but the first, so that `continue` still leads to it.
   void longFor(const Loop& n, int depth, Loc loc, std::uint32_t next) {
     begin(depth, loc, "{");
-    const std::uint32_t openedAt = writer_.line();
+    const std::uint32_t openedAt = writer_.row();
     block(n.init, depth + 1, 0);
     writer_.put(depth + 1, nowhere, "for (bool sk_again = false; ; sk_again = true) {");
     writer_.put(depth + 2, nowhere, "if (sk_again)");
@@ -228,15 +229,22 @@ class FunctionWriter {
   void choice(const Switch& n, int depth, Loc loc) {
     if (n.cases.empty()) return;
     begin(depth, loc, "switch (" + expr(*n.value) + ") {");
-    const std::uint32_t openedAt = writer_.line();
+    const std::uint32_t openedAt = writer_.row();
     for (const Case& one : n.cases) {
       writer_.put(depth + 1, one.loc, label(one, n.value->type.scalar));
       const bool isScope = !one.body.empty() && std::holds_alternative<Scope>(one.body[0].node);
       block(one.body, isScope ? depth + 1 : depth + 2, 0);
     }
-    // GLSL wants a statement after the last label
-    if (n.cases.back().body.empty()) writer_.put(depth + 2, n.cases.back().loc, "break;");
+    if (isNothing(n.cases.back().body)) writer_.put(depth + 2, n.cases.back().loc, "break;");
     writer_.close(depth, openedAt, "}");
+  }
+
+  /// GLSL wants a statement after the last label, and an empty block is none.
+  static bool isNothing(const Block& body) {
+    return std::all_of(body.begin(), body.end(), [](const Stmt& stmt) {
+      const auto* n = std::get_if<Scope>(&stmt.node);
+      return n != nullptr && isNothing(n->body);
+    });
   }
 
   static std::string label(const Case& one, Scalar scalar) {

@@ -45,7 +45,7 @@ void LineWriter::put(int depth, Loc loc, std::string_view text) {
 void LineWriter::append(std::string_view text) { current_ += text; }
 
 void LineWriter::close(int depth, std::uint32_t openedAt, std::string_view text) {
-  if (line_ == openedAt && !current_.empty()) {
+  if (row_ == openedAt && !current_.empty()) {
     current_ += " ";
     current_ += text;
     return;
@@ -58,6 +58,7 @@ LineWriter LineWriter::trial() const {
   LineWriter writer;
   writer.current_ = current_;
   writer.line_ = line_;
+  writer.row_ = row_;
   writer.file_ = file_;
   writer.sourceLine_ = sourceLine_;
   return writer;
@@ -80,6 +81,7 @@ bool LineWriter::joins(Loc loc, std::string_view text) const {
 void LineWriter::endLine() {
   if (current_.empty()) return;
   text_ += current_ + "\n";
+  ++row_;
   line_ += 1 + static_cast<std::uint32_t>(std::count(current_.begin(), current_.end(), '\n'));
   current_.clear();
 }

@@ -24,15 +24,15 @@ class LineWriter {
   void put(int depth, Loc loc, std::string_view text);
   /// Goes on right after what was put last: " else {".
   void append(std::string_view text);
-  /// A closing bracket for what was put when line() was `openedAt`: on that line if it still goes on,
+  /// A closing bracket for what was put when row() was `openedAt`: on that line if it still goes on,
   /// else on a line of its own.
   void close(int depth, std::uint32_t openedAt, std::string_view text);
 
   /// Ends the line at hand, if there is one.
   void endLine();
 
-  /// Number that a compiler gives to the line at hand.
-  std::uint32_t line() const { return line_; }
+  /// Counts the lines written, however #line numbers them: the same while one line is at hand.
+  std::uint32_t row() const { return row_; }
   /// True if `loc` is where the thing on the line at hand stands in the .sk file.
   bool isAt(Loc loc) const;
   /// A writer that stands where this one does, for trying something out; it has no earlier lines.
@@ -46,7 +46,8 @@ class LineWriter {
 
   std::string text_;
   std::string current_;            ///< the line at hand, not yet in text_
-  std::uint32_t line_ = 0;         ///< its number
+  std::uint32_t line_ = 0;         ///< the number that a compiler gives to it
+  std::uint32_t row_ = 1;
   std::uint32_t file_ = 0;
   std::uint32_t sourceLine_ = 0;   ///< where the thing that was put last stands in the .sk file
 };

@@ -43,11 +43,11 @@ TEST_CASE("a bracket closes on its line while that goes on") {
   LineWriter writer;
   writer.restart(at(3));
   writer.put(0, at(3), "if (a) {");
-  std::uint32_t openedAt = writer.line();
+  std::uint32_t openedAt = writer.row();
   writer.put(1, at(3), "b;");
   writer.close(0, openedAt, "}");
   writer.put(0, at(4), "if (c) {");
-  openedAt = writer.line();
+  openedAt = writer.row();
   writer.put(1, at(5), "d;");
   writer.close(0, openedAt, "}");
   CHECK(writer.take() == "#line 3 1\nif (a) { b; }\nif (c) {\n  d;\n}\n");

@@ -18,6 +18,21 @@
 
 namespace skc::frontend {
 
+/// Counts one level for as long as it lives.
+class Level {
+ public:
+  explicit Level(int& depth) : depth_(depth) { ++depth_; }
+  ~Level() { --depth_; }
+  Level(const Level&) = delete;
+  Level& operator=(const Level&) = delete;
+
+ private:
+  int& depth_;
+};
+
+/// Deeper nesting than any person writes, and than drivers' own compilers take without harm.
+inline constexpr int deepestNesting = 1000;
+
 class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::ExprPtr> {
  public:
   explicit FunctionLowering(ModuleLowering& module) : module_(module) {}
@@ -79,7 +94,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void testInBody(ir::Loop& loop, ir::Block effects, Loc loc);
 
   // ---- effects (lower_expr.cpp) -----------------------------------------------------------------
-  ir::ExprPtr value(const clang::Expr* e) { return Visit(e); }
+  ir::ExprPtr value(const clang::Expr* e);
   void discarded(const clang::Expr* e);
   ir::ExprPtr valueInto(const clang::Expr* e, ir::Block& block);
   Exprs valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions);
@@ -90,6 +105,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr compoundAssign(const clang::CompoundAssignOperator* e, bool wantValue);
   ir::ExprPtr increment(const clang::UnaryOperator* e, bool wantValue);
   ir::ExprPtr condition(const clang::Expr* e) { return toBool(value(e)); }
+  void checkDepth(clang::SourceLocation where);
   void emit(Loc loc, ir::Stmt::Node node);
   ir::VarId temporary(ir::Type type, Loc loc);
 
@@ -131,6 +147,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
   std::optional<ir::VarId> this_;
   ir::Block* out_ = nullptr;       ///< where statements go at the moment
+  int depth_ = 0;                  ///< of expressions and statements around the present one
 };
 
 }  // namespace skc::frontend

@@ -99,6 +99,16 @@ bool isPlace(const ir::Expr& e) {
 
 // ---- effects ------------------------------------------------------------------------------------
 
+ExprPtr FunctionLowering::value(const clang::Expr* e) {
+  const Level level(depth_);
+  checkDepth(e->getExprLoc());
+  return Visit(e);
+}
+
+void FunctionLowering::checkDepth(SourceLocation where) {
+  if (depth_ > deepestNesting) module_.fail(Diag::NestedTooDeep, where, {std::to_string(deepestNesting)});
+}
+
 /// An expression whose value nobody uses: only its effects remain.
 void FunctionLowering::discarded(const clang::Expr* e) {
   e = e->IgnoreParens();

@@ -163,7 +163,9 @@ void FunctionLowering::checkedStatement(const clang::Stmt* s) {
 }
 
 void FunctionLowering::statement(const clang::Stmt* s) {
+  const Level level(depth_);
   const SourceLocation where = s->getBeginLoc();
+  checkDepth(where);
   const Loc loc = module_.loc(where);
   switch (s->getStmtClass()) {
     case clang::Stmt::NullStmtClass: return;

@@ -173,7 +173,8 @@ ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
   const ir::Type from = module_.type(e->getSubExpr()->getType(), e->getBeginLoc());
   const ir::Type to = module_.type(e->getType(), e->getBeginLoc());
   const bool isImplicit = llvm::isa<clang::ImplicitCastExpr>(e);
-  if (!from.isVector() || !to.isVector() || from.width != to.width || from.isFloat() || to.isFloat()) {
+  const bool mixesSigns = isImplicit && !from.isBool() && !to.isBool();   // int4 / uint4 would follow the left side
+  if (!from.isVector() || !to.isVector() || from.width != to.width || from.isFloat() || to.isFloat() || mixesSigns) {
     module_.fail(isImplicit ? Diag::MixedVectors : Diag::BitCast, e->getBeginLoc(), {module_.spelling(to)});
   }
   ExprPtr operand = value(e->getSubExpr());

@@ -43,6 +43,7 @@ std::optional<Type> typeOf(char letter, Choice choice) {
     case 'S': return only(choice.generic == Float || choice.generic == Int, choice.generic, choice.width);
     case 'Q': return only(isVector && choice.generic != Bool, choice.generic, choice.width);
     case 'R': return only(isVector, choice.generic, choice.width);
+    default: break;   // no letter of the table's
   }
   return std::nullopt;
 }

@@ -14,7 +14,6 @@ namespace skc::ir {
 namespace {
 
 const Type float2 = Type::of(Scalar::Float, 2);
-const Type boolType = Type::of(Scalar::Bool);
 
 /// What validate says about a kernel `void k(float a, float x<>, float u[], out float r<>)` with a
 /// local float `t`, a local int `i` and this body.
@@ -32,7 +31,7 @@ std::string verdict(const std::function<Block(KernelMaker&)>& body) {
   return validate(module, Stage::Lowered);
 }
 
-enum : VarId { a, x, u, r, t, i };
+constexpr VarId a = 0, x = 1, u = 2, r = 3, t = 4, i = 5;
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 

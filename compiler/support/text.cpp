@@ -84,15 +84,17 @@ std::optional<std::size_t> chooseBreak(std::string_view line, std::size_t first,
 
 std::string wrapLine(std::string_view line, std::size_t limit, std::size_t continuation) {
   const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
-  const std::string margin(continuation == 0 ? indent + 4 : continuation, ' ');
+  const bool isTooFar = continuation > limit * 3 / 4;
+  const std::string margin(continuation == 0 || isTooFar ? indent + 4 : continuation, ' ');
   std::string result;
   std::string rest(line);
   while (rest.size() > limit) {
     const std::size_t first = result.empty() ? indent : margin.size();
     const std::optional<std::size_t> at = chooseBreak(rest, first + (limit - first) / 3, limit);
     if (!at) break;
-    result += rest.substr(0, *at) + "\n";
-    rest = margin + rest.substr(*at + 1);
+    result += rest.substr(0, *at);
+    result += '\n';
+    rest.replace(0, *at + 1, margin);
   }
   return result + rest;
 }

@@ -19,7 +19,7 @@ namespace {
 using namespace ir;
 using enum BinaryOp;
 
-enum : VarId { x, total };
+constexpr VarId x = 0, total = 1;
 
 struct Outcome {
   std::string combine = {};    ///< "entry", the body of a made function, or empty

@@ -115,7 +115,7 @@ const program::Kernel& ProgramCache::identityKernel(const program::Reduction& re
     made->kernel.entry = "sk_identity";
     made->kernel.body = made->body;
     made->kernel.parameters = {&made->parameter, 1};
-    made->kernel.usesIndex = false;
+    made->kernel.usesIndex = made->kernel.usesLoops = false;
     kept = std::move(made);
   }
   return kept->kernel;

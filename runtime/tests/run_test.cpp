@@ -2,6 +2,7 @@
 //
 // Kernels over streams: types, uniforms, shapes, layouts, repeated inputs, indices.
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -259,29 +260,44 @@ TEST_CASE("views of linearised streams of any rank") {
   }
 }
 
-TEST_CASE("padding never runs a kernel") {
-  // A loop that ends only where the element does: any value but 1 to 100, such as what lies in the
-  // unused end of a texture, would keep the device busy for ever.
+TEST_CASE("what lies beside the domain never runs a kernel") {
+  // Loops that end on the elements, but on nothing else that a texture or the space around it may hold:
+  // one such fragment would keep the device busy until its driver gives up.
   const auto profile = GENERATE(from_range(profileNames));
   Device device({.profile = profile, .textureLimit = 64});
-  static const TestKernel count(
-      "count", "void count(float x, out float r) { r = 0.0; while (x != 0.0) { x -= 1.0; r += 1.0; } }\n",
+  static const TestKernel doublings(
+      "doublings",
+      "void doublings(float x, out float r) { r = 0.0; while (x < 5.0) { x *= 2.0; r += 1.0; } }\n",
       {input<float>("x"), output<float>("r")});
-  auto poison = device.stream<float>(64 * 64);
+  auto poison = device.stream<float>({64, 64});
   poison.write(std::vector<float>(64 * 64, -1.0f));
   {
     auto released = std::move(poison);
   }
-  const auto elements = GENERATE(as<std::int64_t>{}, 65, 1023, 1025, 4033);
-  auto x = device.stream<float>(elements);
-  auto r = device.stream<float>(elements);
-  std::vector<float> host(static_cast<std::size_t>(elements));
-  for (std::size_t i = 0; i < host.size(); ++i) {
-    host[i] = static_cast<float>(1 + i % 100);
-  }
-  x.write(host);
-  count(x, r);
-  CHECK(r.read() == host);
-  count(x.domain(3, elements - 2), r.domain(3, elements - 2));
-  CHECK(r.read() == host);
+  const auto shape = GENERATE(Shape(1), Shape(33), Shape(31, 33), Shape(65), Shape(1023), Shape(1025),
+                              Shape(4033), Shape(3, 5, 7));
+  auto x = device.stream<float>(shape);
+  auto r = device.stream<float>(shape);
+  x.write(std::vector<float>(static_cast<std::size_t>(shape.size()), 1.0f));
+  r.write(std::vector<float>(static_cast<std::size_t>(shape.size()), 0.0f));
+  doublings(x, r);
+  CHECK(r.read() == std::vector<float>(static_cast<std::size_t>(shape.size()), 3.0f));
+}
+
+TEST_CASE("elements beside a view never run its kernel") {
+  const auto profile = GENERATE(from_range(profileNames));
+  Device device({.profile = profile, .textureLimit = 64});
+  static const TestKernel halvings(
+      "halvings",
+      "void halvings(float x, out float r) { r = 0.0; while (x > 1.0) { x *= 0.5; r += 1.0; } }\n",
+      {input<float>("x"), output<float>("r")});
+  const auto width = GENERATE(as<std::int64_t>{}, 33, 99);
+  auto x = device.stream<float>({30, width});
+  auto r = device.stream<float>({30, width});
+  x.write(std::vector<float>(static_cast<std::size_t>(30 * width), std::numeric_limits<float>::infinity()));
+  const auto from = x.domain({3, 5}, {20, 20});
+  const auto to = r.domain({3, 5}, {20, 20});
+  from.write(std::vector<float>(17 * 15, 16.0f));
+  halvings(from, to);
+  CHECK(to.read() == std::vector<float>(17 * 15, 4.0f));
 }

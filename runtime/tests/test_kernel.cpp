@@ -40,6 +40,8 @@ TestKernel::TestKernel(std::string_view name, std::string_view body,
   kernel_.parameters = parameters_;
   kernel_.sources = sources_;
   kernel_.usesIndex = calls(body, "sk_index");
+  kernel_.usesLoops =
+      body.find("while (") != std::string_view::npos || body.find("for (") != std::string_view::npos;
 }
 
 TestReduction::TestReduction(std::string_view name, std::string_view body,

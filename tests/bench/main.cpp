@@ -118,6 +118,23 @@ class SideBySide {
     against(name + " over one by samplers", {}, ours, r, bench::saxpySampledText, size, {hostX, hostY}, 2.5f);
   }
 
+  /// One program against itself: how far from 1 this machine puts a ratio for no reason.
+  void control(int size) {
+    const std::vector<float> hostX = ramp(std::int64_t{size} * size, 0.37f);
+    std::optional<bench::PlainPass> a, b;
+    {
+      const bench::PlainContext::Current current(context_);
+      a.emplace(bench::binomialText, size, size, std::vector<std::vector<float>>{hostX});
+      b.emplace(bench::binomialText, size, size, std::vector<std::vector<float>>{hostX});
+    }
+    const bench::Comparison c = bench::compare(handWritten(context_, *a), handWritten(context_, *b),
+                                               settings_.rounds, settings_.sampleMilliseconds);
+    report_.add({fmt::format("3 x 3 stencil {0} x {0} by hand over itself", size), "x", c.ratio, {}, {}});
+    const bench::PlainContext::Current current(context_);
+    a.reset();
+    b.reset();
+  }
+
   void binomial(int size) {
     const std::vector<float> hostX = ramp(std::int64_t{size} * size, 0.37f);
     auto x = stream(size, hostX), r = stream(size, hostX);
@@ -216,6 +233,7 @@ int measureAll(const Settings& settings) {
   const bench::PlainContext context(device.name());
   Report report(device.name());
   SideBySide sideBySide(device, context, settings, report);
+  sideBySide.control(1024);
   for (const int size : {1024, 2048}) sideBySide.saxpy(size);
   for (const int size : {1024, 2048}) sideBySide.binomial(size);
   hostCost(device, settings, report);

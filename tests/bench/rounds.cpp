@@ -38,8 +38,12 @@ Comparison compare(const Contender& ours, const Contender& theirs, int rounds, d
   const int times = std::max(timesFor(ours, sampleMilliseconds), timesFor(theirs, sampleMilliseconds));
   std::vector<double> ratios, oursOnce, theirsOnce;
   for (int round = 0; round < rounds; ++round) {
-    const double a = sample(ours, times) / times;
-    const double b = sample(theirs, times) / times;
+    // A B, B A, A B ...: what slows down or warms up in a round favours neither.
+    const bool oursFirst = round % 2 == 0;
+    const double first = sample(oursFirst ? ours : theirs, times) / times;
+    const double second = sample(oursFirst ? theirs : ours, times) / times;
+    const double a = oursFirst ? first : second;
+    const double b = oursFirst ? second : first;
     ratios.push_back(a / b);
     oursOnce.push_back(a);
     theirsOnce.push_back(b);

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <set>
 
-#include <catch2/catch.hpp>
 #include <fmt/format.h>
+#include <catch2/catch.hpp>
 
 #include "command.hpp"
 #include "listings.hpp"
@@ -27,8 +27,8 @@ void makeHeaders(const fs::path& folder) {
 }
 
 std::string compilerCommand() {
-  return SK_DOCS_COMPILER + fmt::format(" -I '{0}/runtime/include' -I '{0}/runtime/src' -I '{0}/compiler' -I .",
-                     SK_DOCS_SOURCE);
+  return SK_DOCS_COMPILER +
+         fmt::format(" -I '{0}/runtime/include' -I '{0}/runtime/src' -I '{0}/compiler' -I .", SK_DOCS_SOURCE);
 }
 
 /// Takes `#include` lines out of a text, for the top of the file.
@@ -96,7 +96,8 @@ std::string throwingProgram(const docs::Document& document) {
          "  std::printf(\"\\f%d\\n\", line);\n"
          "  try { fragment(); } catch (const sk::Error& error) { std::fputs(error.what(), stdout); }\n"
          "}\n"
-         "int main() {\n" + calls + "}\n";
+         "int main() {\n" +
+         calls + "}\n";
 }
 
 void build(const fs::path& folder, const std::string& kernels) {
@@ -115,7 +116,8 @@ TEST_CASE("every C++ block compiles", "[cpp]") {
   std::string text;
   int number = 0;
   for (const docs::Document& document : docs::documents()) {
-    text += fmt::format("#define fragment fragment{}\n", number++);   // lines are the same in several documents
+    text +=
+        fmt::format("#define fragment fragment{}\n", number++);  // lines are the same in several documents
     for (const Block& block : document.blocks) {
       if (block.language == "c++") text += wrapped(document, block, includes);
     }

@@ -23,10 +23,13 @@ std::string read(const std::string& path) {
 }
 
 std::string table(const nlohmann::json& results) {
-  std::string text = fmt::format("| on {} | median | bar |\n|---|---|---|\n", results.at("device").get<std::string>());
+  std::string text =
+      fmt::format("| on {} | median | bar |\n|---|---|---|\n", results.at("device").get<std::string>());
   for (const nlohmann::json& row : results.at("results")) {
     const std::string unit = row.at("unit");
-    const auto figure = [&](const nlohmann::json& value) { return fmt::format("{:.3g} {}", value.get<double>(), unit); };
+    const auto figure = [&](const nlohmann::json& value) {
+      return fmt::format("{:.3g} {}", value.get<double>(), unit);
+    };
     text += fmt::format("| {} | {} | {} |\n", row.at("name").get<std::string>(), figure(row.at("median")),
                         row.contains("bar") ? figure(row.at("bar")) : "");
   }

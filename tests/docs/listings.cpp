@@ -42,7 +42,8 @@ void writeNamedFiles(const fs::path& folder) {
     const std::string name = block->value("file");
     if (name.empty()) continue;
     const auto [entry, isNew] = written.emplace(name, block->text);
-    if (!isNew && entry->second != block->text) throw std::runtime_error(block->place() + ": another " + name);
+    if (!isNew && entry->second != block->text)
+      throw std::runtime_error(block->place() + ": another " + name);
     writeFile(folder / name, block->text);
   }
 }

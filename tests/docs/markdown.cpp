@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 /// Reads a document line by line; each function takes the lines that are its own.
 class Reader {
  public:
-  Reader(Document& document, std::vector<std::string> lines) : document_(document), lines_(std::move(lines)) {}
+  Reader(Document& document, std::vector<std::string> lines)
+      : document_(document), lines_(std::move(lines)) {}
 
   void run() {
     while (at_ < lines_.size()) {
@@ -94,11 +95,14 @@ class Reader {
 
 }  // namespace
 
-bool Block::has(std::string_view word) const { return std::find(words.begin(), words.end(), word) != words.end(); }
+bool Block::has(std::string_view word) const {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 std::string Block::value(std::string_view key) const {
   for (const std::string& word : words) {
-    if (word.starts_with(key) && word.size() > key.size() && word[key.size()] == '=') return word.substr(key.size() + 1);
+    if (word.starts_with(key) && word.size() > key.size() && word[key.size()] == '=')
+      return word.substr(key.size() + 1);
   }
   return {};
 }

@@ -3,8 +3,8 @@
 // The .sk blocks: what compiles, what does not and with which message, and what comes out of it.
 #include <regex>
 
-#include <catch2/catch.hpp>
 #include <fmt/format.h>
+#include <catch2/catch.hpp>
 
 #include "command.hpp"
 #include "listings.hpp"
@@ -15,12 +15,13 @@ namespace {
 namespace fs = std::filesystem;
 using docs::Block;
 
-bool isRejected(const Block& block) { return block.has("error") || block.has("rejected"); }
+bool isWrong(const Block& block) { return block.has("error") || block.has("warning"); }
 
 /// The first error or warning of skc's about `file`.
 std::string firstMessage(const std::string& output, const std::string& file) {
   for (const std::string& line : docs::linesOf(output)) {
-    static const std::regex pattern(R"re(^([^:]+):\d+:\d+: (?:fatal )?(?:error|warning): (.*?)(?: \[-W[^\]]*\])?$)re");
+    static const std::regex pattern(
+        R"re(^([^:]+):\d+:\d+: (?:fatal )?(?:error|warning): (.*?)(?: \[-W[^\]]*\])?$)re");
     std::smatch parts;
     if (std::regex_match(line, parts, pattern) && parts[1] == file) return parts[2];
   }
@@ -28,7 +29,8 @@ std::string firstMessage(const std::string& output, const std::string& file) {
 }
 
 /// Each program of a listing as a file of its own.
-std::vector<std::string> writePrograms(const std::string& listing, const fs::path& folder, const std::string& prefix) {
+std::vector<std::string> writePrograms(const std::string& listing, const fs::path& folder,
+                                       const std::string& prefix) {
   std::vector<std::string> names;
   std::string program;
   const auto flush = [&] {
@@ -52,17 +54,18 @@ TEST_CASE("every .sk block compiles, for every profile, to GLSL that glslang acc
   docs::writeNamedFiles(folder);
   std::string files;
   for (const Block* block : docs::blocksOf("sk")) {
-    if (isRejected(*block) || block->has("warning")) continue;
+    if (isWrong(*block)) continue;
     docs::writeFile(folder / docs::fileName(*block), docs::wholeFile(*block));
     files += fmt::format(" '{}'", docs::fileName(*block));
   }
   std::string programs;
   for (const std::string profile : {"glsl330", "essl300"}) {
-    const docs::Outcome outcome =
-        docs::run(fmt::format("skc -Werror --emit=glsl --profile={}{} >{}.txt", profile, files, profile), folder);
+    const docs::Outcome outcome = docs::run(
+        fmt::format("skc -Werror --emit=glsl --profile={}{} >{}.txt", profile, files, profile), folder);
     INFO(outcome.output);
     REQUIRE(outcome.status == 0);
-    for (const std::string& name : writePrograms(docs::readFile(folder / (profile + ".txt")), folder, profile)) {
+    for (const std::string& name :
+         writePrograms(docs::readFile(folder / (profile + ".txt")), folder, profile)) {
       programs += " " + name;
     }
   }
@@ -75,23 +78,18 @@ TEST_CASE("every block that is shown as wrong gives the message that is quoted a
   const fs::path folder = docs::workFolder("wrong");
   std::string command;
   for (const Block* block : docs::blocksOf("sk")) {
-    if (!isRejected(*block) && !block->has("warning")) continue;
+    if (!isWrong(*block)) continue;
     const std::string name = docs::fileName(*block);
     docs::writeFile(folder / name, docs::wholeFile(*block));
     command += fmt::format("skc --emit=glsl {} >/dev/null; echo 'status' {} $?\n", name, name);
   }
   const std::string output = docs::run(command, folder).output;
   for (const Block* block : docs::blocksOf("sk")) {
-    if (!isRejected(*block) && !block->has("warning")) continue;
+    if (!isWrong(*block)) continue;
     const std::string name = docs::fileName(*block);
     INFO(block->place() << ": " << block->section);
-    CHECK(output.find(fmt::format("status {} {}\n", name, isRejected(*block) ? 1 : 0)) != std::string::npos);
-    const std::string message = firstMessage(output, name);
-    if (block->has("rejected")) {
-      CHECK(message != "");
-    } else {
-      CHECK(message == block->quote);
-    }
+    CHECK(output.find(fmt::format("status {} {}\n", name, block->has("error") ? 1 : 0)) != std::string::npos);
+    CHECK(firstMessage(output, name) == block->quote);
   }
 }
 
@@ -101,7 +99,8 @@ TEST_CASE("quoted GLSL and IR are what skc prints", "[sk]") {
   const auto check = [&](const Block& block, const std::string& options) {
     const std::string kernel = block.value("kernel");
     const docs::Outcome outcome = docs::run(
-        fmt::format("skc {}{} {}", options, kernel.empty() ? "" : " --kernel=" + kernel, block.value("of")), folder);
+        fmt::format("skc {}{} {}", options, kernel.empty() ? "" : " --kernel=" + kernel, block.value("of")),
+        folder);
     INFO(block.place() << " is not what skc " << options << " prints:\n" << outcome.output);
     CHECK(outcome.status == 0);
     CHECK(docs::quotes(block.text, outcome.output));

@@ -71,7 +71,8 @@ std::regex patternOf(const std::string& text) {
 std::vector<std::string> codesIn(const std::string& cell) {
   static const std::regex code("`([^`]*)`");
   std::vector<std::string> codes;
-  for (std::sregex_iterator it(cell.begin(), cell.end(), code), end; it != end; ++it) codes.push_back((*it)[1]);
+  for (std::sregex_iterator it(cell.begin(), cell.end(), code), end; it != end; ++it)
+    codes.push_back((*it)[1]);
   return codes;
 }
 
@@ -86,7 +87,7 @@ TEST_CASE("docs/errors.md has a section for every diagnostic, in their order", "
   }
   for (std::size_t i = 0; i < std::max(sections.size(), diagnostics.size()); ++i) {
     const std::string section = i < sections.size() ? sections[i] : "(none)";
-    REQUIRE(section == (i < diagnostics.size() ? diagnostics[i].name : "(none)"));   // the first that differs
+    REQUIRE(section == (i < diagnostics.size() ? diagnostics[i].name : "(none)"));  // the first that differs
   }
 }
 
@@ -99,7 +100,7 @@ TEST_CASE("every section of docs/errors.md quotes its message and shows who gets
     REQUIRE(quote != errors.quotes.end());
     INFO(quote->text);
     CHECK(std::regex_match(quote->text, patternOf(row.text)));
-    if (row.name != "FileUnreadable") {   // which no test can make where it runs as root
+    if (row.name != "FileUnreadable") {  // which no test can make where it runs as root
       CHECK(std::find_if(errors.blocks.begin(), errors.blocks.end(), isHere) != errors.blocks.end());
     }
   }

@@ -2,11 +2,12 @@
 //
 // What surrounds the code: links lead somewhere, commands exist, and blocks are of kinds that are checked.
 #include <algorithm>
+#include <regex>
 #include <set>
 #include <sstream>
 
-#include <catch2/catch.hpp>
 #include <fmt/format.h>
+#include <catch2/catch.hpp>
 
 #include "command.hpp"
 #include "markdown.hpp"
@@ -44,8 +45,9 @@ TEST_CASE("links lead to files and headings that there are", "[text]") {
       if (link.text.starts_with("http")) continue;
       INFO(document.name << ":" << link.line << ": " << link.text);
       const std::size_t hash = std::min(link.text.find('#'), link.text.size());
-      const fs::path file = hash == 0 ? fs::path(document.name)
-                                      : (fs::path(document.name).parent_path() / link.text.substr(0, hash)).lexically_normal();
+      const fs::path file =
+          hash == 0 ? fs::path(document.name)
+                    : (fs::path(document.name).parent_path() / link.text.substr(0, hash)).lexically_normal();
       CHECK(fs::exists(fs::path(SK_DOCS_SOURCE) / file));
       if (hash == link.text.size()) continue;
       const docs::Document* target = documentAt(file);
@@ -68,8 +70,16 @@ TEST_CASE("commands in sh blocks exist", "[text]") {
   const std::string help = docs::run("./dev help", SK_DOCS_SOURCE).output;
   const fs::path folder = docs::workFolder("commands");
   // what the reader builds, or what a machine without these tools would have
-  const std::set<std::string> known = {"build/release/tests/docs/docs_figures", "./app", "./saxpy", "./edges", "./gray_scott", "./stats", "apt-get", "cd",
-                                       "git", "skc"};
+  const std::set<std::string> known = {"build/release/tests/docs/docs_figures",
+                                       "./app",
+                                       "./saxpy",
+                                       "./edges",
+                                       "./gray_scott",
+                                       "./stats",
+                                       "apt-get",
+                                       "cd",
+                                       "git",
+                                       "skc"};
   for (const docs::Block* block : docs::blocksOf("sh")) {
     for (const std::string& line : docs::linesOf(block->text)) {
       if (line.empty() || line.front() == '#') continue;
@@ -85,6 +95,27 @@ TEST_CASE("commands in sh blocks exist", "[text]") {
       }
     }
   }
+}
+
+TEST_CASE("docs/language.md lists the options of skc", "[text]") {
+  const std::string help = docs::run("skc --help", docs::workFolder("help")).output;
+  std::set<std::string> listed, there;
+  const auto take = [](const std::string& text, std::set<std::string>& options) {
+    static const std::regex option(R"re((?:^|[ `,])(--?[A-Za-z][a-z-]*))re");
+    for (std::sregex_iterator it(text.begin(), text.end(), option), end; it != end; ++it)
+      options.insert((*it)[1]);
+  };
+  for (const docs::Document& document : docs::documents()) {
+    if (document.name != "docs/language.md") continue;
+    for (const docs::Piece& row : document.rows) {
+      if (row.section == "Compiling") take(row.text.substr(0, row.text.find('|', 1)), listed);
+    }
+  }
+  for (const std::string& line : docs::linesOf(help)) {
+    if (line.starts_with("  -")) take(line.substr(0, 30), there);
+  }
+  there.erase("-h");
+  CHECK(listed == there);
 }
 
 TEST_CASE("functions in CMake blocks exist", "[text]") {

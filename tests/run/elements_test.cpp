@@ -188,3 +188,20 @@ TEST_CASE("one call writes several outputs of different types") {
     CHECK(difference(d.read(), [](std::size_t i) { return sk::uint2{unsigned(i), 3 * unsigned(i)}; }) == "");
   });
 }
+
+TEST_CASE("writing a stream after a call changes no other stream") {
+  onEveryLayout([](sk::Device& device) {
+    for (const sk::Shape& shape : {sk::Shape{10}, sk::Shape{5, 70}}) {
+      const auto first = values<int>(shape.size(), 1), second = values<int>(shape.size(), 2);
+      auto x = streamOf<int>(device, shape, values<int>(shape.size()));
+      const auto y = streamOf<int>(device, shape, first);
+      auto r = device.stream<int>(shape);
+      streams::add(x, y, r);
+      x.write(second);
+      CHECK(difference(x.read(), second) == "");
+      CHECK(difference(y.read(), first) == "");
+      streams::add(x, y, r);
+      CHECK(difference(r.read(), [&](std::size_t i) { return int(unsigned(first[i]) + unsigned(second[i])); }) == "");
+    }
+  });
+}

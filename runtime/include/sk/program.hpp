@@ -82,6 +82,8 @@ struct Kernel {
   std::span<const Parameter> parameters;         ///< in the order of the declaration
   std::span<const std::string_view> sources;     ///< file of source string number i + 1 in #line
   bool usesIndex = false;      ///< the body calls sk_index()
+  bool usesLoops = false;      ///< the body has a loop: main() then leaves the helper invocations that
+                               ///< GPUs run beside the domain, where what they read might never end it
 };
 
 /// A reduction: `void entry(E x, inout A total)` folds an element into an accumulator, and

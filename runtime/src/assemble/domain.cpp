@@ -42,6 +42,25 @@ std::string DomainText::number() {
   return {};
 }
 
+void DomainText::leaveOutside() {
+  const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
+  switch (domain_) {
+    case Domain::Plane: {
+      const std::string origin = view_ ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
+      program_.prologue(
+          fmt::format("if (any(greaterThanEqual(uvec2(ivec2(gl_FragCoord.xy){}), uvec2({}.xy)))) return;",
+                      origin, shape));
+      return;
+    }
+    case Domain::Linear: {
+      const std::string stride = program_.uniform("ivec4", "sk_domain_stride");
+      program_.prologue(fmt::format("if (({}) >= {}.w * {}.w) return;", texelNumber(), stride, shape));
+      return;
+    }
+    case Domain::LinearBox: return;   // these are discarded
+  }
+}
+
 std::string DomainText::texelNumber() {
   return fmt::format("int(gl_FragCoord.y) << {} | int(gl_FragCoord.x)",
                      program_.uniform("int", "sk_domain_shift"));

@@ -25,6 +25,10 @@ class DomainText {
   /// as an operand of `=`. A box of a linearised stream is numbered by `sk_domain_step`, the strides
   /// that a whole stream of its shape has.
   std::string number();
+  /// Makes main() end at once for fragments outside the domain. GPUs shade whole quads of 2 x 2, so that
+  /// such fragments run, as helper invocations, wherever a drawn rectangle has an odd edge. They write
+  /// nothing, but a loop may never end on what they read.
+  void leaveOutside();
 
  private:
   void defineIndex();

@@ -59,6 +59,7 @@ class KernelText {
         domain_(program_, variant.domain, variant.domainView, variant.domainRank) {}
 
   std::string write(const Profile& profile) {
+    if (kernel_.usesLoops) domain_.leaveOutside();
     if (kernel_.usesIndex) domain_.index();
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
       defineAccess(kernel_.parameters[i], variant_.access[i]);

@@ -47,6 +47,7 @@ class ReductionText {
         domain_(program_, variant.domain, variant.domainView, variant.domainRank) {}
 
   std::string write(const Profile& profile) {
+    if (reduction_.fold.usesLoops) domain_.leaveOutside();
     declareSamplers(program_, source_);
     declareOutputs(program_, accumulator_);
     findRun();

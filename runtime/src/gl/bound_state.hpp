@@ -33,6 +33,11 @@ class BoundState {
       bindTexture(unit, name);
     }
   }
+  /// Binds a texture where glTexImage2D and the like change it: to unit 0, which is then the active one.
+  void textureToChange(GLuint name) {
+    activateUnit(0);
+    texture(0, name);
+  }
   /// For drawing and for reading.
   void framebuffer(GLuint name) {
     if (drawFramebuffer_ != name || readFramebuffer_ != name) {

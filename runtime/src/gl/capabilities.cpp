@@ -44,7 +44,7 @@ int largestTexture() {
   return std::min({integerOf(GL_MAX_TEXTURE_SIZE), viewport[0], viewport[1]});
 }
 
-bool canDrawTo(const Format& format, BoundState& bound) {
+bool isRenderable(const Format& format, BoundState& bound) {
   const Texture texture(bound, format, 1, 1);
   if (texture.name() == 0) {
     return false;
@@ -52,6 +52,13 @@ bool canDrawTo(const Format& format, BoundState& bound) {
   const GLuint names[] = {texture.name()};
   const Framebuffer framebuffer(bound, names);
   return Framebuffer::isComplete();
+}
+
+/// Deletes what it tried with, the names of which the driver may give out again.
+bool canDrawTo(const Format& format, BoundState& bound) {
+  const bool can = isRenderable(format, bound);
+  bound.forget();
+  return can;
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ void deleteTexture(GLuint name) { glDeleteTextures(1, &name); }
 
 Texture::Texture(BoundState& bound, const Format& format, GLsizei width, GLsizei height)
     : name_(newTexture()), format_(&format), width_(width), height_(height) {
-  bound.texture(0, name());
+  bound.textureToChange(name());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
@@ -38,7 +38,7 @@ Texture::Texture(BoundState& bound, const Format& format, GLsizei width, GLsizei
 }
 
 void Texture::write(BoundState& bound, GLint x, GLint y, GLsizei width, GLsizei height, const void* texels) {
-  bound.texture(0, name());
+  bound.textureToChange(name());
   glTexSubImage2D(GL_TEXTURE_2D, 0, x, y, width, height, format_->tight.format, format_->tight.type, texels);
 }
 
