@@ -20,7 +20,10 @@ bool isCall(const Expr& expr, const std::vector<bool>& isFunction) {
     return expr.type.isFloat() && !std::isfinite(std::bit_cast<float>(n->bits));
   }
   if (const auto* n = std::get_if<ConstantRef>(&expr.node)) return isFunction[n->constant];
-  if (const auto* n = std::get_if<Binary>(&expr.node)) return n->lhs->type.isVector() && expr.type.isBool();
+  if (const auto* n = std::get_if<Binary>(&expr.node)) {
+    const bool isSignedRemainder = n->op == BinaryOp::Rem && n->lhs->type.scalar == Scalar::Int;
+    return isSignedRemainder || (n->lhs->type.isVector() && expr.type.isBool());
+  }
   if (const auto* n = std::get_if<Unary>(&expr.node))
     return n->op == UnaryOp::LogicalNot && expr.type.isVector();
   if (const auto* n = std::get_if<Select>(&expr.node)) return n->cond->type.isVector();

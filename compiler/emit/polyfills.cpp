@@ -65,8 +65,9 @@ std::string Polyfills::logical(BinaryOp op, int width) {
 
 std::string Polyfills::remainder(Type lhs, Type rhs) {
   const Type result = lhs.isVector() ? lhs : rhs;
-  add(fmt::format("{} sk_rem({} a, {} b) {{ return a - a / b * b; }}\n", glslSpelling(Scalar::Int, result.width),
-                  glslSpelling(Scalar::Int, lhs.width), glslSpelling(Scalar::Int, rhs.width)));
+  add(fmt::format("{} sk_rem({} a, {} b) {{ return a - a / b * b; }}\n",
+                  glslSpelling(Scalar::Int, result.width), glslSpelling(Scalar::Int, lhs.width),
+                  glslSpelling(Scalar::Int, rhs.width)));
   return "sk_rem";
 }
 

@@ -70,7 +70,8 @@ class Builder {
                          .body = storage_.keep(std::move(text.body)),
                          .parameters = parameters,
                          .sources = storage_.sources,
-                         .usesIndex = uses.domainIndex}};
+                         .usesIndex = uses.domainIndex,
+                         .usesLoops = uses.loops}};
     if (kernel.reduction) {
       const std::string& combine = names.function(*kernel.reduction->combine);
       unit.reduction = &storage_.reductions.emplace_back(

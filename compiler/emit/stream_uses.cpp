@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "ir/build.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
@@ -31,6 +32,39 @@ std::optional<std::int32_t> reachOf(const Module& module, const Expr& offset) {
   return value == INT32_MIN ? std::nullopt : std::optional(std::abs(value));
 }
 
+bool assigns(const Block& block, VarId var) {
+  bool found = false;
+  walkStmts(block, [&](const Stmt& stmt) {
+    if (const auto* n = std::get_if<Assign>(&stmt.node)) found = found || rootOf(*n->place) == var;
+    if (const auto* n = std::get_if<CallStmt>(&stmt.node)) {
+      for (const ExprPtr& arg : n->args)
+        walkExprs(*arg, [&](const Expr& expr) {
+          const auto* ref = std::get_if<VarRef>(&expr.node);
+          found = found || (ref != nullptr && ref->var == var);
+        });
+      if (n->result) found = found || rootOf(*n->result) == var;
+    }
+  });
+  return found;
+}
+
+/// `for (int i = 0; i < 5; ++i)` with constants, i untouched inside: as many rounds for any element.
+bool isCounted(const Module& module, const Loop& loop) {
+  const auto isConstant = [&](const Expr& expr) {
+    return evaluate(module, expr, Constants::LookThrough).has_value();
+  };
+  if (loop.init.size() != 1 || loop.step.size() != 1 || !loop.cond) return false;
+  const auto* init = std::get_if<Declare>(&loop.init.front().node);
+  const auto* test = std::get_if<Binary>(&loop.cond->node);
+  const auto* step = std::get_if<Assign>(&loop.step.front().node);
+  if (init == nullptr || !init->init || test == nullptr || step == nullptr || !step->op) return false;
+  const auto* tested = std::get_if<VarRef>(&test->lhs->node);
+  const auto* stepped = std::get_if<VarRef>(&step->place->node);
+  return isComparison(test->op) && tested != nullptr && stepped != nullptr && tested->var == init->var &&
+         stepped->var == init->var && isConstant(*init->init) && isConstant(*test->rhs) &&
+         isConstant(*step->value) && !assigns(loop.body, init->var);
+}
+
 class Collector {
  public:
   Collector(const Module& module, const Kernel& kernel) : module_(module), kernel_(kernel) {
@@ -40,7 +74,12 @@ class Collector {
 
   StreamUses run() {
     for (FunctionId id : functionsOf(module_, kernel_)) {
-      walkExprs(module_.functions[id].body, [&](const Expr& expr) { collect(expr); });
+      const Block& body = module_.functions[id].body;
+      walkExprs(body, [&](const Expr& expr) { collect(expr); });
+      walkStmts(body, [&](const Stmt& stmt) {
+        const auto* loop = std::get_if<Loop>(&stmt.node);
+        uses_.loops = uses_.loops || (loop != nullptr && !isCounted(module_, *loop));
+      });
     }
     for (std::size_t i = 0; i < allConstant_.size(); ++i) {
       if (!allConstant_[i]) uses_.params[i].reach = -1;

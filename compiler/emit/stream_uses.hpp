@@ -21,6 +21,7 @@ struct StreamUse {
 struct StreamUses {
   std::vector<StreamUse> params;
   bool domainIndex = false;
+  bool loops = false;   ///< has a loop whose rounds the values of elements decide
 };
 
 StreamUses streamUses(const ir::Module& module, const ir::Kernel& kernel);

@@ -109,6 +109,7 @@ class SourceWriter {
         ".declarations = " + declarations,          ".body = " + name + "Body",
         ".parameters = " + name + "Parameters",     ".sources = sources"};
     if (kernel.usesIndex) members.emplace_back(".usesIndex = true");
+    if (kernel.usesLoops) members.emplace_back(".usesLoops = true");
     const std::string newLine = "\n" + std::string(column, ' ');
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
   }

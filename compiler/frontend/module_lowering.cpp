@@ -16,6 +16,8 @@
 #include "frontend/lower_module.hpp"
 #include "frontend/prelude.hpp"
 #include "ir/build.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
 
 namespace skc::frontend {
 
@@ -124,6 +126,14 @@ void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation w
   if (kernel.params.size() != 2 || kernel.params[0].role != ir::ParamRole::Input ||
       kernel.params[1].role != ir::ParamRole::Accumulator) {
     fail(Diag::ReduceParameters, where, {kernel.name});
+  }
+  // a run of elements has no index of its own, and partial results fold without any
+  for (const ir::FunctionId id : ir::functionsOf(module_, kernel)) {
+    ir::walkExprs(module_.functions[id].body, [&](const ir::Expr& expr) {
+      if (std::holds_alternative<ir::IndexOf>(expr.node) || std::holds_alternative<ir::ExtentOf>(expr.node)) {
+        fail(Diag::IndexInReduce, clangLocation(expr.loc), {kernel.name});
+      }
+    });
   }
 }
 

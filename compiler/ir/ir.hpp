@@ -154,7 +154,12 @@ struct Function {
   Loc loc;
 };
 
-struct Constant { std::string name; Type type; ExprPtr value; Loc loc; };
+struct Constant {
+  std::string name;
+  Type type;
+  ExprPtr value;
+  Loc loc;
+};
 
 enum class ParamRole : std::uint8_t { Uniform, Input, Output, Gather, Accumulator };
 enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };

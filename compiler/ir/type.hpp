@@ -40,7 +40,10 @@ struct Type {
   bool operator==(const Type&) const = default;
 };
 
-struct StructField { std::string name; Type type; };
+struct StructField {
+  std::string name;
+  Type type;
+};
 struct Struct {
   std::string name;                  ///< without namespaces
   std::vector<std::string> scope;    ///< enclosing namespaces, outermost first

@@ -51,7 +51,9 @@ class Follower {
   bool neverReturns() const { return neverReturns_; }
 
  private:
-  struct Exits { Path broken, continued; };
+  struct Exits {
+    Path broken, continued;
+  };
 
   std::size_t width(ir::Type type) const {
     switch (type.kind) {
@@ -127,7 +129,8 @@ class Follower {
   Path step(const ir::CallStmt& call, Path path) {
     const ir::Function& callee = module_.functions[call.callee];
     for (VarId i = 0; i < callee.parameterCount; ++i) {
-      if (callee.variables[i].role == ir::VarRole::InOut) write(path, *call.args[i], &summaries_[call.callee].at(i));
+      if (callee.variables[i].role == ir::VarRole::InOut)
+        write(path, *call.args[i], &summaries_[call.callee].at(i));
     }
     if (call.result) write(path, *call.result);
     return path;

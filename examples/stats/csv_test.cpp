@@ -97,7 +97,9 @@ TEST_CASE("files without data") {
 TEST_CASE("a line of ten megabytes") {
   std::string text = "a\n";
   for (int i = 0; i < 5; ++i) text += "1";
-  text += "," + std::string(10'000'000, ' ') + "\n2\n";
+  text += ",";
+  text.resize(text.size() + 10'000'000, ' ');
+  text += "\n2\n";
   CHECK(parse(text).columns[0].values == std::vector<float>{11111.0f, 2.0f});
 }
 

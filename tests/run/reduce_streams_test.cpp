@@ -30,7 +30,6 @@ const std::vector<Row> rows = {
     {{4, 6, 10}, {2, 3, 5}}, {{4, 6, 10}, {1, 6, 1}}, {{5, 1, 70}, {5, 1, 1}}, {{2, 4, 6, 8}, {2, 1, 3, 4}},
     {{2, 4, 6, 8}, {1, 1, 1, 1}},
 };
-const auto addTo = [](float& r, float x) { r += x; };
 const auto composeTo = [](reduces::Affine& r, const reduces::Affine& f) { r = {f.a * r.a, f.a * r.b + f.b}; };
 
 std::string differenceOfMaps(const std::vector<reduces::Affine>& actual, const std::vector<reduces::Affine>& expected) {
@@ -46,19 +45,16 @@ TEST_CASE("a reduce to a stream folds each block, in order") {
   onEveryLayout([](sk::Device& device) {
     for (const Row& row : rows) {
       INFO(sk::toString(row.input) << " to " << sk::toString(row.output));
-      const HostArray<float> x(row.input, smallAt);
-      auto sums = device.stream<float>(row.output);
-      reduces::sum(x.on(device), sums);
-      CHECK(difference(sums.read(), foldBlocks(x, row.output, 0.0f, addTo).elements()) == "");
-
       const HostArray<reduces::Affine> f(row.input, affineAt);
       const auto expected = foldBlocks(f, row.output, reduces::Affine{1, 0}, composeTo);
       auto maps = device.stream<reduces::Affine>(row.output);
       reduces::compose(f.on(device), maps);
       CHECK(differenceOfMaps(maps.read(), expected.elements()) == "");
+
+      if (row.output.size() > 2) continue;   // the rest differs in its programs, not in where elements lie
       reduces::composeSeeded(f.on(device), maps);
       CHECK(differenceOfMaps(maps.read(), expected.elements()) == "");
-
+      const HostArray<float> x(row.input, smallAt);
       auto counts = device.stream<int>(row.output);
       reduces::countPositive(x.on(device), counts);
       CHECK(difference(counts.read(), foldBlocks(x, row.output, 0, [](int& r, float v) { r += v > 0; }).elements()) == "");
