@@ -101,6 +101,8 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void spill(ir::ExprPtr& e);
   void keepInPlace(ir::ExprPtr& e);
   ir::ExprPtr place(const clang::Expr* e);
+  struct Sides { ir::ExprPtr target, right; };
+  Sides sidesOf(const clang::BinaryOperator* e);
   ir::ExprPtr assign(const clang::BinaryOperator* e, bool wantValue);
   ir::ExprPtr compoundAssign(const clang::CompoundAssignOperator* e, bool wantValue);
   ir::ExprPtr increment(const clang::UnaryOperator* e, bool wantValue);

@@ -212,8 +212,8 @@ ExprPtr FunctionLowering::place(const clang::Expr* e) {
   return result;
 }
 
-ExprPtr FunctionLowering::assign(const clang::BinaryOperator* e, bool wantValue) {
-  // C++17 evaluates the right side first
+/// The sides of an assignment. C++17 evaluates the right one first.
+FunctionLowering::Sides FunctionLowering::sidesOf(const clang::BinaryOperator* e) {
   ExprPtr right = value(e->getRHS());
   ir::Block effects;
   ir::Block* outer = std::exchange(out_, &effects);
@@ -223,6 +223,11 @@ ExprPtr FunctionLowering::assign(const clang::BinaryOperator* e, bool wantValue)
     spill(right);
     for (ir::Stmt& s : effects) out_->push_back(std::move(s));
   }
+  return {std::move(target), std::move(right)};
+}
+
+ExprPtr FunctionLowering::assign(const clang::BinaryOperator* e, bool wantValue) {
+  auto [target, right] = sidesOf(e);
   ExprPtr result = wantValue ? ir::clone(*target) : nullptr;
   emit(module_.loc(e->getBeginLoc()), ir::Assign{std::move(target), std::nullopt, std::move(right)});
   return result;
@@ -230,15 +235,7 @@ ExprPtr FunctionLowering::assign(const clang::BinaryOperator* e, bool wantValue)
 
 ExprPtr FunctionLowering::compoundAssign(const clang::CompoundAssignOperator* e, bool wantValue) {
   const ir::BinaryOp op = *binaryOpOf(e->getOpcode());
-  ExprPtr right = value(e->getRHS());
-  ir::Block effects;
-  ir::Block* outer = std::exchange(out_, &effects);
-  ExprPtr target = place(e->getLHS());
-  out_ = outer;
-  if (!effects.empty()) {
-    spill(right);
-    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
-  }
+  auto [target, right] = sidesOf(e);
   const ir::Type computed = module_.type(e->getComputationResultType(), e->getOperatorLoc());
   ExprPtr result = wantValue ? ir::clone(*target) : nullptr;
   const Loc loc = module_.loc(e->getBeginLoc());

@@ -34,21 +34,18 @@ Quartiles quartilesOf(std::vector<double> values) {
   return {at(0.25), at(0.5), at(0.75)};
 }
 
-Comparison compare(const Contender& ours, const Contender& theirs, int rounds, double sampleMilliseconds) {
+void compare(const Contender& ours, const Contender& theirs, int rounds, double sampleMilliseconds,
+             Comparison& all) {
   const int times = std::max(timesFor(ours, sampleMilliseconds), timesFor(theirs, sampleMilliseconds));
-  std::vector<double> ratios, oursOnce, theirsOnce;
   for (int round = 0; round < rounds; ++round) {
     // A B, B A, A B ...: what slows down or warms up in a round favours neither.
     const bool oursFirst = round % 2 == 0;
     const double first = sample(oursFirst ? ours : theirs, times) / times;
     const double second = sample(oursFirst ? theirs : ours, times) / times;
-    const double a = oursFirst ? first : second;
-    const double b = oursFirst ? second : first;
-    ratios.push_back(a / b);
-    oursOnce.push_back(a);
-    theirsOnce.push_back(b);
+    all.ours.push_back(oursFirst ? first : second);
+    all.theirs.push_back(oursFirst ? second : first);
+    all.ratios.push_back(all.ours.back() / all.theirs.back());
   }
-  return {quartilesOf(ratios), quartilesOf(oursOnce), quartilesOf(theirsOnce)};
 }
 
 Quartiles measure(const Contender& contender, int rounds, double sampleMilliseconds) {

@@ -20,14 +20,17 @@ Quartiles quartilesOf(std::vector<double> values);
 /// Does its work so many times, waits for the device, and gives nothing back.
 using Contender = std::function<void(int times)>;
 
+/// What two contenders took, round by round.
 struct Comparison {
-  Quartiles ratio;         ///< of each round: ours over theirs
-  Quartiles ours;          ///< milliseconds for doing it once
-  Quartiles theirs;
+  std::vector<double> ratios;  ///< ours over theirs
+  std::vector<double> ours;    ///< milliseconds for doing it once
+  std::vector<double> theirs;
 };
 
-/// `sampleMilliseconds`: the work is repeated within a sample until it takes about as long.
-Comparison compare(const Contender& ours, const Contender& theirs, int rounds, double sampleMilliseconds);
+/// Adds `rounds` rounds. `sampleMilliseconds`: the work is repeated within a sample until it takes about as
+/// long.
+void compare(const Contender& ours, const Contender& theirs, int rounds, double sampleMilliseconds,
+             Comparison& all);
 
 /// Milliseconds for doing it once.
 Quartiles measure(const Contender& contender, int rounds, double sampleMilliseconds);

@@ -3,6 +3,7 @@
 // Calls of compiled kernels that do not fit: each sk::Error names the kernel with its namespace, the
 // parameters as declared and the shapes, and leaves the streams as they were.
 #include <functional>
+#include <type_traits>
 
 #include "misuse.sk.hpp"
 #include "support/devices.hpp"
@@ -22,6 +23,22 @@ std::string errorOf(const std::function<void()>& call) {
   return "no error";
 }
 
+// What is wrong with the types, the C++ compiler tells (of const outputs: misuse_types/calls.cpp).
+using Floats = sk::Stream<float>&;
+template <class Kernel, class... Arguments>
+constexpr bool isCallable = std::is_invocable_v<const Kernel&, Arguments...>;
+static_assert(isCallable<misuse::DiffuseKernel, int, const sk::Stream<float>&, Floats>);
+static_assert(isCallable<misuse::DiffuseKernel, float, sk::View<const float>, sk::View<float>>);
+static_assert(!isCallable<misuse::DiffuseKernel, float, sk::Stream<int>&, Floats>);
+static_assert(!isCallable<misuse::DiffuseKernel, float, Floats, sk::View<sk::float2>>);
+static_assert(!isCallable<misuse::DiffuseKernel, float, Floats>);
+static_assert(!isCallable<misuse::DiffuseKernel, float, Floats, Floats, Floats>);
+static_assert(!isCallable<misuse::DiffuseKernel, sk::float2, Floats, Floats>);
+static_assert(!isCallable<misuse::SplitKernel, Floats, Floats, Floats>);
+static_assert(isCallable<misuse::SumReduce, Floats> && isCallable<misuse::SumReduce, Floats, Floats>);
+static_assert(!isCallable<misuse::SumReduce, sk::Stream<misuse::Hit>&>);
+static_assert(!isCallable<misuse::SumReduce, Floats, sk::Stream<int>&>);
+
 }  // namespace
 
 TEST_CASE("inputs of another shape") {
@@ -34,8 +51,8 @@ TEST_CASE("inputs of another shape") {
       auto u = device.stream<float>(shape);
       CHECK(errorOf([&] { misuse::diffuse(1, u, v); }) == text + sk::toString(shape) + advice);
     }
-    auto part = device.stream<float>({6, 9}).domain({0, 0}, {6, 9});
-    CHECK_THAT(errorOf([&] { misuse::diffuse(1, part.domain({1, 0}, {6, 8}), v); }), Contains("'u' has shape {5, 8}"));
+    auto larger = device.stream<float>({6, 9});
+    CHECK_THAT(errorOf([&] { misuse::diffuse(1, larger.domain({1, 0}, {6, 8}), v); }), Contains("'u' has shape {5, 8}"));
     CHECK(v.read() == std::vector<float>(48, 5.0f));
   });
 }

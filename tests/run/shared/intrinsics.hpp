@@ -4,8 +4,9 @@
 // the test. CASE(name, reference in double, least x, largest x, absolute error, relative error); with
 // two arguments y lies in [0.25, 4], with three y in [-1, 1] and z in [1, 3].
 //
-// GLSL promises little. The errors allowed are those measured on llvmpipe, the worst that we know,
-// times 1.5 to 4, in decimal: sine and cosine are good to 1e-7 in [-100, 100]; asin 3.9e-4, acos 1.6e-4;
+// GLSL promises little. The errors allowed are the worst that we measured, nearly all on llvmpipe,
+// times 1.5 to 4, in decimal: sine and cosine are good to 1e-7 in [-100, 100], to 7e-6 on an
+// NVIDIA H200; asin 3.9e-4, acos 1.6e-4;
 // atan 2.1e-5 relative; exp 64 ulp (4e-6) at its ends, pow 107 ulp; log 1.6e-7 absolute near 1; the
 // hyperbolic functions are made of exp and log and lose most digits near 0, so that only their
 // absolute error is bounded. + - * / and sqrt round correctly there, other drivers take 3 ulp.
@@ -15,8 +16,8 @@
 #define UNARY_CASES(CASE)                                                                  \
   CASE(radians, x * 3.14159265358979 / 180, -400, 400, FEW_ULP)                            \
   CASE(degrees, x * 180 / 3.14159265358979, -7, 7, FEW_ULP)                                \
-  CASE(sin, std::sin(x), -100, 100, 2e-6, 0)                                               \
-  CASE(cos, std::cos(x), -100, 100, 2e-6, 0)                                               \
+  CASE(sin, std::sin(x), -100, 100, 2e-5, 0)                                               \
+  CASE(cos, std::cos(x), -100, 100, 2e-5, 0)                                               \
   CASE(tan, std::tan(x), -1.5, 1.5, 1e-6, 4e-6)                                            \
   CASE(asin, std::asin(x), -1, 1, 6e-4, 0)                                                 \
   CASE(acos, std::acos(x), -1, 1, 6e-4, 0)                                                 \
