@@ -31,7 +31,8 @@ TransformOptions transformOptions(const Options& options) {
   TransformOptions result;
   if (!options.printAfter.empty()) {
     result.after = [wanted = options.printAfter](std::string_view name, const ir::Module& module) {
-      if (wanted == "all" || wanted == name) std::cout << "// after " << name << "\n" << ir::print(module) << "\n";
+      if (wanted == "all" || wanted == name)
+        std::cout << "// after " << name << "\n" << ir::print(module) << "\n";
     };
   }
   return result;
@@ -42,7 +43,8 @@ std::string qualifiedName(const ir::Kernel& kernel) { return ir::qualifier(kerne
 /// Keeps the kernels that --kernel names, with or without their namespaces.
 bool selectKernel(ir::Module& module, const std::string& wanted) {
   std::string known;
-  for (const ir::Kernel& kernel : module.kernels) known += (known.empty() ? "" : ", ") + qualifiedName(kernel);
+  for (const ir::Kernel& kernel : module.kernels)
+    known += (known.empty() ? "" : ", ") + qualifiedName(kernel);
   std::erase_if(module.kernels, [&](const ir::Kernel& kernel) {
     return kernel.name != wanted && qualifiedName(kernel) != wanted;
   });

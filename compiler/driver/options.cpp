@@ -6,8 +6,8 @@
 
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "assemble/assemble.hpp"
 #include "transforms/transforms.hpp"
@@ -48,7 +48,8 @@ std::string checkProfile(const std::string& value) {
 
 std::string checkTarget(const std::string& value) {
   if (value == "fragment") return {};
-  if (value == "compute" || value == "native") return fmt::format("'{}' is not part of this version; use fragment", value);
+  if (value == "compute" || value == "native")
+    return fmt::format("'{}' is not part of this version; use fragment", value);
   return fmt::format("'{}' is no target; use fragment", value);
 }
 
@@ -64,7 +65,9 @@ std::string duplicateStem(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     const std::string name = file.substr(file.find_last_of('/') + 1);
     const auto [entry, isNew] = seen.emplace(name, file);
-    if (!isNew) return fmt::format("'{}' and '{}' would both be written to {}.hpp; compile them apart", entry->second, file, name);
+    if (!isNew)
+      return fmt::format("'{}' and '{}' would both be written to {}.hpp; compile them apart", entry->second,
+                         file, name);
   }
   return {};
 }
@@ -75,32 +78,45 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   Options options;
   std::string emit = "stubs", color = "auto";
   std::vector<std::string> targets;
-  CLI::App app{"skc: compiles StreamKernel files (.sk) to GLSL, descriptors and C++ stubs.\n"
-               "FILE.sk becomes FILE.sk.hpp and FILE.sk.cpp.",
-               "skc"};
+  CLI::App app{
+      "skc: compiles StreamKernel files (.sk) to GLSL, descriptors and C++ stubs.\n"
+      "FILE.sk becomes FILE.sk.hpp and FILE.sk.cpp.",
+      "skc"};
   app.get_formatter()->column_width(30);
   app.set_version_flag("--version", "skc " SKC_VERSION);
   app.add_option("FILE", options.files, ".sk files to compile")->required();
-  app.add_option("-o", options.outputDirectory, "Write the stubs to this directory (default: the current one)")
+  app.add_option("-o", options.outputDirectory,
+                 "Write the stubs to this directory (default: the current one)")
       ->type_name("DIR");
   app.add_option("--emit", emit, "What to emit: stubs, or glsl, ir, ast on standard output")
-      ->check(checkEmit, "")->type_name("KIND");
+      ->check(checkEmit, "")
+      ->type_name("KIND");
   app.add_option("--target", targets, "Targets to compile for: fragment")
-      ->delimiter(',')->check(checkTarget, "")->type_name("LIST");
+      ->delimiter(',')
+      ->check(checkTarget, "")
+      ->type_name("LIST");
   app.add_option("--profile", options.profile, "Version of GLSL that --emit=glsl prints: " + profileNames())
-      ->check(checkProfile, "")->type_name("NAME");
+      ->check(checkProfile, "")
+      ->type_name("NAME");
   app.add_option("--kernel", options.kernel, "Emit only this kernel or reduce")->type_name("NAME");
   app.add_option("-I", options.includeDirectories, "Look for #include files in this directory")
-      ->type_name("DIR")->allow_extra_args(false);
-  app.add_option("-D", options.definitions, "Define a macro")->type_name("NAME[=VALUE]")->allow_extra_args(false);
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  app.add_option("-D", options.definitions, "Define a macro")
+      ->type_name("NAME[=VALUE]")
+      ->allow_extra_args(false);
   app.add_option("-W", options.warnings, "Warnings, as Clang names them; -Werror makes them errors")
-      ->type_name("NAME")->allow_extra_args(false);
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   app.add_option("--depfile", options.depfile, "Write the files that the stubs depend on, as a Makefile rule")
       ->type_name("FILE");
-  app.add_option("--print-after", options.printAfter, "Print the IR after this transform: all, " + transformList())
-      ->check(checkTransform, "")->type_name("NAME");
+  app.add_option("--print-after", options.printAfter,
+                 "Print the IR after this transform: all, " + transformList())
+      ->check(checkTransform, "")
+      ->type_name("NAME");
   app.add_option("--color", color, "Colour the messages: auto, always, never")
-      ->check(CLI::IsMember({"auto", "always", "never"}))->type_name("WHEN");
+      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->type_name("WHEN");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

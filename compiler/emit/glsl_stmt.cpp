@@ -99,6 +99,8 @@ class FunctionWriter {
   /// True also for a block that has several lines in the .sk file.
   bool fitsOnLine(const Block& body, int depth) const {
     if (body.empty() || !writer_.isAt(body[0].loc)) return true;
+    const Loc last = body.back().loc;
+    if (last.line != 0 && !writer_.isAt(last)) return true;
     LineWriter trial = writer_.trial();
     FunctionWriter(context_, id_, trial, true).closeAfter(body, depth, 0);
     return trial.row() == writer_.row();
@@ -165,7 +167,13 @@ class FunctionWriter {
     const Loc elseLoc = n.otherwise[0].loc;
     braces(n.then, depth, elseLoc.line);
     if (const If* inner = chained(n.otherwise)) {
-      writer_.append(" else " + ifHead(*inner));
+      const std::string head = "else " + ifHead(*inner);
+      if (elseLoc.line == 0 || writer_.isNumbered(elseLoc)) {
+        writer_.append(" " + head);
+      } else {
+        writer_.endLine();
+        writer_.put(depth, elseLoc, head);
+      }
       ifRest(*inner, depth, elseLoc, next);
     } else {
       writer_.append(" else");

@@ -73,6 +73,10 @@ bool LineWriter::isAt(Loc loc) const {
   return !current_.empty() && loc.line != 0 && loc.line == sourceLine_ && loc.file == file_;
 }
 
+bool LineWriter::isNumbered(Loc loc) const {
+  return !current_.empty() && loc.line == line_ && loc.file == file_;
+}
+
 bool LineWriter::joins(Loc loc, std::string_view text) const {
   if (!isAt(loc)) return false;
   return current_.find('\n') == std::string::npos && current_.size() + 1 + text.size() <= limit;

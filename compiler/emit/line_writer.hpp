@@ -35,6 +35,8 @@ class LineWriter {
   std::uint32_t row() const { return row_; }
   /// True if `loc` is where the thing on the line at hand stands in the .sk file.
   bool isAt(Loc loc) const;
+  /// True if a compiler gives the number of `loc` to the line at hand.
+  bool isNumbered(Loc loc) const;
   /// A writer that stands where this one does, for trying something out; it has no earlier lines.
   LineWriter trial() const;
   /// The text, its last line ended.

@@ -23,6 +23,14 @@
 #include "frontend/prelude.hpp"
 #include "frontend/token_editor.hpp"
 
+#if defined(__SANITIZE_ADDRESS__)
+// LLVM's headers poison what their allocators have not handed out; libclang-cpp, built without the
+// sanitizer, hands it out without lifting the poison.
+extern "C" const char* __asan_default_options() {   // NOLINT(bugprone-reserved-identifier)
+  return "allow_user_poisoning=0";
+}
+#endif
+
 namespace skc::frontend {
 namespace {
 
@@ -30,12 +38,12 @@ namespace {
 constexpr std::uintmax_t largestFile = std::uintmax_t{4} << 20;
 
 std::vector<std::string> compilerArguments(const Options& options, const std::string& path) {
-  std::vector<std::string> arguments = {
-      "-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++", "-std=c++20",
-      "-nostdsysteminc", "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all", "-cl-single-precision-constant",
-      "-Wno-undefined-internal", "-Wno-undefined-inline",
-      // a mistaken -W or a long cascade must not bury the first message
-      "-ferror-limit", "20", "-fmessage-length=0"};
+  std::vector<std::string> arguments = {"-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++",
+                                        "-std=c++20", "-nostdsysteminc", "-nobuiltininc", "-fno-rtti",
+                                        "-flax-vector-conversions=all", "-cl-single-precision-constant",
+                                        "-Wno-undefined-internal", "-Wno-undefined-inline",
+                                        // a mistaken -W or a long cascade must not bury the first message
+                                        "-ferror-limit", "20", "-fmessage-length=0"};
   for (const std::string& directory : options.includeDirectories) arguments.push_back("-I" + directory);
   for (const std::string& definition : options.definitions) arguments.push_back("-D" + definition);
   for (const std::string& warning : options.warnings) arguments.push_back("-W" + warning);
@@ -119,14 +127,15 @@ class Frontend::Unit {
     const std::vector<std::string> arguments = compilerArguments(options_, path);
     std::vector<const char*> pointers;
     for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
-    if (!clang::CompilerInvocation::CreateFromArgs(compiler_.getInvocation(), pointers, compiler_.getDiagnostics())) {
+    if (!clang::CompilerInvocation::CreateFromArgs(compiler_.getInvocation(), pointers,
+                                                   compiler_.getDiagnostics())) {
       return false;
     }
     // again, now with the options of the command line
     compiler_.createDiagnostics();
     diagnostics_ = std::make_unique<ClangDiagnostics>(compiler_.getDiagnostics());
-    compiler_.setTarget(
-        clang::TargetInfo::CreateTargetInfo(compiler_.getDiagnostics(), compiler_.getInvocation().TargetOpts));
+    compiler_.setTarget(clang::TargetInfo::CreateTargetInfo(compiler_.getDiagnostics(),
+                                                            compiler_.getInvocation().TargetOpts));
     compiler_.createFileManager();
     compiler_.createSourceManager(compiler_.getFileManager());
     dependencyCollector_ = std::make_shared<clang::DependencyCollector>();

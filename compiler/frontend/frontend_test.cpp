@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include <catch2/catch.hpp>
 #include <unistd.h>
+#include <catch2/catch.hpp>
 
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
@@ -23,7 +23,8 @@ class SourceFile {
  public:
   explicit SourceFile(const std::string& text) {
     static int count = 0;
-    path_ = fs::temp_directory_path() / ("skc_frontend_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".sk");
+    path_ = fs::temp_directory_path() /
+            ("skc_frontend_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".sk");
     std::ofstream(path_) << text;
   }
   ~SourceFile() { fs::remove(path_); }
@@ -55,15 +56,16 @@ std::string lowered(const std::string& text) {
 }
 
 std::string inKernel(const std::string& body) {
-  return lowered("float f(float& x) { x += 1; return x; }\n"
-                 "kernel void k(int n, float4 w, float x<>, [[wrap]] float u[][], out float v<>) {\n" + body + "\n}\n");
+  return lowered(
+      "float f(float& x) { x += 1; return x; }\n"
+      "kernel void k(int n, float4 w, float x<>, [[wrap]] float u[][], out float v<>) {\n" +
+      body + "\n}\n");
 }
 
 }  // namespace
 
 TEST_CASE("effects become statements in front, in C++'s order", "[frontend]") {
-  CHECK(inKernel("int i = 0; v = w[i++] * 2;") ==
-        "int i = 0;\nint t = i;\ni += 1;\nv = w[t] * 2.0;\n");
+  CHECK(inKernel("int i = 0; v = w[i++] * 2;") == "int i = 0;\nint t = i;\ni += 1;\nv = w[t] * 2.0;\n");
   CHECK(inKernel("int i = 0; i = ++i + 1; v = i;") == "int i = 0;\ni += 1;\ni = i + 1;\nv = float(i);\n");
   CHECK(inKernel("v = x; float y = v + f(v);") ==
         "v = x;\nfloat t#6 = v;\nfloat t#5;\nt#5 = f(v);\nfloat y = t#6 + t#5;\n");
@@ -79,8 +81,10 @@ TEST_CASE("a side's effects happen only where it is evaluated", "[frontend]") {
 
 TEST_CASE("loops keep their shape", "[frontend]") {
   CHECK(inKernel("v = 0; for (int i = 0; i < n; ++i) { if (i == 2) continue; v += i; }") ==
-        "v = 0.0;\nfor (int i = 0; i < n; i += 1) {\n  if (i == 2) {\n    continue;\n  }\n  v += float(i);\n}\n");
-  CHECK(inKernel("v = x; do { v *= 2; } while (v < 8);") == "v = x;\ndo {\n  v *= 2.0;\n} while (v < 8.0);\n");
+        "v = 0.0;\nfor (int i = 0; i < n; i += 1) {\n  if (i == 2) {\n    continue;\n  }\n  v += "
+        "float(i);\n}\n");
+  CHECK(inKernel("v = x; do { v *= 2; } while (v < 8);") ==
+        "v = x;\ndo {\n  v *= 2.0;\n} while (v < 8.0);\n");
   // a condition with effects moves into the body
   CHECK(inKernel("v = 0; int i = 0; while (i++ < n) v += 1;").find("while (true)") != std::string::npos);
 }
@@ -104,7 +108,8 @@ TEST_CASE("literals are rounded once", "[frontend]") {
 
 TEST_CASE("dependencies are the main file and what it includes", "[frontend]") {
   const SourceFile included("float twice(float x) { return 2 * x; }\n");
-  const SourceFile main("#include \"" + included.path() + "\"\nkernel void k(float x<>, out float v<>) { v = twice(x); }\n");
+  const SourceFile main("#include \"" + included.path() +
+                        "\"\nkernel void k(float x<>, out float v<>) { v = twice(x); }\n");
   Frontend frontend({});
   REQUIRE(frontend.compile(main.path()));
   CHECK(frontend.dependencies() == std::vector<std::string>{main.path(), included.path()});

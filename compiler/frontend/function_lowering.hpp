@@ -101,7 +101,9 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void spill(ir::ExprPtr& e);
   void keepInPlace(ir::ExprPtr& e);
   ir::ExprPtr place(const clang::Expr* e);
-  struct Sides { ir::ExprPtr target, right; };
+  struct Sides {
+    ir::ExprPtr target, right;
+  };
   Sides sidesOf(const clang::BinaryOperator* e);
   ir::ExprPtr assign(const clang::BinaryOperator* e, bool wantValue);
   ir::ExprPtr compoundAssign(const clang::CompoundAssignOperator* e, bool wantValue);

@@ -42,7 +42,8 @@ ExprPtr FunctionLowering::VisitCXXOperatorCallExpr(const clang::CXXOperatorCallE
 
 ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
   const llvm::StringRef name = callee->getName();
-  if (name.starts_with("__sk_make_")) return vectorConstructor(e, module_.type(e->getType(), e->getBeginLoc()));
+  if (name.starts_with("__sk_make_"))
+    return vectorConstructor(e, module_.type(e->getType(), e->getBeginLoc()));
   if (name == "indexof") return indexOrExtent(e, true);
   if (name == "extentof") return indexOrExtent(e, false);
   if (name == "neighbor") return neighbor(e);
@@ -55,7 +56,8 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
       if (type.isArithmetic()) args[i] = splat(convert(std::move(args[i]), type.scalar), type.width);
     }
     if (cond->type.isVector() && (!type.isVector() || cond->type.width != type.width)) {
-      module_.fail(Diag::NoIntrinsic, e->getBeginLoc(), {"select", module_.spelling(cond->type) + ", " + module_.spelling(type)});
+      module_.fail(Diag::NoIntrinsic, e->getBeginLoc(),
+                   {"select", module_.spelling(cond->type) + ", " + module_.spelling(type)});
     }
     return select(std::move(cond), std::move(args[1]), std::move(args[2]), e->getBeginLoc());
   }
@@ -78,7 +80,8 @@ ExprPtr FunctionLowering::vectorConstructor(const clang::CallExpr* e, ir::Type t
   if (args.size() == 1 && args[0]->type == type) return std::move(args[0]);
   const bool isSplat = args.size() == 1 && width == 1;
   if (width != type.width && !isSplat) {
-    module_.fail(Diag::VectorWidth, where, {module_.spelling(type), std::to_string(type.width), std::to_string(width)});
+    module_.fail(Diag::VectorWidth, where,
+                 {module_.spelling(type), std::to_string(type.width), std::to_string(width)});
   }
   return make(type, where, ir::Construct{std::move(args)});
 }
@@ -100,8 +103,9 @@ int conversionCost(ir::Type from, ir::Type to) {
   switch (to.scalar) {
     case Scalar::Float: return cost + (from.scalar == Scalar::Bool ? 3 : 1);
     case Scalar::Uint: return from.scalar == Scalar::Float ? impossible : cost + 2;
-    case Scalar::Int: return from.scalar == Scalar::Float ? impossible : cost + (from.scalar == Scalar::Bool ? 1 : 3);
-    case Scalar::Bool: return from.scalar == Scalar::Int && from.isVector() ? cost : impossible;   // a mask
+    case Scalar::Int:
+      return from.scalar == Scalar::Float ? impossible : cost + (from.scalar == Scalar::Bool ? 1 : 3);
+    case Scalar::Bool: return from.scalar == Scalar::Int && from.isVector() ? cost : impossible;  // a mask
   }
   return impossible;
 }
@@ -158,7 +162,8 @@ ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::
   const SourceLocation where = e->getBeginLoc();
   const Loc loc = module_.loc(where);
   ExprPtr x = value(e->getArg(0));
-  if (!x->type.isFloat()) module_.fail(Diag::NoIntrinsic, where, {std::string_view(name), module_.spelling(x->type)});
+  if (!x->type.isFloat())
+    module_.fail(Diag::NoIntrinsic, where, {std::string_view(name), module_.spelling(x->type)});
   // the argument is read twice, and an out argument may be the very same variable
   const ir::VarId kept = temporary(x->type, loc);
   const ir::Type type = x->type;
@@ -190,7 +195,8 @@ namespace {
 const clang::Expr* withoutCopies(const clang::Expr* e) {
   while (true) {
     e = e->IgnoreParenImpCasts();
-    if (const auto* construct = llvm::dyn_cast<clang::CXXConstructExpr>(e); construct && construct->getNumArgs() == 1) {
+    if (const auto* construct = llvm::dyn_cast<clang::CXXConstructExpr>(e);
+        construct && construct->getNumArgs() == 1) {
       e = construct->getArg(0);
     } else if (const auto* temporary = llvm::dyn_cast<clang::MaterializeTemporaryExpr>(e)) {
       e = temporary->getSubExpr();
@@ -227,12 +233,14 @@ ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) 
   const SourceLocation where = argument->getBeginLoc();
   const std::string_view name = isIndex ? "indexof" : "extentof";
   const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(argument);
-  const ParamSyntax* syntax = reference ? module_.syntax().param(reference->getDecl()->getLocation()) : nullptr;
+  const ParamSyntax* syntax =
+      reference ? module_.syntax().param(reference->getDecl()->getLocation()) : nullptr;
   if (!syntax || syntax->role == ir::ParamRole::Uniform) module_.fail(Diag::NotAStream, where, {name});
   const auto found = variables_.find(reference->getDecl());
   if (found == variables_.end()) throw Abandoned{};
   const bool isGather = syntax->role == ir::ParamRole::Gather;
-  if (isIndex && isGather) module_.fail(Diag::IndexOfGather, where, {function_.variables[found->second].name});
+  if (isIndex && isGather)
+    module_.fail(Diag::IndexOfGather, where, {function_.variables[found->second].name});
   ir::StreamRef stream{ir::StreamRef::Space::Variable, found->second};
   if (syntax->role == ir::ParamRole::Output) {
     stream = {ir::StreamRef::Space::Domain, 0};
@@ -277,7 +285,8 @@ ExprPtr FunctionLowering::gatherRead(const clang::CXXOperatorCallExpr* e) {
   const ir::Variable gather = function_.variables[stream];
   for (const clang::Expr* index : written) {
     const auto* comma = llvm::dyn_cast<clang::BinaryOperator>(index->IgnoreParenImpCasts());
-    if (comma && comma->getOpcode() == clang::BO_Comma) module_.fail(Diag::CommaIndex, comma->getOperatorLoc(), {gather.name});
+    if (comma && comma->getOpcode() == clang::BO_Comma)
+      module_.fail(Diag::CommaIndex, comma->getOperatorLoc(), {gather.name});
   }
   Exprs values = valuesInOrder(written);
   for (ExprPtr& index : values) {
@@ -295,7 +304,7 @@ ExprPtr FunctionLowering::gatherRead(const clang::CXXOperatorCallExpr* e) {
     std::reverse(values.begin(), values.end());
     index = make(ir::Type::of(Scalar::Int, gather.rank), where, ir::Construct{std::move(values)});
   }
-  assert(index->type.width == gather.rank);   // the prelude declares nothing else
+  assert(index->type.width == gather.rank);  // the prelude declares nothing else
   return make(gather.type, where, ir::GatherRead{{ir::StreamRef::Space::Variable, stream}, std::move(index)});
 }
 

@@ -19,16 +19,26 @@ namespace {
 
 std::optional<ir::BinaryOp> binaryOpOf(clang::BinaryOperatorKind kind) {
   switch (kind) {
-    case clang::BO_Add: case clang::BO_AddAssign: return ir::BinaryOp::Add;
-    case clang::BO_Sub: case clang::BO_SubAssign: return ir::BinaryOp::Sub;
-    case clang::BO_Mul: case clang::BO_MulAssign: return ir::BinaryOp::Mul;
-    case clang::BO_Div: case clang::BO_DivAssign: return ir::BinaryOp::Div;
-    case clang::BO_Rem: case clang::BO_RemAssign: return ir::BinaryOp::Rem;
-    case clang::BO_And: case clang::BO_AndAssign: return ir::BinaryOp::BitAnd;
-    case clang::BO_Or: case clang::BO_OrAssign: return ir::BinaryOp::BitOr;
-    case clang::BO_Xor: case clang::BO_XorAssign: return ir::BinaryOp::BitXor;
-    case clang::BO_Shl: case clang::BO_ShlAssign: return ir::BinaryOp::ShiftLeft;
-    case clang::BO_Shr: case clang::BO_ShrAssign: return ir::BinaryOp::ShiftRight;
+    case clang::BO_Add:
+    case clang::BO_AddAssign: return ir::BinaryOp::Add;
+    case clang::BO_Sub:
+    case clang::BO_SubAssign: return ir::BinaryOp::Sub;
+    case clang::BO_Mul:
+    case clang::BO_MulAssign: return ir::BinaryOp::Mul;
+    case clang::BO_Div:
+    case clang::BO_DivAssign: return ir::BinaryOp::Div;
+    case clang::BO_Rem:
+    case clang::BO_RemAssign: return ir::BinaryOp::Rem;
+    case clang::BO_And:
+    case clang::BO_AndAssign: return ir::BinaryOp::BitAnd;
+    case clang::BO_Or:
+    case clang::BO_OrAssign: return ir::BinaryOp::BitOr;
+    case clang::BO_Xor:
+    case clang::BO_XorAssign: return ir::BinaryOp::BitXor;
+    case clang::BO_Shl:
+    case clang::BO_ShlAssign: return ir::BinaryOp::ShiftLeft;
+    case clang::BO_Shr:
+    case clang::BO_ShrAssign: return ir::BinaryOp::ShiftRight;
     case clang::BO_LT: return ir::BinaryOp::Less;
     case clang::BO_LE: return ir::BinaryOp::LessEqual;
     case clang::BO_GT: return ir::BinaryOp::Greater;
@@ -46,12 +56,15 @@ bool isArithmeticOp(ir::BinaryOp op) { return op <= ir::BinaryOp::Rem; }
 /// float4(2.0) in `v * float4(2.0)` where the author wrote `v * 2.0`.
 ExprPtr withoutSplat(ExprPtr e) {
   auto* construct = std::get_if<ir::Construct>(&e->node);
-  if (!construct || !e->type.isVector() || construct->args.size() != 1 || !construct->args[0]->type.isScalar()) return e;
+  if (!construct || !e->type.isVector() || construct->args.size() != 1 ||
+      !construct->args[0]->type.isScalar())
+    return e;
   return std::move(construct->args[0]);
 }
 
 bool isStable(const ExprPtr& e, const ir::Function& function) {
-  if (std::holds_alternative<ir::Literal>(e->node) || std::holds_alternative<ir::ConstantRef>(e->node)) return true;
+  if (std::holds_alternative<ir::Literal>(e->node) || std::holds_alternative<ir::ConstantRef>(e->node))
+    return true;
   const auto* reference = std::get_if<ir::VarRef>(&e->node);
   return reference && function.variables[reference->var].isConst;
 }
@@ -112,7 +125,8 @@ void FunctionLowering::checkDepth(SourceLocation where) {
 /// An expression whose value nobody uses: only its effects remain.
 void FunctionLowering::discarded(const clang::Expr* e) {
   e = e->IgnoreParens();
-  if (const auto* cleanups = llvm::dyn_cast<clang::ExprWithCleanups>(e)) return discarded(cleanups->getSubExpr());
+  if (const auto* cleanups = llvm::dyn_cast<clang::ExprWithCleanups>(e))
+    return discarded(cleanups->getSubExpr());
   if (const auto* cast = llvm::dyn_cast<clang::CastExpr>(e); cast && cast->getType()->isVoidType()) {
     return discarded(cast->getSubExpr());
   }
@@ -130,11 +144,13 @@ void FunctionLowering::discarded(const clang::Expr* e) {
       return discarded(operation->getRHS());
     }
   }
-  if (const auto* operation = llvm::dyn_cast<clang::UnaryOperator>(e); operation && operation->isIncrementDecrementOp()) {
+  if (const auto* operation = llvm::dyn_cast<clang::UnaryOperator>(e);
+      operation && operation->isIncrementDecrementOp()) {
     increment(operation, false);
     return;
   }
-  if (const auto* choice = llvm::dyn_cast<clang::ConditionalOperator>(e); choice && choice->getType()->isVoidType()) {
+  if (const auto* choice = llvm::dyn_cast<clang::ConditionalOperator>(e);
+      choice && choice->getType()->isVoidType()) {
     ir::If result;
     result.cond = condition(choice->getCond());
     ir::Block* outer = std::exchange(out_, &result.then);
@@ -239,7 +255,8 @@ ExprPtr FunctionLowering::compoundAssign(const clang::CompoundAssignOperator* e,
   const ir::Type computed = module_.type(e->getComputationResultType(), e->getOperatorLoc());
   ExprPtr result = wantValue ? ir::clone(*target) : nullptr;
   const Loc loc = module_.loc(e->getBeginLoc());
-  const bool isSignedRemainder = op == ir::BinaryOp::Rem && computed.scalar == ir::Scalar::Int;   // a function in GLSL
+  const bool isSignedRemainder =
+      op == ir::BinaryOp::Rem && computed.scalar == ir::Scalar::Int;   // a function in GLSL
   if (computed.isArithmetic() && computed.scalar == target->type.scalar && !isSignedRemainder) {
     if (isArithmeticOp(op)) right = withoutSplat(std::move(right));
     emit(loc, ir::Assign{std::move(target), op, std::move(right)});
@@ -247,7 +264,8 @@ ExprPtr FunctionLowering::compoundAssign(const clang::CompoundAssignOperator* e,
   }
   // `i += 0.5f` computes in float and converts back
   const ir::Scalar scalar = target->type.scalar;
-  ExprPtr wide = binary(op, convert(ir::clone(*target), computed.scalar), std::move(right), e->getOperatorLoc());
+  ExprPtr wide =
+      binary(op, convert(ir::clone(*target), computed.scalar), std::move(right), e->getOperatorLoc());
   emit(loc, ir::Assign{std::move(target), std::nullopt, convert(std::move(wide), scalar)});
   return result;
 }
@@ -273,14 +291,18 @@ ExprPtr FunctionLowering::increment(const clang::UnaryOperator* e, bool wantValu
 ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
   const SourceLocation where = e->getOperatorLoc();
   switch (e->getOpcode()) {
-    case clang::UO_PreInc: case clang::UO_PreDec: case clang::UO_PostInc: case clang::UO_PostDec:
-      return increment(e, true);
+    case clang::UO_PreInc:
+    case clang::UO_PreDec:
+    case clang::UO_PostInc:
+    case clang::UO_PostDec: return increment(e, true);
     case clang::UO_Plus: return value(e->getSubExpr());
     case clang::UO_Minus: {
       ExprPtr operand = value(e->getSubExpr());
-      if (const auto* constant = std::get_if<ir::Literal>(&operand->node); constant && !operand->type.isBool()) {
+      if (const auto* constant = std::get_if<ir::Literal>(&operand->node);
+          constant && !operand->type.isBool()) {
         // -1 is a literal to its reader: change the sign bit of a float, wrap an integer
-        const std::uint32_t bits = operand->type.isFloat() ? constant->bits ^ 0x80000000u : 0u - constant->bits;
+        const std::uint32_t bits =
+            operand->type.isFloat() ? constant->bits ^ 0x80000000u : 0u - constant->bits;
         return literal(operand->type, bits, where);
       }
       const ir::Type type = operand->type;
@@ -296,14 +318,17 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
       ExprPtr operand = toBool(value(e->getSubExpr()));
       const ir::Type type = operand->type;
       ExprPtr result = make(type, where, ir::Unary{ir::UnaryOp::LogicalNot, std::move(operand)});
-      return type.isVector() && !module_.type(e->getType(), where).isBool() ? mask(std::move(result)) : std::move(result);
+      return type.isVector() && !module_.type(e->getType(), where).isBool() ? mask(std::move(result))
+                                                                            : std::move(result);
     }
     case clang::UO_Deref:
       value(e->getSubExpr());   // says what is wrong with it, if it is more than a pointer
       module_.fail(Diag::Pointer, where, {e->getSubExpr()->getType().getAsString()});
     case clang::UO_AddrOf: module_.fail(Diag::Pointer, where, {e->getType().getAsString()});
     case clang::UO_Extension: return value(e->getSubExpr());
-    case clang::UO_Real: case clang::UO_Imag: case clang::UO_Coawait: break;
+    case clang::UO_Real:
+    case clang::UO_Imag:
+    case clang::UO_Coawait: break;
   }
   return VisitExpr(e);
 }
@@ -345,7 +370,8 @@ ExprPtr FunctionLowering::logical(const clang::BinaryOperator* e) {
   const ir::BinaryOp op = isAnd ? ir::BinaryOp::LogicalAnd : ir::BinaryOp::LogicalOr;
   if (e->getType()->isVectorType()) {
     Exprs operands = valuesInOrder({e->getLHS(), e->getRHS()});
-    return mask(ir::binary(op, toBool(std::move(operands[0])), toBool(std::move(operands[1])), module_.loc(where)));
+    return mask(
+        ir::binary(op, toBool(std::move(operands[0])), toBool(std::move(operands[1])), module_.loc(where)));
   }
   ExprPtr lhs = condition(e->getLHS());
   ir::Block effects;
@@ -371,7 +397,8 @@ ExprPtr FunctionLowering::VisitConditionalOperator(const clang::ConditionalOpera
   ir::Block yesEffects, noEffects;
   ExprPtr yes = valueInto(e->getTrueExpr(), yesEffects);
   ExprPtr no = valueInto(e->getFalseExpr(), noEffects);
-  if (yesEffects.empty() && noEffects.empty()) return select(std::move(cond), std::move(yes), std::move(no), where);
+  if (yesEffects.empty() && noEffects.empty())
+    return select(std::move(cond), std::move(yes), std::move(no), where);
   const Loc loc = module_.loc(where);
   const ir::VarId result = temporary(yes->type, loc);
   emit(loc, ir::Declare{result, nullptr});
@@ -390,14 +417,16 @@ ExprPtr FunctionLowering::argument(const clang::Expr* e, const ir::Variable& par
   switch (parameter.role) {
     case ir::VarRole::Gather: {
       const ir::VarId stream = gatherVariable(e);
-      return ir::makeExpr(function_.variables[stream].type, ir::VarRef{stream}, module_.loc(e->getBeginLoc()));
+      return ir::makeExpr(function_.variables[stream].type, ir::VarRef{stream},
+                          module_.loc(e->getBeginLoc()));
     }
     case ir::VarRole::InOut: {
       return place(e);   // Clang binds references only to their own type
     }
     case ir::VarRole::Element:
       if (const auto stream = streamVariable(e)) {
-        return ir::makeExpr(function_.variables[*stream].type, ir::VarRef{*stream}, module_.loc(e->getBeginLoc()));
+        return ir::makeExpr(function_.variables[*stream].type, ir::VarRef{*stream},
+                            module_.loc(e->getBeginLoc()));
       }
       return value(e);
     case ir::VarRole::In:
@@ -411,7 +440,8 @@ void FunctionLowering::abandonIfUnknown(const clang::Stmt* s) const {
   const auto* expression = llvm::dyn_cast_or_null<clang::Expr>(s);
   if (!expression) return;
   expression = expression->IgnoreParenImpCasts();
-  if (const auto* member = llvm::dyn_cast<clang::MemberExpr>(expression)) return abandonIfUnknown(member->getBase());
+  if (const auto* member = llvm::dyn_cast<clang::MemberExpr>(expression))
+    return abandonIfUnknown(member->getBase());
   const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(expression);
   const auto* variable = reference ? llvm::dyn_cast<clang::VarDecl>(reference->getDecl()) : nullptr;
   if (!variable || !variable->isLocalVarDeclOrParm() || variables_.contains(variable)) return;
@@ -449,7 +479,8 @@ ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::Functi
     if (!effects.empty()) {
       for (std::size_t k = 0; k < i; ++k) {
         const ir::VarRole role = target.variables[k].role;
-        if (role == ir::VarRole::In || (role == ir::VarRole::Element && !streamVariable(sources[k]))) spill(arguments[k]);
+        if (role == ir::VarRole::In || (role == ir::VarRole::Element && !streamVariable(sources[k])))
+          spill(arguments[k]);
       }
       for (ir::Stmt& s : effects) out_->push_back(std::move(s));
     }

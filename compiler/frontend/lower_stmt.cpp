@@ -51,7 +51,8 @@ ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration) 
   function_.name = functionName(declaration);
   function_.loc = module_.loc(declaration->getLocation());
   if (declaration->getReturnType()->isReferenceType()) {
-    module_.fail(Diag::ReferenceType, declaration->getLocation(), {declaration->getReturnType().getAsString()});
+    module_.fail(Diag::ReferenceType, declaration->getLocation(),
+                 {declaration->getReturnType().getAsString()});
   }
   function_.result = module_.type(declaration->getReturnType(), declaration->getLocation());
   parameters(declaration);
@@ -59,7 +60,8 @@ ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration) 
   ir::Block body;
   out_ = &body;
   const auto* compound = llvm::dyn_cast<clang::CompoundStmt>(declaration->getBody());
-  if (!compound) module_.fail(Diag::Statement, declaration->getBody()->getBeginLoc(), {"a function try block"});
+  if (!compound)
+    module_.fail(Diag::Statement, declaration->getBody()->getBeginLoc(), {"a function try block"});
   const bool clean = [&] {
     bool all = true;
     for (const clang::Stmt* inner : compound->body()) {
@@ -107,7 +109,8 @@ void FunctionLowering::parameters(const clang::FunctionDecl* declaration) {
       variable.isConst = !mutableReference && value.isConstQualified();
       variable.role = mutableReference ? ir::VarRole::InOut : ir::VarRole::In;
       if (syntax && syntax->role == ir::ParamRole::Input) variable.role = ir::VarRole::Element;
-      const bool byValue = syntax && (syntax->role == ir::ParamRole::Uniform || syntax->role == ir::ParamRole::Input);
+      const bool byValue =
+          syntax && (syntax->role == ir::ParamRole::Uniform || syntax->role == ir::ParamRole::Input);
       if (byValue && type->isReferenceType()) {
         module_.fail(Diag::ReferenceType, where, {type.getAsString()});
       }
@@ -121,10 +124,12 @@ namespace {
 
 /// What GLSL takes as a constant expression. Intrinsics that are functions of ours are not.
 bool isConstant(const ir::Expr& e) {
-  if (const auto* call = std::get_if<ir::IntrinsicCall>(&e.node); call && !ir::row(call->intrinsic).polyfill.empty()) {
+  if (const auto* call = std::get_if<ir::IntrinsicCall>(&e.node);
+      call && !ir::row(call->intrinsic).polyfill.empty()) {
     return false;
   }
-  if (const auto* n = std::get_if<ir::Binary>(&e.node); n && n->op == ir::BinaryOp::Rem && e.type.scalar == ir::Scalar::Int) {
+  if (const auto* n = std::get_if<ir::Binary>(&e.node);
+      n && n->op == ir::BinaryOp::Rem && e.type.scalar == ir::Scalar::Int) {
     return false;
   }
   if (std::holds_alternative<ir::Call>(e.node) || std::holds_alternative<ir::VarRef>(e.node)) return false;
@@ -183,7 +188,8 @@ void FunctionLowering::statement(const clang::Stmt* s) {
     case clang::Stmt::ReturnStmtClass: return returnStatement(llvm::cast<clang::ReturnStmt>(s));
     case clang::Stmt::BreakStmtClass: return emit(loc, ir::Break{});
     case clang::Stmt::ContinueStmtClass: return emit(loc, ir::Continue{});
-    case clang::Stmt::AttributedStmtClass: return statement(llvm::cast<clang::AttributedStmt>(s)->getSubStmt());
+    case clang::Stmt::AttributedStmtClass:
+      return statement(llvm::cast<clang::AttributedStmt>(s)->getSubStmt());
     case clang::Stmt::GotoStmtClass:
     case clang::Stmt::IndirectGotoStmtClass:
     case clang::Stmt::LabelStmtClass: module_.fail(Diag::Goto, where);
@@ -210,16 +216,17 @@ void FunctionLowering::variable(const clang::VarDecl* declaration) {
   if (declaration->isStaticLocal() && !declaration->getType().isConstQualified()) {
     module_.fail(Diag::StaticLocal, where, {declaration->getNameAsString()});
   }
-  if (declaration->hasExternalStorage()) module_.fail(Diag::StaticLocal, where, {declaration->getNameAsString()});
+  if (declaration->hasExternalStorage())
+    module_.fail(Diag::StaticLocal, where, {declaration->getNameAsString()});
   const clang::QualType type = declaration->getType();
   if (type->isReferenceType()) module_.fail(Diag::ReferenceType, where, {type.getAsString()});
   const ir::Type lowered = module_.type(type, where);
   ir::ExprPtr init;
   if (const clang::Expr* initializer = declaration->getInit()) {
     const auto* construct = llvm::dyn_cast<clang::CXXConstructExpr>(initializer->IgnoreImplicit());
-    const bool uninitialised =
-        construct && construct->getNumArgs() == 0 && construct->getConstructor()->isTrivial() &&
-        !construct->requiresZeroInitialization();
+    const bool uninitialised = construct && construct->getNumArgs() == 0 &&
+                               construct->getConstructor()->isTrivial() &&
+                               !construct->requiresZeroInitialization();
     if (!uninitialised) init = value(initializer);
   }
   ir::Variable variable;
@@ -260,14 +267,16 @@ void FunctionLowering::ifStatement(const clang::IfStmt* s) {
 }
 
 void FunctionLowering::forStatement(const clang::ForStmt* s) {
-  if (s->getConditionVariable()) module_.fail(Diag::Statement, s->getBeginLoc(), {"a declaration as a condition"});
+  if (s->getConditionVariable())
+    module_.fail(Diag::Statement, s->getBeginLoc(), {"a declaration as a condition"});
   ir::Block init;
   if (s->getInit()) body(s->getInit(), init);
   loop(ir::LoopKind::For, std::move(init), s->getCond(), s->getInc(), s->getBody(), s->getBeginLoc());
 }
 
 void FunctionLowering::whileStatement(const clang::WhileStmt* s) {
-  if (s->getConditionVariable()) module_.fail(Diag::Statement, s->getBeginLoc(), {"a declaration as a condition"});
+  if (s->getConditionVariable())
+    module_.fail(Diag::Statement, s->getBeginLoc(), {"a declaration as a condition"});
   loop(ir::LoopKind::While, {}, s->getCond(), nullptr, s->getBody(), s->getBeginLoc());
 }
 
@@ -293,8 +302,8 @@ bool fitsLoopInit(const ir::Block& block, const ir::Function& function) {
 
 }  // namespace
 
-void FunctionLowering::loop(ir::LoopKind kind, ir::Block init, const clang::Expr* cond, const clang::Expr* step,
-                            const clang::Stmt* inner, SourceLocation where) {
+void FunctionLowering::loop(ir::LoopKind kind, ir::Block init, const clang::Expr* cond,
+                            const clang::Expr* step, const clang::Stmt* inner, SourceLocation where) {
   const Loc loc = module_.loc(where);
   ir::Loop result;
   result.kind = kind;
@@ -313,8 +322,10 @@ void FunctionLowering::loop(ir::LoopKind kind, ir::Block init, const clang::Expr
   // what does not fit the head moves in front, in a scope of its own
   const bool hoistInit = !fitsLoopInit(init, function_);
   ir::Block scope;
-  if (hoistInit) scope = std::move(init);
-  else result.init = std::move(init);
+  if (hoistInit)
+    scope = std::move(init);
+  else
+    result.init = std::move(init);
   ir::Block* outer = out_;
   if (hoistInit) out_ = &scope;
 

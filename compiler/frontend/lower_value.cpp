@@ -29,7 +29,9 @@ ExprPtr FunctionLowering::literal(ir::Type type, std::uint32_t bits, SourceLocat
 
 ExprPtr FunctionLowering::VisitParenExpr(const clang::ParenExpr* e) { return value(e->getSubExpr()); }
 ExprPtr FunctionLowering::VisitConstantExpr(const clang::ConstantExpr* e) { return value(e->getSubExpr()); }
-ExprPtr FunctionLowering::VisitExprWithCleanups(const clang::ExprWithCleanups* e) { return value(e->getSubExpr()); }
+ExprPtr FunctionLowering::VisitExprWithCleanups(const clang::ExprWithCleanups* e) {
+  return value(e->getSubExpr());
+}
 ExprPtr FunctionLowering::VisitMaterializeTemporaryExpr(const clang::MaterializeTemporaryExpr* e) {
   return value(e->getSubExpr());
 }
@@ -40,8 +42,12 @@ ExprPtr FunctionLowering::VisitSubstNonTypeTemplateParmExpr(const clang::SubstNo
 ExprPtr FunctionLowering::VisitCXXRewrittenBinaryOperator(const clang::CXXRewrittenBinaryOperator* e) {
   return value(e->getSemanticForm());
 }
-ExprPtr FunctionLowering::VisitCXXDefaultArgExpr(const clang::CXXDefaultArgExpr* e) { return value(e->getExpr()); }
-ExprPtr FunctionLowering::VisitCXXDefaultInitExpr(const clang::CXXDefaultInitExpr* e) { return value(e->getExpr()); }
+ExprPtr FunctionLowering::VisitCXXDefaultArgExpr(const clang::CXXDefaultArgExpr* e) {
+  return value(e->getExpr());
+}
+ExprPtr FunctionLowering::VisitCXXDefaultInitExpr(const clang::CXXDefaultInitExpr* e) {
+  return value(e->getExpr());
+}
 
 // ---- leaves ---------------------------------------------------------------------------------------
 
@@ -59,10 +65,12 @@ ExprPtr FunctionLowering::floatLiteral(const clang::FloatingLiteral* e) {
   exact.convert(llvm::APFloat::IEEEsingle(), llvm::APFloat::rmNearestTiesToEven, &inexact);
   llvm::SmallString<32> buffer;
   std::string text = clang::Lexer::getSpelling(module_.sources().getSpellingLoc(e->getLocation()), buffer,
-                                               module_.sources(), module_.context().getLangOpts()).str();
+                                               module_.sources(), module_.context().getLangOpts())
+                         .str();
   std::erase(text, '\'');
   const bool isHex = text.starts_with("0x") || text.starts_with("0X");
-  while (!text.empty() && (text.back() == 'f' || text.back() == 'F' || text.back() == 'l' || text.back() == 'L')) {
+  while (!text.empty() &&
+         (text.back() == 'f' || text.back() == 'F' || text.back() == 'l' || text.back() == 'L')) {
     if (isHex && text.find_first_of("pP") == std::string::npos) break;
     text.pop_back();
   }
@@ -72,13 +80,15 @@ ExprPtr FunctionLowering::floatLiteral(const clang::FloatingLiteral* e) {
     exact = direct;
     if (*status & (llvm::APFloat::opOverflow | llvm::APFloat::opUnderflow)) {
       module_.diagnostics().report(Diag::LiteralRange, locOf(e->getLocation()),
-                                   {text, direct.isInfinity() ? "infinity" : direct.isZero() ? "0" : "a denormal"});
+                                   {text, direct.isInfinity() ? "infinity"
+                                          : direct.isZero()   ? "0"
+                                                              : "a denormal"});
     }
   } else {
     llvm::consumeError(status.takeError());
   }
-  return literal(ir::Type::of(ir::Scalar::Float), static_cast<std::uint32_t>(exact.bitcastToAPInt().getZExtValue()),
-                 e->getLocation());
+  return literal(ir::Type::of(ir::Scalar::Float),
+                 static_cast<std::uint32_t>(exact.bitcastToAPInt().getZExtValue()), e->getLocation());
 }
 
 ExprPtr FunctionLowering::VisitCXXBoolLiteralExpr(const clang::CXXBoolLiteralExpr* e) {
@@ -101,7 +111,8 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
     abandonIfUnknown(e);
     return module_.constant(variable, where);
   }
-  if (llvm::isa<clang::FunctionDecl>(declared)) module_.fail(Diag::Pointer, where, {declared->getType().getAsString()});
+  if (llvm::isa<clang::FunctionDecl>(declared))
+    module_.fail(Diag::Pointer, where, {declared->getType().getAsString()});
   return VisitExpr(e);
 }
 
@@ -153,7 +164,8 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
     case clang::CK_FloatingToIntegral:
     case clang::CK_IntegralToBoolean:
     case clang::CK_FloatingToBoolean:
-    case clang::CK_BooleanToSignedIntegral: return convert(value(operand), module_.type(e->getType(), where).scalar);
+    case clang::CK_BooleanToSignedIntegral:
+      return convert(value(operand), module_.type(e->getType(), where).scalar);
     case clang::CK_VectorSplat: return splat(value(operand), module_.type(e->getType(), where).width);
     case clang::CK_BitCast: return vectorBitCast(e);
     case clang::CK_ToVoid: {
@@ -173,8 +185,10 @@ ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
   const ir::Type from = module_.type(e->getSubExpr()->getType(), e->getBeginLoc());
   const ir::Type to = module_.type(e->getType(), e->getBeginLoc());
   const bool isImplicit = llvm::isa<clang::ImplicitCastExpr>(e);
-  const bool mixesSigns = isImplicit && !from.isBool() && !to.isBool();   // int4 / uint4 would follow the left side
-  if (!from.isVector() || !to.isVector() || from.width != to.width || from.isFloat() || to.isFloat() || mixesSigns) {
+  const bool mixesSigns =
+      isImplicit && !from.isBool() && !to.isBool();   // int4 / uint4 would follow the left side
+  if (!from.isVector() || !to.isVector() || from.width != to.width || from.isFloat() || to.isFloat() ||
+      mixesSigns) {
     module_.fail(isImplicit ? Diag::MixedVectors : Diag::BitCast, e->getBeginLoc(), {module_.spelling(to)});
   }
   ExprPtr operand = value(e->getSubExpr());
@@ -189,7 +203,8 @@ ExprPtr* maskedBool(ir::Expr& e) {
   auto* negate = std::get_if<ir::Unary>(&e.node);
   if (!negate || negate->op != ir::UnaryOp::Negate) return nullptr;
   auto* conversion = std::get_if<ir::Convert>(&negate->operand->node);
-  return conversion && conversion->operand->type.isBool() && e.type.isVector() ? &conversion->operand : nullptr;
+  return conversion && conversion->operand->type.isBool() && e.type.isVector() ? &conversion->operand
+                                                                               : nullptr;
 }
 
 }  // namespace
@@ -203,7 +218,8 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
     if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Float) {
       return ir::literal(static_cast<float>(static_cast<std::int32_t>(constant->bits)), loc);
     }
-    if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Uint) return ir::literal(constant->bits, loc);
+    if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Uint)
+      return ir::literal(constant->bits, loc);
     if (e->type.scalar == ir::Scalar::Uint && scalar == ir::Scalar::Float) {
       return ir::literal(static_cast<float>(constant->bits), loc);
     }
@@ -302,8 +318,8 @@ ExprPtr FunctionLowering::VisitCXXParenListInitExpr(const clang::CXXParenListIni
 }
 
 /// A struct, array or vector from its parts; what no initialiser names is zero (or the filler).
-ExprPtr FunctionLowering::aggregate(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits, const clang::Expr*,
-                                    SourceLocation where) {
+ExprPtr FunctionLowering::aggregate(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits,
+                                    const clang::Expr*, SourceLocation where) {
   Exprs args = valuesInOrder(inits);
   if (type.isVector()) {
     int width = 0;

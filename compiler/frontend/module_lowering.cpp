@@ -88,7 +88,8 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   module_.kernels.push_back(std::move(kernel));
 }
 
-ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaration, const ir::Variable& variable) {
+ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaration,
+                                            const ir::Variable& variable) {
   const ParamSyntax* syntax = syntax_.param(declaration->getLocation());
   ir::KernelParam param;
   param.name = declaration->getNameAsString();
@@ -165,8 +166,8 @@ ir::ExprPtr ModuleLowering::generatedConstant(const std::string& name) {
 ir::ExprPtr ModuleLowering::constant(const clang::VarDecl* declaration, SourceLocation use) {
   const clang::VarDecl* definition = declaration->getCanonicalDecl();
   if (failedConstants_.contains(definition)) {
-    if (constantsInProgress_.contains(declaration)) fail(Diag::NotConstant, use);   // its value names itself
-    throw Abandoned{};   // told already
+    if (constantsInProgress_.contains(declaration)) fail(Diag::NotConstant, use);  // its value names itself
+    throw Abandoned{};  // told already
   }
   if (!definition->getType().isConstQualified()) {
     failedConstants_.insert(definition);
@@ -174,10 +175,11 @@ ir::ExprPtr ModuleLowering::constant(const clang::VarDecl* declaration, SourceLo
   }
   auto found = constants_.find(definition);
   if (found == constants_.end()) {
-    failedConstants_.insert(definition);   // until it has succeeded
+    failedConstants_.insert(definition);  // until it has succeeded
     ir::ExprPtr value = constantValue(declaration, inlineConstants_);
     failedConstants_.erase(definition);
-    ir::Constant entry{definition->getNameAsString(), value->type, std::move(value), loc(definition->getLocation())};
+    ir::Constant entry{definition->getNameAsString(), value->type, std::move(value),
+                       loc(definition->getLocation())};
     found = constants_.emplace(definition, static_cast<ir::ConstantId>(module_.constants.size())).first;
     module_.constants.push_back(std::move(entry));
   }
@@ -272,7 +274,7 @@ namespace {
 std::optional<ir::Scalar> scalarOf(const clang::BuiltinType* builtin) {
   switch (builtin->getKind()) {
     case clang::BuiltinType::Bool:
-    case clang::BuiltinType::Char32: return ir::Scalar::Bool;   // components of bool vectors
+    case clang::BuiltinType::Char32: return ir::Scalar::Bool;  // components of bool vectors
     case clang::BuiltinType::Int: return ir::Scalar::Int;
     case clang::BuiltinType::UInt: return ir::Scalar::Uint;
     case clang::BuiltinType::Float: return ir::Scalar::Float;
@@ -335,8 +337,8 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
   const std::string name = record->getNameAsString();
   if (record->isUnion()) fail(Diag::Union, use, {name});
   if (record->isPolymorphic()) fail(Diag::VirtualFunction, use, {name});
-  if (record->getNumBases() != 0 || !record->hasTrivialCopyConstructor() || record->hasUserDeclaredConstructor() ||
-      record->hasNonTrivialDestructor()) {
+  if (record->getNumBases() != 0 || !record->hasTrivialCopyConstructor() ||
+      record->hasUserDeclaredConstructor() || record->hasNonTrivialDestructor()) {
     fail(Diag::StructNotPlain, use, {name});
   }
   if (record->field_empty()) fail(Diag::StructEmpty, use, {name});
@@ -345,7 +347,8 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
   entry.scope = scopeOf(record);
   entry.loc = loc(record->getLocation());
   for (const clang::FieldDecl* field : record->fields()) {
-    if (field->isBitField() || field->getName().empty()) fail(Diag::StructNotPlain, field->getLocation(), {name});
+    if (field->isBitField() || field->getName().empty())
+      fail(Diag::StructNotPlain, field->getLocation(), {name});
     entry.fields.push_back({field->getNameAsString(), type(field->getType(), field->getLocation())});
   }
   const auto index = static_cast<std::uint32_t>(module_.structs.size());
@@ -356,7 +359,8 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
 
 ir::Type ModuleLowering::arrayType(ir::Type element, std::uint64_t length, SourceLocation use) {
   constexpr std::uint64_t longest = 4096;
-  if (length == 0 || length > longest) fail(Diag::ArrayLength, use, {std::to_string(length), std::to_string(longest)});
+  if (length == 0 || length > longest)
+    fail(Diag::ArrayLength, use, {std::to_string(length), std::to_string(longest)});
   if (element.kind == ir::Type::Kind::Array) fail(Diag::ArrayOfArrays, use);
   const ir::Array entry{element, static_cast<std::uint32_t>(length)};
   const auto found = std::find(module_.arrays.begin(), module_.arrays.end(), entry);
@@ -370,7 +374,8 @@ std::string ModuleLowering::spelling(ir::Type type) const {
   switch (type.kind) {
     case ir::Type::Kind::Void: return "void";
     case ir::Type::Kind::Scalar: return scalars[static_cast<int>(type.scalar)];
-    case ir::Type::Kind::Vector: return fmt::format("{}{}", scalars[static_cast<int>(type.scalar)], type.width);
+    case ir::Type::Kind::Vector:
+      return fmt::format("{}{}", scalars[static_cast<int>(type.scalar)], type.width);
     case ir::Type::Kind::Struct: return module_.structs[type.index].name;
     case ir::Type::Kind::Array: {
       const ir::Array& array = module_.arrays[type.index];
@@ -411,7 +416,8 @@ Loc ModuleLowering::loc(SourceLocation location) {
   return result;
 }
 
-void ModuleLowering::fail(Diag diag, SourceLocation where, std::initializer_list<std::string_view> arguments) {
+void ModuleLowering::fail(Diag diag, SourceLocation where,
+                          std::initializer_list<std::string_view> arguments) {
   diagnostics_.report(diag, locOf(where), arguments);
   throw Abandoned{};
 }

@@ -66,7 +66,10 @@ class ModuleLowering {
 
  private:
   enum class Progress : std::uint8_t { Lowering, Done, Failed };
-  struct FunctionEntry { ir::FunctionId id; Progress progress; };
+  struct FunctionEntry {
+    ir::FunctionId id;
+    Progress progress;
+  };
 
   void declarations(const clang::DeclContext* scope);
   void kernel(const clang::FunctionDecl* declaration, const KernelSyntax& syntax);

@@ -70,8 +70,8 @@ std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind ki
   Tokens out{declared.front()};
   const std::vector<Tokens> parameters = splitAtCommas(declared);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const Token& following = i + 1 < parameters.size() && !parameters[i + 1].empty() ? parameters[i + 1].front()
-                                                                                      : declared.back();
+    const Token& following =
+        i + 1 < parameters.size() && !parameters[i + 1].empty() ? parameters[i + 1].front() : declared.back();
     if (parameters[i].empty()) {
       diagnostics_.report(Diag::EmptyParameter, locOf(following));
       continue;
@@ -91,7 +91,8 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
     bool ours = isNamedWord(parameter.front(), {"out", "inout"}) && parameter.size() > 2;
     for (std::size_t i = 0; i + 1 < parameter.size(); ++i) {
       if (parameter[i].is(tok::l_square)) ours = true;
-      if (parameter[i].is(tok::less) && parameter[i + 1].isOneOf(tok::greater, tok::greaterequal)) ours = true;
+      if (parameter[i].is(tok::less) && parameter[i + 1].isOneOf(tok::greater, tok::greaterequal))
+        ours = true;
     }
     if (!ours) {
       out.insert(out.end(), parameter.begin(), parameter.end());
@@ -117,9 +118,12 @@ bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, P
     parts.boundary = parameter[at];
     parts.hasBoundary = true;
     const Token& name = parameter[at++];
-    if (isWord(name, "clamp")) parts.syntax.boundary = ir::Boundary::Clamp;
-    else if (isWord(name, "wrap")) parts.syntax.boundary = ir::Boundary::Wrap;
-    else if (isWord(name, "mirror")) parts.syntax.boundary = ir::Boundary::Mirror;
+    if (isWord(name, "clamp"))
+      parts.syntax.boundary = ir::Boundary::Clamp;
+    else if (isWord(name, "wrap"))
+      parts.syntax.boundary = ir::Boundary::Wrap;
+    else if (isWord(name, "mirror"))
+      parts.syntax.boundary = ir::Boundary::Mirror;
     else if (isWord(name, "border")) {
       parts.syntax.boundary = ir::Boundary::Border;
       if (!takeBorder(parameter, at, parts)) return false;
@@ -128,7 +132,8 @@ bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, P
       return false;
     }
     if (!isKind(parameter, at, tok::r_square) || !isKind(parameter, at + 1, tok::r_square)) {
-      diagnostics_.report(Diag::AttributeEnd, locOf(at < parameter.size() ? parameter[at] : parameter.back()));
+      diagnostics_.report(Diag::AttributeEnd,
+                          locOf(at < parameter.size() ? parameter[at] : parameter.back()));
       return false;
     }
     at += 2;
@@ -169,9 +174,10 @@ bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, P
   const std::size_t begin = at;
   std::size_t end = parameter.size();
   for (std::size_t i = begin; i < parameter.size(); ++i) {
-    const bool stream = parameter[i].is(tok::less) &&
-                        (i + 1 == parameter.size() || parameter[i + 1].isOneOf(tok::greater, tok::greaterequal) ||
-                         (i > begin + 1 && parameter[i - 1].is(tok::identifier)));
+    const bool stream =
+        parameter[i].is(tok::less) &&
+        (i + 1 == parameter.size() || parameter[i + 1].isOneOf(tok::greater, tok::greaterequal) ||
+         (i > begin + 1 && parameter[i - 1].is(tok::identifier)));
     if (stream || parameter[i].isOneOf(tok::l_square, tok::equal)) {
       end = i;
       break;
@@ -226,7 +232,8 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
     }
   }
   if (at < parameter.size()) {
-    diagnostics_.report(Diag::ParameterExtra, locOf(parameter[at]), {preprocessor_.getSpelling(parameter[at]), name});
+    diagnostics_.report(Diag::ParameterExtra, locOf(parameter[at]),
+                        {preprocessor_.getSpelling(parameter[at]), name});
     return false;
   }
   return true;
@@ -256,8 +263,9 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
     if (parts.isElement) return fail(Diag::StreamInHelper, {name});
     if (parts.rank > 0 && !qualifier.empty()) return fail(Diag::ScatterOutput, {name});
     if (qualifier == "reduce") return fail(Diag::AccumulatorOutsideReduce, {name});
-    parts.syntax.role = parts.rank > 0 ? ir::ParamRole::Gather
-                        : qualifier.empty() ? ir::ParamRole::Uniform : ir::ParamRole::Output;
+    parts.syntax.role = parts.rank > 0      ? ir::ParamRole::Gather
+                        : qualifier.empty() ? ir::ParamRole::Uniform
+                                            : ir::ParamRole::Output;
   } else if (qualifier == "out" || qualifier == "inout") {
     if (parts.rank > 0) return fail(Diag::ScatterOutput, {name});
     if (!parts.isElement || qualifier == "inout") return fail(Diag::OutputBrackets, {name});
@@ -268,8 +276,9 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
     if (kind == FunctionKind::Kernel) return fail(Diag::AccumulatorOutsideReduce, {name});
     parts.syntax.role = ir::ParamRole::Accumulator;
   } else {
-    parts.syntax.role = parts.isElement ? ir::ParamRole::Input
-                        : parts.rank > 0 ? ir::ParamRole::Gather : ir::ParamRole::Uniform;
+    parts.syntax.role = parts.isElement  ? ir::ParamRole::Input
+                        : parts.rank > 0 ? ir::ParamRole::Gather
+                                         : ir::ParamRole::Uniform;
   }
   parts.syntax.rank = static_cast<std::uint8_t>(parts.rank);
   return true;
@@ -307,7 +316,8 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
 }
 
 /// `static const T __sk_constant3 __attribute__((unused)) = value;` in front of the function.
-std::string ParameterEditor::generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place) {
+std::string ParameterEditor::generateConstant(const Tokens& type, const Tokens& value,
+                                              clang::SourceLocation place) {
   std::string name = fmt::format("__sk_constant{}", constants_++);
   before_.push_back(word("static", place));
   before_.push_back(word("const", place));

@@ -25,7 +25,10 @@ class ParameterEditor {
   /// Generated constants are appended to `before`, numbered by `constants`.
   ParameterEditor(clang::Preprocessor& preprocessor, Diagnostics& diagnostics, DeclarationSyntax& syntax,
                   int& constants, std::vector<clang::Token>& before)
-      : preprocessor_(preprocessor), diagnostics_(diagnostics), syntax_(syntax), constants_(constants),
+      : preprocessor_(preprocessor),
+        diagnostics_(diagnostics),
+        syntax_(syntax),
+        constants_(constants),
         before_(before) {}
 
   /// `declared` and the result include the parentheses.

@@ -21,8 +21,8 @@ struct VectorFamily {
 
 // Vectors of `bool` have no swizzles in Clang, so their components are char32_t, a type that nothing
 // else uses and that has the size of the masks that vector comparisons give.
-constexpr std::array<VectorFamily, 4> families = {{
-    {"float", "float"}, {"int", "int"}, {"uint", "unsigned"}, {"bool", "char32_t"}}};
+constexpr std::array<VectorFamily, 4> families = {
+    {{"float", "float"}, {"int", "int"}, {"uint", "unsigned"}, {"bool", "char32_t"}}};
 
 /// The class of values that a signature letter admits, as far as a result type depends on it.
 bool countsForResult(char letter) {
@@ -79,9 +79,10 @@ std::string vectorTypes() {
   std::string text = "typedef unsigned uint;\n";
   for (const VectorFamily& family : families) {
     for (int width = 2; width <= 4; ++width) {
-      text += fmt::format("typedef {0} {1}{2} __attribute__((ext_vector_type({2})));\n"
-                          "template <class... A> {1}{2} __sk_make_{1}{2}(A...);\n",
-                          family.element, family.scalar, width);
+      text += fmt::format(
+          "typedef {0} {1}{2} __attribute__((ext_vector_type({2})));\n"
+          "template <class... A> {1}{2} __sk_make_{1}{2}(A...);\n",
+          family.element, family.scalar, width);
     }
   }
   return text;
@@ -93,21 +94,23 @@ std::string typeTraits() {
   for (const VectorFamily& family : families) {
     for (int width = 1; width <= 4; ++width) {
       const std::string suffix = width == 1 ? "" : std::to_string(width);
-      text += fmt::format("template <> struct __sk_traits<{0}{1}> {{ using F = float{1}; using I = int{1}; "
-                          "using U = uint{1}; using B = bool{1}; }};\n",
-                          family.scalar, suffix);
+      text += fmt::format(
+          "template <> struct __sk_traits<{0}{1}> {{ using F = float{1}; using I = int{1}; "
+          "using U = uint{1}; using B = bool{1}; }};\n",
+          family.scalar, suffix);
     }
   }
-  text += "template <> struct __sk_traits<double> : __sk_traits<float> {};\n"
-          "template <> struct __sk_traits<char32_t> : __sk_traits<bool> {};\n"
-          "template <class... A> using __sk_N = decltype((A() + ...));\n"
-          "template <class A> using __sk_one = __sk_traits<A>;\n"
-          "template <class... A> struct __sk_sum : __sk_traits<decltype((A() + ...))> {};\n"
-          "template <class A> struct __sk_sum<A> : __sk_traits<A> {};\n"
-          "template <class... A> using __sk_F = typename __sk_sum<A...>::F;\n"
-          "template <class... A> using __sk_I = typename __sk_sum<A...>::I;\n"
-          "template <class... A> using __sk_U = typename __sk_sum<A...>::U;\n"
-          "template <class... A> using __sk_B = typename __sk_sum<A...>::B;\n";
+  text +=
+      "template <> struct __sk_traits<double> : __sk_traits<float> {};\n"
+      "template <> struct __sk_traits<char32_t> : __sk_traits<bool> {};\n"
+      "template <class... A> using __sk_N = decltype((A() + ...));\n"
+      "template <class A> using __sk_one = __sk_traits<A>;\n"
+      "template <class... A> struct __sk_sum : __sk_traits<decltype((A() + ...))> {};\n"
+      "template <class A> struct __sk_sum<A> : __sk_traits<A> {};\n"
+      "template <class... A> using __sk_F = typename __sk_sum<A...>::F;\n"
+      "template <class... A> using __sk_I = typename __sk_sum<A...>::I;\n"
+      "template <class... A> using __sk_U = typename __sk_sum<A...>::U;\n"
+      "template <class... A> using __sk_B = typename __sk_sum<A...>::B;\n";
   return text;
 }
 
@@ -135,15 +138,15 @@ std::string intrinsics() {
   // One declaration for each name and number of arguments, over the signatures of all their rows.
   std::map<std::pair<std::string_view, std::size_t>, std::vector<std::string_view>> overloads;
 #define SKC_INTRINSIC(Name, spelling, signatures, glsl, glslVector, polyfill) \
-  {                                                                          \
-    std::string_view all = signatures;                                       \
-    while (!all.empty()) {                                                   \
-      std::string_view one = all.substr(0, all.find(' '));                   \
-      all.remove_prefix(std::min(all.size(), one.size() + 1));               \
-      std::size_t arity = 1;                                                 \
-      for (char c : one) arity += c == ',';                                  \
-      overloads[{spelling, arity}].push_back(one);                           \
-    }                                                                        \
+  {                                                                           \
+    std::string_view all = signatures;                                        \
+    while (!all.empty()) {                                                    \
+      std::string_view one = all.substr(0, all.find(' '));                    \
+      all.remove_prefix(std::min(all.size(), one.size() + 1));                \
+      std::size_t arity = 1;                                                  \
+      for (char c : one) arity += c == ',';                                   \
+      overloads[{spelling, arity}].push_back(one);                            \
+    }                                                                         \
   }
 #include "ir/intrinsics.def"
 #undef SKC_INTRINSIC
@@ -157,8 +160,8 @@ std::string intrinsics() {
 }  // namespace
 
 std::string preludeText() {
-  return fmt::format("# 1 \"sk-prelude\" 1 3\n{}{}{}{}# 1 \"<command line>\" 2\n", vectorTypes(), typeTraits(),
-                     gathersAndStreams, intrinsics());
+  return fmt::format("# 1 \"sk-prelude\" 1 3\n{}{}{}{}# 1 \"<command line>\" 2\n", vectorTypes(),
+                     typeTraits(), gathersAndStreams, intrinsics());
 }
 
 bool isVectorTypeName(std::string_view name) {

@@ -31,8 +31,12 @@ struct ParamSyntax {
 
 class DeclarationSyntax {
  public:
-  void add(clang::SourceLocation name, KernelSyntax kernel) { kernels_[name.getRawEncoding()] = std::move(kernel); }
-  void add(clang::SourceLocation name, ParamSyntax param) { params_[name.getRawEncoding()] = std::move(param); }
+  void add(clang::SourceLocation name, KernelSyntax kernel) {
+    kernels_[name.getRawEncoding()] = std::move(kernel);
+  }
+  void add(clang::SourceLocation name, ParamSyntax param) {
+    params_[name.getRawEncoding()] = std::move(param);
+  }
 
   const KernelSyntax* kernel(clang::SourceLocation name) const { return find(kernels_, name); }
   const ParamSyntax* param(clang::SourceLocation name) const { return find(params_, name); }

@@ -41,9 +41,7 @@ class Editor {
   bool atWord(llvm::StringRef word) const { return isWord(cursor_.peek(), word); }
 
   /// `kernel` is a word like any other unless a declaration starts with it: `kernel void f`.
-  bool atDeclarationWord(llvm::StringRef word) const {
-    return atWord(word) && startsType(cursor_.peek(1));
-  }
+  bool atDeclarationWord(llvm::StringRef word) const { return atWord(word) && startsType(cursor_.peek(1)); }
   static bool startsType(const Token& token) {
     return token.is(tok::identifier) || token.is(tok::coloncolon) || token.getIdentifierInfo() != nullptr;
   }
@@ -101,8 +99,8 @@ class Editor {
       diagnostics_.report(Diag::UnclosedParameters, locOf(head.back()), {nameOf(head.back())});
       return;
     }
-    const std::vector<Token> edited = parameters.edit(declared, kernel.isReduce ? FunctionKind::Reduce
-                                                                                : FunctionKind::Kernel);
+    const std::vector<Token> edited =
+        parameters.edit(declared, kernel.isReduce ? FunctionKind::Reduce : FunctionKind::Kernel);
     kernel.signature = signature(start, head, declared);
     syntax_.add(head.back().getLocation(), std::move(kernel));
     out_.insert(out_.end(), head.begin(), head.end());
@@ -165,7 +163,8 @@ class Editor {
     out_.push_back(token);
   }
 
-  std::string signature(const Token& start, const std::vector<Token>& head, const std::vector<Token>& declared) {
+  std::string signature(const Token& start, const std::vector<Token>& head,
+                        const std::vector<Token>& declared) {
     std::string text = preprocessor_.getSpelling(start);
     for (const std::vector<Token>* part : {&head, &declared}) {
       for (const Token& token : *part) {

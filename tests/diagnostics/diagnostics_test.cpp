@@ -28,7 +28,8 @@ struct Message {
 };
 
 std::vector<Message> expectations(const fs::path& file) {
-  static const std::regex pattern(R"re(expected-(error|warning|note)(?:@([-+*])(\d*))? \{\{(.*?)\}\}(?!\}))re");
+  static const std::regex pattern(
+      R"re(expected-(error|warning|note)(?:@([-+*])(\d*))? \{\{(.*?)\}\}(?!\}))re");
   std::vector<Message> found;
   std::ifstream in(file);
   std::string line;
@@ -57,7 +58,8 @@ Outcome compile(const fs::path& file) {
   REQUIRE(pipe);
   std::string output;
   std::array<char, 4096> buffer;
-  while (std::size_t count = fread(buffer.data(), 1, buffer.size(), pipe)) output.append(buffer.data(), count);
+  while (std::size_t count = fread(buffer.data(), 1, buffer.size(), pipe))
+    output.append(buffer.data(), count);
   const int closed = pclose(pipe);
   outcome.status = WIFEXITED(closed) ? WEXITSTATUS(closed) : -1;
   std::istringstream lines(output);

@@ -17,7 +17,8 @@ namespace {
 std::vector<fs::path> kernelFiles() {
   std::vector<fs::path> files;
   for (const char* folder : {"tests/golden", "tests/run", "tests/bench", "examples"}) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(fs::path(SK_SOURCE_FOLDER) / folder)) {
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(fs::path(SK_SOURCE_FOLDER) / folder)) {
       if (entry.path().extension() == ".sk" && readFile(entry.path()).find("<>") != std::string::npos) {
         files.push_back(entry.path());   // without "<>" there is no kernel: the file is one to include
       }
@@ -57,7 +58,8 @@ TEST_CASE("glslang takes every program of every .sk file") {
 }
 
 TEST_CASE("glslang complains where there is reason to") {
-  const auto complaints = complaintsOf({"#version 330 core\nvoid main() {}\n", "#version 330 core\n#line 7 3\nint i = 1.5;\nvoid main() {}\n"});
+  const auto complaints = complaintsOf({"#version 330 core\nvoid main() {}\n",
+                                        "#version 330 core\n#line 7 3\nint i = 1.5;\nvoid main() {}\n"});
   CHECK(complaints[0].empty());
   REQUIRE(!complaints[1].empty());
   CHECK(complaints[1][0].source == 3);

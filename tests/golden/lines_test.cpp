@@ -43,9 +43,10 @@ std::vector<Place> placesOf(const fs::path& file) {
 
 TEST_CASE("an error in GLSL is told at its line of the .sk file") {
   const fs::path folder = SK_GOLDEN_FOLDER;
-  const fs::path files[] = {folder / "lines.sk", folder / "lines_included.sk"};   // sources 1 and 2 of #line
+  const fs::path files[] = {folder / "lines.sk", folder / "lines_included.sk"};  // sources 1 and 2 of #line
   for (const std::string profile : {"glsl330", "essl300"}) {
-    const std::vector<std::string> programs = programsOf(skc("--emit=glsl --profile=" + profile, files[0]).output);
+    const std::vector<std::string> programs =
+        programsOf(skc("--emit=glsl --profile=" + profile, files[0]).output);
     REQUIRE(!programs.empty());
     std::vector<std::string> broken;
     std::vector<Place> places;
@@ -54,7 +55,8 @@ TEST_CASE("an error in GLSL is told at its line of the .sk file") {
       for (const Place& place : placesOf(files[source - 1])) {
         INFO(profile << ": " << place.number);
         std::size_t found = 0, at = 0;
-        while (found < programs.size() && (at = programs[found].find(place.number)) == std::string::npos) ++found;
+        while (found < programs.size() && (at = programs[found].find(place.number)) == std::string::npos)
+          ++found;
         REQUIRE(found < programs.size());
         std::string program = programs[found];
         broken.push_back(program.replace(at, place.number.size(), "no_such_name"));
@@ -65,9 +67,11 @@ TEST_CASE("an error in GLSL is told at its line of the .sk file") {
     REQUIRE(places.size() == 35);
     const auto complaints = complaintsOf(broken);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      INFO(profile << ": " << places[i].number << " of line " << places[i].line << " of source " << sources[i]);
+      INFO(profile << ": " << places[i].number << " of line " << places[i].line << " of source "
+                   << sources[i]);
       REQUIRE(!complaints[i].empty());
-      INFO("glslang says " << complaints[i][0].source << ":" << complaints[i][0].line << ": " << complaints[i][0].text);
+      INFO("glslang says " << complaints[i][0].source << ":" << complaints[i][0].line << ": "
+                           << complaints[i][0].text);
       CHECK(complaints[i][0].text.find("no_such_name") != std::string::npos);
       CHECK(complaints[i][0].source == sources[i]);
       CHECK(complaints[i][0].line >= places[i].firstLine);

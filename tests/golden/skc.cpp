@@ -10,10 +10,12 @@
 namespace golden {
 
 Outcome run(const fs::path& folder, const std::string& command) {
-  const fs::path output = fs::path(SK_WORK_FOLDER) / "output.txt", errors = fs::path(SK_WORK_FOLDER) / "errors.txt";
+  const fs::path output = fs::path(SK_WORK_FOLDER) / "output.txt",
+                 errors = fs::path(SK_WORK_FOLDER) / "errors.txt";
   fs::create_directories(SK_WORK_FOLDER);
-  const int status = std::system(("cd '" + folder.string() + "' && " + command + " > '" + output.string() + "' 2> '" +
-                                  errors.string() + "'").c_str());
+  const int status = std::system(("cd '" + folder.string() + "' && " + command + " > '" + output.string() +
+                                  "' 2> '" + errors.string() + "'")
+                                     .c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readFile(output), readFile(errors)};
 }
 
@@ -26,7 +28,9 @@ std::string readFile(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-void writeFile(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+void writeFile(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
 
 fs::path workFolder(const std::string& name) {
   const fs::path folder = fs::path(SK_WORK_FOLDER) / name;

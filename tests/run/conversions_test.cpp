@@ -2,16 +2,17 @@
 //
 // Conversions against the C++ compiler's reading of the same text. All exact: the values are chosen
 // so that no operation rounds.
-#include "conversions.sk.hpp"
 #include "shared/conversions.hpp"
+#include "conversions.sk.hpp"
 #include "support/shared_cases.hpp"
 
 using namespace run_tests;
 
 namespace {
 
-const std::vector<float> floats = {0.0f, -0.0f, 0.25f, -0.25f, 0.5f, -0.5f, 0.99f, 1.0f, -1.0f, 1.5f, -1.5f,
-                                   2.5f, -2.75f, 7.0f, -7.99f, 100.5f, -4096.25f, 65535.5f, 1048575.5f};
+const std::vector<float> floats = {0.0f,   -0.0f,  0.25f,     -0.25f,   0.5f,      -0.5f,  0.99f,
+                                   1.0f,   -1.0f,  1.5f,      -1.5f,    2.5f,      -2.75f, 7.0f,
+                                   -7.99f, 100.5f, -4096.25f, 65535.5f, 1048575.5f};
 
 bool isTrue(float x) { return x != 0; }
 
@@ -38,7 +39,8 @@ TEST_CASE("conversions are those of C++") {
 }
 
 TEST_CASE("integers beyond 2^24 become the nearest float") {
-  const std::vector<int> ints = {16777216, 16777217, 16777219, -16777217, 2147483647, -2147483647 - 1, 1 << 30};
+  const std::vector<int> ints = {16777216,   16777217,        16777219, -16777217,
+                                 2147483647, -2147483647 - 1, 1 << 30};
   onEveryProfile([&](sk::Device& device) {
     const auto x = streamOf<int>(device, ints);
     const auto zero = streamOf<int>(device, {7}, std::vector<int>(7, 0));
@@ -76,7 +78,8 @@ TEST_CASE("vectors are converted by components") {
           }) == "");
     CHECK(difference(toUint.read(), [&](std::size_t i) {
             const auto one = [](float v, int k) { return unsigned(std::fabs(v)) + unsigned(k); };
-            return sk::uint4{one(f[i].x, n[i].x), one(f[i].y, n[i].y), one(f[i].z, n[i].z), one(f[i].w, n[i].w)};
+            return sk::uint4{one(f[i].x, n[i].x), one(f[i].y, n[i].y), one(f[i].z, n[i].z),
+                             one(f[i].w, n[i].w)};
           }) == "");
     CHECK(difference(toBool.read(), [&](std::size_t i) {
             return sk::bool4{int(f[i].x) != 0, int(f[i].y) != 0, isTrue(f[i].z), isTrue(f[i].w)};
@@ -96,6 +99,7 @@ TEST_CASE("vectors are converted by components") {
             return sk::float4{f2[i].x, f2[i].y, float(n2[i].x), float(n2[i].y)};
           }) == "");
     CHECK(difference(b.read(), [&](std::size_t i) { return sk::int3{int(f2[i].y), n2[i].x > 3, 7}; }) == "");
-    CHECK(difference(c.read(), [&](std::size_t i) { return sk::bool2{isTrue(f2[i].x), n2[i].y != 0}; }) == "");
+    CHECK(difference(c.read(), [&](std::size_t i) { return sk::bool2{isTrue(f2[i].x), n2[i].y != 0}; }) ==
+          "");
   });
 }

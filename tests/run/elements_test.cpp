@@ -13,9 +13,9 @@ using namespace run_tests;
 namespace {
 
 /// Shapes of every rank: empty, one element, primes, beyond a row of the small devices.
-const std::vector<sk::Shape> shapes = {{0},     {1},       {2},        {64},       {65},        {1021},    {0, 3},
-                                       {1, 1},  {13, 17},  {1, 67},    {67, 1},    {61, 65},    {3, 5, 7}, {4, 0, 2},
-                                       {2, 3, 4, 5}, {1, 1, 1, 1}, {3, 1, 67, 2}};
+const std::vector<sk::Shape> shapes = {
+    {0},     {1},     {2},      {64},      {65},      {1021},       {0, 3},       {1, 1},       {13, 17},
+    {1, 67}, {67, 1}, {61, 65}, {3, 5, 7}, {4, 0, 2}, {2, 3, 4, 5}, {1, 1, 1, 1}, {3, 1, 67, 2}};
 
 template <class T, class Kernel>
 void checkKept(sk::Device& device, const sk::Shape& shape, const Kernel& kernel) {
@@ -39,13 +39,16 @@ void checkKept(sk::Device& device, const sk::Shape& shape, const Kernel& kernel)
 }
 
 streams::Mark markAt(std::uint32_t i) {
-  return {valueAt<sk::uint2>(i), {valueAt<sk::float3>(i), valueAt<bool>(i)}, int(valueAt<std::uint32_t>(i) >> 2)};
+  return {
+      valueAt<sk::uint2>(i), {valueAt<sk::float3>(i), valueAt<bool>(i)}, int(valueAt<std::uint32_t>(i) >> 2)};
 }
 
-std::string differenceOfMarks(const std::vector<streams::Mark>& actual, const std::vector<streams::Mark>& expected) {
+std::string differenceOfMarks(const std::vector<streams::Mark>& actual,
+                              const std::vector<streams::Mark>& expected) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const bool isSameMark = actual[i].id == expected[i].id && actual[i].place.at == expected[i].place.at &&
-                            actual[i].place.isSet == expected[i].place.isSet && actual[i].weight == expected[i].weight;
+                            actual[i].place.isSet == expected[i].place.isSet &&
+                            actual[i].weight == expected[i].weight;
     if (!isSameMark) return "mark " + std::to_string(i) + " differs";
   }
   return actual.size() == expected.size() ? "" : "another number of marks";
@@ -69,8 +72,15 @@ TEST_CASE("elements of every type go in and come out, whatever the shape") {
 TEST_CASE("what is special in float is kept bit for bit") {
   using Limits = std::numeric_limits<float>;
   // no NaN with a payload: a device may change it; no denormal: a kernel may flush it
-  const std::vector<float> special = {0.0f, -0.0f, Limits::infinity(), -Limits::infinity(), Limits::max(), Limits::min(),
-                                      Limits::epsilon(), 16777217.0f, Limits::quiet_NaN()};
+  const std::vector<float> special = {0.0f,
+                                      -0.0f,
+                                      Limits::infinity(),
+                                      -Limits::infinity(),
+                                      Limits::max(),
+                                      Limits::min(),
+                                      Limits::epsilon(),
+                                      16777217.0f,
+                                      Limits::quiet_NaN()};
   const auto count = static_cast<std::int64_t>(special.size());
   onEveryLayout([&](sk::Device& device) {
     const auto x = streamOf<float>(device, special);
@@ -122,7 +132,8 @@ TEST_CASE("structs are made from scalars and taken apart") {
     auto sum = device.stream<float>({97});
     auto weight = device.stream<int>({97});
     streams::weigh(marks, sum, weight);
-    CHECK(difference(sum.read(), [&](std::size_t i) { return n[i] > 0 ? x[i] * 3 + float(n[i]) : 0.0f; }) == "");
+    CHECK(difference(sum.read(), [&](std::size_t i) { return n[i] > 0 ? x[i] * 3 + float(n[i]) : 0.0f; }) ==
+          "");
     CHECK(difference(weight.read(), [&](std::size_t i) { return 7 - n[i]; }) == "");
   });
 }
@@ -131,7 +142,8 @@ namespace {
 
 template <class T, class Kernel>
 void checkUniforms(sk::Device& device, const Kernel& kernel) {
-  for (std::uint32_t round = 0; round < 3; ++round) {   // the same program with other values, and with the same again
+  for (std::uint32_t round = 0; round < 3;
+       ++round) {   // the same program with other values, and with the same again
     const std::uint32_t seed = round % 2 * 40;
     const T a = valueAt<T>(seed);
     const auto b = valueAt<sk::Vector2<T>>(seed + 1);
@@ -140,7 +152,8 @@ void checkUniforms(sk::Device& device, const Kernel& kernel) {
     auto r = device.stream<sk::Vector4<T>>({3});
     auto s = device.stream<sk::Vector4<T>>({3});
     kernel(a, b, c, d, streamOf<T>(device, values<T>(3)), r, s);
-    CHECK(difference(r.read(), [&](std::size_t i) { return i == 1 ? d : sk::Vector4<T>{a, b.x, b.y, c.x}; }) == "");
+    CHECK(difference(r.read(),
+                     [&](std::size_t i) { return i == 1 ? d : sk::Vector4<T>{a, b.x, b.y, c.x}; }) == "");
     CHECK(difference(s.read(), [&](std::size_t) { return sk::Vector4<T>{c.y, c.z, d.w, d.x}; }) == "");
   }
 }
@@ -202,7 +215,8 @@ TEST_CASE("writing a stream after a call changes no other stream") {
       CHECK(difference(x.read(), second) == "");
       CHECK(difference(y.read(), first) == "");
       streams::add(x, y, r);
-      CHECK(difference(r.read(), [&](std::size_t i) { return int(unsigned(first[i]) + unsigned(second[i])); }) == "");
+      CHECK(difference(r.read(),
+                       [&](std::size_t i) { return int(unsigned(first[i]) + unsigned(second[i])); }) == "");
     }
   });
 }

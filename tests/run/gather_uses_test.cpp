@@ -20,7 +20,9 @@ gathers::Cell cellAt(std::size_t i) {
   return {valueAt<float2>(k), valueAt<bool>(k), {int(k), int(2 * k), -int(k)}};
 }
 
-bool isSameCell(const gathers::Cell& a, const gathers::Cell& b) { return a.v == b.v && a.on == b.on && a.n == b.n; }
+bool isSameCell(const gathers::Cell& a, const gathers::Cell& b) {
+  return a.v == b.v && a.on == b.on && a.n == b.n;
+}
 
 }  // namespace
 
@@ -29,8 +31,10 @@ TEST_CASE("gathers hold elements of every type, and borders are of that type") {
   std::iota(i.begin(), i.end(), -5);
   onEveryLayout([&](sk::Device& device) {
     const HostArray<gathers::Cell> c({9}, cellAt);
-    const HostArray<float3> f({6, 7}, [](std::size_t k) { return valueAt<float3>(static_cast<std::uint32_t>(k)); });
-    const HostArray<float4> h({5}, [](std::size_t k) { return valueAt<float4>(static_cast<std::uint32_t>(k)); });
+    const HostArray<float3> f({6, 7},
+                              [](std::size_t k) { return valueAt<float3>(static_cast<std::uint32_t>(k)); });
+    const HostArray<float4> h({5},
+                              [](std::size_t k) { return valueAt<float4>(static_cast<std::uint32_t>(k)); });
     const std::vector<std::uint8_t> b = {1, 0, 0, 1, 0, 0, 0, 1};
     const sk::Shape shape{20};
     auto r = device.stream<float2>(shape);
@@ -69,10 +73,13 @@ TEST_CASE("gathers hold elements of every type, and borders are of that type") {
 
 TEST_CASE("helpers and kernels take gathers, with the mode that the outermost kernel declares") {
   const sk::Shape shape{6, 9};
-  const HostArray<float> u(shape, [](std::size_t i) { return valueAt<float>(static_cast<std::uint32_t>(i)); });
-  const HostArray<float> w({4, 5}, [](std::size_t i) { return valueAt<float>(static_cast<std::uint32_t>(i + 100)); });
+  const HostArray<float> u(shape,
+                           [](std::size_t i) { return valueAt<float>(static_cast<std::uint32_t>(i)); });
+  const HostArray<float> w({4, 5},
+                           [](std::size_t i) { return valueAt<float>(static_cast<std::uint32_t>(i + 100)); });
   const HostArray<float> k({3}, [](std::size_t i) { return float(i) + 0.5f; });
-  const HostArray<float> x(shape, [](std::size_t i) { return valueAt<float>(static_cast<std::uint32_t>(i + 200)); });
+  const HostArray<float> x(shape,
+                           [](std::size_t i) { return valueAt<float>(static_cast<std::uint32_t>(i + 200)); });
   const auto atU = [&](std::int64_t px, std::int64_t py) { return u[{(py + 12) % 6, (px + 18) % 9}]; };
   const auto atW = [&](std::int64_t px, std::int64_t py) {
     return px < 0 || px >= 5 || py < 0 || py >= 4 ? 100.0f : w[{py, px}];
@@ -125,18 +132,22 @@ TEST_CASE("a stream may be gather and element of one call, and output as well") 
     const HostArray<int> a({11, 67}, [](std::size_t i) { return static_cast<int>(i); });
     auto turned = device.stream<int>({67, 11});
     gathers::transpose(a.on(device), turned);
-    CHECK(difference(turned.read(), [&](std::size_t i) { return a[{std::int64_t(i % 11), std::int64_t(i / 11)}]; }) == "");
+    CHECK(difference(turned.read(),
+                     [&](std::size_t i) { return a[{std::int64_t(i % 11), std::int64_t(i / 11)}]; }) == "");
     const HostArray<int> square({9, 9}, [](std::size_t i) { return static_cast<int>(i); });
     auto inPlace = square.on(device);
     gathers::transpose(inPlace, inPlace);
-    CHECK(difference(inPlace.read(), [&](std::size_t i) { return square[{std::int64_t(i % 9), std::int64_t(i / 9)}]; }) == "");
+    CHECK(difference(inPlace.read(), [&](std::size_t i) {
+            return square[{std::int64_t(i % 9), std::int64_t(i / 9)}];
+          }) == "");
   });
 }
 
 TEST_CASE("gathers know their extents, and addresses may be computed from elements") {
   onEveryLayout([](sk::Device& device) {
     auto r = device.stream<int4>({2, 3}), s = device.stream<int4>({2, 3});
-    gathers::extents(device.stream<int>({77}), device.stream<float2>({5, 66}), device.stream<float>({2, 1}), r, s);
+    gathers::extents(device.stream<int>({77}), device.stream<float2>({5, 66}), device.stream<float>({2, 1}),
+                     r, s);
     CHECK(difference(r.read(), [](std::size_t) { return int4{77, 1, 1, 1}; }) == "");
     CHECK(difference(s.read(), [](std::size_t) { return int4{66, 5, 1, 1}; }) == "");
 
@@ -159,7 +170,9 @@ TEST_CASE("gathers know their extents, and addresses may be computed from elemen
     auto chosen = device.stream<float>({9});
     gathers::conditional(streamOf<float>(device, a), streamOf<int>(device, i), chosen);
     CHECK(difference(chosen.read(), [&](std::size_t k) {
-            return i[k] >= 0 && element(i[k]) > 0 ? element(i[k]) : i[k] < -2 ? -1 : element(-i[k]) + element(2);
+            return i[k] >= 0 && element(i[k]) > 0 ? element(i[k])
+                   : i[k] < -2                    ? -1
+                                                  : element(-i[k]) + element(2);
           }) == "");
   });
 }
@@ -172,7 +185,8 @@ TEST_CASE("a matrix product is exact in small integers") {
     gathers::matrix(a.on(device), b.on(device), c);
     CHECK(difference(c.read(), [&](std::size_t i) {
             float sum = 0;
-            for (std::int64_t k = 0; k < 13; ++k) sum += a[{std::int64_t(i / 5), k}] * b[{k, std::int64_t(i % 5)}];
+            for (std::int64_t k = 0; k < 13; ++k)
+              sum += a[{std::int64_t(i / 5), k}] * b[{k, std::int64_t(i % 5)}];
             return sum;
           }) == "");
   });

@@ -41,9 +41,25 @@ HostArray<T> numbered(const sk::Shape& shape) {
   return HostArray<T>(shape, [](std::size_t i) { return static_cast<T>(3 * i + 1); });
 }
 
-const std::vector<int> indices = {0, 1, 2, 3, 5, 11, 12, 13, 14, 63, 64, 65, 66, 100, 1000, 65536, 1 << 24, (1 << 24) + 1,
-                                  1 << 30, (1 << 30) + 1, 2147483646, 2147483647, -1, -2, -3, -4, -5, -12, -13, -14, -64,
-                                  -65, -1000, -(1 << 24), -(1 << 30), -(1 << 30) - 1, -2147483647, -2147483647 - 1};
+const std::vector<int> indices = {0,           1,
+                                  2,           3,
+                                  5,           11,
+                                  12,          13,
+                                  14,          63,
+                                  64,          65,
+                                  66,          100,
+                                  1000,        65536,
+                                  1 << 24,     (1 << 24) + 1,
+                                  1 << 30,     (1 << 30) + 1,
+                                  2147483646,  2147483647,
+                                  -1,          -2,
+                                  -3,          -4,
+                                  -5,          -12,
+                                  -13,         -14,
+                                  -64,         -65,
+                                  -1000,       -(1 << 24),
+                                  -(1 << 30),  -(1 << 30) - 1,
+                                  -2147483647, -2147483647 - 1};
 
 template <class Row, class Plane>
 void checkMode(sk::Device& device, const char* mode, Inside inside, const Row& row, const Plane& plane) {
@@ -67,7 +83,8 @@ void checkMode(sk::Device& device, const char* mode, Inside inside, const Row& r
   const auto ij = streamOf<sk::int2>(device, square, pairs);
   std::vector<sk::Stream<int>> out;
   for (int k = 0; k < 4; ++k) out.push_back(device.stream<int>(square));
-  for (const sk::Shape& shape : {sk::Shape{1, 1}, sk::Shape{13, 5}, sk::Shape{3, 67}, sk::Shape{65, 2}, sk::Shape{1, 12}}) {
+  for (const sk::Shape& shape :
+       {sk::Shape{1, 1}, sk::Shape{13, 5}, sk::Shape{3, 67}, sk::Shape{65, 2}, sk::Shape{1, 12}}) {
     INFO(mode << ", shape " << sk::toString(shape));
     const auto a = numbered<int>(shape);
     plane(a.on(device), ij, out[0], out[1], out[2], out[3]);
@@ -99,9 +116,30 @@ namespace {
 template <class Kernel>
 void checkFloatIndices(sk::Device& device, const char* mode, Inside inside, const Kernel& kernel) {
   INFO(mode);
-  const std::vector<float> floats = {0, 0.25f, 0.49f, 0.75f, 1, 1.5f, 2.5f, -0.25f, -0.5f, -0.75f, -3, 6.4f, 6.6f, 7.5f,
-                                     100.2f, 16777216.0f, 2147483520.0f, -2147483648.0f, 3e9f, -3e9f, 1e30f, -1e30f,
-                                     std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+  const std::vector<float> floats = {0,
+                                     0.25f,
+                                     0.49f,
+                                     0.75f,
+                                     1,
+                                     1.5f,
+                                     2.5f,
+                                     -0.25f,
+                                     -0.5f,
+                                     -0.75f,
+                                     -3,
+                                     6.4f,
+                                     6.6f,
+                                     7.5f,
+                                     100.2f,
+                                     16777216.0f,
+                                     2147483520.0f,
+                                     -2147483648.0f,
+                                     3e9f,
+                                     -3e9f,
+                                     1e30f,
+                                     -1e30f,
+                                     std::numeric_limits<float>::infinity(),
+                                     -std::numeric_limits<float>::infinity()};
   const auto nearest = [](float x) {
     const double n = std::floor(double{x} + 0.5);
     return static_cast<std::int64_t>(std::clamp(n, -2147483648.0, 2147483520.0));
@@ -116,10 +154,11 @@ void checkFloatIndices(sk::Device& device, const char* mode, Inside inside, cons
   auto r = device.stream<int>({count}), s = device.stream<int>({count}), t = device.stream<int>({count});
   kernel(a.on(device), b.on(device), streamOf<sk::float2>(device, x), r, s, t);
   CHECK(difference(r.read(), [&](std::size_t i) { return at(a, nearest(x[i].x), inside); }) == "");
-  CHECK(difference(s.read(), [&](std::size_t i) { return at(b, nearest(x[i].x), nearest(x[i].y), inside); }) == "");
+  CHECK(difference(s.read(),
+                   [&](std::size_t i) { return at(b, nearest(x[i].x), nearest(x[i].y), inside); }) == "");
   const auto mixed = t.read();
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const bool isInt = std::fabs(x[i].x) < 1e9f && std::fabs(x[i].y) < 1e9f;   // int(x) is not defined beyond
+    const bool isInt = std::fabs(x[i].x) < 1e9f && std::fabs(x[i].y) < 1e9f;  // int(x) is not defined beyond
     if (!isInt) continue;
     const int expected = at(b, nearest(x[i].x), nearest(x[i].y), inside) +
                          at(b, static_cast<int>(std::fabs(x[i].x)), static_cast<int>(x[i].y), inside);
@@ -151,12 +190,14 @@ TEST_CASE("a float index names the nearest element") {
 namespace {
 
 template <class Plane, class Line>
-void checkStencils(sk::Device& device, const char* mode, Inside inside, const Plane& plane, const Line& line) {
+void checkStencils(sk::Device& device, const char* mode, Inside inside, const Plane& plane,
+                   const Line& line) {
   struct Row {
     sk::Shape gather, domain;
   };
-  for (const Row& row : {Row{{11, 17}, {11, 17}}, Row{{1, 1}, {1, 1}}, Row{{1, 9}, {1, 9}}, Row{{67, 2}, {67, 2}},
-                         Row{{2, 67}, {2, 67}}, Row{{5, 6}, {9, 14}}, Row{{9, 70}, {3, 4}}}) {
+  for (const Row& row :
+       {Row{{11, 17}, {11, 17}}, Row{{1, 1}, {1, 1}}, Row{{1, 9}, {1, 9}}, Row{{67, 2}, {67, 2}},
+        Row{{2, 67}, {2, 67}}, Row{{5, 6}, {9, 14}}, Row{{9, 70}, {3, 4}}}) {
     INFO(mode << ", gather " << sk::toString(row.gather) << ", domain " << sk::toString(row.domain));
     const auto a = numbered<int>(row.gather);
     auto r = device.stream<int>(row.domain), far = device.stream<int>(row.domain);
@@ -166,8 +207,8 @@ void checkStencils(sk::Device& device, const char* mode, Inside inside, const Pl
       return at(a, p[1] + dx, p[0] + dy, inside);
     };
     CHECK(difference(r.read(), [&](std::size_t i) {
-            return near(i, 0, 0) + 3 * near(i, 1, 0) + 5 * near(i, -1, 0) + 7 * near(i, 0, 1) + 11 * near(i, 0, -1) +
-                   13 * near(i, -1, -1) + 17 * near(i, 1, 1);
+            return near(i, 0, 0) + 3 * near(i, 1, 0) + 5 * near(i, -1, 0) + 7 * near(i, 0, 1) +
+                   11 * near(i, 0, -1) + 13 * near(i, -1, -1) + 17 * near(i, 1, 1);
           }) == "");
     CHECK(difference(far.read(), [&](std::size_t i) {
             return near(i, 9, -4) + 2 * near(i, -100, 0) + 3 * near(i, 3, 1000000);
@@ -201,23 +242,25 @@ TEST_CASE("a gather may be a view, whose edges are then the boundary") {
     const auto whole = numbered<int>({12, 90});
     auto stream = whole.on(device);
     const auto part = stream.domain({3, 20}, {8, 85});
-    const HostArray<int> a(part.shape(), [&](std::size_t i) { return whole[inside({3, 20}, positionOf(part.shape(), i))]; });
+    const HostArray<int> a(
+        part.shape(), [&](std::size_t i) { return whole[inside({3, 20}, positionOf(part.shape(), i))]; });
     auto r = device.stream<int>(part.shape()), far = device.stream<int>(part.shape());
     gathers::stencil_wrap(part, r, far);
     CHECK(difference(r.read(), [&](std::size_t i) {
             const auto p = positionOf(part.shape(), i);
             const auto near = [&](int dx, int dy) { return at(a, p[1] + dx, p[0] + dy, wrapIndex); };
-            return near(0, 0) + 3 * near(1, 0) + 5 * near(-1, 0) + 7 * near(0, 1) + 11 * near(0, -1) + 13 * near(-1, -1) +
-                   17 * near(1, 1);
+            return near(0, 0) + 3 * near(1, 0) + 5 * near(-1, 0) + 7 * near(0, 1) + 11 * near(0, -1) +
+                   13 * near(-1, -1) + 17 * near(1, 1);
           }) == "");
     // into a view of the very stream that it reads, elsewhere
     gathers::stencil_border(part, stream.domain({7, 0}, {12, 65}), far);
     CHECK(difference(stream.domain({7, 0}, {12, 65}).read(), [&](std::size_t i) {
             const auto p = positionOf(part.shape(), i);
             const auto near = [&](int dx, int dy) { return at(a, p[1] + dx, p[0] + dy, borderIndex); };
-            return near(0, 0) + 3 * near(1, 0) + 5 * near(-1, 0) + 7 * near(0, 1) + 11 * near(0, -1) + 13 * near(-1, -1) +
-                   17 * near(1, 1);
+            return near(0, 0) + 3 * near(1, 0) + 5 * near(-1, 0) + 7 * near(0, 1) + 11 * near(0, -1) +
+                   13 * near(-1, -1) + 17 * near(1, 1);
           }) == "");
-    CHECK(stream.domain({0, 0}, {7, 90}).read() == std::vector<int>(whole.elements().begin(), whole.elements().begin() + 630));
+    CHECK(stream.domain({0, 0}, {7, 90}).read() ==
+          std::vector<int>(whole.elements().begin(), whole.elements().begin() + 630));
   });
 }

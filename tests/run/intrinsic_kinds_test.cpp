@@ -28,7 +28,9 @@ struct Double3 {
 };
 Double3 of(const float4& v) { return {v.x, v.y, v.z}; }
 double dot(const Double3& a, const Double3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Double3 sum(const Double3& a, double s, const Double3& b) { return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z}; }
+Double3 sum(const Double3& a, double s, const Double3& b) {
+  return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
 Double3 scaled(double s, const Double3& a) { return {s * a.x, s * a.y, s * a.z}; }
 Double3 normal(const Double3& a) { return scaled(1 / std::sqrt(dot(a, a)), a); }
 
@@ -37,10 +39,13 @@ template <class Expected>
 std::string differenceBy(double absolute, const std::vector<float4>& actual, const Expected& expected) {
   std::vector<float> flat;
   for (const float4& v : actual) flat.insert(flat.end(), {v.x, v.y, v.z, v.w});
-  return difference(flat, [&](std::size_t i) {
-    const std::array<double, 4> e = expected(i / 4);
-    return e[i % 4];
-  }, absolute, 0);
+  return difference(
+      flat,
+      [&](std::size_t i) {
+        const std::array<double, 4> e = expected(i / 4);
+        return e[i % 4];
+      },
+      absolute, 0);
 }
 
 }  // namespace
@@ -56,8 +61,8 @@ TEST_CASE("geometry") {
             const Double3 p = of(u[i]), q = of(v[i]);
             const double w = u[i].w, t = v[i].w;
             const Double3 e = sum(p, -1, q);
-            return std::array{std::sqrt(dot(p, p) + w * w), std::sqrt(dot(e, e) + (w - t) * (w - t)), dot(p, q) + w * t,
-                              std::sqrt(dot(p, p)) + dot(p, q)};
+            return std::array{std::sqrt(dot(p, p) + w * w), std::sqrt(dot(e, e) + (w - t) * (w - t)),
+                              dot(p, q) + w * t, std::sqrt(dot(p, p)) + dot(p, q)};
           }) == "");
     CHECK(differenceBy(1e-4, b.read(), [&](std::size_t i) {
             const Double3 p = of(u[i]), q = of(v[i]);
@@ -97,23 +102,32 @@ TEST_CASE("scalars may stand among the vectors of an intrinsic") {
     };
     // mix may be computed as a + t(b - a), of values up to 8 * 8 * 16: 1e-3 is 8 ulp of that
     CHECK(differenceBy(1e-3, a.read(), [&](std::size_t i) {
-            return each([&](double p, double q) {
-              return std::clamp<double>(p, -s[i], s[i]) + (p * (1 - s[i]) + q * s[i]) * 8;
-            }, i, wzyx(i));
+            return each(
+                [&](double p, double q) {
+                  return std::clamp<double>(p, -s[i], s[i]) + (p * (1 - s[i]) + q * s[i]) * 8;
+                },
+                i, wzyx(i));
           }) == "");
     CHECK(differenceBy(0, b.read(), [&](std::size_t i) {
-            return each([&](double p, double q) {
-              return (p < s[i] ? 0 : 1) + 2 * (q < p ? 0 : 1) + 4 * std::max(p, 0.0) + 64 * std::min(p, 0.0);
-            }, i, float4{x[i].y, x[i].z, x[i].w, x[i].x});
+            return each(
+                [&](double p, double q) {
+                  return (p < s[i] ? 0 : 1) + 2 * (q < p ? 0 : 1) + 4 * std::max(p, 0.0) +
+                         64 * std::min(p, 0.0);
+                },
+                i, float4{x[i].y, x[i].z, x[i].w, x[i].x});
           }) == "");
     CHECK(differenceBy(1e-5, c.read(), [&](std::size_t i) {
-            return each([&](double p, double q) {
-              return smooth(-2, 2, p) + smooth(x[i].x - 1.0, x[i].x + 1.0, x[i].y) + 2 * smooth(p - 1, p + 1, q);
-            }, i, wzyx(i));
+            return each(
+                [&](double p, double q) {
+                  return smooth(-2, 2, p) + smooth(x[i].x - 1.0, x[i].x + 1.0, x[i].y) +
+                         2 * smooth(p - 1, p + 1, q);
+                },
+                i, wzyx(i));
           }) == "");
     CHECK(differenceBy(1e-5, d.read(), [&](std::size_t i) {
-            return each([&](double p, double q) { return (p + 1) / 2 + std::max<double>(p, s[i]) + (p > 0 ? q : p); }, i,
-                        wzyx(i));
+            return each(
+                [&](double p, double q) { return (p + 1) / 2 + std::max<double>(p, s[i]) + (p > 0 ? q : p); },
+                i, wzyx(i));
           }) == "");
   });
 }
@@ -125,21 +139,40 @@ TEST_CASE("modf, frexp and sincos give both their parts") {
   x[1] = {3.4e38f, -1.2e-38f, 16777215, -0.5f};
   x[2] = {1.5f, -2.75f, 1024, 1e-30f};
   onEveryProfile([&](sk::Device& device) {
-    auto a = device.stream<float4>({count}), b = device.stream<float4>({count}), c = device.stream<float4>({count});
+    auto a = device.stream<float4>({count}), b = device.stream<float4>({count}),
+         c = device.stream<float4>({count});
     auto d = device.stream<int4>({count});
     intrinsics::parts(streamOf<float4>(device, x), a, b, c, d);
     CHECK(difference(a.read(), [&](std::size_t i) {
-            return by4([](float v) { float whole; return std::modf(v, &whole); }, x[i]);
+            return by4(
+                [](float v) {
+                  float whole;
+                  return std::modf(v, &whole);
+                },
+                x[i]);
           }) == "");
-    CHECK(difference(b.read(), [&](std::size_t i) { return by4([](float v) { return std::trunc(v); }, x[i]); }) == "");
+    CHECK(difference(b.read(),
+                     [&](std::size_t i) { return by4([](float v) { return std::trunc(v); }, x[i]); }) == "");
     CHECK(difference(c.read(), [&](std::size_t i) {
-            return by4([](float v) { int e; return std::frexp(v, &e); }, x[i]);
+            return by4(
+                [](float v) {
+                  int e;
+                  return std::frexp(v, &e);
+                },
+                x[i]);
           }) == "");
     CHECK(difference(d.read(), [&](std::size_t i) {
-            return by4([](float v) { int e; std::frexp(v, &e); return e; }, x[i]);
+            return by4(
+                [](float v) {
+                  int e;
+                  std::frexp(v, &e);
+                  return e;
+                },
+                x[i]);
           }) == "");
 
-    auto one = device.stream<float4>({1}), two = device.stream<float4>({1}), three = device.stream<float4>({1});
+    auto one = device.stream<float4>({1}), two = device.stream<float4>({1}),
+         three = device.stream<float4>({1});
     auto four = device.stream<int4>({1});
     intrinsics::parts(streamOf<float4>(device, {{infinity, -infinity, infinity, 1}}), one, two, three, four);
     CHECK(two.read()[0] == float4{infinity, -infinity, infinity, 1});
@@ -158,7 +191,9 @@ TEST_CASE("ldexp scales by powers of two to both ends") {
   e.push_back({100, 200, -200, 1000});
   const auto size = static_cast<std::int64_t>(x.size());
   // a result below the least normal number may be flushed to 0
-  const auto agree = [](float a, float b) { return a == b || (std::fabs(b) < 1.1754944e-38f && std::fabs(a) <= std::fabs(b)); };
+  const auto agree = [](float a, float b) {
+    return a == b || (std::fabs(b) < 1.1754944e-38f && std::fabs(a) <= std::fabs(b));
+  };
   onEveryProfile([&](sk::Device& device) {
     auto a = device.stream<float4>({size});
     auto b = device.stream<float2>({size});
@@ -167,7 +202,8 @@ TEST_CASE("ldexp scales by powers of two to both ends") {
     const auto fours = a.read();
     const auto twos = b.read();
     for (std::size_t i = 0; i < x.size(); ++i) {
-      INFO("exponent " << e[i].x << ", got " << fours[i].x << " " << fours[i].y << " " << fours[i].z << " " << fours[i].w);
+      INFO("exponent " << e[i].x << ", got " << fours[i].x << " " << fours[i].y << " " << fours[i].z << " "
+                       << fours[i].w);
       CHECK(agree(fours[i].x, std::ldexp(x[i].x, e[i].x)));
       CHECK(agree(fours[i].y, std::ldexp(x[i].y, e[i].y)));
       CHECK(agree(fours[i].z, std::ldexp(x[i].z, e[i].z)));
@@ -183,8 +219,12 @@ TEST_CASE("bits are moved unchanged, and classes of floats told") {
   const auto x = values<float4>(count, 4);
   auto i = values<int4>(count, 5);
   for (int4& v : i) v = by4([](int b) { return (b & 0x007fffff) | 0x3f800000; }, v);   // floats in [1, 2)
-  const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<float4> special = {{0, 1, -1, 3.4e38f}, {infinity, -infinity, 0, 1}, {nan, 1, infinity, -0.0f}, {1, nan, nan, 2},
+  const float infinity = std::numeric_limits<float>::infinity(),
+              nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float4> special = {{0, 1, -1, 3.4e38f},
+                                       {infinity, -infinity, 0, 1},
+                                       {nan, 1, infinity, -0.0f},
+                                       {1, nan, nan, 2},
                                        {-nan, infinity, 1e-30f, -infinity}};
   onEveryProfile([&](sk::Device& device) {
     const auto bits = [](float v) { return std::bit_cast<std::uint32_t>(v); };
@@ -193,12 +233,16 @@ TEST_CASE("bits are moved unchanged, and classes of floats told") {
     auto c = device.stream<float4>({count}), d = device.stream<float4>({count});
     intrinsics::bits(streamOf<float4>(device, x), streamOf<int4>(device, i), a, b, c, d);
     CHECK(difference(a.read(), [&](std::size_t k) {
-            return by4([&](float v, float w) { return int(bits(v) ^ bits(w)); }, x[k], float4{x[k].w, x[k].z, x[k].y, x[k].x});
+            return by4([&](float v, float w) { return int(bits(v) ^ bits(w)); }, x[k],
+                       float4{x[k].w, x[k].z, x[k].y, x[k].x});
           }) == "");
-    CHECK(difference(b.read(), [&](std::size_t k) { return by4([&](float v) { return bits(v) + bits(x[k].x); }, x[k]); }) == "");
+    CHECK(difference(b.read(), [&](std::size_t k) {
+            return by4([&](float v) { return bits(v) + bits(x[k].x); }, x[k]);
+          }) == "");
     const auto real = [](int v) { return std::bit_cast<float>(v); };
     CHECK(difference(c.read(), [&](std::size_t k) {
-            return by4([&](int v, int w) { return real(v) + real(w); }, i[k], int4{i[k].w, i[k].z, i[k].y, i[k].x});
+            return by4([&](int v, int w) { return real(v) + real(w); }, i[k],
+                       int4{i[k].w, i[k].z, i[k].y, i[k].x});
           }) == "");
     CHECK(difference(d.read(), [&](std::size_t k) {
             float4 e = by4([&](int v) { return real(v) - real(i[k].y); }, i[k]);
@@ -208,16 +252,23 @@ TEST_CASE("bits are moved unchanged, and classes of floats told") {
           }) == "");
 
     const auto size = static_cast<std::int64_t>(special.size());
-    auto isNan = device.stream<bool4>({size}), isInf = device.stream<bool4>({size}), isFinite = device.stream<bool4>({size});
+    auto isNan = device.stream<bool4>({size}), isInf = device.stream<bool4>({size}),
+         isFinite = device.stream<bool4>({size});
     auto mixed = device.stream<int>({size});
     intrinsics::classes(streamOf<float4>(device, special), isNan, isInf, isFinite, mixed);
-    CHECK(difference(isNan.read(), [&](std::size_t k) { return by4([](float v) { return std::isnan(v); }, special[k]); }) == "");
-    CHECK(difference(isInf.read(), [&](std::size_t k) { return by4([](float v) { return std::isinf(v); }, special[k]); }) == "");
-    CHECK(difference(isFinite.read(), [&](std::size_t k) { return by4([](float v) { return std::isfinite(v); }, special[k]); }) == "");
+    CHECK(difference(isNan.read(), [&](std::size_t k) {
+            return by4([](float v) { return std::isnan(v); }, special[k]);
+          }) == "");
+    CHECK(difference(isInf.read(), [&](std::size_t k) {
+            return by4([](float v) { return std::isinf(v); }, special[k]);
+          }) == "");
+    CHECK(difference(isFinite.read(), [&](std::size_t k) {
+            return by4([](float v) { return std::isfinite(v); }, special[k]);
+          }) == "");
     CHECK(difference(mixed.read(), [&](std::size_t k) {
             const float4& v = special[k];
-            return std::isnan(v.x) + 2 * std::isinf(v.y) + 4 * std::isfinite(v.z) + 8 * (std::isnan(v.x) || std::isnan(v.y)) +
-                   16 * (std::isfinite(v.z) && std::isfinite(v.w));
+            return std::isnan(v.x) + 2 * std::isinf(v.y) + 4 * std::isfinite(v.z) +
+                   8 * (std::isnan(v.x) || std::isnan(v.y)) + 16 * (std::isfinite(v.z) && std::isfinite(v.w));
           }) == "");
   });
 }
@@ -233,13 +284,18 @@ TEST_CASE("integers have abs, sign, min, max and clamp") {
     auto c = device.stream<int4>({count}), d = device.stream<int4>({count});
     intrinsics::ints(streamOf<int4>(device, x), streamOf<int4>(device, y), a, b, c, d);
     const auto sign = [](int v) { return (v > 0) - (v < 0); };
-    CHECK(difference(a.read(), [&](std::size_t i) { return by4([](int v) { return std::abs(v); }, x[i]); }) == "");
+    CHECK(difference(a.read(), [&](std::size_t i) { return by4([](int v) { return std::abs(v); }, x[i]); }) ==
+          "");
     CHECK(difference(b.read(), [&](std::size_t i) {
-            return by4([&](int p, int q) { return sign(p) + 10 * std::min(p, q) - std::max(q, x[i].x); }, x[i], y[i]);
+            return by4([&](int p, int q) { return sign(p) + 10 * std::min(p, q) - std::max(q, x[i].x); },
+                       x[i], y[i]);
           }) == "");
     CHECK(difference(c.read(), [&](std::size_t i) {
-            return by4([](int p, int q) { return std::clamp(p, -5, 7) + std::clamp(q, std::min(p, 0), std::max(p, 0)); }, x[i],
-                       y[i]);
+            return by4(
+                [](int p, int q) {
+                  return std::clamp(p, -5, 7) + std::clamp(q, std::min(p, 0), std::max(p, 0));
+                },
+                x[i], y[i]);
           }) == "");
     CHECK(difference(d.read(), [&](std::size_t i) {
             return int4{std::abs(x[i].x), sign(y[i].y), std::min(x[i].z, y[i].z), std::clamp(x[i].w, 1, 3)};
@@ -247,10 +303,13 @@ TEST_CASE("integers have abs, sign, min, max and clamp") {
     auto p = device.stream<uint4>({count}), q = device.stream<uint4>({count});
     intrinsics::uints(streamOf<uint4>(device, u), streamOf<uint4>(device, w), p, q);
     CHECK(difference(p.read(), [&](std::size_t i) {
-            return by4([](unsigned s, unsigned t) { return std::min(s, t) + std::max(s, 5u) + std::clamp(t, 1u, 9u); }, u[i], w[i]);
+            return by4([](unsigned s,
+                          unsigned t) { return std::min(s, t) + std::max(s, 5u) + std::clamp(t, 1u, 9u); },
+                       u[i], w[i]);
           }) == "");
     CHECK(difference(q.read(), [&](std::size_t i) {
-            return uint4{std::min(u[i].x, 3u), std::max(w[i].y, u[i].y), std::clamp(u[i].z, 2u, 0xfffffff0u), std::max(u[i].w, 1u)};
+            return uint4{std::min(u[i].x, 3u), std::max(w[i].y, u[i].y), std::clamp(u[i].z, 2u, 0xfffffff0u),
+                         std::max(u[i].w, 1u)};
           }) == "");
   });
 }
@@ -263,10 +322,11 @@ TEST_CASE("comparisons by name give bool vectors") {
     j[k].x = i[k].x;
   }
   onEveryProfile([&](sk::Device& device) {
-    auto a = device.stream<bool3>({count}), b = device.stream<bool3>({count}), c = device.stream<bool3>({count});
+    auto a = device.stream<bool3>({count}), b = device.stream<bool3>({count}),
+         c = device.stream<bool3>({count});
     auto d = device.stream<int4>({count});
-    intrinsics::comparisons(streamOf<float3>(device, x), streamOf<float3>(device, y), streamOf<int3>(device, i),
-                            streamOf<int3>(device, j), a, b, c, d);
+    intrinsics::comparisons(streamOf<float3>(device, x), streamOf<float3>(device, y),
+                            streamOf<int3>(device, i), streamOf<int3>(device, j), a, b, c, d);
     const auto less = [&](std::size_t k) { return bool3{x[k].x < y[k].x, x[k].y < y[k].y, x[k].z < y[k].z}; };
     CHECK(difference(a.read(), less) == "");
     CHECK(difference(b.read(), [](std::size_t) { return bool3{true, true, true}; }) == "");

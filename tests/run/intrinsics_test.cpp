@@ -24,7 +24,8 @@ std::vector<float4> spread(double low, double high, std::uint32_t seed) {
     const double t = hashed(i + 7777u * seed) / 4294967295.0;
     return static_cast<float>(low + (high - low) * t);
   };
-  for (std::uint32_t i = 0; i < count; ++i) result.push_back({at(4 * i), at(4 * i + 1), at(4 * i + 2), at(4 * i + 3)});
+  for (std::uint32_t i = 0; i < count; ++i)
+    result.push_back({at(4 * i), at(4 * i + 1), at(4 * i + 2), at(4 * i + 3)});
   result[0] = {float(low), float(high), float(low), float(high)};
   return result;
 }
@@ -32,16 +33,19 @@ std::vector<float4> spread(double low, double high, std::uint32_t seed) {
 /// The outputs of a kernel in four widths, as the components of x that each was given.
 struct Outputs {
   explicit Outputs(sk::Device& device)
-      : r(device.stream<float4>({count})), r3(device.stream<float3>({count})), r2(device.stream<float2>({count})),
+      : r(device.stream<float4>({count})),
+        r3(device.stream<float3>({count})),
+        r2(device.stream<float2>({count})),
         r1(device.stream<float>({count})) {}
 
   /// "" where every component is within the errors of reference(component number, element).
   template <class Reference>
   std::string wrong(const Reference& reference, double absolute, double relative) const {
     const auto check = [&](const char* width, const std::vector<float>& actual, std::vector<int> components) {
-      const std::string text = difference(actual, [&](std::size_t i) {
-        return reference(components[i % components.size()], i / components.size());
-      }, absolute, relative);
+      const std::string text = difference(
+          actual,
+          [&](std::size_t i) { return reference(components[i % components.size()], i / components.size()); },
+          absolute, relative);
       return text.empty() ? "" : std::string(width) + ": " + text;
     };
     const auto four = r.read();
@@ -51,8 +55,8 @@ struct Outputs {
     for (const float4& v : four) flat4.insert(flat4.end(), {v.x, v.y, v.z, v.w});
     for (const float3& v : three) flat3.insert(flat3.end(), {v.x, v.y, v.z});
     for (const float2& v : two) flat2.insert(flat2.end(), {v.x, v.y});
-    return check("float4", flat4, {0, 1, 2, 3}) + check("float3", flat3, {3, 2, 1}) + check("float2", flat2, {1, 0}) +
-           check("float", r1.read(), {2});
+    return check("float4", flat4, {0, 1, 2, 3}) + check("float3", flat3, {3, 2, 1}) +
+           check("float2", flat2, {1, 0}) + check("float", r1.read(), {2});
   }
 
   sk::Stream<float4> r;
@@ -61,7 +65,9 @@ struct Outputs {
   sk::Stream<float> r1;
 };
 
-double component(const float4& v, int c) { return std::array{v.x, v.y, v.z, v.w}[static_cast<std::size_t>(c)]; }
+double component(const float4& v, int c) {
+  return std::array{v.x, v.y, v.z, v.w}[static_cast<std::size_t>(c)];
+}
 
 struct Bounds {
   double low, high, absolute, relative;
@@ -72,15 +78,22 @@ struct Bounds {
 TEST_CASE("functions of one float") {
   onEveryProfile([](sk::Device& device) {
     Outputs out(device);
-    const auto check = [&](const char* name, const auto& kernel, double (*reference)(double), const Bounds& b) {
+    const auto check = [&](const char* name, const auto& kernel, double (*reference)(double),
+                           const Bounds& b) {
       if (std::string_view(name) == "normalize") return;   // of the vector as a whole: see geometry
       INFO(name);
       const auto x = spread(b.low, b.high, 1);
       kernel(streamOf<float4>(device, x), out.r, out.r3, out.r2, out.r1);
-      CHECK(out.wrong([&](int c, std::size_t i) { return reference(component(x[i], c)); }, b.absolute, b.relative) == "");
+      CHECK(out.wrong([&](int c, std::size_t i) { return reference(component(x[i], c)); }, b.absolute,
+                      b.relative) == "");
     };
 #define CHECK_UNARY(f, reference, ...) \
-    check(#f, intrinsics::unary_##f, [](double x) { (void)x; return double(reference); }, {__VA_ARGS__});
+  check(#f, intrinsics::unary_##f,     \
+        [](double x) {                 \
+          (void)x;                     \
+          return double(reference);    \
+        },                             \
+        {__VA_ARGS__});
     UNARY_CASES(CHECK_UNARY)
   });
 }
@@ -98,8 +111,9 @@ TEST_CASE("functions of two floats, and of a vector and a float") {
       INFO(name);
       const auto x = spread(b.low, b.high, 3);
       kernel(streamOf<float4>(device, x), ys, out.r, out.r3, out.r2, out.r1);
-      CHECK(out.wrong([&](int c, std::size_t i) { return reference(component(x[i], c), component(second[i], c)); },
-                      b.absolute, b.relative) == "");
+      CHECK(out.wrong(
+                [&](int c, std::size_t i) { return reference(component(x[i], c), component(second[i], c)); },
+                b.absolute, b.relative) == "");
     };
     const auto checkScalar = [&](const char* name, const auto& kernel, Reference reference, const Bounds& b) {
       INFO(name << " with a scalar");
@@ -109,9 +123,10 @@ TEST_CASE("functions of two floats, and of a vector and a float") {
                       b.relative) == "");
     };
 #define CHECK_BINARY(f, reference, ...) \
-    check(#f, intrinsics::binary_##f, [](double x, double y) { return double(reference); }, {__VA_ARGS__});
-#define CHECK_SCALAR(f, reference, ...) \
-    checkScalar(#f, intrinsics::scalar_##f, [](double x, double y) { return double(reference); }, {__VA_ARGS__});
+  check(#f, intrinsics::binary_##f, [](double x, double y) { return double(reference); }, {__VA_ARGS__});
+#define CHECK_SCALAR(f, reference, ...)                                                         \
+  checkScalar(#f, intrinsics::scalar_##f, [](double x, double y) { return double(reference); }, \
+              {__VA_ARGS__});
     BINARY_CASES(CHECK_BINARY)
     BINARY_SCALAR_CASES(CHECK_BINARY)
     BINARY_SCALAR_CASES(CHECK_SCALAR)
@@ -126,14 +141,17 @@ TEST_CASE("functions of three floats") {
     const auto check = [&](const char* name, const auto& kernel, Reference reference, const Bounds& b) {
       INFO(name);
       const auto x = spread(b.low, b.high, 6);
-      kernel(streamOf<float4>(device, x), streamOf<float4>(device, second), streamOf<float4>(device, third), out.r, out.r3,
-             out.r2, out.r1);
-      CHECK(out.wrong([&](int c, std::size_t i) {
-              return reference(component(x[i], c), component(second[i], c), component(third[i], c));
-            }, b.absolute, b.relative) == "");
+      kernel(streamOf<float4>(device, x), streamOf<float4>(device, second), streamOf<float4>(device, third),
+             out.r, out.r3, out.r2, out.r1);
+      CHECK(out.wrong(
+                [&](int c, std::size_t i) {
+                  return reference(component(x[i], c), component(second[i], c), component(third[i], c));
+                },
+                b.absolute, b.relative) == "");
     };
-#define CHECK_TERNARY(f, reference, ...) \
-    check(#f, intrinsics::ternary_##f, [](double x, double y, double z) { return double(reference); }, {__VA_ARGS__});
+#define CHECK_TERNARY(f, reference, ...)                                                             \
+  check(#f, intrinsics::ternary_##f, [](double x, double y, double z) { return double(reference); }, \
+        {__VA_ARGS__});
     TERNARY_CASES(CHECK_TERNARY)
   });
 }

@@ -102,20 +102,35 @@ TEST_CASE("one name may stand in several namespaces and files") {
   });
 }
 
+TEST_CASE("a struct of a file that two .sk files include is one type") {
+  onEveryProfile([](sk::Device& device) {
+    auto shared = device.stream<Shared>({count});
+    auto r = device.stream<float>({count});
+    makeShared(streamOf<float>(device, x), shared);
+    again::takeShared(shared, r);
+    CHECK(difference(r.read(),
+                     [](std::size_t i) { return x[i] + static_cast<float>(static_cast<int>(x[i])); }) == "");
+  });
+}
+
 TEST_CASE("kernels call kernels and reduces, and know their streams within") {
   onEveryLayout([](sk::Device& device) {
     const sk::Shape shape{7, 70};
-    const HostArray<float> input(shape, [](std::size_t i) { return valueAt<float>(static_cast<std::uint32_t>(i)); });
+    const HostArray<float> input(shape,
+                                 [](std::size_t i) { return valueAt<float>(static_cast<std::uint32_t>(i)); });
     const HostArray<float> row({1, 70}, [](std::size_t i) { return i % 3 == 0 ? 0.0f : 0.5f; });
     auto r = device.stream<float>(shape);
     auto s = device.stream<int4>(shape);
     calls::chain(input.on(device), row.on(device), r, s);
-    const auto join = [](float whole, float part, float gain) { return part == 0 ? whole : whole + gain * part; };
+    const auto join = [](float whole, float part, float gain) {
+      return part == 0 ? whole : whole + gain * part;
+    };
     // floats: sums of numbers up to 16000 with 1/512 as their unit need 23 bits
     CHECK(difference(r.read(), [&](std::size_t i) {
             const float v = input.elements()[i], w = std::floor(v);
             const float half = join(w, v - w, 10) * 0.5f;
-            return join(v, row.elements()[i % 70], 2) * 1000 + (half - std::floor(half)) * 100 + std::floor(half) + 1;
+            return join(v, row.elements()[i % 70], 2) * 1000 + (half - std::floor(half)) * 100 +
+                   std::floor(half) + 1;
           }) == "");
     CHECK(difference(s.read(), [](std::size_t i) {
             // numbered(x, ...) gave `size` the index and `s` the extents, both of the domain

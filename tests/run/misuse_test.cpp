@@ -46,13 +46,16 @@ TEST_CASE("inputs of another shape") {
     auto v = device.stream<float>({6, 8});
     v.write(std::vector<float>(48, 5.0f));
     const std::string text = "misuse::diffuse: 'u' has shape ";
-    const std::string advice = ", but the output 'v' has {6, 8}; give them the same shape, or extent 1 where 'u' repeats";
-    for (const sk::Shape& shape : {sk::Shape{8, 6}, sk::Shape{6}, sk::Shape{6, 7}, sk::Shape{2, 8}, sk::Shape{6, 8, 1}, sk::Shape{0, 8}}) {
+    const std::string advice =
+        ", but the output 'v' has {6, 8}; give them the same shape, or extent 1 where 'u' repeats";
+    for (const sk::Shape& shape : {sk::Shape{8, 6}, sk::Shape{6}, sk::Shape{6, 7}, sk::Shape{2, 8},
+                                   sk::Shape{6, 8, 1}, sk::Shape{0, 8}}) {
       auto u = device.stream<float>(shape);
       CHECK(errorOf([&] { misuse::diffuse(1, u, v); }) == text + sk::toString(shape) + advice);
     }
     auto larger = device.stream<float>({6, 9});
-    CHECK_THAT(errorOf([&] { misuse::diffuse(1, larger.domain({1, 0}, {6, 8}), v); }), Contains("'u' has shape {5, 8}"));
+    CHECK_THAT(errorOf([&] { misuse::diffuse(1, larger.domain({1, 0}, {6, 8}), v); }),
+               Contains("'u' has shape {5, 8}"));
     CHECK(v.read() == std::vector<float>(48, 5.0f));
   });
 }
@@ -70,7 +73,7 @@ TEST_CASE("gathers of another rank, or of nothing") {
           "misuse::lookup: 'weights' has shape {0}: there is no element to read");
     auto empty = device.stream<float>({0, 4});
     CHECK_THAT(errorOf([&] { misuse::lookup(empty, weights, x, r); }), Contains("'table' has shape {0, 4}"));
-    CHECK(errorOf([&] { misuse::lookup(empty, none, none, none); }) == "no error");   // nothing is to be done
+    CHECK(errorOf([&] { misuse::lookup(empty, none, none, none); }) == "no error");  // nothing is to be done
   });
 }
 
@@ -79,7 +82,8 @@ TEST_CASE("outputs that do not fit each other, or the device") {
     auto x = device.stream<float>({4, 6}), low = device.stream<float>({4, 6});
     auto high = device.stream<misuse::Hit>({6, 4});
     CHECK(errorOf([&] { misuse::split(x, low, high); }) ==
-          "misuse::split: the outputs 'low' and 'high' have shapes {4, 6} and {6, 4}; give them the same shape");
+          "misuse::split: the outputs 'low' and 'high' have shapes {4, 6} and {6, 4}; give them the same "
+          "shape");
     auto a = device.stream<misuse::Five>({4, 6});
     const std::string text = errorOf([&] { misuse::many(x, a, a); });
     CHECK_THAT(text, Contains("misuse::many: the outputs 'a' and 'b' overlap"));
@@ -89,7 +93,8 @@ TEST_CASE("outputs that do not fit each other, or the device") {
                  Contains("misuse::many: the outputs have 10 planes") &&
                      Contains(std::to_string(device.limits().drawBuffers)) && Contains("divide the kernel"));
     }
-    CHECK_THAT(errorOf([&] { misuse::many(x, a.domain({0, 0}, {4, 6}), a.domain({0, 0}, {4, 6})); }), Contains("overlap"));
+    CHECK_THAT(errorOf([&] { misuse::many(x, a.domain({0, 0}, {4, 6}), a.domain({0, 0}, {4, 6})); }),
+               Contains("overlap"));
   });
 }
 
@@ -97,19 +102,23 @@ TEST_CASE("streams of two devices, and streams that are gone") {
   auto& glsl = device("glsl330");
   auto& essl = device("essl300");
   auto u = glsl.stream<float>({3}), v = essl.stream<float>({3});
-  CHECK(errorOf([&] { misuse::diffuse(1, u, v); }) == "misuse::diffuse: 'v' and 'u' are streams of two devices ('" +
-        essl.name() + "' and '" + glsl.name() + "'); copy one of them through host memory");
-  CHECK_THAT(errorOf([&] { misuse::sum(u, v); }), Contains("misuse::sum: 'x' and 'total' are streams of two devices"));
+  CHECK(errorOf([&] { misuse::diffuse(1, u, v); }) ==
+        "misuse::diffuse: 'v' and 'u' are streams of two devices ('" + essl.name() + "' and '" + glsl.name() +
+            "'); copy one of them through host memory");
+  CHECK_THAT(errorOf([&] { misuse::sum(u, v); }),
+             Contains("misuse::sum: 'x' and 'total' are streams of two devices"));
   const auto moved = std::move(u);
   CHECK(errorOf([&] { misuse::diffuse(1, u, v); }) == "misuse::diffuse: 'u' is a stream that was moved from");
-  CHECK_THAT(errorOf([&] { (void)misuse::sum(u); }), Contains("misuse::sum: 'x' is a stream that was moved from"));
+  CHECK_THAT(errorOf([&] { (void)misuse::sum(u); }),
+             Contains("misuse::sum: 'x' is a stream that was moved from"));
   auto orphan = [] {
     sk::Device gone;
     return gone.stream<float>({3});
   }();
   CHECK_THAT(errorOf([&] { misuse::diffuse(1, orphan, v); }),
              Contains("misuse::diffuse: 'u' is a stream whose device has been destroyed"));
-  CHECK_THAT(errorOf([&] { (void)misuse::sum(orphan); }), Contains("misuse::sum: 'x' is a stream whose device"));
+  CHECK_THAT(errorOf([&] { (void)misuse::sum(orphan); }),
+             Contains("misuse::sum: 'x' is a stream whose device"));
 }
 
 TEST_CASE("reduces that do not fit") {
@@ -117,12 +126,14 @@ TEST_CASE("reduces that do not fit") {
     auto x = device.stream<float>({6, 8});
     const std::string text = "misuse::sum: 'x' has shape {6, 8}, and the output 'total' has ";
     const std::string advice = "; give the output as many dimensions, each extent a divisor of the input's";
-    for (const sk::Shape& shape : {sk::Shape{4, 8}, sk::Shape{6}, sk::Shape{12, 8}, sk::Shape{0, 8}, sk::Shape{6, 8, 1}}) {
+    for (const sk::Shape& shape :
+         {sk::Shape{4, 8}, sk::Shape{6}, sk::Shape{12, 8}, sk::Shape{0, 8}, sk::Shape{6, 8, 1}}) {
       auto total = device.stream<float>(shape);
       CHECK(errorOf([&] { misuse::sum(x, total); }) == text + sk::toString(shape) + advice);
     }
     CHECK(errorOf([&] { (void)misuse::nearest(device.stream<misuse::Hit>({0, 3})); }) ==
-          "misuse::nearest: 'h' has shape {0, 3}: there is no element to fold, and 'best' declares no identity");
+          "misuse::nearest: 'h' has shape {0, 3}: there is no element to fold, and 'best' declares no "
+          "identity");
   });
 }
 
@@ -133,7 +144,8 @@ TEST_CASE("transfers of another size, and boxes outside") {
           "write: 11 element(s) in host memory, but shape {3, 4} has 12; give exactly as many");
     std::vector<misuse::Hit> memory(13);
     CHECK_THAT(errorOf([&] { hits.read(memory); }), Contains("13 element(s)") && Contains("{3, 4}"));
-    CHECK_THAT(errorOf([&] { hits.domain({0, 0}, {3, 5}); }), Contains("{3, 5} (exclusive) is no box inside shape {3, 4}"));
+    CHECK_THAT(errorOf([&] { hits.domain({0, 0}, {3, 5}); }),
+               Contains("{3, 5} (exclusive) is no box inside shape {3, 4}"));
     CHECK_THAT(errorOf([&] { hits.domain({1}, {2}); }), Contains("is no box inside shape {3, 4}"));
   });
 }

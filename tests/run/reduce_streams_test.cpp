@@ -24,17 +24,34 @@ struct Row {
   sk::Shape input, output;
 };
 const std::vector<Row> rows = {
-    {{1}, {1}},          {{12}, {12}},         {{12}, {4}},           {{1021}, {1}},          {{1020}, {51}},
-    {{3900}, {130}},     {{7, 9}, {7, 9}},     {{7, 9}, {7, 1}},      {{7, 9}, {1, 9}},       {{7, 9}, {1, 1}},
-    {{60, 66}, {4, 11}}, {{67, 60}, {67, 1}},  {{67, 60}, {1, 60}},   {{1, 1021}, {1, 1021}}, {{1024, 2}, {2, 2}},
-    {{4, 6, 10}, {2, 3, 5}}, {{4, 6, 10}, {1, 6, 1}}, {{5, 1, 70}, {5, 1, 1}}, {{2, 4, 6, 8}, {2, 1, 3, 4}},
+    {{1}, {1}},
+    {{12}, {12}},
+    {{12}, {4}},
+    {{1021}, {1}},
+    {{1020}, {51}},
+    {{3900}, {130}},
+    {{7, 9}, {7, 9}},
+    {{7, 9}, {7, 1}},
+    {{7, 9}, {1, 9}},
+    {{7, 9}, {1, 1}},
+    {{60, 66}, {4, 11}},
+    {{67, 60}, {67, 1}},
+    {{67, 60}, {1, 60}},
+    {{1, 1021}, {1, 1021}},
+    {{1024, 2}, {2, 2}},
+    {{4, 6, 10}, {2, 3, 5}},
+    {{4, 6, 10}, {1, 6, 1}},
+    {{5, 1, 70}, {5, 1, 1}},
+    {{2, 4, 6, 8}, {2, 1, 3, 4}},
     {{2, 4, 6, 8}, {1, 1, 1, 1}},
 };
 const auto composeTo = [](reduces::Affine& r, const reduces::Affine& f) { r = {f.a * r.a, f.a * r.b + f.b}; };
 
-std::string differenceOfMaps(const std::vector<reduces::Affine>& actual, const std::vector<reduces::Affine>& expected) {
+std::string differenceOfMaps(const std::vector<reduces::Affine>& actual,
+                             const std::vector<reduces::Affine>& expected) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    if (actual[i].a != expected[i].a || actual[i].b != expected[i].b) return "element " + std::to_string(i) + " differs";
+    if (actual[i].a != expected[i].a || actual[i].b != expected[i].b)
+      return "element " + std::to_string(i) + " differs";
   }
   return actual.size() == expected.size() ? "" : "another number of elements";
 }
@@ -57,7 +74,8 @@ TEST_CASE("a reduce to a stream folds each block, in order") {
       const HostArray<float> x(row.input, smallAt);
       auto counts = device.stream<int>(row.output);
       reduces::countPositive(x.on(device), counts);
-      CHECK(difference(counts.read(), foldBlocks(x, row.output, 0, [](int& r, float v) { r += v > 0; }).elements()) == "");
+      CHECK(difference(counts.read(),
+                       foldBlocks(x, row.output, 0, [](int& r, float v) { r += v > 0; }).elements()) == "");
     }
   });
 }
@@ -78,7 +96,8 @@ TEST_CASE("an input of nothing fills its output with the identity") {
 TEST_CASE("views are folded, and folded into") {
   onEveryLayout([](sk::Device& device) {
     for (const auto& [shape, begin, end] :
-         {std::tuple{sk::Shape{900}, sk::Index{7}, sk::Index{883}}, std::tuple{sk::Shape{40, 80}, sk::Index{3, 5}, sk::Index{33, 77}},
+         {std::tuple{sk::Shape{900}, sk::Index{7}, sk::Index{883}},
+          std::tuple{sk::Shape{40, 80}, sk::Index{3, 5}, sk::Index{33, 77}},
           std::tuple{sk::Shape{6, 7, 30}, sk::Index{1, 2, 3}, sk::Index{5, 6, 27}}}) {
       INFO(sk::toString(begin) << " to " << sk::toString(end) << " of " << sk::toString(shape));
       const HostArray<reduces::Affine> whole(shape, affineAt);
@@ -139,7 +158,8 @@ TEST_CASE("sums of floats that round stay within the bound of their tree") {
     std::vector<float> x(65537);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::sin(static_cast<float>(i)) * 1000.1f;
     const double exact = std::accumulate(x.begin(), x.end(), 0.0);
-    const double size = std::accumulate(x.begin(), x.end(), 0.0, [](double s, float v) { return s + std::fabs(v); });
+    const double size =
+        std::accumulate(x.begin(), x.end(), 0.0, [](double s, float v) { return s + std::fabs(v); });
     const float actual = reduces::sum(streamOf<float>(device, x));
     CHECK(std::fabs(actual - exact) <= 256 * u * size);
     const float tenths = reduces::sum(streamOf<float>(device, {257, 255}, std::vector<float>(65535, 0.1f)));

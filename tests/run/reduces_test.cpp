@@ -19,9 +19,9 @@ const std::vector<sk::Shape> fewShapes = {{1}, {2}, {1021}, {13, 17}};
 
 /// For where elements lie, and for order.
 std::vector<sk::Shape> manyShapes(const sk::Device& device) {
-  std::vector<sk::Shape> shapes = {{1},        {2},         {3},          {7},          {64},        {65},
-                                   {1021},     {4093},      {1, 1},       {13, 17},     {1, 1021},   {1021, 1},
-                                   {61, 67},   {1, 1, 1},   {7, 11, 13},  {3, 1, 67},   {3, 5, 7, 11}, {2, 2, 2, 2}};
+  std::vector<sk::Shape> shapes = {{1},      {2},       {3},         {7},        {64},          {65},
+                                   {1021},   {4093},    {1, 1},      {13, 17},   {1, 1021},     {1021, 1},
+                                   {61, 67}, {1, 1, 1}, {7, 11, 13}, {3, 1, 67}, {3, 5, 7, 11}, {2, 2, 2, 2}};
   const bool isSmall = device.limits().textureSize == smallLimit;
   if (!isSmall) shapes.insert(shapes.end(), {{65537}, {257, 263}, {16411, 2}});
   return shapes;
@@ -32,7 +32,8 @@ float smallAt(std::size_t i) { return static_cast<float>(hashed(static_cast<std:
 
 /// kernel(stream) is the fold of the elements make(i).
 template <class T, class A, class Make, class Kernel, class Fold>
-void check(sk::Device& device, const char* name, const Make& make, const Kernel& kernel, const A& identity, const Fold& fold) {
+void check(sk::Device& device, const char* name, const Make& make, const Kernel& kernel, const A& identity,
+           const Fold& fold) {
   for (const sk::Shape& shape : fewShapes) {
     INFO(name << " of shape " << sk::toString(shape));
     const HostArray<T> x(shape, make);
@@ -53,32 +54,43 @@ T bitsAt(std::size_t i) {
 TEST_CASE("sums, products, minima and maxima of every type") {
   onEveryProfile([](sk::Device& device) {
     check<float>(device, "sum", smallAt, reduces::sum, 0.0f, [](float& r, float x) { r += x; });
-    check<int>(device, "sumInt", bitsAt<int>, reduces::sumInt, 0,
-               [](int& r, int x) { r = static_cast<int>(static_cast<unsigned>(r) + static_cast<unsigned>(x)); });
-    check<uint4>(device, "sumUint4", bitsAt<uint4>, reduces::sumUint4, uint4{}, [](uint4& r, const uint4& x) {
-      r = {r.x + x.x, r.y + x.y, r.z + x.z, r.w + x.w};
+    check<int>(device, "sumInt", bitsAt<int>, reduces::sumInt, 0, [](int& r, int x) {
+      r = static_cast<int>(static_cast<unsigned>(r) + static_cast<unsigned>(x));
     });
-    check<float3>(device, "sumFloat3", [](std::size_t i) { return float3{smallAt(i), smallAt(i + 7), smallAt(3 * i)}; },
-                  reduces::sumFloat3, float3{},
-                  [](float3& r, const float3& x) { r = {r.x + x.x, r.y + x.y, r.z + x.z}; });
-    check<float>(device, "product", [](std::size_t i) { return i % 5 == 0 ? -2.0f : i % 5 == 2 ? 0.5f : i % 5 == 4 ? -1.0f : 1.0f; },
-                 reduces::product, 1.0f, [](float& r, float x) { r *= x; });
-    check<std::uint32_t>(device, "productUint", [](std::size_t i) { return bitsAt<std::uint32_t>(i) | 1u; },
-                         reduces::productUint, 1u, [](std::uint32_t& r, std::uint32_t x) { r *= x; });
-    check<float>(device, "least", [](std::size_t i) { return bitsAt<float>(i) + 20; }, reduces::least, INFINITY,
-                 [](float& r, float x) { r = std::min(r, x); });
-    check<int2>(device, "greatestInt2", [](std::size_t i) { return int2{-bitsAt<int>(i) % 1000 - 2000, bitsAt<int>(i + 9)}; },
-                reduces::greatestInt2, int2{INT32_MIN, INT32_MIN},
-                [](int2& r, const int2& x) { r = {std::max(r.x, x.x), std::max(r.y, x.y)}; });
+    check<uint4>(device, "sumUint4", bitsAt<uint4>, reduces::sumUint4, uint4{},
+                 [](uint4& r, const uint4& x) { r = {r.x + x.x, r.y + x.y, r.z + x.z, r.w + x.w}; });
+    check<float3>(
+        device, "sumFloat3", [](std::size_t i) { return float3{smallAt(i), smallAt(i + 7), smallAt(3 * i)}; },
+        reduces::sumFloat3, float3{},
+        [](float3& r, const float3& x) { r = {r.x + x.x, r.y + x.y, r.z + x.z}; });
+    check<float>(
+        device, "product",
+        [](std::size_t i) {
+          return i % 5 == 0 ? -2.0f : i % 5 == 2 ? 0.5f : i % 5 == 4 ? -1.0f : 1.0f;
+        },
+        reduces::product, 1.0f, [](float& r, float x) { r *= x; });
+    check<std::uint32_t>(
+        device, "productUint", [](std::size_t i) { return bitsAt<std::uint32_t>(i) | 1u; },
+        reduces::productUint, 1u, [](std::uint32_t& r, std::uint32_t x) { r *= x; });
+    check<float>(
+        device, "least", [](std::size_t i) { return bitsAt<float>(i) + 20; }, reduces::least, INFINITY,
+        [](float& r, float x) { r = std::min(r, x); });
+    check<int2>(
+        device, "greatestInt2",
+        [](std::size_t i) { return int2{-bitsAt<int>(i) % 1000 - 2000, bitsAt<int>(i + 9)}; },
+        reduces::greatestInt2, int2{INT32_MIN, INT32_MIN},
+        [](int2& r, const int2& x) { r = {std::max(r.x, x.x), std::max(r.y, x.y)}; });
   });
 }
 
 TEST_CASE("bits and bools fold") {
   onEveryProfile([](sk::Device& device) {
-    check<std::uint32_t>(device, "allBits", [](std::size_t i) { return ~(i % 700 == 3 ? 1u << (i % 32) : 0u); }, reduces::allBits,
-                         ~0u, [](std::uint32_t& r, std::uint32_t x) { r &= x; });
-    check<int>(device, "anyBits", [](std::size_t i) { return i % 300 == 1 ? 1 << (i % 31) : 0; }, reduces::anyBits, 0,
-               [](int& r, int x) { r |= x; });
+    check<std::uint32_t>(
+        device, "allBits", [](std::size_t i) { return ~(i % 700 == 3 ? 1u << (i % 32) : 0u); },
+        reduces::allBits, ~0u, [](std::uint32_t& r, std::uint32_t x) { r &= x; });
+    check<int>(
+        device, "anyBits", [](std::size_t i) { return i % 300 == 1 ? 1 << (i % 31) : 0; }, reduces::anyBits,
+        0, [](int& r, int x) { r |= x; });
     check<uint2>(device, "parity", bitsAt<uint2>, reduces::parity, uint2{},
                  [](uint2& r, const uint2& x) { r = {r.x ^ x.x, r.y ^ x.y}; });
     for (const int odd : {-1, 0, 3, 1000}) {   // which one differs
@@ -100,7 +112,8 @@ TEST_CASE("bits and bools fold") {
 TEST_CASE("how partial results combine follows from the body, or from an overload") {
   onEveryProfile([](sk::Device& device) {
     check<float>(device, "squares", smallAt, reduces::squares, 0.0f, [](float& r, float x) { r += x * x; });
-    check<float>(device, "countPositive", smallAt, reduces::countPositive, 0, [](int& r, float x) { r += x > 0; });
+    check<float>(device, "countPositive", smallAt, reduces::countPositive, 0,
+                 [](int& r, float x) { r += x > 0; });
     check<float>(device, "range", bitsAt<float>, reduces::range, float2{INFINITY, -INFINITY},
                  [](float2& r, float x) { r = {std::min(r.x, x), std::max(r.y, x)}; });
     check<float2>(device, "widest", bitsAt<float2>, reduces::widest, -INFINITY,
@@ -132,7 +145,8 @@ TEST_CASE("structs fold: the nearest, the first of the greatest") {
         hits.push_back({std::fabs(smallAt(i)), static_cast<int>(i)});
         x.push_back(smallAt(2 * i));
       }
-      const auto first = std::min_element(hits.begin(), hits.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
+      const auto first =
+          std::min_element(hits.begin(), hits.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
       const reduces::Hit best = reduces::nearest(streamOf<reduces::Hit>(device, shape, hits));
       CHECK(best.t == first->t);
       CHECK(best.id == first->id);
@@ -152,11 +166,15 @@ TEST_CASE("structs fold: the nearest, the first of the greatest") {
 
 TEST_CASE("order is kept where it matters") {
   const auto compose = [](reduces::Affine& r, const reduces::Affine& f) { r = {f.a * r.a, f.a * r.b + f.b}; };
-  const auto isEqual = [](const reduces::Affine& a, const reduces::Affine& b) { return a.a == b.a && a.b == b.b; };
+  const auto isEqual = [](const reduces::Affine& a, const reduces::Affine& b) {
+    return a.a == b.a && a.b == b.b;
+  };
   onEveryLayout([&](sk::Device& device) {
     for (const sk::Shape& shape : manyShapes(device)) {
       INFO("shape " << sk::toString(shape));
-      const HostArray<reduces::Affine> f(shape, [](std::size_t i) { return reduces::Affine{bitsAt<unsigned>(i) | 1u, bitsAt<unsigned>(i + 5)}; });
+      const HostArray<reduces::Affine> f(shape, [](std::size_t i) {
+        return reduces::Affine{bitsAt<unsigned>(i) | 1u, bitsAt<unsigned>(i + 5)};
+      });
       const auto expected = foldBox(f, {}, shape, reduces::Affine{1, 0}, compose);
       CHECK(isEqual(reduces::compose(f.on(device)), expected));
       if (shape.rank() > 1) continue;   // the rest differs in its programs, not in where elements lie
@@ -170,7 +188,8 @@ TEST_CASE("order is kept where it matters") {
       });
       const float4 product = foldBox(m, {}, shape, float4{1, 0, 0, 1}, [](float4& r, const float4& b) {
         const auto mod = [](float v) { return std::fmod(v, 251.0f); };
-        r = {mod(r.x * b.x + r.y * b.z), mod(r.x * b.y + r.y * b.w), mod(r.z * b.x + r.w * b.z), mod(r.z * b.y + r.w * b.w)};
+        r = {mod(r.x * b.x + r.y * b.z), mod(r.x * b.y + r.y * b.w), mod(r.z * b.x + r.w * b.z),
+             mod(r.z * b.y + r.w * b.w)};
       });
       const float4 actual = reduces::matrices(m.on(device));
       CHECK(difference(std::vector<float4>{actual}, std::vector<float4>{product}) == "");

@@ -10,8 +10,8 @@ using namespace run_tests;
 
 namespace {
 
-const std::vector<sk::Shape> shapes = {{1},      {7},       {65},         {1021},  {1, 1},    {13, 17},
-                                       {67, 3},  {3, 67},   {2, 3, 5},    {67, 2, 3}, {2, 3, 2, 5}, {3, 1, 5, 7}};
+const std::vector<sk::Shape> shapes = {{1},     {7},     {65},      {1021},     {1, 1},       {13, 17},
+                                       {67, 3}, {3, 67}, {2, 3, 5}, {67, 2, 3}, {2, 3, 2, 5}, {3, 1, 5, 7}};
 
 /// The shape as kernels see it: x is the last extent, missing dimensions are 1.
 sk::int4 kernelShape(const sk::Shape& shape) {
@@ -34,7 +34,8 @@ TEST_CASE("indexof and extentof are exact in every layout") {
       INFO("shape " << sk::toString(shape));
       auto own = device.stream<sk::int4>(shape), ofX = device.stream<sk::int4>(shape);
       auto extent = device.stream<sk::int4>(shape), extentOfX = device.stream<sk::int4>(shape);
-      streams::where(streamOf<float>(device, shape, values<float>(shape.size())), own, ofX, extent, extentOfX);
+      streams::where(streamOf<float>(device, shape, values<float>(shape.size())), own, ofX, extent,
+                     extentOfX);
       const auto index = [&](std::size_t i) { return kernelIndex(shape, i); };
       const auto wholeShape = [&](std::size_t) { return kernelShape(shape); };
       CHECK(difference(own.read(), index) == "");
@@ -62,7 +63,8 @@ TEST_CASE("an input of extent 1 repeats along that dimension") {
   };
   onEveryLayout([&](sk::Device& device) {
     for (const Row& row : rows) {
-      INFO(sk::toString(row.x) << sk::toString(row.y) << sk::toString(row.z) << " to " << sk::toString(row.r));
+      INFO(sk::toString(row.x) << sk::toString(row.y) << sk::toString(row.z) << " to "
+                               << sk::toString(row.r));
       const auto numbered = [](const sk::Shape& shape) {
         return HostArray<int>(shape, [](std::size_t i) { return static_cast<int>(i % 1000); });
       };
@@ -90,9 +92,15 @@ TEST_CASE("a view is written where it is, and nowhere else") {
     sk::Index begin, end;
   };
   const std::vector<Row> rows = {
-      {{10}, {3}, {7}},          {{200}, {60}, {130}},         {{9, 11}, {2, 3}, {7, 10}}, {{9, 11}, {0, 0}, {9, 11}},
-      {{67, 60}, {1, 2}, {66, 3}}, {{5, 67}, {4, 0}, {5, 67}}, {{3, 4, 5}, {1, 1, 1}, {3, 3, 4}},
-      {{3, 4, 5}, {0, 2, 0}, {3, 2, 5}}, {{2, 3, 4, 70}, {1, 0, 2, 5}, {2, 3, 4, 69}},
+      {{10}, {3}, {7}},
+      {{200}, {60}, {130}},
+      {{9, 11}, {2, 3}, {7, 10}},
+      {{9, 11}, {0, 0}, {9, 11}},
+      {{67, 60}, {1, 2}, {66, 3}},
+      {{5, 67}, {4, 0}, {5, 67}},
+      {{3, 4, 5}, {1, 1, 1}, {3, 3, 4}},
+      {{3, 4, 5}, {0, 2, 0}, {3, 2, 5}},
+      {{2, 3, 4, 70}, {1, 0, 2, 5}, {2, 3, 4, 69}},
   };
   onEveryLayout([&](sk::Device& device) {
     for (const Row& row : rows) {
@@ -100,7 +108,9 @@ TEST_CASE("a view is written where it is, and nowhere else") {
       HostArray<int> expected(row.shape, [](std::size_t i) { return -static_cast<int>(i); });
       auto stream = expected.on(device);
       auto part = stream.domain(row.begin, row.end);
-      CHECK(difference(part.read(), [&](std::size_t i) { return expected[inside(row.begin, positionOf(part.shape(), i))]; }) == "");
+      CHECK(difference(part.read(), [&](std::size_t i) {
+              return expected[inside(row.begin, positionOf(part.shape(), i))];
+            }) == "");
 
       streams::fill(42, part);                             // by a kernel
       for (std::size_t i = 0; i < static_cast<std::size_t>(part.size()); ++i) {
@@ -122,7 +132,8 @@ TEST_CASE("a view is written where it is, and nowhere else") {
 TEST_CASE("views are inputs, and an index in a view begins at 0") {
   onEveryLayout([](sk::Device& device) {
     for (const auto& [shape, begin, end] :
-         {std::tuple{sk::Shape{90}, sk::Index{7}, sk::Index{84}}, std::tuple{sk::Shape{12, 80}, sk::Index{2, 5}, sk::Index{9, 75}},
+         {std::tuple{sk::Shape{90}, sk::Index{7}, sk::Index{84}},
+          std::tuple{sk::Shape{12, 80}, sk::Index{2, 5}, sk::Index{9, 75}},
           std::tuple{sk::Shape{4, 5, 6}, sk::Index{1, 2, 3}, sk::Index{4, 5, 5}}}) {
       INFO(sk::toString(shape));
       const HostArray<int> x(shape, [](std::size_t i) { return static_cast<int>(i); });
@@ -141,19 +152,23 @@ TEST_CASE("views are inputs, and an index in a view begins at 0") {
       sk::Index corner = origin;
       for (int d = 0; d < shape.rank(); ++d) corner[d] = part.shape()[d];
       streams::add(part, whole, room.domain(origin, corner));   // to a view elsewhere
-      CHECK(difference(room.domain(origin, corner).read(), [&](std::size_t i) { return sum(i) / 2 * 3; }) == "");
+      CHECK(difference(room.domain(origin, corner).read(), [&](std::size_t i) { return sum(i) / 2 * 3; }) ==
+            "");
 
       auto own = device.stream<sk::int4>(shape);
-      auto ofX = device.stream<sk::int4>(shape), extent = device.stream<sk::int4>(shape), extentOfX = device.stream<sk::int4>(shape);
+      auto ofX = device.stream<sk::int4>(shape), extent = device.stream<sk::int4>(shape),
+           extentOfX = device.stream<sk::int4>(shape);
       const HostArray<float> f(shape, [](std::size_t) { return 0.0f; });
       auto fs = f.on(device);
-      streams::where(fs.domain(begin, end), own.domain(begin, end), ofX.domain(begin, end), extent.domain(begin, end),
-                     extentOfX.domain(begin, end));
+      streams::where(fs.domain(begin, end), own.domain(begin, end), ofX.domain(begin, end),
+                     extent.domain(begin, end), extentOfX.domain(begin, end));
       const auto index = [&](std::size_t i) { return kernelIndex(part.shape(), i); };
       CHECK(difference(own.domain(begin, end).read(), index) == "");
       CHECK(difference(ofX.domain(begin, end).read(), index) == "");
-      CHECK(difference(extent.domain(begin, end).read(), [&](std::size_t) { return kernelShape(part.shape()); }) == "");
-      CHECK(difference(extentOfX.domain(begin, end).read(), [&](std::size_t) { return kernelShape(part.shape()); }) == "");
+      CHECK(difference(extent.domain(begin, end).read(),
+                       [&](std::size_t) { return kernelShape(part.shape()); }) == "");
+      CHECK(difference(extentOfX.domain(begin, end).read(),
+                       [&](std::size_t) { return kernelShape(part.shape()); }) == "");
     }
   });
 }
@@ -167,12 +182,14 @@ TEST_CASE("outputs of one call may be views at different places") {
     auto b = device.stream<sk::int3>(shape);
     auto c = device.stream<bool>({6, 71});
     auto d = device.stream<sk::uint2>({7, 70});
-    streams::manyOutputs(streamOf<int>(device, shape, n), a.domain({3, 4}, {9, 74}), b, c.domain({0, 1}, {6, 71}),
-                         d.domain({1, 0}, {7, 70}));
+    streams::manyOutputs(streamOf<int>(device, shape, n), a.domain({3, 4}, {9, 74}), b,
+                         c.domain({0, 1}, {6, 71}), d.domain({1, 0}, {7, 70}));
     CHECK(difference(a.domain({3, 4}, {9, 74}).read(), [](std::size_t i) { return float(i) * 0.5f; }) == "");
     CHECK(difference(b.read(), [](std::size_t i) { return sk::int3{int(i), int(i) + 1, int(i) + 2}; }) == "");
-    CHECK(difference(c.domain({0, 1}, {6, 71}).read(), [](std::size_t i) { return std::uint8_t(i & 1u); }) == "");
-    CHECK(difference(d.domain({1, 0}, {7, 70}).read(), [](std::size_t i) { return sk::uint2{unsigned(i), 3 * unsigned(i)}; }) == "");
+    CHECK(difference(c.domain({0, 1}, {6, 71}).read(), [](std::size_t i) { return std::uint8_t(i & 1u); }) ==
+          "");
+    CHECK(difference(d.domain({1, 0}, {7, 70}).read(),
+                     [](std::size_t i) { return sk::uint2{unsigned(i), 3 * unsigned(i)}; }) == "");
   });
 }
 
@@ -184,14 +201,16 @@ TEST_CASE("a call may read and write one stream") {
       auto stream = streamOf<int>(device, shape, x);
       streams::add(stream, stream, stream);
       streams::add(stream, stream, stream);
-      CHECK(difference(stream.read(), [&](std::size_t i) { return static_cast<int>(4u * unsigned(x[i])); }) == "");
+      CHECK(difference(stream.read(), [&](std::size_t i) { return static_cast<int>(4u * unsigned(x[i])); }) ==
+            "");
     }
     // a part shifted onto itself: every element is read before any is written
     std::vector<int> x(100);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<int>(i);
     auto stream = streamOf<int>(device, x);
     streams::add(stream.domain({0}, {90}), stream.domain({5}, {95}), stream.domain({10}, {100}));
-    CHECK(difference(stream.read(), [](std::size_t i) { return i < 10 ? int(i) : int(2 * (i - 10) + 5); }) == "");
+    CHECK(difference(stream.read(), [](std::size_t i) { return i < 10 ? int(i) : int(2 * (i - 10) + 5); }) ==
+          "");
     // a view that repeats, into the stream that it is a view of
     auto row = streamOf<int>(device, {1, 4}, {1, 2, 3, 4});
     streams::add(row.domain({0, 1}, {1, 2}), row, row);

@@ -45,7 +45,8 @@ TEST_CASE("swizzles read components in any order") {
     vectors::swizzles(streamOf<float4>(device, v), streamOf<int3>(device, n), a, b, c, d);
     CHECK(difference(a.read(), [&](std::size_t i) {
             const auto [x, y, z, w] = v[i];
-            return float4{w + x * 10 + x * 100, z + x * 10 + w * 100, y + y * 10 + z * 100, x + y * 10 + y * 100};
+            return float4{w + x * 10 + x * 100, z + x * 10 + w * 100, y + y * 10 + z * 100,
+                          x + y * 10 + y * 100};
           }) == "");
     CHECK(difference(b.read(), [&](std::size_t i) {
             const auto [x, y, z, w] = v[i];
@@ -102,7 +103,9 @@ TEST_CASE("components can be chosen by a number that is not constant") {
     auto c = made<int3>(device);
     auto d = made<bool4>(device);
     vectors::components(streamOf<float4>(device, v), streamOf<int>(device, n), a, b, c, d);
-    const auto component = [&](std::size_t i, int k) { return std::array{v[i].x, v[i].y, v[i].z, v[i].w}[std::size_t(k)]; };
+    const auto component = [&](std::size_t i, int k) {
+      return std::array{v[i].x, v[i].y, v[i].z, v[i].w}[std::size_t(k)];
+    };
     CHECK(difference(a.read(), [&](std::size_t i) {
             float s[4] = {v[i].x, v[i].y, v[i].z, v[i].w};
             const int k = n[i] & 3;
@@ -160,16 +163,22 @@ TEST_CASE("operators work by components, and with scalars") {
   const auto v = values<float4>(count), w = values<float4>(count, 1);
   const auto s = values<float>(count, 2);
   onEveryProfile([&](sk::Device& device) {
-    auto a = made<float4>(device), b = made<float4>(device), c = made<float4>(device), d = made<float4>(device);
-    vectors::floats(streamOf<float4>(device, v), streamOf<float4>(device, w), streamOf<float>(device, s), a, b, c, d);
+    auto a = made<float4>(device), b = made<float4>(device), c = made<float4>(device),
+         d = made<float4>(device);
+    vectors::floats(streamOf<float4>(device, v), streamOf<float4>(device, w), streamOf<float>(device, s), a,
+                    b, c, d);
     const auto expect = [&](const auto& f) {
-      return [&, f](std::size_t i) { return by4([&](float p, float q) { return f(p, q, s[i]); }, v[i], w[i]); };
+      return
+          [&, f](std::size_t i) { return by4([&](float p, float q) { return f(p, q, s[i]); }, v[i], w[i]); };
     };
-    CHECK(difference(a.read(), expect([](float p, float q, float r) { return p * q + r * p - q / 4 + (1 - p); })) == "");
+    CHECK(difference(a.read(), expect([](float p, float q, float r) {
+                       return p * q + r * p - q / 4 + (1 - p);
+                     })) == "");
     CHECK(difference(b.read(), expect([](float p, float q, float r) {
-            return -p + (p - q) * (p + q) - (q - (p - r));
-          })) == "");
-    CHECK(difference(c.read(), expect([](float p, float q, float r) { return ((p + q) * r - 1) / 2 * 4; })) == "");
+                       return -p + (p - q) * (p + q) - (q - (p - r));
+                     })) == "");
+    CHECK(difference(c.read(), expect([](float p, float q, float r) { return ((p + q) * r - 1) / 2 * 4; })) ==
+          "");
     CHECK(difference(d.read(), [&](std::size_t i) {
             const float4 e = by4([&](float p) { return 2 * p + s[i] + w[i].x * v[i].y; }, v[i]);
             return float4{e.y, e.x, e.w, e.z};
@@ -191,21 +200,21 @@ TEST_CASE("integer operators work by components, and with scalars") {
       return [&, f](std::size_t i) { return by4([&](int p, int q) { return f(p, q, s[i]); }, v[i], w[i]); };
     };
     CHECK(difference(a.read(), expect([](int p, int q, int r) {
-            return p + q * 3 - r + (p ^ q) + (p & 0xff) - (15 | q);
-          })) == "");
+                       return p + q * 3 - r + (p ^ q) + (p & 0xff) - (15 | q);
+                     })) == "");
     CHECK(difference(b.read(), expect([](int p, int q, int r) {
-            const int o = (q & 255) + 1;
-            return p / o + p % o + p / 5 + r % o;
-          })) == "");
+                       const int o = (q & 255) + 1;
+                       return p / o + p % o + p / 5 + r % o;
+                     })) == "");
     CHECK(difference(c.read(), expect([](int p, int q, int) {
-            const int u = q & 7;
-            return (p << u) ^ (p >> u) ^ (p >> 3) ^ ~q ^ (1 << u);
-          })) == "");
+                       const int u = q & 7;
+                       return (p << u) ^ (p >> u) ^ (p >> 3) ^ ~q ^ (1 << u);
+                     })) == "");
     CHECK(difference(d.read(), expect([](int p, int q, int r) {
-            int e = ((p + q - 1) ^ p) << 1;
-            e >>= q & 7;
-            return -((e | 4) & ~r);
-          })) == "");
+                       int e = ((p + q - 1) ^ p) << 1;
+                       e >>= q & 7;
+                       return -((e | 4) & ~r);
+                     })) == "");
   });
 }
 
@@ -214,15 +223,20 @@ TEST_CASE("uint operators wrap by components") {
   const auto s = values<std::uint32_t>(count, 2);
   onEveryProfile([&](sk::Device& device) {
     auto a = made<uint4>(device), b = made<uint4>(device);
-    vectors::uints(streamOf<uint4>(device, v), streamOf<uint4>(device, w), streamOf<std::uint32_t>(device, s), a, b);
+    vectors::uints(streamOf<uint4>(device, v), streamOf<uint4>(device, w), streamOf<std::uint32_t>(device, s),
+                   a, b);
     CHECK(difference(a.read(), [&](std::size_t i) {
-            return by4([&](unsigned p, unsigned q) {
-              const unsigned u = q & 31u, o = q | 1u;
-              return (p << u) + (p >> u) * 3u + p / o - p % o + (p ^ s[i]) + -q;
-            }, v[i], w[i]);
+            return by4(
+                [&](unsigned p, unsigned q) {
+                  const unsigned u = q & 31u, o = q | 1u;
+                  return (p << u) + (p >> u) * 3u + p / o - p % o + (p ^ s[i]) + -q;
+                },
+                v[i], w[i]);
           }) == "");
     CHECK(difference(b.read(), [&](std::size_t i) {
-            return by4([](unsigned p, unsigned q) { return ((p * q + 0xffffffffu) >> (q & 31u)) % 1000u + ~p; }, v[i], w[i]);
+            return by4(
+                [](unsigned p, unsigned q) { return ((p * q + 0xffffffffu) >> (q & 31u)) % 1000u + ~p; },
+                v[i], w[i]);
           }) == "");
   });
 }
@@ -243,24 +257,33 @@ TEST_CASE("comparisons of vectors give masks by components") {
             return bool4{v[i].x < w[i].x, v[i].y >= w[i].y, v[i].z == w[i].z, v[i].w != w[i].w};
           }) == "");
     CHECK(difference(b.read(), [&](std::size_t i) {
-            return by4([](float p, float q) {
-              return -((p < q) + (p <= q) * 2 + (p > q) * 4 + (p >= q) * 8 + (p == q) * 16 + (p != q) * 32);
-            }, v[i], w[i]);
+            return by4(
+                [](float p, float q) {
+                  return -((p < q) + (p <= q) * 2 + (p > q) * 4 + (p >= q) * 8 + (p == q) * 16 +
+                           (p != q) * 32);
+                },
+                v[i], w[i]);
           }) == "");
     CHECK(difference(c.read(), [&](std::size_t i) {
             const auto [x, y, z, u] = v[i];
             const auto [p, q, r, t] = w[i];
             const bool anyLess = x < p || y < q || z < r || u < t, allLess = x < p && y < q && z < r && u < t;
             const bool anyEqual = x == p || y == q || z == r || u == t;
-            const bool bothNegative = (x < p && p < 0) || (y < q && q < 0) || (z < r && r < 0) || (u < t && t < 0);
+            const bool bothNegative =
+                (x < p && p < 0) || (y < q && q < 0) || (z < r && r < 0) || (u < t && t < 0);
             return int4{anyLess + 2 * allLess + 4 * anyEqual + 8 * !anyEqual, allLess ? 2 : 1,
-                        !anyEqual ? 1 : bothNegative ? 2 : 3,
+                        !anyEqual      ? 1
+                        : bothNegative ? 2
+                                       : 3,
                         (x < r || y < t) + 2 * (x >= q && y >= r && z >= t)};
           }) == "");
     CHECK(difference(d.read(), [&](std::size_t i) {
             const bool first = v[i].x < w[i].x;
-            return by4([&](float p, float q) { return (p < q ? p : q) + (p == q ? 100 : 200) + (first ? q : p) * 1000; },
-                       v[i], w[i]);
+            return by4(
+                [&](float p, float q) {
+                  return (p < q ? p : q) + (p == q ? 100 : 200) + (first ? q : p) * 1000;
+                },
+                v[i], w[i]);
           }) == "");
   });
 }
@@ -286,10 +309,12 @@ TEST_CASE("vectors of integers and bools are compared and selected") {
             return int3{v[i].x, v[i].x > 0 ? v[i].y : w[i].y, w[i].z};
           }) == "");
     CHECK(difference(d.read(), [&](std::size_t i) {
-            return by3([](int x, int y) {
-              const unsigned r = unsigned(x), s = unsigned(y);
-              return (r < s ? s - r : r - s) + unsigned(r >= s);
-            }, v[i], w[i]);
+            return by3(
+                [](int x, int y) {
+                  const unsigned r = unsigned(x), s = unsigned(y);
+                  return (r < s ? s - r : r - s) + unsigned(r >= s);
+                },
+                v[i], w[i]);
           }) == "");
 
     auto ba = made<bool4>(device), bb = made<bool4>(device);
@@ -302,8 +327,9 @@ TEST_CASE("vectors of integers and bools are compared and selected") {
     CHECK(difference(bb.read(), [&](std::size_t i) { return bool4{p[i].y, p[i].x, q[i].y, q[i].x}; }) == "");
     CHECK(difference(bc.read(), [&](std::size_t i) {
             const bool4 s = p[i], t = q[i];
-            return int4{s.x + t.x * 2 + (s.x || s.y || s.z || s.w) * 4, s.y + t.y * 2 + (t.x && t.y && t.z && t.w) * 4,
-                        s.z + t.z * 2 + (t.x || t.y) * 4, s.w + t.w * 2 + (s.z && s.w) * 4};
+            return int4{s.x + t.x * 2 + (s.x || s.y || s.z || s.w) * 4,
+                        s.y + t.y * 2 + (t.x && t.y && t.z && t.w) * 4, s.z + t.z * 2 + (t.x || t.y) * 4,
+                        s.w + t.w * 2 + (s.z && s.w) * 4};
           }) == "");
     CHECK(difference(bd.read(), [&](std::size_t i) {
             const bool4 s = p[i], t = q[i];

@@ -297,13 +297,14 @@ TEST_CASE("a kernel with loops leaves fragments beside its domain before it does
     return part(fragmentProgram(glsl, looping, variant), "void main() {\n", ";\n");
   };
   CHECK(first({.access = {{}, {}, {}, {}}}) ==
-        "void main() {\n  if (any(greaterThanEqual(uvec2(ivec2(gl_FragCoord.xy)), uvec2(sk_domain_shape.xy)))) return;\n");
+        "void main() {\n  if (any(greaterThanEqual(uvec2(ivec2(gl_FragCoord.xy)), "
+        "uvec2(sk_domain_shape.xy)))) return;\n");
   CHECK(first({.domainView = true, .access = {{}, {}, {}, {}}}) ==
         "void main() {\n  if (any(greaterThanEqual(uvec2(ivec2(gl_FragCoord.xy) - sk_domain_origin.xy), "
         "uvec2(sk_domain_shape.xy)))) return;\n");
   CHECK(first({.domain = Domain::Linear, .access = {{}, {}, {}, {}}}) ==
         "void main() {\n  if ((int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x)) >= "
         "sk_domain_stride.w * sk_domain_shape.w) return;\n");
-  CHECK(fragmentProgram(glsl, looping, {.domain = Domain::LinearBox, .access = {{}, {}, {}, {}}}).find("return;") ==
-        std::string::npos);
+  CHECK(fragmentProgram(glsl, looping, {.domain = Domain::LinearBox, .access = {{}, {}, {}, {}}})
+            .find("return;") == std::string::npos);
 }

@@ -2,47 +2,61 @@
 //
 // Control flow, as text that is both a .sk file and C++: what skc makes of it is compared with what
 // the C++ compiler makes of it. Only scalars, and nothing that C++ leaves undefined.
-#define CONTROL_FLOW_CASES(CASE)                                                                     \
-  CASE(ifElseChain) CASE(ifWithInit) CASE(elseOfWhich) CASE(forSum) CASE(forEmptyParts)             \
-  CASE(forTwoVariables) CASE(forTwoSteps) CASE(forBreak) CASE(forContinue) CASE(forStepWithEffect)   \
-  CASE(forLimitWithEffect) CASE(forContinueWithEffect) CASE(whileLoop) CASE(whilePostfix)            \
-  CASE(whilePrefix) CASE(whileAssignment) CASE(whileAndEffect) CASE(whileContinue) CASE(whileTrue)   \
-  CASE(doWhile) CASE(doWhileEffect) CASE(doWhileContinue) CASE(doOnce) CASE(nestedLoops)             \
-  CASE(nestedBreaks) CASE(nestedEffects) CASE(triangle) CASE(returnInLoop) CASE(returnInNestedLoop)  \
-  CASE(returnInSwitch) CASE(earlyReturns) CASE(returnInBothBranches) CASE(switchPlain)               \
-  CASE(switchFallthrough) CASE(switchSharedLabels) CASE(switchNoDefault) CASE(switchDefaultFirst)    \
-  CASE(switchDefaultInMiddle) CASE(switchDefaultFalls) CASE(switchEmptyLast) CASE(switchOnlyDefault) \
-  CASE(switchNoCases) CASE(switchUnsigned) CASE(switchNegative) CASE(switchOnExpression)             \
-  CASE(switchOnBool) CASE(switchDeclarations) CASE(switchInLoopBreak) CASE(switchInLoopContinue)     \
-  CASE(loopInSwitch) CASE(switchInSwitch) CASE(switchBreakInIf) CASE(shadowing) CASE(scopes)         \
-  CASE(collatz) CASE(greatestDivisor) CASE(isPrime) CASE(bubbleSort) CASE(unreachableTail)
+#define CONTROL_FLOW_CASES(CASE)                                                                             \
+  CASE(ifElseChain)                                                                                          \
+  CASE(ifWithInit) CASE(elseOfWhich) CASE(forSum) CASE(forEmptyParts) CASE(forTwoVariables) CASE(            \
+      forTwoSteps) CASE(forBreak) CASE(forContinue) CASE(forStepWithEffect) CASE(forLimitWithEffect)         \
+      CASE(forContinueWithEffect) CASE(whileLoop) CASE(whilePostfix) CASE(whilePrefix) CASE(whileAssignment) \
+          CASE(whileAndEffect) CASE(whileContinue) CASE(whileTrue) CASE(doWhile) CASE(doWhileEffect)         \
+              CASE(doWhileContinue) CASE(doOnce) CASE(nestedLoops) CASE(nestedBreaks) CASE(nestedEffects)    \
+                  CASE(triangle) CASE(returnInLoop) CASE(returnInNestedLoop) CASE(returnInSwitch)            \
+                      CASE(earlyReturns) CASE(returnInBothBranches) CASE(switchPlain)                        \
+                          CASE(switchFallthrough) CASE(switchSharedLabels) CASE(switchNoDefault)             \
+                              CASE(switchDefaultFirst) CASE(switchDefaultInMiddle) CASE(switchDefaultFalls)  \
+                                  CASE(switchEmptyLast) CASE(switchOnlyDefault) CASE(switchNoCases)          \
+                                      CASE(switchUnsigned) CASE(switchNegative) CASE(switchOnExpression)     \
+                                          CASE(switchOnBool) CASE(switchDeclarations)                        \
+                                              CASE(switchInLoopBreak) CASE(switchInLoopContinue)             \
+                                                  CASE(loopInSwitch) CASE(switchInSwitch)                    \
+                                                      CASE(switchBreakInIf) CASE(shadowing) CASE(scopes)     \
+                                                          CASE(collatz) CASE(greatestDivisor) CASE(isPrime)  \
+                                                              CASE(bubbleSort) CASE(unreachableTail)
 
 #include "switches.hpp"
 
 namespace control {
 
 inline int ifElseChain(int x, int y) {
-  if (x < 0) return -1;
-  else if (x < y) return 1;
-  else if (x == y) return 2;
-  else return 3;
+  if (x < 0)
+    return -1;
+  else if (x < y)
+    return 1;
+  else if (x == y)
+    return 2;
+  else
+    return 3;
 }
 
 inline int ifWithInit(int x, int y) {
-  if (int d = x - y; d > 2) return d;
-  else if (int e = d * d; e < 9) return 100 + e;
+  if (int d = x - y; d > 2)
+    return d;
+  else if (int e = d * d; e < 9)
+    return 100 + e;
   return -1;
 }
 
 inline int elseOfWhich(int x, int y) {
   int r = 0;
   if (x > 0) {
-    if (y > 0) r = 1;
-    else r = 2;
+    if (y > 0)
+      r = 1;
+    else
+      r = 2;
   }
   if (x > 3) {
     if (y > 3) r += 10;
-  } else r += 20;
+  } else
+    r += 20;
   return r;
 }
 
@@ -307,8 +321,10 @@ inline int earlyReturns(int x, int y) {
 
 inline int returnInBothBranches(int x, int y) {
   if (x > y) {
-    if (x > 10) return 1;
-    else return 2;
+    if (x > 10)
+      return 1;
+    else
+      return 2;
   } else {
     for (int i = 0;; ++i) {
       if (i > 4) return 3 + i;
@@ -334,11 +350,23 @@ inline int shadowing(int x, int y) {
 
 inline int scopes(int x, int y) {
   int r = 0;
-  { int a = x; r += a; }
-  { int a = y; r += 10 * a; }
+  {
+    int a = x;
+    r += a;
+  }
+  {
+    int a = y;
+    r += 10 * a;
+  }
   for (int a = 0; a < 2; ++a) r += a;
   for (int a = 5; a > 2; --a) r -= a;
-  if (x > 0) { int a = 3; r += a; } else { int a = 4; r -= a; }
+  if (x > 0) {
+    int a = 3;
+    r += a;
+  } else {
+    int a = 4;
+    r -= a;
+  }
   return r;
 }
 

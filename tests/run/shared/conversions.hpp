@@ -2,13 +2,16 @@
 //
 // Conversions between bool, int, uint and float. Text that is both a .sk file and C++ (see
 // control_flow.hpp); no float is converted to an integer type that cannot hold it.
-#define FLOAT_TO_INT_CASES(CASE) CASE(truncate) CASE(castSpellings) CASE(toUnsigned) CASE(floatTests) CASE(intFromSum)
-#define INT_TO_FLOAT_CASES(CASE)                                                         \
-  CASE(toFloat) CASE(unsignedToFloat) CASE(boolToFloat) CASE(mixedArithmetic)            \
-  CASE(integerDivisionFirst) CASE(mixedCompound) CASE(mixedComparison) CASE(mixedConditional)
-#define INT_TO_INT_CASES(CASE)                                                           \
-  CASE(toBool) CASE(signs) CASE(enumerators) CASE(scopedEnumerators) CASE(throughFloat)  \
-  CASE(compoundThroughFloat) CASE(incrementFloat) CASE(characters)
+#define FLOAT_TO_INT_CASES(CASE) \
+  CASE(truncate) CASE(castSpellings) CASE(toUnsigned) CASE(floatTests) CASE(intFromSum)
+#define INT_TO_FLOAT_CASES(CASE)                                                           \
+  CASE(toFloat)                                                                            \
+  CASE(unsignedToFloat) CASE(boolToFloat) CASE(mixedArithmetic) CASE(integerDivisionFirst) \
+      CASE(mixedCompound) CASE(mixedComparison) CASE(mixedConditional)
+#define INT_TO_INT_CASES(CASE)                                                                        \
+  CASE(toBool)                                                                                        \
+  CASE(signs) CASE(enumerators) CASE(scopedEnumerators) CASE(throughFloat) CASE(compoundThroughFloat) \
+      CASE(incrementFloat) CASE(characters)
 
 namespace conversions {
 
@@ -39,7 +42,9 @@ inline int intFromSum(float x, float y) {
 }
 
 inline float toFloat(int x, int y) { return float(x) + y * 0.5f; }
-inline float unsignedToFloat(int x, int y) { return float(uint(x)) - static_cast<float>(static_cast<uint>(y)); }
+inline float unsignedToFloat(int x, int y) {
+  return float(uint(x)) - static_cast<float>(static_cast<uint>(y));
+}
 inline float boolToFloat(int x, int y) { return float(x > y) + (x == y) * 0.25f; }
 inline float mixedArithmetic(int x, int y) { return x * 0.25f + y - 2 * (x - 0.5f) + (y & 3) / 2.0f; }
 inline float integerDivisionFirst(int x, int y) { return x / 3 + y / 2 * 1.5f + (x > 0) / 2.0f; }
@@ -51,7 +56,9 @@ inline float mixedCompound(int x, int y) {
   f /= 4;
   return f;
 }
-inline float mixedComparison(int x, int y) { return (x < y + 0.5f) + 2 * (x == float(y)) + 4.0f * (x >= 2.5f); }
+inline float mixedComparison(int x, int y) {
+  return (x < y + 0.5f) + 2 * (x == float(y)) + 4.0f * (x >= 2.5f);
+}
 inline float mixedConditional(int x, int y) { return (x > y ? x : 0.5f) + (y > 0 ? 1.5f : y); }
 
 inline int toBool(int x, int y) {

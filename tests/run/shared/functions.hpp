@@ -2,16 +2,17 @@
 //
 // Helper functions, templates, constants, names. Text that is both a .sk file and C++ (see
 // control_flow.hpp).
-#define FUNCTION_CASES(CASE)                                                                    \
-  CASE(overloads) CASE(overloadsByCount) CASE(defaultArguments) CASE(defaultFromCall)           \
-  CASE(references) CASE(constReferences) CASE(voidFunctions) CASE(templates) CASE(templateValues) \
-  CASE(templateExplicit) CASE(templateRecursion) CASE(specialised) CASE(abbreviated)            \
-  CASE(ifConstexpr) CASE(constants) CASE(constantExpressions) CASE(localConstants)              \
-  CASE(namespaces) CASE(nestedNamespaces) CASE(usings) CASE(aliases) CASE(autoTypes)            \
-  CASE(macros) CASE(macroFunctions) CASE(conditionalText) CASE(glslWords) CASE(tooLikeOurs)     \
-  CASE(sameAsIntrinsics) CASE(declaredFirst) CASE(deepCalls) CASE(manyArguments)                \
-  CASE(boolResults) CASE(floatHelpers) CASE(constevalCalls) CASE(staticAsserts)                 \
-  CASE(parameterNames) CASE(unicodeFree)
+#define FUNCTION_CASES(CASE)                                                                                 \
+  CASE(overloads)                                                                                            \
+  CASE(overloadsByCount) CASE(defaultArguments) CASE(defaultFromCall) CASE(references) CASE(constReferences) \
+      CASE(voidFunctions) CASE(templates) CASE(templateValues) CASE(templateExplicit)                        \
+          CASE(templateRecursion) CASE(specialised) CASE(abbreviated) CASE(ifConstexpr) CASE(constants)      \
+              CASE(constantExpressions) CASE(localConstants) CASE(namespaces) CASE(nestedNamespaces)         \
+                  CASE(usings) CASE(aliases) CASE(autoTypes) CASE(macros) CASE(macroFunctions)               \
+                      CASE(conditionalText) CASE(glslWords) CASE(tooLikeOurs) CASE(sameAsIntrinsics)         \
+                          CASE(declaredFirst) CASE(deepCalls) CASE(manyArguments) CASE(boolResults)          \
+                              CASE(floatHelpers) CASE(constevalCalls) CASE(staticAsserts)                    \
+                                  CASE(parameterNames) CASE(unicodeFree)
 
 namespace functions {
 
@@ -45,7 +46,9 @@ inline int references(int x, int y) {
   return q * 100 + r * 10 + s;
 }
 inline int larger(const int& a, const int& b) { return a > b ? a : b; }
-inline int constReferences(int x, int y) { return larger(x, y) + larger(3, x) * 10 + larger(larger(x, 1), y + 1); }
+inline int constReferences(int x, int y) {
+  return larger(x, y) + larger(3, x) * 10 + larger(larger(x, 1), y + 1);
+}
 inline void nothing() {}
 inline void setIf(bool condition, int& a, int value) {
   if (!condition) return;
@@ -68,7 +71,8 @@ float sumOf(A a, B b) {
   return float(a) + float(b);
 }
 inline int templates(int x, int y) {
-  return clampTo(x, 0, 5) + int(4 * clampTo(x * 0.5f, -1.0f, 1.0f)) + int(sumOf(x, 0.5f) * 2) + int(sumOf(true, y));
+  return clampTo(x, 0, 5) + int(4 * clampTo(x * 0.5f, -1.0f, 1.0f)) + int(sumOf(x, 0.5f) * 2) +
+         int(sumOf(true, y));
 }
 template <int N>
 int power(int x) {
@@ -84,8 +88,10 @@ T times(int x) {
 inline int templateExplicit(int x, int y) { return int(times<float>(x) * 2) + times<int, 5>(y); }
 template <int N>
 int factorial(int x) {
-  if constexpr (N <= 1) return x;
-  else return N * factorial<N - 1>(x);
+  if constexpr (N <= 1)
+    return x;
+  else
+    return N * factorial<N - 1>(x);
 }
 inline int templateRecursion(int x, int y) { return factorial<4>(x) + factorial<1>(y); }
 template <class T>
@@ -140,7 +146,9 @@ inline int namespaces(int x, int y) { return step(x) + 10 * other::step(x) + oth
 namespace other::deep {
 inline int later(int x) { return step(x) * depth; }
 }  // namespace other::deep
-inline int nestedNamespaces(int x, int y) { return other::deep::step(x) + 10 * other::deep::later(y) + functions::other::deep::depth; }
+inline int nestedNamespaces(int x, int y) {
+  return other::deep::step(x) + 10 * other::deep::later(y) + functions::other::deep::depth;
+}
 inline int usings(int x, int y) {
   using other::deep::later;
   namespace shortName = other::deep;
@@ -175,7 +183,9 @@ inline int macros(int x, int y) {
   inline int name(int v) { return v + (by); }
 DEFINE_ADDER(addTen, 10)
 DEFINE_ADDER(addLimit, LIMIT)
-inline int macroFunctions(int x, int y) { return addTen(x) + addLimit(y) * 2 + SUM_OF(x, y) + SUM_OF(x, y, 1); }
+inline int macroFunctions(int x, int y) {
+  return addTen(x) + addLimit(y) * 2 + SUM_OF(x, y) + SUM_OF(x, y, 1);
+}
 inline int conditionalText(int x, int y) {
 #if LIMIT > 5 && defined(SQUARE)
   int r = x;
@@ -194,11 +204,13 @@ inline int conditionalText(int x, int y) {
 inline int input(int attribute, int varying) { return attribute - varying; }
 inline int texture(int sampler2D) { return sampler2D * 2; }
 inline int glslWords(int x, int y) {
-  int in = x, out = y, inout = 3, uniform = 4, precise = 5, highp = 6, flat = 7, discard = 8, common = 1, filter = 2;
+  int in = x, out = y, inout = 3, uniform = 4, precise = 5, highp = 6, flat = 7, discard = 8, common = 1,
+      filter = 2;
   int vec4 = in + out, mat3 = inout, buffer = 9, gl_Position = 2, main = 3, ivec2 = 1, lowp = 2, smooth = 3;
-  int shared = vec4 * mat3 + buffer, layout = texture(x), output = input(uniform, y), active = 1, superp = 2, sample = 4;
-  return in + out + inout + uniform + precise + highp + flat + discard + common + filter + gl_Position + main + ivec2 +
-         lowp + smooth + shared + layout + output + active + superp + sample;
+  int shared = vec4 * mat3 + buffer, layout = texture(x), output = input(uniform, y), active = 1, superp = 2,
+      sample = 4;
+  return in + out + inout + uniform + precise + highp + flat + discard + common + filter + gl_Position +
+         main + ivec2 + lowp + smooth + shared + layout + output + active + superp + sample;
 }
 // Names like those of our own machinery, and names that GLSL reserves.
 inline int tooLikeOurs(int x, int y) {
@@ -233,7 +245,9 @@ inline bool isEven(int x) { return (x & 1) == 0; }
 inline bool isBetween(int x, int low, int high) { return low <= x && x < high; }
 inline int boolResults(int x, int y) { return isEven(x) + 2 * isBetween(x, 0, y) + 4 * !isEven(y); }
 inline float average(float a, float b) { return (a + b) * 0.5f; }
-inline int floatHelpers(int x, int y) { return int(average(x, y) * 2) + int(average(average(x, 1), 3.5f) * 8); }
+inline int floatHelpers(int x, int y) {
+  return int(average(x, y) * 2) + int(average(average(x, 1), 3.5f) * 8);
+}
 constexpr int square(int x) { return x * x; }
 constexpr int table5 = square(5);
 inline int constevalCalls(int x, int y) { return square(x) + table5 * y; }

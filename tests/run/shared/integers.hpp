@@ -2,17 +2,18 @@
 //
 // Integer arithmetic. Text that is both a .sk file and C++ (see control_flow.hpp). Signed overflow
 // and what else C++ leaves undefined does not happen here: sums that wrap are unsigned.
-#define INT_CASES(CASE)                                                                       \
-  CASE(sum) CASE(product) CASE(quotient) CASE(remainder) CASE(remainderByConstant)            \
-  CASE(quotientByConstant) CASE(bitAnd) CASE(bitOr) CASE(bitXor) CASE(complement)             \
-  CASE(negation) CASE(shiftLeft) CASE(shiftRight) CASE(shiftConstant) CASE(compare)           \
-  CASE(precedence) CASE(associativity) CASE(unaryMix) CASE(literals) CASE(bitTricks)          \
-  CASE(selfAssigned) CASE(minimum) CASE(boolsAsInts) CASE(hexAndBinary)
-#define UINT_CASES(CASE)                                                                      \
-  CASE(wrappingSum) CASE(wrappingProduct) CASE(unsignedQuotient) CASE(unsignedRemainder)      \
-  CASE(unsignedShifts) CASE(unsignedCompare) CASE(unsignedNegation) CASE(mixedSigns)          \
-  CASE(hash) CASE(rotate) CASE(popCount) CASE(multiplyHigh) CASE(largeLiterals)               \
-  CASE(bitFields) CASE(linearCongruence) CASE(powerModulo)
+#define INT_CASES(CASE)                                                                                      \
+  CASE(sum)                                                                                                  \
+  CASE(product) CASE(quotient) CASE(remainder) CASE(remainderByConstant) CASE(quotientByConstant)            \
+      CASE(bitAnd) CASE(bitOr) CASE(bitXor) CASE(complement) CASE(negation) CASE(shiftLeft) CASE(shiftRight) \
+          CASE(shiftConstant) CASE(compare) CASE(precedence) CASE(associativity) CASE(unaryMix)              \
+              CASE(literals) CASE(bitTricks) CASE(selfAssigned) CASE(minimum) CASE(boolsAsInts)              \
+                  CASE(hexAndBinary)
+#define UINT_CASES(CASE)                                                                                   \
+  CASE(wrappingSum)                                                                                        \
+  CASE(wrappingProduct) CASE(unsignedQuotient) CASE(unsignedRemainder) CASE(unsignedShifts)                \
+      CASE(unsignedCompare) CASE(unsignedNegation) CASE(mixedSigns) CASE(hash) CASE(rotate) CASE(popCount) \
+          CASE(multiplyHigh) CASE(largeLiterals) CASE(bitFields) CASE(linearCongruence) CASE(powerModulo)
 
 namespace integers {
 
@@ -22,7 +23,9 @@ inline int product(int x, int y) { return static_cast<int>(static_cast<uint>(x) 
 inline bool isUndefined(int x, int y) { return y == 0 || (y == -1 && x == -2147483647 - 1); }
 inline int quotient(int x, int y) { return isUndefined(x, y) ? 0 : x / y; }
 inline int remainder(int x, int y) { return isUndefined(x, y) ? 0 : x % y; }
-inline int remainderByConstant(int x, int y) { return x % 7 + (y % 16) * 3 + (x % -5) * 100 + (y % 2) * 1000; }
+inline int remainderByConstant(int x, int y) {
+  return x % 7 + (y % 16) * 3 + (x % -5) * 100 + (y % 2) * 1000;
+}
 inline int quotientByConstant(int x, int y) { return x / 3 - y / 16 + x / -7 + y / 2; }
 inline int bitAnd(int x, int y) { return x & y; }
 inline int bitOr(int x, int y) { return x | y; }
@@ -50,8 +53,8 @@ inline int precedence(int x, int y) {
 }
 inline int associativity(int x, int y) {
   int a = x & 255, b = (y & 63) + 1;
-  return a - b - 3 - (b - 4) + a / b / 2 + a % b % 3 + a / (b * 2) + a * (b / 2) - (a - (b - (a - 1))) + a / b * b +
-         a % (b + 1) * 2 + a * b % 7 + (a >> 1 >> 1) - (a >> (b & 3) << 1);
+  return a - b - 3 - (b - 4) + a / b / 2 + a % b % 3 + a / (b * 2) + a * (b / 2) - (a - (b - (a - 1))) +
+         a / b * b + a % (b + 1) * 2 + a * b % 7 + (a >> 1 >> 1) - (a >> (b & 3) << 1);
 }
 inline int unaryMix(int x, int y) {
   int a = x & 1023, b = y & 1023;
@@ -98,7 +101,8 @@ inline uint unsignedShifts(uint x, uint y) {
   return (x << s) ^ (x >> s) ^ (x >> 31) ^ (x << 31u);
 }
 inline uint unsignedCompare(uint x, uint y) {
-  return uint(x < y) + 2u * uint(x <= y) + 4u * uint(x > y) + 8u * uint(x >= y) + 16u * uint(x == y) + 32u * uint(x != y);
+  return uint(x < y) + 2u * uint(x <= y) + 4u * uint(x > y) + 8u * uint(x >= y) + 16u * uint(x == y) +
+         32u * uint(x != y);
 }
 inline uint unsignedNegation(uint x, uint y) { return -x + ~y + (0u - 1u) - -y; }
 inline uint mixedSigns(uint x, uint y) {
@@ -133,7 +137,9 @@ inline uint multiplyHigh(uint x, uint y) {
   uint low = a * c, mid = b * c + (low >> 16), carry = a * d + (mid & 0xffffu);
   return b * d + (mid >> 16) + (carry >> 16);
 }
-inline uint largeLiterals(uint x, uint y) { return (x ^ 0xdeadbeefu) + (y | 0x80000000u) + 4294967295u + 3000000000u; }
+inline uint largeLiterals(uint x, uint y) {
+  return (x ^ 0xdeadbeefu) + (y | 0x80000000u) + 4294967295u + 3000000000u;
+}
 inline uint bitFields(uint x, uint y) {
   uint packed = (x & 0x3ffu) | ((y & 0x3ffu) << 10) | ((x >> 22) << 20);
   return (packed >> 10 & 0x3ffu) * 3u + (packed & 0x3ffu) + (packed >> 20);

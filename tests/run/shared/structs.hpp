@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
 // Structs and arrays. Text that is both a .sk file and C++ (see control_flow.hpp).
-#define STRUCT_CASES(CASE)                                                                       \
-  CASE(membersReadAndWritten) CASE(copies) CASE(nested) CASE(memberFunctions)                    \
-  CASE(changingMemberFunctions) CASE(memberOverloads) CASE(operators) CASE(compoundOperators)    \
-  CASE(freeOperators) CASE(callAndIndexOperators) CASE(defaultMembers) CASE(designated)          \
-  CASE(zeroInitialised) CASE(returned) CASE(chained) CASE(byReference) CASE(memberByReference)   \
-  CASE(conditional) CASE(arrayOfStructs) CASE(arrayInStruct) CASE(arrayCopies) CASE(arrayZeroed) \
-  CASE(arrayDynamicIndex) CASE(arrayOfFloats) CASE(constantTable) CASE(structConstant)           \
-  CASE(staticMembers) CASE(localStruct) CASE(sameNames) CASE(structInLoop) CASE(selfAssignment)  \
-  CASE(arrayByReference) CASE(arrayParameter) CASE(boolMembers) CASE(templateStruct)
+#define STRUCT_CASES(CASE)                                                                             \
+  CASE(membersReadAndWritten)                                                                          \
+  CASE(copies) CASE(nested) CASE(memberFunctions) CASE(changingMemberFunctions) CASE(memberOverloads)  \
+      CASE(operators) CASE(compoundOperators) CASE(freeOperators) CASE(callAndIndexOperators)          \
+          CASE(defaultMembers) CASE(designated) CASE(zeroInitialised) CASE(returned) CASE(chained)     \
+              CASE(byReference) CASE(memberByReference) CASE(conditional) CASE(arrayOfStructs)         \
+                  CASE(arrayInStruct) CASE(arrayCopies) CASE(arrayZeroed) CASE(arrayDynamicIndex)      \
+                      CASE(arrayOfFloats) CASE(constantTable) CASE(structConstant) CASE(staticMembers) \
+                          CASE(localStruct) CASE(sameNames) CASE(structInLoop) CASE(selfAssignment)    \
+                              CASE(arrayByReference) CASE(arrayParameter) CASE(boolMembers)            \
+                                  CASE(templateStruct)
 
 namespace structs {
 
@@ -134,7 +136,8 @@ inline int defaultMembers(int x, int y) {
   Defaults t = {x};
   Defaults u{x, 2.5f, false, y};
   Segment v{{1, 2}, {3, y}};
-  return s.a + int(s.b * 2) + s.c + s.d + t.a * 10 + int(t.b * 2) + t.c + t.d + int(u.b * 2) + u.c + u.d + v.weight;
+  return s.a + int(s.b * 2) + s.c + s.d + t.a * 10 + int(t.b * 2) + t.c + t.d + int(u.b * 2) + u.c + u.d +
+         v.weight;
 }
 inline int designated(int x, int y) {
   Point p = {.x = y, .y = x};
@@ -159,7 +162,9 @@ inline int returned(int x, int y) {
   Point p = make(x, y);
   return p.sum() + make(y, x).x * 10 + makeSegment(x, y).length2() + makeSegment(y, x).from.y;
 }
-inline int chained(int x, int y) { return make(x, y).turned().turned().turned().dot(make(1, 2) + make(y, 3)); }
+inline int chained(int x, int y) {
+  return make(x, y).turned().turned().turned().dot(make(1, 2) + make(y, 3));
+}
 inline void grow(Segment& s, int by) {
   s.to.x += by;
   s.weight *= 2;

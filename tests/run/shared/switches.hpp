@@ -86,7 +86,8 @@ inline int switchEmptyLast(int x, int y) {
     default:;
   }
   switch (y) {
-    case 0: {}
+    case 0: {
+    }
   }
   return r;
 }
@@ -101,8 +102,7 @@ inline int switchOnlyDefault(int x, int y) {
 
 inline int switchNoCases(int x, int y) {
   int i = x;
-  switch (i++) {
-  }
+  switch (i++) {}
   return i + y;
 }
 
@@ -159,15 +159,14 @@ inline int switchDeclarations(int x, int y) {
     case 1: {
       int t = y * 3;
       r = t + 1;
-    } [[fallthrough]];
+    }
+      [[fallthrough]];
     case 2:
       int late;
       late = y + 5;
       r += late;
       break;
-    case 3:
-      late = 4;
-      r = late;
+    case 3: late = 4; r = late;
   }
   return r;
 }
@@ -211,9 +210,7 @@ inline int loopInSwitch(int x, int y) {
       }
       r += 100;
       break;
-    default:
-      do {
-        r += 3;
+    default: do { r += 3;
       } while (r < y);
   }
   return r;

@@ -13,7 +13,8 @@ namespace run_tests {
 
 /// Folds the elements of the box of `input` from `begin` on, of the given shape, in row-major order.
 template <class A, class T, class Fold>
-A foldBox(const HostArray<T>& input, const Position& begin, const sk::Shape& box, A accumulator, const Fold& fold) {
+A foldBox(const HostArray<T>& input, const Position& begin, const sk::Shape& box, A accumulator,
+          const Fold& fold) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(box.size()); ++i) {
     Position p = positionOf(box, i);
     for (std::size_t d = 0; d < 4; ++d) p[d] += begin[d];
@@ -24,7 +25,8 @@ A foldBox(const HostArray<T>& input, const Position& begin, const sk::Shape& box
 
 /// The fold of each block of `input`, for an output whose extents divide the input's.
 template <class A, class T, class Fold>
-HostArray<A> foldBlocks(const HostArray<T>& input, const sk::Shape& output, const A& identity, const Fold& fold) {
+HostArray<A> foldBlocks(const HostArray<T>& input, const sk::Shape& output, const A& identity,
+                        const Fold& fold) {
   sk::Shape block = input.shape();
   for (int d = 0; d < block.rank(); ++d) block = block.with(d, block[d] / output[d]);
   return HostArray<A>(output, [&](std::size_t i) {

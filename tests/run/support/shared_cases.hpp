@@ -42,19 +42,25 @@ template <class R, class T>
 class SharedCases {
  public:
   SharedCases(sk::Device& device, const Samples<T>& samples)
-      : samples_(samples), x_(streamOf<T>(device, samples.x)), y_(streamOf<T>(device, samples.y)),
+      : samples_(samples),
+        x_(streamOf<T>(device, samples.x)),
+        y_(streamOf<T>(device, samples.y)),
         r_(device.stream<R>({static_cast<std::int64_t>(samples.x.size())})) {}
 
   template <class Kernel>
-  void check(const char* name, const Kernel& kernel, R (*function)(T, T)) {
+  void check(const char* name, const Kernel& kernel, R (*function)(T, T),
+             bool (*agree)(const R&, const R&) = isSame<R>) {
     kernel(x_, y_, r_);
     std::size_t last = 0;
     const auto results = r_.read();
-    const std::string wrong = difference(results, [&](std::size_t i) {
-      const R expected = function(samples_.x[i], samples_.y[i]);
-      if (!isSame(results[i], expected)) last = i;
-      return expected;
-    });
+    const std::string wrong = difference(
+        results, results.size(),
+        [&](std::size_t i) {
+          const R expected = function(samples_.x[i], samples_.y[i]);
+          if (!agree(results[i], expected)) last = i;
+          return expected;
+        },
+        agree);
     INFO(name << ", last at x = " << samples_.x[last] << ", y = " << samples_.y[last]);
     CHECK(wrong == "");
   }

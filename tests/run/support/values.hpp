@@ -57,7 +57,8 @@ std::vector<sk::HostElement<T>> values(std::int64_t count, std::uint32_t seed = 
 }
 
 template <class T>
-sk::Stream<T> streamOf(sk::Device& device, const sk::Shape& shape, const std::vector<sk::HostElement<T>>& elements) {
+sk::Stream<T> streamOf(sk::Device& device, const sk::Shape& shape,
+                       const std::vector<sk::HostElement<T>>& elements) {
   sk::Stream<T> stream = device.stream<T>(shape);
   stream.write(elements);
   return stream;
@@ -86,7 +87,10 @@ void show(std::ostream& out, const T& value) {
     out << '(';
     for (const auto component : {value.x, value.y, value.z}) show(out << ' ', component);
     out << " )";
-  } else if constexpr (requires { value.x; value.y; }) {
+  } else if constexpr (requires {
+                         value.x;
+                         value.y;
+                       }) {
     out << '(';
     for (const auto component : {value.x, value.y}) show(out << ' ', component);
     out << " )";
@@ -107,7 +111,8 @@ bool isSame(const T& a, const T& b) {
 
 /// "" where `actual` is `expected(i)` for all i in [0, count), by `agree`.
 template <class Actual, class Expected, class Agree>
-std::string difference(const Actual& actual, std::size_t count, const Expected& expected, const Agree& agree) {
+std::string difference(const Actual& actual, std::size_t count, const Expected& expected,
+                       const Agree& agree) {
   std::ostringstream out;
   if (actual.size() != count) {
     out << actual.size() << " elements, not " << count;
@@ -130,7 +135,8 @@ std::string difference(const Actual& actual, std::size_t count, const Expected& 
 /// "" where every element is exactly the expected one (NaN for NaN).
 template <class T>
 std::string difference(const std::vector<T>& actual, const std::vector<T>& expected) {
-  return difference(actual, expected.size(), [&](std::size_t i) -> const T& { return expected[i]; }, isSame<T>);
+  return difference(
+      actual, expected.size(), [&](std::size_t i) -> const T& { return expected[i]; }, isSame<T>);
 }
 template <class T, std::invocable<std::size_t> Expected>
 std::string difference(const std::vector<T>& actual, const Expected& expected) {
@@ -141,11 +147,12 @@ std::string difference(const std::vector<T>& actual, const Expected& expected) {
 template <std::invocable<std::size_t> Expected>
 std::string difference(const std::vector<float>& actual, const Expected& expected, double absolute,
                        double relative) {
-  return difference(actual, actual.size(), [&](std::size_t i) { return static_cast<float>(expected(i)); },
-                    [&](float a, float b) {
-                      const double allowed = std::max(absolute, relative * std::fabs(double{b}));
-                      return isSame(a, b) || std::fabs(double{a} - double{b}) <= allowed;
-                    });
+  return difference(
+      actual, actual.size(), [&](std::size_t i) { return static_cast<float>(expected(i)); },
+      [&](float a, float b) {
+        const double allowed = std::max(absolute, relative * std::fabs(double{b}));
+        return isSame(a, b) || std::fabs(double{a} - double{b}) <= allowed;
+      });
 }
 
 }  // namespace run_tests

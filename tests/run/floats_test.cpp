@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+//
+// Floats at their ends against the C++ compiler's reading of the same text.
+#include <cmath>
+
+#include "floats.sk.hpp"
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wtautological-compare"
+#include "shared/floats.hpp"
+#pragma GCC diagnostic pop
+#include "support/shared_cases.hpp"
+
+using namespace run_tests;
+
+namespace {
+
+const std::vector<float> special = {0.0f,     -0.0f,    1,         -1,       0.5f,     -2.5f,
+                                    1e10f,    -1e10f,   3.4e38f,   -3.4e38f, 1.2e-38f, 16777216,
+                                    16777215, INFINITY, -INFINITY, NAN};
+
+/// The same, NaN for NaN and -0 for -0; what is below the least normal number may be a zero of its sign.
+bool agree(const float& a, const float& b) {
+  const bool isFlushed = b != 0 && std::fabs(b) < 1.17549435e-38f && a == 0;
+  return isFlushed || (isSame(a, b) && std::signbit(a) == std::signbit(b)) ||
+         (std::isnan(a) && std::isnan(b));
+}
+
+}  // namespace
+
+TEST_CASE("infinity, NaN and signed zeros") {
+  const Samples<float> samples = pairsOf(special);
+#define CHECK_CASE(name) cases.check(#name, floats::run_##name, floats::name);
+  onEveryProfile([&](sk::Device& device) {
+    {
+      SharedCases<int, float> cases(device, samples);
+      FLOAT_TO_INT_CASES(CHECK_CASE)
+    }
+    {
+      SharedCases<float, float> cases(device, samples);
+#define CHECK_FLOATS(name) cases.check(#name, floats::run_##name, floats::name, agree);
+      FLOAT_CASES(CHECK_FLOATS)
+    }
+  });
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+//
+// idioms.sk against plain C++. All exact: small multiples of 1/256.
+#include "idioms.sk.hpp"
+#include "support/devices.hpp"
+#include "support/values.hpp"
+
+using namespace run_tests;
+using sk::float3, sk::float4, sk::int4;
+
+namespace {
+
+constexpr std::int64_t count = 61;
+const std::vector<float> x = values<float>(count);
+
+}  // namespace
+
+TEST_CASE("newer C++ is understood") {
+  onEveryProfile([](sk::Device& device) {
+    auto r = device.stream<float>({count});
+    auto s = device.stream<int4>({count});
+    idioms::modern(streamOf<float>(device, x), r, s);
+    CHECK(difference(r.read(), [](std::size_t i) {
+            return (x[i] + 1) + 2 * x[i] + (x[i] + 3.5f) + 6 + (x[i] > 0 ? 1.0f : -1.0f) + 30;
+          }) == "");
+    CHECK(s.read()[0] == int4{15, 17, 19, 21});
+  });
+}
+
+TEST_CASE("tables of vectors and structs are constants") {
+  std::vector<int> n;
+  for (int i = 0; i < 12; ++i) n.push_back(i);
+  onEveryProfile([&](sk::Device& device) {
+    auto r = device.stream<float3>({12});
+    auto s = device.stream<float4>({12});
+    idioms::tables(streamOf<int>(device, n), r, s);
+    CHECK(difference(r.read(), [](std::size_t i) {
+            const float3 palette[] = {{1, 0, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}};
+            const float padded[] = {1, 2, 4, 0, 0, 0};
+            const float sum = (i % 2 == 0 ? 1.0f : 4.0f) + padded[i % 6];
+            const float3 p = palette[i % 3];
+            return float3{p.x + sum + 5, p.y + sum + 6, p.z + sum + 1048576};
+          }) == "");
+    CHECK(difference(s.read(), [](std::size_t i) {
+            return float4{9.0f + (i % 3 == 0 ? 100 : 0), 6.0f + (i % 3 == 1 ? 100 : 0),
+                          5.0f + (i % 3 == 2 ? 100 : 0), 3};
+          }) == "");
+  });
+}
+
+TEST_CASE("outputs and their members may be passed by reference") {
+  onEveryProfile([](sk::Device& device) {
+    auto r = device.stream<float>({count});
+    auto p = device.stream<idioms::Point>({count});
+    auto q = device.stream<float4>({count});
+    idioms::references(streamOf<float>(device, x), r, p, q);
+    CHECK(difference(r.read(), x) == "");
+    const auto points = p.read();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      CHECK(points[i].a == 3);
+      CHECK(points[i].v == float3{3, 4, x[i]});
+    }
+    CHECK(q.read()[5] == float4{4, 4, 4, 4});
+  });
+}
+
+TEST_CASE("names of GLSL's types and functions, and letters beyond ASCII, are free") {
+  onEveryProfile([](sk::Device& device) {
+    auto r = device.stream<float4>({count});
+    idioms::names(streamOf<float>(device, x), r);
+    CHECK(difference(r.read(), [](std::size_t i) {
+            return float4{x[i] * 2, x[i] - 1, 2 + x[i], (x[i] + 1) / 2};
+          }) == "");
+    auto area = device.stream<float>({count});
+    idioms::maß(streamOf<float>(device, x), area);
+    CHECK(difference(area.read(), [](std::size_t i) { return 3.25f * x[i] * x[i]; }) == "");
+  });
+}
+
+TEST_CASE("bools in structs keep their components") {
+  std::vector<idioms::Flags> flags;
+  for (unsigned i = 0; i < 16; ++i)
+    flags.push_back({{(i & 1) != 0, (i & 2) != 0, (i & 4) != 0}, {i, 2 * i}, (i & 8) != 0});
+  onEveryProfile([&](sk::Device& device) {
+    const auto input = streamOf<idioms::Flags>(device, flags);
+    auto output = device.stream<idioms::Flags>({16});
+    idioms::flags(input, output);
+    const auto read = output.read();
+    for (std::size_t i = 0; i < flags.size(); ++i) {
+      const idioms::Flags& f = flags[i];
+      CHECK(read[i].on == sk::bool3{f.on.y, f.on.x, f.on.z});
+      CHECK(read[i].any_ == ((f.on.x || f.on.y || f.on.z) && !f.any_));
+      CHECK(read[i].count == sk::uint2{f.count.x + f.on.x, f.count.y + f.on.y});
+    }
+  });
+}

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+//
+// Long random sequences of everything that changes streams: writes, calls on views, reduces, streams
+// that come and go, on two devices in turn. After each step some stream is compared with plain arrays.
+#include <optional>
+#include <random>
+
+#include "sequences.sk.hpp"
+#include "support/devices.hpp"
+#include "support/folds.hpp"
+
+using namespace run_tests;
+
+namespace {
+
+/// A stream and what it should hold.
+struct Pair {
+  sk::Stream<int> stream;
+  HostArray<int> host;
+};
+
+/// A box of one of them.
+struct Box {
+  std::size_t pair;
+  sk::Index begin, end;
+  sk::Shape shape() const { return {end[0] - begin[0], end[1] - begin[1]}; }
+};
+
+/// Sums wrap on devices; so do they here.
+int wrapped(std::int64_t v) { return static_cast<int>(static_cast<std::uint32_t>(v)); }
+std::int64_t mirrored(std::int64_t i, std::int64_t n) {
+  const std::int64_t m = ((i % (2 * n)) + 2 * n) % (2 * n);
+  return m < n ? m : 2 * n - 1 - m;
+}
+
+class Sequence {
+ public:
+  Sequence(sk::Device& device, unsigned seed) : device_(device), random_(seed) {
+    for (std::size_t i = 0; i < 6; ++i) pairs_.push_back(made());
+  }
+
+  void step() {
+    switch (below(6)) {
+      case 0: pairs_[below(pairs_.size())] = made(); break;
+      case 1: write(); break;
+      case 2: fold(); break;
+      default: call(); break;
+    }
+    compare();
+  }
+
+ private:
+  std::size_t below(std::size_t n) { return random_() % n; }
+  std::int64_t extent() { return 1 + static_cast<std::int64_t>(below(below(3) == 0 ? 70 : 12)); }
+
+  Pair made() {
+    const sk::Shape shape{extent(), 1 + extent() % 55};   // on a small device, up to 64 x 64 elements
+    const std::uint32_t seed = random_();
+    HostArray<int> host(
+        shape, [&](std::size_t i) { return static_cast<int>(hashed(seed + static_cast<std::uint32_t>(i))); });
+    return {host.on(device_), host};
+  }
+
+  /// A box of at least one element in a random stream, of the given shape where it fits.
+  Box box() {
+    const std::size_t pair = below(pairs_.size());
+    const sk::Shape& shape = pairs_[pair].host.shape();
+    Box result{pair, {0, 0}, {0, 0}};
+    for (int d = 0; d < 2; ++d) {
+      const std::int64_t length = 1 + static_cast<std::int64_t>(below(static_cast<std::size_t>(shape[d])));
+      result.begin[d] = static_cast<std::int64_t>(below(static_cast<std::size_t>(shape[d] - length + 1)));
+      result.end[d] = result.begin[d] + length;
+    }
+    return result;
+  }
+  /// A box of this shape, or of extent 1 where `repeats`; nothing if no stream that is looked at has one.
+  std::optional<Box> boxOf(sk::Shape shape, bool repeats) {
+    if (repeats && below(3) == 0) shape = shape.with(static_cast<int>(below(2)), 1);
+    for (int attempt = 0; attempt < 8; ++attempt) {
+      const std::size_t pair = below(pairs_.size());
+      const sk::Shape& whole = pairs_[pair].host.shape();
+      if (whole[0] < shape[0] || whole[1] < shape[1]) continue;
+      Box result{pair, {0, 0}, {0, 0}};
+      for (int d = 0; d < 2; ++d) {
+        result.begin[d] = static_cast<std::int64_t>(below(static_cast<std::size_t>(whole[d] - shape[d] + 1)));
+        result.end[d] = result.begin[d] + shape[d];
+      }
+      return result;
+    }
+    return std::nullopt;
+  }
+
+  sk::View<int> view(const Box& box) { return pairs_[box.pair].stream.domain(box.begin, box.end); }
+  HostArray<int> held(const Box& box) const {
+    return HostArray<int>(box.shape(), [&](std::size_t i) {
+      return pairs_[box.pair].host[inside(box.begin, positionOf(box.shape(), i))];
+    });
+  }
+  void hold(const Box& box, const HostArray<int>& elements) {
+    for (std::size_t i = 0; i < elements.elements().size(); ++i) {
+      pairs_[box.pair].host[inside(box.begin, positionOf(box.shape(), i))] = elements.elements()[i];
+    }
+  }
+
+  void write() {
+    const Box target = box();
+    const std::uint32_t seed = random_();
+    const HostArray<int> elements(target.shape(), [&](std::size_t i) { return static_cast<int>(seed + i); });
+    view(target).write(elements.elements());
+    hold(target, elements);
+  }
+
+  void fold() {
+    const Box source = box();
+    const HostArray<int> x = held(source);
+    const auto add = [](int& r, int v) { r = wrapped(std::int64_t{r} + v); };
+    CHECK(sequences::sum(view(source)) == foldBox(x, {}, x.shape(), 0, add));
+    const auto target = boxOf(x.shape().with(static_cast<int>(below(2)), 1), false);
+    if (!target) return;
+    sequences::sum(view(source), view(*target));
+    hold(*target, foldBlocks(x, target->shape(), 0, add));
+  }
+
+  void call() {
+    const Box r = box();
+    const auto s = boxOf(r.shape(), false), x = boxOf(r.shape(), true), y = boxOf(r.shape(), true);
+    if (!s || !x || !y || s->pair == r.pair) return;   // outputs in one stream may overlap
+    const Box g = box();
+    const HostArray<int> hx = held(*x), hy = held(*y), hg = held(g);
+    const int k = static_cast<int>(random_());
+    sequences::mixed(k, view(*x), view(*y), view(g), view(r), view(*s));
+    const auto at = [&](std::int64_t px, std::int64_t py) {
+      return std::int64_t{hg[{mirrored(py, hg.shape()[0]), mirrored(px, hg.shape()[1])}]};
+    };
+    hold(r, HostArray<int>(r.shape(), [&](std::size_t i) {
+           const auto p = positionOf(r.shape(), i);
+           return wrapped(std::int64_t{3} * hx.repeated(p) + hy.repeated(p) + k);
+         }));
+    hold(*s, HostArray<int>(r.shape(), [&](std::size_t i) {
+      const auto p = positionOf(r.shape(), i);
+      return wrapped(at(p[1] + 1, p[0] - 2) + at(p[0], p[1]) - hx.repeated(p));
+    }));
+  }
+
+  void compare() {
+    const Box whole = box();
+    CHECK(difference(view(whole).read(), held(whole).elements()) == "");
+    const Pair& pair = pairs_[below(pairs_.size())];
+    CHECK(difference(pair.stream.read(), pair.host.elements()) == "");
+  }
+
+  sk::Device& device_;
+  std::mt19937 random_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace
+
+TEST_CASE("whatever the order of writes, calls and reduces, streams hold what plain arrays hold") {
+  // the steps that come first take most programs of their own, which cost more than they compute
+  Sequence glsl(device("glsl330"), 1), essl(device("essl300"), 2), small(device("glsl330", true), 3);
+  for (int i = 0; i < 60; ++i) {
+    INFO("step " << i);
+    glsl.step();
+    essl.step();
+    small.step();
+  }
+}
