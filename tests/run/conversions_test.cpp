@@ -2,8 +2,9 @@
 //
 // Conversions against the C++ compiler's reading of the same text. All exact: the values are chosen
 // so that no operation rounds.
-#include "shared/conversions.hpp"
 #include "conversions.sk.hpp"
+
+#include "shared/conversions.hpp"
 #include "support/shared_cases.hpp"
 
 using namespace run_tests;
