@@ -4,14 +4,18 @@
 // control_flow.hpp); no float is converted to an integer type that cannot hold it.
 #define FLOAT_TO_INT_CASES(CASE) \
   CASE(truncate) CASE(castSpellings) CASE(toUnsigned) CASE(floatTests) CASE(intFromSum)
-#define INT_TO_FLOAT_CASES(CASE)                                                           \
-  CASE(toFloat)                                                                            \
-  CASE(unsignedToFloat) CASE(boolToFloat) CASE(mixedArithmetic) CASE(integerDivisionFirst) \
-      CASE(mixedCompound) CASE(mixedComparison) CASE(mixedConditional)
-#define INT_TO_INT_CASES(CASE)                                                                        \
-  CASE(toBool)                                                                                        \
-  CASE(signs) CASE(enumerators) CASE(scopedEnumerators) CASE(throughFloat) CASE(compoundThroughFloat) \
-      CASE(incrementFloat) CASE(characters)
+#define INT_TO_FLOAT_CASES(CASE)                                                             \
+  CASE(toFloat)                                                                              \
+  CASE(unsignedToFloat)                                                                      \
+  CASE(boolToFloat)                                                                          \
+  CASE(mixedArithmetic) CASE(integerDivisionFirst) CASE(mixedCompound) CASE(mixedComparison) \
+      CASE(mixedConditional)
+#define INT_TO_INT_CASES(CASE)                                                               \
+  CASE(toBool)                                                                               \
+  CASE(signs)                                                                                \
+  CASE(enumerators)                                                                          \
+  CASE(scopedEnumerators) CASE(throughFloat) CASE(compoundThroughFloat) CASE(incrementFloat) \
+      CASE(characters)
 
 namespace conversions {
 

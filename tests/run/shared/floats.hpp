@@ -2,14 +2,14 @@
 //
 // Floats at their ends: infinity, NaN, signed zeros, large and small. Text that is both a .sk file and
 // C++ (see control_flow.hpp).
-#define FLOAT_TO_INT_CASES(CASE)                                                            \
-  CASE(comparisons)                                                                         \
-  CASE(negatedComparisons) CASE(conditions) CASE(selfComparison) CASE(branches) CASE(logic) \
-      CASE(orderOfMinimum) CASE(loopsEnd)
-#define FLOAT_CASES(CASE)                                                                                    \
-  CASE(sums)                                                                                                 \
-  CASE(differences) CASE(products) CASE(quotients) CASE(negation) CASE(absolute) CASE(zeros) CASE(constants) \
-      CASE(chosen)
+#define FLOAT_TO_INT_CASES(CASE) \
+  CASE(comparisons)              \
+  CASE(negatedComparisons)       \
+  CASE(conditions) CASE(selfComparison) CASE(branches) CASE(logic) CASE(orderOfMinimum) CASE(loopsEnd)
+#define FLOAT_CASES(CASE) \
+  CASE(sums)              \
+  CASE(differences)       \
+  CASE(products) CASE(quotients) CASE(negation) CASE(absolute) CASE(zeros) CASE(constants) CASE(chosen)
 
 namespace floats {
 
