@@ -2,20 +2,16 @@
 //
 // Conversions between bool, int, uint and float. Text that is both a .sk file and C++ (see
 // control_flow.hpp); no float is converted to an integer type that cannot hold it.
-#define FLOAT_TO_INT_CASES(CASE) \
+// clang-format off: a macro is a list
+#define FLOAT_TO_INT_CASES(CASE)                                                                   \
   CASE(truncate) CASE(castSpellings) CASE(toUnsigned) CASE(floatTests) CASE(intFromSum)
-#define INT_TO_FLOAT_CASES(CASE)                                                             \
-  CASE(toFloat)                                                                              \
-  CASE(unsignedToFloat)                                                                      \
-  CASE(boolToFloat)                                                                          \
-  CASE(mixedArithmetic) CASE(integerDivisionFirst) CASE(mixedCompound) CASE(mixedComparison) \
-      CASE(mixedConditional)
-#define INT_TO_INT_CASES(CASE)                                                               \
-  CASE(toBool)                                                                               \
-  CASE(signs)                                                                                \
-  CASE(enumerators)                                                                          \
-  CASE(scopedEnumerators) CASE(throughFloat) CASE(compoundThroughFloat) CASE(incrementFloat) \
-      CASE(characters)
+#define INT_TO_FLOAT_CASES(CASE)                                                                   \
+  CASE(toFloat) CASE(unsignedToFloat) CASE(boolToFloat) CASE(mixedArithmetic)                      \
+  CASE(integerDivisionFirst) CASE(mixedCompound) CASE(mixedComparison) CASE(mixedConditional)
+#define INT_TO_INT_CASES(CASE)                                                                     \
+  CASE(toBool) CASE(signs) CASE(enumerators) CASE(scopedEnumerators) CASE(throughFloat)            \
+  CASE(compoundThroughFloat) CASE(incrementFloat) CASE(characters)
+// clang-format on
 
 namespace conversions {
 

@@ -2,23 +2,20 @@
 //
 // Expressions with effects, and where C++ fixes the order in which they happen. Text that is both a
 // .sk file and C++ (see control_flow.hpp).
-#define EFFECTS_CASES(CASE)                                                                                \
-  CASE(postfixAndPrefix)                                                                                   \
-  CASE(postfixInIndex)                                                                                     \
-  CASE(assignmentAsValue)                                                                                  \
-  CASE(assignmentChain) CASE(compoundAsValue) CASE(compoundOperators) CASE(compoundRightFirst)             \
-      CASE(assignRightFirst) CASE(commaOperator) CASE(commaInFor) CASE(andSkipsRight) CASE(orSkipsRight)   \
-          CASE(andOrMixed) CASE(andWithAssignment) CASE(conditionalEffects) CASE(conditionalNested)        \
-              CASE(conditionalCalls) CASE(conditionalVoid) CASE(earlierOperandKept)                        \
-                  CASE(earlierArgumentKept) CASE(earlierElementKept) CASE(callsInOrder)                    \
-                      CASE(callInCondition) CASE(callInReturn) CASE(callResultIndexed) CASE(referenceSwap) \
-                          CASE(referenceElement) CASE(referenceMember) CASE(referenceAndResult)            \
-                              CASE(referenceThroughTwo) CASE(resultIntoArgument)                           \
-                                  CASE(elementAndIndexByReference) CASE(indexEvaluatedOnce)                \
-                                      CASE(compoundIndexOnce) CASE(incrementElement) CASE(parameterIsCopy) \
-                                          CASE(constReferenceReads) CASE(discardedValues)                  \
-                                              CASE(initialiserOrder) CASE(arrayOrder)                      \
-                                                  CASE(logicalInArithmetic) CASE(negatedEffects)
+// clang-format off: a macro is a list
+#define EFFECTS_CASES(CASE)                                                                        \
+  CASE(postfixAndPrefix) CASE(postfixInIndex) CASE(assignmentAsValue) CASE(assignmentChain)        \
+  CASE(compoundAsValue) CASE(compoundOperators) CASE(compoundRightFirst) CASE(assignRightFirst)    \
+  CASE(commaOperator) CASE(commaInFor) CASE(andSkipsRight) CASE(orSkipsRight) CASE(andOrMixed)     \
+  CASE(andWithAssignment) CASE(conditionalEffects) CASE(conditionalNested) CASE(conditionalCalls)  \
+  CASE(conditionalVoid) CASE(earlierOperandKept) CASE(earlierArgumentKept)                         \
+  CASE(earlierElementKept) CASE(callsInOrder) CASE(callInCondition) CASE(callInReturn)             \
+  CASE(callResultIndexed) CASE(referenceSwap) CASE(referenceElement) CASE(referenceMember)         \
+  CASE(referenceAndResult) CASE(referenceThroughTwo) CASE(resultIntoArgument)                      \
+  CASE(elementAndIndexByReference) CASE(indexEvaluatedOnce) CASE(compoundIndexOnce)                \
+  CASE(incrementElement) CASE(parameterIsCopy) CASE(constReferenceReads) CASE(discardedValues)     \
+  CASE(initialiserOrder) CASE(arrayOrder) CASE(logicalInArithmetic) CASE(negatedEffects)
+// clang-format on
 
 namespace effects {
 

@@ -2,18 +2,18 @@
 //
 // Helper functions, templates, constants, names. Text that is both a .sk file and C++ (see
 // control_flow.hpp).
-#define FUNCTION_CASES(CASE)                                                                                 \
-  CASE(overloads)                                                                                            \
-  CASE(overloadsByCount)                                                                                     \
-  CASE(defaultArguments)                                                                                     \
-  CASE(defaultFromCall) CASE(references) CASE(constReferences) CASE(voidFunctions) CASE(templates)           \
-      CASE(templateValues) CASE(templateExplicit) CASE(templateRecursion) CASE(specialised)                  \
-          CASE(abbreviated) CASE(ifConstexpr) CASE(constants) CASE(constantExpressions) CASE(localConstants) \
-              CASE(namespaces) CASE(nestedNamespaces) CASE(usings) CASE(aliases) CASE(autoTypes)             \
-                  CASE(macros) CASE(macroFunctions) CASE(conditionalText) CASE(glslWords) CASE(tooLikeOurs)  \
-                      CASE(sameAsIntrinsics) CASE(declaredFirst) CASE(deepCalls) CASE(manyArguments)         \
-                          CASE(boolResults) CASE(floatHelpers) CASE(constevalCalls) CASE(staticAsserts)      \
-                              CASE(parameterNames) CASE(unicodeFree)
+// clang-format off: a macro is a list
+#define FUNCTION_CASES(CASE)                                                                       \
+  CASE(overloads) CASE(overloadsByCount) CASE(defaultArguments) CASE(defaultFromCall)              \
+  CASE(references) CASE(constReferences) CASE(voidFunctions) CASE(templates) CASE(templateValues)  \
+  CASE(templateExplicit) CASE(templateRecursion) CASE(specialised) CASE(abbreviated)               \
+  CASE(ifConstexpr) CASE(constants) CASE(constantExpressions) CASE(localConstants)                 \
+  CASE(namespaces) CASE(nestedNamespaces) CASE(usings) CASE(aliases) CASE(autoTypes) CASE(macros)  \
+  CASE(macroFunctions) CASE(conditionalText) CASE(glslWords) CASE(tooLikeOurs)                     \
+  CASE(sameAsIntrinsics) CASE(declaredFirst) CASE(deepCalls) CASE(manyArguments) CASE(boolResults) \
+  CASE(floatHelpers) CASE(constevalCalls) CASE(staticAsserts) CASE(parameterNames)                 \
+  CASE(unicodeFree)
+// clang-format on
 
 namespace functions {
 

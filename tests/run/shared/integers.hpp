@@ -2,21 +2,19 @@
 //
 // Integer arithmetic. Text that is both a .sk file and C++ (see control_flow.hpp). Signed overflow
 // and what else C++ leaves undefined does not happen here: sums that wrap are unsigned.
-#define INT_CASES(CASE)                                                                                    \
-  CASE(sum)                                                                                                \
-  CASE(product)                                                                                            \
-  CASE(quotient)                                                                                           \
-  CASE(remainder) CASE(remainderByConstant) CASE(quotientByConstant) CASE(bitAnd) CASE(bitOr) CASE(bitXor) \
-      CASE(complement) CASE(negation) CASE(shiftLeft) CASE(shiftRight) CASE(shiftConstant) CASE(compare)   \
-          CASE(precedence) CASE(associativity) CASE(unaryMix) CASE(literals) CASE(bitTricks)               \
-              CASE(selfAssigned) CASE(minimum) CASE(boolsAsInts) CASE(hexAndBinary)
-#define UINT_CASES(CASE)                                                                                     \
-  CASE(wrappingSum)                                                                                          \
-  CASE(wrappingProduct)                                                                                      \
-  CASE(unsignedQuotient)                                                                                     \
-  CASE(unsignedRemainder) CASE(unsignedShifts) CASE(unsignedCompare) CASE(unsignedNegation) CASE(mixedSigns) \
-      CASE(hash) CASE(rotate) CASE(popCount) CASE(multiplyHigh) CASE(largeLiterals) CASE(bitFields)          \
-          CASE(linearCongruence) CASE(powerModulo)
+// clang-format off: a macro is a list
+#define INT_CASES(CASE)                                                                            \
+  CASE(sum) CASE(product) CASE(quotient) CASE(remainder) CASE(remainderByConstant)                 \
+  CASE(quotientByConstant) CASE(bitAnd) CASE(bitOr) CASE(bitXor) CASE(complement) CASE(negation)   \
+  CASE(shiftLeft) CASE(shiftRight) CASE(shiftConstant) CASE(compare) CASE(precedence)              \
+  CASE(associativity) CASE(unaryMix) CASE(literals) CASE(bitTricks) CASE(selfAssigned)             \
+  CASE(minimum) CASE(boolsAsInts) CASE(hexAndBinary)
+#define UINT_CASES(CASE)                                                                           \
+  CASE(wrappingSum) CASE(wrappingProduct) CASE(unsignedQuotient) CASE(unsignedRemainder)           \
+  CASE(unsignedShifts) CASE(unsignedCompare) CASE(unsignedNegation) CASE(mixedSigns) CASE(hash)    \
+  CASE(rotate) CASE(popCount) CASE(multiplyHigh) CASE(largeLiterals) CASE(bitFields)               \
+  CASE(linearCongruence) CASE(powerModulo)
+// clang-format on
 
 namespace integers {
 

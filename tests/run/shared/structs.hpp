@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
 // Structs and arrays. Text that is both a .sk file and C++ (see control_flow.hpp).
-#define STRUCT_CASES(CASE)                                                                               \
-  CASE(membersReadAndWritten)                                                                            \
-  CASE(copies)                                                                                           \
-  CASE(nested)                                                                                           \
-  CASE(memberFunctions) CASE(changingMemberFunctions) CASE(memberOverloads) CASE(operators)              \
-      CASE(compoundOperators) CASE(freeOperators) CASE(callAndIndexOperators) CASE(defaultMembers)       \
-          CASE(designated) CASE(zeroInitialised) CASE(returned) CASE(chained) CASE(byReference)          \
-              CASE(memberByReference) CASE(conditional) CASE(arrayOfStructs) CASE(arrayInStruct)         \
-                  CASE(arrayCopies) CASE(arrayZeroed) CASE(arrayDynamicIndex) CASE(arrayOfFloats)        \
-                      CASE(constantTable) CASE(structConstant) CASE(staticMembers) CASE(localStruct)     \
-                          CASE(sameNames) CASE(structInLoop) CASE(selfAssignment) CASE(arrayByReference) \
-                              CASE(arrayParameter) CASE(boolMembers) CASE(templateStruct)
+// clang-format off: a macro is a list
+#define STRUCT_CASES(CASE)                                                                         \
+  CASE(membersReadAndWritten) CASE(copies) CASE(nested) CASE(memberFunctions)                      \
+  CASE(changingMemberFunctions) CASE(memberOverloads) CASE(operators) CASE(compoundOperators)      \
+  CASE(freeOperators) CASE(callAndIndexOperators) CASE(defaultMembers) CASE(designated)            \
+  CASE(zeroInitialised) CASE(returned) CASE(chained) CASE(byReference) CASE(memberByReference)     \
+  CASE(conditional) CASE(arrayOfStructs) CASE(arrayInStruct) CASE(arrayCopies) CASE(arrayZeroed)   \
+  CASE(arrayDynamicIndex) CASE(arrayOfFloats) CASE(constantTable) CASE(structConstant)             \
+  CASE(staticMembers) CASE(localStruct) CASE(sameNames) CASE(structInLoop) CASE(selfAssignment)    \
+  CASE(arrayByReference) CASE(arrayParameter) CASE(boolMembers) CASE(templateStruct)
+// clang-format on
 
 namespace structs {
 
