@@ -171,10 +171,11 @@ class GlslExpr {
   }
   Parts print(Type, const ExtentOf& n) const { return {call("sk_extent", n.stream) + "()"}; }
 
-  /// "sk_at_u"; the domain has the shape of the first output.
+  /// "sk_at_u"; the domain has the shape of the first output, where there is one.
   std::string call(std::string_view function, StreamRef stream) const {
     const bool isDomain = stream.space == StreamRef::Space::Domain;
     const std::uint32_t param = isDomain ? domainParam(context_.kernel) : stream.id;
+    if (param == context_.kernel.params.size()) return std::string(function);
     return fmt::format("{}_{}", function, context_.names.symbol(param));
   }
 

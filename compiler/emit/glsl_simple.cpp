@@ -33,6 +33,13 @@ class SimplePrinter {
           return fmt::format("{}{}({})", n.result ? expr(n.result) + " = " : "",
                              context_.names.function(n.callee), join(args, ", "));
         },
+        [&](const Push& n) -> Text {
+          return fmt::format("sk_push_{}({})", context_.names.symbol(n.stream.id), expr(n.value));
+        },
+        [&](const Scatter& n) -> Text {
+          return fmt::format("sk_put_{}({}, {})", context_.names.symbol(n.stream.id), expr(n.index),
+                             expr(n.value));
+        },
         [](const Break&) -> Text { return "break"; }, [](const Continue&) -> Text { return "continue"; },
         [&](const Return& n) -> Text { return n.value ? "return " + expr(n.value) : "return"; },
         [](const If&) -> Text { return std::nullopt; }, [](const Loop&) -> Text { return std::nullopt; },

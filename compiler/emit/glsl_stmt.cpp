@@ -66,7 +66,8 @@ class FunctionWriter {
     const Loc loc = stmt.loc;
     match(
         stmt.node, [&](const Declare&) { put(depth, stmt); }, [&](const Assign&) { put(depth, stmt); },
-        [&](const CallStmt&) { put(depth, stmt); }, [&](const Break&) { put(depth, stmt); },
+        [&](const CallStmt&) { put(depth, stmt); }, [&](const Push&) { put(depth, stmt); },
+        [&](const Scatter&) { put(depth, stmt); }, [&](const Break&) { put(depth, stmt); },
         [&](const Continue&) { put(depth, stmt); }, [&](const Return&) { put(depth, stmt); },
         [&](const If& n) {
           begin(depth, loc, ifHead(n));
@@ -289,7 +290,7 @@ std::string glslHead(const GlslContext& context, FunctionId id) {
   std::vector<std::string> parameters;
   for (VarId i = 0; i < function.parameterCount; ++i) {
     const Variable& var = function.variables[i];
-    if (var.role == VarRole::Gather) continue;
+    if (var.role == VarRole::Gather || var.role == VarRole::Sink) continue;
     parameters.push_back(std::string(direction(context, id, i)) +
                          context.types.declaration(var.type, context.names.variable(id, i)));
   }

@@ -105,7 +105,8 @@ class GlobalNamer {
     std::string parameters;
     for (VarId i = 0; i < function.parameterCount; ++i) {
       const Variable& var = function.variables[i];
-      if (var.role != VarRole::Gather) parameters += types_.glsl(var.type) + ",";
+      const bool isParameter = var.role != VarRole::Gather && var.role != VarRole::Sink;
+      if (isParameter) parameters += types_.glsl(var.type) + ",";
     }
     std::string name = uniqueName(base(function.name), [&](const std::string& n) {
       return taken_.contains(n) || overloads_.contains(n + "(" + parameters);

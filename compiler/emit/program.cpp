@@ -38,7 +38,8 @@ struct Program::Storage {
 namespace {
 
 static_assert(static_cast<int>(Scalar::Float) == static_cast<int>(sk::program::Scalar::Float));
-static_assert(static_cast<int>(ParamRole::Accumulator) == static_cast<int>(sk::program::Role::Accumulator));
+static_assert(static_cast<int>(ParamRole::Scatter) == static_cast<int>(sk::program::Role::Scatter));
+static_assert(static_cast<int>(ScatterOp::Max) == static_cast<int>(sk::program::ScatterOp::Max));
 static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program::Boundary::Border));
 
 /// A template only because Storage is private.
@@ -71,6 +72,7 @@ class Builder {
                          .parameters = parameters,
                          .sources = storage_.sources,
                          .usesIndex = uses.domainIndex,
+                         .usesExtent = uses.domainExtent,
                          .usesLoops = uses.loops}};
     if (kernel.reduction) {
       const std::string& combine = names.function(*kernel.reduction->combine);
@@ -93,6 +95,8 @@ class Builder {
             .boundary = static_cast<sk::program::Boundary>(param.boundary),
             .border = constant(param.border),
             .identity = constant(param.identity),
+            .scatter = static_cast<sk::program::ScatterOp>(param.scatter),
+            .pushes = param.pushes,
             .usesIndex = use.index,
             .usesExtent = use.extent,
             .usesAt = use.at,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "ir/build.hpp"
+#include "ir/counted_loop.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
@@ -30,39 +31,6 @@ std::optional<std::int32_t> reachOf(const Module& module, const Expr& offset) {
   if (!bits) return std::nullopt;
   const auto value = static_cast<std::int32_t>(*bits);
   return value == INT32_MIN ? std::nullopt : std::optional(std::abs(value));
-}
-
-bool assigns(const Block& block, VarId var) {
-  bool found = false;
-  walkStmts(block, [&](const Stmt& stmt) {
-    if (const auto* n = std::get_if<Assign>(&stmt.node)) found = found || rootOf(*n->place) == var;
-    if (const auto* n = std::get_if<CallStmt>(&stmt.node)) {
-      for (const ExprPtr& arg : n->args)
-        walkExprs(*arg, [&](const Expr& expr) {
-          const auto* ref = std::get_if<VarRef>(&expr.node);
-          found = found || (ref != nullptr && ref->var == var);
-        });
-      if (n->result) found = found || rootOf(*n->result) == var;
-    }
-  });
-  return found;
-}
-
-/// `for (int i = 0; i < 5; ++i)` with constants, i untouched inside: as many rounds for any element.
-bool isCounted(const Module& module, const Loop& loop) {
-  const auto isConstant = [&](const Expr& expr) {
-    return evaluate(module, expr, Constants::LookThrough).has_value();
-  };
-  if (loop.init.size() != 1 || loop.step.size() != 1 || !loop.cond) return false;
-  const auto* init = std::get_if<Declare>(&loop.init.front().node);
-  const auto* test = std::get_if<Binary>(&loop.cond->node);
-  const auto* step = std::get_if<Assign>(&loop.step.front().node);
-  if (init == nullptr || !init->init || test == nullptr || step == nullptr || !step->op) return false;
-  const auto* tested = std::get_if<VarRef>(&test->lhs->node);
-  const auto* stepped = std::get_if<VarRef>(&step->place->node);
-  return isComparison(test->op) && tested != nullptr && stepped != nullptr && tested->var == init->var &&
-         stepped->var == init->var && isConstant(*init->init) && isConstant(*test->rhs) &&
-         isConstant(*step->value) && !assigns(loop.body, init->var);
 }
 
 class Collector {
@@ -93,7 +61,8 @@ class Collector {
     if (const auto* n = std::get_if<NeighborRead>(&expr.node)) collectNear(*n);
     if (const auto* n = std::get_if<ExtentOf>(&expr.node)) {
       const bool isDomain = n->stream.space == StreamRef::Space::Domain;
-      uses_.params[isDomain ? domainParam(kernel_) : n->stream.id].extent = true;
+      const std::uint32_t param = isDomain ? domainParam(kernel_) : n->stream.id;
+      (param < uses_.params.size() ? uses_.params[param].extent : uses_.domainExtent) = true;
     }
     if (const auto* n = std::get_if<IndexOf>(&expr.node)) {
       const bool isInput = n->stream.space == StreamRef::Space::KernelParameter &&

@@ -21,12 +21,14 @@ struct StreamUse {
 struct StreamUses {
   std::vector<StreamUse> params;
   bool domainIndex = false;
+  bool domainExtent = false;   ///< where no parameter has the domain's shape
   bool loops = false;   ///< has a loop whose rounds the values of elements decide
 };
 
 StreamUses streamUses(const ir::Module& module, const ir::Kernel& kernel);
 
-/// The parameter whose shape is the domain's: the first output; of a reduce, the accumulator.
+/// The parameter whose shape is the domain's: the first output; of a reduce, the accumulator; the number
+/// of parameters where there is neither.
 std::uint32_t domainParam(const ir::Kernel& kernel);
 
 }  // namespace skc::emit

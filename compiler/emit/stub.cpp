@@ -19,7 +19,9 @@ std::string parameter(const Module& module, const KernelParam& param, const std:
                                        : fmt::format("const {}& {}", type, param.name);
     case ParamRole::Input:
     case ParamRole::Gather: return fmt::format("const sk::In<{}>& {}", type, param.name);
+    case ParamRole::VariableOutput: return fmt::format("const sk::VariableOut<{}>& {}", type, param.name);
     case ParamRole::Output:
+    case ParamRole::Scatter:
     case ParamRole::Accumulator: break;
   }
   return fmt::format("const sk::Out<{}>& {}", type, param.name);

@@ -109,13 +109,16 @@ class SourceWriter {
         ".declarations = " + declarations,          ".body = " + name + "Body",
         ".parameters = " + name + "Parameters",     ".sources = sources"};
     if (kernel.usesIndex) members.emplace_back(".usesIndex = true");
+    if (kernel.usesExtent) members.emplace_back(".usesExtent = true");
     if (kernel.usesLoops) members.emplace_back(".usesLoops = true");
     const std::string newLine = "\n" + std::string(column, ' ');
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
   }
 
   std::string parameter(const sk::program::Parameter& param, Type type) const {
-    constexpr std::string_view roles[] = {"Uniform", "Input", "Output", "Gather", "Accumulator"};
+    constexpr std::string_view roles[] = {"Uniform",     "Input",          "Output", "Gather",
+                                          "Accumulator", "VariableOutput", "Scatter"};
+    constexpr std::string_view scatterOps[] = {"Store", "Add", "Min", "Max"};
     constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
     const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";
     const std::string element = type.isVector() ? spelling(type.scalar, type.width) : cppType(module_, type);
@@ -126,6 +129,10 @@ class SourceWriter {
     if (param.role == sk::program::Role::Gather) {
       text += fmt::format(", .boundary = Boundary::{}", boundaries[static_cast<std::size_t>(param.boundary)]);
     }
+    if (param.role == sk::program::Role::Scatter) {
+      text += fmt::format(", .scatter = ScatterOp::{}", scatterOps[static_cast<std::size_t>(param.scatter)]);
+    }
+    if (param.pushes >= 0) text += fmt::format(", .pushes = {}", param.pushes);
     if (!param.border.empty()) text += fmt::format(", .border = \"{}\"", param.border);
     if (!param.identity.empty()) text += fmt::format(", .identity = \"{}\"", param.identity);
     if (param.usesIndex) text += ", .usesIndex = true";

@@ -415,6 +415,7 @@ ExprPtr FunctionLowering::select(ExprPtr cond, ExprPtr yes, ExprPtr no, SourceLo
 
 ExprPtr FunctionLowering::argument(const clang::Expr* e, const ir::Variable& parameter) {
   switch (parameter.role) {
+    case ir::VarRole::Sink:
     case ir::VarRole::Gather: {
       const ir::VarId stream = gatherVariable(e);
       return ir::makeExpr(function_.variables[stream].type, ir::VarRef{stream},

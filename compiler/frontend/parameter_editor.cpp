@@ -298,6 +298,8 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       out.push_back(make(tok::greater, parts.close.getLocation()));
       break;
+    case ir::ParamRole::VariableOutput:
+    case ir::ParamRole::Scatter: break;   // resolveRole() makes none yet
     case ir::ParamRole::Output:
     case ir::ParamRole::Accumulator:
       out.insert(out.end(), parts.type.begin(), parts.type.end());

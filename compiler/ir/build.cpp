@@ -203,7 +203,9 @@ Stmt::Node cloneNode(const Stmt::Node& node) {
       },
       [](const Break& n) -> N { return n; }, [](const Continue& n) -> N { return n; },
       [](const Return& n) -> N { return Return{clone(n.value)}; },
-      [](const Scope& n) -> N { return Scope{clone(n.body)}; });
+      [](const Scope& n) -> N { return Scope{clone(n.body)}; },
+      [](const Push& n) -> N { return Push{n.stream, clone(n.value)}; },
+      [](const Scatter& n) -> N { return Scatter{n.stream, n.op, clone(n.index), clone(n.value)}; });
 }
 
 }  // namespace
@@ -242,6 +244,10 @@ Stmt breakStmt(Loc loc) { return {loc, Break{}}; }
 Stmt continueStmt(Loc loc) { return {loc, Continue{}}; }
 Stmt returnStmt(ExprPtr value, Loc loc) { return {loc, Return{std::move(value)}}; }
 Stmt scope(Block body, Loc loc) { return {loc, Scope{std::move(body)}}; }
+Stmt push(StreamRef stream, ExprPtr value, Loc loc) { return {loc, Push{stream, std::move(value)}}; }
+Stmt scatter(StreamRef stream, ScatterOp op, ExprPtr index, ExprPtr value, Loc loc) {
+  return {loc, Scatter{stream, op, std::move(index), std::move(value)}};
+}
 
 Stmt clone(const Stmt& stmt) { return {stmt.loc, cloneNode(stmt.node)}; }
 

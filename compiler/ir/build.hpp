@@ -81,6 +81,8 @@ Stmt breakStmt(Loc loc = {});
 Stmt continueStmt(Loc loc = {});
 Stmt returnStmt(ExprPtr value = nullptr, Loc loc = {});
 Stmt scope(Block body, Loc loc = {});
+Stmt push(StreamRef stream, ExprPtr value, Loc loc = {});
+Stmt scatter(StreamRef stream, ScatterOp op, ExprPtr index, ExprPtr value, Loc loc = {});
 
 /// Several statements as one block.
 template <class... S>

@@ -16,11 +16,11 @@
 //   * One loop node keeps the shape that its author wrote. `continue` goes to `step`, then `cond`.
 //   * A function's parameters are its first `parameterCount` variables. `In` is a copy;
 //     `InOut` copies in and out, and no variable is bound to two InOut parameters of one call.
-//     `Gather` and `Element` parameters stand for streams: they may only be used by the stream
-//     expressions (GatherRead, NeighborRead, IndexOf, ExtentOf) or handed to another function;
-//     an Element may be read by VarRef too.
+//     `Gather`, `Element` and `Sink` parameters stand for streams: they may only be used by the stream
+//     expressions (GatherRead, NeighborRead, IndexOf, ExtentOf) and, a Sink, by the stream statements
+//     (Push, Scatter), or handed to another function; an Element may be read by VarRef too.
 //   * Each kernel has an entry function, with one variable per kernel parameter, in order. After
-//     `specialize-gathers`, no function but an entry has Gather parameters, and every StreamRef
+//     `specialize-gathers`, no function but an entry has Gather or Sink parameters, and every StreamRef
 //     names a kernel parameter; the functions that a kernel reaches are then its own.
 //
 // `validate` (validate.hpp) is this text made executable.
@@ -78,7 +78,7 @@ struct Index { ExprPtr base, index; };           ///< of an array or a vector; a
 struct Call { FunctionId callee; std::vector<ExprPtr> args; };   ///< no InOut parameters, not void
 struct IntrinsicCall { Intrinsic intrinsic; std::vector<ExprPtr> args; };
 
-/// A stream: a variable of this function (Gather or Element role), or, after specialize-gathers,
+/// A stream: a variable of this function (Gather, Element or Sink role), or, after specialize-gathers,
 /// a parameter of the kernel. Domain (IndexOf and ExtentOf only) is the kernel's domain itself: what
 /// an output, a gather's current index, or an Element without a stream behind it stands for.
 struct StreamRef {
@@ -125,8 +125,17 @@ struct Continue {};
 struct Return { ExprPtr value; };                                   ///< null in a void function
 struct Scope { Block body; };
 
+/// Appends an element to a variable output. Pushes of one element stay in the order of execution, and
+/// those of an element come before those of every later one.
+struct Push { StreamRef stream; ExprPtr value; };
+enum class ScatterOp : std::uint8_t { Store, Add, Min, Max };
+/// Element `index` (int, int2 .. int4; x fastest) of a scatter output becomes `value`, or its old value
+/// combined with it; an index outside does nothing. In the order of Push. One op an output.
+struct Scatter { StreamRef stream; ScatterOp op; ExprPtr index, value; };
+
 struct Stmt {
-  using Node = std::variant<Declare, Assign, CallStmt, If, Loop, Switch, Break, Continue, Return, Scope>;
+  using Node = std::variant<Declare, Assign, CallStmt, If, Loop, Switch, Break, Continue, Return, Scope,
+                            Push, Scatter>;
   Loc loc;
   Node node;
 };
@@ -135,12 +144,12 @@ struct Stmt {
 
 // ---- declarations -----------------------------------------------------------------------------
 
-enum class VarRole : std::uint8_t { Local, In, InOut, Element, Gather };
+enum class VarRole : std::uint8_t { Local, In, InOut, Element, Gather, Sink };
 struct Variable {
   std::string name;
-  Type type;               ///< Gather: the element's type
+  Type type;               ///< Gather, Sink: the element's type
   VarRole role = VarRole::Local;
-  std::uint8_t rank = 0;   ///< Gather: 1 to 4
+  std::uint8_t rank = 0;   ///< Gather, Sink of a scatter output: 1 to 4
   bool isConst = false;
   Loc loc;
 };
@@ -161,17 +170,28 @@ struct Constant {
   Loc loc;
 };
 
-enum class ParamRole : std::uint8_t { Uniform, Input, Output, Gather, Accumulator };
+enum class ParamRole : std::uint8_t {
+  Uniform,
+  Input,
+  Output,
+  Gather,
+  Accumulator,
+  VariableOutput,
+  Scatter,
+};
 enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };
 struct KernelParam {
   std::string name;
   ParamRole role;
   Type type;                           ///< of one element
-  std::uint8_t rank = 0;               ///< Gather
+  std::uint8_t rank = 0;               ///< Gather, Scatter
   Boundary boundary = Boundary::Clamp; ///< Gather
   ExprPtr border;                      ///< Gather with Border: constant expression
   ExprPtr identity;                    ///< Accumulator: constant expression, or null
   Loc loc;
+  ScatterOp scatter = ScatterOp::Store; ///< Scatter: what all its statements do
+  std::int32_t pushes = -1;            ///< VariableOutput, Scatter: statements that one element executes
+                                       ///< at most; -1 if unknown
 };
 
 /// How partial results of a reduce combine; set by derive-combine (frontend: where the user wrote
@@ -187,7 +207,7 @@ struct Kernel {
   std::string signature;               ///< the declaration as written, on one line
   FunctionId entry;                    ///< void; variables 0..n-1 are the parameters:
                                        ///< Uniform In, Input Element, Output and Accumulator InOut,
-                                       ///< Gather Gather
+                                       ///< Gather Gather, VariableOutput and Scatter Sink
   std::vector<KernelParam> params;     ///< of a reduce: an Input, then an Accumulator
   std::optional<Reduction> reduction;  ///< set for `reduce`
   Loc loc;

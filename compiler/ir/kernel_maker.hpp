@@ -51,6 +51,14 @@ class KernelMaker {
     kernel_.params[var].border = std::move(border);
     return var;
   }
+  VarId variableOutput(std::string name, Type type) {
+    return param(std::move(name), ParamRole::VariableOutput, type, VarRole::Sink);
+  }
+  VarId scatterOutput(std::string name, Type type, int rank) {
+    const VarId var = param(std::move(name), ParamRole::Scatter, type, VarRole::Sink);
+    function_.variables[var].rank = kernel_.params[var].rank = static_cast<std::uint8_t>(rank);
+    return var;
+  }
   /// Makes the kernel a reduce.
   VarId accumulator(std::string name, Type type, ExprPtr identity = nullptr) {
     const VarId var = param(std::move(name), ParamRole::Accumulator, type, VarRole::InOut);

@@ -41,7 +41,19 @@ class StmtPrinter {
         [&](const Break&) { return indent + "break;\n"; },
         [&](const Continue&) { return indent + "continue;\n"; },
         [&](const Return& n) { return indent + (n.value ? "return " + expr(n.value) : "return") + ";\n"; },
-        [&](const Scope& n) { return indent + braces(n.body, depth) + "\n"; });
+        [&](const Scope& n) { return indent + braces(n.body, depth) + "\n"; },
+        [&](const Push& n) {
+          return fmt::format("{}push({}, {});\n", indent, print(function_, n.stream), expr(n.value));
+        },
+        [&](const Scatter& n) { return indent + scatter(n) + ";\n"; });
+  }
+
+  /// "$1[i] += v", "$1[i] = min($1[i], v)".
+  std::string scatter(const Scatter& n) const {
+    const std::string place = fmt::format("{}[{}]", print(function_, n.stream), expr(n.index));
+    const bool isFunction = n.op == ScatterOp::Min || n.op == ScatterOp::Max;
+    return isFunction ? fmt::format("{0} = {1}({0}, {2})", place, spelling(n.op), expr(n.value))
+                      : fmt::format("{} {} {}", place, spelling(n.op), expr(n.value));
   }
 
   /// A statement that fits in the head of a `for`, without its semicolon; others in braces.
@@ -113,6 +125,9 @@ std::string printParam(const Module& module, const KernelParam& param, std::size
   if (param.role == ParamRole::Gather) {
     text += fmt::format(" rank {} {}", param.rank, spelling(param.boundary));
   }
+  if (param.role == ParamRole::Scatter)
+    text += fmt::format(" rank {} {}", param.rank, spelling(param.scatter));
+  if (param.pushes >= 0) text += fmt::format(" at most {}", param.pushes);
   if (param.border) text += "(" + constant(param.border) + ")";
   if (param.identity) text += " = " + constant(param.identity);
   return text + "\n";

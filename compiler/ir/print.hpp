@@ -14,6 +14,8 @@ namespace skc::ir {
 std::string print(const Module& module);
 std::string print(const Module& module, const Function& function);
 std::string print(const Module& module, const Function& function, const Expr& expr);
+/// "u", or "$0" for the kernel's first parameter, or "domain".
+std::string print(const Function& function, StreamRef stream);
 /// "float3", "geometry::Hit", "float[5]": as the .sk file writes it.
 std::string print(const Module& module, Type type);
 
@@ -25,6 +27,8 @@ std::string spelling(Scalar scalar, int width = 1);
 std::string_view spelling(VarRole role);
 std::string_view spelling(ParamRole role);
 std::string_view spelling(Boundary boundary);
+/// "=", "+=", "min", "max".
+std::string_view spelling(ScatterOp op);
 /// "a::b::" for {"a", "b"}.
 std::string qualifier(const std::vector<std::string>& scope);
 

@@ -113,21 +113,22 @@ class ExprPrinter {
     return open + join(texts, ", ") + close;
   }
 
-  /// `$u` is the kernel's parameter u, for the first kernel that has this entry function.
-  std::string stream(StreamRef ref) const {
-    switch (ref.space) {
-      case StreamRef::Space::Variable: return nameOf(function_, ref.id);
-      case StreamRef::Space::KernelParameter: return "$" + std::to_string(ref.id);
-      case StreamRef::Space::Domain: break;
-    }
-    return "domain";
-  }
+  std::string stream(StreamRef ref) const { return print(function_, ref); }
 
   const Module& module_;
   const Function& function_;
 };
 
 }  // namespace
+
+std::string print(const Function& function, StreamRef stream) {
+  switch (stream.space) {
+    case StreamRef::Space::Variable: return nameOf(function, stream.id);
+    case StreamRef::Space::KernelParameter: return "$" + std::to_string(stream.id);
+    case StreamRef::Space::Domain: break;
+  }
+  return "domain";
+}
 
 std::string print(const Module& module, const Function& function, const Expr& expr) {
   return ExprPrinter(module, function).text(expr);

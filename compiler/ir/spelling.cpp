@@ -24,13 +24,19 @@ std::string spelling(Scalar scalar, int width) {
 }
 
 std::string_view spelling(VarRole role) {
-  constexpr std::array<std::string_view, 5> names = {"local", "in", "inout", "element", "gather"};
+  constexpr std::array<std::string_view, 6> names = {"local", "in", "inout", "element", "gather", "sink"};
   return names[static_cast<std::size_t>(role)];
 }
 
 std::string_view spelling(ParamRole role) {
-  constexpr std::array<std::string_view, 5> names = {"uniform", "input", "output", "gather", "accumulator"};
+  constexpr std::array<std::string_view, 7> names = {"uniform",     "input",           "output", "gather",
+                                                     "accumulator", "variable output", "scatter"};
   return names[static_cast<std::size_t>(role)];
+}
+
+std::string_view spelling(ScatterOp op) {
+  constexpr std::array<std::string_view, 4> names = {"=", "+=", "min", "max"};
+  return names[static_cast<std::size_t>(op)];
 }
 
 std::string_view spelling(Boundary boundary) {

@@ -56,8 +56,9 @@ class FunctionChecker {
     require(isParameter == (var.role != VarRole::Local),
             "parameters are the first variables, locals the others");
     const bool isGather = var.role == VarRole::Gather;
-    require(isGather ? var.rank >= 1 && var.rank <= 4 : var.rank == 0,
-            "gathers have rank 1 to 4, others none");
+    const bool isSink = var.role == VarRole::Sink;
+    require(var.rank <= 4 && (isGather ? var.rank >= 1 : isSink || var.rank == 0),
+            "gathers have rank 1 to 4, variable outputs and all but streams none");
   }
 
   void block(const Block& statements) {
@@ -142,6 +143,19 @@ class FunctionChecker {
     require(type == function_.result, "a return has another type than the function");
   }
   void rule(const Scope& n) { block(n.body); }
+  void rule(const Push& n) const {
+    checkExpr(context_, *n.value);
+    checkSink(context_, n.stream, n.value->type, 0);
+  }
+  void rule(const Scatter& n) const {
+    checkExpr(context_, *n.index);
+    checkExpr(context_, *n.value);
+    require(n.index->type.isArithmetic() && n.index->type.scalar == Scalar::Int,
+            "a scatter's index is no int");
+    checkSink(context_, n.stream, n.value->type, n.index->type.width);
+    const bool isNumber = n.value->type.isFloat() || n.value->type.isInteger();
+    require(n.op == ScatterOp::Store || isNumber, "something that is no number is combined");
+  }
 
   void condition(const Expr& expr) const {
     checkExpr(context_, expr);
@@ -163,6 +177,8 @@ VarRole roleInEntry(ParamRole role) {
     case ParamRole::Uniform: return VarRole::In;
     case ParamRole::Input: return VarRole::Element;
     case ParamRole::Gather: return VarRole::Gather;
+    case ParamRole::VariableOutput:
+    case ParamRole::Scatter: return VarRole::Sink;
     case ParamRole::Output:
     case ParamRole::Accumulator: break;
   }
@@ -178,6 +194,8 @@ void checkParam(const Module& module, Stage stage, const KernelParam& param, con
   require(var.role == roleInEntry(param.role), "the entry's variable has another role");
   require(var.type == param.type && var.rank == param.rank, "the entry's variable has another type or rank");
   const bool wantsBorder = param.role == ParamRole::Gather && param.boundary == Boundary::Border;
+  require((param.role == ParamRole::Scatter || param.role == ParamRole::Gather) == (param.rank > 0),
+          "gathers and scatter outputs have a rank, others none");
   require(wantsBorder == (param.border != nullptr), "a border value and the border mode go together");
   require(param.role == ParamRole::Accumulator || !param.identity, "only an accumulator has an identity");
   if (param.border) checkConstant(module, stage, *param.border, param.type);
@@ -224,7 +242,7 @@ std::vector<const Kernel*> owners(const Module& module) {
       const Function& function = module.functions[id];
       for (std::size_t i = 0; id != kernel.entry && i < function.parameterCount; ++i) {
         const VarRole role = function.variables[i].role;
-        require(role != VarRole::Gather && role != VarRole::Element,
+        require(role != VarRole::Gather && role != VarRole::Element && role != VarRole::Sink,
                 fmt::format("function @{} still takes a stream", id));
       }
     }

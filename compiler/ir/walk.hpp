@@ -60,7 +60,9 @@ void forEachOperand(S& stmt, Fn&& fn) {
       [&](Like<S, Switch>& n) { fn(n.value); },
       [](const Break&) {}, [](const Continue&) {},
       [&](Like<S, Return>& n) { optional(n.value); },
-      [](const Scope&) {});
+      [](const Scope&) {},
+      [&](Like<S, Push>& n) { fn(n.value); },
+      [&](Like<S, Scatter>& n) { fn(n.index), fn(n.value); });
 }
 
 /// fn(block) for every block of a statement, in order.
@@ -74,7 +76,8 @@ void forEachBlock(S& stmt, Fn&& fn) {
         for (auto& one : n.cases) fn(one.body);
       },
       [](const Break&) {}, [](const Continue&) {}, [](const Return&) {},
-      [&](Like<S, Scope>& n) { fn(n.body); });
+      [&](Like<S, Scope>& n) { fn(n.body); },
+      [](const Push&) {}, [](const Scatter&) {});
 }
 
 // clang-format on

@@ -122,6 +122,8 @@ class Follower {
   }
 
   Path step(const ir::Declare&, Path path) { return path; }
+  Path step(const ir::Push&, Path path) { return path; }
+  Path step(const ir::Scatter&, Path path) { return path; }
   Path step(const ir::Assign& assign, Path path) {
     if (!assign.op) write(path, *assign.place);   // `v += x` alone writes nothing that was not there
     return path;

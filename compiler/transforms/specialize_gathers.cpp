@@ -17,7 +17,12 @@ using namespace ir;
 
 constexpr StreamRef domain = {StreamRef::Space::Domain, 0};
 
-bool isStream(const Variable& var) { return var.role == VarRole::Gather || var.role == VarRole::Element; }
+bool isStream(const Variable& var) {
+  return var.role == VarRole::Gather || var.role == VarRole::Element || var.role == VarRole::Sink;
+}
+
+/// A parameter that GLSL has none for.
+bool isDropped(const Variable& var) { return var.role == VarRole::Gather || var.role == VarRole::Sink; }
 
 /// fn(StreamRef&) where the expression uses a stream.
 template <class Fn>
@@ -26,6 +31,13 @@ void withStream(Expr& expr, Fn&& fn) {
   if (auto* n = std::get_if<NeighborRead>(&expr.node)) fn(n->stream);
   if (auto* n = std::get_if<IndexOf>(&expr.node)) fn(n->stream);
   if (auto* n = std::get_if<ExtentOf>(&expr.node)) fn(n->stream);
+}
+
+/// fn(StreamRef&) where the statement writes a stream.
+template <class Fn>
+void withStream(Stmt& stmt, Fn&& fn) {
+  if (auto* n = std::get_if<Push>(&stmt.node)) fn(n->stream);
+  if (auto* n = std::get_if<Scatter>(&stmt.node)) fn(n->stream);
 }
 
 /// fn(callee, arguments) for every call in a block.
@@ -86,7 +98,8 @@ class State {
     return made;
   }
 
-  /// A copy of a function with its streams bound; an entry keeps its parameters, others lose gathers.
+  /// A copy of a function with its streams bound; an entry keeps its parameters, others lose gathers and
+  /// sinks.
   FunctionId make(FunctionId source, const Binding& binding, bool isEntry) {
     Function function = clone(module_.functions[source]);
     walkExprs(function.body, [&](Expr& expr) {
@@ -97,15 +110,17 @@ class State {
         stream = isGather && std::holds_alternative<IndexOf>(expr.node) ? domain : binding[stream.id];
       });
     });
+    walkStmts(function.body,
+              [&](Stmt& stmt) { withStream(stmt, [&](StreamRef& stream) { stream = binding[stream.id]; }); });
     forEachCall(function.body, [&](FunctionId& callee, std::vector<ExprPtr>& args) {
       callee = bindCall(function, binding, callee, args);
     });
-    if (!isEntry) dropGathers(function);
+    if (!isEntry) dropStreams(function);
     made_.push_back(std::move(function));
     return static_cast<FunctionId>(made_.size() - 1);
   }
 
-  /// The instance that a call means; takes the gathers out of its arguments.
+  /// The instance that a call means; takes the gathers and sinks out of its arguments.
   FunctionId bindCall(const Function& caller, const Binding& binding, FunctionId callee,
                       std::vector<ExprPtr>& args) {
     const Function& function = module_.functions[callee];
@@ -116,23 +131,23 @@ class State {
       if (isStream(function.variables[i]) && ref != nullptr && isStream(caller.variables[ref->var])) {
         bound[i] = binding[ref->var];
       }
-      if (function.variables[i].role != VarRole::Gather) kept.push_back(std::move(args[i]));
+      if (!isDropped(function.variables[i])) kept.push_back(std::move(args[i]));
     }
     args = std::move(kept);
     return instantiate(callee, std::move(bound));
   }
 
-  static void dropGathers(Function& function) {
+  static void dropStreams(Function& function) {
     constexpr VarId dropped = std::numeric_limits<VarId>::max();
     std::vector<VarId> renumbered;
     std::vector<Variable> kept;
     std::uint32_t parameters = 0;
     for (std::size_t i = 0; i < function.variables.size(); ++i) {
       Variable& var = function.variables[i];
-      const bool isGather = var.role == VarRole::Gather;
+      const bool isGone = isDropped(var);
       if (var.role == VarRole::Element) var.role = VarRole::In;
-      renumbered.push_back(isGather ? dropped : static_cast<VarId>(kept.size()));
-      if (isGather) continue;
+      renumbered.push_back(isGone ? dropped : static_cast<VarId>(kept.size()));
+      if (isGone) continue;
       if (i < function.parameterCount) ++parameters;
       kept.push_back(std::move(var));
     }
@@ -156,6 +171,8 @@ class State {
         if (stream.space == StreamRef::Space::Variable) uses[stream.id] = true;
       });
     });
+    walkStmts(function.body,
+              [&](Stmt& stmt) { withStream(stmt, [&](StreamRef& stream) { uses[stream.id] = true; }); });
     forEachCall(function.body, [&](FunctionId callee, std::vector<ExprPtr>& args) {
       const std::vector<bool>& inner = usesOf(callee);
       for (std::size_t i = 0; i < args.size(); ++i) {

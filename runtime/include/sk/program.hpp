@@ -14,6 +14,10 @@
 //   ivec4 sk_extent_p()        shape of p's stream, x fastest, missing dimensions 1  (usesExtent)
 //   T     sk_at_p(ivecN i)     element of gather p at i; N is its rank, `int` if 1   (usesAt)
 //   T     sk_near_p(ivecN d)   element of gather p at the current index plus d       (usesNear)
+//   ivec4 sk_extent()          shape of the domain, where no output has it           (usesExtent)
+//   void  sk_push_p(T v)       appends v to variable output p
+//   void  sk_put_p(ivecN i, T v)   element of scatter output p at i becomes v, or what Parameter::scatter
+//                              makes of it and v; nothing where i is outside
 //
 // Every name that the assembler declares begins with `sk_`; names of the user never do.
 #pragma once
@@ -49,7 +53,12 @@ enum class Role : std::uint8_t {
   Output,       ///< `out T r<>`
   Gather,       ///< `T a[]`, `T a[][]`
   Accumulator,  ///< `reduce T r<>`
+  VariableOutput,  ///< `vout T r<>`
+  Scatter,      ///< `out T r[]`, `out T r[][]`
 };
+
+/// What a scatter output does with the element that it holds and the value that comes.
+enum class ScatterOp : std::uint8_t { Store, Add, Min, Max };
 
 /// What a gather gives for an index outside its stream.
 enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };
@@ -60,10 +69,13 @@ struct Parameter {
                                ///< with a letter: GLSL reserves names with two underscores)
   Role role;
   const Element* element;
-  std::uint8_t rank = 0;               ///< gathers: 1 to 4; else 0
+  std::uint8_t rank = 0;               ///< gathers and scatter outputs: 1 to 4; else 0
   Boundary boundary = Boundary::Clamp; ///< gathers
   std::string_view border = {};        ///< gathers with Boundary::Border: a GLSL constant expression
   std::string_view identity = {};      ///< accumulators: a GLSL constant expression; empty if none
+  ScatterOp scatter = ScatterOp::Store;  ///< scatter outputs
+  std::int32_t pushes = -1;    ///< variable and scatter outputs: calls of sk_push_p() or sk_put_p() by one
+                               ///< element at most; -1 if unknown
   bool usesIndex = false;      ///< the body calls sk_index_p()
   bool usesExtent = false;     ///< the body calls sk_extent_p()
   bool usesAt = false;         ///< the body calls sk_at_p()
@@ -72,7 +84,7 @@ struct Parameter {
 };
 
 /// A kernel. Its GLSL entry function takes, in order, every Uniform, Input (by value) and Output
-/// (as `out`) parameter; gathers are no parameters of it.
+/// (as `out`) parameter; gathers, variable outputs and scatter outputs are no parameters of it.
 struct Kernel {
   std::string_view name;       ///< qualified, for messages: "heat::diffuse"
   std::string_view entry;      ///< name of the entry function in `body`
@@ -82,6 +94,7 @@ struct Kernel {
   std::span<const Parameter> parameters;         ///< in the order of the declaration
   std::span<const std::string_view> sources;     ///< file of source string number i + 1 in #line
   bool usesIndex = false;      ///< the body calls sk_index()
+  bool usesExtent = false;     ///< the body calls sk_extent()
   bool usesLoops = false;      ///< the body has a loop: main() then leaves the helper invocations that
                                ///< GPUs run beside the domain, where what they read might never end it
 };

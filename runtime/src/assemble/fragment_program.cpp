@@ -85,6 +85,8 @@ class KernelText {
         defineExtent(parameter);
         break;
       case Role::Accumulator: assert(!"a reduction has programs of its own"); break;
+      case Role::VariableOutput:
+      case Role::Scatter: assert(!"sinks have programs of their own"); break;
     }
   }
 
