@@ -145,7 +145,7 @@ class GlslExpr {
     return {text(*n.base, Precedence::Primary) + "." + context_.types.fieldName(n.base->type.index, n.field)};
   }
   Parts print(Type, const Index& n) const {
-    return {text(*n.base, Precedence::Primary) + "[" + text(*n.index) + "]"};
+    return {text(*n.base, Precedence::Primary) + "[" + indexText(n) + "]"};
   }
   Parts print(Type, const Call& n) const { return {context_.names.function(n.callee) + list(n.args)}; }
   Parts print(Type, const IntrinsicCall& n) const {
@@ -177,6 +177,19 @@ class GlslExpr {
     const std::uint32_t param = isDomain ? domainParam(context_.kernel) : stream.id;
     if (param == context_.kernel.params.size()) return std::string(function);
     return fmt::format("{}_{}", function, context_.names.symbol(param));
+  }
+
+  /// An index outside an array takes the nearest element. That must be so in the text even where the index
+  /// cannot be outside: Mesa (22.3, llvmpipe) looks an array's index up only when it loads or stores, from the
+  /// register that it gave to a loop's variable, and by then may have counted that on: `a[i] = a[i + 1]` stores
+  /// to a[i + 1]. A computed index has a register of its own.
+  std::string indexText(const Index& n) const {
+    const std::string index = text(*n.index);
+    if (n.base->type.kind != Type::Kind::Array || std::holds_alternative<Literal>(n.index->node))
+      return index;
+    const std::uint32_t last = context_.module.arrays[n.base->type.index].length - 1;
+    if (n.index->type.scalar == Scalar::Uint) return fmt::format("min({}, {}u)", index, last);
+    return fmt::format("clamp({}, 0, {})", index, last);
   }
 
   std::string operand(BinaryOp outer, const Expr& expr, Precedence around) const {

@@ -91,7 +91,12 @@ TEST_CASE("conversions, constructors, swizzles, elements") {
   CHECK(t.text(swizzle(binary(Add, t.ref(t.v), t.ref(t.v)), "yx")) == "(v + v).yx");
   CHECK(t.text(index(t.module, t.ref(t.v), t.ref(t.i))) == "v[i]");
   const Type array = arrayOf(t.module, floatType, 2);
-  CHECK(t.text(construct(array, exprs(literal(1.0F), literal(2.0F)))) == "float[2](1.0, 2.0)");
+  const auto pair = [&] { return construct(array, exprs(literal(1.0F), literal(2.0F))); };
+  CHECK(t.text(pair()) == "float[2](1.0, 2.0)");
+  CHECK(t.text(index(t.module, pair(), literal(1))) == "float[2](1.0, 2.0)[1]");
+  CHECK(t.text(index(t.module, pair(), t.ref(t.i))) == "float[2](1.0, 2.0)[clamp(i, 0, 1)]");
+  CHECK(t.text(index(t.module, pair(), convert(Scalar::Uint, t.ref(t.i)))) ==
+        "float[2](1.0, 2.0)[min(uint(i), 1u)]");
 }
 
 TEST_CASE("streams are reached through the assembler's functions") {

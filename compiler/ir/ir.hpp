@@ -74,7 +74,8 @@ struct Convert { ExprPtr operand; };
 struct Construct { std::vector<ExprPtr> args; };
 struct Swizzle { ExprPtr base; std::vector<std::uint8_t> components; };   ///< of a vector; 1 to 4
 struct Member { ExprPtr base; std::uint32_t field; };
-struct Index { ExprPtr base, index; };           ///< of an array or a vector; an int or uint
+/// Of an array or a vector, at an int or uint. Outside an array, it is the nearest element.
+struct Index { ExprPtr base, index; };
 struct Call { FunctionId callee; std::vector<ExprPtr> args; };   ///< no InOut parameters, not void
 struct IntrinsicCall { Intrinsic intrinsic; std::vector<ExprPtr> args; };
 

@@ -2,6 +2,10 @@
 //
 // Control flow against the C++ compiler's reading of the same text.
 #include "control_flow.sk.hpp"
+
+#include <algorithm>
+#include <limits>
+
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"   // that names may be shadowed is part of what is tested
 #include "shared/control_flow.hpp"
@@ -50,5 +54,24 @@ TEST_CASE("a kernel may return early, and its outputs are variables until then")
     }
     CHECK(difference(a.read(), low) == "");
     CHECK(difference(b.read(), high) == "");
+  });
+}
+
+TEST_CASE("an index outside an array takes the nearest element") {
+  const int most = std::numeric_limits<int>::max(), least = std::numeric_limits<int>::min();
+  const std::vector<int> x = {0, 1, 2, 3, 4, 5, 100, most, -1, -2, least};
+  const auto count = static_cast<std::int64_t>(x.size());
+  onEveryProfile([&](sk::Device& device) {
+    auto written = device.stream<int>({count}), read = device.stream<int>({count});
+    control::nearestElement(streamOf<int>(device, x), written, read);
+    CHECK(difference(read.read(), [&](std::size_t i) {
+            const int atUint = x[i] < 0 ? 4 : std::min(x[i], 4);   // as uint, -1 lies beyond the end
+            return (10 + std::clamp(x[i], 0, 4)) * 100 + 10 + atUint;
+          }) == "");
+    CHECK(difference(written.read(), [&](std::size_t i) {
+            int own[3] = {1, 2, 3};
+            own[std::clamp(x[i], 0, 2)] = 7;
+            return own[0] * 100 + own[1] * 10 + own[2];
+          }) == "");
   });
 }

@@ -17,7 +17,8 @@
   CASE(switchNegative) CASE(switchOnExpression) CASE(switchOnBool) CASE(switchDeclarations)        \
   CASE(switchInLoopBreak) CASE(switchInLoopContinue) CASE(loopInSwitch) CASE(switchInSwitch)       \
   CASE(switchBreakInIf) CASE(shadowing) CASE(scopes) CASE(collatz) CASE(greatestDivisor)           \
-  CASE(isPrime) CASE(bubbleSort) CASE(unreachableTail)
+  CASE(isPrime) CASE(bubbleSort) CASE(arrayShifted) CASE(arrayAveraged)                 \
+  CASE(unreachableTail)
 // clang-format on
 
 #include "switches.hpp"
@@ -393,6 +394,28 @@ inline int isPrime(int x, int y) {
   for (int d = 2; d * d <= n; ++d)
     if (n % d == 0) return 0;
   return n;
+}
+
+// Too long to be unrolled, so that the array is one in the device's program, too.
+inline int arrayShifted(int x, int y) {
+  int a[40];
+  const int n = x < 0 ? 3 : x + 3;
+  for (int i = 0; i <= n; ++i) a[i] = x * i + y;
+  for (int i = 0; i < n; ++i) a[i] = a[i + 1];
+  for (int i = n; i > 1; --i) a[i] = a[i - 1] + i;
+  int r = 0;
+  for (int i = 0; i <= n; ++i) r = r * 3 + a[i];
+  return r;
+}
+
+inline int arrayAveraged(int x, int y) {
+  int a[40];
+  const int n = x < 0 ? 3 : x + 3;
+  for (int i = 0; i <= n; ++i) a[i] = i * i + y;
+  for (int last = n; last > 0; --last) {
+    for (int i = 0; i < last; ++i) a[i] = 2 * a[i] + a[i + 1];
+  }
+  return a[0] + 5 * a[1];
 }
 
 inline int bubbleSort(int x, int y) {
