@@ -117,7 +117,8 @@ FunctionId addFunctionOf(Module& module, const std::string& name, Type type) {
 TEST_CASE("overloads keep their name while their parameters differ; built-ins are not redefined") {
   Sample s;
   s.module.structs.push_back({"Hit", {"a"}, {{"t", floatType}}, {}});
-  s.module.structs.push_back({"Hit", {"b"}, {{"input", floatType}}, {}});
+  s.module.structs.push_back(
+      {"Hit", {"b"}, {{"input", floatType}, {"length", floatType}, {"length_", floatType}}, {}});
   s.module.constants.push_back({"mix", floatType, literal(1.0F), {}});
   const FunctionId first = addFunctionOf(s.module, "half_of", floatType);
   const FunctionId second = addFunctionOf(s.module, "half_of", intType);
@@ -135,6 +136,8 @@ TEST_CASE("overloads keep their name while their parameters differ; built-ins ar
   CHECK(types.structName(0) == "Hit");
   CHECK(types.structName(1) == "b_Hit");
   CHECK(types.fieldName(1, 0) == "input_");
+  CHECK(types.fieldName(1, 1) == "length_");
+  CHECK(types.fieldName(1, 2) == "length_2");
 }
 
 }  // namespace

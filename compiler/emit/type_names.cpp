@@ -26,16 +26,19 @@ std::string nameOf(const Struct& type, const std::vector<std::string>& taken) {
   return uniqueName(glslSafe(qualified + type.name), isTaken);
 }
 
+/// glslang reads `.length` as the beginning of an array's `.length()` wherever it stands.
+std::string nameOf(const StructField& field, const std::vector<std::string>& taken) {
+  const std::string name = glslSafe(field.name) + (field.name == "length" ? "_" : "");
+  return uniqueName(name, [&](const std::string& n) { return contains(taken, n); });
+}
+
 }  // namespace
 
 TypeNames::TypeNames(const Module& module) : module_(&module) {
   for (const Struct& type : module.structs) {
     structs_.push_back(nameOf(type, structs_));
     std::vector<std::string> fields;
-    for (const StructField& field : type.fields) {
-      fields.push_back(
-          uniqueName(glslSafe(field.name), [&](const std::string& n) { return contains(fields, n); }));
-    }
+    for (const StructField& field : type.fields) fields.push_back(nameOf(field, fields));
     fields_.push_back(std::move(fields));
   }
 }
