@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <clang/AST/APValue.h>
 #include <clang/AST/ASTContext.h>
 #include <clang/AST/DeclCXX.h>
 #include <clang/AST/DeclTemplate.h>
@@ -208,29 +209,53 @@ ir::ExprPtr ModuleLowering::constantValue(const clang::VarDecl* declaration, boo
   }
   inlineConstants_ = before;
   constantsInProgress_.erase(declaration);
-  if (!value) value = evaluated(init);
+  if (!value) value = evaluated(declaration);
   if (!value) fail(Diag::NotConstant, init->getBeginLoc());
   return value;
 }
 
-/// A scalar that Clang can compute where GLSL could not, such as a call of a constexpr function.
-ir::ExprPtr ModuleLowering::evaluated(const clang::Expr* init) {
-  clang::Expr::EvalResult result;
-  if (!init->EvaluateAsRValue(result, context()) || result.HasSideEffects) return nullptr;
-  const ir::Type type = this->type(init->getType(), init->getBeginLoc());
-  if (!type.isScalar()) return nullptr;
-  std::uint32_t bits = 0;
-  if (result.Val.isFloat()) {
-    llvm::APFloat rounded = result.Val.getFloat();
+/// What Clang can compute where GLSL could not, such as a call of a constexpr function.
+ir::ExprPtr ModuleLowering::evaluated(const clang::VarDecl* declaration) {
+  const clang::Expr* init = declaration->getAnyInitializer(declaration);
+  const clang::APValue* value = declaration->evaluateValue();
+  if (!value) return nullptr;
+  return evaluated(*value, type(declaration->getType(), init->getBeginLoc()), loc(init->getBeginLoc()));
+}
+
+/// Null where the value is of none of the kinds that kernels know.
+ir::ExprPtr ModuleLowering::evaluated(const clang::APValue& value, ir::Type type, Loc loc) const {
+  if (value.isFloat()) {
+    llvm::APFloat rounded = value.getFloat();
     bool inexact = false;
     rounded.convert(llvm::APFloat::IEEEsingle(), llvm::APFloat::rmNearestTiesToEven, &inexact);
-    bits = static_cast<std::uint32_t>(rounded.bitcastToAPInt().getZExtValue());
-  } else if (result.Val.isInt()) {
-    bits = static_cast<std::uint32_t>(result.Val.getInt().getExtValue());
-  } else {
-    return nullptr;
+    return ir::makeExpr(
+        type, ir::Literal{static_cast<std::uint32_t>(rounded.bitcastToAPInt().getZExtValue())}, loc);
   }
-  return ir::makeExpr(type, ir::Literal{bits}, loc(init->getBeginLoc()));
+  if (value.isInt()) {
+    const auto bits = static_cast<std::uint32_t>(value.getInt().getExtValue());
+    return ir::makeExpr(type, ir::Literal{type.isBool() ? bits != 0 : bits}, loc);
+  }
+  std::vector<ir::ExprPtr> parts;
+  if (value.isVector()) {
+    const ir::Type component = ir::Type::of(type.scalar);
+    for (unsigned i = 0; i < value.getVectorLength(); ++i) {
+      parts.push_back(evaluated(value.getVectorElt(i), component, loc));
+    }
+  } else if (value.isArray()) {
+    const ir::Type element = module_.arrays[type.index].element;
+    for (unsigned i = 0; i < value.getArraySize(); ++i) {
+      const bool isGiven = i < value.getArrayInitializedElts();
+      parts.push_back(
+          evaluated(isGiven ? value.getArrayInitializedElt(i) : value.getArrayFiller(), element, loc));
+    }
+  } else if (value.isStruct()) {
+    const std::vector<ir::StructField>& fields = module_.structs[type.index].fields;
+    for (unsigned i = 0; i < value.getStructNumFields(); ++i) {
+      parts.push_back(evaluated(value.getStructField(i), fields[i].type, loc));
+    }
+  }
+  const bool isWhole = !parts.empty() && std::ranges::all_of(parts, [](const auto& part) { return !!part; });
+  return isWhole ? ir::construct(type, std::move(parts), loc) : nullptr;
 }
 
 // ---- functions ----------------------------------------------------------------------------------

@@ -78,7 +78,8 @@ class ModuleLowering {
   void pairReductions();
   ir::ExprPtr generatedConstant(const std::string& name);
   ir::ExprPtr constantValue(const clang::VarDecl* declaration, bool inlined);
-  ir::ExprPtr evaluated(const clang::Expr* init);
+  ir::ExprPtr evaluated(const clang::VarDecl* declaration);
+  ir::ExprPtr evaluated(const clang::APValue& value, ir::Type type, Loc loc) const;
   ir::Type structType(const clang::CXXRecordDecl* declaration, clang::SourceLocation use);
   ir::Type arrayType(ir::Type element, std::uint64_t length, clang::SourceLocation use);
   std::vector<std::string> scopeOf(const clang::Decl* declaration) const;
