@@ -53,6 +53,15 @@ std::optional<ir::BinaryOp> binaryOpOf(clang::BinaryOperatorKind kind) {
 
 bool isArithmeticOp(ir::BinaryOp op) { return op <= ir::BinaryOp::Rem; }
 
+/// What an operator of two bool vectors is; nullopt where it would take them for numbers.
+std::optional<ir::BinaryOp> ofBools(ir::BinaryOp op) {
+  if (op == ir::BinaryOp::BitAnd) return ir::BinaryOp::LogicalAnd;
+  if (op == ir::BinaryOp::BitOr) return ir::BinaryOp::LogicalOr;
+  if (op == ir::BinaryOp::BitXor) return ir::BinaryOp::NotEqual;
+  if (op == ir::BinaryOp::Equal || op == ir::BinaryOp::NotEqual) return op;
+  return std::nullopt;
+}
+
 /// float4(2.0) in `v * float4(2.0)` where the author wrote `v * 2.0`.
 ExprPtr withoutSplat(ExprPtr e) {
   auto* construct = std::get_if<ir::Construct>(&e->node);
@@ -257,7 +266,8 @@ ExprPtr FunctionLowering::compoundAssign(const clang::CompoundAssignOperator* e,
   const Loc loc = module_.loc(e->getBeginLoc());
   const bool isSignedRemainder =
       op == ir::BinaryOp::Rem && computed.scalar == ir::Scalar::Int;   // a function in GLSL
-  if (computed.isArithmetic() && computed.scalar == target->type.scalar && !isSignedRemainder) {
+  const bool isNumber = computed.isArithmetic() && !computed.isBool();
+  if (isNumber && computed.scalar == target->type.scalar && !isSignedRemainder) {
     if (isArithmeticOp(op)) right = withoutSplat(std::move(right));
     emit(loc, ir::Assign{std::move(target), op, std::move(right)});
     return result;
@@ -306,6 +316,7 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
         return literal(operand->type, bits, where);
       }
       const ir::Type type = operand->type;
+      if (type.isBool()) module_.fail(Diag::Statement, where, {"arithmetic of bool vectors"});
       return make(type, where, ir::Unary{ir::UnaryOp::Negate, std::move(operand)});
     }
     case clang::UO_Not: {
@@ -358,8 +369,13 @@ ExprPtr FunctionLowering::binary(ir::BinaryOp op, ExprPtr lhs, ExprPtr rhs, Sour
     if (bare->type.isVector()) lhs = withoutSplat(std::move(lhs));
     rhs = std::move(bare);
   }
+  const bool compares = ir::isComparison(op) && lhs->type.isVector();
+  if (lhs->type.isVector() && lhs->type.isBool()) {
+    const auto logical = ofBools(op);
+    if (!logical) module_.fail(Diag::Statement, where, {"arithmetic of bool vectors"});
+    op = *logical;
+  }
   ExprPtr result = ir::binary(op, std::move(lhs), std::move(rhs), module_.loc(where));
-  const bool compares = ir::isComparison(op) && result->type.isVector();
   return compares ? mask(std::move(result)) : std::move(result);
 }
 
