@@ -115,6 +115,10 @@ TEST_CASE("chains on one line, and lines of their own without braces") {
           return block(ifStmt(positive(k), block(set(k, 1, 3)), block(set(k, 2, 5)), atLine(2)),
                        set(k, 3, 6));
         }) == "\n  if (x > 0.0)\n    r = 1.0;\n  else\n    r = 2.0;\n  r = 3.0;\n}\n");
+  CHECK(body([](KernelMaker& k) {
+          return block(ifStmt(positive(k), block(set(k, 1, 2)), block(set(k, 2, 3)), atLine(2)),
+                       set(k, 3, 4));
+        }) == "\n  if (x > 0.0) r = 1.0;\n  else r = 2.0;\n  r = 3.0;\n}\n");
 }
 
 TEST_CASE("a block on one line that does not fit there gets a line for each statement") {

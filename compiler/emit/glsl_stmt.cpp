@@ -192,7 +192,9 @@ class FunctionWriter {
       writer_.append(" " + word);
     } else {
       writer_.endLine();
-      writer_.put(depth, inner != nullptr ? n.otherwise[0].loc : nowhere, word);
+      const Loc loc =
+          n.otherwise[0].loc;   // where the .sk file has no line for `else` alone, it shares that one
+      writer_.put(depth, inner != nullptr || writer_.isNext(loc) ? loc : nowhere, word);
     }
     if (inner != nullptr) return bareIfElse(*inner, depth, next);
     bareBody(n.otherwise, depth, next);

@@ -77,6 +77,8 @@ bool LineWriter::isNumbered(Loc loc) const {
   return !current_.empty() && loc.line == line_ && loc.file == file_;
 }
 
+bool LineWriter::isNext(Loc loc) const { return current_.empty() && loc.line == line_ && loc.file == file_; }
+
 bool LineWriter::joins(Loc loc, std::string_view text) const {
   if (!isAt(loc)) return false;
   return current_.find('\n') == std::string::npos && current_.size() + 1 + text.size() <= limit;

@@ -37,6 +37,8 @@ class LineWriter {
   bool isAt(Loc loc) const;
   /// True if a compiler gives the number of `loc` to the line at hand.
   bool isNumbered(Loc loc) const;
+  /// True if no line is at hand, and the next one has the number of `loc`.
+  bool isNext(Loc loc) const;
   /// A writer that stands where this one does, for trying something out; it has no earlier lines.
   LineWriter trial() const;
   /// The text, its last line ended.
