@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "driver/glsl_listing.hpp"
 
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <set>
 
 #include "assemble/assemble.hpp"
@@ -12,14 +15,22 @@ namespace {
 
 using sk::assemble::Profile;
 
-/// The variant of streams that lie as they are and share one shape, as most calls have it.
+/// The variant of streams that lie as they are and share one shape, as most calls have it. Spec
+/// parameters are true or 1.
 sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel) {
   sk::assemble::Variant variant;
+  std::size_t specs = 0;
   for (const sk::program::Parameter& parameter : kernel.parameters) {
     sk::assemble::StreamAccess access;
     if (parameter.role == sk::program::Role::Gather) {
       access.addressing = sk::assemble::Addressing::Plane;
       access.nearby = parameter.reach >= 0;
+    } else if (parameter.role == sk::program::Role::Iterator) {
+      const bool isScalar = parameter.element->fields.front().width == 1;
+      if (isScalar) access.addressing = sk::assemble::Addressing::Linear;
+    } else if (parameter.role == sk::program::Role::Spec) {
+      const bool isFloat = parameter.element->fields.front().scalar == sk::program::Scalar::Float;
+      variant.specs[specs++] = isFloat ? std::bit_cast<std::uint32_t>(1.0F) : 1u;
     }
     variant.access.push_back(access);
   }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "emit/conditions.hpp"
 #include "emit/elements.hpp"
 #include "emit/glsl_body.hpp"
 #include "emit/stream_uses.hpp"
@@ -20,6 +21,7 @@ struct Program::Storage {
   std::deque<std::string> strings;
   std::deque<std::vector<sk::program::Field>> fields;
   std::deque<std::pair<Type, sk::program::Element>> elements;
+  std::deque<std::vector<sk::program::ConditionStep>> conditions;
   std::deque<std::vector<sk::program::Parameter>> parameters;
   std::vector<std::string_view> sources;
   std::deque<sk::program::Reduction> reductions;
@@ -38,7 +40,7 @@ struct Program::Storage {
 namespace {
 
 static_assert(static_cast<int>(Scalar::Float) == static_cast<int>(sk::program::Scalar::Float));
-static_assert(static_cast<int>(ParamRole::Scatter) == static_cast<int>(sk::program::Role::Scatter));
+static_assert(static_cast<int>(ParamRole::Spec) == static_cast<int>(sk::program::Role::Spec));
 static_assert(static_cast<int>(ScatterOp::Max) == static_cast<int>(sk::program::ScatterOp::Max));
 static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program::Boundary::Border));
 
@@ -101,7 +103,15 @@ class Builder {
             .usesExtent = use.extent,
             .usesAt = use.at,
             .usesNear = use.near,
-            .reach = use.reach};
+            .reach = use.reach,
+            .neededIf = condition(context, param)};
+  }
+
+  sk::program::Condition condition(const GlslContext& context, const KernelParam& param) {
+    if (!param.neededIf) return {};
+    const Function& entry = module_.functions[context.kernel.entry];
+    return {.steps = storage_.conditions.emplace_back(conditionSteps(context.kernel, *param.neededIf)),
+            .text = storage_.keep(print(module_, entry, *param.neededIf))};
   }
 
   const sk::program::Element& element(Type type) {

@@ -13,18 +13,25 @@ using namespace ir;
 
 std::string parameter(const Module& module, const KernelParam& param, const std::vector<std::string>& scope) {
   const std::string type = cppType(module, param.type, scope);
+  const auto stream = [&](std::string_view direction) {
+    const std::string taken = fmt::format("sk::{}<{}>", direction, type);
+    return param.neededIf ? fmt::format("const sk::Optional<{}>& {}", taken, param.name)
+                          : fmt::format("const {}& {}", taken, param.name);
+  };
   switch (param.role) {
+    case ParamRole::Spec: return fmt::format("{} {}", type, param.name);
+    case ParamRole::Iterator: return fmt::format("const sk::Iter<{}>& {}", type, param.name);
     case ParamRole::Uniform:
       return param.type.isArithmetic() ? fmt::format("{} {}", type, param.name)
                                        : fmt::format("const {}& {}", type, param.name);
     case ParamRole::Input:
-    case ParamRole::Gather: return fmt::format("const sk::In<{}>& {}", type, param.name);
+    case ParamRole::Gather: return stream("In");
     case ParamRole::VariableOutput: return fmt::format("const sk::VariableOut<{}>& {}", type, param.name);
     case ParamRole::Output:
     case ParamRole::Scatter:
     case ParamRole::Accumulator: break;
   }
-  return fmt::format("const sk::Out<{}>& {}", type, param.name);
+  return stream("Out");
 }
 
 }  // namespace

@@ -44,6 +44,8 @@ std::string quoted(std::string_view text) {
   return result + '"';
 }
 
+constexpr std::string_view scalarNames[] = {"Bool", "Int", "Uint", "Float"};
+
 class SourceWriter {
  public:
   SourceWriter(const Module& module, const Program& program)
@@ -82,11 +84,13 @@ class SourceWriter {
                            rawString(kernel.declarations));
     }
     text_ += fmt::format("constexpr std::string_view {}Body =\n    {};\n\n", name, rawString(kernel.body));
-    text_ += fmt::format("constexpr Parameter {}Parameters[] = {{\n", name);
     const Kernel& declared = kernelOf(unit);
+    for (const sk::program::Parameter& param : kernel.parameters) conditionSteps(name, param);
+    text_ += fmt::format("constexpr Parameter {}Parameters[] = {{\n", name);
     for (std::size_t i = 0; i < declared.params.size(); ++i) {
       text_ +=
-          wrapLine("    " + parameter(kernel.parameters[i], declared.params[i].type) + ",", 100, 5) + "\n";
+          wrapLine("    " + parameter(name, kernel.parameters[i], declared.params[i].type) + ",", 100, 5) +
+          "\n";
     }
     text_ += "};\n\n";
     const sk::program::Reduction* reduction = program_.units()[unit].reduction;
@@ -115,9 +119,29 @@ class SourceWriter {
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
   }
 
-  std::string parameter(const sk::program::Parameter& param, Type type) const {
-    constexpr std::string_view roles[] = {"Uniform",     "Input",          "Output", "Gather",
-                                          "Accumulator", "VariableOutput", "Scatter"};
+  /// The name of a parameter's condition.
+  static std::string conditionName(const std::string& unit, const sk::program::Parameter& param) {
+    return fmt::format("{}Needs_{}", unit, param.symbol);
+  }
+
+  void conditionSteps(const std::string& unit, const sk::program::Parameter& param) {
+    if (param.neededIf.steps.empty()) return;
+    constexpr std::string_view ops[] = {"Spec",      "Literal", "Not",          "And",   "Or",      "BitAnd",
+                                        "BitOr",     "BitXor",  "Add",          "Sub",   "Mul",     "Less",
+                                        "LessEqual", "Greater", "GreaterEqual", "Equal", "NotEqual"};
+    std::vector<std::string> steps;
+    for (const sk::program::ConditionStep& step : param.neededIf.steps) {
+      steps.push_back(fmt::format("{{ConditionOp::{}, Scalar::{}, {}u}}",
+                                  ops[static_cast<std::size_t>(step.op)],
+                                  scalarNames[static_cast<std::size_t>(step.scalar)], step.value));
+    }
+    const std::string head = fmt::format("constexpr ConditionStep {}[] = {{", conditionName(unit, param));
+    text_ += wrapLine(head + join(steps, ", ") + "};", 100, head.size()) + "\n\n";
+  }
+
+  std::string parameter(const std::string& unit, const sk::program::Parameter& param, Type type) const {
+    constexpr std::string_view roles[] = {"Uniform",        "Input",   "Output",   "Gather", "Accumulator",
+                                          "VariableOutput", "Scatter", "Iterator", "Spec"};
     constexpr std::string_view scatterOps[] = {"Store", "Add", "Min", "Max"};
     constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
     const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";
@@ -140,6 +164,9 @@ class SourceWriter {
     if (param.usesAt) text += ", .usesAt = true";
     if (param.usesNear) text += ", .usesNear = true";
     if (param.reach >= 0) text += fmt::format(", .reach = {}", param.reach);
+    if (!param.neededIf.steps.empty()) {
+      text += fmt::format(", .neededIf = {{{}, \"{}\"}}", conditionName(unit, param), param.neededIf.text);
+    }
     return text + "}";
   }
 
@@ -163,13 +190,20 @@ class SourceWriter {
   void run(const Kernel& kernel, std::size_t unit) {
     std::vector<std::string> items;
     for (const KernelParam& param : kernel.params) {
-      const bool isValue = param.role == ParamRole::Uniform;
-      items.push_back(isValue ? "{.value = &" + param.name + "}" : "{.region = " + param.name + ".region()}");
+      items.push_back(argument(param));
     }
     const std::string list = localName(kernel, "arguments");
     const std::string head = fmt::format("  const sk::Argument {}[] = {{", list);
     text_ += wrapLine(head + join(items, ", ") + "};", 100, head.size()) + "\n";
     text_ += fmt::format("  sk::run(sk::program::{}Kernel, {});\n", names_[unit], list);
+  }
+
+  static std::string argument(const KernelParam& param) {
+    if (param.role == ParamRole::Iterator) return fmt::format("sk::argumentOf({})", param.name);
+    if (param.role == ParamRole::Uniform || param.role == ParamRole::Spec) {
+      return fmt::format("{{.value = &{}}}", param.name);
+    }
+    return param.neededIf ? param.name + ".argument()" : fmt::format("{{.region = {}.region()}}", param.name);
   }
 
   void reduceToValue(const Kernel& kernel, std::size_t unit) {

@@ -227,7 +227,7 @@ ir::VarId FunctionLowering::gatherVariable(const clang::Expr* e) {
   return *stream;
 }
 
-/// indexof(p) and extentof(p): of a stream parameter; an output's are those of the domain.
+/// indexof(p) and extentof(p): of a stream parameter; an output's and an iterator's are those of the domain.
 ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) {
   const clang::Expr* argument = withoutCopies(e->getArg(0));
   const SourceLocation where = argument->getBeginLoc();
@@ -235,14 +235,16 @@ ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) 
   const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(argument);
   const ParamSyntax* syntax =
       reference ? module_.syntax().param(reference->getDecl()->getLocation()) : nullptr;
-  if (!syntax || syntax->role == ir::ParamRole::Uniform) module_.fail(Diag::NotAStream, where, {name});
+  const bool isValue =
+      !syntax || syntax->role == ir::ParamRole::Uniform || syntax->role == ir::ParamRole::Spec;
+  if (isValue) module_.fail(Diag::NotAStream, where, {name});
   const auto found = variables_.find(reference->getDecl());
   if (found == variables_.end()) throw Abandoned{};
   const bool isGather = syntax->role == ir::ParamRole::Gather;
   if (isIndex && isGather)
     module_.fail(Diag::IndexOfGather, where, {function_.variables[found->second].name});
   ir::StreamRef stream{ir::StreamRef::Space::Variable, found->second};
-  if (syntax->role == ir::ParamRole::Output) {
+  if (syntax->role == ir::ParamRole::Output || syntax->role == ir::ParamRole::Iterator) {
     stream = {ir::StreamRef::Space::Domain, 0};
   } else if (syntax->role == ir::ParamRole::Accumulator) {
     module_.fail(Diag::NotAStream, where, {name});

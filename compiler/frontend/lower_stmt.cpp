@@ -110,7 +110,7 @@ void FunctionLowering::parameters(const clang::FunctionDecl* declaration) {
       variable.role = mutableReference ? ir::VarRole::InOut : ir::VarRole::In;
       if (syntax && syntax->role == ir::ParamRole::Input) variable.role = ir::VarRole::Element;
       const bool byValue =
-          syntax && (syntax->role == ir::ParamRole::Uniform || syntax->role == ir::ParamRole::Input);
+          syntax && syntax->role != ir::ParamRole::Output && syntax->role != ir::ParamRole::Accumulator;
       if (byValue && type->isReferenceType()) {
         module_.fail(Diag::ReferenceType, where, {type.getAsString()});
       }

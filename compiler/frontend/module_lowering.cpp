@@ -107,6 +107,12 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
       }
     }
   }
+  if (param.role == ir::ParamRole::Iterator && (!param.type.isArithmetic() || param.type.isBool())) {
+    fail(Diag::IteratorType, declaration->getLocation(), {param.name, spelling(param.type)});
+  }
+  if (param.role == ir::ParamRole::Spec && !param.type.isScalar()) {
+    fail(Diag::SpecType, declaration->getLocation(), {param.name, spelling(param.type)});
+  }
   if (syntax) {
     param.rank = syntax->rank;
     param.boundary = syntax->boundary;
@@ -121,6 +127,9 @@ void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation w
     return std::count_if(kernel.params.begin(), kernel.params.end(),
                          [&](const ir::KernelParam& param) { return param.role == role; });
   };
+  constexpr int mostSpecs = 8;   // their values are part of a program's key (runtime/src/variant.hpp)
+  if (count(ir::ParamRole::Spec) > mostSpecs)
+    fail(Diag::SpecCount, where, {kernel.name, std::to_string(mostSpecs)});
   if (!kernel.reduction) {
     if (count(ir::ParamRole::Output) == 0) fail(Diag::KernelWithoutOutput, where, {kernel.name});
     return;

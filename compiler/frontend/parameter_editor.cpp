@@ -18,7 +18,7 @@ namespace tok = clang::tok;
 
 /// What one parameter's tokens said.
 struct ParameterEditor::Parts {
-  Token qualifier;                 ///< `out` or `reduce`, or unset
+  Token qualifier;                 ///< `out`, `reduce`, `iter` ..., or unset
   bool hasQualifier = false;
   Tokens type;
   Token name;
@@ -248,7 +248,7 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
     return false;
   };
   const std::string qualifier = parts.hasQualifier ? nameOf(parts.qualifier) : "";
-  if (qualifier == "iter" || qualifier == "vout" || qualifier == "spec" || qualifier == "kernel") {
+  if (qualifier == "vout" || qualifier == "kernel") {
     diagnostics_.report(Diag::QualifierUnknown, locOf(parts.qualifier), {qualifier});
     return false;
   }
@@ -259,6 +259,18 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
     return false;
   }
   if (!parts.value.empty() && qualifier != "reduce") return fail(Diag::DefaultArgument, {name});
+  if (qualifier == "iter" || qualifier == "spec") {
+    if (kind != FunctionKind::Kernel) {
+      diagnostics_.report(Diag::QualifierOutsideKernel, locOf(parts.qualifier), {qualifier, name});
+      return false;
+    }
+    const bool isIterator = qualifier == "iter";
+    if (parts.rank > 0 || parts.isElement != isIterator) {
+      return fail(isIterator ? Diag::IteratorBrackets : Diag::SpecBrackets, {name});
+    }
+    parts.syntax.role = isIterator ? ir::ParamRole::Iterator : ir::ParamRole::Spec;
+    return true;
+  }
   if (kind == FunctionKind::Helper) {
     if (parts.isElement) return fail(Diag::StreamInHelper, {name});
     if (parts.rank > 0 && !qualifier.empty()) return fail(Diag::ScatterOutput, {name});
@@ -307,6 +319,8 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
       break;
     case ir::ParamRole::Input:
     case ir::ParamRole::Uniform:
+    case ir::ParamRole::Iterator:
+    case ir::ParamRole::Spec:
       if (parts.type.front().isNot(tok::kw_const)) out.push_back(word("const", start));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       break;

@@ -179,6 +179,8 @@ enum class ParamRole : std::uint8_t {
   Accumulator,
   VariableOutput,
   Scatter,
+  Iterator,
+  Spec,
 };
 enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };
 struct KernelParam {
@@ -193,6 +195,9 @@ struct KernelParam {
   ScatterOp scatter = ScatterOp::Store; ///< Scatter: what all its statements do
   std::int32_t pushes = -1;            ///< VariableOutput, Scatter: statements that one element executes
                                        ///< at most; -1 if unknown
+  /// Streams, set by guard-streams: an expression of the entry's Spec variables that is false where the
+  /// kernel does without; or null.
+  ExprPtr neededIf = nullptr;
 };
 
 /// How partial results of a reduce combine; set by derive-combine (frontend: where the user wrote
@@ -207,8 +212,9 @@ struct Kernel {
   std::vector<std::string> scope;      ///< enclosing namespaces, outermost first
   std::string signature;               ///< the declaration as written, on one line
   FunctionId entry;                    ///< void; variables 0..n-1 are the parameters:
-                                       ///< Uniform In, Input Element, Output and Accumulator InOut,
-                                       ///< Gather Gather, VariableOutput and Scatter Sink
+                                       ///< Uniform, Iterator and Spec In, Input Element,
+                                       ///< Output and Accumulator InOut, Gather Gather,
+                                       ///< VariableOutput and Scatter Sink
   std::vector<KernelParam> params;     ///< of a reduce: an Input, then an Accumulator
   std::optional<Reduction> reduction;  ///< set for `reduce`
   Loc loc;

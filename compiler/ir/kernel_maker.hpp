@@ -36,6 +36,12 @@ class KernelMaker {
   VarId uniform(std::string name, Type type) {
     return param(std::move(name), ParamRole::Uniform, type, VarRole::In);
   }
+  VarId iterator(std::string name, Type type) {
+    return param(std::move(name), ParamRole::Iterator, type, VarRole::In);
+  }
+  VarId spec(std::string name, Type type) {
+    return param(std::move(name), ParamRole::Spec, type, VarRole::In);
+  }
   VarId input(std::string name, Type type) {
     return param(std::move(name), ParamRole::Input, type, VarRole::Element);
   }

@@ -118,7 +118,8 @@ std::string printVariable(const Module& module, const Variable& var) {
                      var.rank > 0 ? fmt::format(" rank {}", var.rank) : "");
 }
 
-std::string printParam(const Module& module, const KernelParam& param, std::size_t number) {
+std::string printParam(const Module& module, const Function& entry, const KernelParam& param,
+                       std::size_t number) {
   const auto constant = [&](const ExprPtr& e) { return print(module, Function{}, *e); };
   std::string text =
       fmt::format("  ${} {}: {} {}", number, param.name, spelling(param.role), print(module, param.type));
@@ -130,6 +131,7 @@ std::string printParam(const Module& module, const KernelParam& param, std::size
   if (param.pushes >= 0) text += fmt::format(" at most {}", param.pushes);
   if (param.border) text += "(" + constant(param.border) + ")";
   if (param.identity) text += " = " + constant(param.identity);
+  if (param.neededIf) text += " if " + print(module, entry, *param.neededIf);
   return text + "\n";
 }
 
@@ -140,7 +142,9 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
     text += fmt::format(", combine @{}", *kernel.reduction->combine);
   if (kernel.reduction && kernel.reduction->seeded) text += ", seeded";
   text += "\n";
-  for (std::size_t i = 0; i < kernel.params.size(); ++i) text += printParam(module, kernel.params[i], i);
+  for (std::size_t i = 0; i < kernel.params.size(); ++i) {
+    text += printParam(module, module.functions[kernel.entry], kernel.params[i], i);
+  }
   return text + "\n";
 }
 

@@ -29,8 +29,9 @@ std::string_view spelling(VarRole role) {
 }
 
 std::string_view spelling(ParamRole role) {
-  constexpr std::array<std::string_view, 7> names = {"uniform",     "input",           "output", "gather",
-                                                     "accumulator", "variable output", "scatter"};
+  constexpr std::array<std::string_view, 9> names = {"uniform", "input",       "output",
+                                                     "gather",  "accumulator", "variable output",
+                                                     "scatter", "iterator",    "spec"};
   return names[static_cast<std::size_t>(role)];
 }
 

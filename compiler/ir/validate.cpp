@@ -8,6 +8,7 @@
 #include "ir/build.hpp"
 #include "ir/reach.hpp"
 #include "ir/validate_rules.hpp"
+#include "ir/walk.hpp"
 #include "support/overloaded.hpp"
 
 namespace skc::ir {
@@ -174,7 +175,9 @@ class FunctionChecker {
 
 VarRole roleInEntry(ParamRole role) {
   switch (role) {
-    case ParamRole::Uniform: return VarRole::In;
+    case ParamRole::Uniform:
+    case ParamRole::Iterator:
+    case ParamRole::Spec: return VarRole::In;
     case ParamRole::Input: return VarRole::Element;
     case ParamRole::Gather: return VarRole::Gather;
     case ParamRole::VariableOutput:
@@ -202,6 +205,29 @@ void checkParam(const Module& module, Stage stage, const KernelParam& param, con
   if (param.identity) checkConstant(module, stage, *param.identity, param.type);
 }
 
+/// A condition names nothing but Spec parameters, and is of a parameter that can be left out.
+void checkNeed(const Module& module, Stage stage, const Kernel& kernel, const KernelParam& param) {
+  if (!param.neededIf) return;
+  require(
+      param.role == ParamRole::Input || param.role == ParamRole::Output || param.role == ParamRole::Gather,
+      "a condition stands at a parameter that is no stream");
+  const Function& entry = module.functions[kernel.entry];
+  const std::vector<bool> visible(entry.variables.size(), true);
+  checkExpr({.module = module,
+             .stage = stage,
+             .function = &entry,
+             .visible = &visible,
+             .constantLimit = module.constants.size()},
+            *param.neededIf);
+  require(param.neededIf->type == Type::of(Scalar::Bool), "a condition is no bool");
+  walkExprs(*param.neededIf, [&](const Expr& expr) {
+    const auto* ref = std::get_if<VarRef>(&expr.node);
+    require(ref == nullptr ||
+                (ref->var < kernel.params.size() && kernel.params[ref->var].role == ParamRole::Spec),
+            "a condition names more than spec parameters");
+  });
+}
+
 void checkReduction(const Module& module, const Kernel& kernel) {
   require(kernel.params.size() == 2 && kernel.params[0].role == ParamRole::Input &&
               kernel.params[1].role == ParamRole::Accumulator,
@@ -224,7 +250,10 @@ void checkKernel(const Module& module, Stage stage, const Kernel& kernel) {
   bool hasAccumulator = false;
   for (std::size_t i = 0; i < kernel.params.size(); ++i) {
     hasAccumulator = hasAccumulator || kernel.params[i].role == ParamRole::Accumulator;
-    within(kernel.params[i].name, [&] { checkParam(module, stage, kernel.params[i], entry.variables[i]); });
+    within(kernel.params[i].name, [&] {
+      checkParam(module, stage, kernel.params[i], entry.variables[i]);
+      checkNeed(module, stage, kernel, kernel.params[i]);
+    });
   }
   require(hasAccumulator == kernel.reduction.has_value(), "a reduce and an accumulator go together");
   if (kernel.reduction) checkReduction(module, kernel);

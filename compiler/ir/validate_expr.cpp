@@ -220,7 +220,9 @@ class ExprChecker {
     require(stream.space == StreamRef::Space::KernelParameter, "a stream is no parameter of a kernel");
     require(context_.kernel != nullptr, "a function that no kernel reaches uses a stream");
     require(stream.id < context_.kernel->params.size(), "a stream is not among the kernel's parameters");
-    require(context_.kernel->params[stream.id].role != ParamRole::Uniform, "a uniform is used as a stream");
+    const ParamRole role = context_.kernel->params[stream.id].role;
+    require(role != ParamRole::Uniform && role != ParamRole::Iterator && role != ParamRole::Spec,
+            "a value is used as a stream");
   }
 
   const ExprContext& context_;

@@ -6,6 +6,7 @@
 
 #include "ir/build.hpp"
 #include "support/overloaded.hpp"
+#include "transforms/guard_streams.hpp"
 
 namespace skc {
 namespace {
@@ -28,11 +29,24 @@ Path both(const Path& a, const Path& b) {
   return result;
 }
 
-/// Follows one function. `summaries` holds what its callees write.
+/// What either path has written.
+Path either(const Path& a, const Path& b) {
+  if (!a) return b;
+  if (!b) return a;
+  Written result = *a;
+  for (auto& [var, components] : result) {
+    const std::vector<bool>& other = b->at(var);
+    for (std::size_t i = 0; i < components.size(); ++i) components[i] = components[i] || other[i];
+  }
+  return result;
+}
+
+/// Follows one function. `isSpec` marks its variables that are spec parameters; `summaries` holds what its callees write.
 class Follower {
  public:
-  Follower(const ir::Module& module, const ir::Function& function, const std::vector<Written>& summaries)
-      : module_(module), function_(function), summaries_(summaries) {}
+  Follower(const ir::Module& module, const ir::Function& function, std::vector<bool> isSpec,
+           const std::vector<Written>& summaries)
+      : module_(module), function_(function), isSpec_(std::move(isSpec)), summaries_(summaries) {}
 
   Written run() {
     Written start;
@@ -53,6 +67,7 @@ class Follower {
  private:
   struct Exits {
     Path broken, continued;
+    bool isSpec = false;  ///< of a switch on spec parameters: the paths are of different programs
   };
 
   std::size_t width(ir::Type type) const {
@@ -113,6 +128,8 @@ class Follower {
     }
   }
 
+  static Path join(bool isSpec, const Path& a, const Path& b) { return isSpec ? either(a, b) : both(a, b); }
+
   Path follow(const ir::Block& block, Path path) {
     for (const ir::Stmt& stmt : block) {
       if (!path) return path;
@@ -125,7 +142,7 @@ class Follower {
   Path step(const ir::Push&, Path path) { return path; }
   Path step(const ir::Scatter&, Path path) { return path; }
   Path step(const ir::Assign& assign, Path path) {
-    if (!assign.op) write(path, *assign.place);   // `v += x` alone writes nothing that was not there
+    if (!assign.op) write(path, *assign.place);  // `v += x` alone writes nothing that was not there
     return path;
   }
   Path step(const ir::CallStmt& call, Path path) {
@@ -139,7 +156,9 @@ class Follower {
   }
   Path step(const ir::If& branch, Path path) {
     const Path otherwise = follow(branch.otherwise, path);
-    return both(follow(branch.then, std::move(path)), otherwise);
+    const Path then = follow(branch.then, std::move(path));
+    // an output that a spec parameter switches off need not be written where it is
+    return join(isSpecOnly(*branch.cond, isSpec_), then, otherwise);
   }
   Path step(const ir::Scope& scope, Path path) { return follow(scope.body, std::move(path)); }
   Path step(const ir::Return&, Path path) {
@@ -147,7 +166,7 @@ class Follower {
     return std::nullopt;
   }
   Path step(const ir::Break&, Path path) {
-    exits_->broken = both(exits_->broken, path);
+    exits_->broken = join(exits_->isSpec, exits_->broken, path);
     return std::nullopt;
   }
   Path step(const ir::Continue&, Path path) {
@@ -161,13 +180,14 @@ class Follower {
     Exits* outer = std::exchange(exits_, &exits);
     const Path once = both(follow(loop.body, path), exits.continued);
     exits_ = outer;
-    if (isAlways(loop.cond)) return exits.broken;   // only `break` leaves it
+    if (isAlways(loop.cond)) return exits.broken;  // only `break` leaves it
     const bool entered = loop.kind == ir::LoopKind::DoWhile || entersAtOnce(loop);
     return both(entered ? once : both(path, once), exits.broken);
   }
 
   Path step(const ir::Switch& choice, Path path) {
     Exits exits;
+    exits.isSpec = isSpecOnly(*choice.value, isSpec_);
     if (exits_) exits.continued = exits_->continued;
     Exits* outer = std::exchange(exits_, &exits);
     Path falling;
@@ -178,8 +198,8 @@ class Follower {
     }
     exits_ = outer;
     if (exits_) exits_->continued = exits.continued;
-    const Path end = both(falling, exits.broken);
-    return hasDefault ? end : both(end, path);
+    const Path end = join(exits.isSpec, falling, exits.broken);
+    return hasDefault ? end : join(exits.isSpec, end, path);
   }
 
   static bool isAlways(const ir::ExprPtr& cond) {
@@ -220,19 +240,32 @@ class Follower {
 
   const ir::Module& module_;
   const ir::Function& function_;
+  std::vector<bool> isSpec_;
   const std::vector<Written>& summaries_;
   Path returned_;
   Exits* exits_ = nullptr;
   bool neverReturns_ = false;
 };
 
+/// For each function: which of its variables are spec parameters of a kernel whose entry it is.
+std::vector<std::vector<bool>> specVariables(const ir::Module& module) {
+  std::vector<std::vector<bool>> marks(module.functions.size());
+  for (const ir::Kernel& kernel : module.kernels) {
+    for (const ir::KernelParam& param : kernel.params) {
+      marks[kernel.entry].push_back(param.role == ir::ParamRole::Spec);
+    }
+  }
+  return marks;
+}
+
 }  // namespace
 
 void checkOutputs(const ir::Module& module, Diagnostics& diagnostics) {
   // callees stand before their callers in the module
   std::vector<Written> summaries;
+  std::vector<std::vector<bool>> spec = specVariables(module);
   for (const ir::Function& function : module.functions) {
-    Follower follower(module, function, summaries);
+    Follower follower(module, function, std::move(spec[summaries.size()]), summaries);
     summaries.push_back(follower.run());
     if (follower.neverReturns()) diagnostics.report(Diag::NeverReturns, function.loc, {function.name});
   }

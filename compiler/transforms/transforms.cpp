@@ -11,6 +11,7 @@
 #include "ir/validate.hpp"
 #include "transforms/derive_combine.hpp"
 #include "transforms/fold_constants.hpp"
+#include "transforms/guard_streams.hpp"
 #include "transforms/remove_unused.hpp"
 #include "transforms/specialize_gathers.hpp"
 
@@ -26,12 +27,12 @@ struct Transform {
 // change it without looking at other callers.
 // Folding before deriving, so that what a branch on a literal switches off does not hide the pattern
 // of a fold.
+// Folding before guarding, too: a branch that is gone needs no stream.
 // Deriving before removing, because it makes functions that use structs.
 // Removing last, because all others leave things without use.
 constexpr Transform transforms[] = {
-    {"specialize-gathers", specializeGathers},
-    {"fold-constants", foldConstants},
-    {"derive-combine", deriveCombine},
+    {"specialize-gathers", specializeGathers}, {"fold-constants", foldConstants},
+    {"guard-streams", guardStreams},           {"derive-combine", deriveCombine},
     {"remove-unused", removeUnused},
 };
 

@@ -8,13 +8,16 @@
 #include <fmt/format.h>
 
 #include "device_state.hpp"
+#include "iterator.hpp"
 #include "sk/error.hpp"
 #include "stream_state.hpp"
+#include "variant.hpp"
 
 namespace sk {
 
 namespace {
 
+using assemble::isNeeded;
 using program::Element;
 using program::Field;
 using program::Kernel;
@@ -108,9 +111,11 @@ bool overlap(const StreamRegion& a, const StreamRegion& b) {
   return true;
 }
 
-void checkDisjoint(const Kernel& kernel, std::span<const Argument> arguments, std::size_t output) {
+void checkDisjoint(const Kernel& kernel, std::span<const Argument> arguments,
+                   const assemble::SpecValues& specs, std::size_t output) {
   for (std::size_t i = 0; i < output; ++i) {
-    if (kernel.parameters[i].role == Role::Output && overlap(arguments[i].region, arguments[output].region)) {
+    if (kernel.parameters[i].role == Role::Output && isNeeded(kernel.parameters[i], specs) &&
+        overlap(arguments[i].region, arguments[output].region)) {
       fail(kernel,
            "the outputs '{}' and '{}' overlap: both write elements of one stream; give them different "
            "streams, or regions that have no element in common",
@@ -134,23 +139,71 @@ void checkPlanes(const Kernel& kernel, const DeviceState& device, std::size_t wr
   }
 }
 
-std::size_t firstOutput(const Kernel& kernel) {
-  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
-    if (kernel.parameters[i].role == Role::Output) {
-      return i;
-    }
+/// The first output that the spec parameters leave; where there is none, the number of parameters.
+std::size_t firstOutput(const Kernel& kernel, const assemble::SpecValues& specs) {
+  std::size_t i = 0;
+  while (i < kernel.parameters.size() &&
+         !(kernel.parameters[i].role == Role::Output && isNeeded(kernel.parameters[i], specs))) {
+    ++i;
   }
-  fail(kernel, "no output is declared, so that there is nothing to run over");
+  return i;
+}
+
+bool isValue(const Parameter& parameter) {
+  return parameter.role == Role::Uniform || parameter.role == Role::Iterator || parameter.role == Role::Spec;
+}
+
+/// Everything but streams: that there is a value, and that iterators go over the domain.
+void checkValue(const Kernel& kernel, const Parameter& parameter, const Argument& argument,
+                const Shape& domain) {
+  if (argument.value == nullptr) {
+    fail(kernel, "'{}' has no value", parameter.name);
+  }
+  if (parameter.role != Role::Iterator) {
+    return;
+  }
+  const Shape& shape = argument.region.shape;
+  if (shape.rank() != 0 && shape != domain) {
+    fail(kernel,
+         "the iterator '{}' has shape {}, but the domain is {}; make it with the same shape, or with none",
+         parameter.name, toString(shape), toString(domain));
+  }
+  if (domain.size() != 0) {
+    checkIterator(kernel, parameter, argument.value, domain);
+  }
+}
+
+void checkGiven(const Kernel& kernel, const Parameter& parameter, const Argument& argument) {
+  if (argument.isNone) {
+    fail(kernel, "'{}' is sk::none, but the kernel needs it here, where {} holds; give a stream",
+         parameter.name, parameter.neededIf.text);
+  }
 }
 
 }  // namespace
 
-DeviceState& checkCall(const Kernel& kernel, std::span<const Argument> arguments) {
+assemble::SpecValues specsOf(const Kernel& kernel, std::span<const Argument> arguments) {
+  assemble::SpecValues specs{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    if (kernel.parameters[i].role == Role::Spec) {
+      specs[count++] = specBits(kernel.parameters[i], arguments[i].value);
+    }
+  }
+  return specs;
+}
+
+DeviceState* checkCall(const Kernel& kernel, std::span<const Argument> arguments) {
   const std::span<const Parameter> parameters = kernel.parameters;
   if (arguments.size() != parameters.size()) {
     fail(kernel, "{} arguments are given, but {} are declared", arguments.size(), parameters.size());
   }
-  const std::size_t first = firstOutput(kernel);
+  const assemble::SpecValues specs = specsOf(kernel, arguments);
+  const std::size_t first = firstOutput(kernel, specs);
+  if (first == parameters.size()) {
+    return nullptr;
+  }
+  checkGiven(kernel, parameters[first], arguments[first]);
   const Shape& domain = arguments[first].region.shape;
   StreamState& firstStream = checkStream(kernel, parameters[first], arguments[first].region);
   std::size_t written = 0;
@@ -158,18 +211,20 @@ DeviceState& checkCall(const Kernel& kernel, std::span<const Argument> arguments
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& parameter = parameters[i];
     const StreamRegion& region = arguments[i].region;
-    if (parameter.role == Role::Uniform) {
-      if (arguments[i].value == nullptr) {
-        fail(kernel, "'{}' has no value", parameter.name);
-      }
+    if (isValue(parameter)) {
+      checkValue(kernel, parameter, arguments[i], domain);
       continue;
     }
+    if (!isNeeded(parameter, specs)) {
+      continue;
+    }
+    checkGiven(kernel, parameter, arguments[i]);
     checkSameDevice(kernel, parameters[first], firstStream, parameter,
                     checkStream(kernel, parameter, region));
     if (parameter.role == Role::Output) {
       written += parameter.element->fields.size();
       checkOutputShape(kernel, parameters[first], domain, parameter, region.shape);
-      checkDisjoint(kernel, arguments, i);
+      checkDisjoint(kernel, arguments, specs, i);
       continue;
     }
     read += parameter.element->fields.size();
@@ -180,7 +235,7 @@ DeviceState& checkCall(const Kernel& kernel, std::span<const Argument> arguments
     }
   }
   checkPlanes(kernel, *firstStream.device, written, read);
-  return *firstStream.device;
+  return domain.size() == 0 ? nullptr : firstStream.device;
 }
 
 DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input) {

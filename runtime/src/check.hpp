@@ -6,6 +6,7 @@
 
 #include <span>
 
+#include "assemble/condition.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
 
@@ -13,9 +14,13 @@ namespace sk {
 
 class DeviceState;
 
+/// The values of the Spec parameters among arguments that are not null.
+assemble::SpecValues specsOf(const program::Kernel& kernel, std::span<const Argument> arguments);
+
 /// Checks the arguments of a kernel: number, streams, device, element types, ranks, shapes, planes,
-/// outputs that overlap. Returns the device of all of them.
-DeviceState& checkCall(const program::Kernel& kernel, std::span<const Argument> arguments);
+/// outputs that overlap. Returns the device of all of them, null
+/// where the call has nothing to do: an empty domain, or no output that the spec parameters leave.
+DeviceState* checkCall(const program::Kernel& kernel, std::span<const Argument> arguments);
 
 /// Checks the input of a reduction, and that an empty one has an identity. Returns its device.
 DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input);

@@ -65,6 +65,9 @@ void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<co
   for (KernelProgram::Value& value : program.values) {
     value.uniform.set(operands[value.parameter].value);
   }
+  for (KernelProgram::Value& step : program.steps) {
+    step.uniform.set(operands[step.parameter].step.data());
+  }
   program.domain.set(domain);
   drawRects(device, rects);
 }

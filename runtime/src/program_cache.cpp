@@ -41,7 +41,19 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
   int unit = 0;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const program::Parameter& parameter = kernel.parameters[i];
-    if (parameter.role == program::Role::Uniform) {
+    if (!assemble::isNeeded(parameter, variant.specs) || parameter.role == program::Role::Spec) {
+      continue;
+    }
+    if (parameter.role == program::Role::Iterator) {
+      const program::Field& field = parameter.element->fields.front();
+      const auto find = [&](std::string_view kind) {
+        return gl::FieldUniform(made->program.location(fmt::format("sk_{}_{}", kind, parameter.symbol)),
+                                field);
+      };
+      made->values.push_back({i, find("begin")});
+      made->steps.push_back({i, find("step")});
+      made->reads.push_back({i, PlacementUniforms(made->program, fmt::format("sk_*_{}", parameter.symbol))});
+    } else if (parameter.role == program::Role::Uniform) {
       for (const program::Field& field : parameter.element->fields) {
         const std::string name =
             fmt::format("sk_arg_{}{}{}", parameter.symbol, field.path.empty() ? "" : ".", field.path);

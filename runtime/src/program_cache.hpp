@@ -38,6 +38,7 @@ struct KernelProgram {
   gl::Program program;
   PlacementUniforms domain;
   std::vector<Value> values;
+  std::vector<Value> steps;     ///< of iterators
   std::vector<Read> reads;      ///< their planes lie on consecutive texture units, from 0, in this order
 };
 

@@ -2,7 +2,6 @@
 //
 // sk::run: a kernel over the domain that its outputs fix. A call like one before allocates no host
 // memory, unless an output cannot be drawn to where it lies.
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
@@ -10,6 +9,7 @@
 
 #include "check.hpp"
 #include "device_state.hpp"
+#include "iterator.hpp"
 #include "pass.hpp"
 #include "sk/call.hpp"
 #include "stream_state.hpp"
@@ -59,13 +59,17 @@ class DrawnRects {
 class KernelCall {
  public:
   KernelCall(DeviceState& device, const Kernel& kernel, std::span<const Argument> arguments)
-      : device_(device), kernel_(kernel), arguments_(arguments), operands_(device.operands) {
+      : device_(device),
+        kernel_(kernel),
+        arguments_(arguments),
+        specs_(specsOf(kernel, arguments)),
+        operands_(device.operands) {
     operands_.resize(arguments.size());
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-      operands_[i] = operandOf(kernel.parameters[i], arguments[i]);
-    }
     while (!isOutput(first_)) {
       ++first_;
+    }
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      operands_[i] = operandOf(i);
     }
   }
 
@@ -85,17 +89,34 @@ class KernelCall {
   }
 
  private:
-  static Operand operandOf(const Parameter& parameter, const Argument& argument) {
-    if (parameter.role == Role::Uniform) {
-      return {argument.value, {}, {}};
+  Operand operandOf(std::size_t i) const {
+    const Parameter& parameter = kernel_.parameters[i];
+    const Argument& argument = arguments_[i];
+    if (parameter.role == Role::Uniform || parameter.role == Role::Spec) {
+      return {.value = argument.value};
+    }
+    if (parameter.role == Role::Iterator) {
+      const Shape& shape = arguments_[first_].region.shape;
+      Placement placement;
+      placement.extent = xFirst(shape);
+      placement.stride = assemble::stridesOf(placement.extent);
+      return {.value = argument.value,
+              .placement = placement,
+              .step = stepOf(parameter, argument.value, shape),
+              .rank = shape.rank()};
+    }
+    if (!isNeeded(i)) {
+      return {};
     }
     StreamState& stream = *argument.region.stream;
-    return {nullptr, placementOf(argument.region, stream.layout), stream.planes};
+    return {.placement = placementOf(argument.region, stream.layout), .planes = stream.planes};
   }
 
-  bool isOutput(std::size_t i) const { return kernel_.parameters[i].role == Role::Output; }
+  bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
+  bool isOutput(std::size_t i) const { return kernel_.parameters[i].role == Role::Output && isNeeded(i); }
   bool isRead(std::size_t i) const {
-    return kernel_.parameters[i].role == Role::Input || kernel_.parameters[i].role == Role::Gather;
+    const Role role = kernel_.parameters[i].role;
+    return (role == Role::Input || role == Role::Gather) && isNeeded(i);
   }
   StreamState& streamOf(std::size_t i) const { return *arguments_[i].region.stream; }
   const Placement& domain() const { return operands_[first_].placement; }
@@ -166,6 +187,7 @@ class KernelCall {
   DeviceState& device_;
   const Kernel& kernel_;
   std::span<const Argument> arguments_;
+  const assemble::SpecValues specs_;
   std::vector<Operand>& operands_;
   std::size_t first_ = 0;                               ///< output: its region is the domain
   std::array<Surface*, gl::maxDrawBuffers> targets_{};
@@ -175,14 +197,12 @@ class KernelCall {
 }  // namespace
 
 void run(const Kernel& kernel, std::span<const Argument> arguments) {
-  DeviceState& device = checkCall(kernel, arguments);
-  const auto output = std::find_if(kernel.parameters.begin(), kernel.parameters.end(),
-                                   [](const Parameter& parameter) { return parameter.role == Role::Output; });
-  if (arguments[static_cast<std::size_t>(output - kernel.parameters.begin())].region.shape.size() == 0) {
+  DeviceState* device = checkCall(kernel, arguments);
+  if (device == nullptr) {
     return;
   }
-  const DeviceScope scope(device);
-  KernelCall(device, kernel, arguments).run();
+  const DeviceScope scope(*device);
+  KernelCall(*device, kernel, arguments).run();
 }
 
 }  // namespace sk

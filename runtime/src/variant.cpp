@@ -4,6 +4,8 @@
 #include "variant.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <utility>
 
 #include "layout.hpp"
 
@@ -12,6 +14,7 @@ namespace sk {
 namespace {
 
 using assemble::Addressing;
+using assemble::isNeeded;
 using assemble::Placement;
 using assemble::StreamAccess;
 using program::Parameter;
@@ -45,6 +48,26 @@ StreamAccess chooseAccess(const Parameter& parameter, const Placement& placement
   return access;
 }
 
+bool isFlat(const Placement& domain) { return assemble::elements(domain.extent) == domain.extent[0]; }
+
+/// In a domain of one dimension, or one that might be, the index along it is the element's number.
+StreamAccess chooseIteration(const Parameter& iterator, const Operand& operand, const Placement& domain) {
+  const bool isScalar = iterator.element->fields[0].width == 1;
+  const bool counts = countsElements(iterator, operand.rank) && !(isScalar && isFlat(domain));
+  return {.addressing = counts ? Addressing::Linear : Addressing::Aligned};
+}
+
+assemble::SpecValues specsOf(const program::Kernel& kernel, std::span<const Operand> operands) {
+  assemble::SpecValues specs{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    if (kernel.parameters[i].role == Role::Spec) {
+      specs[count++] = specBits(kernel.parameters[i], operands[i].value);
+    }
+  }
+  return specs;
+}
+
 bool isDomainView(const Placement& domain) { return !domain.linear && domain.origin != assemble::Index4{}; }
 
 /// Packs small numbers into the words of a key.
@@ -70,7 +93,20 @@ std::size_t ProgramKeyHash::operator()(const ProgramKey& key) const {
     hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
     hash ^= hash >> 29;
   }
+  for (const std::uint32_t spec : key.specs) {
+    hash = (hash ^ spec) * 0x9E3779B97F4A7C15u;
+    hash ^= hash >> 29;
+  }
   return hash;
+}
+
+std::uint32_t specBits(const Parameter& parameter, const void* value) {
+  if (parameter.element->fields[0].scalar == program::Scalar::Bool) {
+    return *static_cast<const bool*>(value) ? 1u : 0u;
+  }
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, value, sizeof bits);
+  return bits;
 }
 
 assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
@@ -79,10 +115,16 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
   variant.domain = assemble::domainOf(domain);
   variant.domainView = isDomainView(domain);
   variant.domainRank = assemble::decodedRank(domain);
+  variant.specs = specsOf(kernel, operands);
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
-    variant.access.push_back(isRead(parameter) ? chooseAccess(parameter, operands[i].placement, domain)
-                                               : StreamAccess{});
+    StreamAccess access;
+    if (parameter.role == Role::Iterator) {
+      access = chooseIteration(parameter, operands[i], domain);
+    } else if (isRead(parameter) && isNeeded(parameter, variant.specs)) {
+      access = chooseAccess(parameter, operands[i].placement, domain);
+    }
+    variant.access.push_back(access);
   }
   return variant;
 }
@@ -90,14 +132,20 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
 // Each entry is 4 bits, so that none is divided between words.
 ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
                       const Placement& domain) {
-  ProgramKey key{&kernel, {}};
+  ProgramKey key{&kernel, {}, specsOf(kernel, operands)};
   KeyBits bits(key);
   bits.add(static_cast<std::uint64_t>(assemble::domainOf(domain)) | std::uint64_t{isDomainView(domain)} << 2,
            4);
   bits.add(assemble::decodedRank(domain), 4);
+  bool hasIterator = false;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
-    if (isRead(kernel.parameters[i])) {
-      const StreamAccess access = chooseAccess(kernel.parameters[i], operands[i].placement, domain);
+    const Parameter& parameter = kernel.parameters[i];
+    if (parameter.role == Role::Iterator && !std::exchange(hasIterator, true)) {
+      // both that chooseIteration() asks of the domain, for all iterators
+      bits.add(std::uint64_t{operands[i].rank == 1} | std::uint64_t{isFlat(domain)} << 1, 4);
+    }
+    if (isRead(parameter) && isNeeded(parameter, key.specs)) {
+      const StreamAccess access = chooseAccess(parameter, operands[i].placement, domain);
       bits.add(static_cast<std::uint64_t>(access.addressing) | std::uint64_t{access.view} << 2 |
                    std::uint64_t{access.nearby} << 3,
                4);

@@ -11,22 +11,27 @@
 
 #include "assemble/assemble.hpp"
 #include "assemble/placement.hpp"
+#include "iterator.hpp"
 #include "sk/program.hpp"
 #include "surface.hpp"
 
 namespace sk {
 
-/// One argument of a pass. Uniform parameters have a value, all others a placement and planes.
+/// One argument of a pass. Uniform and Spec parameters have a value; iterators their first value, the step
+/// and the domain as placement; all others a placement and planes.
 struct Operand {
   const void* value = nullptr;
   assemble::Placement placement = {};
   std::span<Surface> planes = {};
+  IteratorStep step = {};
+  int rank = 0;                      ///< iterators: of the domain's shape
 };
 
 /// A program's identity: the address of its descriptor and the packed choices of its variant.
 struct ProgramKey {
   const program::Kernel* kernel = nullptr;
   std::array<std::uint64_t, 4> words{};
+  assemble::SpecValues specs{};
 
   bool operator==(const ProgramKey&) const = default;
 };
@@ -34,6 +39,9 @@ struct ProgramKey {
 struct ProgramKeyHash {
   std::size_t operator()(const ProgramKey& key) const;
 };
+
+/// The 32 bits of a Spec parameter's value, as assemble::SpecValues holds them.
+std::uint32_t specBits(const program::Parameter& parameter, const void* value);
 
 /// The variant of `kernel` for operands, one a parameter, over `domain`; `variant` and `key` hold the
 /// same choices. Planes that a kernel reads are few enough for the key (gl::maxTextureUnits).

@@ -8,7 +8,9 @@
 #include <concepts>
 #include <span>
 #include <type_traits>
+#include <utility>
 
+#include "sk/iter.hpp"
 #include "sk/program.hpp"
 #include "sk/stream.hpp"
 
@@ -16,9 +18,15 @@ namespace sk {
 
 /// One argument of a call, in the order of the declaration: a host value or a region of a stream.
 struct Argument {
-  const void* value = nullptr;     ///< uniforms: the value, laid out as Element says
-  StreamRegion region = {};        ///< everything else
+  const void* value = nullptr;     ///< uniforms and spec: the value, laid out as Element says; iterators:
+                                   ///< the two ends, one after the other
+  StreamRegion region = {};        ///< everything else; of an iterator just the shape, or none
+  bool isNone = false;             ///< sk::none
 };
+
+/// In place of a stream that the values of a kernel's spec parameters switch off.
+struct None {};
+inline constexpr None none{};
 
 /// A stream or view whose elements are T. A constraint and no assertion, because it is also what
 /// chooses between overloads of a kernel.
@@ -51,6 +59,26 @@ class Out {
  private:
   StreamRegion region_;
 };
+
+/// In or Out of a stream that some values of the spec parameters switch off: takes sk::none, too.
+template <class Parameter>
+class Optional {
+ public:
+  template <class S>
+    requires std::constructible_from<Parameter, S&&>
+  Optional(S&& stream) : region_(Parameter(std::forward<S>(stream)).region()), isNone_(false) {}
+  Optional(None) {}
+  Argument argument() const { return {.region = region_, .isNone = isNone_}; }
+
+ private:
+  StreamRegion region_;
+  bool isNone_ = true;
+};
+
+template <class T>
+Argument argumentOf(const Iter<T>& iterator) {
+  return {.value = iterator.ends, .region = {.shape = iterator.shape}};
+}
 
 /// Runs a kernel over the domain that its outputs fix. Throws sk::Error naming the kernel and the
 /// parameter where the arguments do not fit.

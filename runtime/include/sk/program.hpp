@@ -22,6 +22,7 @@
 // Every name that the assembler declares begins with `sk_`; names of the user never do.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -55,6 +56,8 @@ enum class Role : std::uint8_t {
   Accumulator,  ///< `reduce T r<>`
   VariableOutput,  ///< `vout T r<>`
   Scatter,      ///< `out T r[]`, `out T r[][]`
+  Iterator,     ///< `iter T i<>`
+  Spec,         ///< `spec T c`: a bool, int, uint or float whose value makes a variant
 };
 
 /// What a scatter output does with the element that it holds and the value that comes.
@@ -62,6 +65,30 @@ enum class ScatterOp : std::uint8_t { Store, Add, Min, Max };
 
 /// What a gather gives for an index outside its stream.
 enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };
+
+/// One step of a condition over Spec parameters, for a machine with a stack: Spec and Literal push a
+/// value of 32 bits, Not replaces the top, the others replace the two on top. `scalar` is the type of
+/// the operands. Numbers are int or uint in arithmetic, which wraps.
+// clang-format off
+enum class ConditionOp : std::uint8_t {
+  Spec, Literal, Not, And, Or, BitAnd, BitOr, BitXor, Add, Sub, Mul,
+  Less, LessEqual, Greater, GreaterEqual, Equal, NotEqual,
+};
+// clang-format on
+/// Spec parameters of one kernel, and values on the stack at once, at most.
+inline constexpr std::size_t maxSpecs = 8;
+inline constexpr std::size_t deepestCondition = 32;
+struct ConditionStep {
+  ConditionOp op;
+  Scalar scalar;
+  std::uint32_t value = 0;   ///< Spec: number of the parameter among those; Literal: its bits
+};
+
+/// When a kernel needs a stream: a condition of no steps is always true.
+struct Condition {
+  std::span<const ConditionStep> steps = {};
+  std::string_view text = {};   ///< as the .sk file would write it, for messages
+};
 
 struct Parameter {
   std::string_view name;       ///< as declared, for messages
@@ -81,10 +108,11 @@ struct Parameter {
   bool usesAt = false;         ///< the body calls sk_at_p()
   bool usesNear = false;       ///< the body calls sk_near_p()
   std::int32_t reach = -1;     ///< largest |offset| of its sk_near_p() calls; -1 if not constant
+  Condition neededIf = {};     ///< inputs, outputs, gathers: where it is false, the stream may be left out
 };
 
-/// A kernel. Its GLSL entry function takes, in order, every Uniform, Input (by value) and Output
-/// (as `out`) parameter; gathers, variable outputs and scatter outputs are no parameters of it.
+/// A kernel. Its GLSL entry function takes, in order, every Uniform, Iterator, Spec, Input (by value) and
+/// Output (as `out`) parameter; gathers, variable outputs and scatter outputs are no parameters of it.
 struct Kernel {
   std::string_view name;       ///< qualified, for messages: "heat::diffuse"
   std::string_view entry;      ///< name of the entry function in `body`

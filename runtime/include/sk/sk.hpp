@@ -6,6 +6,7 @@
 
 #include "sk/device.hpp"
 #include "sk/error.hpp"
+#include "sk/iter.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
 #include "sk/types.hpp"

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "assemble/condition.hpp"
 #include "assemble/placement.hpp"
 #include "sk/program.hpp"
 
@@ -39,9 +40,10 @@ Domain domainOf(const Placement& output);
 
 /// How an element of a stream is found in its texture.
 enum class Addressing : std::uint8_t {
-  Aligned,  ///< inputs only: the texel under the fragment
+  Aligned,  ///< inputs: the texel under the fragment; iterators: each component runs along a dimension
   Plane,    ///< texel = index.xy (plus the view's origin)
-  Linear,   ///< element number = dot(index, strides), texel = (number & mask, number >> shift)
+  Linear,   ///< element number = dot(index, strides), texel = (number & mask, number >> shift);
+            ///< iterators: all components run over that number
 };
 
 struct StreamAccess {
@@ -53,24 +55,27 @@ struct StreamAccess {
   auto operator<=>(const StreamAccess&) const = default;
 };
 
-/// One way to lay a kernel out. `access` has one entry per parameter, in order (Uniform and Output
-/// entries are not looked at).
+/// One way to lay a kernel out. `access` has one entry per parameter, in order (Uniform, Spec and Output
+/// entries are not looked at, nor those of streams that `specs` switches off).
 struct Variant {
   Domain domain = Domain::Plane;
   bool domainView = false;          ///< Plane: the domain's origin is not (0, 0)
   std::uint8_t domainRank = 2;      ///< Linear, LinearBox: dimensions that an index is decoded into;
                                     ///< decodedRank() of the output, or more
   std::vector<StreamAccess> access;
+  SpecValues specs{};
   auto operator<=>(const Variant&) const = default;
 };
 
 /// Names of the uniforms that a fragment program declares, where it needs them; P is the parameter's
 /// symbol, and the values are those of a Placement (placement.hpp):
 ///   sk_arg_P                       value of uniform parameter P
+///   sk_begin_P sk_step_P           first value and step of iterator P, of its type
 ///   sk_tex_P | sk_tex0_P sk_tex1_P ...   samplers, one a plane (a single plane has no number)
 ///   sk_origin_P  ivec4             first index of the region in its stream, x fastest
 ///   sk_shape_P   ivec4             shape of the region, missing dimensions 1
-///   sk_stride_P  ivec4             Linear: elements to step for each dimension of its stream
+///   sk_stride_P  ivec4             Linear: elements to step for each dimension of its stream; of an
+///                                  iterator, of the domain
 ///   sk_shift_P   int               Linear: log2 of the texture's width
 /// and for the domain (hence for every output, which has none of its own) the same with
 /// `sk_domain_origin sk_domain_shape sk_domain_stride sk_domain_shift`.

@@ -2,6 +2,7 @@
 //
 // The program of a kernel for one variant. Sections are filled parameter by parameter; main() is one
 // call of the kernel's entry function between fetches and stores.
+#include <array>
 #include <cassert>
 
 #include <fmt/format.h>
@@ -43,7 +44,12 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
                                  variant.domainView ? " view" : "");
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
-    if (parameter.role != Role::Input && parameter.role != Role::Gather) continue;
+    const bool isRead = parameter.role == Role::Input || parameter.role == Role::Gather;
+    if (!isNeeded(parameter, variant.specs)) {
+      text += fmt::format("; no {}", parameter.name);
+      continue;
+    }
+    if (!isRead) continue;
     const StreamAccess& access = variant.access[i];
     text += fmt::format("; {} {}{}{}", parameter.name, name(access.addressing), access.view ? " view" : "",
                         access.nearby ? " nearby" : "");
@@ -62,7 +68,12 @@ class KernelText {
     if (kernel_.usesLoops) domain_.leaveOutside();
     if (kernel_.usesIndex) domain_.index();
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
-      defineAccess(kernel_.parameters[i], variant_.access[i]);
+      const Parameter& parameter = kernel_.parameters[i];
+      if (isNeeded(parameter, variant_.specs)) {
+        defineAccess(parameter, variant_.access[i]);
+      } else {
+        defineAbsent(parameter);
+      }
     }
     program_.statement(call(kernel_.entry, arguments_, "      ") + ";");
     for (const auto& [parameter, variable] : results_) store(program_, *parameter, variable);
@@ -84,10 +95,61 @@ class KernelText {
         defineGather(program_, domain_, parameter, access);
         defineExtent(parameter);
         break;
+      case Role::Iterator: arguments_.push_back(iteratorValue(parameter, access)); break;
+      case Role::Spec: arguments_.push_back(specConstant(parameter)); break;
       case Role::Accumulator: assert(!"a reduction has programs of its own"); break;
       case Role::VariableOutput:
       case Role::Scatter: assert(!"sinks have programs of their own"); break;
     }
+  }
+
+  /// A stream that the body names only where the values of spec parameters never let it come.
+  void defineAbsent(const Parameter& parameter) {
+    const std::string_view type = parameter.element->glsl;
+    const std::string none = fmt::format("sk_none_{}", parameter.symbol);
+    if (parameter.role == Role::Gather) {
+      const std::string vector = parameter.rank == 1 ? "int" : fmt::format("ivec{}", parameter.rank);
+      const std::vector<std::string> nothing = {fmt::format("{} {};", type, none),
+                                                fmt::format("return {};", none)};
+      if (parameter.usesAt) {
+        program_.function(fmt::format("{} sk_at_{}({} sk_i)", type, parameter.symbol, vector), nothing);
+      }
+      if (parameter.usesNear) {
+        program_.function(fmt::format("{} sk_near_{}({} sk_d)", type, parameter.symbol, vector), nothing);
+      }
+    } else {
+      program_.statement(fmt::format("{} {};", type, none));
+      arguments_.push_back(none);
+    }
+    if (parameter.role != Role::Output) {
+      if (parameter.usesIndex) defineGetter("index", parameter, "ivec4(0)");
+      if (parameter.usesExtent) defineGetter("extent", parameter, "ivec4(0)");
+    } else {
+      defineDomainGetters(parameter);
+    }
+  }
+
+  /// A multiplication and an addition; integers wrap.
+  std::string iteratorValue(const Parameter& parameter, const StreamAccess& access) {
+    static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
+    const std::string_view type = parameter.element->glsl;
+    std::string position = domain_.index();
+    if (access.addressing == Addressing::Linear) {
+      program_.require(Function::Ravel);
+      position = fmt::format("sk_ravel({}, {})", position, uniform("ivec4", "stride", parameter));
+    } else {
+      position += swizzles[parameter.element->fields.front().width - 1u];
+    }
+    return fmt::format("{} + {}({}) * {}", uniform(type, "begin", parameter), type, position,
+                       uniform(type, "step", parameter));
+  }
+
+  std::string specConstant(const Parameter& parameter) {
+    const std::string name = fmt::format("sk_spec_{}", parameter.symbol);
+    const program::Scalar scalar = parameter.element->fields.front().scalar;
+    program_.variable(fmt::format("const {}", parameter.element->glsl),
+                      fmt::format("{} = {}", name, glslLiteral(scalar, variant_.specs[specs_++])));
+    return name;
   }
 
   void defineInput(const Parameter& parameter, const StreamAccess& access) {
@@ -101,6 +163,10 @@ class KernelText {
     declareOutputs(program_, parameter);
     results_.push_back({&parameter, resultVariable(program_, parameter)});
     arguments_.push_back(results_.back().variable);
+    defineDomainGetters(parameter);
+  }
+
+  void defineDomainGetters(const Parameter& parameter) {
     if (parameter.usesIndex) defineGetter("index", parameter, domain_.index());
     if (parameter.usesExtent) {
       defineGetter("extent", parameter, program_.uniform("ivec4", "sk_domain_shape"));
@@ -150,6 +216,7 @@ class KernelText {
   DomainText domain_;
   std::vector<std::string> arguments_;
   std::vector<Result> results_;
+  std::size_t specs_ = 0;   ///< whose constants are declared
 };
 
 }  // namespace

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/condition.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "ir/build.hpp"
+#include "ir/walk.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+/// More than a person would want to read: the stream is then always needed. So many nodes keep within the
+/// stack that the runtime has (sk::program::deepestCondition).
+constexpr int mostNodes = 60;
+
+const Binary* asBinary(const Expr& expr, BinaryOp op) {
+  const auto* n = std::get_if<Binary>(&expr.node);
+  return n != nullptr && n->op == op ? n : nullptr;
+}
+
+/// Whether `condition` is `part`, or a conjunction that it is part of.
+bool hasConjunct(const Expr& condition, const Expr& part) {
+  if (isSame(condition, part)) return true;
+  const Binary* n = asBinary(condition, BinaryOp::LogicalAnd);
+  return n != nullptr && (hasConjunct(*n->lhs, part) || hasConjunct(*n->rhs, part));
+}
+
+bool areOpposite(const Expr& a, const Expr& b) {
+  const auto* n = std::get_if<Unary>(&a.node);
+  return n != nullptr && n->op == UnaryOp::LogicalNot && isSame(*n->operand, b);
+}
+
+}  // namespace
+
+bool isLiteral(const Expr& condition, bool value) {
+  const auto* n = std::get_if<Literal>(&condition.node);
+  return n != nullptr && (n->bits != 0) == value;
+}
+
+bool isSame(const Expr& a, const Expr& b) {
+  if (a.type != b.type || a.node.index() != b.node.index()) return false;
+  if (const auto* n = std::get_if<Literal>(&a.node)) return n->bits == std::get<Literal>(b.node).bits;
+  if (const auto* n = std::get_if<VarRef>(&a.node)) return n->var == std::get<VarRef>(b.node).var;
+  if (const auto* n = std::get_if<Convert>(&a.node)) {
+    return isSame(*n->operand, *std::get<Convert>(b.node).operand);
+  }
+  if (const auto* n = std::get_if<Unary>(&a.node)) {
+    const auto& other = std::get<Unary>(b.node);
+    return n->op == other.op && isSame(*n->operand, *other.operand);
+  }
+  if (const auto* n = std::get_if<Binary>(&a.node)) {
+    const auto& other = std::get<Binary>(b.node);
+    return n->op == other.op && isSame(*n->lhs, *other.lhs) && isSame(*n->rhs, *other.rhs);
+  }
+  return false;
+}
+
+ExprPtr notOf(const Expr& condition) {
+  if (isLiteral(condition, true)) return literal(false);
+  if (isLiteral(condition, false)) return literal(true);
+  const auto* n = std::get_if<Unary>(&condition.node);
+  if (n != nullptr && n->op == UnaryOp::LogicalNot) return clone(*n->operand);
+  return unary(UnaryOp::LogicalNot, clone(condition));
+}
+
+ExprPtr andOf(const Expr& a, const Expr& b) {
+  if (isLiteral(a, true) || isLiteral(b, false) || hasConjunct(b, a)) return clone(b);
+  if (isLiteral(b, true) || isLiteral(a, false) || hasConjunct(a, b)) return clone(a);
+  if (areOpposite(a, b) || areOpposite(b, a)) return literal(false);
+  return binary(BinaryOp::LogicalAnd, clone(a), clone(b));
+}
+
+ExprPtr orOf(const Expr& a, const Expr& b) {
+  if (isLiteral(a, true) || isLiteral(b, false) || hasConjunct(b, a)) return clone(a);
+  if (isLiteral(b, true) || isLiteral(a, false) || hasConjunct(a, b)) return clone(b);
+  if (areOpposite(a, b) || areOpposite(b, a)) return literal(true);
+  return binary(BinaryOp::LogicalOr, clone(a), clone(b));
+}
+
+/// Between int and uint the bits stay, and equality asks for no more.
+ExprPtr comparison(BinaryOp op, ExprPtr lhs, ExprPtr rhs) {
+  auto* n = std::get_if<Convert>(&lhs->node);
+  auto* value = std::get_if<Literal>(&rhs->node);
+  const bool isEquality = op == BinaryOp::Equal || op == BinaryOp::NotEqual;
+  if (isEquality && n != nullptr && value != nullptr && n->operand->type.isInteger()) {
+    ExprPtr operand = std::move(n->operand);
+    rhs = makeExpr(operand->type, Literal{value->bits});
+    lhs = std::move(operand);
+  }
+  return binary(op, std::move(lhs), std::move(rhs));
+}
+
+void AnyOf::add(const Expr& condition) {
+  if (isLiteral(condition, false)) return;
+  if (const Binary* either = asBinary(condition, BinaryOp::LogicalOr)) {
+    add(*either->lhs);
+    return add(*either->rhs);
+  }
+  const bool isCovered = std::any_of(terms_.begin(), terms_.end(), [&](const ExprPtr& term) {
+    return isLiteral(*term, true) || hasConjunct(condition, *term);
+  });
+  if (isCovered) return;
+  std::erase_if(terms_, [&](const ExprPtr& term) {
+    return isLiteral(condition, true) || hasConjunct(*term, condition);
+  });
+  terms_.push_back(clone(condition));
+}
+
+ExprPtr AnyOf::take() {
+  if (terms_.empty()) return nullptr;
+  ExprPtr all = std::move(terms_.front());
+  for (std::size_t i = 1; i < terms_.size(); ++i) all = orOf(*all, *terms_[i]);
+  int nodes = 0;
+  walkExprs(*all, [&](const Expr&) { ++nodes; });
+  return isLiteral(*all, true) || nodes > mostNodes ? nullptr : std::move(all);
+}
+
+}  // namespace skc

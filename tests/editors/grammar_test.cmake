@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+#
+# Reads every JSON file of editors/vscode, and compares the words of the grammar with the compiler's own:
+# the intrinsics of the table, what the prelude declares beside it, the qualifiers of parameters and the
+# boundary modes.
+cmake_minimum_required(VERSION 3.25)
+set(folder "${SOURCE}/editors/vscode")
+
+foreach(name package.json language-configuration.json syntaxes/sk.tmLanguage.json)
+  file(READ "${folder}/${name}" text)
+  string(JSON type ERROR_VARIABLE error TYPE "${text}")
+  if(error)
+    message(FATAL_ERROR "${folder}/${name}: ${error}")
+  endif()
+endforeach()
+
+file(READ "${folder}/package.json" package)
+foreach(key "languages;0;configuration" "grammars;0;path")
+  string(JSON path GET "${package}" contributes ${key})
+  if(NOT EXISTS "${folder}/${path}")
+    message(FATAL_ERROR "package.json names ${path}, which is not there")
+  endif()
+endforeach()
+
+# words(RULE INDEX OUT): the alternatives of one rule of the grammar, sorted.
+file(READ "${folder}/syntaxes/sk.tmLanguage.json" grammar)
+function(words rule index out)
+  string(JSON match GET "${grammar}" repository ${rule} patterns ${index} match)
+  string(REGEX REPLACE "^[^(]*\\(([a-zA-Z0-9_|]*)\\).*$" "\\1" match "${match}")
+  string(REPLACE "|" ";" list "${match}")
+  list(SORT list COMPARE STRING)
+  set(${out} "${list}" PARENT_SCOPE)
+endfunction()
+
+function(expect rule index)
+  words(${rule} ${index} found)
+  set(wanted ${ARGN})
+  list(REMOVE_DUPLICATES wanted)
+  list(SORT wanted COMPARE STRING)
+  if(NOT found STREQUAL wanted)
+    message(FATAL_ERROR "the grammar's ${rule} are\n  ${found}\nbut the compiler's are\n  ${wanted}")
+  endif()
+endfunction()
+
+# spellings(OUT FILE PATTERN): what the pattern's first group matches in a file.
+function(spellings out file pattern)
+  file(READ "${SOURCE}/${file}" text)
+  string(REPLACE ";" " " text "${text}")
+  string(REGEX MATCHALL "${pattern}" matches "${text}")
+  set(list)
+  foreach(match IN LISTS matches)
+    string(REGEX REPLACE "${pattern}" "\\1" name "${match}")
+    list(APPEND list ${name})
+  endforeach()
+  if(NOT list)
+    message(FATAL_ERROR "${file} has nothing that looks like ${pattern}")
+  endif()
+  set(${out} "${list}" PARENT_SCOPE)
+endfunction()
+
+spellings(table compiler/ir/intrinsics.def "SKC_INTRINSIC\\([ \n]*[A-Za-z0-9]+,[ \n]*\"([A-Za-z0-9_]+)\"")
+spellings(written compiler/frontend/lower_call.cpp "name == \"([a-zA-Z0-9]+)\"")
+set(ofStreams indexof extentof neighbor sample push)
+set(intrinsics ${table} ${written})
+list(REMOVE_ITEM intrinsics ${ofStreams})
+expect(intrinsics 0 ${intrinsics})
+list(REMOVE_ITEM ofStreams sample push)
+expect(streams 0 ${ofStreams})
+
+spellings(modes compiler/frontend/parameter_editor.cpp "isWord\\(name, \"([a-z]+)\"\\)")
+string(JSON match GET "${grammar}" repository attributes patterns 0 patterns 0 match)
+foreach(mode IN LISTS modes)
+  if(NOT match MATCHES "[(|]${mode}[|)]")
+    message(FATAL_ERROR "the grammar lacks the boundary mode ${mode}")
+  endif()
+endforeach()
