@@ -206,7 +206,8 @@ void FunctionLowering::statement(const clang::Stmt* s) {
 
 void FunctionLowering::declaration(const clang::DeclStmt* s) {
   for (const clang::Decl* declared : s->decls()) {
-    if (const auto* one = llvm::dyn_cast<clang::VarDecl>(declared)) variable(one);
+    const auto* one = llvm::dyn_cast<clang::VarDecl>(declared);
+    if (one && !ModuleLowering::isGenerated(one)) variable(one);
     // types, aliases and static_asserts say all that they have to say to Clang
   }
 }

@@ -108,6 +108,8 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
     return literal(type, static_cast<std::uint32_t>(enumerator->getInitVal().getExtValue()), where);
   }
   if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declared)) {
+    const bool isOutside = function_.name.empty();   // the value of a border or identity
+    if (isOutside && llvm::isa<clang::ParmVarDecl>(variable)) module_.fail(Diag::NotConstant, where);
     abandonIfUnknown(e);
     return module_.constant(variable, where);
   }

@@ -11,6 +11,8 @@
 #include <clang/AST/DeclTemplate.h>
 #include <clang/Basic/SourceManager.h>
 #include <clang/Sema/Sema.h>
+#include <llvm/ADT/SmallBitVector.h>
+#include <llvm/ADT/StringExtras.h>
 
 #include "frontend/clang_loc.hpp"
 #include "frontend/function_lowering.hpp"
@@ -49,11 +51,9 @@ void ModuleLowering::declarations(const clang::DeclContext* scope) {
       } else if (const auto* linkage = llvm::dyn_cast<clang::LinkageSpecDecl>(declaration)) {
         declarations(linkage);
       } else if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declaration)) {
-        if (variable->getName().starts_with("__sk_constant")) {
-          generated_[variable->getName().str()] = variable;
-        } else {
-          constant(variable, variable->getLocation());
-        }
+        if (!isGenerated(variable)) constant(variable, variable->getLocation());
+      } else if (const auto* pattern = llvm::dyn_cast<clang::FunctionTemplateDecl>(declaration)) {
+        kernelTemplate(pattern);
       } else if (const auto* function = llvm::dyn_cast<clang::FunctionDecl>(declaration)) {
         if (!function->isThisDeclarationADefinition() || function->isDependentContext()) continue;
         if (const KernelSyntax* kernelSyntax = syntax_.kernel(function->getLocation())) {
@@ -75,10 +75,21 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   if (!declaration->getReturnType()->isVoidType()) {
     fail(Diag::KernelResult, where, {syntax.isReduce ? "reduce" : "kernel", declaration->getNameAsString()});
   }
+  generated_.clear();
+  if (const auto* body = llvm::dyn_cast_or_null<clang::CompoundStmt>(declaration->getBody())) {
+    for (const clang::Stmt* stmt : body->body()) {
+      const auto* declared = llvm::dyn_cast<clang::DeclStmt>(stmt);
+      const auto* variable = declared && declared->isSingleDecl()
+                                 ? llvm::dyn_cast<clang::VarDecl>(declared->getSingleDecl())
+                                 : nullptr;
+      if (variable && isGenerated(variable)) generated_[variable->getName().str()] = variable;
+    }
+  }
   ir::Kernel kernel;
   kernel.name = declaration->getNameAsString();
   kernel.scope = scopeOf(declaration);
   kernel.signature = syntax.signature;
+  if (declaration->getPrimaryTemplate()) nameInstance(declaration, kernel);
   kernel.loc = loc(where);
   kernel.entry = function(declaration, where);
   for (unsigned i = 0; i < declaration->getNumParams(); ++i) {
@@ -87,6 +98,57 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   if (syntax.isReduce) kernel.reduction.emplace();
   checkKernelShape(kernel, where);
   module_.kernels.push_back(std::move(kernel));
+}
+
+/// The instances that `template kernel void f<...>(...);` asks for are kernels.
+void ModuleLowering::kernelTemplate(const clang::FunctionTemplateDecl* declaration) {
+  if (!declaration->isThisDeclarationADefinition()) return;
+  const KernelSyntax* kernelSyntax = syntax_.kernel(declaration->getLocation());
+  bool isUsed = false;
+  for (const clang::FunctionDecl* instance : declaration->specializations()) {
+    isUsed = true;
+    if (instance->getTemplateSpecializationKind() != clang::TSK_ExplicitInstantiationDefinition) continue;
+    const SourceLocation point = instance->getPointOfInstantiation();
+    if (kernelSyntax) {
+      kernel(instance, *kernelSyntax);
+    } else if (syntax_.isInstantiation(point)) {
+      fail(Diag::NotAKernelTemplate, point, {declaration->getNameAsString()});
+    }
+  }
+  if (kernelSyntax && !isUsed && sources().isInMainFile(declaration->getLocation())) {
+    diagnostics_.report(Diag::KernelTemplateUnused, locOf(declaration->getLocation()),
+                        {declaration->getNameAsString(), kernelSyntax->isReduce ? "reduce" : "kernel"});
+  }
+}
+
+/// Where C++ cannot tell an instance from the others by its arguments, the template's arguments become
+/// part of its name: blur<3> is blur_3.
+void ModuleLowering::nameInstance(const clang::FunctionDecl* instance, ir::Kernel& kernel) {
+  const SourceLocation where = instance->getLocation();
+  const clang::FunctionTemplateDecl* pattern = instance->getPrimaryTemplate();
+  const clang::TemplateParameterList* parameters = pattern->getTemplateParameters();
+  const clang::TemplateArgumentList* arguments = instance->getTemplateSpecializationArgs();
+  llvm::SmallBitVector deduced;
+  sema_.MarkDeducedTemplateParameters(pattern, deduced);
+  std::string said;
+  for (unsigned i = 0; i < arguments->size(); ++i) {
+    const std::string argument = spelling(arguments->get(i), where);
+    said +=
+        fmt::format("{}{} = {}", i == 0 ? "" : ", ", parameters->getParam(i)->getNameAsString(), argument);
+    if (deduced[i]) continue;
+    kernel.name += '_' + argument;
+    std::replace(kernel.name.begin(), kernel.name.end(), '-', 'm');
+  }
+  kernel.signature += fmt::format("  [{}]", said);
+}
+
+/// "float", "3", "-1", "true".
+std::string ModuleLowering::spelling(const clang::TemplateArgument& argument, SourceLocation use) {
+  if (argument.getKind() == clang::TemplateArgument::Type) return spelling(type(argument.getAsType(), use));
+  if (argument.getKind() != clang::TemplateArgument::Integral) fail(Diag::TemplateArgumentKind, use);
+  if (argument.getIntegralType()->isBooleanType())
+    return argument.getAsIntegral().isZero() ? "false" : "true";
+  return llvm::toString(argument.getAsIntegral(), 10);
 }
 
 ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaration,
@@ -423,6 +485,10 @@ std::string ModuleLowering::spelling(ir::Type type) const {
 
 clang::ASTContext& ModuleLowering::context() const { return sema_.getASTContext(); }
 clang::SourceManager& ModuleLowering::sources() const { return sema_.getSourceManager(); }
+
+bool ModuleLowering::isGenerated(const clang::VarDecl* declaration) {
+  return declaration->getName().starts_with("__sk_constant");
+}
 
 bool ModuleLowering::isPrelude(const clang::Decl* declaration) const {
   return sources().isInSystemHeader(declaration->getLocation());

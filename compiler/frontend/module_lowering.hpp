@@ -20,6 +20,8 @@ namespace clang {
 class ASTContext;
 class CXXRecordDecl;
 class FunctionDecl;
+class FunctionTemplateDecl;
+class TemplateArgument;
 class Sema;
 class SourceManager;
 }  // namespace clang
@@ -52,6 +54,8 @@ class ModuleLowering {
   const ir::Array& arrayAt(std::uint32_t index) const { return module_.arrays[index]; }
 
   bool isPrelude(const clang::Decl* declaration) const;
+  /// Whether it holds the value of a border or identity (parameter_editor.hpp).
+  static bool isGenerated(const clang::VarDecl* declaration);
   /// Name of a type as the user writes it, for messages.
   std::string spelling(ir::Type type) const;
 
@@ -73,6 +77,9 @@ class ModuleLowering {
 
   void declarations(const clang::DeclContext* scope);
   void kernel(const clang::FunctionDecl* declaration, const KernelSyntax& syntax);
+  void kernelTemplate(const clang::FunctionTemplateDecl* declaration);
+  void nameInstance(const clang::FunctionDecl* instance, ir::Kernel& kernel);
+  std::string spelling(const clang::TemplateArgument& argument, clang::SourceLocation use);
   ir::KernelParam kernelParam(const clang::ParmVarDecl* declaration, const ir::Variable& variable);
   void checkKernelShape(const ir::Kernel& kernel, clang::SourceLocation where);
   void pairReductions();

@@ -331,7 +331,8 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
   }
 }
 
-/// `static const T __sk_constant3 __attribute__((unused)) = value;` in front of the function.
+/// `static const T __sk_constant3 __attribute__((unused)) = value;`: of a kernel, at the beginning of its
+/// body; of a helper, in front of it.
 std::string ParameterEditor::generateConstant(const Tokens& type, const Tokens& value,
                                               clang::SourceLocation place) {
   std::string name = fmt::format("__sk_constant{}", constants_++);

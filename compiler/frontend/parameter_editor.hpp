@@ -2,7 +2,7 @@
 //
 // Edits one parameter list: finds each parameter's role, takes Brook's spellings out of its tokens
 // and records what they said. Expressions of [[border(v)]] and of a reduce's identity move into
-// generated constants in front of the function, where Clang checks them like any other.
+// generated constants, where Clang checks them like any other.
 #pragma once
 
 #include <vector>

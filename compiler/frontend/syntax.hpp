@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <clang/Basic/SourceLocation.h>
 
@@ -38,6 +39,12 @@ class DeclarationSyntax {
     params_[name.getRawEncoding()] = std::move(param);
   }
 
+  /// `name`: a token before the parameters of `template kernel void f<float>(...);`.
+  void addInstantiation(clang::SourceLocation name) { instantiations_.insert(name.getRawEncoding()); }
+  bool isInstantiation(clang::SourceLocation name) const {
+    return instantiations_.contains(name.getRawEncoding());
+  }
+
   const KernelSyntax* kernel(clang::SourceLocation name) const { return find(kernels_, name); }
   const ParamSyntax* param(clang::SourceLocation name) const { return find(params_, name); }
 
@@ -50,6 +57,7 @@ class DeclarationSyntax {
 
   std::unordered_map<std::uint32_t, KernelSyntax> kernels_;
   std::unordered_map<std::uint32_t, ParamSyntax> params_;
+  std::unordered_set<std::uint32_t> instantiations_;
 };
 
 }  // namespace skc::frontend

@@ -67,8 +67,10 @@ class Editor {
     }
   }
 
+  /// `template <...>` of the declaration that follows, or `template kernel void f<float>(...);`.
   void editTemplate() {
     copyToken();
+    if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) editInstantiation();
     if (cursor_.at(tok::less)) {
       int depth = 0;
       do {
@@ -77,9 +79,41 @@ class Editor {
         copyToken();
       } while (depth > 0 && !cursor_.at(tok::eof));
     }
-    if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) {
-      diagnostics_.report(Diag::KernelTemplate, locOf(cursor_.peek()));
+  }
+
+  /// Clang instantiates; that it is the template of a kernel, the lowering sees to.
+  void editInstantiation() {
+    const Token start = cursor_.take();
+    std::vector<Token> head;
+    while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());
+    const std::vector<Token> declared =
+        cursor_.at(tok::l_paren) ? cursor_.takeParenthesized() : std::vector<Token>();
+    if (head.size() < 2 || declared.empty() || !cursor_.at(tok::semi)) {
+      diagnostics_.report(Diag::KernelInstantiation, locOf(cursor_.at(tok::l_brace) ? cursor_.peek() : start),
+                          {nameOf(start)});
+      return copyDeclaration();
     }
+    for (const Token& token : head) syntax_.addInstantiation(token.getLocation());
+    std::vector<Token> constants;   // said by the template, not here
+    ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, constants);
+    const std::vector<Token> edited =
+        parameters.edit(declared, isWord(start, "reduce") ? FunctionKind::Reduce : FunctionKind::Kernel);
+    out_.insert(out_.end(), head.begin(), head.end());
+    out_.insert(out_.end(), edited.begin(), edited.end());
+    copyToken();
+  }
+
+  /// The place of a function's name in what stands before its parameters, `void f` or, of a
+  /// specialisation, `void f<float>`; 0 where there is none.
+  static std::size_t nameAt(const std::vector<Token>& head) {
+    if (head.empty()) return 0;
+    std::size_t at = head.size() - 1;
+    if (head[at].isNot(tok::greater)) return at;
+    for (int depth = 0; at > 0; --at) {
+      if (head[at].is(tok::greater)) ++depth;
+      if (head[at].is(tok::less) && --depth == 0) return at - 1;
+    }
+    return 0;
   }
 
   void editKernel() {
@@ -88,26 +122,28 @@ class Editor {
     kernel.isReduce = isWord(start, "reduce");
     std::vector<Token> head;       // result type and name
     while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());
-    if (head.size() < 2 || head.back().isNot(tok::identifier) || !cursor_.at(tok::l_paren)) {
+    const std::size_t at = nameAt(head);
+    if (at == 0 || head[at].isNot(tok::identifier) || !cursor_.at(tok::l_paren)) {
       const Token& place = head.empty() || cursor_.at(tok::l_paren) ? start : cursor_.peek();
       diagnostics_.report(Diag::KernelHead, locOf(place), {kernel.isReduce ? "reduce" : "kernel"});
       return copyDeclaration();
     }
-    ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, out_);
+    std::vector<Token> constants;
+    ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, constants);
     const std::vector<Token> declared = cursor_.takeParenthesized();
     if (declared.empty()) {
-      diagnostics_.report(Diag::UnclosedParameters, locOf(head.back()), {nameOf(head.back())});
+      diagnostics_.report(Diag::UnclosedParameters, locOf(head[at]), {nameOf(head[at])});
       return;
     }
     const std::vector<Token> edited =
         parameters.edit(declared, kernel.isReduce ? FunctionKind::Reduce : FunctionKind::Kernel);
     kernel.signature = signature(start, head, declared);
-    syntax_.add(head.back().getLocation(), std::move(kernel));
+    syntax_.add(head[at].getLocation(), std::move(kernel));
     out_.insert(out_.end(), head.begin(), head.end());
     out_.insert(out_.end(), edited.begin(), edited.end());
-    if (cursor_.at(tok::l_brace)) return copyBraces();
+    if (cursor_.at(tok::l_brace)) return copyBody(constants);
     if (cursor_.at(tok::semi)) return copyToken();
-    diagnostics_.report(Diag::KernelBody, locOf(cursor_.peek()), {nameOf(head.back())});
+    diagnostics_.report(Diag::KernelBody, locOf(cursor_.peek()), {nameOf(head[at])});
     copyDeclaration();
   }
 
@@ -142,6 +178,16 @@ class Editor {
         continue;
       }
       copyToken();
+    }
+  }
+
+  /// The constants that the parameters gave stand first in the body, where a template's own types are known.
+  void copyBody(const std::vector<Token>& constants) {
+    copyToken();
+    out_.insert(out_.end(), constants.begin(), constants.end());
+    for (int depth = 1; depth > 0 && !cursor_.at(tok::eof); copyToken()) {
+      if (cursor_.at(tok::l_brace)) ++depth;
+      if (cursor_.at(tok::r_brace)) --depth;
     }
   }
 
