@@ -10,7 +10,9 @@
 
 #include <fmt/format.h>
 
+#include "assemble/assemble.hpp"
 #include "driver/glsl_listing.hpp"
+#include "driver/plan_listing.hpp"
 #include "emit/program.hpp"
 #include "emit/stub.hpp"
 #include "frontend/frontend.hpp"
@@ -29,6 +31,10 @@ frontend::Options frontendOptions(const Options& options) {
 
 TransformOptions transformOptions(const Options& options) {
   TransformOptions result;
+  for (const sk::assemble::Profile& profile : sk::assemble::profiles()) {
+    result.limits.push_back(
+        {static_cast<std::uint32_t>(profile.drawBuffers), static_cast<std::uint32_t>(profile.textureUnits)});
+  }
   if (!options.printAfter.empty()) {
     result.after = [wanted = options.printAfter](std::string_view name, const ir::Module& module) {
       if (wanted == "all" || wanted == name)
@@ -109,6 +115,7 @@ int compile(const Options& options, const std::string& file) {
   switch (options.emit) {
     case Emit::Ir: std::cout << ir::print(*module); break;
     case Emit::Glsl: std::cout << glslListing(emit::Program(*module), options.profile); break;
+    case Emit::Plan: std::cout << planListing(*module, options.profile); break;
     case Emit::Stubs: return writeStubs(options, *module, frontend) ? 0 : 1;
     case Emit::Ast: break;   // printed above
   }

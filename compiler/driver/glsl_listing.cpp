@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <set>
+#include <span>
 
 #include "assemble/assemble.hpp"
 #include "assemble/reduce_plan.hpp"
@@ -52,6 +53,20 @@ std::string reductionListing(const Profile& profile, const sk::program::Reductio
   return text;
 }
 
+/// The programs of the passes that a kernel takes within the profile's limits.
+std::string kernelListing(const Profile& profile, const sk::program::Kernel& kernel) {
+  for (const sk::program::Plan& plan : std::span(kernel.plans, kernel.planCount)) {
+    if (plan.drawBuffers != profile.drawBuffers || plan.textureUnits != profile.textureUnits) continue;
+    std::string text;
+    for (const sk::program::Pass& pass : plan.passes) {
+      if (!text.empty()) text += "\n";
+      text += sk::assemble::fragmentProgram(profile, pass.kernel, plainVariant(pass.kernel));
+    }
+    return text;
+  }
+  return sk::assemble::fragmentProgram(profile, kernel, plainVariant(kernel));
+}
+
 }  // namespace
 
 std::string glslListing(const emit::Program& program, std::string_view profileName) {
@@ -59,8 +74,7 @@ std::string glslListing(const emit::Program& program, std::string_view profileNa
   std::string text;
   for (const emit::Unit& unit : program.units()) {
     if (!text.empty()) text += "\n";
-    text += unit.reduction ? reductionListing(profile, *unit.reduction)
-                           : sk::assemble::fragmentProgram(profile, unit.kernel, plainVariant(unit.kernel));
+    text += unit.reduction ? reductionListing(profile, *unit.reduction) : kernelListing(profile, unit.kernel);
   }
   return text;
 }

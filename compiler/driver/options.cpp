@@ -16,7 +16,7 @@ namespace skc::driver {
 namespace {
 
 const std::map<std::string, Emit> emits = {
-    {"stubs", Emit::Stubs}, {"glsl", Emit::Glsl}, {"ir", Emit::Ir}, {"ast", Emit::Ast}};
+    {"stubs", Emit::Stubs}, {"glsl", Emit::Glsl}, {"ir", Emit::Ir}, {"plan", Emit::Plan}, {"ast", Emit::Ast}};
 
 std::string profileNames() {
   std::string names;
@@ -37,8 +37,8 @@ std::string transformList() {
 /// A message for a value that is not allowed, or "".
 std::string checkEmit(const std::string& value) {
   if (emits.contains(value)) return {};
-  if (value == "cpp" || value == "plan") return fmt::format("'{}' is not part of this version", value);
-  return fmt::format("'{}' is none of stubs, glsl, ir, ast", value);
+  if (value == "cpp") return fmt::format("'{}' is not part of this version", value);
+  return fmt::format("'{}' is none of stubs, glsl, ir, plan, ast", value);
 }
 
 std::string checkProfile(const std::string& value) {
@@ -88,14 +88,15 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   app.add_option("-o", options.outputDirectory,
                  "Write the stubs to this directory (default: the current one)")
       ->type_name("DIR");
-  app.add_option("--emit", emit, "What to emit: stubs, or glsl, ir, ast on standard output")
+  app.add_option("--emit", emit, "What to emit: stubs, or glsl, ir, plan, ast on standard output")
       ->check(checkEmit, "")
       ->type_name("KIND");
   app.add_option("--target", targets, "Targets to compile for: fragment")
       ->delimiter(',')
       ->check(checkTarget, "")
       ->type_name("LIST");
-  app.add_option("--profile", options.profile, "Version of GLSL that --emit=glsl prints: " + profileNames())
+  app.add_option("--profile", options.profile,
+                 "Version of GLSL that --emit=glsl and plan are about: " + profileNames())
       ->check(checkProfile, "")
       ->type_name("NAME");
   app.add_option("--kernel", options.kernel, "Emit only this kernel or reduce")->type_name("NAME");

@@ -10,14 +10,14 @@
 
 namespace skc::driver {
 
-enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Ast };
+enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Plan, Ast };
 
 struct Options {
   std::vector<std::string> files;
   std::string outputDirectory = ".";
   Emit emit = Emit::Stubs;
-  std::string profile = "glsl330";          ///< of --emit=glsl
-  std::string kernel;                       ///< of --emit=glsl and ir; empty: all
+  std::string profile = "glsl330";          ///< of --emit=glsl and plan
+  std::string kernel;                       ///< of --emit=glsl, ir and plan; empty: all
   std::vector<std::string> includeDirectories, definitions, warnings;
   std::string depfile;                      ///< empty: none
   std::string printAfter;                   ///< a transform, "all", or empty

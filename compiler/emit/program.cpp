@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "emit/conditions.hpp"
 #include "emit/elements.hpp"
 #include "emit/glsl_body.hpp"
@@ -25,6 +27,13 @@ struct Program::Storage {
   std::deque<std::vector<sk::program::Parameter>> parameters;
   std::vector<std::string_view> sources;
   std::deque<sk::program::Reduction> reductions;
+  std::deque<std::vector<sk::program::Layer>> layers;
+  std::deque<std::vector<const sk::program::Element*>> temporaries;
+  std::deque<std::vector<sk::program::ArgumentPlane>> bundleLayers;
+  std::deque<std::vector<sk::program::Bundle>> bundles;
+  std::deque<std::vector<sk::program::PassOperand>> operands;
+  std::deque<std::vector<sk::program::Pass>> passes;
+  std::deque<std::vector<sk::program::Plan>> plans;
   std::vector<Unit> units;
 
   std::string_view keep(std::string text) { return strings.emplace_back(std::move(text)); }
@@ -58,30 +67,97 @@ class Builder {
  private:
   void add(KernelId id) {
     const Kernel& kernel = module_.kernels[id];
+    if (kernel.pass) return;
+    Unit unit{.id = id, .kernel = describe(kernel)};
+    addPlans(kernel, unit.kernel);
+    if (kernel.reduction) {
+      const KernelNames names(module_, kernel, types_);
+      const std::string& combine = names.function(*kernel.reduction->combine);
+      unit.reduction = &storage_.reductions.emplace_back(
+          sk::program::Reduction{unit.kernel, storage_.keep(combine), kernel.reduction->seeded});
+    }
+    storage_.units.push_back(unit);
+  }
+
+  /// A whole kernel, or that of a plan's pass.
+  sk::program::Kernel describe(const Kernel& kernel, const Plan* plan = nullptr, const Pass* pass = nullptr) {
     const KernelNames names(module_, kernel, types_);
     Polyfills polyfills;
     const GlslContext context{module_, types_, names, kernel, polyfills};
     const StreamUses uses = streamUses(module_, kernel);
     GlslBody text = glslBody(context);
     std::vector<sk::program::Parameter>& parameters = storage_.parameters.emplace_back();
-    for (std::uint32_t i = 0; i < kernel.params.size(); ++i)
+    for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
       parameters.push_back(parameter(context, i, uses.params[i]));
-    Unit unit{.id = id,
-              .kernel = {.name = storage_.keep(qualifier(kernel.scope) + kernel.name),
-                         .entry = storage_.keep(names.function(kernel.entry)),
-                         .declarations = storage_.keep(std::move(text.declarations)),
-                         .body = storage_.keep(std::move(text.body)),
-                         .parameters = parameters,
-                         .sources = storage_.sources,
-                         .usesIndex = uses.domainIndex,
-                         .usesExtent = uses.domainExtent,
-                         .usesLoops = uses.loops}};
-    if (kernel.reduction) {
-      const std::string& combine = names.function(*kernel.reduction->combine);
-      unit.reduction = &storage_.reductions.emplace_back(
-          sk::program::Reduction{unit.kernel, storage_.keep(combine), kernel.reduction->seeded});
+      if (plan != nullptr && !pass->operands[i].isTemporary) {
+        parameters.back().layers = layersOf(*plan, pass->operands[i].index, parameters.back());
+      }
     }
-    storage_.units.push_back(unit);
+    std::string name = qualifier(kernel.scope) + kernel.name;
+    if (kernel.pass) name += fmt::format(" (pass {} of {})", kernel.pass->number, kernel.pass->count);
+    return {.name = storage_.keep(std::move(name)),
+            .entry = storage_.keep(names.function(kernel.entry)),
+            .declarations = storage_.keep(std::move(text.declarations)),
+            .body = storage_.keep(std::move(text.body)),
+            .parameters = parameters,
+            .sources = storage_.sources,
+            .usesIndex = uses.domainIndex,
+            .usesExtent = uses.domainExtent,
+            .usesLoops = uses.loops};
+  }
+
+  // ---- plans ------------------------------------------------------------------------------------
+
+  void addPlans(const Kernel& kernel, sk::program::Kernel& made) {
+    if (kernel.plans.empty()) return;
+    std::vector<sk::program::Plan>& plans = storage_.plans.emplace_back();
+    for (const Plan& plan : kernel.plans) plans.push_back(describe(plan));
+    made.plans = plans.data();
+    made.planCount = static_cast<std::uint8_t>(plans.size());
+  }
+
+  sk::program::Plan describe(const Plan& plan) {
+    std::vector<const sk::program::Element*>& temporaries = storage_.temporaries.emplace_back();
+    for (const Temporary& temporary : plan.temporaries) temporaries.push_back(&element(temporary.type));
+    std::vector<sk::program::Bundle>& bundles = storage_.bundles.emplace_back();
+    for (const Bundle& bundle : plan.bundles) {
+      std::vector<sk::program::ArgumentPlane>& layers = storage_.bundleLayers.emplace_back();
+      for (const ArgumentPlane& place : bundle.layers) {
+        layers.push_back({static_cast<std::uint8_t>(place.argument), static_cast<std::uint8_t>(place.plane)});
+      }
+      bundles.push_back({static_cast<sk::program::Scalar>(bundle.type.scalar), bundle.type.width, layers});
+    }
+    std::vector<sk::program::Pass>& passes = storage_.passes.emplace_back();
+    for (const Pass& pass : plan.passes) {
+      std::vector<sk::program::PassOperand>& operands = storage_.operands.emplace_back();
+      for (const PassOperand& operand : pass.operands) {
+        operands.push_back({operand.isTemporary, static_cast<std::uint8_t>(operand.index)});
+      }
+      passes.push_back({describe(module_.kernels[pass.kernel], &plan, &pass), operands});
+    }
+    return {.drawBuffers = static_cast<std::uint8_t>(plan.limits.drawBuffers),
+            .textureUnits = static_cast<std::uint8_t>(plan.limits.textureUnits),
+            .temporaries = temporaries,
+            .bundles = bundles,
+            .passes = passes};
+  }
+
+  /// Where the planes of an argument are bundled; empty if none is. Outputs never are.
+  std::span<const sk::program::Layer> layersOf(const Plan& plan, std::uint32_t argument,
+                                               const sk::program::Parameter& parameter) {
+    if (parameter.role == sk::program::Role::Output) return {};
+    std::vector<sk::program::Layer> layers(parameter.element->fields.size());
+    bool isBundled = false;
+    for (std::size_t b = 0; b < plan.bundles.size(); ++b) {
+      const std::vector<ArgumentPlane>& places = plan.bundles[b].layers;
+      for (std::size_t layer = 0; layer < places.size(); ++layer) {
+        if (places[layer].argument != argument) continue;
+        layers[places[layer].plane] = {static_cast<std::int8_t>(b), static_cast<std::uint8_t>(layer)};
+        isBundled = true;
+      }
+    }
+    if (!isBundled) return {};
+    return storage_.layers.emplace_back(std::move(layers));
   }
 
   sk::program::Parameter parameter(const GlslContext& context, std::uint32_t index, const StreamUse& use) {
@@ -104,7 +180,9 @@ class Builder {
             .usesAt = use.at,
             .usesNear = use.near,
             .reach = use.reach,
-            .neededIf = condition(context, param)};
+            .neededIf = condition(context, param),
+            .firstPlane = static_cast<std::uint8_t>(param.firstPlane),
+            .planeCount = static_cast<std::uint8_t>(param.planeCount)};
   }
 
   sk::program::Condition condition(const GlslContext& context, const KernelParam& param) {

@@ -13,7 +13,7 @@
 
 namespace skc::emit {
 
-/// One kernel or reduce of the module.
+/// One kernel or reduce of the module. The kernels of passes are in Kernel::plans of the whole one.
 struct Unit {
   ir::KernelId id;               ///< index into Module::kernels
   sk::program::Kernel kernel;    ///< of a reduce: its fold

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <optional>
 
-#include "ir/build.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/reach.hpp"

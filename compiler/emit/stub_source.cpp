@@ -79,20 +79,9 @@ class SourceWriter {
   void descriptors(std::size_t unit) {
     const sk::program::Kernel& kernel = program_.units()[unit].kernel;
     const std::string& name = names_[unit];
-    if (!kernel.declarations.empty()) {
-      text_ += fmt::format("constexpr std::string_view {}Declarations =\n    {};\n\n", name,
-                           rawString(kernel.declarations));
-    }
-    text_ += fmt::format("constexpr std::string_view {}Body =\n    {};\n\n", name, rawString(kernel.body));
     const Kernel& declared = kernelOf(unit);
-    for (const sk::program::Parameter& param : kernel.parameters) conditionSteps(name, param);
-    text_ += fmt::format("constexpr Parameter {}Parameters[] = {{\n", name);
-    for (std::size_t i = 0; i < declared.params.size(); ++i) {
-      text_ +=
-          wrapLine("    " + parameter(name, kernel.parameters[i], declared.params[i].type) + ",", 100, 5) +
-          "\n";
-    }
-    text_ += "};\n\n";
+    kernelParts(kernel, declared, name);
+    if (!declared.plans.empty()) plans(kernel, declared, name);
     const sk::program::Reduction* reduction = program_.units()[unit].reduction;
     if (reduction == nullptr) {
       text_ += fmt::format("constexpr Kernel {}Kernel = {};\n\n", name, kernelText(kernel, name, 4));
@@ -102,6 +91,93 @@ class SourceWriter {
           "    .seeded = {}}};\n\n",
           name, kernelText(kernel, name, 13), reduction->combine, reduction->seeded);
     }
+  }
+
+  /// What the descriptor of a kernel refers to.
+  void kernelParts(const sk::program::Kernel& kernel, const Kernel& declared, const std::string& name) {
+    if (!kernel.declarations.empty()) {
+      text_ += fmt::format("constexpr std::string_view {}Declarations =\n    {};\n\n", name,
+                           rawString(kernel.declarations));
+    }
+    text_ += fmt::format("constexpr std::string_view {}Body =\n    {};\n\n", name, rawString(kernel.body));
+    for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+      conditionSteps(name, kernel.parameters[i]);
+      layers(kernel.parameters[i], name, i);
+    }
+    text_ += fmt::format("constexpr Parameter {}Parameters[] = {{\n", name);
+    for (std::size_t i = 0; i < declared.params.size(); ++i) {
+      std::string row = parameter(name, kernel.parameters[i], declared.params[i].type);
+      if (!kernel.parameters[i].layers.empty()) row += fmt::format(", .layers = {}Layers{}", name, i);
+      text_ += wrapLine("    " + row + "},", 100, 5) + "\n";
+    }
+    text_ += "};\n\n";
+  }
+
+  void layers(const sk::program::Parameter& parameter, const std::string& name, std::size_t number) {
+    if (parameter.layers.empty()) return;
+    std::vector<std::string> items;
+    for (const sk::program::Layer& layer : parameter.layers) {
+      items.push_back(fmt::format("{{{}, {}}}", layer.bundle, layer.layer));
+    }
+    text_ += fmt::format("constexpr Layer {}Layers{}[] = {{{}}};\n", name, number, join(items, ", "));
+  }
+
+  // ---- plans ------------------------------------------------------------------------------------
+
+  void plans(const sk::program::Kernel& kernel, const Kernel& declared, const std::string& name) {
+    std::vector<std::string> rows;
+    for (std::size_t i = 0; i < declared.plans.size(); ++i) {
+      rows.push_back(plan(kernel.plans[i], declared.plans[i], fmt::format("{}Plan{}", name, i + 1)));
+    }
+    text_ += fmt::format("constexpr Plan {}Plans[] = {{\n    {}}};\n\n", name, join(rows, ",\n    "));
+  }
+
+  /// Writes what a plan refers to, and gives the plan.
+  std::string plan(const sk::program::Plan& made, const Plan& declared, const std::string& name) {
+    std::vector<std::string> passes;
+    for (std::size_t i = 0; i < declared.passes.size(); ++i) {
+      const std::string pass = fmt::format("{}Pass{}", name, i + 1);
+      kernelParts(made.passes[i].kernel, module_.kernels[declared.passes[i].kernel], pass);
+      std::vector<std::string> operands;
+      for (const sk::program::PassOperand& operand : made.passes[i].operands) {
+        operands.push_back(fmt::format("{{{}, {}}}", operand.isTemporary, operand.index));
+      }
+      list("PassOperand", pass + "Operands", operands);
+      text_ += "\n";
+      passes.push_back(fmt::format("{{{}, {}Operands}}", kernelText(made.passes[i].kernel, pass, 5), pass));
+    }
+    std::vector<std::string> temporaries;
+    for (const Temporary& temporary : declared.temporaries) {
+      temporaries.push_back(elementOf(temporary.type));
+    }
+    std::vector<std::string> bundles;
+    for (std::size_t i = 0; i < made.bundles.size(); ++i) {
+      std::vector<std::string> places;
+      for (const sk::program::ArgumentPlane& place : made.bundles[i].layers) {
+        places.push_back(fmt::format("{{{}, {}}}", place.argument, place.plane));
+      }
+      const std::string bundle = fmt::format("{}Bundle{}", name, i + 1);
+      list("ArgumentPlane", bundle, places);
+      constexpr std::string_view scalars[] = {"Bool", "Int", "Uint", "Float"};
+      bundles.push_back(fmt::format("{{Scalar::{}, {}, {}}}",
+                                    scalars[static_cast<std::size_t>(made.bundles[i].scalar)],
+                                    made.bundles[i].width, bundle));
+    }
+    list("const Element*", name + "Temporaries", temporaries);
+    list("Bundle", name + "Bundles", bundles);
+    text_ += fmt::format("constexpr Pass {}Passes[] = {{\n    {}}};\n\n", name, join(passes, ",\n    "));
+    const auto orNone = [&](std::string_view list, bool isEmpty) {
+      return isEmpty ? "{}" : fmt::format("{}{}", name, list);
+    };
+    return fmt::format("{{{}, {}, {}, {}, {}Passes}}", made.drawBuffers, made.textureUnits,
+                       orNone("Temporaries", temporaries.empty()), orNone("Bundles", bundles.empty()), name);
+  }
+
+  /// A constant array; none where it would be empty.
+  void list(std::string_view type, const std::string& name, const std::vector<std::string>& items) {
+    if (items.empty()) return;
+    const std::string head = fmt::format("constexpr {} {}[] = {{", type, name);
+    text_ += wrapLine(head + join(items, ", ") + "};", 100, 4) + "\n";
   }
 
   /// One member a line; the first beside the bracket where that stands far in.
@@ -115,6 +191,10 @@ class SourceWriter {
     if (kernel.usesIndex) members.emplace_back(".usesIndex = true");
     if (kernel.usesExtent) members.emplace_back(".usesExtent = true");
     if (kernel.usesLoops) members.emplace_back(".usesLoops = true");
+    if (kernel.planCount > 0) {
+      members.push_back(fmt::format(".plans = {}Plans", name));
+      members.push_back(fmt::format(".planCount = {}", kernel.planCount));
+    }
     const std::string newLine = "\n" + std::string(column, ' ');
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
   }
@@ -139,16 +219,15 @@ class SourceWriter {
     text_ += wrapLine(head + join(steps, ", ") + "};", 100, head.size()) + "\n\n";
   }
 
+  /// Without the closing bracket.
   std::string parameter(const std::string& unit, const sk::program::Parameter& param, Type type) const {
     constexpr std::string_view roles[] = {"Uniform",        "Input",   "Output",   "Gather", "Accumulator",
                                           "VariableOutput", "Scatter", "Iterator", "Spec"};
     constexpr std::string_view scatterOps[] = {"Store", "Add", "Min", "Max"};
     constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
-    const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";
-    const std::string element = type.isVector() ? spelling(type.scalar, type.width) : cppType(module_, type);
-    std::string text = fmt::format(
-        "{{.name = \"{}\", .symbol = \"{}\", .role = Role::{}, .element = &ElementTraits<{}{}>::element()",
-        param.name, param.symbol, roles[static_cast<std::size_t>(param.role)], scope, element);
+    std::string text =
+        fmt::format("{{.name = \"{}\", .symbol = \"{}\", .role = Role::{}, .element = {}", param.name,
+                    param.symbol, roles[static_cast<std::size_t>(param.role)], elementOf(type));
     if (param.rank > 0) text += fmt::format(", .rank = {}", param.rank);
     if (param.role == sk::program::Role::Gather) {
       text += fmt::format(", .boundary = Boundary::{}", boundaries[static_cast<std::size_t>(param.boundary)]);
@@ -167,7 +246,16 @@ class SourceWriter {
     if (!param.neededIf.steps.empty()) {
       text += fmt::format(", .neededIf = {{{}, \"{}\"}}", conditionName(unit, param), param.neededIf.text);
     }
-    return text + "}";
+    if (param.planeCount > 0) {
+      text += fmt::format(", .firstPlane = {}, .planeCount = {}", param.firstPlane, param.planeCount);
+    }
+    return text;
+  }
+
+  std::string elementOf(Type type) const {
+    const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";
+    const std::string name = type.isVector() ? spelling(type.scalar, type.width) : cppType(module_, type);
+    return fmt::format("&ElementTraits<{}{}>::element()", scope, name);
   }
 
   // ---- functions --------------------------------------------------------------------------------

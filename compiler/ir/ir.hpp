@@ -22,6 +22,8 @@
 //   * Each kernel has an entry function, with one variable per kernel parameter, in order. After
 //     `specialize-gathers`, no function but an entry has Gather or Sink parameters, and every StreamRef
 //     names a kernel parameter; the functions that a kernel reaches are then its own.
+//   * A kernel that some target cannot run in one pass has plans after `split-kernels`. The kernels
+//     of their passes stand in the module like all others.
 //
 // `validate` (validate.hpp) is this text made executable.
 #pragma once
@@ -191,6 +193,8 @@ struct KernelParam {
   Boundary boundary = Boundary::Clamp; ///< Gather
   ExprPtr border;                      ///< Gather with Border: constant expression
   ExprPtr identity;                    ///< Accumulator: constant expression, or null
+  std::uint32_t firstPlane = 0;        ///< Output of a pass that writes only some planes of the element:
+  std::uint32_t planeCount = 0;        ///< the first, and how many; 0 is all of them
   Loc loc;
   ScatterOp scatter = ScatterOp::Store; ///< Scatter: what all its statements do
   std::int32_t pushes = -1;            ///< VariableOutput, Scatter: statements that one element executes
@@ -207,6 +211,61 @@ struct Reduction {
   bool seeded = false;                 ///< see sk::program::Reduction
 };
 
+// ---- plans ------------------------------------------------------------------------------------
+
+/// What a target can read and write in one pass.
+struct Limits {
+  std::uint32_t drawBuffers = 0;    ///< planes written
+  std::uint32_t textureUnits = 0;   ///< planes read
+  bool operator==(const Limits&) const = default;
+};
+
+/// A value that one pass of a plan writes and later ones read: a local variable of the whole kernel.
+struct Temporary {
+  std::string name;
+  Type type;
+  double computeCost;    ///< of computing it once, see split/cost.hpp
+  std::uint32_t readers; ///< passes that read it
+};
+
+/// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.
+struct PassOperand {
+  bool isTemporary;
+  std::uint32_t index;
+};
+struct Pass {
+  KernelId kernel;                     ///< Kernel::pass is set there
+  std::vector<PassOperand> operands;   ///< one a parameter
+  double cost;
+};
+
+/// A plane of an argument of the whole kernel.
+struct ArgumentPlane {
+  std::uint32_t argument, plane;
+  bool operator==(const ArgumentPlane&) const = default;
+};
+/// Planes of one texel format that are copied to the layers of one texture, and read from there.
+struct Bundle {
+  Type type;
+  std::vector<ArgumentPlane> layers;
+};
+
+/// How a kernel that needs more than `limits` runs: in these passes, one after the other.
+struct Plan {
+  Limits limits;
+  std::vector<Temporary> temporaries;
+  std::vector<Bundle> bundles;
+  std::vector<Pass> passes;
+  double cost = 0;
+  double costWithoutTemporaries = 0;   ///< were every value computed wherever it is needed
+};
+
+/// The kernel is a pass of another's plan.
+struct PassOf {
+  KernelId whole;
+  std::uint32_t number, count;         ///< from 1
+};
+
 struct Kernel {
   std::string name;                    ///< without namespaces
   std::vector<std::string> scope;      ///< enclosing namespaces, outermost first
@@ -217,6 +276,8 @@ struct Kernel {
                                        ///< VariableOutput and Scatter Sink
   std::vector<KernelParam> params;     ///< of a reduce: an Input, then an Accumulator
   std::optional<Reduction> reduction;  ///< set for `reduce`
+  std::vector<Plan> plans;             ///< for limits that it exceeds, most generous first
+  std::optional<PassOf> pass;
   Loc loc;
 };
 

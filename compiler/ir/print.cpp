@@ -132,6 +132,9 @@ std::string printParam(const Module& module, const Function& entry, const Kernel
   if (param.border) text += "(" + constant(param.border) + ")";
   if (param.identity) text += " = " + constant(param.identity);
   if (param.neededIf) text += " if " + print(module, entry, *param.neededIf);
+  if (param.planeCount != 0) {
+    text += fmt::format(" planes {} to {}", param.firstPlane, param.firstPlane + param.planeCount - 1);
+  }
   return text + "\n";
 }
 
@@ -141,6 +144,7 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
   if (kernel.reduction && kernel.reduction->combine)
     text += fmt::format(", combine @{}", *kernel.reduction->combine);
   if (kernel.reduction && kernel.reduction->seeded) text += ", seeded";
+  if (kernel.pass) text += fmt::format(", pass {} of {}", kernel.pass->number, kernel.pass->count);
   text += "\n";
   for (std::size_t i = 0; i < kernel.params.size(); ++i) {
     text += printParam(module, module.functions[kernel.entry], kernel.params[i], i);

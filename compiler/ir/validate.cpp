@@ -242,6 +242,23 @@ void checkReduction(const Module& module, const Kernel& kernel) {
           "the combining function does not fold two accumulators");
 }
 
+void checkPlan(const Module& module, const Kernel& kernel, const Plan& plan) {
+  for (const Pass& pass : plan.passes) {
+    require(pass.kernel < module.kernels.size(), "a pass is not in the table");
+    const Kernel& made = module.kernels[pass.kernel];
+    require(made.pass && &module.kernels[made.pass->whole] == &kernel, "a pass belongs to another kernel");
+    require(made.params.size() == pass.operands.size(), "a pass has too many or too few operands");
+    for (std::size_t i = 0; i < made.params.size(); ++i) {
+      const PassOperand& operand = pass.operands[i];
+      require(operand.index < (operand.isTemporary ? plan.temporaries.size() : kernel.params.size()),
+              "an operand of a pass is not there");
+      const Type type =
+          operand.isTemporary ? plan.temporaries[operand.index].type : kernel.params[operand.index].type;
+      require(type == made.params[i].type, "an operand of a pass has another type");
+    }
+  }
+}
+
 void checkKernel(const Module& module, Stage stage, const Kernel& kernel) {
   require(kernel.entry < module.functions.size(), "the entry is not in the table");
   const Function& entry = module.functions[kernel.entry];
@@ -257,6 +274,7 @@ void checkKernel(const Module& module, Stage stage, const Kernel& kernel) {
   }
   require(hasAccumulator == kernel.reduction.has_value(), "a reduce and an accumulator go together");
   if (kernel.reduction) checkReduction(module, kernel);
+  for (const Plan& plan : kernel.plans) checkPlan(module, kernel, plan);
 }
 
 // ---- module -----------------------------------------------------------------------------------

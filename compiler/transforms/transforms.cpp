@@ -9,6 +9,7 @@
 
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
+#include "split/split_kernels.hpp"
 #include "transforms/derive_combine.hpp"
 #include "transforms/fold_constants.hpp"
 #include "transforms/guard_streams.hpp"
@@ -20,8 +21,14 @@ namespace {
 
 struct Transform {
   std::string_view name;
-  void (*run)(ir::Module&, Diagnostics&);
+  void (*run)(ir::Module&, Diagnostics&, const TransformOptions&);
 };
+
+/// Most transforms have no options.
+template <void (*transform)(ir::Module&, Diagnostics&)>
+void plain(ir::Module& module, Diagnostics& diagnostics, const TransformOptions&) {
+  transform(module, diagnostics);
+}
 
 // First the gathers: from then on a function belongs to one kernel, and every later transform may
 // change it without looking at other callers.
@@ -29,11 +36,18 @@ struct Transform {
 // of a fold.
 // Folding before guarding, too: a branch that is gone needs no stream.
 // Deriving before removing, because it makes functions that use structs.
-// Removing last, because all others leave things without use.
+// Removing after these, because all of them leave things without use; and before splitting, so that
+// nobody plans for what is not needed.
 constexpr Transform transforms[] = {
-    {"specialize-gathers", specializeGathers}, {"fold-constants", foldConstants},
-    {"guard-streams", guardStreams},           {"derive-combine", deriveCombine},
-    {"remove-unused", removeUnused},
+    {"specialize-gathers", plain<specializeGathers>},
+    {"fold-constants", plain<foldConstants>},
+    {"guard-streams", plain<guardStreams>},
+    {"derive-combine", plain<deriveCombine>},
+    {"remove-unused", plain<removeUnused>},
+    {"split-kernels",
+     [](ir::Module& module, Diagnostics&, const TransformOptions& options) {
+       split::splitKernels(module, options.limits);
+     }},
 };
 
 /// A violation is a bug of ours: says after which transform it appeared, and shows the module.
@@ -62,7 +76,7 @@ std::span<const std::string_view> transformNames() {
 void runTransforms(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options) {
   validateOrAbort(module, ir::Stage::Lowered, "the frontend");
   for (const Transform& transform : transforms) {
-    transform.run(module, diagnostics);
+    transform.run(module, diagnostics, options);
     if (diagnostics.hasErrors()) return;
     validateOrAbort(module, ir::Stage::Specialized, transform.name);
     if (options.after) options.after(transform.name, module);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "ir/ir.hpp"
 #include "support/diagnostics.hpp"
@@ -14,6 +15,8 @@
 namespace skc {
 
 struct TransformOptions {
+  /// What the targets can read and write in a pass: kernels that need more get plans.
+  std::vector<ir::Limits> limits = {};
   /// Told the name and the module after each transform; may be empty.
   std::function<void(std::string_view name, const ir::Module& module)> after = {};
 };

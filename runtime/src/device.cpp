@@ -40,10 +40,20 @@ std::optional<gl::Api> apiOf(const std::string& profile) {
       fmt::format("there is no profile '{}'; choose one of {} (option or SK_PROFILE)", profile, known));
 }
 
+/// Whether the device is to keep to what its profile guarantees.
+bool wantsGuaranteed(const std::string& limits) {
+  if (!limits.empty() && limits != "device" && limits != "guaranteed") {
+    throw Error(
+        fmt::format("there are no limits '{}'; choose device or guaranteed (option or SK_LIMITS)", limits));
+  }
+  return limits == "guaranteed";
+}
+
 std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
   const gl::OpenRequest request{chosen(options.device, "SK_DEVICE"),
                                 apiOf(chosen(options.profile, "SK_PROFILE"))};
-  return std::make_unique<DeviceState>(gl::openContext(request), options.textureLimit);
+  return std::make_unique<DeviceState>(gl::openContext(request), options.textureLimit,
+                                       wantsGuaranteed(chosen(options.limits, "SK_LIMITS")));
 }
 
 }  // namespace
@@ -57,8 +67,8 @@ Device::Device(Device&& other) noexcept = default;
 Device& Device::operator=(Device&& other) noexcept = default;
 
 Device Device::adopt(const DeviceOptions& options) {
-  return Device(
-      std::make_unique<DeviceState>(gl::adoptContext(apiOf(options.profile)), options.textureLimit));
+  return Device(std::make_unique<DeviceState>(gl::adoptContext(apiOf(options.profile)), options.textureLimit,
+                                              wantsGuaranteed(options.limits)));
 }
 
 DeviceState& Device::state() const {

@@ -13,7 +13,7 @@
 
 namespace sk {
 
-DeviceState::DeviceState(gl::OpenedContext&& opened, std::int32_t textureLimit)
+DeviceState::DeviceState(gl::OpenedContext&& opened, std::int32_t textureLimit, bool guaranteedLimits)
     : context(std::move(opened.context)),
       capabilities(std::move(opened.capabilities)),
       profile(assemble::findProfile(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300")),
@@ -26,6 +26,10 @@ DeviceState::DeviceState(gl::OpenedContext&& opened, std::int32_t textureLimit)
   }
   limits.drawBuffers = capabilities.drawBuffers;
   limits.textureUnits = capabilities.textureUnits;
+  if (guaranteedLimits) {
+    limits.drawBuffers = profile->drawBuffers;
+    limits.textureUnits = profile->textureUnits;
+  }
   const gl::CurrentScope current(context);
   vertexArray = gl::VertexArray::create();
   if (!context.isAdopted()) {

@@ -24,7 +24,7 @@ namespace sk {
 
 class DeviceState {
  public:
-  DeviceState(gl::OpenedContext&& opened, std::int32_t textureLimit);
+  DeviceState(gl::OpenedContext&& opened, std::int32_t textureLimit, bool guaranteedLimits);
   ~DeviceState();
   DeviceState(const DeviceState&) = delete;
   DeviceState& operator=(const DeviceState&) = delete;

@@ -25,6 +25,24 @@ void blit(DeviceState& device, Surface& from, const Placement& source, Surface& 
 
 }  // namespace
 
+namespace {
+
+/// Those planes of a parameter that are not in a bundle.
+int bindOwnPlanes(DeviceState& device, const program::Parameter& parameter, std::span<Surface> planes,
+                  int unit) {
+  if (parameter.layers.empty()) {
+    return bindPlanes(device, planes, unit);
+  }
+  for (std::size_t plane = 0; plane < planes.size(); ++plane) {
+    if (parameter.layers[plane].bundle < 0) {
+      unit = bindPlanes(device, planes.subspan(plane, 1), unit);
+    }
+  }
+  return unit;
+}
+
+}  // namespace
+
 int bindPlanes(DeviceState& device, std::span<Surface> planes, int unit) {
   for (const Surface& plane : planes) {
     device.bound.texture(unit++, plane.texture.name());
@@ -52,15 +70,19 @@ void drawRects(DeviceState& device, std::span<const Rect> rects) {
 }
 
 void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
-                const Placement& domain, std::span<const Rect> rects, GLuint framebuffer) {
+                const Placement& domain, std::span<const Rect> rects, GLuint framebuffer,
+                std::span<const gl::ArrayTexture> bundles) {
   KernelProgram& program = device.programs.kernelProgram(kernel, operands, domain);
   device.bound.program(program.program.name());
   device.bound.framebuffer(framebuffer);
   int unit = 0;
   for (KernelProgram::Read& read : program.reads) {
     const Operand& operand = operands[read.parameter];
-    unit = bindPlanes(device, operand.planes, unit);
+    unit = bindOwnPlanes(device, kernel.parameters[read.parameter], operand.planes, unit);
     read.uniforms.set(operand.placement);
+  }
+  for (const std::size_t bundle : program.bundles) {
+    device.bound.arrayTexture(unit++, bundles[bundle].name());
   }
   for (KernelProgram::Value& value : program.values) {
     value.uniform.set(operands[value.parameter].value);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "assemble/placement.hpp"
+#include "gl/array_texture.hpp"
 #include "sk/program.hpp"
 #include "surface.hpp"
 #include "variant.hpp"
@@ -25,9 +26,11 @@ GLuint framebufferOf(DeviceState& device, std::span<Surface* const> planes);
 void drawRects(DeviceState& device, std::span<const assemble::Rect> rects);
 
 /// Draws `rects` of `framebuffer` with a kernel. `operands`: one a parameter; those of outputs are not
-/// looked at, since `framebuffer` has their planes. No operand is a texture of the framebuffer.
+/// looked at, since `framebuffer` has their planes. No operand is a texture of the framebuffer. `bundles`:
+/// the array textures of the plan that the kernel is a pass of.
 void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
-                const assemble::Placement& domain, std::span<const assemble::Rect> rects, GLuint framebuffer);
+                const assemble::Placement& domain, std::span<const assemble::Rect> rects, GLuint framebuffer,
+                std::span<const gl::ArrayTexture> bundles = {});
 
 /// Copies one region to another of the same shape, plane by plane, wherever each lies. They are not of
 /// the same surface.

@@ -13,6 +13,25 @@
 
 namespace sk {
 
+namespace {
+
+/// The bundles that a pass reads, in order.
+std::vector<std::size_t> bundlesOf(const program::Kernel& kernel) {
+  std::vector<std::size_t> bundles;
+  for (const program::Parameter& parameter : kernel.parameters) {
+    for (const program::Layer& layer : parameter.layers) {
+      if (layer.bundle >= 0) {
+        bundles.push_back(static_cast<std::size_t>(layer.bundle));
+      }
+    }
+  }
+  std::sort(bundles.begin(), bundles.end());
+  bundles.erase(std::unique(bundles.begin(), bundles.end()), bundles.end());
+  return bundles;
+}
+
+}  // namespace
+
 /// A kernel that is made here, with all that its descriptor refers to.
 struct ProgramCache::IdentityKernel {
   std::string name;
@@ -64,12 +83,19 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
       bindSamplers(made->program, parameter, unit);
     }
   }
+  made->bundles = bundlesOf(kernel);
+  for (const std::size_t bundle : made->bundles) {
+    made->program.setSampler(assemble::bundleName(bundle), unit++);
+  }
   return made;
 }
 
 void ProgramCache::bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit) {
   device_.bound.program(program.name());
   for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
+    if (!parameter.layers.empty() && parameter.layers[plane].bundle >= 0) {
+      continue;
+    }
     program.setSampler(assemble::samplerName(parameter, plane), unit++);
   }
 }

@@ -40,6 +40,7 @@ struct KernelProgram {
   std::vector<Value> values;
   std::vector<Value> steps;     ///< of iterators
   std::vector<Read> reads;      ///< their planes lie on consecutive texture units, from 0, in this order
+  std::vector<std::size_t> bundles;   ///< of the plan, on the units after these
 };
 
 /// One variant of a reduction's passes. The planes that it reads lie on units from 0.

@@ -11,6 +11,7 @@
 #include "device_state.hpp"
 #include "iterator.hpp"
 #include "pass.hpp"
+#include "plan_run.hpp"
 #include "sk/call.hpp"
 #include "stream_state.hpp"
 
@@ -74,9 +75,16 @@ class KernelCall {
   }
 
   void run() {
+    const program::Plan* plan = kernel_.planCount == 0 || fitsOnePass(kernel_, device_.limits)
+                                    ? nullptr
+                                    : planFor(kernel_, device_.limits);
+    if (plan != nullptr) {
+      drawAside(plan);
+      return;
+    }
     for (std::size_t i = first_; i < arguments_.size(); ++i) {
       if (isOutput(i) && wayOf(i) != Way::Direct) {
-        drawAside();
+        drawAside(nullptr);
         return;
       }
     }
@@ -148,26 +156,35 @@ class KernelCall {
                framebufferOf(device_, std::span(targets_).first(targetCount_)));
   }
 
-  /// For calls of which an output is not drawn in place. New planes lie as the domain does, or are
-  /// those that the stream is to have.
-  void drawAside() {
+  /// For calls of which an output is not drawn in place, and for those that take several passes. New
+  /// planes lie as the domain does, or are those that the stream is to have.
+  void drawAside(const program::Plan* plan) {
     std::vector<std::unique_ptr<PlanesLease>> aside(arguments_.size());
+    std::vector<std::span<Surface>> drawn(arguments_.size());
     for (std::size_t i = first_; i < arguments_.size(); ++i) {
       if (!isOutput(i)) {
         continue;
       }
+      drawn[i] = operands_[i].planes;
       const Way way = wayOf(i);
       if (way == Way::Direct) {
-        addTargets(operands_[i].planes);
         continue;
       }
       const Layout& layout = streamOf(way == Way::Swap ? i : first_).layout;
       aside[i] = std::make_unique<PlanesLease>(device_);
       aside[i]->planes = device_.takePlanes(*streamOf(i).element, layout.width, layout.height,
                                             "an output that the kernel reads too");
-      addTargets(aside[i]->planes);
+      drawn[i] = aside[i]->planes;
     }
-    draw();
+    if (plan != nullptr) {
+      const DrawnRects rects(domain(), streamOf(first_).layout);
+      runPlan(device_, *plan, {operands_, drawn, domain(), streamOf(first_).layout, rects.get()});
+    } else {
+      for (const std::span<Surface> planes : drawn) {
+        addTargets(planes);
+      }
+      draw();
+    }
     for (std::size_t i = first_; i < arguments_.size(); ++i) {
       if (aside[i]) {
         putInPlace(i, aside[i]->planes);

@@ -30,7 +30,7 @@ struct Operand {
 /// A program's identity: the address of its descriptor and the packed choices of its variant.
 struct ProgramKey {
   const program::Kernel* kernel = nullptr;
-  std::array<std::uint64_t, 4> words{};
+  std::array<std::uint64_t, 8> words{};
   assemble::SpecValues specs{};
 
   bool operator==(const ProgramKey&) const = default;

@@ -11,10 +11,11 @@ cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../..}"
 rules='
 compiler/support      support
 compiler/ir           support ir
-compiler/transforms   support ir transforms
+compiler/split        support ir split
+compiler/transforms   support ir transforms split
 compiler/emit         support ir transforms emit assemble sk/program.hpp
 compiler/frontend     support ir frontend clang llvm
-compiler/driver       support ir transforms emit frontend driver assemble sk/program.hpp
+compiler/driver       support ir split transforms emit frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
 runtime/src           sk assemble gl
 runtime/tests         sk assemble gl epoxy
@@ -26,7 +27,7 @@ tests/bench           sk epoxy
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 '
-guarded='support|ir|transforms|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+guarded='support|ir|split|transforms|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)

@@ -27,12 +27,16 @@ struct DeviceOptions {
   std::string profile = {};
   /// Extents above this are linearised. 0: the device's own limit, which it cannot pass. For tests.
   std::int32_t textureLimit = 0;
+  /// "device": what the device can do. "guaranteed": no more planes in a pass than every device of
+  /// the profile can write and read, to try out how a program runs elsewhere. Empty: environment
+  /// variable SK_LIMITS, and without it "device".
+  std::string limits = {};
 };
 
 struct DeviceLimits {
   std::int32_t textureSize = 0;    ///< largest width and height of a texture
-  std::int32_t drawBuffers = 0;    ///< planes that one kernel may write
-  std::int32_t textureUnits = 0;   ///< planes that one kernel may read
+  std::int32_t drawBuffers = 0;    ///< planes that one pass may write
+  std::int32_t textureUnits = 0;   ///< planes that one pass may read
 };
 
 /// Move-only. Several may live in a process; one thread may use a device at a time. A call makes the

@@ -90,6 +90,12 @@ struct Condition {
   std::string_view text = {};   ///< as the .sk file would write it, for messages
 };
 
+/// Where a plane lies that shares a texture with others (Plan::bundles).
+struct Layer {
+  std::int8_t bundle = -1;     ///< -1: it has a texture of its own
+  std::uint8_t layer = 0;
+};
+
 struct Parameter {
   std::string_view name;       ///< as declared, for messages
   std::string_view symbol;     ///< suffix of the assembler's names for it (a GLSL-safe name that begins
@@ -109,7 +115,12 @@ struct Parameter {
   bool usesNear = false;       ///< the body calls sk_near_p()
   std::int32_t reach = -1;     ///< largest |offset| of its sk_near_p() calls; -1 if not constant
   Condition neededIf = {};     ///< inputs, outputs, gathers: where it is false, the stream may be left out
+  std::uint8_t firstPlane = 0; ///< outputs of a pass that writes only some planes: the first,
+  std::uint8_t planeCount = 0; ///< and how many; 0 is all of them
+  std::span<const Layer> layers = {};  ///< one a plane; empty if none is in a bundle
 };
+
+struct Plan;
 
 /// A kernel. Its GLSL entry function takes, in order, every Uniform, Iterator, Spec, Input (by value) and
 /// Output (as `out`) parameter; gathers, variable outputs and scatter outputs are no parameters of it.
@@ -125,6 +136,42 @@ struct Kernel {
   bool usesExtent = false;     ///< the body calls sk_extent()
   bool usesLoops = false;      ///< the body has a loop: main() then leaves the helper invocations that
                                ///< GPUs run beside the domain, where what they read might never end it
+  const Plan* plans = nullptr; ///< for devices that cannot run it in one pass, most generous first
+  std::uint8_t planCount = 0;
+};
+
+/// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.
+struct PassOperand {
+  bool isTemporary;
+  std::uint8_t index;          ///< into the whole kernel's parameters, or into Plan::temporaries
+};
+
+struct Pass {
+  Kernel kernel;
+  std::span<const PassOperand> operands;   ///< one a parameter
+};
+
+/// A plane of an argument of the whole kernel.
+struct ArgumentPlane {
+  std::uint8_t argument, plane;
+};
+
+/// Planes of one texel format that are copied to the layers of an array texture before the passes run;
+/// their programs read them there, through one texture unit.
+struct Bundle {
+  Scalar scalar;
+  std::uint8_t width;
+  std::span<const ArgumentPlane> layers;
+};
+
+/// A kernel as several passes, for devices that write and read so many planes in one. Every pass runs
+/// over the kernel's domain. No pass reads what a pass writes but temporaries.
+struct Plan {
+  std::uint8_t drawBuffers;
+  std::uint8_t textureUnits;
+  std::span<const Element* const> temporaries;
+  std::span<const Bundle> bundles;
+  std::span<const Pass> passes;
 };
 
 /// A reduction: `void entry(E x, inout A total)` folds an element into an accumulator, and

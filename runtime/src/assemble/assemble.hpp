@@ -84,8 +84,11 @@ struct Variant {
 /// Indices and extents are below 2^30. Gathers are not empty: the runtime refuses such a call.
 std::string fragmentProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
 
-/// Name of the sampler of a plane of a parameter, for kernels and reductions alike.
+/// Name of the sampler of a plane of a parameter, for kernels and reductions alike. Planes in a bundle
+/// have that of the bundle.
 std::string samplerName(const program::Parameter& parameter, std::size_t plane);
+/// Name of the sampler (sampler2DArray) of a plan's bundle.
+std::string bundleName(std::size_t bundle);
 
 /// The vertex program that covers the viewport with one triangle, from gl_VertexID alone.
 std::string vertexProgram(const Profile& profile);

@@ -4,6 +4,7 @@
 #include "assemble/planes.hpp"
 
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -30,6 +31,18 @@ constexpr std::array<Spelling, 4> spellings = {{
     /* Float */ {"sampler2D", "float", "vec", "0.0"},
 }};
 
+const program::Layer ownTexture;
+
+const program::Layer& layerOf(const Parameter& parameter, std::size_t plane) {
+  return parameter.layers.empty() ? ownTexture : parameter.layers[plane];
+}
+
+/// The first plane that a parameter writes, and the one after the last.
+std::pair<std::size_t, std::size_t> writtenPlanes(const Parameter& parameter) {
+  if (parameter.planeCount == 0) return {0, parameter.element->fields.size()};
+  return {parameter.firstPlane, std::size_t{parameter.firstPlane} + parameter.planeCount};
+}
+
 const Spelling& spelling(const Field& field) { return spellings[static_cast<std::size_t>(field.scalar)]; }
 
 std::string texelType(const Field& field, int width) {
@@ -52,7 +65,10 @@ std::string outputName(const Parameter& parameter, std::size_t plane) {
 std::string fetchPlane(const Parameter& parameter, std::size_t plane, std::string_view texel) {
   static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
   const Field& field = parameter.element->fields[plane];
-  std::string value = fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane), texel,
+  const program::Layer& layer = layerOf(parameter, plane);
+  const std::string place =
+      layer.bundle < 0 ? std::string(texel) : fmt::format("ivec3({}, {})", texel, layer.layer);
+  std::string value = fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane), place,
                                   swizzles[field.width - 1u]);
   if (field.scalar != Scalar::Bool) return value;
   if (field.width == 1) return value + " != 0u";
@@ -73,7 +89,11 @@ bool outputHasType(const Element& element) {
 
 }  // namespace
 
+std::string bundleName(std::size_t bundle) { return fmt::format("sk_bundle{}", bundle); }
+
 std::string samplerName(const Parameter& parameter, std::size_t plane) {
+  const program::Layer& layer = layerOf(parameter, plane);
+  if (layer.bundle >= 0) return bundleName(static_cast<std::size_t>(layer.bundle));
   return planeName("sk_tex", parameter, plane);
 }
 
@@ -81,12 +101,16 @@ bool isStruct(const Element& element) { return !element.fields.front().path.empt
 
 void declareSamplers(ProgramText& program, const Parameter& parameter) {
   for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
-    program.uniform(spelling(parameter.element->fields[plane]).sampler, samplerName(parameter, plane));
+    const std::string_view sampler = spelling(parameter.element->fields[plane]).sampler;
+    const bool isOwn = layerOf(parameter, plane).bundle < 0;
+    program.uniform(isOwn ? std::string(sampler) : fmt::format("highp {}Array", sampler),
+                    samplerName(parameter, plane));
   }
 }
 
 void declareOutputs(ProgramText& program, const Parameter& parameter) {
-  for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
+  const auto [first, end] = writtenPlanes(parameter);
+  for (std::size_t plane = first; plane < end; ++plane) {
     const Field& field = parameter.element->fields[plane];
     program.output(texelType(field, outputWidth(field)), outputName(parameter, plane));
   }
@@ -114,7 +138,8 @@ std::string resultVariable(ProgramText& program, const Parameter& parameter) {
 
 void store(ProgramText& program, const Parameter& parameter, std::string_view variable) {
   const Element& element = *parameter.element;
-  for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
+  const auto [first, end] = writtenPlanes(parameter);
+  for (std::size_t plane = first; plane < end; ++plane) {
     const Field& field = element.fields[plane];
     const std::string output = outputName(parameter, plane);
     if (output == variable) continue;

@@ -23,17 +23,23 @@ void BoundState::forget() {
   program_ = vertexArray_ = drawFramebuffer_ = readFramebuffer_ = unknown;
   viewport_ = {-1, -1, -1, -1};
   activeUnit_ = -1;
-  textures_ = unknownUnits();
+  textures_ = arrayTextures_ = unknownUnits();
 }
 
 void BoundState::bindTexture(int unit, GLuint name) {
   const auto slot = static_cast<std::size_t>(unit);
   activateUnit(unit);
-  if (isApplications_ && !keptUnits_[slot].kept) {
-    keepUnit(slot);
-  }
+  keepUnit(slot);
   glBindTexture(GL_TEXTURE_2D, name);
   textures_[slot] = name;
+}
+
+void BoundState::bindArrayTexture(int unit, GLuint name) {
+  const auto slot = static_cast<std::size_t>(unit);
+  activateUnit(unit);
+  keepUnit(slot);
+  glBindTexture(GL_TEXTURE_2D_ARRAY, name);
+  arrayTextures_[slot] = name;
 }
 
 void BoundState::activateUnit(int unit) {
@@ -43,9 +49,14 @@ void BoundState::activateUnit(int unit) {
   }
 }
 
+/// In an application's context; the unit is the active one.
 void BoundState::keepUnit(std::size_t unit) {
   KeptUnit& kept = keptUnits_[unit];
+  if (!isApplications_ || kept.kept) {
+    return;
+  }
   glGetIntegerv(GL_TEXTURE_BINDING_2D, &kept.texture);
+  glGetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &kept.arrayTexture);
   glGetIntegerv(GL_SAMPLER_BINDING, &kept.sampler);
   kept.kept = true;
   glBindSampler(static_cast<GLuint>(unit), 0);
@@ -72,6 +83,7 @@ void BoundState::leaveApplication(GLint activeUnit) {
     if (kept.kept) {
       activateUnit(static_cast<int>(unit));
       glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(kept.texture));
+      glBindTexture(GL_TEXTURE_2D_ARRAY, static_cast<GLuint>(kept.arrayTexture));
       glBindSampler(static_cast<GLuint>(unit), static_cast<GLuint>(kept.sampler));
       kept = {};
     }

@@ -33,10 +33,20 @@ class BoundState {
       bindTexture(unit, name);
     }
   }
+  /// Array textures have a binding of their own on each unit.
+  void arrayTexture(int unit, GLuint name) {
+    if (arrayTextures_[static_cast<std::size_t>(unit)] != name) {
+      bindArrayTexture(unit, name);
+    }
+  }
   /// Binds a texture where glTexImage2D and the like change it: to unit 0, which is then the active one.
   void textureToChange(GLuint name) {
     activateUnit(0);
     texture(0, name);
+  }
+  void arrayTextureToChange(GLuint name) {
+    activateUnit(0);
+    arrayTexture(0, name);
   }
   /// For drawing and for reading.
   void framebuffer(GLuint name) {
@@ -66,6 +76,7 @@ class BoundState {
 
  private:
   void bindTexture(int unit, GLuint name);
+  void bindArrayTexture(int unit, GLuint name);
   void activateUnit(int unit);
   void keepUnit(std::size_t unit);
   void setViewport(const std::array<GLint, 4>& rectangle) const;
@@ -73,6 +84,7 @@ class BoundState {
   struct KeptUnit {
     bool kept = false;
     GLint texture = 0;
+    GLint arrayTexture = 0;
     GLint sampler = 0;
   };
   // No object has this name, so that whatever is bound next is bound.
@@ -90,6 +102,7 @@ class BoundState {
   std::array<GLint, 4> viewport_{-1, -1, -1, -1};
   int activeUnit_ = -1;
   std::array<GLuint, maxTextureUnits> textures_ = unknownUnits();
+  std::array<GLuint, maxTextureUnits> arrayTextures_ = unknownUnits();
   bool isApplications_ = false;
   bool hasManyViewports_ = false;
   std::array<KeptUnit, maxTextureUnits> keptUnits_{};

@@ -8,26 +8,26 @@
 
 namespace sk::gl {
 
-namespace {
-
 GLuint newTexture() {
   GLuint name = 0;
   glGenTextures(1, &name);
   return name;
 }
 
-}  // namespace
-
 void deleteTexture(GLuint name) { glDeleteTextures(1, &name); }
+
+void setNearest(GLenum target) {
+  glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glTexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glTexParameteri(target, GL_TEXTURE_MAX_LEVEL, 0);
+}
 
 Texture::Texture(BoundState& bound, const Format& format, GLsizei width, GLsizei height)
     : name_(newTexture()), format_(&format), width_(width), height_(height) {
   bound.textureToChange(name());
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+  setNearest(GL_TEXTURE_2D);
   dropErrors();
   glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internalFormat), width, height, 0,
                format.tight.format, format.tight.type, nullptr);

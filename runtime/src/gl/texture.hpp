@@ -10,7 +10,10 @@ namespace sk::gl {
 
 class BoundState;
 
+GLuint newTexture();
 void deleteTexture(GLuint name);
+/// One level, no filter, for the texture that is bound to a target.
+void setNearest(GLenum target);
 
 class Texture {
  public:

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "driver/plan_listing.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "assemble/assemble.hpp"
+#include "assemble/reduce_plan.hpp"
+#include "ir/print.hpp"
+#include "split/cost.hpp"
+#include "split/demand.hpp"
+#include "support/text.hpp"
+
+namespace skc::driver {
+namespace {
+
+using namespace ir;
+
+std::string counted(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : what == "pass" ? "es" : "s");
+}
+
+class PlanPrinter {
+ public:
+  PlanPrinter(const Module& module, const sk::assemble::Profile& profile)
+      : module_(module),
+        profile_(profile),
+        limits_{static_cast<std::uint32_t>(profile.drawBuffers),
+                static_cast<std::uint32_t>(profile.textureUnits)} {}
+
+  std::string print() {
+    text_ = fmt::format("{}: {} draw buffers, {} texture units\n", profile_.name, limits_.drawBuffers,
+                        limits_.textureUnits);
+    for (const Kernel& kernel : module_.kernels) {
+      if (kernel.pass) continue;
+      text_ += fmt::format("\n{} {}{}: ", kernel.reduction ? "reduce" : "kernel", qualifier(kernel.scope),
+                           kernel.name);
+      kernel.reduction ? printReduce() : printKernel(kernel);
+    }
+    return std::move(text_);
+  }
+
+ private:
+  // ---- kernels ----------------------------------------------------------------------------------
+
+  void printKernel(const Kernel& kernel) {
+    const Limits demand = split::demandOf(module_, kernel);
+    text_ += fmt::format("{} written, {} read", counted(demand.drawBuffers, "plane"), demand.textureUnits);
+    const auto plan = std::ranges::find(kernel.plans, limits_, &Plan::limits);
+    if (plan == kernel.plans.end()) {
+      text_ += ": 1 pass\n";
+      return;
+    }
+    text_ += fmt::format(": {}, cost {:.0f} an element\n", counted(plan->passes.size(), "pass"), plan->cost);
+    for (std::size_t i = 0; i < plan->passes.size(); ++i) printPass(kernel, *plan, i);
+    for (const Temporary& temporary : plan->temporaries) printTemporary(temporary);
+    if (!plan->temporaries.empty()) {
+      text_ += fmt::format("  with nothing saved the cost were {:.0f}\n", plan->costWithoutTemporaries);
+    }
+    for (const Bundle& bundle : plan->bundles) printBundle(kernel, bundle);
+  }
+
+  void printPass(const Kernel& kernel, const Plan& plan, std::size_t number) {
+    const Pass& pass = plan.passes[number];
+    std::vector<std::string> reads, writes;
+    for (std::size_t i = 0; i < pass.operands.size(); ++i) {
+      const KernelParam& param = module_.kernels[pass.kernel].params[i];
+      (param.role == ParamRole::Output ? writes : reads)
+          .push_back(name(kernel, plan, pass.operands[i], param));
+    }
+    text_ += fmt::format("  pass {}, cost {:.0f}\n", number + 1, pass.cost);
+    text_ += wrapLine("    reads " + (reads.empty() ? "nothing" : join(reads, ", ")), 100, 10) + "\n";
+    text_ += wrapLine("    writes " + join(writes, ", "), 100, 11) + "\n";
+  }
+
+  static std::string name(const Kernel& kernel, const Plan& plan, const PassOperand& operand,
+                          const KernelParam& param) {
+    if (operand.isTemporary) return plan.temporaries[operand.index].name + " (saved)";
+    std::string text = kernel.params[operand.index].name;
+    if (param.planeCount != 0) {
+      text += fmt::format(" (planes {} to {})", param.firstPlane, param.firstPlane + param.planeCount - 1);
+    }
+    return text;
+  }
+
+  void printTemporary(const Temporary& temporary) {
+    const double element = split::elementCost(module_, temporary.type);
+    text_ += fmt::format(
+        "  {} {} is saved: computing it costs {:.0f}, writing it {:.0f}, reading it in {} {:.0f}\n",
+        ir::print(module_, temporary.type), temporary.name, temporary.computeCost, element,
+        counted(temporary.readers, "pass"), element * temporary.readers);
+  }
+
+  void printBundle(const Kernel& kernel, const Bundle& bundle) {
+    std::vector<std::string> names;
+    for (const ArgumentPlane& place : bundle.layers) {
+      const KernelParam& param = kernel.params[place.argument];
+      const bool isWhole = param.type.isArithmetic();
+      names.push_back(isWhole ? param.name : fmt::format("{} (plane {})", param.name, place.plane));
+    }
+    text_ += wrapLine(fmt::format("  planes of {} that share a texture unit: {}",
+                                  ir::print(module_, bundle.type), join(names, ", ")),
+                      100, 4) +
+             "\n";
+  }
+
+  // ---- reduces ----------------------------------------------------------------------------------
+
+  /// How a stream of 1024 x 1024 elements is folded to a value.
+  void printReduce() {
+    sk::assemble::Placement input;
+    input.extent = {1024, 1024, 1, 1};
+    const auto passes =
+        sk::assemble::planReduction(input, sk::assemble::valuePlacement(), {.textureSize = 16384});
+    text_ += counted(passes.size(), "pass") + " for 1024 x 1024 elements to a value\n";
+    std::int64_t left = sk::assemble::elements(input.extent);
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+      std::int64_t runs = 0;
+      for (const sk::assemble::Rect& rect : passes[i].draws) {
+        runs += std::int64_t{rect.width} * rect.height;
+      }
+      text_ += fmt::format("  pass {}: folds {} elements to {}\n", i + 1, left, runs);
+      left = runs;
+    }
+  }
+
+  const Module& module_;
+  const sk::assemble::Profile& profile_;
+  const Limits limits_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string planListing(const Module& module, std::string_view profile) {
+  return PlanPrinter(module, *sk::assemble::findProfile(profile)).print();
+}
+
+}  // namespace skc::driver

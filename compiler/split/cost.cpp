@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "split/cost.hpp"
+
+#include <algorithm>
+
+#include "ir/counted_loop.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+#include "support/overloaded.hpp"
+
+namespace skc::split {
+namespace {
+
+using namespace ir;
+
+/// Rounds of a loop whose number only the data know.
+constexpr double unknownRounds = 16;
+constexpr double intrinsicCost = 4;
+constexpr double addressCost = 4;
+
+void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
+  if (type.kind == Type::Kind::Struct) {
+    for (const StructField& field : module.structs[type.index].fields) {
+      collectPlanes(module, field.type, planes);
+    }
+  } else {
+    planes.push_back(type);
+  }
+}
+
+/// What a node costs by itself, without its operands.
+double nodeCost(const Module& module, const Expr& expr, const std::vector<double>& functions) {
+  const double width = expr.type.width;
+  return match(
+      expr.node, [](const Literal&) { return 0.0; }, [](const VarRef&) { return 0.0; },
+      [](const ConstantRef&) { return 0.0; }, [&](const Unary&) { return width; },
+      [&](const Binary&) { return width; }, [&](const Select&) { return width; },
+      [&](const Convert&) { return width; }, [](const Construct&) { return 0.0; },
+      [](const Swizzle&) { return 0.0; }, [](const Member&) { return 0.0; },
+      [](const Index&) { return addressCost; }, [&](const Call& n) { return functions[n.callee]; },
+      [&](const IntrinsicCall&) { return intrinsicCost * width; },
+      [&](const GatherRead&) { return addressCost + elementCost(module, expr.type); },
+      [&](const NeighborRead&) { return addressCost + elementCost(module, expr.type); },
+      [](const IndexOf&) { return 0.0; }, [](const ExtentOf&) { return 0.0; });
+}
+
+}  // namespace
+
+std::vector<Type> planesOf(const Module& module, Type type) {
+  std::vector<Type> planes;
+  collectPlanes(module, type, planes);
+  return planes;
+}
+
+double elementCost(const Module& module, Type type) {
+  double cost = 0;
+  for (const Type plane : planesOf(module, type)) cost += componentCost * plane.width;
+  return cost;
+}
+
+CostModel::CostModel(const Module& module) : module_(module), functions_(module.functions.size(), 0) {
+  std::vector<bool> known(module.functions.size(), false);
+  const auto learn = [&](const auto& self, FunctionId id) -> void {
+    if (known[id]) return;
+    known[id] = true;
+    for (FunctionId callee : callees(module.functions[id])) self(self, callee);
+    functions_[id] = block(module.functions[id].body, nullptr);
+  };
+  for (FunctionId id = 0; id < module.functions.size(); ++id) learn(learn, id);
+}
+
+double CostModel::run(const Block& body, const Slice& slice) const { return block(body, &slice); }
+
+double CostModel::block(const Block& body, const Slice* slice) const {
+  double cost = 0;
+  for (const Stmt& stmt : body) {
+    if (slice == nullptr || slice->kept.contains(&stmt)) cost += statement(stmt, slice);
+  }
+  return cost;
+}
+
+double CostModel::statement(const Stmt& stmt, const Slice* slice) const {
+  double once = 0;
+  forEachOperand(stmt, [&](const ExprPtr& operand) { once += expression(*operand); });
+  const auto simple = [&] { return once; };
+  return match(
+      stmt.node, [&](const Declare&) { return simple(); },
+      [&](const Assign& n) { return once + (n.op ? n.place->type.width : 0); },
+      [&](const CallStmt& n) { return once + functions_[n.callee]; },
+      [&](const If& n) { return once + block(n.then, slice) + block(n.otherwise, slice); },
+      [&](const Loop& n) {
+        const std::optional<std::int64_t> known = roundsOf(module_, n);
+        const double rounds = known ? static_cast<double>(*known) : unknownRounds;
+        return block(n.init, slice) + rounds * (once + block(n.step, slice) + block(n.body, slice));
+      },
+      [&](const Switch& n) {
+        double cases = 0;
+        for (const Case& one : n.cases) cases += block(one.body, slice);
+        return once + cases;
+      },
+      [&](const Break&) { return simple(); }, [&](const Continue&) { return simple(); },
+      [&](const Return&) { return simple(); }, [&](const Scope& n) { return block(n.body, slice); },
+      [&](const Push&) { return simple(); }, [&](const Scatter&) { return simple(); });
+}
+
+double CostModel::expression(const Expr& expr) const {
+  double cost = 0;
+  walkExprs(expr, [&](const Expr& inner) { cost += nodeCost(module_, inner, functions_); });
+  return cost;
+}
+
+}  // namespace skc::split

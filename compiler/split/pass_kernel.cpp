@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "split/pass_kernel.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "ir/build.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+#include "split/cost.hpp"
+#include "split/demand.hpp"
+
+namespace skc::split {
+namespace {
+
+using namespace ir;
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+class Maker {
+ public:
+  Maker(Module& module, KernelId whole, const PlannedSplit& plan, const PlannedPass& pass)
+      : module_(module),
+        whole_(whole),
+        plan_(plan),
+        pass_(pass),
+        slicer_(module, module.functions[module.kernels[whole].entry]),
+        newParams_(module.kernels[whole].params.size(), none),
+        newVars_(module.functions[module.kernels[whole].entry].variables.size(), none) {}
+
+  Pass run() {
+    const Kernel& whole = module_.kernels[whole_];
+    kernel_.name = whole.name;
+    kernel_.scope = whole.scope;
+    kernel_.signature = whole.signature;
+    kernel_.loc = whole.loc;
+    entry_.name = source().name;
+    entry_.result = source().result;
+    entry_.loc = source().loc;
+    addReads();
+    addWrites();
+    entry_.parameterCount = static_cast<std::uint32_t>(entry_.variables.size());
+    addLocals();
+    entry_.body = body();
+    bind(entry_.body);
+    kernel_.entry = static_cast<FunctionId>(module_.functions.size());
+    module_.functions.push_back(std::move(entry_));
+    module_.kernels.push_back(std::move(kernel_));
+    return {static_cast<KernelId>(module_.kernels.size() - 1), std::move(operands_), pass_.cost};
+  }
+
+ private:
+  const Function& source() const { return module_.functions[module_.kernels[whole_].entry]; }
+
+  // ---- parameters -------------------------------------------------------------------------------
+
+  void addReads() {
+    const Kernel& whole = module_.kernels[whole_];
+    const VarSet params = Demand(module_, whole).params(pass_.slice);
+    for (std::uint32_t i = 0; i < whole.params.size(); ++i) {
+      if (!params[i]) continue;
+      newParams_[i] = static_cast<std::uint32_t>(kernel_.params.size());
+      addParam(cloneParam(whole.params[i]), i, source().variables[i].role);
+      operands_.push_back({false, i});
+    }
+    for (VarId var = 0; var < pass_.slice.loaded.size(); ++var) {
+      if (!pass_.slice.loaded[var]) continue;
+      addParam(temporaryParam(var, ParamRole::Input), var, VarRole::Element);
+      operands_.push_back({true, temporaryOf(var)});
+    }
+  }
+
+  void addWrites() {
+    for (const Target& target : pass_.targets) {
+      if (target.isOutput) {
+        KernelParam param = cloneParam(module_.kernels[whole_].params[target.var]);
+        const bool isWhole = target.planeCount == planesOf(module_, param.type).size();
+        param.firstPlane = target.firstPlane;
+        param.planeCount = isWhole ? 0 : target.planeCount;
+        addParam(std::move(param), target.var, VarRole::InOut);
+        operands_.push_back({false, target.var});
+      } else {
+        addParam(temporaryParam(target.var, ParamRole::Output), target.var, VarRole::InOut);
+        operands_.push_back({true, temporaryOf(target.var)});
+      }
+    }
+  }
+
+  void addParam(KernelParam param, VarId from, VarRole role) {
+    Variable variable = source().variables[from];
+    variable.role = role;
+    variable.isConst = variable.isConst && role != VarRole::InOut;
+    newVars_[from] = static_cast<VarId>(entry_.variables.size());
+    entry_.variables.push_back(std::move(variable));
+    kernel_.params.push_back(std::move(param));
+  }
+
+  static KernelParam cloneParam(const KernelParam& param) {
+    KernelParam made;
+    made.name = param.name;
+    made.role = param.role;
+    made.type = param.type;
+    made.rank = param.rank;
+    made.boundary = param.boundary;
+    made.border = clone(param.border);
+    made.loc = param.loc;
+    return made;
+  }
+
+  KernelParam temporaryParam(VarId var, ParamRole role) const {
+    KernelParam param;
+    param.name = source().variables[var].name;
+    param.role = role;
+    param.type = source().variables[var].type;
+    param.loc = source().variables[var].loc;
+    return param;
+  }
+
+  std::uint32_t temporaryOf(VarId var) const {
+    return static_cast<std::uint32_t>(std::ranges::find(plan_.saved, var) - plan_.saved.begin());
+  }
+
+  // ---- body -------------------------------------------------------------------------------------
+
+  /// Outputs that the pass computes without writing them are locals of it.
+  void addLocals() {
+    for (VarId var = 0; var < newVars_.size(); ++var) {
+      if (newVars_[var] != none || !pass_.slice.used[var]) continue;
+      const bool isOutput = var < source().parameterCount;
+      newVars_[var] = static_cast<VarId>(entry_.variables.size());
+      Variable variable = source().variables[var];
+      variable.role = VarRole::Local;
+      entry_.variables.push_back(std::move(variable));
+      if (isOutput) declarations_.push_back(declare(var));
+    }
+  }
+
+  /// Still with the variables of the whole kernel.
+  Block body() {
+    Block made = std::move(declarations_);
+    for (Stmt& stmt : slicer_.copy(pass_.slice)) {
+      auto* n = std::get_if<Declare>(&stmt.node);
+      if (n == nullptr || newVars_[n->var] >= entry_.parameterCount) {
+        made.push_back(std::move(stmt));
+      } else if (n->init) {   // a temporary that is written here is declared already
+        made.push_back(assign(varRef(source(), n->var, stmt.loc), std::move(n->init), stmt.loc));
+      }
+    }
+    for (Stmt& stmt : made) renumber(stmt);
+    return made;
+  }
+
+  void renumber(Stmt& stmt) {
+    const auto one = [&](Stmt& inner) {
+      if (auto* n = std::get_if<Declare>(&inner.node)) n->var = newVars_[n->var];
+      forEachOperand(inner, [&](ExprPtr& operand) {
+        walkExprs(*operand, [&](Expr& expr) {
+          if (auto* n = std::get_if<VarRef>(&expr.node)) n->var = newVars_[n->var];
+        });
+      });
+    };
+    one(stmt);
+    forEachBlock(stmt, [&](Block& block) { walkStmts(block, one); });
+  }
+
+  // ---- functions and streams --------------------------------------------------------------------
+
+  /// Leads the streams of a block to the parameters of the pass, and its calls to copies.
+  void bind(Block& block) {
+    walkExprs(block, [&](Expr& expr) {
+      if (auto* n = std::get_if<GatherRead>(&expr.node)) bind(n->stream);
+      if (auto* n = std::get_if<NeighborRead>(&expr.node)) bind(n->stream);
+      if (auto* n = std::get_if<IndexOf>(&expr.node)) bind(n->stream);
+      if (auto* n = std::get_if<ExtentOf>(&expr.node)) bind(n->stream);
+      if (auto* n = std::get_if<Call>(&expr.node)) n->callee = copyOf(n->callee);
+    });
+    walkStmts(block, [&](Stmt& stmt) {
+      if (auto* n = std::get_if<CallStmt>(&stmt.node)) n->callee = copyOf(n->callee);
+    });
+  }
+
+  void bind(StreamRef& stream) const {
+    if (stream.space == StreamRef::Space::KernelParameter) stream.id = newParams_[stream.id];
+  }
+
+  FunctionId copyOf(FunctionId id) {
+    const auto known = copies_.find(id);
+    if (known != copies_.end()) return known->second;
+    Function made = clone(module_.functions[id]);
+    bind(made.body);
+    const auto copy = static_cast<FunctionId>(module_.functions.size());
+    module_.functions.push_back(std::move(made));
+    copies_.emplace(id, copy);
+    return copy;
+  }
+
+  Module& module_;
+  const KernelId whole_;
+  const PlannedSplit& plan_;
+  const PlannedPass& pass_;
+  Slicer slicer_;
+  Kernel kernel_;
+  Function entry_;
+  std::vector<PassOperand> operands_;
+  std::vector<std::uint32_t> newParams_;   ///< of the whole kernel's parameters
+  std::vector<VarId> newVars_;             ///< of its entry's variables
+  Block declarations_;
+  std::map<FunctionId, FunctionId> copies_;
+};
+
+}  // namespace
+
+Pass makePassKernel(Module& module, KernelId whole, const PlannedSplit& plan, const PlannedPass& pass) {
+  return Maker(module, whole, plan, pass).run();
+}
+
+}  // namespace skc::split

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+#include "split/plan_passes.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "split/bundles.hpp"
+#include "split/cost.hpp"
+#include "split/demand.hpp"
+
+namespace skc::split {
+namespace {
+
+using namespace ir;
+
+/// Values that are looked at for saving: those that cost most.
+constexpr std::size_t mostCandidates = 24;
+
+class Planner {
+ public:
+  Planner(const Module& module, const Kernel& kernel, const Limits& limits)
+      : module_(module),
+        kernel_(kernel),
+        entry_(module.functions[kernel.entry]),
+        limits_(limits),
+        slicer_(module, entry_),
+        costs_(module),
+        demand_(module, kernel) {
+    addOutputs();
+    addCandidates();
+  }
+
+  PlannedSplit run() {
+    Targets saved;
+    Passes best = passesFor(saved);
+    const double costWithoutTemporaries = costOf(best);
+    while (const auto next = bestAddition(saved, costOf(best))) {
+      saved.push_back(*next);
+      best = passesFor(saved);
+    }
+    return finish(std::move(saved), std::move(best), costWithoutTemporaries);
+  }
+
+ private:
+  using TargetId = std::size_t;               ///< into targets_
+  using Targets = std::vector<TargetId>;
+  using Passes = std::vector<const PlannedPass*>;   ///< of known_
+
+  // ---- what may be written ----------------------------------------------------------------------
+
+  /// An output is a target; one with more planes than a pass can write is several.
+  void addOutputs() {
+    for (VarId var = 0; var < kernel_.params.size(); ++var) {
+      if (kernel_.params[var].role != ParamRole::Output) continue;
+      const auto planes = static_cast<std::uint32_t>(planesOf(module_, kernel_.params[var].type).size());
+      for (std::uint32_t first = 0; first < planes; first += limits_.drawBuffers) {
+        outputs_.push_back(targets_.size());
+        targets_.push_back({var, true, first, std::min(planes - first, limits_.drawBuffers)});
+      }
+    }
+  }
+
+  /// Scalars and vectors declared by the body's own statements, if loading one is cheaper than
+  /// computing it.
+  void addCandidates() {
+    std::vector<std::pair<double, VarId>> found;
+    for (const Stmt& stmt : entry_.body) {
+      const auto* declare = std::get_if<Declare>(&stmt.node);
+      if (declare == nullptr || !entry_.variables[declare->var].type.isArithmetic()) continue;
+      const double cost = computeCost(declare->var);
+      if (cost > elementCost(module_, entry_.variables[declare->var].type)) {
+        found.emplace_back(cost, declare->var);
+      }
+    }
+    std::ranges::stable_sort(found, std::greater(), [](const auto& one) { return one.first; });
+    found.resize(std::min(found.size(), mostCandidates));
+    for (const auto& [cost, var] : found) {
+      candidates_.push_back(targets_.size());
+      targets_.push_back({var, false, 0, 1});
+    }
+  }
+
+  double computeCost(VarId var) const {
+    VarSet wanted(entry_.variables.size(), false);
+    wanted[var] = true;
+    const Slice slice = slicer_.slice(wanted, VarSet(wanted.size(), false));
+    return costs_.run(entry_.body, slice) + inputCost(slice);
+  }
+
+  // ---- saving or computing again ----------------------------------------------------------------
+
+  /// The value whose saving makes the plan cheapest, if that is cheaper than `limit`.
+  std::optional<TargetId> bestAddition(const Targets& saved, double limit) {
+    std::optional<TargetId> best;
+    for (TargetId candidate : candidates_) {
+      if (std::ranges::find(saved, candidate) != saved.end()) continue;
+      Targets more = saved;
+      more.push_back(candidate);
+      const double cost = costOf(passesFor(more));
+      if (cost >= limit) continue;
+      limit = cost;
+      best = candidate;
+    }
+    return best;
+  }
+
+  static double costOf(const Passes& passes) {
+    double cost = 0;
+    for (const PlannedPass* pass : passes) cost += pass->cost;
+    return cost;
+  }
+
+  // ---- grouping targets to passes ---------------------------------------------------------------
+
+  /// Targets in the order in which they are final, so that what a pass loads is computed before it.
+  /// Each pass begins with the first that is left and takes those in with which it saves most.
+  Passes passesFor(const Targets& saved) {
+    Targets open = outputs_;
+    open.insert(open.end(), saved.begin(), saved.end());
+    std::ranges::stable_sort(open, {}, [&](TargetId id) { return slicer_.lastWrite(targets_[id].var); });
+    VarSet offered(entry_.variables.size(), false);
+    for (TargetId id : saved) offered[targets_[id].var] = true;
+    VarSet computed(entry_.variables.size(), false);
+    Passes passes;
+    while (!open.empty()) {
+      Targets group = {open.front()};
+      open.erase(open.begin());
+      while (const auto next = bestMember(group, open, offered, computed)) {
+        group.push_back(*next);
+        std::erase(open, *next);
+      }
+      passes.push_back(&passOf(group, offered));
+      for (TargetId id : group) computed[targets_[id].var] = true;
+    }
+    return passes;
+  }
+
+  std::optional<TargetId> bestMember(const Targets& group, const Targets& open, const VarSet& offered,
+                                     const VarSet& computed) {
+    std::optional<TargetId> best;
+    double gain = 0;
+    for (TargetId candidate : open) {
+      Targets more = group;
+      more.push_back(candidate);
+      if (planesOfAll(more) > limits_.drawBuffers) continue;
+      const PlannedPass& joined = passOf(more, offered);
+      if (!isSubset(joined.slice.loaded, computed)) continue;
+      const double apart = passOf(group, offered).cost + passOf({candidate}, offered).cost;
+      if (apart - joined.cost <= gain) continue;
+      gain = apart - joined.cost;
+      best = candidate;
+    }
+    return best;
+  }
+
+  std::uint32_t planesOfAll(const Targets& group) const {
+    std::uint32_t planes = 0;
+    for (TargetId id : group) planes += targets_[id].planeCount;
+    return planes;
+  }
+
+  static bool isSubset(const VarSet& inner, const VarSet& outer) {
+    for (std::size_t i = 0; i < inner.size(); ++i) {
+      if (inner[i] && !outer[i]) return false;
+    }
+    return true;
+  }
+
+  /// The pass that writes these targets, made once.
+  const PlannedPass& passOf(Targets group, VarSet offered) {
+    std::ranges::sort(group);
+    for (TargetId id : group) offered[targets_[id].var] = false;   // computed here
+    const auto [entry, isNew] = known_.try_emplace({group, offered});
+    if (isNew) entry->second = makePass(group, offered);
+    return entry->second;
+  }
+
+  PlannedPass makePass(const Targets& group, const VarSet& offered) const {
+    VarSet wanted(entry_.variables.size(), false);
+    PlannedPass pass;
+    for (TargetId id : group) {
+      wanted[targets_[id].var] = true;
+      pass.targets.push_back(targets_[id]);
+    }
+    pass.slice = slicer_.slice(wanted, offered);
+    pass.cost = passCost + costs_.run(entry_.body, pass.slice) + inputCost(pass.slice) +
+                targetCost(pass.targets) + unitCost(pass.slice);
+    return pass;
+  }
+
+  // ---- costs ------------------------------------------------------------------------------------
+
+  /// Of what is read once: elements of inputs, and temporaries.
+  double inputCost(const Slice& slice) const {
+    double cost = 0;
+    const VarSet params = demand_.params(slice);
+    for (std::size_t i = 0; i < params.size(); ++i) {
+      if (params[i] && kernel_.params[i].role == ParamRole::Input) {
+        cost += elementCost(module_, kernel_.params[i].type);
+      }
+    }
+    for (VarId var = 0; var < slice.loaded.size(); ++var) {
+      if (slice.loaded[var]) cost += elementCost(module_, entry_.variables[var].type);
+    }
+    return cost;
+  }
+
+  double targetCost(const std::vector<Target>& targets) const {
+    double cost = 0;
+    for (const Target& target : targets) {
+      const std::vector<Type> planes = planesOf(module_, entry_.variables[target.var].type);
+      for (std::uint32_t i = 0; i < target.planeCount; ++i) {
+        cost += componentCost * planes[target.firstPlane + i].width;
+      }
+    }
+    return cost;
+  }
+
+  /// Of copying planes together where a pass reads more than it has texture units for. A pass that
+  /// loads so many temporaries that nothing helps is out of the question.
+  double unitCost(const Slice& slice) const {
+    const auto temporaries = static_cast<std::uint32_t>(std::ranges::count(slice.loaded, true));
+    const VarSet params = demand_.params(slice);
+    std::uint32_t planes = temporaries;
+    for (std::size_t i = 0; i < params.size(); ++i) {
+      if (!params[i] || !isRead(kernel_.params[i])) continue;
+      planes += static_cast<std::uint32_t>(planesOf(module_, kernel_.params[i].type).size());
+    }
+    if (planes <= limits_.textureUnits) return 0;
+    if (temporaries > limits_.textureUnits / 2) return std::numeric_limits<double>::infinity();
+    constexpr double copyCost = 2 * 4 * componentCost;
+    return copyCost * (planes - limits_.textureUnits + 1);
+  }
+
+  // ---- the result -------------------------------------------------------------------------------
+
+  PlannedSplit finish(Targets saved, Passes passes, double costWithoutTemporaries) {
+    std::ranges::sort(saved, {}, [&](TargetId id) { return slicer_.lastWrite(targets_[id].var); });
+    PlannedSplit plan;
+    for (TargetId id : saved) {
+      plan.saved.push_back(targets_[id].var);
+      plan.computeCosts.push_back(computeCost(targets_[id].var));
+    }
+    for (const PlannedPass* pass : passes) plan.passes.push_back(*pass);
+    std::vector<PassReads> reads;
+    for (const PlannedPass& pass : plan.passes) {
+      reads.push_back({demand_.params(pass.slice),
+                       static_cast<std::uint32_t>(std::ranges::count(pass.slice.loaded, true))});
+    }
+    plan.bundles = chooseBundles(module_, kernel_, reads, limits_.textureUnits);
+    plan.cost = costOf(passes);
+    plan.costWithoutTemporaries = costWithoutTemporaries;
+    return plan;
+  }
+
+  const Module& module_;
+  const Kernel& kernel_;
+  const Function& entry_;
+  const Limits limits_;
+  Slicer slicer_;
+  CostModel costs_;
+  Demand demand_;
+  std::vector<Target> targets_;
+  Targets outputs_, candidates_;
+  std::map<std::pair<Targets, VarSet>, PlannedPass> known_;
+};
+
+}  // namespace
+
+PlannedSplit planPasses(const Module& module, const Kernel& kernel, const Limits& limits) {
+  return Planner(module, kernel, limits).run();
+}
+
+}  // namespace skc::split

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "split/slice.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "ir/build.hpp"
+#include "ir/walk.hpp"
+#include "support/overloaded.hpp"
+
+namespace skc::split {
+namespace {
+
+using namespace ir;
+
+/// fn(var) for each variable that a call writes through its InOut parameters and its result.
+template <class Fn>
+void forEachWritten(const Module& module, const CallStmt& call, Fn&& fn) {
+  const Function& callee = module.functions[call.callee];
+  for (std::size_t i = 0; i < call.args.size(); ++i) {
+    if (callee.variables[i].role == VarRole::InOut) fn(rootOf(*call.args[i]));
+  }
+  if (call.result) fn(rootOf(*call.result));
+}
+
+/// Marks statements until no more are needed.
+class Marker {
+ public:
+  Marker(const Module& module, const Function& function, const Slicer& slicer, const VarSet& wanted,
+         const VarSet& loadable)
+      : module_(module), function_(function), slicer_(slicer), loadable_(loadable) {
+    slice_.used = wanted;
+    slice_.loaded.assign(wanted.size(), false);
+    for (VarId var = 0; var < wanted.size(); ++var) {
+      if (wanted[var]) end_ = std::max(end_, slicer.lastWrite(var) + 1);
+    }
+    end_ = std::min(end_, function.body.size());
+  }
+
+  /// The slice, or in `early` a variable that it would have to load before that is final.
+  Slice run(std::optional<VarId>& early) {
+    do {
+      changed_ = false;
+      for (top_ = 0; top_ < end_; ++top_) visit(function_.body[top_], {});
+    } while (changed_ && !early_);
+    early = early_;
+    return std::move(slice_);
+  }
+
+ private:
+  /// Whether a `break` or `continue` leaves something that is needed.
+  struct Jumps {
+    bool breaks = false, continues = false;
+  };
+
+  bool isComputed(VarId var) const { return slice_.used[var] && !loadable_[var]; }
+
+  void read(const Expr& expr) {
+    walkExprs(expr, [&](const Expr& inner) {
+      if (const auto* n = std::get_if<VarRef>(&inner.node)) use(n->var);
+    });
+  }
+
+  void use(VarId var) {
+    if (loadable_[var]) {
+      slice_.loaded[var] = true;
+      if (top_ <= slicer_.lastWrite(var)) early_ = var;
+    }
+    changed_ = changed_ || !slice_.used[var];
+    slice_.used[var] = true;
+  }
+
+  bool visit(const Block& block, Jumps jumps) {
+    bool needed = false;
+    for (const Stmt& stmt : block) needed = visit(stmt, jumps) || needed;
+    return needed;
+  }
+
+  bool visit(const Stmt& stmt, Jumps jumps) {
+    const bool needed = match(stmt.node, [&](const auto& node) { return step(node, jumps); });
+    if (needed) changed_ = slice_.kept.insert(&stmt).second || changed_;
+    return needed;
+  }
+
+  bool step(const Declare& n, Jumps) {
+    if (!isComputed(n.var)) return false;
+    if (n.init) read(*n.init);
+    return true;
+  }
+  bool step(const Assign& n, Jumps) {
+    if (!isComputed(rootOf(*n.place))) return false;
+    read(*n.place);
+    read(*n.value);
+    return true;
+  }
+  bool step(const CallStmt& n, Jumps) {
+    bool needed = false;
+    forEachWritten(module_, n, [&](VarId var) { needed = needed || isComputed(var); });
+    if (!needed) return false;
+    for (const ExprPtr& arg : n.args) read(*arg);
+    if (n.result) read(*n.result);
+    return true;
+  }
+  bool step(const If& n, Jumps jumps) {
+    const bool then = visit(n.then, jumps), otherwise = visit(n.otherwise, jumps);
+    if (then || otherwise) read(*n.cond);
+    return then || otherwise;
+  }
+  bool step(const Loop& n, Jumps) {
+    const auto parts = [&](Jumps jumps) {
+      const bool step = visit(n.step, {}), body = visit(n.body, jumps);
+      return step || body;
+    };
+    if (!parts({})) return false;
+    if (n.cond) read(*n.cond);
+    parts({true, true});
+    visit(n.init, {});
+    return true;
+  }
+  bool step(const Switch& n, Jumps jumps) {
+    const auto cases = [&](Jumps inner) {
+      bool needed = false;
+      for (const Case& one : n.cases) needed = visit(one.body, inner) || needed;
+      return needed;
+    };
+    if (!cases({false, jumps.continues})) return false;
+    read(*n.value);
+    return cases({true, jumps.continues});
+  }
+  bool step(const Break&, Jumps jumps) { return jumps.breaks; }
+  bool step(const Continue&, Jumps jumps) { return jumps.continues; }
+  bool step(const Return&, Jumps) { return true; }   // what follows must not run
+  bool step(const Scope& n, Jumps jumps) { return visit(n.body, jumps); }
+  bool step(const Push& n, Jumps) {   // an effect that no variable tells of
+    read(*n.value);
+    return true;
+  }
+  bool step(const Scatter& n, Jumps) {
+    read(*n.index);
+    read(*n.value);
+    return true;
+  }
+
+  const Module& module_;
+  const Function& function_;
+  const Slicer& slicer_;
+  const VarSet& loadable_;
+  Slice slice_;
+  std::size_t end_ = 0;   ///< what stands after the last write of the wanted is of no use
+  std::size_t top_ = 0;
+  bool changed_ = false;
+  std::optional<VarId> early_;
+};
+
+Block copyKept(const Block& block, const Slice& slice);
+
+Stmt copyKept(const Stmt& stmt, const Slice& slice) {
+  const auto blockOf = [&](const Block& inner) { return copyKept(inner, slice); };
+  Stmt::Node node = match(
+      stmt.node,
+      [&](const If& n) -> Stmt::Node { return If{clone(n.cond), blockOf(n.then), blockOf(n.otherwise)}; },
+      [&](const Loop& n) -> Stmt::Node {
+        return Loop{n.kind, blockOf(n.init), clone(n.cond), blockOf(n.step), blockOf(n.body)};
+      },
+      [&](const Switch& n) -> Stmt::Node {
+        Switch made{clone(n.value), {}};
+        for (const Case& one : n.cases) {
+          made.cases.push_back({one.values, one.isDefault, blockOf(one.body), one.loc});
+        }
+        return made;
+      },
+      [&](const Scope& n) -> Stmt::Node { return Scope{blockOf(n.body)}; },
+      [&](const auto&) -> Stmt::Node { return clone(stmt).node; });
+  return {stmt.loc, std::move(node)};
+}
+
+Block copyKept(const Block& block, const Slice& slice) {
+  Block made;
+  for (const Stmt& stmt : block) {
+    if (slice.kept.contains(&stmt)) made.push_back(copyKept(stmt, slice));
+  }
+  return made;
+}
+
+}  // namespace
+
+Slicer::Slicer(const Module& module, const Function& function)
+    : module_(module), function_(function), lastWrites_(function.variables.size(), 0) {
+  for (std::size_t top = 0; top < function.body.size(); ++top) {
+    const auto visit = [&](const Stmt& stmt) {
+      if (const auto* n = std::get_if<Declare>(&stmt.node)) lastWrites_[n->var] = top;
+      if (const auto* n = std::get_if<Assign>(&stmt.node)) lastWrites_[rootOf(*n->place)] = top;
+      if (const auto* n = std::get_if<CallStmt>(&stmt.node)) {
+        forEachWritten(module, *n, [&](VarId var) { lastWrites_[var] = top; });
+      }
+    };
+    visit(function.body[top]);
+    forEachBlock(function.body[top], [&](const Block& inner) { walkStmts(inner, visit); });
+  }
+}
+
+Slice Slicer::slice(const VarSet& wanted, VarSet loadable) const {
+  for (;;) {
+    std::optional<VarId> early;
+    Slice made = Marker(module_, function_, *this, wanted, loadable).run(early);
+    if (!early) return made;
+    loadable[*early] = false;
+  }
+}
+
+Block Slicer::copy(const Slice& slice) const { return copyKept(function_.body, slice); }
+
+}  // namespace skc::split

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "split/split_kernels.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "split/demand.hpp"
+#include "split/pass_kernel.hpp"
+#include "split/plan_passes.hpp"
+
+namespace skc::split {
+namespace {
+
+using namespace ir;
+
+/// Pushes and scatters take passes of their own (runtime), to which plans do not extend.
+bool hasSinks(const Kernel& kernel) {
+  return std::ranges::any_of(kernel.params, [](const KernelParam& param) {
+    return param.role == ParamRole::VariableOutput || param.role == ParamRole::Scatter;
+  });
+}
+
+Plan makePlan(Module& module, KernelId whole, const Limits& limits) {
+  const PlannedSplit planned = planPasses(module, module.kernels[whole], limits);
+  const Function& entry = module.functions[module.kernels[whole].entry];
+  Plan plan{.limits = limits,
+            .temporaries = {},
+            .bundles = planned.bundles,
+            .passes = {},
+            .cost = planned.cost,
+            .costWithoutTemporaries = planned.costWithoutTemporaries};
+  for (std::size_t i = 0; i < planned.saved.size(); ++i) {
+    const VarId var = planned.saved[i];
+    const auto readers = std::ranges::count_if(
+        planned.passes, [&](const PlannedPass& pass) { return pass.slice.loaded[var]; });
+    plan.temporaries.push_back({entry.variables[var].name, entry.variables[var].type, planned.computeCosts[i],
+                                static_cast<std::uint32_t>(readers)});
+  }
+  for (std::uint32_t number = 1; const PlannedPass& pass : planned.passes) {
+    plan.passes.push_back(makePassKernel(module, whole, planned, pass));
+    module.kernels.back().pass = {whole, number++, static_cast<std::uint32_t>(planned.passes.size())};
+  }
+  return plan;
+}
+
+}  // namespace
+
+void splitKernels(Module& module, std::span<const Limits> limits) {
+  std::vector<Limits> generousFirst(limits.begin(), limits.end());
+  std::ranges::sort(generousFirst, std::greater(),
+                    [](const Limits& one) { return std::pair(one.drawBuffers, one.textureUnits); });
+  const std::size_t count = module.kernels.size();   // passes are added behind
+  for (KernelId id = 0; id < count; ++id) {
+    if (module.kernels[id].reduction || hasSinks(module.kernels[id])) continue;
+    const Limits demand = demandOf(module, module.kernels[id]);
+    for (const Limits& limit : generousFirst) {
+      if (demand.drawBuffers <= limit.drawBuffers && demand.textureUnits <= limit.textureUnits) continue;
+      Plan plan = makePlan(module, id, limit);
+      module.kernels[id].plans.push_back(std::move(plan));
+    }
+  }
+}
+
+}  // namespace skc::split
