@@ -231,8 +231,11 @@ TEST_CASE("after specialize-gathers, streams are parameters and functions have o
   again.name = "again";
   again.entry = 0;
   for (const KernelParam& param : module.kernels[0].params) {
-    again.params.push_back(
-        {param.name, param.role, param.type, param.rank, param.boundary, nullptr, nullptr, {}});
+    KernelParam& made = again.params.emplace_back();
+    made.name = param.name;
+    made.role = param.role;
+    made.type = param.type;
+    made.rank = param.rank;
   }
   module.kernels.push_back(std::move(again));
   CHECK(contains(validate(module, Stage::Specialized), "belongs to two kernels"));

@@ -87,10 +87,9 @@ TEST_CASE("outputs that do not fit each other, or the device") {
     auto a = device.stream<misuse::Five>({4, 6});
     const std::string text = errorOf([&] { misuse::many(x, a, a); });
     CHECK_THAT(text, Contains("misuse::many: the outputs 'a' and 'b' overlap"));
-    if (device.limits().drawBuffers < 10) {
-      auto b = device.stream<misuse::Five>({4, 6});
-      CHECK_THAT(errorOf([&] { misuse::many(x, a, b); }),
-                 Contains("misuse::many: the outputs have 10 planes") &&
+    if (device.limits().drawBuffers < 10) {   // a kernel takes several passes, a reduce does not
+      CHECK_THAT(errorOf([&] { misuse::widest(device.stream<misuse::Ten>({4})); }),
+                 Contains("misuse::widest: the outputs have 10 planes") &&
                      Contains(std::to_string(device.limits().drawBuffers)) && Contains("divide the kernel"));
     }
     CHECK_THAT(errorOf([&] { misuse::many(x, a.domain({0, 0}, {4, 6}), a.domain({0, 0}, {4, 6})); }),
