@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <set>
-#include <span>
 
 #include "assemble/assemble.hpp"
+#include "assemble/plans.hpp"
 #include "assemble/reduce_plan.hpp"
 #include "assemble/reduce_program.hpp"
 
@@ -55,16 +55,17 @@ std::string reductionListing(const Profile& profile, const sk::program::Reductio
 
 /// The programs of the passes that a kernel takes within the profile's limits.
 std::string kernelListing(const Profile& profile, const sk::program::Kernel& kernel) {
-  for (const sk::program::Plan& plan : std::span(kernel.plans, kernel.planCount)) {
-    if (plan.drawBuffers != profile.drawBuffers || plan.textureUnits != profile.textureUnits) continue;
-    std::string text;
-    for (const sk::program::Pass& pass : plan.passes) {
-      if (!text.empty()) text += "\n";
-      text += sk::assemble::fragmentProgram(profile, pass.kernel, plainVariant(pass.kernel));
-    }
-    return text;
+  const sk::assemble::PassLimits limits{profile.drawBuffers, profile.textureUnits};
+  const sk::program::Plan* plan = sk::assemble::planWithin(kernel, limits);
+  if (plan == nullptr || sk::assemble::fitsOnePass(kernel, limits)) {
+    return sk::assemble::fragmentProgram(profile, kernel, plainVariant(kernel));
   }
-  return sk::assemble::fragmentProgram(profile, kernel, plainVariant(kernel));
+  std::string text;
+  for (const sk::program::Pass& pass : plan->passes) {
+    if (!text.empty()) text += "\n";
+    text += sk::assemble::fragmentProgram(profile, pass.kernel, plainVariant(pass.kernel));
+  }
+  return text;
 }
 
 }  // namespace

@@ -48,8 +48,12 @@ class PlanPrinter {
   void printKernel(const Kernel& kernel) {
     const Limits demand = split::demandOf(module_, kernel);
     text_ += fmt::format("{} written, {} read", counted(demand.drawBuffers, "plane"), demand.textureUnits);
-    const auto plan = std::ranges::find(kernel.plans, limits_, &Plan::limits);
-    if (plan == kernel.plans.end()) {
+    const bool fits =
+        demand.drawBuffers <= limits_.drawBuffers && demand.textureUnits <= limits_.textureUnits;
+    const auto plan = std::ranges::find_if(kernel.plans, [&](const Plan& one) {
+      return one.limits.drawBuffers <= limits_.drawBuffers && one.limits.textureUnits <= limits_.textureUnits;
+    });
+    if (fits || plan == kernel.plans.end()) {
       text_ += ": 1 pass\n";
       return;
     }

@@ -250,9 +250,9 @@ struct Bundle {
   std::vector<ArgumentPlane> layers;
 };
 
-/// How a kernel that needs more than `limits` runs: in these passes, one after the other.
+/// How a kernel runs that needs more than a target has: in these passes, one after the other.
 struct Plan {
-  Limits limits;
+  Limits limits;                       ///< what its passes need
   std::vector<Temporary> temporaries;
   std::vector<Bundle> bundles;
   std::vector<Pass> passes;
@@ -276,7 +276,7 @@ struct Kernel {
                                        ///< VariableOutput and Scatter Sink
   std::vector<KernelParam> params;     ///< of a reduce: an Input, then an Accumulator
   std::optional<Reduction> reduction;  ///< set for `reduce`
-  std::vector<Plan> plans;             ///< for limits that it exceeds, most generous first
+  std::vector<Plan> plans;             ///< for targets that it is too large for, the most generous first
   std::optional<PassOf> pass;
   Loc loc;
 };

@@ -54,7 +54,9 @@ void Demand::collect(const Expr& expr, VarSet& params) const {
 VarSet Demand::params(const Slice& slice) const {
   VarSet params(kernel_.params.size(), false);
   for (std::size_t i = 0; i < params.size(); ++i) {
-    params[i] = slice.used[i] && kernel_.params[i].role != ParamRole::Output;
+    const ParamRole role = kernel_.params[i].role;
+    // conditions count the Spec parameters of their kernel
+    params[i] = role == ParamRole::Spec || (slice.used[i] && role != ParamRole::Output);
   }
   for (const Stmt* stmt : slice.kept) collect(*stmt, params);
   return params;

@@ -43,6 +43,9 @@ class Maker {
     addWrites();
     entry_.parameterCount = static_cast<std::uint32_t>(entry_.variables.size());
     addLocals();
+    for (KernelParam& param : kernel_.params) {
+      if (param.neededIf) renumber(*param.neededIf);
+    }
     entry_.body = body();
     bind(entry_.body);
     kernel_.entry = static_cast<FunctionId>(module_.functions.size());
@@ -105,6 +108,7 @@ class Maker {
     made.rank = param.rank;
     made.boundary = param.boundary;
     made.border = clone(param.border);
+    made.neededIf = clone(param.neededIf);
     made.loc = param.loc;
     return made;
   }
@@ -152,14 +156,16 @@ class Maker {
     return made;
   }
 
+  void renumber(Expr& whole) const {
+    walkExprs(whole, [&](Expr& expr) {
+      if (auto* n = std::get_if<VarRef>(&expr.node)) n->var = newVars_[n->var];
+    });
+  }
+
   void renumber(Stmt& stmt) {
     const auto one = [&](Stmt& inner) {
       if (auto* n = std::get_if<Declare>(&inner.node)) n->var = newVars_[n->var];
-      forEachOperand(inner, [&](ExprPtr& operand) {
-        walkExprs(*operand, [&](Expr& expr) {
-          if (auto* n = std::get_if<VarRef>(&expr.node)) n->var = newVars_[n->var];
-        });
-      });
+      forEachOperand(inner, [&](ExprPtr& operand) { renumber(*operand); });
     };
     one(stmt);
     forEachBlock(stmt, [&](Block& block) { walkStmts(block, one); });

@@ -20,10 +20,25 @@ bool hasSinks(const Kernel& kernel) {
   });
 }
 
+/// Planes that the pass with most of them writes.
+std::uint32_t widestOf(const std::vector<PlannedPass>& passes) {
+  std::uint32_t widest = 0;
+  for (const PlannedPass& pass : passes) {
+    std::uint32_t planes = 0;
+    for (const Target& target : pass.targets) planes += target.planeCount;
+    widest = std::max(widest, planes);
+  }
+  return widest;
+}
+
+bool isWithin(const Limits& demand, const Limits& limits) {
+  return demand.drawBuffers <= limits.drawBuffers && demand.textureUnits <= limits.textureUnits;
+}
+
 Plan makePlan(Module& module, KernelId whole, const Limits& limits) {
   const PlannedSplit planned = planPasses(module, module.kernels[whole], limits);
   const Function& entry = module.functions[module.kernels[whole].entry];
-  Plan plan{.limits = limits,
+  Plan plan{.limits = {widestOf(planned.passes), limits.textureUnits},
             .temporaries = {},
             .bundles = planned.bundles,
             .passes = {},
@@ -54,7 +69,8 @@ void splitKernels(Module& module, std::span<const Limits> limits) {
     if (module.kernels[id].reduction || hasSinks(module.kernels[id])) continue;
     const Limits demand = demandOf(module, module.kernels[id]);
     for (const Limits& limit : generousFirst) {
-      if (demand.drawBuffers <= limit.drawBuffers && demand.textureUnits <= limit.textureUnits) continue;
+      const std::vector<Plan>& plans = module.kernels[id].plans;
+      if (isWithin(demand, limit) || (!plans.empty() && isWithin(plans.back().limits, limit))) continue;
       Plan plan = makePlan(module, id, limit);
       module.kernels[id].plans.push_back(std::move(plan));
     }

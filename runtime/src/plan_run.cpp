@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/plans.hpp"
 #include "device_state.hpp"
 #include "gl/array_texture.hpp"
 #include "pass.hpp"
@@ -25,12 +26,18 @@ using program::Plan;
 using program::Role;
 
 gl::ArrayTexture copyBundle(DeviceState& device, const Bundle& bundle, std::span<const Operand> operands) {
+  const auto isGiven = [&](const program::ArgumentPlane& place) {   // streams may be left out
+    return !operands[place.argument].planes.empty();
+  };
   const auto planeOf = [&](const program::ArgumentPlane& place) -> Surface& {
     return operands[place.argument].planes[place.plane];
   };
   GLsizei width = 1;
   GLsizei height = 1;
   for (const program::ArgumentPlane& place : bundle.layers) {
+    if (!isGiven(place)) {
+      continue;
+    }
     width = std::max(width, planeOf(place).texture.width());
     height = std::max(height, planeOf(place).texture.height());
   }
@@ -42,7 +49,11 @@ gl::ArrayTexture copyBundle(DeviceState& device, const Bundle& bundle, std::span
                             device.capabilities.renderer, layers, width, height));
   }
   for (GLint layer = 0; layer < layers; ++layer) {
-    Surface& plane = planeOf(bundle.layers[static_cast<std::size_t>(layer)]);
+    const program::ArgumentPlane& place = bundle.layers[static_cast<std::size_t>(layer)];
+    if (!isGiven(place)) {
+      continue;
+    }
+    Surface& plane = planeOf(place);
     made.copyLayer(device.bound, plane.framebufferName(device.bound), layer, plane.texture.width(),
                    plane.texture.height());
   }
@@ -80,6 +91,9 @@ class PlanRun {
         addTargets(parameter, planesOf(pass.operands[i]));
       }
     }
+    if (targets_.empty()) {   // all of its outputs are left out
+      return;
+    }
     drawKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, framebufferOf(device_, targets_),
                bundles_);
   }
@@ -87,14 +101,18 @@ class PlanRun {
  private:
   /// Temporaries lie as the domain does.
   Operand operandOf(const program::PassOperand& operand) {
-    return operand.isTemporary ? Operand{nullptr, call_.domain, temporaries_[operand.index].planes}
-                               : call_.operands[operand.index];
+    return operand.isTemporary
+               ? Operand{.placement = call_.domain, .planes = temporaries_[operand.index].planes}
+               : call_.operands[operand.index];
   }
   std::span<Surface> planesOf(const program::PassOperand& operand) {
     return operand.isTemporary ? std::span<Surface>(temporaries_[operand.index].planes)
                                : call_.outputs[operand.index];
   }
   void addTargets(const Parameter& parameter, std::span<Surface> planes) {
+    if (planes.empty()) {
+      return;
+    }
     const std::size_t count = parameter.planeCount == 0 ? planes.size() : parameter.planeCount;
     for (Surface& plane : planes.subspan(parameter.firstPlane, count)) {
       targets_.push_back(&plane);
@@ -111,25 +129,10 @@ class PlanRun {
 
 }  // namespace
 
-bool fitsOnePass(const program::Kernel& kernel, const DeviceLimits& limits) {
-  std::size_t written = 0;
-  std::size_t read = 0;
-  for (const Parameter& parameter : kernel.parameters) {
-    if (parameter.role != Role::Uniform) {
-      (parameter.role == Role::Output ? written : read) += parameter.element->fields.size();
-    }
-  }
-  return written <= static_cast<std::size_t>(limits.drawBuffers) &&
-         read <= static_cast<std::size_t>(limits.textureUnits);
-}
-
 const Plan* planFor(const program::Kernel& kernel, const DeviceLimits& limits) {
-  for (const Plan& plan : std::span(kernel.plans, kernel.planCount)) {
-    if (plan.drawBuffers <= limits.drawBuffers && plan.textureUnits <= limits.textureUnits) {
-      return &plan;
-    }
-  }
-  return nullptr;
+  const assemble::PassLimits pass{limits.drawBuffers, limits.textureUnits};
+  const bool isWhole = kernel.planCount == 0 || assemble::fitsOnePass(kernel, pass);
+  return isWhole ? nullptr : assemble::planWithin(kernel, pass);
 }
 
 void runPlan(DeviceState& device, const Plan& plan, const PlannedCall& call) {

@@ -17,10 +17,7 @@ namespace sk {
 
 class DeviceState;
 
-/// Whether a device writes and reads all planes of a kernel in one pass.
-bool fitsOnePass(const program::Kernel& kernel, const DeviceLimits& limits);
-
-/// The first plan that keeps to the limits; null if there is none.
+/// The plan by which a device runs a kernel; null where one pass will do, or no plan fits.
 const program::Plan* planFor(const program::Kernel& kernel, const DeviceLimits& limits);
 
 /// What all passes share: the call, its arguments checked.

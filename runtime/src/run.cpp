@@ -75,9 +75,7 @@ class KernelCall {
   }
 
   void run() {
-    const program::Plan* plan = kernel_.planCount == 0 || fitsOnePass(kernel_, device_.limits)
-                                    ? nullptr
-                                    : planFor(kernel_, device_.limits);
+    const program::Plan* plan = planFor(kernel_, device_.limits);
     if (plan != nullptr) {
       drawAside(plan);
       return;
