@@ -14,7 +14,20 @@ std::uint32_t alignUp(std::uint32_t offset, std::uint32_t alignment) {
 }
 
 std::string joinPath(const std::string& outer, const std::string& inner) {
-  return inner.empty() ? outer : outer + "." + inner;
+  return inner.empty() || inner.front() == '[' ? outer + inner : outer + "." + inner;
+}
+
+ElementLayout arrayLayout(const Module& module, const TypeNames& types, const Array& array) {
+  const ElementLayout inner = elementLayout(module, types, array.element);
+  ElementLayout layout{{}, inner.size * array.length, inner.alignment};
+  for (std::uint32_t i = 0; i < array.length; ++i) {
+    const std::string place = "[" + std::to_string(i) + "]";
+    for (const Plane& plane : inner.planes) {
+      layout.planes.push_back({joinPath(place, plane.path), joinPath(place, plane.member), plane.type,
+                               i * inner.size + plane.offset});
+    }
+  }
+  return layout;
 }
 
 }  // namespace
@@ -24,6 +37,7 @@ ElementLayout elementLayout(const Module& module, const TypeNames& types, Type t
     const std::uint32_t component = type.isBool() ? 1 : 4;
     return {{{"", "", type, 0}}, component * type.width, component};
   }
+  if (type.kind == Type::Kind::Array) return arrayLayout(module, types, module.arrays[type.index]);
   assert(type.kind == Type::Kind::Struct && "the frontend lets no other type be an element");
   ElementLayout layout;
   const std::vector<StructField>& fields = module.structs[type.index].fields;

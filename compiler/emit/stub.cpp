@@ -12,6 +12,11 @@ namespace {
 using namespace ir;
 
 std::string parameter(const Module& module, const KernelParam& param, const std::vector<std::string>& scope) {
+  if (param.type.kind == Type::Kind::Array) {
+    const Array& array = module.arrays[param.type.index];
+    return fmt::format("std::span<const {}, {}> {}", cppType(module, array.element, scope), array.length,
+                       param.name);
+  }
   const std::string type = cppType(module, param.type, scope);
   const auto stream = [&](std::string_view direction) {
     const std::string taken = fmt::format("sk::{}<{}>", direction, type);

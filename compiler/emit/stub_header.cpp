@@ -27,6 +27,7 @@ class Structs {
 
  private:
   void add(Type type) {
+    if (type.kind == Type::Kind::Array) return add(module_.arrays[type.index].element);
     if (type.kind != Type::Kind::Struct) return;
     if (std::find(list_.begin(), list_.end(), type.index) != list_.end()) return;
     for (const StructField& field : module_.structs[type.index].fields) add(field.type);
@@ -92,7 +93,13 @@ class HeaderWriter {
     enter(type.scope);
     text_ += fmt::format("\nstruct {} {{\n", type.name);
     for (const StructField& field : type.fields) {
-      text_ += fmt::format("  {} {};\n", cppType(module_, field.type, scope_), field.name);
+      if (field.type.kind == Type::Kind::Array) {
+        const Array& array = module_.arrays[field.type.index];
+        text_ +=
+            fmt::format("  {} {}[{}];\n", cppType(module_, array.element, scope_), field.name, array.length);
+      } else {
+        text_ += fmt::format("  {} {};\n", cppType(module_, field.type, scope_), field.name);
+      }
     }
     text_ += "};\n";
   }

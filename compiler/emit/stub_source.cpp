@@ -102,6 +102,7 @@ class SourceWriter {
     text_ += fmt::format("constexpr std::string_view {}Body =\n    {};\n\n", name, rawString(kernel.body));
     for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
       conditionSteps(name, kernel.parameters[i]);
+      if (declared.params[i].type.kind == Type::Kind::Array) arrayElement(name, kernel.parameters[i]);
       layers(kernel.parameters[i], name, i);
     }
     text_ += fmt::format("constexpr Parameter {}Parameters[] = {{\n", name);
@@ -219,15 +220,40 @@ class SourceWriter {
     text_ += wrapLine(head + join(steps, ", ") + "};", 100, head.size()) + "\n\n";
   }
 
+  static std::string elementName(const std::string& unit, const sk::program::Parameter& param) {
+    return fmt::format("{}Element_{}", unit, param.symbol);
+  }
+
+  /// A uniform array has no traits, since it is no element of streams.
+  void arrayElement(const std::string& unit, const sk::program::Parameter& param) {
+    std::vector<std::string> fields;
+    for (const sk::program::Field& field : param.element->fields) {
+      fields.push_back(fmt::format("{{\"{}\", Scalar::{}, {}, {}}}", field.path,
+                                   scalarNames[static_cast<std::size_t>(field.scalar)], field.width,
+                                   field.offset));
+    }
+    const std::string name = elementName(unit, param);
+    const std::string head = fmt::format("constexpr Field {}Fields[] = {{", name);
+    text_ += wrapLine(head + join(fields, ", ") + "};", 100, head.size()) + "\n";
+    text_ += fmt::format("constexpr Element {0}{{\"{1}\", \"{2}\", {3}, {0}Fields}};\n\n", name,
+                         param.element->name, param.element->glsl, param.element->size);
+  }
+
+  std::string elementText(const std::string& unit, const sk::program::Parameter& param, Type type) const {
+    if (type.kind == Type::Kind::Array) return "&" + elementName(unit, param);
+    return elementOf(type);
+  }
+
   /// Without the closing bracket.
   std::string parameter(const std::string& unit, const sk::program::Parameter& param, Type type) const {
     constexpr std::string_view roles[] = {"Uniform",        "Input",   "Output",   "Gather", "Accumulator",
                                           "VariableOutput", "Scatter", "Iterator", "Spec"};
     constexpr std::string_view scatterOps[] = {"Store", "Add", "Min", "Max"};
     constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
+    const std::string element = elementText(unit, param, type);
     std::string text =
         fmt::format("{{.name = \"{}\", .symbol = \"{}\", .role = Role::{}, .element = {}", param.name,
-                    param.symbol, roles[static_cast<std::size_t>(param.role)], elementOf(type));
+                    param.symbol, roles[static_cast<std::size_t>(param.role)], element);
     if (param.rank > 0) text += fmt::format(", .rank = {}", param.rank);
     if (param.role == sk::program::Role::Gather) {
       text += fmt::format(", .boundary = Boundary::{}", boundaries[static_cast<std::size_t>(param.boundary)]);
@@ -288,6 +314,7 @@ class SourceWriter {
 
   static std::string argument(const KernelParam& param) {
     if (param.role == ParamRole::Iterator) return fmt::format("sk::argumentOf({})", param.name);
+    if (param.type.kind == Type::Kind::Array) return fmt::format("{{.value = {}.data()}}", param.name);
     if (param.role == ParamRole::Uniform || param.role == ParamRole::Spec) {
       return fmt::format("{{.value = &{}}}", param.name);
     }

@@ -111,7 +111,7 @@ void FunctionLowering::parameters(const clang::FunctionDecl* declaration) {
       if (syntax && syntax->role == ir::ParamRole::Input) variable.role = ir::VarRole::Element;
       const bool byValue =
           syntax && syntax->role != ir::ParamRole::Output && syntax->role != ir::ParamRole::Accumulator;
-      if (byValue && type->isReferenceType()) {
+      if (byValue && type->isReferenceType() && !value->isConstantArrayType()) {
         module_.fail(Diag::ReferenceType, where, {type.getAsString()});
       }
     }

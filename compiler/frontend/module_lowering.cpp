@@ -159,10 +159,7 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
   param.role = syntax ? syntax->role : ir::ParamRole::Uniform;
   param.type = variable.type;
   param.loc = loc(declaration->getLocation());
-  if (param.type.kind == ir::Type::Kind::Array) {
-    fail(Diag::ArrayParameter, declaration->getLocation(), {param.name});
-  }
-  if (param.type.kind == ir::Type::Kind::Struct) {
+  if (param.type.kind == ir::Type::Kind::Struct && param.role != ir::ParamRole::Uniform) {
     for (const ir::StructField& field : module_.structs[param.type.index].fields) {
       if (field.type.kind == ir::Type::Kind::Array) {
         fail(Diag::ArrayInElement, declaration->getLocation(), {param.name, field.name});

@@ -25,6 +25,7 @@ struct ParameterEditor::Parts {
   bool isElement = false;          ///< `<>`
   int rank = 0;                    ///< pairs of empty brackets
   Token open, close;               ///< the first and the last of them
+  Tokens length;                   ///< `[9]`, brackets included, of a uniform array
   Tokens value;                    ///< after `=`
   Token boundary;                  ///< the word in [[...]]
   bool hasBoundary = false;
@@ -213,8 +214,17 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
     if (!isKind(parameter, at, tok::r_square)) {
       const bool closed = std::any_of(parameter.begin() + static_cast<std::ptrdiff_t>(at), parameter.end(),
                                       [](const Token& token) { return token.is(tok::r_square); });
-      diagnostics_.report(closed ? Diag::ArrayParameter : Diag::GatherBrackets, locOf(bracket), {name});
-      return false;
+      if (!closed || parts.rank > 0) {
+        diagnostics_.report(Diag::GatherBrackets, locOf(bracket), {name});
+        return false;
+      }
+      parts.length.push_back(bracket);
+      for (int depth = 1; depth > 0 && at < parameter.size(); ++at) {
+        if (parameter[at].is(tok::l_square)) ++depth;
+        if (parameter[at].is(tok::r_square)) --depth;
+        parts.length.push_back(parameter[at]);
+      }
+      continue;
     }
     parts.close = parameter[at++];
     if (parts.rank++ == 0) parts.open = bracket;
@@ -251,6 +261,10 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   if (qualifier == "vout" || qualifier == "kernel") {
     diagnostics_.report(Diag::QualifierUnknown, locOf(parts.qualifier), {qualifier});
     return false;
+  }
+  if (!parts.length.empty() &&
+      (parts.isElement || parts.rank > 0 || parts.hasBoundary || !qualifier.empty())) {
+    return fail(Diag::ArrayParameter, {name});
   }
   if (parts.isElement && parts.rank > 0) return fail(Diag::StreamAndGather, {name});
   if (parts.rank > 2) return fail(Diag::GatherRank, {name, std::to_string(parts.rank)});
@@ -325,7 +339,15 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       break;
   }
-  out.push_back(parts.name);
+  if (parts.length.empty()) {
+    out.push_back(parts.name);
+  } else {   // a reference, since C++ passes no arrays
+    out.push_back(make(tok::l_paren, place));
+    out.push_back(make(tok::amp, place));
+    out.push_back(parts.name);
+    out.push_back(make(tok::r_paren, place));
+    out.insert(out.end(), parts.length.begin(), parts.length.end());
+  }
   if (kind != FunctionKind::Helper || syntax.role == ir::ParamRole::Gather) {
     syntax_.add(place, std::move(syntax));
   }

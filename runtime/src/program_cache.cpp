@@ -75,7 +75,8 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
     } else if (parameter.role == program::Role::Uniform) {
       for (const program::Field& field : parameter.element->fields) {
         const std::string name =
-            fmt::format("sk_arg_{}{}{}", parameter.symbol, field.path.empty() ? "" : ".", field.path);
+            fmt::format("sk_arg_{}{}{}", parameter.symbol,
+                        field.path.empty() || field.path.front() == '[' ? "" : ".", field.path);
         made->values.push_back({i, gl::FieldUniform(made->program.location(name), field)});
       }
     } else if (parameter.role != program::Role::Output) {
