@@ -13,6 +13,45 @@ std::uint32_t alignUp(std::uint32_t offset, std::uint32_t alignment) {
   return (offset + alignment - 1) / alignment * alignment;
 }
 
+std::uint32_t bytesOf(Scalar scalar) {
+  switch (scalar) {
+    case Scalar::Bool:
+    case Scalar::Char:
+    case Scalar::Uchar:
+    case Scalar::Unorm8:
+    case Scalar::Snorm8: return 1;
+    case Scalar::Half:
+    case Scalar::Short:
+    case Scalar::Ushort:
+    case Scalar::Unorm16:
+    case Scalar::Snorm16: return 2;
+    case Scalar::Int:
+    case Scalar::Uint:
+    case Scalar::Float: return 4;
+    case Scalar::Double: break;
+  }
+  return 8;
+}
+
+ElementLayout matrixLayout(Type type) {
+  const std::uint32_t row = 4U * type.width;
+  ElementLayout layout{{}, row * type.width, 4};
+  for (std::uint32_t i = 0; i < type.width; ++i) {
+    layout.planes.push_back(
+        {"", "rows[" + std::to_string(i) + "]", type.indexed(), i * row, static_cast<int>(i)});
+  }
+  return layout;
+}
+
+/// A double fills the two channels of a texel.
+ElementLayout doubleVectorLayout(Type type) {
+  ElementLayout layout{{}, 8U * type.width, 8};
+  for (std::uint32_t i = 0; i < type.width; ++i) {
+    layout.planes.push_back({"", std::string(1, "xyzw"[i]), type.component(), 8 * i, static_cast<int>(i)});
+  }
+  return layout;
+}
+
 std::string joinPath(const std::string& outer, const std::string& inner) {
   return inner.empty() || inner.front() == '[' ? outer + inner : outer + "." + inner;
 }
@@ -33,8 +72,10 @@ ElementLayout arrayLayout(const Module& module, const TypeNames& types, const Ar
 }  // namespace
 
 ElementLayout elementLayout(const Module& module, const TypeNames& types, Type type) {
+  if (type.isMatrix()) return matrixLayout(type);
+  if (type.isVector() && type.scalar == Scalar::Double) return doubleVectorLayout(type);
   if (type.isArithmetic()) {
-    const std::uint32_t component = type.isBool() ? 1 : 4;
+    const std::uint32_t component = bytesOf(type.scalar);
     return {{{"", "", type, 0}}, component * type.width, component};
   }
   if (type.kind == Type::Kind::Array) return arrayLayout(module, types, module.arrays[type.index]);
@@ -46,8 +87,8 @@ ElementLayout elementLayout(const Module& module, const TypeNames& types, Type t
     layout.size = alignUp(layout.size, inner.alignment);
     for (const Plane& plane : inner.planes) {
       layout.planes.push_back({joinPath(types.fieldName(type.index, i), plane.path),
-                               joinPath(fields[i].name, plane.member), plane.type,
-                               layout.size + plane.offset});
+                               joinPath(fields[i].name, plane.member), plane.type, layout.size + plane.offset,
+                               plane.part});
     }
     layout.size += inner.size;
     layout.alignment = std::max(layout.alignment, inner.alignment);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How an element lies in host memory: its planes, each a scalar or vector, with the offsets that C++
+// How an element lies in host memory: its planes, each a scalar, a vector or a row of a matrix, with the offsets that C++
 // gives the members of the struct that the stub declares.
 #pragma once
 
@@ -14,10 +14,11 @@
 namespace skc::emit {
 
 struct Plane {
-  std::string path;      ///< in GLSL: "origin.x"; empty where the element is no struct
-  std::string member;    ///< in C++
+  std::string path;  ///< in GLSL: "origin.x"; empty where the element is no struct
+  std::string member;  ///< in C++
   ir::Type type;
   std::uint32_t offset;
+  int part = -1;  ///< sk::program::Field::part
 };
 
 struct ElementLayout {
@@ -26,8 +27,8 @@ struct ElementLayout {
   std::uint32_t alignment = 1;
 };
 
-/// Of a scalar, a vector, or a struct of these and of such structs. bool takes a byte, the other
-/// scalars 4; vectors are packed and aligned like their component.
+/// Of a scalar, a vector, a matrix, or a struct of these and of such structs. Vectors are packed and
+/// aligned like their component, rows of matrices likewise.
 ElementLayout elementLayout(const ir::Module& module, const TypeNames& types, ir::Type type);
 
 }  // namespace skc::emit

@@ -17,13 +17,14 @@ using namespace ir;
 /// True if the node itself is printed as a call of a function.
 bool isCall(const Expr& expr, const std::vector<bool>& isFunction) {
   if (const auto* n = std::get_if<Literal>(&expr.node)) {
-    return expr.type.isFloat() && !std::isfinite(std::bit_cast<float>(n->bits));
+    return expr.type.carrier().isFloat() && !std::isfinite(std::bit_cast<float>(n->bits));
   }
   if (const auto* n = std::get_if<ConstantRef>(&expr.node)) return isFunction[n->constant];
   if (const auto* n = std::get_if<Binary>(&expr.node)) {
     const bool isSignedRemainder = n->op == BinaryOp::Rem && n->lhs->type.scalar == Scalar::Int;
     return isSignedRemainder || (n->lhs->type.isVector() && expr.type.isBool());
   }
+  if (std::holds_alternative<Convert>(expr.node)) return expr.type.isNarrow();
   if (const auto* n = std::get_if<Unary>(&expr.node))
     return n->op == UnaryOp::LogicalNot && expr.type.isVector();
   if (const auto* n = std::get_if<Select>(&expr.node)) return n->cond->type.isVector();

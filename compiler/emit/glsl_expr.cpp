@@ -35,18 +35,17 @@ bool isBitPattern(std::uint32_t bits) {
 }
 
 Parts literalText(Type type, std::uint32_t bits) {
-  switch (type.scalar) {
-    case Scalar::Bool: return {bits != 0 ? "true" : "false"};
-    case Scalar::Int: {
-      const auto value = static_cast<std::int32_t>(bits);
-      // GLSL has no negative literals, and 2147483648 is no int
-      if (value == std::numeric_limits<std::int32_t>::min()) return {"-2147483647 - 1", Precedence::Additive};
-      if (isBitPattern(bits) && value > 0) return {fmt::format("0x{:08x}", bits)};
-      return signedText(std::to_string(value));
-    }
-    case Scalar::Uint:
-      return {isBitPattern(bits) ? fmt::format("0x{:08x}u", bits) : fmt::format("{}u", bits)};
-    case Scalar::Float: break;
+  const Scalar scalar = carrierOf(type.scalar);
+  if (scalar == Scalar::Bool) return {bits != 0 ? "true" : "false"};
+  if (scalar == Scalar::Int) {
+    const auto value = static_cast<std::int32_t>(bits);
+    // GLSL has no negative literals, and 2147483648 is no int
+    if (value == std::numeric_limits<std::int32_t>::min()) return {"-2147483647 - 1", Precedence::Additive};
+    if (isBitPattern(bits) && value > 0) return {fmt::format("0x{:08x}", bits)};
+    return signedText(std::to_string(value));
+  }
+  if (scalar == Scalar::Uint) {
+    return {isBitPattern(bits) ? fmt::format("0x{:08x}u", bits) : fmt::format("{}u", bits)};
   }
   const float value = std::bit_cast<float>(bits);
   if (!std::isfinite(value)) return {fmt::format("uintBitsToFloat(0x{:08x}u)", bits)};
@@ -116,15 +115,20 @@ class GlslExpr {
         !(isNonNegative(*n.lhs) && isNonNegative(*n.rhs))) {
       return {context_.polyfills.remainder(n.lhs->type, n.rhs->type) + pair(*n.lhs, *n.rhs)};
     }
+    const bool isMatrixProduct = n.op == BinaryOp::Mul && n.lhs->type.isMatrix() && !n.rhs->type.isScalar();
+    // GLSL's columns hold our rows: its matrices are the transposes of ours, and so are its products
+    const Expr& lhs = isMatrixProduct ? *n.rhs : *n.lhs;
+    const Expr& rhs = isMatrixProduct ? *n.lhs : *n.rhs;
     const Precedence precedence = precedenceOf(n.op);
     const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
-    return {fmt::format("{} {} {}", operand(n.op, *n.lhs, precedence), spelling(n.op),
-                        operand(n.op, *n.rhs, tighter)),
-            precedence};
+    return {
+        fmt::format("{} {} {}", operand(n.op, lhs, precedence), spelling(n.op), operand(n.op, rhs, tighter)),
+        precedence};
   }
   Parts print(Type type, const Select& n) const {
     if (n.cond->type.isVector()) {
-      if (type.isFloat()) return {fmt::format("mix({}, {}, {})", text(*n.no), text(*n.yes), text(*n.cond))};
+      if (type.carrier().isFloat())
+        return {fmt::format("mix({}, {}, {})", text(*n.no), text(*n.yes), text(*n.cond))};
       return {fmt::format("{}({}, {}, {})", context_.polyfills.select(type), text(*n.cond), text(*n.yes),
                           text(*n.no))};
     }
@@ -133,7 +137,11 @@ class GlslExpr {
             Precedence::Conditional};
   }
   Parts print(Type type, const Convert& n) const {
-    return {context_.types.glsl(type) + "(" + text(*n.operand) + ")"};
+    const bool isCarried = carrierOf(n.operand->type.scalar) == carrierOf(type.scalar);
+    if (isCarried && !type.isNarrow()) return parts(*n.operand);
+    const std::string value = text(*n.operand);
+    const std::string carried = isCarried ? value : context_.types.glsl(type) + "(" + value + ")";
+    return {type.isNarrow() ? context_.polyfills.quantize(type) + "(" + carried + ")" : carried};
   }
   Parts print(Type type, const Construct& n) const { return {context_.types.glsl(type) + list(n.args)}; }
   Parts print(Type, const Swizzle& n) const {

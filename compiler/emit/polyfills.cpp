@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "emit/type_names.hpp"
+#include "ir/print.hpp"
+#include "ir/quantize.hpp"
 #include "support/text.hpp"
 
 namespace skc::emit {
@@ -24,6 +26,46 @@ std::string byComponent(std::string_view pattern, int width) {
     items.push_back(std::move(item));
   }
   return join(items, ", ");
+}
+
+/// A narrow scalar's function of its carrier, as quantize.hpp tells it.
+std::string quantizing(Scalar narrow) {
+  switch (narrow) {
+    case Scalar::Char: return "int sk_char(int x) { return (x << 24) >> 24; }\n";
+    case Scalar::Uchar: return "int sk_uchar(int x) { return x & 255; }\n";
+    case Scalar::Short: return "int sk_short(int x) { return (x << 16) >> 16; }\n";
+    case Scalar::Ushort: return "int sk_ushort(int x) { return x & 65535; }\n";
+    case Scalar::Half:
+      return "float sk_half(float x) {\n"
+             "  uint bits = floatBitsToUint(x), m = bits & 0x7fffffffu;\n"
+             "  if (m > 0x7f800000u) return x;\n"
+             "  uint r = (m + 0xfffu + ((m >> 13) & 1u)) & 0xffffe000u;\n"
+             "  if (r > 0x477fe000u) r = 0x7f800000u;\n"
+             "  if (m < 0x38800000u) {\n"
+             "    r = floatBitsToUint(roundEven(uintBitsToFloat(m) * 16777216.0) * 5.9604645e-8);\n"
+             "  }\n"
+             "  return uintBitsToFloat((bits & 0x80000000u) | r);\n"
+             "}\n";
+    case Scalar::Unorm8:
+    case Scalar::Unorm16:
+      return fmt::format(
+          "float sk_{0}(float x) {{\n"
+          "  return x > 0.0 ? roundEven(min(x, 1.0) * {1:.1f}) / {1:.1f} : 0.0;\n}}\n",
+          spelling(narrow), normalizedScale(narrow));
+    case Scalar::Snorm8:
+    case Scalar::Snorm16:
+      return fmt::format(
+          "float sk_{0}(float x) {{\n"
+          "  float y = x > -1.0 ? min(x, 1.0) : x <= -1.0 ? -1.0 : 0.0;\n"
+          "  return roundEven(y * {1:.1f}) / {1:.1f};\n}}\n",
+          spelling(narrow), normalizedScale(narrow));
+    case Scalar::Bool:
+    case Scalar::Int:
+    case Scalar::Uint:
+    case Scalar::Float:
+    case Scalar::Double: break;
+  }
+  return {};
 }
 
 }  // namespace
@@ -69,6 +111,16 @@ std::string Polyfills::remainder(Type lhs, Type rhs) {
                   glslSpelling(Scalar::Int, result.width), glslSpelling(Scalar::Int, lhs.width),
                   glslSpelling(Scalar::Int, rhs.width)));
   return "sk_rem";
+}
+
+std::string Polyfills::quantize(Type type) {
+  const std::string name = "sk_" + spelling(type.scalar);
+  add(quantizing(type.scalar));
+  if (type.isVector()) {
+    add(fmt::format("{0} {1}({0} x) {{ return {0}({2}); }}\n", glslSpelling(type.scalar, type.width), name,
+                    byComponent(name + "(x.@)", type.width)));
+  }
+  return name;
 }
 
 std::string Polyfills::select(Type type) {

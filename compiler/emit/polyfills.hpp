@@ -22,6 +22,9 @@ class Polyfills {
   /// C++'s % of ints; returns the function's name. GLSL's is undefined where an operand is negative.
   std::string remainder(ir::Type lhs, ir::Type rhs);
 
+  /// A Convert of the carrier's value to a narrow type; returns the function's name.
+  std::string quantize(ir::Type type);
+
   /// Their definitions.
   const std::vector<std::string>& functions() const { return functions_; }
 

@@ -48,7 +48,7 @@ struct Program::Storage {
 
 namespace {
 
-static_assert(static_cast<int>(Scalar::Float) == static_cast<int>(sk::program::Scalar::Float));
+static_assert(static_cast<int>(Scalar::Snorm16) == static_cast<int>(sk::program::Scalar::Snorm16));
 static_assert(static_cast<int>(ParamRole::Spec) == static_cast<int>(sk::program::Role::Spec));
 static_assert(static_cast<int>(ScatterOp::Max) == static_cast<int>(sk::program::ScatterOp::Max));
 static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program::Boundary::Border));
@@ -200,7 +200,8 @@ class Builder {
       fields.push_back({.path = storage_.keep(plane.path),
                         .scalar = static_cast<sk::program::Scalar>(plane.type.scalar),
                         .width = plane.type.width,
-                        .offset = plane.offset});
+                        .offset = plane.offset,
+                        .part = static_cast<std::int8_t>(plane.part)});
     }
     sk::program::Element made{.name = storage_.keep(print(module_, type)),
                               .glsl = storage_.keep(types_.glsl(type)),

@@ -44,9 +44,9 @@ TypeNames::TypeNames(const Module& module) : module_(&module) {
 }
 
 std::string glslSpelling(Scalar scalar, int width) {
-  constexpr std::array<std::string_view, 4> scalars = {"bool", "int", "uint", "float"};
-  constexpr std::array<std::string_view, 4> vectors = {"bvec", "ivec", "uvec", "vec"};
-  const auto row = static_cast<std::size_t>(scalar);
+  constexpr std::array<std::string_view, 5> scalars = {"bool", "int", "uint", "float", "double"};
+  constexpr std::array<std::string_view, 5> vectors = {"bvec", "ivec", "uvec", "vec", "dvec"};
+  const auto row = static_cast<std::size_t>(carrierOf(scalar));
   return width == 1 ? std::string(scalars[row]) : std::string(vectors[row]) + std::to_string(width);
 }
 
@@ -55,6 +55,7 @@ std::string TypeNames::glsl(Type type) const {
     case Type::Kind::Void: return "void";
     case Type::Kind::Scalar:
     case Type::Kind::Vector: return glslSpelling(type.scalar, type.width);
+    case Type::Kind::Matrix: return "mat" + std::to_string(type.width);
     case Type::Kind::Struct: return structs_[type.index];
     case Type::Kind::Array: break;
   }

@@ -129,6 +129,8 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr select(ir::ExprPtr cond, ir::ExprPtr yes, ir::ExprPtr no, clang::SourceLocation where);
   ir::ExprPtr aggregate(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits, const clang::Expr* filler,
                         clang::SourceLocation where);
+  ir::ExprPtr indexed(const clang::Expr* array, const clang::Expr* index, clang::SourceLocation where);
+  ir::ExprPtr matrix(ir::Type type, Exprs parts, clang::SourceLocation where);
   ir::ExprPtr defaultStruct(const clang::CXXRecordDecl* record, clang::SourceLocation where);
 
   // ---- calls (lower_call.cpp) -------------------------------------------------------------------
@@ -141,6 +143,8 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr neighbor(const clang::CallExpr* e);
   ir::ExprPtr indexOrExtent(const clang::CallExpr* e, bool isIndex);
   ir::ExprPtr gatherRead(const clang::CXXOperatorCallExpr* e);
+  ir::ExprPtr classOperator(const clang::CXXOperatorCallExpr* e);
+  ir::ExprPtr classAssignment(ir::BinaryOp op, const clang::CXXOperatorCallExpr* e);
   ir::ExprPtr argument(const clang::Expr* e, const ir::Variable& parameter);
   void abandonIfUnknown(const clang::Stmt* s) const;
   std::optional<ir::VarId> streamVariable(const clang::Expr* e) const;

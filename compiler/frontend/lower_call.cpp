@@ -20,6 +20,11 @@ using ir::Scalar;
 ExprPtr FunctionLowering::VisitCallExpr(const clang::CallExpr* e) {
   const clang::FunctionDecl* callee = e->getDirectCallee();
   if (!callee) module_.fail(Diag::Pointer, e->getBeginLoc(), {e->getCallee()->getType().getAsString()});
+  if (const auto* conversion = llvm::dyn_cast<clang::CXXMemberCallExpr>(e);
+      conversion && llvm::isa<clang::CXXConversionDecl>(callee) && module_.isPrelude(callee)) {
+    ExprPtr object = value(conversion->getImplicitObjectArgument());
+    return convert(std::move(object), module_.type(e->getType(), e->getBeginLoc()).scalar);
+  }
   return module_.isPrelude(callee) ? intrinsicCall(e, callee) : userCall(e, callee);
 }
 
@@ -27,8 +32,9 @@ ExprPtr FunctionLowering::VisitCallExpr(const clang::CallExpr* e) {
 ExprPtr FunctionLowering::VisitCXXOperatorCallExpr(const clang::CXXOperatorCallExpr* e) {
   const clang::FunctionDecl* callee = e->getDirectCallee();
   if (!callee) return VisitExpr(e);
-  if (module_.isPrelude(callee)) return gatherRead(e);
-  if (e->getOperator() == clang::OO_Equal && callee->isTrivial()) {
+  const bool isCopy = e->getOperator() == clang::OO_Equal && callee->isTrivial();
+  if (module_.isPrelude(callee) && !isCopy) return classOperator(e);
+  if (isCopy) {
     ExprPtr right = value(e->getArg(1));
     ExprPtr target = place(e->getArg(0));
     ExprPtr result = ir::clone(*target);
@@ -36,6 +42,54 @@ ExprPtr FunctionLowering::VisitCXXOperatorCallExpr(const clang::CXXOperatorCallE
     return result;
   }
   return userCall(e, callee);
+}
+
+/// An operator that the prelude declares: of gathers, of matrices, and assignments to normalized values.
+ExprPtr FunctionLowering::classOperator(const clang::CXXOperatorCallExpr* e) {
+  const SourceLocation where = e->getOperatorLoc();
+  const auto infix = [&](ir::BinaryOp op) {
+    Exprs operands = valuesInOrder({e->getArg(0), e->getArg(1)});
+    return ir::binary(op, std::move(operands[0]), std::move(operands[1]), module_.loc(where));
+  };
+  switch (e->getOperator()) {
+    case clang::OO_Subscript: {
+      ir::Type element;
+      if (module_.gatherRank(e->getArg(0)->getType(), where, element) != 0) return gatherRead(e);
+      return indexed(e->getArg(0), e->getArg(1), e->getBeginLoc());
+    }
+    case clang::OO_Minus: {
+      if (e->getNumArgs() == 2) return infix(ir::BinaryOp::Sub);
+      return ir::unary(ir::UnaryOp::Negate, value(e->getArg(0)), module_.loc(where));
+    }
+    case clang::OO_Plus: return infix(ir::BinaryOp::Add);
+    case clang::OO_Star: return infix(ir::BinaryOp::Mul);
+    case clang::OO_Slash: return infix(ir::BinaryOp::Div);
+    case clang::OO_EqualEqual: return infix(ir::BinaryOp::Equal);
+    case clang::OO_PlusEqual: return classAssignment(ir::BinaryOp::Add, e);
+    case clang::OO_MinusEqual: return classAssignment(ir::BinaryOp::Sub, e);
+    case clang::OO_StarEqual: return classAssignment(ir::BinaryOp::Mul, e);
+    case clang::OO_SlashEqual: return classAssignment(ir::BinaryOp::Div, e);
+    default: return VisitExpr(e);   // the prelude declares no other
+  }
+}
+
+/// `u += x` of a normalized value, `m *= n` of a matrix: computed, then assigned.
+ExprPtr FunctionLowering::classAssignment(ir::BinaryOp op, const clang::CXXOperatorCallExpr* e) {
+  const Loc loc = module_.loc(e->getBeginLoc());
+  ExprPtr right = value(e->getArg(1));
+  ir::Block effects;
+  ir::Block* outer = std::exchange(out_, &effects);
+  ExprPtr target = place(e->getArg(0));
+  out_ = outer;
+  if (!effects.empty()) {
+    spill(right);
+    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+  }
+  const ir::Type type = target->type;
+  ExprPtr left = convert(ir::clone(*target), ir::carrierOf(type.scalar));
+  ExprPtr result = ir::binary(op, std::move(left), std::move(right), loc);
+  emit(loc, ir::Assign{std::move(target), std::nullopt, convert(std::move(result), type.scalar)});
+  return ir::literal(false, loc);   // it returns nothing
 }
 
 // ---- intrinsics -----------------------------------------------------------------------------------
@@ -68,6 +122,7 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
 ExprPtr FunctionLowering::vectorConstructor(const clang::CallExpr* e, ir::Type type) {
   const SourceLocation where = e->getBeginLoc();
   Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()));
+  if (type.isMatrix()) return matrix(type, std::move(args), where);
   int width = 0;
   for (std::size_t i = 0; i < args.size(); ++i) {
     if (!args[i]->type.isArithmetic()) {
@@ -92,6 +147,7 @@ constexpr int impossible = 1000;
 
 /// What it costs to hand `from` to a parameter `to`; conversions lose nothing but ulps, as in C++.
 int conversionCost(ir::Type from, ir::Type to) {
+  from = from.carrier();
   if (from == to) return 0;
   if (!from.isArithmetic() || !to.isArithmetic()) return impossible;
   int cost = 0;
@@ -100,14 +156,12 @@ int conversionCost(ir::Type from, ir::Type to) {
     cost += 20;
   }
   if (from.scalar == to.scalar) return cost;
-  switch (to.scalar) {
-    case Scalar::Float: return cost + (from.scalar == Scalar::Bool ? 3 : 1);
-    case Scalar::Uint: return from.scalar == Scalar::Float ? impossible : cost + 2;
-    case Scalar::Int:
-      return from.scalar == Scalar::Float ? impossible : cost + (from.scalar == Scalar::Bool ? 1 : 3);
-    case Scalar::Bool: return from.scalar == Scalar::Int && from.isVector() ? cost : impossible;  // a mask
-  }
-  return impossible;
+  if (to.scalar == Scalar::Float) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
+  if (to.scalar == Scalar::Bool)
+    return from.scalar == Scalar::Int && from.isVector() ? cost : impossible;  // a mask
+  if (from.scalar == Scalar::Float) return impossible;
+  if (to.scalar == Scalar::Uint) return cost + 2;
+  return cost + (from.scalar == Scalar::Bool ? 1 : 3);
 }
 
 struct Match {

@@ -266,13 +266,13 @@ ExprPtr FunctionLowering::compoundAssign(const clang::CompoundAssignOperator* e,
   const Loc loc = module_.loc(e->getBeginLoc());
   const bool isSignedRemainder =
       op == ir::BinaryOp::Rem && computed.scalar == ir::Scalar::Int;   // a function in GLSL
-  const bool isNumber = computed.isArithmetic() && !computed.isBool();
+  const bool isNumber = computed.isArithmetic() && !computed.isBool() && !computed.isNarrow();
   if (isNumber && computed.scalar == target->type.scalar && !isSignedRemainder) {
     if (isArithmeticOp(op)) right = withoutSplat(std::move(right));
     emit(loc, ir::Assign{std::move(target), op, std::move(right)});
     return result;
   }
-  // `i += 0.5f` computes in float and converts back
+  // `i += 0.5f` computes in float and converts back, and a narrow type computes in its carrier
   const ir::Scalar scalar = target->type.scalar;
   ExprPtr wide =
       binary(op, convert(ir::clone(*target), computed.scalar), std::move(right), e->getOperatorLoc());
@@ -290,9 +290,15 @@ ExprPtr FunctionLowering::increment(const clang::UnaryOperator* e, bool wantValu
     spill(result);
   }
   const ir::BinaryOp op = e->isIncrementOp() ? ir::BinaryOp::Add : ir::BinaryOp::Sub;
-  ExprPtr one = ir::literalOf(target->type.component(), 1, loc);
+  const ir::Type type = target->type;
+  ExprPtr one = ir::literalOf(type.carrier().component(), 1, loc);
   if (wantValue && e->isPrefix()) result = ir::clone(*target);
-  emit(loc, ir::Assign{std::move(target), op, std::move(one)});
+  if (type.isNarrow()) {
+    ExprPtr wide = binary(op, ir::clone(*target), std::move(one), e->getOperatorLoc());
+    emit(loc, ir::Assign{std::move(target), std::nullopt, convert(std::move(wide), type.scalar)});
+  } else {
+    emit(loc, ir::Assign{std::move(target), op, std::move(one)});
+  }
   return result;
 }
 
@@ -308,29 +314,34 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
     case clang::UO_Plus: return value(e->getSubExpr());
     case clang::UO_Minus: {
       ExprPtr operand = value(e->getSubExpr());
+      const ir::Type written = operand->type;
+      operand = convert(std::move(operand), ir::carrierOf(written.scalar));
       if (const auto* constant = std::get_if<ir::Literal>(&operand->node);
           constant && !operand->type.isBool()) {
         // -1 is a literal to its reader: change the sign bit of a float, wrap an integer
         const std::uint32_t bits =
-            operand->type.isFloat() ? constant->bits ^ 0x80000000u : 0u - constant->bits;
+            operand->type.carrier().isFloat() ? constant->bits ^ 0x80000000u : 0u - constant->bits;
         return literal(operand->type, bits, where);
       }
       const ir::Type type = operand->type;
       if (type.isBool()) module_.fail(Diag::Statement, where, {"arithmetic of bool vectors"});
-      return make(type, where, ir::Unary{ir::UnaryOp::Negate, std::move(operand)});
+      return convert(make(type, where, ir::Unary{ir::UnaryOp::Negate, std::move(operand)}), written.scalar);
     }
     case clang::UO_Not: {
       ExprPtr operand = value(e->getSubExpr());
+      const ir::Type written = operand->type;
+      operand = convert(std::move(operand), ir::carrierOf(written.scalar));
       const ir::Type type = operand->type;
       const ir::UnaryOp op = type.isBool() ? ir::UnaryOp::LogicalNot : ir::UnaryOp::BitNot;
-      return make(type, where, ir::Unary{op, std::move(operand)});
+      return convert(make(type, where, ir::Unary{op, std::move(operand)}), written.scalar);
     }
     case clang::UO_LNot: {
       ExprPtr operand = toBool(value(e->getSubExpr()));
       const ir::Type type = operand->type;
       ExprPtr result = make(type, where, ir::Unary{ir::UnaryOp::LogicalNot, std::move(operand)});
-      return type.isVector() && !module_.type(e->getType(), where).isBool() ? mask(std::move(result))
-                                                                            : std::move(result);
+      const ir::Type wanted = module_.type(e->getType(), where);
+      return type.isVector() && !wanted.isBool() ? convert(mask(std::move(result)), wanted.scalar)
+                                                 : std::move(result);
     }
     case clang::UO_Deref:
       value(e->getSubExpr());   // says what is wrong with it, if it is more than a pointer
@@ -354,7 +365,9 @@ ExprPtr FunctionLowering::VisitBinaryOperator(const clang::BinaryOperator* e) {
   const auto op = binaryOpOf(e->getOpcode());
   if (!op) return VisitExpr(e);
   Exprs operands = valuesInOrder({e->getLHS(), e->getRHS()});
-  return binary(*op, std::move(operands[0]), std::move(operands[1]), e->getOperatorLoc());
+  ExprPtr result = binary(*op, std::move(operands[0]), std::move(operands[1]), e->getOperatorLoc());
+  // vectors of a narrow type stay what they are after each operation
+  return convert(std::move(result), module_.type(e->getType(), e->getOperatorLoc()).scalar);
 }
 
 ExprPtr FunctionLowering::VisitCompoundAssignOperator(const clang::CompoundAssignOperator* e) {
@@ -363,6 +376,8 @@ ExprPtr FunctionLowering::VisitCompoundAssignOperator(const clang::CompoundAssig
 
 ExprPtr FunctionLowering::binary(ir::BinaryOp op, ExprPtr lhs, ExprPtr rhs, SourceLocation where) {
   assert(lhs->type.isArithmetic() && rhs->type.isArithmetic());   // Clang finds no operator otherwise
+  lhs = convert(std::move(lhs), ir::carrierOf(lhs->type.scalar));
+  rhs = convert(std::move(rhs), ir::carrierOf(rhs->type.scalar));
   if (isArithmeticOp(op) && lhs->type.isVector()) {
     // keep `2 * v` as it was written; two splats stay vectors
     ExprPtr bare = withoutSplat(std::move(rhs));
@@ -386,8 +401,9 @@ ExprPtr FunctionLowering::logical(const clang::BinaryOperator* e) {
   const ir::BinaryOp op = isAnd ? ir::BinaryOp::LogicalAnd : ir::BinaryOp::LogicalOr;
   if (e->getType()->isVectorType()) {
     Exprs operands = valuesInOrder({e->getLHS(), e->getRHS()});
-    return mask(
-        ir::binary(op, toBool(std::move(operands[0])), toBool(std::move(operands[1])), module_.loc(where)));
+    ExprPtr both =
+        ir::binary(op, toBool(std::move(operands[0])), toBool(std::move(operands[1])), module_.loc(where));
+    return convert(mask(std::move(both)), module_.type(e->getType(), where).scalar);
   }
   ExprPtr lhs = condition(e->getLHS());
   ir::Block effects;

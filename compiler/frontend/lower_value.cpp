@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Leaves, casts, members and initialisers: expressions without effects of their own.
+#include <algorithm>
+
 #include <clang/AST/ASTContext.h>
 #include <clang/AST/DeclCXX.h>
 #include <clang/AST/ExprCXX.h>
@@ -10,7 +12,9 @@
 
 #include "frontend/clang_loc.hpp"
 #include "frontend/function_lowering.hpp"
+#include "frontend/prelude.hpp"
 #include "ir/build.hpp"
+#include "ir/quantize.hpp"
 
 namespace skc::frontend {
 
@@ -128,8 +132,18 @@ bool isKernelInteger(clang::QualType type) {
   if (type->isEnumeralType()) return true;
   const auto* builtin = type->getAs<clang::BuiltinType>();
   if (!builtin) return false;
-  return builtin->getKind() == clang::BuiltinType::Int || builtin->getKind() == clang::BuiltinType::UInt ||
-         builtin->getKind() == clang::BuiltinType::Bool || builtin->getKind() == clang::BuiltinType::Char32;
+  switch (builtin->getKind()) {
+    case clang::BuiltinType::Bool:
+    case clang::BuiltinType::Char32:
+    case clang::BuiltinType::Char_S:
+    case clang::BuiltinType::SChar:
+    case clang::BuiltinType::UChar:
+    case clang::BuiltinType::Short:
+    case clang::BuiltinType::UShort:
+    case clang::BuiltinType::Int:
+    case clang::BuiltinType::UInt: return true;
+    default: return false;
+  }
 }
 
 }  // namespace
@@ -149,8 +163,10 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
   switch (e->getCastKind()) {
     case clang::CK_NoOp:
     case clang::CK_LValueToRValue:
+    case clang::CK_UserDefinedConversion:
     case clang::CK_ConstructorConversion: return value(operand);
-    case clang::CK_FloatingCast: return value(operand);     // a double literal in float's place
+    case clang::CK_FloatingCast:   // of a double literal in float's place, too
+      return convert(value(operand), module_.type(e->getType(), where).scalar);
     case clang::CK_IntegralCast:
       if (!isKernelInteger(operand->getType())) {
         if (ExprPtr constant = integerConstant(e, module_.type(e->getType(), where))) return constant;
@@ -189,8 +205,8 @@ ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
   const bool isImplicit = llvm::isa<clang::ImplicitCastExpr>(e);
   const bool mixesSigns =
       isImplicit && !from.isBool() && !to.isBool();   // int4 / uint4 would follow the left side
-  if (!from.isVector() || !to.isVector() || from.width != to.width || from.isFloat() || to.isFloat() ||
-      mixesSigns) {
+  if (!from.isVector() || !to.isVector() || from.width != to.width || from.carrier().isFloat() ||
+      to.carrier().isFloat() || mixesSigns) {
     module_.fail(isImplicit ? Diag::MixedVectors : Diag::BitCast, e->getBeginLoc(), {module_.spelling(to)});
   }
   ExprPtr operand = value(e->getSubExpr());
@@ -200,8 +216,10 @@ ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
 
 namespace {
 
-/// -int4(b), as comparisons of vectors give it: 0 or -1 in each component.
+/// -int4(b), as comparisons of vectors give it: 0 or -1 in each component, possibly of a narrow type.
 ExprPtr* maskedBool(ir::Expr& e) {
+  if (auto* kept = std::get_if<ir::Convert>(&e.node); kept && e.type.isNarrow())
+    return maskedBool(*kept->operand);
   auto* negate = std::get_if<ir::Unary>(&e.node);
   if (!negate || negate->op != ir::UnaryOp::Negate) return nullptr;
   auto* conversion = std::get_if<ir::Convert>(&negate->operand->node);
@@ -215,7 +233,24 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
   if (!e->type.isArithmetic() || e->type.scalar == scalar) return e;
   if (scalar == ir::Scalar::Bool) return toBool(std::move(e));
   const Loc loc = e->loc;
-  if (const auto* constant = std::get_if<ir::Literal>(&e->node)) {
+  if (auto* construct = std::get_if<ir::Construct>(&e->node);
+      construct && e->type.isVector() && construct->args.size() == 1 && construct->args[0]->type.isScalar()) {
+    return splat(convert(std::move(construct->args[0]), scalar), e->type.width);   // `2.0` beside a vector
+  }
+  if (auto* constant = std::get_if<ir::Literal>(&e->node)) {
+    const ir::Scalar carrier = ir::carrierOf(scalar);
+    if (e->type.isNarrow()) {   // the bits are those of the carrier already
+      e->type = e->type.carrier();
+      return convert(std::move(e), scalar);
+    }
+    if (ir::isNarrow(scalar) && e->type.scalar != carrier) {
+      return convert(convert(std::move(e), carrier), scalar);
+    }
+    if (ir::isNarrow(scalar)) {
+      constant->bits = ir::quantize(scalar, constant->bits);
+      e->type = ir::Type::of(scalar);
+      return e;
+    }
     // `v = 1` reads better as 1.0 than as float(1); every int is rounded as the device would
     if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Float) {
       return ir::literal(static_cast<float>(static_cast<std::int32_t>(constant->bits)), loc);
@@ -285,21 +320,28 @@ ExprPtr FunctionLowering::VisitArraySubscriptExpr(const clang::ArraySubscriptExp
       decay && decay->getCastKind() == clang::CK_ArrayToPointerDecay) {
     array = decay->getSubExpr();
   }
+  return indexed(array, e->getIdx(), e->getBeginLoc());
+}
+
+/// array[index], of an array, a vector or a matrix.
+ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* index, SourceLocation where) {
   Exprs parts;
   parts.push_back(value(array));
   ir::Block effects;
-  parts.push_back(valueInto(e->getIdx(), effects));
+  parts.push_back(valueInto(index, effects));
   if (!effects.empty()) {
     // the element is read or written after the index's effects: the array itself is not copied
     keepInPlace(parts[0]);
     for (ir::Stmt& s : effects) out_->push_back(std::move(s));
   }
   const ir::Type outer = parts[0]->type;
-  if (outer.kind != ir::Type::Kind::Array && !outer.isVector()) {
-    module_.fail(Diag::Pointer, e->getBeginLoc(), {e->getBase()->getType().getAsString()});
+  if (outer.kind != ir::Type::Kind::Array && !outer.isVector() && !outer.isMatrix()) {
+    module_.fail(Diag::Pointer, where, {array->getType().getAsString()});
   }
-  const ir::Type type = outer.isVector() ? outer.component() : module_.arrayAt(outer.index).element;
-  return make(type, e->getBeginLoc(), ir::Index{std::move(parts[0]), std::move(parts[1])});
+  const bool isArray = outer.kind == ir::Type::Kind::Array;
+  const ir::Type type = isArray ? module_.arrayAt(outer.index).element : outer.indexed();
+  parts[1] = convert(std::move(parts[1]), ir::carrierOf(parts[1]->type.scalar));
+  return make(type, where, ir::Index{std::move(parts[0]), std::move(parts[1])});
 }
 
 // ---- initialisers ---------------------------------------------------------------------------------
@@ -310,6 +352,12 @@ ExprPtr FunctionLowering::VisitInitListExpr(const clang::InitListExpr* e) {
   const ir::Type type = module_.type(list->getType(), list->getBeginLoc());
   if (type.isScalar()) {
     return list->getNumInits() == 0 ? zero(type, list->getBeginLoc()) : value(list->getInit(0));
+  }
+  if (type.isMatrix()) {   // its rows are a member in the prelude
+    const auto* rows =
+        list->getNumInits() == 0 ? nullptr : llvm::dyn_cast<clang::InitListExpr>(list->getInit(0));
+    if (!rows) return zero(type, list->getBeginLoc());
+    return aggregate(type, rows->inits(), nullptr, list->getBeginLoc());
   }
   return aggregate(type, list->inits(), list->getArrayFiller(), list->getBeginLoc());
 }
@@ -330,6 +378,8 @@ ExprPtr FunctionLowering::aggregate(ir::Type type, llvm::ArrayRef<const clang::E
       width += arg->type.width;
     }
     for (; width < type.width; ++width) args.push_back(zero(type.component(), where));
+  } else if (type.isMatrix()) {
+    for (std::size_t i = args.size(); i < type.width; ++i) args.push_back(zero(type.indexed(), where));
   } else if (type.kind == ir::Type::Kind::Struct) {
     const std::vector<ir::StructField> fields = module_.structAt(type.index).fields;
     for (std::size_t i = args.size(); i < fields.size(); ++i) args.push_back(zero(fields[i].type, where));
@@ -357,10 +407,46 @@ ExprPtr FunctionLowering::VisitCXXScalarValueInitExpr(const clang::CXXScalarValu
 ExprPtr FunctionLowering::VisitCXXConstructExpr(const clang::CXXConstructExpr* e) {
   const clang::CXXConstructorDecl* constructor = e->getConstructor();
   if (constructor->isCopyOrMoveConstructor() && e->getNumArgs() == 1) return value(e->getArg(0));
+  if (module_.isPrelude(constructor)) {   // unorm8(), unorm8(x), float2x2()
+    const ir::Type type = module_.type(e->getType(), e->getBeginLoc());
+    return e->getNumArgs() == 0 ? zero(type, e->getBeginLoc()) : convert(value(e->getArg(0)), type.scalar);
+  }
   if (constructor->isDefaultConstructor() && !constructor->isUserProvided()) {
     return defaultStruct(constructor->getParent(), e->getBeginLoc());
   }
   module_.fail(Diag::Constructor, e->getBeginLoc(), {constructor->getParent()->getNameAsString()});
+}
+
+/// From its rows, from all its elements row by row, or with one number along the diagonal.
+ExprPtr FunctionLowering::matrix(ir::Type type, Exprs parts, SourceLocation where) {
+  const std::size_t size = type.width;
+  const bool areScalars =
+      std::all_of(parts.begin(), parts.end(), [](const ExprPtr& part) { return part->type.isScalar(); });
+  const bool areRows = std::all_of(parts.begin(), parts.end(), [&](const ExprPtr& part) {
+    return part->type.isVector() && part->type.width == size;
+  });
+  if (parts.size() == 1 && parts[0]->type == type) return std::move(parts[0]);
+  for (ExprPtr& part : parts) part = convert(std::move(part), ir::Scalar::Float);
+  if (areRows && parts.size() == size) return make(type, where, ir::Construct{std::move(parts)});
+  const bool isDiagonal = areScalars && parts.size() == 1;
+  if (!isDiagonal && !(areScalars && parts.size() == size * size)) {
+    module_.fail(Diag::MatrixParts, where,
+                 {module_.spelling(type), std::to_string(size), std::to_string(size * size)});
+  }
+  if (isDiagonal) spill(parts[0]);
+  Exprs rows;
+  for (std::size_t row = 0; row < size; ++row) {
+    Exprs elements;
+    for (std::size_t column = 0; column < size; ++column) {
+      if (!isDiagonal) {
+        elements.push_back(std::move(parts[row * size + column]));
+      } else {
+        elements.push_back(row == column ? ir::clone(*parts[0]) : zero(type.component(), where));
+      }
+    }
+    rows.push_back(make(type.indexed(), where, ir::Construct{std::move(elements)}));
+  }
+  return make(type, where, ir::Construct{std::move(rows)});
 }
 
 /// `Hit h;` where Hit's members have initialisers, and `Hit()`: the rest is zero.

@@ -19,6 +19,7 @@
 #include "frontend/lower_module.hpp"
 #include "frontend/prelude.hpp"
 #include "ir/build.hpp"
+#include "ir/print.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 
@@ -368,6 +369,12 @@ std::optional<ir::Scalar> scalarOf(const clang::BuiltinType* builtin) {
   switch (builtin->getKind()) {
     case clang::BuiltinType::Bool:
     case clang::BuiltinType::Char32: return ir::Scalar::Bool;  // components of bool vectors
+    case clang::BuiltinType::Char_S:
+    case clang::BuiltinType::SChar: return ir::Scalar::Char;
+    case clang::BuiltinType::UChar: return ir::Scalar::Uchar;
+    case clang::BuiltinType::Short: return ir::Scalar::Short;
+    case clang::BuiltinType::UShort: return ir::Scalar::Ushort;
+    case clang::BuiltinType::Half: return ir::Scalar::Half;
     case clang::BuiltinType::Int: return ir::Scalar::Int;
     case clang::BuiltinType::UInt: return ir::Scalar::Uint;
     case clang::BuiltinType::Float: return ir::Scalar::Float;
@@ -403,7 +410,12 @@ ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
   if (const auto* array = context().getAsConstantArrayType(canonical)) {
     return arrayType(type(array->getElementType(), use), array->getSize().getZExtValue(), use);
   }
-  if (const clang::CXXRecordDecl* record = canonical->getAsCXXRecordDecl()) return structType(record, use);
+  if (const clang::CXXRecordDecl* record = canonical->getAsCXXRecordDecl()) {
+    if (isPrelude(record)) {
+      if (const auto known = classType(record->getName())) return *known;
+    }
+    return structType(record, use);
+  }
   fail(Diag::ScalarType, use, {qualified.getAsString()});
 }
 
@@ -463,12 +475,11 @@ ir::Type ModuleLowering::arrayType(ir::Type element, std::uint64_t length, Sourc
 }
 
 std::string ModuleLowering::spelling(ir::Type type) const {
-  constexpr const char* scalars[] = {"bool", "int", "uint", "float"};
   switch (type.kind) {
-    case ir::Type::Kind::Void: return "void";
-    case ir::Type::Kind::Scalar: return scalars[static_cast<int>(type.scalar)];
+    case ir::Type::Kind::Void:
+    case ir::Type::Kind::Scalar:
     case ir::Type::Kind::Vector:
-      return fmt::format("{}{}", scalars[static_cast<int>(type.scalar)], type.width);
+    case ir::Type::Kind::Matrix: return ir::print(module_, type);
     case ir::Type::Kind::Struct: return module_.structs[type.index].name;
     case ir::Type::Kind::Array: {
       const ir::Array& array = module_.arrays[type.index];

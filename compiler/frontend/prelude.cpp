@@ -10,19 +10,31 @@
 #include <fmt/format.h>
 
 #include "ir/intrinsics.hpp"
+#include "ir/print.hpp"
 
 namespace skc::frontend {
 namespace {
 
 struct VectorFamily {
-  std::string_view scalar;   ///< as the user writes it
-  std::string_view element;  ///< as Clang holds it
+  std::string_view scalar;    ///< as the user writes it
+  std::string_view element;   ///< as Clang holds it
+  std::string_view carrier;   ///< what intrinsics compute it in
 };
 
 // Vectors of `bool` have no swizzles in Clang, so their components are char32_t, a type that nothing
 // else uses and that has the size of the masks that vector comparisons give.
-constexpr std::array<VectorFamily, 4> families = {
-    {{"float", "float"}, {"int", "int"}, {"uint", "unsigned"}, {"bool", "char32_t"}}};
+constexpr std::array<VectorFamily, 9> families = {{{"float", "float", "float"},
+                                                   {"int", "int", "int"},
+                                                   {"uint", "unsigned", "uint"},
+                                                   {"bool", "char32_t", "bool"},
+                                                   {"half", "__fp16", "float"},
+                                                   {"char", "char", "int"},
+                                                   {"uchar", "unsigned char", "int"},
+                                                   {"short", "short", "int"},
+                                                   {"ushort", "unsigned short", "int"}}};
+
+// Clang has no such numbers: they are classes that convert to and from float.
+constexpr std::array<std::string_view, 4> normalized = {"unorm8", "snorm8", "unorm16", "snorm16"};
 
 /// The class of values that a signature letter admits, as far as a result type depends on it.
 bool countsForResult(char letter) {
@@ -69,6 +81,7 @@ std::string declare(std::string_view name, const std::vector<std::string_view>& 
     case 'C': type = fmt::format("__sk_B<{}>", deciding); break;
     case 'N':
     case 'S': type = fmt::format("__sk_N<{}>", deciding); break;
+    case 'X': type = "A"; break;
     case 'f': type = "float"; break;
     case 'b': type = "bool"; break;
   }
@@ -76,7 +89,9 @@ std::string declare(std::string_view name, const std::vector<std::string_view>& 
 }
 
 std::string vectorTypes() {
-  std::string text = "typedef unsigned uint;\n";
+  std::string text =
+      "typedef unsigned uint; typedef __fp16 half; typedef unsigned char uchar; typedef unsigned short "
+      "ushort;\n";
   for (const VectorFamily& family : families) {
     for (int width = 2; width <= 4; ++width) {
       text += fmt::format(
@@ -88,7 +103,51 @@ std::string vectorTypes() {
   return text;
 }
 
-/// __sk_traits<T>: the float, int, uint and bool types of T's width.
+/// A class whose values are floats or vectors of them, kept with fewer bits.
+std::string normalizedType(std::string_view name, std::string_view carrier) {
+  return fmt::format(
+      "struct {0} {{\n"
+      "  {0}() = default; {0}({1}); operator {1}() const;\n"
+      "  void operator+=({1}); void operator-=({1}); void operator*=({1}); void operator/=({1});\n}};\n",
+      name, carrier);
+}
+
+std::string normalizedTypes() {
+  std::string text;
+  for (const std::string_view name : normalized) {
+    text += normalizedType(name, "float");
+    for (int width = 2; width <= 4; ++width) {
+      const std::string vector = fmt::format("{}x{}", name, width);
+      text += normalizedType(vector, fmt::format("float{}", width));
+      text += fmt::format("template <class... A> {0} __sk_make_{0}(A...);\n", vector);
+    }
+  }
+  return text;
+}
+
+/// Classes, because Clang's own matrices have no rows. Lowering knows what their operators mean.
+std::string matrixTypes() {
+  std::string text;
+  for (int size = 2; size <= 4; ++size) {
+    text += fmt::format(
+        "struct float{0}x{0} {{\n"
+        "  float{0} __sk_rows[{0}];\n"
+        "  float{0}& operator[](int); float{0} operator[](int) const;\n"
+        "  void operator+=(float{0}x{0}); void operator-=(float{0}x{0}); void operator*=(float{0}x{0});\n"
+        "  void operator*=(float); void operator/=(float);\n}};\n"
+        "float{0}x{0} operator+(float{0}x{0}, float{0}x{0}); float{0}x{0} operator-(float{0}x{0}, "
+        "float{0}x{0});\n"
+        "float{0}x{0} operator*(float{0}x{0}, float{0}x{0}); float{0} operator*(float{0}x{0}, float{0});\n"
+        "float{0}x{0} operator*(float{0}x{0}, float); float{0}x{0} operator*(float, float{0}x{0});\n"
+        "float{0}x{0} operator/(float{0}x{0}, float); float{0}x{0} operator-(float{0}x{0});\n"
+        "bool operator==(float{0}x{0}, float{0}x{0});\n"
+        "template <class... A> float{0}x{0} __sk_make_float{0}x{0}(A...);\n",
+        size);
+  }
+  return text;
+}
+
+/// __sk_traits<T>: the float, int, uint and bool types of T's width, and as N what T is computed in.
 std::string typeTraits() {
   std::string text = "template <class T> struct __sk_traits;\n";
   for (const VectorFamily& family : families) {
@@ -96,21 +155,29 @@ std::string typeTraits() {
       const std::string suffix = width == 1 ? "" : std::to_string(width);
       text += fmt::format(
           "template <> struct __sk_traits<{0}{1}> {{ using F = float{1}; using I = int{1}; "
-          "using U = uint{1}; using B = bool{1}; }};\n",
-          family.scalar, suffix);
+          "using U = uint{1}; using B = bool{1}; using N = {2}{1}; }};\n",
+          family.scalar, suffix, family.carrier);
+    }
+  }
+  for (const std::string_view name : normalized) {
+    text += fmt::format("template <> struct __sk_traits<{0}> : __sk_traits<float> {{}};\n", name);
+    for (int width = 2; width <= 4; ++width) {
+      text +=
+          fmt::format("template <> struct __sk_traits<{0}x{1}> : __sk_traits<float{1}> {{}};\n", name, width);
     }
   }
   text +=
       "template <> struct __sk_traits<double> : __sk_traits<float> {};\n"
       "template <> struct __sk_traits<char32_t> : __sk_traits<bool> {};\n"
-      "template <class... A> using __sk_N = decltype((A() + ...));\n"
+      "template <> struct __sk_traits<signed char> : __sk_traits<char> {};\n"
       "template <class A> using __sk_one = __sk_traits<A>;\n"
       "template <class... A> struct __sk_sum : __sk_traits<decltype((A() + ...))> {};\n"
       "template <class A> struct __sk_sum<A> : __sk_traits<A> {};\n"
       "template <class... A> using __sk_F = typename __sk_sum<A...>::F;\n"
       "template <class... A> using __sk_I = typename __sk_sum<A...>::I;\n"
       "template <class... A> using __sk_U = typename __sk_sum<A...>::U;\n"
-      "template <class... A> using __sk_B = typename __sk_sum<A...>::B;\n";
+      "template <class... A> using __sk_B = typename __sk_sum<A...>::B;\n"
+      "template <class... A> using __sk_N = typename __sk_traits<decltype((A() + ...))>::N;\n";
   return text;
 }
 
@@ -127,7 +194,7 @@ template <class T> T neighbor(gather_2d<T> a, int dx, int dy = 0);
 template <class T> T neighbor(gather_2d<T> a, int2 offset);
 template <class T> int4 indexof(const T& stream);
 template <class T> int4 extentof(const T& stream);
-template <class M, class A, class B> __sk_N<A, B> select(M condition, A yes, B no);
+template <class M, class A, class B> decltype(A() + B()) select(M condition, A yes, B no);
 template <class T> T select(bool condition, T yes, T no);
 template <class T> void sincos(T x, T& sine, T& cosine);
 template <class T> T modf(T x, T& whole);
@@ -160,18 +227,31 @@ std::string intrinsics() {
 }  // namespace
 
 std::string preludeText() {
-  return fmt::format("# 1 \"sk-prelude\" 1 3\n{}{}{}{}# 1 \"<command line>\" 2\n", vectorTypes(),
-                     typeTraits(), gathersAndStreams, intrinsics());
+  return fmt::format("# 1 \"sk-prelude\" 1 3\n{}{}{}{}{}{}# 1 \"<command line>\" 2\n", vectorTypes(),
+                     normalizedTypes(), matrixTypes(), typeTraits(), gathersAndStreams, intrinsics());
 }
 
 bool isVectorTypeName(std::string_view name) {
   if (name.size() < 4) return false;
   const char width = name.back();
   if (width < '2' || width > '4') return false;
+  const std::string_view stem = name.substr(0, name.size() - 1);
   for (const VectorFamily& family : families) {
-    if (name.substr(0, name.size() - 1) == family.scalar) return true;
+    if (stem == family.scalar) return true;
   }
-  return false;
+  return classType(name) && stem.back() == 'x';
+}
+
+std::optional<ir::Type> classType(std::string_view name) {
+  constexpr ir::Scalar scalars[] = {ir::Scalar::Unorm8, ir::Scalar::Snorm8, ir::Scalar::Unorm16,
+                                    ir::Scalar::Snorm16};
+  for (int width = 1; width <= 4; ++width) {
+    for (const ir::Scalar scalar : scalars) {
+      if (name == ir::spelling(scalar, width)) return ir::Type::of(scalar, width);
+    }
+    if (width > 1 && name == fmt::format("float{0}x{0}", width)) return ir::Type::matrix(width);
+  }
+  return std::nullopt;
 }
 
 std::string vectorConstructorName(std::string_view name) { return fmt::format("__sk_make_{}", name); }

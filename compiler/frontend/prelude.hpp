@@ -5,15 +5,24 @@
 // the table. Names that users should not write begin with `__sk_`.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
+
+#include "ir/type.hpp"
 
 namespace skc::frontend {
 
 /// Text of the prelude, wrapped in line markers that name it and mark it as a system header.
 std::string preludeText();
 
-/// True for the type names whose `T(...)` is a vector constructor: "float2" .. "bool4".
+/// True for the type names whose `T(...)` is made of components or rows: "float2" .. "unorm8x4",
+/// "float2x2" ...
 bool isVectorTypeName(std::string_view name);
+
+/// The type that a class of the prelude stands for: "unorm8", "unorm8x4", "float2x2". Vectors of the
+/// others, and scalars, are types of Clang's.
+std::optional<ir::Type> classType(std::string_view name);
 
 /// The function that stands for `name(...)` in the edited token stream.
 std::string vectorConstructorName(std::string_view name);

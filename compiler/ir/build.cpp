@@ -18,6 +18,11 @@ ExprPtr makeExpr(Type type, Expr::Node node, Loc loc) {
 ExprPtr literal(float value, Loc loc) {
   return makeExpr(Type::of(Scalar::Float), Literal{std::bit_cast<std::uint32_t>(value)}, loc);
 }
+ExprPtr literal(double value, Loc loc) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const Literal halves{static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
+  return makeExpr(Type::of(Scalar::Double), halves, loc);
+}
 ExprPtr literal(std::int32_t value, Loc loc) {
   return makeExpr(Type::of(Scalar::Int), Literal{static_cast<std::uint32_t>(value)}, loc);
 }
@@ -30,13 +35,13 @@ ExprPtr literal(bool value, Loc loc) {
 
 ExprPtr literalOf(Type type, int value, Loc loc) {
   if (type.isVector()) return construct(type, exprs(literalOf(type.component(), value, loc)), loc);
-  switch (type.scalar) {
-    case Scalar::Bool: return literal(value != 0, loc);
-    case Scalar::Int: return literal(std::int32_t{value}, loc);
-    case Scalar::Uint: return literal(static_cast<std::uint32_t>(value), loc);
-    case Scalar::Float: break;
-  }
-  return literal(static_cast<float>(value), loc);
+  if (type.scalar == Scalar::Bool) return literal(value != 0, loc);
+  if (type.scalar == Scalar::Uint) return literal(static_cast<std::uint32_t>(value), loc);
+  if (type.scalar == Scalar::Double) return literal(static_cast<double>(value), loc);
+  const bool isInt = carrierOf(type.scalar) == Scalar::Int;
+  ExprPtr result = isInt ? literal(std::int32_t{value}, loc) : literal(static_cast<float>(value), loc);
+  result->type = type;
+  return result;
 }
 
 ExprPtr varRef(const Function& function, VarId var, Loc loc) {
@@ -77,6 +82,8 @@ bool isComparison(BinaryOp op) {
 }
 
 Type binaryType(BinaryOp op, Type lhs, Type rhs) {
+  if (lhs.isMatrix() && rhs.isVector()) return rhs;
+  if (rhs.isMatrix() && !isComparison(op)) return rhs;
   if (isComparison(op)) return lhs.isVector() ? lhs.withScalar(Scalar::Bool) : Type::of(Scalar::Bool);
   if (op == BinaryOp::ShiftLeft || op == BinaryOp::ShiftRight) return lhs;
   return rhs.isVector() ? rhs : lhs;
@@ -120,7 +127,8 @@ ExprPtr member(const Module& module, ExprPtr base, std::uint32_t field, Loc loc)
 }
 
 ExprPtr index(const Module& module, ExprPtr base, ExprPtr index, Loc loc) {
-  const Type type = base->type.isVector() ? base->type.component() : module.arrays[base->type.index].element;
+  const bool isArray = base->type.kind == Type::Kind::Array;
+  const Type type = isArray ? module.arrays[base->type.index].element : base->type.indexed();
   return makeExpr(type, Index{std::move(base), std::move(index)}, loc);
 }
 

@@ -20,10 +20,11 @@ ExprPtr makeExpr(Type type, Expr::Node node, Loc loc = {});
 
 /// Literals of scalar type.
 ExprPtr literal(float value, Loc loc = {});
+ExprPtr literal(double value, Loc loc = {});
 ExprPtr literal(std::int32_t value, Loc loc = {});
 ExprPtr literal(std::uint32_t value, Loc loc = {});
 ExprPtr literal(bool value, Loc loc = {});
-/// `value` converted to the type: a Literal of a scalar, a splat of a vector.
+/// `value`, which the type can hold, in that type: a Literal of a scalar, a splat of a vector.
 ExprPtr literalOf(Type type, int value, Loc loc = {});
 
 ExprPtr varRef(const Function& function, VarId var, Loc loc = {});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ir/quantize.hpp"
 #include "support/overloaded.hpp"
 
 namespace skc::ir {
@@ -105,6 +106,12 @@ Bits fromFloat(Scalar to, float value) {
 }
 
 Bits convertBits(Scalar from, Scalar to, std::uint32_t bits) {
+  if (isNarrow(from)) return from == to ? Bits(bits) : convertBits(carrierOf(from), to, bits);
+  if (isNarrow(to)) {
+    const Bits carried = from == carrierOf(to) ? Bits(bits) : convertBits(from, carrierOf(to), bits);
+    return carried ? Bits(quantize(to, *carried)) : std::nullopt;
+  }
+  if (from == to) return bits;
   if (to == Scalar::Bool) return boolBits(from == Scalar::Float ? asFloat(bits) != 0 : bits != 0);
   if (from == Scalar::Float) return fromFloat(to, asFloat(bits));
   if (to != Scalar::Float) return bits;
@@ -116,7 +123,7 @@ class Evaluator {
   Evaluator(const Module& module, Constants constants) : module_(module), constants_(constants) {}
 
   Bits value(const Expr& expr) const {
-    if (!expr.type.isScalar()) return std::nullopt;
+    if (!expr.type.isScalar() || expr.type.scalar == Scalar::Double) return std::nullopt;
     if (const auto* n = std::get_if<Literal>(&expr.node)) return n->bits;
     if (const auto* n = std::get_if<ConstantRef>(&expr.node)) {
       if (constants_ == Constants::Keep) return std::nullopt;
@@ -154,12 +161,8 @@ class Evaluator {
     if (n.op == BinaryOp::LogicalAnd || n.op == BinaryOp::LogicalOr) return logical(n, a);
     const Bits b = a ? value(*n.rhs) : std::nullopt;
     if (!a || !b) return std::nullopt;
-    switch (n.lhs->type.scalar) {
-      case Scalar::Float: return binaryFloat(n.op, asFloat(*a), asFloat(*b));
-      case Scalar::Bool: return compare(n.op, *a, *b);
-      case Scalar::Int:
-      case Scalar::Uint: break;
-    }
+    if (n.lhs->type.isFloat()) return binaryFloat(n.op, asFloat(*a), asFloat(*b));
+    if (n.lhs->type.isBool()) return compare(n.op, *a, *b);
     return binaryInteger(n.op, n.lhs->type.scalar == Scalar::Int, *a, *b);
   }
 

@@ -37,6 +37,7 @@ std::optional<Type> typeOf(char letter, Choice choice) {
     case 'b': return Type::of(Bool);
     case 'w': return only(choice.width == 3, Float, 3);
     case 'V': return only(isVector, Float, choice.width);
+    case 'X': return isVector ? std::optional(Type::matrix(choice.width)) : std::nullopt;
     case 'C': return only(isVector, Bool, choice.width);
     case 'N': return only(choice.generic != Bool, choice.generic, choice.width);
     case 'n': return only(choice.generic != Bool, choice.generic, 1);

@@ -11,6 +11,11 @@
 //     of them may be a scalar of the other's component type (GLSL's scalar-vector operators; not
 //     for comparisons). Shifts take a count of the same component type's integer family.
 //     Comparisons of vectors are componentwise and give a bool vector.
+//   * Narrow scalars (half, char ... snorm16) and their vectors are for keeping values: no operator
+//     takes them but Convert, Select, Construct, Swizzle and Index. A Convert to one quantises, as
+//     quantize.hpp says; one to its carrier (carrierOf) changes no value.
+//   * Matrices have rows: an Index gives a row, Construct takes all of them. They know + - * == !=,
+//     * and / with a scalar, and * with a vector on the right, which is a column.
 //   * A place (left side, or argument of an InOut parameter) is a VarRef of a mutable variable,
 //     or a Member, Index or Swizzle without repeated components of a place.
 //   * One loop node keeps the shape that its author wrote. `continue` goes to `step`, then `cond`.
@@ -53,8 +58,9 @@ using KernelId = std::uint32_t;
 struct Expr;
 using ExprPtr = std::unique_ptr<Expr>;
 
-/// A scalar; vectors of literals are Constructs. `bits` holds bool 0/1, int32, uint32 or float32 bits.
-struct Literal { std::uint32_t bits; };
+/// A scalar; vectors of literals are Constructs. `bits` holds bool 0/1, int32, uint32 or float32
+/// bits; of a narrow scalar, those of its carrier; of a double the lower half, and `high` the upper.
+struct Literal { std::uint32_t bits; std::uint32_t high = 0; };
 struct VarRef { VarId var; };
 struct ConstantRef { ConstantId constant; };
 
@@ -72,11 +78,11 @@ struct Select { ExprPtr cond, yes, no; };
 /// Changes the component type: C++'s conversion, `bool(x)` is `x != 0`. Same width.
 struct Convert { ExprPtr operand; };
 /// A vector from scalars and vectors whose components add up to its width, or from one scalar
-/// (splat); a struct from all its members; an array from all its elements.
+/// (splat); a matrix from all its rows; a struct from all its members; an array from all its elements.
 struct Construct { std::vector<ExprPtr> args; };
 struct Swizzle { ExprPtr base; std::vector<std::uint8_t> components; };   ///< of a vector; 1 to 4
 struct Member { ExprPtr base; std::uint32_t field; };
-/// Of an array or a vector, at an int or uint. Outside an array, it is the nearest element.
+/// Of an array, a vector or a matrix, at an int or uint. Outside an array, it is the nearest element.
 struct Index { ExprPtr base, index; };
 struct Call { FunctionId callee; std::vector<ExprPtr> args; };   ///< no InOut parameters, not void
 struct IntrinsicCall { Intrinsic intrinsic; std::vector<ExprPtr> args; };

@@ -23,12 +23,10 @@ std::string nameOf(const Function& function, VarId var) {
 }
 
 std::string literalText(Type type, std::uint32_t bits) {
-  switch (type.scalar) {
-    case Scalar::Bool: return bits != 0 ? "true" : "false";
-    case Scalar::Int: return std::to_string(static_cast<std::int32_t>(bits));
-    case Scalar::Uint: return std::to_string(bits) + "u";
-    case Scalar::Float: break;
-  }
+  if (type.isNarrow()) return spelling(type.scalar) + "(" + literalText(type.carrier(), bits) + ")";
+  if (type.scalar == Scalar::Bool) return bits != 0 ? "true" : "false";
+  if (type.scalar == Scalar::Int) return std::to_string(static_cast<std::int32_t>(bits));
+  if (type.scalar == Scalar::Uint) return std::to_string(bits) + "u";
   const float value = std::bit_cast<float>(bits);
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value < 0 ? "-inf" : "inf";

@@ -19,8 +19,13 @@ std::string_view spelling(UnaryOp op) {
 }
 
 std::string spelling(Scalar scalar, int width) {
-  constexpr std::array<std::string_view, 4> names = {"bool", "int", "uint", "float"};
-  return std::string(names[static_cast<std::size_t>(scalar)]) + (width > 1 ? std::to_string(width) : "");
+  constexpr std::array<std::string_view, 14> names = {"bool",   "int",    "uint",    "float",  "double",
+                                                      "half",   "char",   "uchar",   "short",  "ushort",
+                                                      "unorm8", "snorm8", "unorm16", "snorm16"};
+  std::string name(names[static_cast<std::size_t>(scalar)]);
+  if (width == 1) return name;
+  const bool endsInDigit = name.back() >= '0' && name.back() <= '9';   // "unorm8x4"
+  return name + (endsInDigit ? "x" : "") + std::to_string(width);
 }
 
 std::string_view spelling(VarRole role) {
@@ -56,6 +61,7 @@ std::string print(const Module& module, Type type) {
     case Type::Kind::Void: return "void";
     case Type::Kind::Scalar:
     case Type::Kind::Vector: return spelling(type.scalar, type.width);
+    case Type::Kind::Matrix: return "float" + std::to_string(type.width) + "x" + std::to_string(type.width);
     case Type::Kind::Struct: {
       const Struct& entry = module.structs[type.index];
       return qualifier(entry.scope) + entry.name;

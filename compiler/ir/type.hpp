@@ -12,18 +12,60 @@
 
 namespace skc::ir {
 
-enum class Scalar : std::uint8_t { Bool, Int, Uint, Float };
+/// From Half on, the narrow scalars: types of storage, whose values are a part of their carrier's.
+enum class Scalar : std::uint8_t {
+  Bool,
+  Int,
+  Uint,
+  Float,
+  Double,
+  Half,
+  Char,
+  Uchar,
+  Short,
+  Ushort,
+  Unorm8,
+  Snorm8,
+  Unorm16,
+  Snorm16,
+};
+
+constexpr bool isNarrow(Scalar scalar) { return scalar >= Scalar::Half; }
+
+/// The scalar that a value of this one is computed in: Int or Float for a narrow one, else itself.
+constexpr Scalar carrierOf(Scalar scalar) {
+  switch (scalar) {
+    case Scalar::Bool:
+    case Scalar::Int:
+    case Scalar::Uint:
+    case Scalar::Float:
+    case Scalar::Double: return scalar;
+    case Scalar::Char:
+    case Scalar::Uchar:
+    case Scalar::Short:
+    case Scalar::Ushort: return Scalar::Int;
+    case Scalar::Half:
+    case Scalar::Unorm8:
+    case Scalar::Snorm8:
+    case Scalar::Unorm16:
+    case Scalar::Snorm16: break;
+  }
+  return Scalar::Float;
+}
 
 struct Type {
-  enum class Kind : std::uint8_t { Void, Scalar, Vector, Struct, Array };
+  enum class Kind : std::uint8_t { Void, Scalar, Vector, Matrix, Struct, Array };
   Kind kind = Kind::Void;
-  Scalar scalar = Scalar::Float;   ///< Scalar and Vector
-  std::uint8_t width = 1;          ///< Scalar: 1; Vector: 2 to 4
+  Scalar scalar = Scalar::Float;   ///< Scalar, Vector, and Matrix, where it is Float
+  std::uint8_t width = 1;          ///< Scalar: 1; Vector: 2 to 4; Matrix: its rows and columns, 2 to 4
   std::uint32_t index = 0;         ///< Struct: into Module::structs; Array: into Module::arrays
 
   static constexpr Type voidType() { return {}; }
   static constexpr Type of(Scalar scalar, int width = 1) {
     return {width == 1 ? Kind::Scalar : Kind::Vector, scalar, static_cast<std::uint8_t>(width), 0};
+  }
+  static constexpr Type matrix(int size) {
+    return {Kind::Matrix, Scalar::Float, static_cast<std::uint8_t>(size), 0};
   }
   static constexpr Type structType(std::uint32_t index) { return {Kind::Struct, Scalar::Float, 1, index}; }
   static constexpr Type arrayType(std::uint32_t index) { return {Kind::Array, Scalar::Float, 1, index}; }
@@ -31,12 +73,19 @@ struct Type {
   bool isVoid() const { return kind == Kind::Void; }
   bool isScalar() const { return kind == Kind::Scalar; }
   bool isVector() const { return kind == Kind::Vector; }
+  bool isMatrix() const { return kind == Kind::Matrix; }
   bool isArithmetic() const { return isScalar() || isVector(); }
+  /// A scalar or vector that + - * / and comparisons take.
+  bool isNumber() const { return isArithmetic() && scalar >= Scalar::Int && scalar <= Scalar::Double; }
+  bool isNarrow() const { return isArithmetic() && ir::isNarrow(scalar); }
   bool isFloat() const { return isArithmetic() && scalar == Scalar::Float; }
   bool isBool() const { return isArithmetic() && scalar == Scalar::Bool; }
   bool isInteger() const { return isArithmetic() && (scalar == Scalar::Int || scalar == Scalar::Uint); }
   Type withScalar(Scalar s) const { return of(s, width); }
   Type component() const { return of(scalar); }
+  /// Of a vector or a matrix: what an index gives.
+  Type indexed() const { return isMatrix() ? of(scalar, width) : of(scalar); }
+  Type carrier() const { return isNarrow() ? withScalar(carrierOf(scalar)) : *this; }
   bool operator==(const Type&) const = default;
 };
 

@@ -17,6 +17,9 @@ void checkType(const Module& module, Type type) {
     case Type::Kind::Void: return;
     case Type::Kind::Scalar: return require(type.width == 1, "a scalar has width 1");
     case Type::Kind::Vector: return require(type.width >= 2 && type.width <= 4, "a vector has width 2 to 4");
+    case Type::Kind::Matrix:
+      return require(type.width >= 2 && type.width <= 4 && type.scalar == Scalar::Float,
+                     "a matrix has float rows and columns, 2 to 4");
     case Type::Kind::Struct:
       return require(type.index < module.structs.size(), "a struct type is not in the table");
     case Type::Kind::Array:
@@ -91,7 +94,7 @@ class ExprChecker {
     require(operand == type, fmt::format("'{}' changes its operand's type", spelling(n.op)));
     switch (n.op) {
       case UnaryOp::Negate:
-        return require(type.isFloat() || type.isInteger(), "'-' of something that is no number");
+        return require(type.isNumber() || type.isMatrix(), "'-' of something that is no number");
       case UnaryOp::BitNot: return require(type.isInteger(), "'~' of something that is no integer");
       case UnaryOp::LogicalNot: return require(type.isBool(), "'!' of something that is no bool");
     }
@@ -113,7 +116,9 @@ class ExprChecker {
   void rule(Type type, const Construct& n) const {
     if (type.isVector()) return constructVector(type, n.args);
     std::vector<Type> members;
-    if (type.kind == Type::Kind::Struct) {
+    if (type.isMatrix()) {
+      members.assign(type.width, type.indexed());
+    } else if (type.kind == Type::Kind::Struct) {
       for (const StructField& field : module_.structs[type.index].fields) members.push_back(field.type);
     } else {
       require(type.kind == Type::Kind::Array, "a scalar is constructed");
@@ -121,7 +126,7 @@ class ExprChecker {
       members.assign(array.length, array.element);
     }
     require(n.args.size() == members.size(),
-            "a struct or array is constructed from too many or too few values");
+            "a matrix, struct or array is constructed from too many or too few values");
     for (std::size_t i = 0; i < members.size(); ++i) {
       require(n.args[i]->type == members[i], fmt::format("member {} is constructed from another type", i));
     }
@@ -155,10 +160,11 @@ class ExprChecker {
   }
   void rule(Type type, const Index& n) const {
     const Type base = n.base->type;
-    require(base.isVector() || base.kind == Type::Kind::Array,
-            "an index into something that is no vector or array");
+    const bool isArray = base.kind == Type::Kind::Array;
+    require(base.isVector() || base.isMatrix() || isArray,
+            "an index into something that is no vector, matrix or array");
     require(isIndex(n.index->type), "an index is no int or uint");
-    const Type element = base.isVector() ? base.component() : module_.arrays[base.index].element;
+    const Type element = isArray ? module_.arrays[base.index].element : base.indexed();
     require(element == type, "an indexed element has a wrong type");
   }
   void rule(Type type, const Call& n) const {
@@ -239,15 +245,48 @@ bool isStreamArgument(const ExprContext& context, const Expr& arg, const Variabl
 
 }  // namespace
 
+namespace {
+
+/// What matrices know, with one on either side.
+bool isMatrixOp(BinaryOp op, Type lhs, Type rhs) {
+  const Type scalar = Type::of(Scalar::Float);
+  switch (op) {
+    case BinaryOp::Add:
+    case BinaryOp::Sub:
+    case BinaryOp::Equal:
+    case BinaryOp::NotEqual: return lhs == rhs;
+    case BinaryOp::Mul: return lhs == rhs || lhs == scalar || rhs == scalar || rhs == lhs.indexed();
+    case BinaryOp::Div: return rhs == scalar;
+    case BinaryOp::Rem:
+    case BinaryOp::BitAnd:
+    case BinaryOp::BitOr:
+    case BinaryOp::BitXor:
+    case BinaryOp::ShiftLeft:
+    case BinaryOp::ShiftRight:
+    case BinaryOp::Less:
+    case BinaryOp::LessEqual:
+    case BinaryOp::Greater:
+    case BinaryOp::GreaterEqual:
+    case BinaryOp::LogicalAnd:
+    case BinaryOp::LogicalOr: break;
+  }
+  return false;
+}
+
+}  // namespace
+
 void checkBinary(BinaryOp op, Type lhs, Type rhs, Type result) {
   const std::string where = fmt::format("'{}'", spelling(op));
   require(binaryType(op, lhs, rhs) == result, where + " has a wrong type");
+  if (lhs.isMatrix() || rhs.isMatrix()) {
+    return require(isMatrixOp(op, lhs, rhs), where + " of a matrix and something that it does not know");
+  }
   switch (op) {
     case BinaryOp::Add:
     case BinaryOp::Sub:
     case BinaryOp::Mul:
     case BinaryOp::Div:
-      require(lhs.isFloat() || lhs.isInteger(), where + " of something that is no number");
+      require(lhs.isNumber(), where + " of something that is no number");
       return require(fitTogether(lhs, rhs), where + " has operands of different types");
     case BinaryOp::Rem:
     case BinaryOp::BitAnd:
@@ -263,10 +302,12 @@ void checkBinary(BinaryOp op, Type lhs, Type rhs, Type result) {
     case BinaryOp::LessEqual:
     case BinaryOp::Greater:
     case BinaryOp::GreaterEqual:
-      require(lhs.isFloat() || lhs.isInteger(), where + " of something that is no number");
+      require(lhs.isNumber(), where + " of something that is no number");
       return require(lhs == rhs, where + " has operands of different types");
     case BinaryOp::Equal:
-    case BinaryOp::NotEqual: return require(lhs == rhs, where + " has operands of different types");
+    case BinaryOp::NotEqual:
+      require(!lhs.isNarrow(), where + " of a narrow type, whose carrier is compared");
+      return require(lhs == rhs, where + " has operands of different types");
     case BinaryOp::LogicalAnd:
     case BinaryOp::LogicalOr:
       return require(lhs.isBool() && lhs == rhs, where + " of something that is no bool");

@@ -75,6 +75,7 @@ class Follower {
       case ir::Type::Kind::Void: return 0;
       case ir::Type::Kind::Scalar:
       case ir::Type::Kind::Vector: return type.width;
+      case ir::Type::Kind::Matrix: return std::size_t{type.width} * type.width;
       case ir::Type::Kind::Struct: {
         std::size_t sum = 0;
         for (const ir::StructField& field : module_.structs[type.index].fields) sum += width(field.type);

@@ -21,12 +21,10 @@ using namespace ir;
 ExprPtr extreme(Scalar scalar, bool largest) {
   const float infinity = std::numeric_limits<float>::infinity();
   using Int = std::numeric_limits<std::int32_t>;
-  switch (scalar) {
-    case Scalar::Int: return literal(largest ? Int::max() : Int::min());
-    case Scalar::Uint: return literal(largest ? 0xffffffffU : 0U);
-    case Scalar::Bool: return literal(largest);
-    case Scalar::Float: break;
-  }
+  if (scalar == Scalar::Int) return literal(largest ? Int::max() : Int::min());
+  if (scalar == Scalar::Uint) return literal(largest ? 0xffffffffU : 0U);
+  if (scalar == Scalar::Bool) return literal(largest);
+  if (scalar == Scalar::Double) return literal(largest ? double{infinity} : -double{infinity});
   return literal(largest ? infinity : -infinity);
 }
 

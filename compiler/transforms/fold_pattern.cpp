@@ -74,6 +74,7 @@ std::optional<FoldOp> minOrMax(Intrinsic intrinsic) {
 std::optional<FoldOp> selfFold(const Expr& value, const StaticPlace& place) {
   if (const auto* n = std::get_if<Binary>(&value.node)) {
     if (isComparison(n->op)) return std::nullopt;
+    if (n->lhs->type.isMatrix() || n->rhs->type.isMatrix()) return std::nullopt;   // its * has an order
     if (isSame(*n->lhs, place) || selfFold(*n->lhs, place) == FoldOp(n->op)) return n->op;
     if (isCommutative(n->op) && isSame(*n->rhs, place)) return n->op;
   }

@@ -31,7 +31,7 @@ template <class... Values>
 }
 
 bool isSameField(const Field& a, const Field& b) {
-  return a.scalar == b.scalar && a.width == b.width && a.offset == b.offset;
+  return a.scalar == b.scalar && a.width == b.width && a.offset == b.offset && a.part == b.part;
 }
 
 /// Descriptors of one type may exist several times: in the headers of the runtime and in each .sk.cpp.

@@ -15,7 +15,29 @@ namespace sk {
 namespace {
 
 constexpr int widths = 4;
-constexpr int scalars = 4;
+constexpr int scalars = 14;
+
+/// The scalar and width of texels of the field's format: bits are copied, not values.
+program::Field texelField(const program::Field& field) {
+  using program::Scalar;
+  switch (field.scalar) {
+    case Scalar::Double: return {"", Scalar::Uint, 2, 0};
+    case Scalar::Snorm8: return {"", Scalar::Char, field.width, 0};
+    case Scalar::Snorm16: return {"", Scalar::Short, field.width, 0};
+    case Scalar::Unorm16: return {"", Scalar::Ushort, field.width, 0};
+    case Scalar::Bool:
+    case Scalar::Int:
+    case Scalar::Uint:
+    case Scalar::Float:
+    case Scalar::Half:
+    case Scalar::Char:
+    case Scalar::Uchar:
+    case Scalar::Short:
+    case Scalar::Ushort:
+    case Scalar::Unorm8: break;
+  }
+  return {"", field.scalar, field.width, 0};
+}
 
 /// Kernels that copy one plane, one for each scalar type and width.
 class CopyKernels {
@@ -42,10 +64,10 @@ class CopyKernels {
 
   static void define(CopyKernel& copy, program::Scalar scalar, std::size_t width) {
     const std::size_t row = static_cast<std::size_t>(scalar);
-    const std::string_view glsl = detail::vectorGlslNames[row][width];
+    const std::string_view glsl = detail::spellings[row].glsl[width];
     const auto components = static_cast<std::uint8_t>(width + 1);
     copy.field = {"", scalar, components, 0};
-    copy.element = {detail::vectorNames[row][width], glsl, components, {&copy.field, 1}};
+    copy.element = {detail::spellings[row].names[width], glsl, components, {&copy.field, 1}};
     copy.parameters[0] = {
         .name = "from", .symbol = "from", .role = program::Role::Input, .element = &copy.element};
     copy.parameters[1] = {
@@ -64,7 +86,7 @@ class CopyKernels {
 
 const program::Kernel& copyKernel(const program::Field& field) {
   static const CopyKernels kernels;
-  return kernels.of(field);
+  return kernels.of(texelField(field));
 }
 
 }  // namespace sk

@@ -5,6 +5,9 @@
 
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
+
+#include "sk/narrow.hpp"
 
 namespace sk {
 
@@ -14,29 +17,69 @@ using program::Element;
 using program::Field;
 using program::Scalar;
 
-/// Calls `loop` with the number of components as a constant.
+/// Calls `loop` with the bytes of a field and of its texel as constants.
 template <class Loop>
-void withWidth(int width, Loop loop) {
-  switch (width) {
-    case 1: loop(std::integral_constant<std::size_t, 1>{}); return;
-    case 2: loop(std::integral_constant<std::size_t, 2>{}); return;
-    case 3: loop(std::integral_constant<std::size_t, 3>{}); return;
-    default: loop(std::integral_constant<std::size_t, 4>{}); return;
+void withBytes(const Field& field, Loop loop) {
+  const auto call = [&]<std::size_t Bytes, std::size_t TexelBytes>() {
+    loop(std::integral_constant<std::size_t, Bytes>{}, std::integral_constant<std::size_t, TexelBytes>{});
+  };
+  switch (gl::hostBytes(field)) {
+    case 1: return call.template operator()<1, 1>();
+    case 2: return call.template operator()<2, 2>();
+    case 3: return call.template operator()<3, 4>();
+    case 4: return call.template operator()<4, 4>();
+    case 6: return call.template operator()<6, 8>();
+    case 8: return call.template operator()<8, 8>();
+    case 12: return call.template operator()<12, 16>();
+    default: return call.template operator()<16, 16>();
   }
 }
 
-constexpr std::size_t channelsOf(std::size_t width) { return width == 3 ? 4 : width; }
-
-/// Copies `Width` components of 4 bytes, or bools, from one place to another.
-template <std::size_t Width>
-void copyWords(const std::byte* from, std::byte* to) {
-  std::memcpy(to, from, 4 * Width);
+/// Copies the bytes of a field, of bools as 0 or 1.
+template <std::size_t Bytes, bool IsBool>
+void copyField(const std::byte* from, std::byte* to) {
+  if constexpr (IsBool) {
+    for (std::size_t c = 0; c < Bytes; ++c) {
+      to[c] = std::byte{from[c] != std::byte{0}};
+    }
+  } else {
+    std::memcpy(to, from, Bytes);
+  }
 }
 
-template <std::size_t Width>
-void copyBools(const std::byte* from, std::byte* to) {
-  for (std::size_t c = 0; c < Width; ++c) {
-    to[c] = std::byte{from[c] != std::byte{0}};
+/// Copies `count` fields from one place to another, each place `step` bytes after the one before.
+template <std::size_t Bytes>
+void copyFields(const Field& field, const std::byte* from, std::size_t fromStep, std::byte* to,
+                std::size_t toStep, std::size_t count) {
+  if (field.scalar == Scalar::Bool) {
+    if constexpr (Bytes <= 4) {
+      for (std::size_t i = 0; i < count; ++i) {
+        copyField<Bytes, true>(from + i * fromStep, to + i * toStep);
+      }
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    copyField<Bytes, false>(from + i * fromStep, to + i * toStep);
+  }
+}
+
+/// One channel of 32 bits as one of fewer: a float as a half, the low bytes of an integer.
+void narrowChannel(const gl::Transfer& tight, const std::byte* wide, std::byte* channel) {
+  if (tight.type == GL_HALF_FLOAT) {
+    float value = 0;
+    std::memcpy(&value, wide, sizeof value);
+    const std::uint16_t bits = half(value).bits();
+    std::memcpy(channel, &bits, sizeof bits);
+    return;
+  }
+  std::uint32_t value = 0;
+  std::memcpy(&value, wide, sizeof value);
+  const auto low = static_cast<std::uint16_t>(value);
+  if (tight.channelBytes == 2) {
+    std::memcpy(channel, &low, sizeof low);
+  } else {
+    *channel = static_cast<std::byte>(value);
   }
 }
 
@@ -45,65 +88,40 @@ void copyBools(const std::byte* from, std::byte* to) {
 bool areTexels(const Element& element) {
   const Field& field = element.fields[0];
   return element.fields.size() == 1 && field.scalar != Scalar::Bool && field.width != 3 &&
-         field.offset == 0 && element.size == 4u * field.width;
+         field.offset == 0 && element.size == gl::hostBytes(field);
 }
 
 void packTexels(const Element& element, const Field& field, const std::byte* elements, std::size_t count,
                 std::byte* texels) {
-  const std::byte* from = elements + field.offset;
-  withWidth(field.width, [&](auto widthConstant) {
-    constexpr std::size_t width = widthConstant;
-    constexpr std::size_t channels = channelsOf(width);
-    if (field.scalar == Scalar::Bool) {
-      std::memset(texels, 0, count * channels);
-      for (std::size_t i = 0; i < count; ++i) {
-        copyBools<width>(from + i * element.size, texels + i * channels);
-      }
-    } else {
-      if constexpr (width == 3) {
-        std::memset(texels, 0, count * channels * 4);
-      }
-      for (std::size_t i = 0; i < count; ++i) {
-        copyWords<width>(from + i * element.size, texels + i * channels * 4);
-      }
+  withBytes(field, [&](auto bytes, auto texelBytes) {
+    if constexpr (bytes != texelBytes) {
+      std::memset(texels, 0, count * texelBytes);
     }
+    copyFields<bytes>(field, elements + field.offset, element.size, texels, texelBytes, count);
   });
 }
 
 void unpackTexels(const Element& element, const Field& field, const std::byte* texels, std::size_t count,
                   std::byte* elements) {
-  std::byte* to = elements + field.offset;
-  withWidth(field.width, [&](auto widthConstant) {
-    constexpr std::size_t width = widthConstant;
-    constexpr std::size_t channels = channelsOf(width);
-    if (field.scalar == Scalar::Bool) {
-      for (std::size_t i = 0; i < count; ++i) {
-        copyBools<width>(texels + i * channels, to + i * element.size);
-      }
-    } else {
-      for (std::size_t i = 0; i < count; ++i) {
-        copyWords<width>(texels + i * channels * 4, to + i * element.size);
-      }
-    }
+  withBytes(field, [&](auto bytes, auto texelBytes) {
+    copyFields<bytes>(field, texels, texelBytes, elements + field.offset, element.size, count);
   });
 }
 
 void narrowTexels(const gl::Format& format, const std::byte* wide, std::size_t count, std::byte* tight) {
-  withWidth(format.tight.channels, [&](auto channelsConstant) {
-    constexpr std::size_t channels = channelsConstant;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::byte* from = wide + i * format.wide.texelBytes();
-      if (format.tight.channelBytes == 4) {
-        copyWords<channels>(from, tight + i * channels * 4);
-        continue;
-      }
-      for (std::size_t c = 0; c < channels; ++c) {
-        std::uint32_t value = 0;
-        std::memcpy(&value, from + 4 * c, sizeof value);
-        tight[i * channels + c] = static_cast<std::byte>(value);
-      }
+  const auto channels = static_cast<std::size_t>(format.tight.channels);
+  const auto bytes = static_cast<std::size_t>(format.tight.channelBytes);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::byte* from = wide + i * format.wide.texelBytes();
+    std::byte* to = tight + i * format.texelBytes();
+    if (format.wide.channelBytes == format.tight.channelBytes) {
+      std::memcpy(to, from, format.texelBytes());
+      continue;
     }
-  });
+    for (std::size_t c = 0; c < channels; ++c) {
+      narrowChannel(format.tight, from + 4 * c, to + c * bytes);
+    }
+  }
 }
 
 }  // namespace sk

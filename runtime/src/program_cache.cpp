@@ -30,6 +30,16 @@ std::vector<std::size_t> bundlesOf(const program::Kernel& kernel) {
   return bundles;
 }
 
+/// The fields of an element, one span for each scalar, vector or matrix.
+std::vector<std::span<const program::Field>> valuesOf(const program::Element& element) {
+  std::vector<std::span<const program::Field>> values;
+  for (std::size_t begin = 0, end = 0; begin < element.fields.size(); begin = end) {
+    for (end = begin + 1; end < element.fields.size() && element.fields[end].part > 0;) ++end;
+    values.push_back(element.fields.subspan(begin, end - begin));
+  }
+  return values;
+}
+
 }  // namespace
 
 /// A kernel that is made here, with all that its descriptor refers to.
@@ -67,17 +77,17 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
       const program::Field& field = parameter.element->fields.front();
       const auto find = [&](std::string_view kind) {
         return gl::FieldUniform(made->program.location(fmt::format("sk_{}_{}", kind, parameter.symbol)),
-                                field);
+                                {&field, 1});
       };
       made->values.push_back({i, find("begin")});
       made->steps.push_back({i, find("step")});
       made->reads.push_back({i, PlacementUniforms(made->program, fmt::format("sk_*_{}", parameter.symbol))});
     } else if (parameter.role == program::Role::Uniform) {
-      for (const program::Field& field : parameter.element->fields) {
+      for (const auto parts : valuesOf(*parameter.element)) {
+        const std::string_view path = parts.front().path;
         const std::string name =
-            fmt::format("sk_arg_{}{}{}", parameter.symbol,
-                        field.path.empty() || field.path.front() == '[' ? "" : ".", field.path);
-        made->values.push_back({i, gl::FieldUniform(made->program.location(name), field)});
+            fmt::format("sk_arg_{}{}{}", parameter.symbol, path.empty() || path.front() == '[' ? "" : ".", path);
+        made->values.push_back({i, gl::FieldUniform(made->program.location(name), parts)});
       }
     } else if (parameter.role != program::Role::Output) {
       made->reads.push_back({i, PlacementUniforms(made->program, fmt::format("sk_*_{}", parameter.symbol))});

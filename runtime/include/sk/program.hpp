@@ -29,15 +29,34 @@
 
 namespace sk::program {
 
-/// Component type of a field. In host memory Bool takes 1 byte (0 or 1), the others 4.
-enum class Scalar : std::uint8_t { Bool, Int, Uint, Float };
+/// Component type of a field, in host memory: Bool is a byte of 0 or 1, Half and the normalized ones
+/// lie as types.hpp has them. GLSL computes Char, Uchar, Short and Ushort as int, and those from Half on
+/// that are no integers as float. The texture format follows from it.
+enum class Scalar : std::uint8_t {
+  Bool,
+  Int,
+  Uint,
+  Float,
+  Double,
+  Half,
+  Char,
+  Uchar,
+  Short,
+  Ushort,
+  Unorm8,
+  Snorm8,
+  Unorm16,
+  Snorm16,
+};
 
-/// One plane of an element: a scalar or vector that one texel of one texture holds.
+/// One plane of an element: a scalar, a vector, a row of a matrix or a component of a vector of
+/// doubles, which one texel of one texture holds.
 struct Field {
   std::string_view path;     ///< member path in GLSL ("t", "a.b"); empty where the element is no struct
   Scalar scalar;
   std::uint8_t width;        ///< components, 1 to 4
   std::uint32_t offset;      ///< bytes from the element's start in host memory
+  std::int8_t part = -1;     ///< which row or component of `path` it is: GLSL's index; -1: all of it
 };
 
 /// An element type: its GLSL spelling and its planes, in declaration order.

@@ -16,19 +16,42 @@ using program::Field;
 using program::Parameter;
 using program::Scalar;
 
-/// How a plane of a component type is spelled. Bool planes are held as unsigned integers.
+/// How a plane of a component type is spelled. `load` makes a value of its texel, `store` a texel of a
+/// value; `{0}` is the operand, `{1}` the type of the result. Empty: they are the same.
 struct Spelling {
   std::string_view sampler;
   std::string_view texelScalar;
   std::string_view texelVector;   ///< without its width
   std::string_view zero;
+  std::string_view valueScalar;
+  std::string_view valueVector;
+  std::string_view load;
+  std::string_view store;
 };
 
-constexpr std::array<Spelling, 4> spellings = {{
-    /* Bool  */ {"usampler2D", "uint", "uvec", "0u"},
-    /* Int   */ {"isampler2D", "int", "ivec", "0"},
-    /* Uint  */ {"usampler2D", "uint", "uvec", "0u"},
-    /* Float */ {"sampler2D", "float", "vec", "0.0"},
+// A normalized value is made anew of its integer even where the device makes one: that is exact.
+constexpr std::array<Spelling, 14> spellings = {{
+    /* Bool    */ {"usampler2D", "uint", "uvec", "0u", "bool", "bvec", "{1}({0})", "{1}({0})"},
+    /* Int     */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
+    /* Uint    */ {"usampler2D", "uint", "uvec", "0u", "uint", "uvec", "", ""},
+    /* Float   */ {"sampler2D", "float", "vec", "0.0", "float", "vec", "", ""},
+    /* Double  */ {"usampler2D", "uint", "uvec", "0u", "double", "dvec", "", ""},
+    /* Half    */ {"sampler2D", "float", "vec", "0.0", "float", "vec", "", ""},
+    /* Char    */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
+    /* Uchar   */ {"usampler2D", "uint", "uvec", "0u", "int", "ivec", "{1}({0})", "{1}({0})"},
+    /* Short   */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
+    /* Ushort  */ {"usampler2D", "uint", "uvec", "0u", "int", "ivec", "{1}({0})", "{1}({0})"},
+    /* Unorm8  */
+    {"sampler2D", "float", "vec", "0.0", "float", "vec", "roundEven({0} * 255.0) / 255.0", ""},
+    /* Snorm8  */
+    {"isampler2D", "int", "ivec", "0", "float", "vec", "max({1}({0}) / 127.0, -1.0)",
+     "{1}(roundEven({0} * 127.0))"},
+    /* Unorm16 */
+    {"usampler2D", "uint", "uvec", "0u", "float", "vec", "{1}({0}) / 65535.0",
+     "{1}(roundEven({0} * 65535.0))"},
+    /* Snorm16 */
+    {"isampler2D", "int", "ivec", "0", "float", "vec", "max({1}({0}) / 32767.0, -1.0)",
+     "{1}(roundEven({0} * 32767.0))"},
 }};
 
 const program::Layer ownTexture;
@@ -45,9 +68,30 @@ std::pair<std::size_t, std::size_t> writtenPlanes(const Parameter& parameter) {
 
 const Spelling& spelling(const Field& field) { return spellings[static_cast<std::size_t>(field.scalar)]; }
 
+std::string sized(std::string_view scalar, std::string_view vector, int width) {
+  return width == 1 ? std::string(scalar) : fmt::format("{}{}", vector, width);
+}
+
 std::string texelType(const Field& field, int width) {
-  const Spelling& s = spelling(field);
-  return width == 1 ? std::string(s.texelScalar) : fmt::format("{}{}", s.texelVector, width);
+  return sized(spelling(field).texelScalar, spelling(field).texelVector, width);
+}
+
+std::string valueType(const Field& field) {
+  return sized(spelling(field).valueScalar, spelling(field).valueVector, field.width);
+}
+
+/// `pattern` with the operand and the type of the result; the operand where there is no pattern.
+std::string converted(std::string_view pattern, std::string operand, const std::string& type) {
+  if (pattern.empty()) return operand;
+  return fmt::format(fmt::runtime(pattern), operand, type);
+}
+
+/// The field of an element that `variable` holds.
+std::string memberOf(std::string_view variable, const Field& field) {
+  std::string text(variable);
+  if (!field.path.empty()) text += fmt::format(".{}", field.path);
+  if (field.part >= 0) text += fmt::format("[{}]", field.part);
+  return text;
 }
 
 /// Textures of 3 components are not renderable: those planes have 4.
@@ -70,21 +114,22 @@ std::string fetchPlane(const Parameter& parameter, std::size_t plane, std::strin
       layer.bundle < 0 ? std::string(texel) : fmt::format("ivec3({}, {})", texel, layer.layer);
   std::string value = fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane), place,
                                   swizzles[field.width - 1u]);
-  if (field.scalar != Scalar::Bool) return value;
-  if (field.width == 1) return value + " != 0u";
-  return fmt::format("notEqual({}, uvec{}(0u))", value, field.width);
+  if (field.scalar == Scalar::Bool) {
+    return field.width == 1 ? value + " != 0u" : fmt::format("notEqual({}, uvec{}(0u))", value, field.width);
+  }
+  return converted(spelling(field).load, std::move(value), valueType(field));
 }
 
 /// `value`, of the field's type, as its output's type.
 std::string toOutput(const Field& field, std::string value) {
-  if (field.scalar == Scalar::Bool) value = fmt::format("{}({})", texelType(field, field.width), value);
+  value = converted(spelling(field).store, std::move(value), texelType(field, field.width));
   if (field.width == 3) value = fmt::format("{}({}, {})", texelType(field, 4), value, spelling(field).zero);
   return value;
 }
 
 bool outputHasType(const Element& element) {
   const Field& field = element.fields.front();
-  return !isStruct(element) && field.scalar != Scalar::Bool && field.width != 3;
+  return !isStruct(element) && spelling(field).store.empty() && field.width != 3;
 }
 
 }  // namespace
@@ -97,7 +142,10 @@ std::string samplerName(const Parameter& parameter, std::size_t plane) {
   return planeName("sk_tex", parameter, plane);
 }
 
-bool isStruct(const Element& element) { return !element.fields.front().path.empty(); }
+bool isStruct(const Element& element) {
+  const Field& first = element.fields.front();
+  return !first.path.empty() || first.part >= 0;
+}
 
 void declareSamplers(ProgramText& program, const Parameter& parameter) {
   for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
@@ -121,8 +169,8 @@ std::string fetch(ProgramText& program, const Parameter& parameter, std::string_
   if (!isStruct(element)) return fetchPlane(parameter, 0, texel);
   std::vector<std::string> statements = {fmt::format("{} sk_e;", element.glsl)};
   for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
-    statements.push_back(
-        fmt::format("sk_e.{} = {};", element.fields[plane].path, fetchPlane(parameter, plane, "sk_t")));
+    statements.push_back(fmt::format("{} = {};", memberOf("sk_e", element.fields[plane]),
+                                     fetchPlane(parameter, plane, "sk_t")));
   }
   statements.emplace_back("return sk_e;");
   program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", element.glsl, parameter.symbol), statements);
@@ -143,9 +191,7 @@ void store(ProgramText& program, const Parameter& parameter, std::string_view va
     const Field& field = element.fields[plane];
     const std::string output = outputName(parameter, plane);
     if (output == variable) continue;
-    const std::string value =
-        isStruct(element) ? fmt::format("{}.{}", variable, field.path) : std::string(variable);
-    program.statement(fmt::format("{} = {};", output, toOutput(field, value)));
+    program.statement(fmt::format("{} = {};", output, toOutput(field, memberOf(variable, field))));
   }
 }
 

@@ -13,7 +13,7 @@
 
 namespace sk::assemble {
 
-/// Whether an element is rebuilt member by member; else it is its only plane.
+/// Whether an element, a struct or a matrix, is rebuilt part by part; else it is its only plane.
 bool isStruct(const program::Element& element);
 
 /// Declares the samplers of the parameter's planes.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The texture formats of stream planes, one row for each scalar type and number of components, with
-// the pairs in which texels travel to and from host memory.
+// The texture formats of stream planes, with the pairs in which texels travel to and from host memory.
 #pragma once
 
 #include <cstddef>
@@ -30,17 +29,21 @@ struct Format {
   GLenum internalFormat;
   const char* name;    ///< "R32F", for messages
   Transfer tight;      ///< as many channels as the format has; every GL and ES uploads it
-  Transfer wide;       ///< what ES promises to read: four channels of 32 bits
+  Transfer wide;       ///< what ES promises to read: four channels of 32 bits, of R8 and its like of 8
   std::size_t index;   ///< of this row in formats()
 
   std::size_t texelBytes() const { return tight.texelBytes(); }
 };
 
-/// Planes of 3 components have a format of 4.
+/// Planes of 3 components have a format of 4. Both the scalar and the width are those of texels.
 const Format& formatOf(program::Scalar scalar, int width);
+/// Of a field's plane.
 const Format& formatOf(const program::Field& field);
 
+/// How many bytes a field takes in host memory.
+std::size_t hostBytes(const program::Field& field);
+
 std::span<const Format> formats();
-inline constexpr std::size_t formatCount = 12;
+inline constexpr std::size_t formatCount = 27;
 
 }  // namespace sk::gl

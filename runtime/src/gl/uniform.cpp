@@ -5,6 +5,9 @@
 
 #include <cstring>
 
+#include "gl/format.hpp"
+#include "sk/narrow.hpp"
+
 namespace sk::gl {
 
 namespace {
@@ -12,9 +15,8 @@ namespace {
 using program::Field;
 using program::Scalar;
 
-std::size_t bytesOf(const Field& field) {
-  return (field.scalar == Scalar::Bool ? 1u : 4u) * std::size_t{field.width};
-}
+using Floats = std::array<GLfloat, 16>;
+using Ints = std::array<GLint, 4>;
 
 void sendInts(GLint location, int width, const GLint* v) {
   switch (width) {
@@ -43,30 +45,61 @@ void sendFloats(GLint location, int width, const GLfloat* v) {
   }
 }
 
-template <class T>
-std::array<T, 4> componentsOf(const std::byte* bytes, int width) {
-  std::array<T, 4> components{};
-  std::memcpy(components.data(), bytes, sizeof(T) * static_cast<std::size_t>(width));
+/// GLSL's columns are the rows of ours: the floats go in the order in which they lie.
+void sendMatrix(GLint location, int width, const GLfloat* v) {
+  switch (width) {
+    case 2: glUniformMatrix2fv(location, 1, GL_FALSE, v); return;
+    case 3: glUniformMatrix3fv(location, 1, GL_FALSE, v); return;
+    default: glUniformMatrix4fv(location, 1, GL_FALSE, v); return;
+  }
+}
+
+/// `count` components of type T in host memory, each as a component of the array's type.
+template <class T, class Components>
+Components componentsOf(const std::byte* bytes, std::size_t count) {
+  Components components{};
+  for (std::size_t c = 0; c < count; ++c) {
+    T value;
+    std::memcpy(&value, bytes + c * sizeof(T), sizeof(T));
+    components[c] = static_cast<typename Components::value_type>(value);
+  }
   return components;
+}
+
+template <class T>
+void sendAsInts(GLint location, const Field& field, const std::byte* bytes) {
+  sendInts(location, field.width, componentsOf<T, Ints>(bytes, field.width).data());
+}
+
+template <class T>
+void sendAsFloats(GLint location, const Field& field, const std::byte* bytes) {
+  sendFloats(location, field.width, componentsOf<T, Floats>(bytes, field.width).data());
 }
 
 void sendField(GLint location, const Field& field, const std::byte* bytes) {
   switch (field.scalar) {
     case Scalar::Bool: {
-      std::array<GLint, 4> components{};
+      Ints components{};
       for (std::size_t c = 0; c < field.width; ++c) {
         components[c] = bytes[c] != std::byte{0};
       }
-      sendInts(location, field.width, components.data());
-      return;
+      return sendInts(location, field.width, components.data());
     }
-    case Scalar::Int: sendInts(location, field.width, componentsOf<GLint>(bytes, field.width).data()); return;
     case Scalar::Uint:
-      sendUints(location, field.width, componentsOf<GLuint>(bytes, field.width).data());
-      return;
-    case Scalar::Float:
-      sendFloats(location, field.width, componentsOf<GLfloat>(bytes, field.width).data());
-      return;
+      return sendUints(location, field.width,
+                       componentsOf<GLuint, std::array<GLuint, 4>>(bytes, field.width).data());
+    case Scalar::Int: return sendAsInts<GLint>(location, field, bytes);
+    case Scalar::Char: return sendAsInts<std::int8_t>(location, field, bytes);
+    case Scalar::Uchar: return sendAsInts<std::uint8_t>(location, field, bytes);
+    case Scalar::Short: return sendAsInts<std::int16_t>(location, field, bytes);
+    case Scalar::Ushort: return sendAsInts<std::uint16_t>(location, field, bytes);
+    case Scalar::Float: return sendAsFloats<GLfloat>(location, field, bytes);
+    case Scalar::Half: return sendAsFloats<half>(location, field, bytes);
+    case Scalar::Unorm8: return sendAsFloats<unorm8>(location, field, bytes);
+    case Scalar::Snorm8: return sendAsFloats<snorm8>(location, field, bytes);
+    case Scalar::Unorm16: return sendAsFloats<unorm16>(location, field, bytes);
+    case Scalar::Snorm16: return sendAsFloats<snorm16>(location, field, bytes);
+    case Scalar::Double: return;
   }
 }
 
@@ -82,15 +115,22 @@ void IntUniform::send(const Int4& value) {
   }
 }
 
+FieldUniform::FieldUniform(GLint location, std::span<const program::Field> parts)
+    : location_(location), field_(&parts.front()), parts_(static_cast<int>(parts.size())) {}
+
 void FieldUniform::set(const void* value) {
   const std::byte* bytes = static_cast<const std::byte*>(value) + field_->offset;
-  const std::size_t size = bytesOf(*field_);
+  const std::size_t size = hostBytes(*field_) * static_cast<std::size_t>(parts_);
   if (location_ < 0 || (isKnown_ && std::memcmp(last_.data(), bytes, size) == 0)) {
     return;
   }
   std::memcpy(last_.data(), bytes, size);
   isKnown_ = true;
-  sendField(location_, *field_, last_.data());
+  if (parts_ == 1) {
+    sendField(location_, *field_, last_.data());
+  } else {
+    sendMatrix(location_, parts_, componentsOf<GLfloat, Floats>(last_.data(), size / sizeof(GLfloat)).data());
+  }
 }
 
 }  // namespace sk::gl

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <epoxy/gl.h>
 
@@ -38,19 +39,21 @@ class IntUniform {
   Int4 value_{};
 };
 
-/// One field of the value of a uniform parameter.
+/// A scalar, vector or matrix in the value of a uniform parameter.
 class FieldUniform {
  public:
-  FieldUniform(GLint location, const program::Field& field) : location_(location), field_(&field) {}
+  /// `parts`: its one field, or the rows of a matrix in order.
+  FieldUniform(GLint location, std::span<const program::Field> parts);
 
   /// `value`: of the whole parameter, laid out as its Element says.
   void set(const void* value);
 
  private:
   GLint location_;
-  const program::Field* field_;
+  const program::Field* field_;   ///< the first part
+  int parts_;
   bool isKnown_ = false;
-  std::array<std::byte, 16> last_{};
+  std::array<std::byte, 64> last_{};
 };
 
 }  // namespace sk::gl
