@@ -54,13 +54,19 @@ TEST_CASE("every overload of every intrinsic") {
           k.uniform(spelling(scalar) + std::to_string(width), Type::of(scalar, width));
     }
   }
+  VarId matrices[5] = {};
+  for (int size = 2; size <= 4; ++size)
+    matrices[size] = k.uniform(fmt::format("m{}", size), Type::matrix(size));
   k.output("r", floatType);
   Block body;
   for (const IntrinsicRow& entry : intrinsicRows()) {
     for (const IntrinsicOverload& overload : overloads(entry.id)) {
       std::vector<ExprPtr> args;
-      for (Type type : overload.arguments)
-        args.push_back(k.ref(values[static_cast<int>(type.scalar)][type.width]));
+      for (Type type : overload.arguments) {
+        const VarId var =
+            type.isMatrix() ? matrices[type.width] : values[static_cast<int>(type.scalar)][type.width];
+        args.push_back(k.ref(var));
+      }
       const VarId local = k.local(fmt::format("v{}", body.size()), overload.result);
       body.push_back(declare(local, intrinsic(entry.id, std::move(args))));
     }
@@ -108,6 +114,39 @@ TEST_CASE("every operator on every type that has it") {
   k.finish(std::move(body));
   REQUIRE(validate(module, Stage::Specialized) == "");
   CHECK(glslangOn(module, "operators") == "");
+}
+
+TEST_CASE("every operator on matrices, and every conversion to a narrow type") {
+  Module module = testModule();
+  KernelMaker k(module, "narrow");
+  std::vector<VarId> matrices, vectors;
+  for (int size = 2; size <= 4; ++size) {
+    matrices.push_back(k.uniform(fmt::format("m{}", size), Type::matrix(size)));
+    vectors.push_back(k.uniform(fmt::format("v{}", size), Type::of(Scalar::Float, size)));
+  }
+  const VarId x = k.uniform("x", floatType);
+  k.output("r", floatType);
+  Block body;
+  const auto add = [&](ExprPtr value) {
+    const Type type = value->type;
+    body.push_back(declare(k.local(fmt::format("t{}", body.size()), type), std::move(value)));
+  };
+  for (std::size_t i = 0; i < matrices.size(); ++i) {
+    const auto m = [&] { return k.ref(matrices[i]); };
+    for (BinaryOp op : {Add, Sub, Mul, Equal, NotEqual}) add(binary(op, m(), m()));
+    for (BinaryOp op : {Mul, Div}) add(binary(op, m(), k.ref(x)));
+    add(binary(Mul, k.ref(x), unary(UnaryOp::Negate, m())));
+    add(binary(Mul, m(), k.ref(vectors[i])));
+    add(index(module, index(module, m(), literal(1)), literal(0)));
+  }
+  for (Scalar scalar : {Scalar::Half, Scalar::Char, Scalar::Uchar, Scalar::Short, Scalar::Ushort,
+                        Scalar::Unorm8, Scalar::Snorm8, Scalar::Unorm16, Scalar::Snorm16}) {
+    add(convert(Scalar::Float, convert(scalar, k.ref(x))));
+    for (VarId v : vectors) add(convert(Scalar::Int, convert(scalar, k.ref(v))));
+  }
+  k.finish(std::move(body));
+  REQUIRE(validate(module, Stage::Specialized) == "");
+  CHECK(glslangOn(module, "narrow") == "");
 }
 
 /// void swapBoth(inout float a, inout float b[3]): a local array handed on, and a swap.

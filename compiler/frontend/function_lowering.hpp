@@ -130,6 +130,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr aggregate(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits, const clang::Expr* filler,
                         clang::SourceLocation where);
   ir::ExprPtr indexed(const clang::Expr* array, const clang::Expr* index, clang::SourceLocation where);
+  ir::ExprPtr classValue(ir::Type type, llvm::ArrayRef<const clang::Expr*> args, clang::SourceLocation where);
   ir::ExprPtr matrix(ir::Type type, Exprs parts, clang::SourceLocation where);
   ir::ExprPtr defaultStruct(const clang::CXXRecordDecl* record, clang::SourceLocation where);
 

@@ -353,12 +353,6 @@ ExprPtr FunctionLowering::VisitInitListExpr(const clang::InitListExpr* e) {
   if (type.isScalar()) {
     return list->getNumInits() == 0 ? zero(type, list->getBeginLoc()) : value(list->getInit(0));
   }
-  if (type.isMatrix()) {   // its rows are a member in the prelude
-    const auto* rows =
-        list->getNumInits() == 0 ? nullptr : llvm::dyn_cast<clang::InitListExpr>(list->getInit(0));
-    if (!rows) return zero(type, list->getBeginLoc());
-    return aggregate(type, rows->inits(), nullptr, list->getBeginLoc());
-  }
   return aggregate(type, list->inits(), list->getArrayFiller(), list->getBeginLoc());
 }
 
@@ -407,14 +401,24 @@ ExprPtr FunctionLowering::VisitCXXScalarValueInitExpr(const clang::CXXScalarValu
 ExprPtr FunctionLowering::VisitCXXConstructExpr(const clang::CXXConstructExpr* e) {
   const clang::CXXConstructorDecl* constructor = e->getConstructor();
   if (constructor->isCopyOrMoveConstructor() && e->getNumArgs() == 1) return value(e->getArg(0));
-  if (module_.isPrelude(constructor)) {   // unorm8(), unorm8(x), float2x2()
-    const ir::Type type = module_.type(e->getType(), e->getBeginLoc());
-    return e->getNumArgs() == 0 ? zero(type, e->getBeginLoc()) : convert(value(e->getArg(0)), type.scalar);
+  if (module_.isPrelude(constructor)) {
+    const std::vector<const clang::Expr*> args(e->getArgs(), e->getArgs() + e->getNumArgs());
+    return classValue(module_.type(e->getType(), e->getBeginLoc()), args, e->getBeginLoc());
   }
   if (constructor->isDefaultConstructor() && !constructor->isUserProvided()) {
     return defaultStruct(constructor->getParent(), e->getBeginLoc());
   }
   module_.fail(Diag::Constructor, e->getBeginLoc(), {constructor->getParent()->getNameAsString()});
+}
+
+/// A class of the prelude from its constructor's arguments: unorm8(x), the rows or the elements of a
+/// matrix, the elements of a row, or nothing.
+ExprPtr FunctionLowering::classValue(ir::Type type, llvm::ArrayRef<const clang::Expr*> args,
+                                     SourceLocation where) {
+  if (args.empty()) return zero(type, where);
+  if (type.isMatrix()) return matrix(type, valuesInOrder(args), where);
+  if (args.size() > 1) return make(type, where, ir::Construct{valuesInOrder(args)});
+  return convert(value(args[0]), type.scalar);
 }
 
 /// From its rows, from all its elements row by row, or with one number along the diagonal.

@@ -2,6 +2,7 @@
 #include "frontend/prelude.hpp"
 
 #include <array>
+#include <iterator>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -107,7 +108,7 @@ std::string vectorTypes() {
 std::string normalizedType(std::string_view name, std::string_view carrier) {
   return fmt::format(
       "struct {0} {{\n"
-      "  {0}() = default; {0}({1}); operator {1}() const;\n"
+      "  {0}() = default; constexpr {0}({1}) {{}} operator {1}() const;\n"
       "  void operator+=({1}); void operator-=({1}); void operator*=({1}); void operator/=({1});\n}};\n",
       name, carrier);
 }
@@ -125,24 +126,33 @@ std::string normalizedTypes() {
   return text;
 }
 
-/// Classes, because Clang's own matrices have no rows. Lowering knows what their operators mean.
+/// Classes, because Clang's own matrices have no rows. Lowering knows what their constructors and
+/// operators mean; the empty bodies are for constants. `__sk_row2` is a row in braces or a float2.
 std::string matrixTypes() {
   std::string text;
   for (int size = 2; size <= 4; ++size) {
+    const auto list = [](std::string_view type, int count) {
+      std::string parameters(type);
+      for (int i = 1; i < count; ++i) fmt::format_to(std::back_inserter(parameters), ", {}", type);
+      return parameters;
+    };
+    const std::string m = fmt::format("float{0}x{0}", size), row = fmt::format("__sk_row{}", size);
+    text += fmt::format("struct {0} {{ constexpr {0}(float{1}) {{}} constexpr {0}({2}) {{}} }};\n", row, size,
+                        list("float", size));
     text += fmt::format(
-        "struct float{0}x{0} {{\n"
-        "  float{0} __sk_rows[{0}];\n"
-        "  float{0}& operator[](int); float{0} operator[](int) const;\n"
-        "  void operator+=(float{0}x{0}); void operator-=(float{0}x{0}); void operator*=(float{0}x{0});\n"
-        "  void operator*=(float); void operator/=(float);\n}};\n"
-        "float{0}x{0} operator+(float{0}x{0}, float{0}x{0}); float{0}x{0} operator-(float{0}x{0}, "
-        "float{0}x{0});\n"
-        "float{0}x{0} operator*(float{0}x{0}, float{0}x{0}); float{0} operator*(float{0}x{0}, float{0});\n"
-        "float{0}x{0} operator*(float{0}x{0}, float); float{0}x{0} operator*(float, float{0}x{0});\n"
-        "float{0}x{0} operator/(float{0}x{0}, float); float{0}x{0} operator-(float{0}x{0});\n"
-        "bool operator==(float{0}x{0}, float{0}x{0});\n"
-        "template <class... A> float{0}x{0} __sk_make_float{0}x{0}(A...);\n",
-        size);
+        "struct {0} {{\n  {0}() = default; constexpr {0}({2}) {{}} constexpr {0}({3}) {{}}\n"
+        "  float{1}& operator[](int); float{1} operator[](int) const;\n"
+        "  void operator+=({0}); void operator-=({0}); void operator*=({0}); void operator*=(float);\n"
+        "  void operator/=(float);\n}};\n",
+        m, size, list(row, size), list("float", size * size));
+    for (const std::string_view signature : {"+({0}, {0})", "-({0}, {0})", "*({0}, {0})", "*({0}, float)",
+                                             "*(float, {0})", "/({0}, float)", "-({0})"}) {
+      text += "constexpr " + m + " operator" + fmt::format(fmt::runtime(signature), m) + " { return {}; }\n";
+    }
+    text += fmt::format(
+        "float{1} operator*({0}, float{1}); bool operator==({0}, {0});\n"
+        "template <class... A> constexpr {0} __sk_make_{0}(A...) {{ return {{}}; }}\n",
+        m, size);
   }
   return text;
 }
@@ -250,6 +260,7 @@ std::optional<ir::Type> classType(std::string_view name) {
       if (name == ir::spelling(scalar, width)) return ir::Type::of(scalar, width);
     }
     if (width > 1 && name == fmt::format("float{0}x{0}", width)) return ir::Type::matrix(width);
+    if (width > 1 && name == fmt::format("__sk_row{}", width)) return ir::Type::of(ir::Scalar::Float, width);
   }
   return std::nullopt;
 }
