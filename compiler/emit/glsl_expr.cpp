@@ -193,9 +193,9 @@ class GlslExpr {
   /// to a[i + 1]. A computed index has a register of its own.
   std::string indexText(const Index& n) const {
     const std::string index = text(*n.index);
-    if (n.base->type.kind != Type::Kind::Array || std::holds_alternative<Literal>(n.index->node))
-      return index;
-    const std::uint32_t last = context_.module.arrays[n.base->type.index].length - 1;
+    const Type base = n.base->type;
+    if (base.isVector() || std::holds_alternative<Literal>(n.index->node)) return index;
+    const std::uint32_t last = (base.isMatrix() ? base.width : context_.module.arrays[base.index].length) - 1;
     if (n.index->type.scalar == Scalar::Uint) return fmt::format("min({}, {}u)", index, last);
     return fmt::format("clamp({}, 0, {})", index, last);
   }
