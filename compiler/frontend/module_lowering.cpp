@@ -170,7 +170,7 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
   if (param.role == ir::ParamRole::Iterator && (!param.type.isArithmetic() || param.type.isBool())) {
     fail(Diag::IteratorType, declaration->getLocation(), {param.name, spelling(param.type)});
   }
-  if (param.role == ir::ParamRole::Spec && !param.type.isScalar()) {
+  if (param.role == ir::ParamRole::Spec && (!param.type.isScalar() || param.type.isNarrow())) {
     fail(Diag::SpecType, declaration->getLocation(), {param.name, spelling(param.type)});
   }
   if (syntax) {
