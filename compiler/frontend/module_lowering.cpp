@@ -167,7 +167,7 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
       }
     }
   }
-  if (param.role == ir::ParamRole::Iterator && (!param.type.isArithmetic() || param.type.isBool())) {
+  if (param.role == ir::ParamRole::Iterator && !param.type.isNumber()) {
     fail(Diag::IteratorType, declaration->getLocation(), {param.name, spelling(param.type)});
   }
   if (param.role == ir::ParamRole::Spec && (!param.type.isScalar() || param.type.isNarrow())) {

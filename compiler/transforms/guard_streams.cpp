@@ -267,7 +267,8 @@ class Follower {
 
   /// `if (n)` is `n != 0`; between the other types but float, the bits stay.
   ExprPtr converted(const Frame& frame, Type to, const Expr& operand) const {
-    ExprPtr from = to.isFloat() ? nullptr : value(frame, operand);
+    const bool rounds = to.isFloat() || to.isNarrow() || operand.type.isNarrow();
+    ExprPtr from = rounds ? nullptr : value(frame, operand);
     if (!from || (from->type.isFloat() && !to.isBool())) return nullptr;
     if (!to.isBool()) return convert(to.scalar, std::move(from));
     const Type type = from->type;

@@ -43,13 +43,11 @@ bool compare(ConditionOp op, T a, T b) {
 }
 
 bool compareAs(Scalar scalar, ConditionOp op, std::uint32_t a, std::uint32_t b) {
-  switch (scalar) {
-    case Scalar::Bool:
-    case Scalar::Uint: return compare(op, a, b);
-    case Scalar::Int: return compare(op, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
-    case Scalar::Float: return compare(op, std::bit_cast<float>(a), std::bit_cast<float>(b));
+  if (scalar == Scalar::Int) {
+    return compare(op, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
   }
-  return false;
+  if (scalar == Scalar::Float) return compare(op, std::bit_cast<float>(a), std::bit_cast<float>(b));
+  return compare(op, a, b);   // Bool and Uint: skc takes no others
 }
 
 std::uint32_t combine(const ConditionStep& step, std::uint32_t a, std::uint32_t b) {
@@ -98,14 +96,11 @@ bool holds(const program::Condition& condition, const SpecValues& specs) {
 }
 
 std::string glslLiteral(Scalar scalar, std::uint32_t bits) {
-  switch (scalar) {
-    case Scalar::Bool: return bits != 0 ? "true" : "false";
-    case Scalar::Uint: return fmt::format("{}u", bits);
-    case Scalar::Int: {
-      const auto value = static_cast<std::int32_t>(bits);
-      return value == INT32_MIN ? "(-2147483647 - 1)" : fmt::format("{}", value);
-    }
-    case Scalar::Float: break;
+  if (scalar == Scalar::Bool) return bits != 0 ? "true" : "false";
+  if (scalar == Scalar::Uint) return fmt::format("{}u", bits);
+  if (scalar == Scalar::Int) {
+    const auto whole = static_cast<std::int32_t>(bits);
+    return whole == INT32_MIN ? "(-2147483647 - 1)" : fmt::format("{}", whole);
   }
   const auto value = std::bit_cast<float>(bits);
   if (!std::isnormal(value) && value != 0) return fmt::format("uintBitsToFloat({}u)", bits);
