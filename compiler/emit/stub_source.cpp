@@ -159,7 +159,9 @@ class SourceWriter {
       }
       const std::string bundle = fmt::format("{}Bundle{}", name, i + 1);
       list("ArgumentPlane", bundle, places);
-      constexpr std::string_view scalars[] = {"Bool", "Int", "Uint", "Float"};
+      constexpr std::string_view scalars[] = {"Bool",   "Int",    "Uint",    "Float",  "Double",
+                                              "Half",   "Char",   "Uchar",   "Short",  "Ushort",
+                                              "Unorm8", "Snorm8", "Unorm16", "Snorm16"};
       bundles.push_back(fmt::format("{{Scalar::{}, {}, {}}}",
                                     scalars[static_cast<std::size_t>(made.bundles[i].scalar)],
                                     made.bundles[i].width, bundle));

@@ -23,6 +23,8 @@ void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
     for (const StructField& field : module.structs[type.index].fields) {
       collectPlanes(module, field.type, planes);
     }
+  } else if (type.isMatrix()) {
+    planes.insert(planes.end(), type.width, type.indexed());
   } else {
     planes.push_back(type);
   }
