@@ -63,7 +63,7 @@ ElementLayout arrayLayout(const Module& module, const TypeNames& types, const Ar
     const std::string place = "[" + std::to_string(i) + "]";
     for (const Plane& plane : inner.planes) {
       layout.planes.push_back({joinPath(place, plane.path), joinPath(place, plane.member), plane.type,
-                               i * inner.size + plane.offset});
+                               i * inner.size + plane.offset, plane.part});
     }
   }
   return layout;
