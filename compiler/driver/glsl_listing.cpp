@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "driver/glsl_listing.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <set>
+#include <vector>
 
 #include "assemble/assemble.hpp"
+#include "assemble/count_tree.hpp"
 #include "assemble/plans.hpp"
+#include "assemble/point_program.hpp"
 #include "assemble/reduce_plan.hpp"
 #include "assemble/reduce_program.hpp"
+#include "assemble/sinks.hpp"
+#include "support/text.hpp"
 
 namespace skc::driver {
 namespace {
@@ -36,6 +42,58 @@ sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel) {
     variant.access.push_back(access);
   }
   return variant;
+}
+
+/// The steps that bring the list of a scatter output to its place (runtime/src/scatter_points.cpp).
+std::vector<sk::assemble::PointStep> pointSteps(const sk::program::Parameter& sink) {
+  using sk::assemble::PointStep;
+  const bool isFloat = sink.element->fields.front().scalar == sk::program::Scalar::Float;
+  if (isFloat || sink.scatter == sk::program::ScatterOp::Store) return {PointStep::Store};
+  if (sink.scatter == sk::program::ScatterOp::Add) {
+    return {PointStep::SplitLimbs, PointStep::AddLimbs, PointStep::JoinLimbs};
+  }
+  return {PointStep::SplitUpper, PointStep::Upper, PointStep::SplitLower, PointStep::Lower,
+          PointStep::JoinHalves};
+}
+
+/// Every program of a kernel with sinks: what counts, the sums of counts, each list, and its points.
+std::string sinksListing(const Profile& profile, const sk::program::Kernel& kernel) {
+  sk::assemble::Variant variant = plainVariant(kernel);
+  std::vector<std::string> programs;
+  variant.task.work = sk::assemble::Work::Counts;
+  const auto isDrawn = [](const sk::program::Parameter& parameter) {
+    return parameter.role == sk::program::Role::Output ||
+           (sk::assemble::isSink(parameter) && sk::assemble::isCounted(parameter));
+  };
+  if (std::any_of(kernel.parameters.begin(), kernel.parameters.end(), isDrawn)) {
+    programs.push_back(sk::assemble::fragmentProgram(profile, kernel, variant));
+  }
+  bool hasTree = false;
+  variant.task.work = sk::assemble::Work::List;
+  variant.domain = sk::assemble::Domain::Entry;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    sk::assemble::StreamAccess& access = variant.access[i];
+    if (access.addressing == sk::assemble::Addressing::Aligned) {
+      access.addressing = sk::assemble::Addressing::Plane;
+    }
+  }
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const sk::program::Parameter& sink = kernel.parameters[i];
+    if (!sk::assemble::isSink(sink) || sink.pushes == 0) continue;
+    if (sk::assemble::isCounted(sink) && !hasTree) {
+      hasTree = true;
+      for (const bool ofCounts : {true, false}) {
+        programs.push_back(sk::assemble::treeProgram(profile, ofCounts));
+      }
+    }
+    variant.task.sink = static_cast<std::uint8_t>(i);
+    programs.push_back(sk::assemble::fragmentProgram(profile, kernel, variant));
+    if (sink.role == sk::program::Role::VariableOutput) continue;
+    for (const sk::assemble::PointStep step : pointSteps(sink)) {
+      programs.push_back(sk::assemble::pointProgram(profile, sink, step));
+    }
+  }
+  return skc::join(programs, "\n");
 }
 
 /// Every program that folds a 1024 x 1024 stream to a value, once.
@@ -75,7 +133,11 @@ std::string glslListing(const emit::Program& program, std::string_view profileNa
   std::string text;
   for (const emit::Unit& unit : program.units()) {
     if (!text.empty()) text += "\n";
-    text += unit.reduction ? reductionListing(profile, *unit.reduction) : kernelListing(profile, unit.kernel);
+    const bool hasSinks =
+        std::any_of(unit.kernel.parameters.begin(), unit.kernel.parameters.end(), sk::assemble::isSink);
+    text += unit.reduction ? reductionListing(profile, *unit.reduction)
+            : hasSinks     ? sinksListing(profile, unit.kernel)
+                           : kernelListing(profile, unit.kernel);
   }
   return text;
 }

@@ -146,10 +146,33 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr gatherRead(const clang::CXXOperatorCallExpr* e);
   ir::ExprPtr classOperator(const clang::CXXOperatorCallExpr* e);
   ir::ExprPtr classAssignment(ir::BinaryOp op, const clang::CXXOperatorCallExpr* e);
+  /// What `a[i][j]` names, and the indices as they are written.
+  struct Subscripts {
+    const clang::Expr* object;
+    std::vector<const clang::Expr*> written;
+    clang::SourceLocation where;
+  };
+  static Subscripts subscriptsOf(const clang::CXXOperatorCallExpr* e);
+  ir::ExprPtr indexFrom(const Subscripts& subscripts, ir::VarId stream);
   ir::ExprPtr argument(const clang::Expr* e, const ir::Variable& parameter);
   void abandonIfUnknown(const clang::Stmt* s) const;
   std::optional<ir::VarId> streamVariable(const clang::Expr* e) const;
   ir::VarId gatherVariable(const clang::Expr* e);
+
+  // ---- sinks (lower_sink.cpp) -------------------------------------------------------------------
+  ir::VarId sinkVariable(const clang::Expr* e);
+  ir::ExprPtr push(const clang::CallExpr* e);
+  /// Whether the expression writes an element of a scatter output; if so, it is lowered.
+  bool scatters(const clang::Expr* e);
+  struct ScatterPlace {
+    Subscripts subscripts;
+    ir::VarId stream;
+  };
+  std::optional<ScatterPlace> scatterPlace(const clang::Expr* e) const;
+  void scatterStore(const ScatterPlace& place, const clang::Expr* left, const clang::Expr* right);
+  void scatterCompound(const ScatterPlace& place, const clang::CompoundAssignOperator* e);
+  void scatter(const ScatterPlace& place, ir::ScatterOp op, ir::ExprPtr value);
+  ir::ExprPtr combinedValue(const ScatterPlace& place, ir::ExprPtr value, clang::SourceLocation where);
 
   ModuleLowering& module_;
   ir::Function function_;

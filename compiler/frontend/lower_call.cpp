@@ -101,6 +101,7 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
   if (name == "indexof") return indexOrExtent(e, true);
   if (name == "extentof") return indexOrExtent(e, false);
   if (name == "neighbor") return neighbor(e);
+  if (name == "push") return push(e);
   if (name == "sincos" || name == "modf" || name == "frexp") return outParameterIntrinsic(e, name);
   if (name == "select") {
     Exprs args = valuesInOrder({e->getArg(0), e->getArg(1), e->getArg(2)});
@@ -269,8 +270,9 @@ std::optional<ir::VarId> FunctionLowering::streamVariable(const clang::Expr* e) 
   const auto found = variables_.find(reference->getDecl());
   if (found == variables_.end()) return std::nullopt;
   const ir::VarRole role = function_.variables[found->second].role;
-  if (role != ir::VarRole::Gather && role != ir::VarRole::Element) return std::nullopt;
-  return found->second;
+  const bool isStream =
+      role == ir::VarRole::Gather || role == ir::VarRole::Element || role == ir::VarRole::Sink;
+  return isStream ? std::optional(found->second) : std::nullopt;
 }
 
 ir::VarId FunctionLowering::gatherVariable(const clang::Expr* e) {
@@ -294,9 +296,11 @@ ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) 
   if (isValue) module_.fail(Diag::NotAStream, where, {name});
   const auto found = variables_.find(reference->getDecl());
   if (found == variables_.end()) throw Abandoned{};
-  const bool isGather = syntax->role == ir::ParamRole::Gather;
-  if (isIndex && isGather)
-    module_.fail(Diag::IndexOfGather, where, {function_.variables[found->second].name});
+  const std::string& parameter = function_.variables[found->second].name;
+  if (isIndex && syntax->role == ir::ParamRole::Gather) module_.fail(Diag::IndexOfGather, where, {parameter});
+  const bool isSink = function_.variables[found->second].role == ir::VarRole::Sink;
+  if (isIndex && isSink) module_.fail(Diag::IndexOfSink, where, {parameter});
+  if (syntax->role == ir::ParamRole::VariableOutput) module_.fail(Diag::ExtentOfSink, where, {parameter});
   ir::StreamRef stream{ir::StreamRef::Space::Variable, found->second};
   if (syntax->role == ir::ParamRole::Output || syntax->role == ir::ParamRole::Iterator) {
     stream = {ir::StreamRef::Space::Domain, 0};
@@ -324,27 +328,42 @@ ExprPtr FunctionLowering::neighbor(const clang::CallExpr* e) {
               ir::NeighborRead{{ir::StreamRef::Space::Variable, stream}, std::move(offset)});
 }
 
-/// a[i], a[i][j], a[int2], a[float2]: int indices with x, the fastest, first. Floats name the nearest
-/// element.
+/// a[i], a[i][j], a[int2], a[float2]
 ExprPtr FunctionLowering::gatherRead(const clang::CXXOperatorCallExpr* e) {
-  const SourceLocation where = e->getBeginLoc();
-  std::vector<const clang::Expr*> written{e->getArg(1)};
+  const Subscripts subscripts = subscriptsOf(e);
+  if (const auto stream = streamVariable(subscripts.object);
+      stream && function_.variables[*stream].role == ir::VarRole::Sink) {
+    module_.fail(Diag::SinkRead, e->getBeginLoc(), {function_.variables[*stream].name});
+  }
+  const ir::VarId stream = gatherVariable(subscripts.object);
+  const ir::Type type = function_.variables[stream].type;
+  return make(type, e->getBeginLoc(),
+              ir::GatherRead{{ir::StreamRef::Space::Variable, stream}, indexFrom(subscripts, stream)});
+}
+
+FunctionLowering::Subscripts FunctionLowering::subscriptsOf(const clang::CXXOperatorCallExpr* e) {
+  Subscripts result{nullptr, {e->getArg(1)}, e->getBeginLoc()};
   const clang::Expr* object = e->getArg(0)->IgnoreParenImpCasts();
   if (const auto* temporary = llvm::dyn_cast<clang::MaterializeTemporaryExpr>(object)) {
     object = temporary->getSubExpr()->IgnoreParenImpCasts();
   }
   while (const auto* outer = llvm::dyn_cast<clang::CXXOperatorCallExpr>(object)) {
-    written.insert(written.begin(), outer->getArg(1));
+    result.written.insert(result.written.begin(), outer->getArg(1));
     object = outer->getArg(0)->IgnoreParenImpCasts();
   }
-  const ir::VarId stream = gatherVariable(object);
-  const ir::Variable gather = function_.variables[stream];
-  for (const clang::Expr* index : written) {
+  result.object = object;
+  return result;
+}
+
+/// An int index with x, the fastest, first. Floats name the nearest element.
+ExprPtr FunctionLowering::indexFrom(const Subscripts& subscripts, ir::VarId stream) {
+  const ir::Variable variable = function_.variables[stream];
+  for (const clang::Expr* index : subscripts.written) {
     const auto* comma = llvm::dyn_cast<clang::BinaryOperator>(index->IgnoreParenImpCasts());
     if (comma && comma->getOpcode() == clang::BO_Comma)
-      module_.fail(Diag::CommaIndex, comma->getOperatorLoc(), {gather.name});
+      module_.fail(Diag::CommaIndex, comma->getOperatorLoc(), {variable.name});
   }
-  Exprs values = valuesInOrder(written);
+  Exprs values = valuesInOrder(subscripts.written);
   for (ExprPtr& index : values) {
     const Loc loc = index->loc;
     if (index->type.isFloat()) {
@@ -358,10 +377,11 @@ ExprPtr FunctionLowering::gatherRead(const clang::CXXOperatorCallExpr* e) {
     index = std::move(values[0]);
   } else {
     std::reverse(values.begin(), values.end());
-    index = make(ir::Type::of(Scalar::Int, gather.rank), where, ir::Construct{std::move(values)});
+    index =
+        make(ir::Type::of(Scalar::Int, variable.rank), subscripts.where, ir::Construct{std::move(values)});
   }
-  assert(index->type.width == gather.rank);  // the prelude declares nothing else
-  return make(gather.type, where, ir::GatherRead{{ir::StreamRef::Space::Variable, stream}, std::move(index)});
+  assert(index->type.width == variable.rank);  // the prelude declares nothing else
+  return index;
 }
 
 }  // namespace skc::frontend

@@ -134,6 +134,7 @@ void FunctionLowering::checkDepth(SourceLocation where) {
 /// An expression whose value nobody uses: only its effects remain.
 void FunctionLowering::discarded(const clang::Expr* e) {
   e = e->IgnoreParens();
+  if (scatters(e)) return;
   if (const auto* cleanups = llvm::dyn_cast<clang::ExprWithCleanups>(e))
     return discarded(cleanups->getSubExpr());
   if (const auto* cast = llvm::dyn_cast<clang::CastExpr>(e); cast && cast->getType()->isVoidType()) {
@@ -449,7 +450,7 @@ ExprPtr FunctionLowering::argument(const clang::Expr* e, const ir::Variable& par
   switch (parameter.role) {
     case ir::VarRole::Sink:
     case ir::VarRole::Gather: {
-      const ir::VarId stream = gatherVariable(e);
+      const ir::VarId stream = parameter.role == ir::VarRole::Gather ? gatherVariable(e) : sinkVariable(e);
       return ir::makeExpr(function_.variables[stream].type, ir::VarRef{stream},
                           module_.loc(e->getBeginLoc()));
     }

@@ -100,6 +100,10 @@ void FunctionLowering::parameters(const clang::FunctionDecl* declaration) {
       variable.role = ir::VarRole::Gather;
       variable.rank = static_cast<std::uint8_t>(rank);
       variable.isConst = true;
+    } else if (const auto sinkRank = module_.sinkRank(type, where, variable.type)) {
+      variable.role = ir::VarRole::Sink;
+      variable.rank = static_cast<std::uint8_t>(*sinkRank);
+      variable.isConst = true;
     } else {
       const clang::QualType value = type.getNonReferenceType();
       variable.type = module_.type(value, where);

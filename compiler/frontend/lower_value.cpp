@@ -105,6 +105,7 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
   if (const auto found = variables_.find(declared); found != variables_.end()) {
     const ir::Variable& variable = function_.variables[found->second];
     if (variable.role == ir::VarRole::Gather) module_.fail(Diag::GatherAsValue, where);
+    if (variable.role == ir::VarRole::Sink) module_.fail(Diag::SinkRead, where, {variable.name});
     return make(variable.type, where, ir::VarRef{found->second});
   }
   if (const auto* enumerator = llvm::dyn_cast<clang::EnumConstantDecl>(declared)) {

@@ -191,7 +191,11 @@ void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation w
   if (count(ir::ParamRole::Spec) > mostSpecs)
     fail(Diag::SpecCount, where, {kernel.name, std::to_string(mostSpecs)});
   if (!kernel.reduction) {
-    if (count(ir::ParamRole::Output) == 0) fail(Diag::KernelWithoutOutput, where, {kernel.name});
+    const bool hasSinks = count(ir::ParamRole::VariableOutput) + count(ir::ParamRole::Scatter) > 0;
+    if (count(ir::ParamRole::Output) > 0) return;
+    if (!hasSinks) fail(Diag::KernelWithoutOutput, where, {kernel.name});
+    if (count(ir::ParamRole::Input) + count(ir::ParamRole::Iterator) == 0)
+      fail(Diag::KernelWithoutDomain, where, {kernel.name});
     return;
   }
   if (kernel.params.size() != 2 || kernel.params[0].role != ir::ParamRole::Input ||
@@ -419,17 +423,37 @@ ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
   fail(Diag::ScalarType, use, {qualified.getAsString()});
 }
 
-int ModuleLowering::gatherRank(clang::QualType qualified, SourceLocation use, ir::Type& element) {
+namespace {
+
+/// An instance of one of the prelude's class templates.
+const clang::ClassTemplateSpecializationDecl* instanceOf(clang::QualType qualified) {
   const clang::CXXRecordDecl* record = qualified.getNonReferenceType()->getAsCXXRecordDecl();
-  if (!record || !isPrelude(record)) return 0;
-  const auto* instance = llvm::dyn_cast<clang::ClassTemplateSpecializationDecl>(record);
-  if (!instance) return 0;
+  return llvm::dyn_cast_or_null<clang::ClassTemplateSpecializationDecl>(record);
+}
+
+}  // namespace
+
+int ModuleLowering::gatherRank(clang::QualType qualified, SourceLocation use, ir::Type& element) {
+  const auto* instance = instanceOf(qualified);
+  if (!instance || !isPrelude(instance)) return 0;
   for (int rank = 1; rank <= 4; ++rank) {
     if (instance->getName() != gatherTemplateName(rank)) continue;
     element = type(instance->getTemplateArgs()[0].getAsType(), use);
     return rank;
   }
   return 0;
+}
+
+std::optional<int> ModuleLowering::sinkRank(clang::QualType qualified, SourceLocation use,
+                                            ir::Type& element) {
+  const auto* instance = instanceOf(qualified);
+  if (!instance || !isPrelude(instance)) return std::nullopt;
+  for (int rank = 0; rank <= 4; ++rank) {
+    if (instance->getName() != sinkTemplateName(rank)) continue;
+    element = type(instance->getTemplateArgs()[0].getAsType(), use);
+    return rank;
+  }
+  return std::nullopt;
 }
 
 ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, SourceLocation use) {

@@ -4,6 +4,7 @@
 // first named and remembered. Function bodies are FunctionLowering's.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -43,6 +44,8 @@ class ModuleLowering {
   ir::Type type(clang::QualType type, clang::SourceLocation use);
   /// Rank of a gather's class, 0 for any other type; `element` gets its element type.
   int gatherRank(clang::QualType type, clang::SourceLocation use, ir::Type& element);
+  /// The same for the class of a scatter output, or 0 for that of a variable output.
+  std::optional<int> sinkRank(clang::QualType type, clang::SourceLocation use, ir::Type& element);
 
   /// Lowers `declaration` (its definition) unless that was done. Reports recursion at `use`.
   ir::FunctionId function(const clang::FunctionDecl* declaration, clang::SourceLocation use);

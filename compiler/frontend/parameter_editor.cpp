@@ -24,7 +24,7 @@ struct ParameterEditor::Parts {
   Token name;
   bool isElement = false;          ///< `<>`
   int rank = 0;                    ///< pairs of empty brackets
-  Token open, close;               ///< the first and the last of them
+  Token open, close;               ///< the first and the last bracket of either kind
   Tokens length;                   ///< `[9]`, brackets included, of a uniform array
   Tokens value;                    ///< after `=`
   Token boundary;                  ///< the word in [[...]]
@@ -200,12 +200,13 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
   const std::string name = nameOf(parts.name);
   bool equal = false;
   if (isKind(parameter, at, tok::less)) {
-    ++at;
+    parts.open = parameter[at++];
     if (!isKind(parameter, at, tok::greater) && !isKind(parameter, at, tok::greaterequal)) {
       const Token& place = at < parameter.size() ? parameter[at] : parameter.back();
       diagnostics_.report(Diag::StreamBrackets, locOf(place), {name});
       return false;
     }
+    parts.close = parameter[at];
     equal = parameter[at++].is(tok::greaterequal);   // `total<>= 0` lexes as < >= 0
     parts.isElement = true;
   }
@@ -258,7 +259,7 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
     return false;
   };
   const std::string qualifier = parts.hasQualifier ? nameOf(parts.qualifier) : "";
-  if (qualifier == "vout" || qualifier == "kernel") {
+  if (qualifier == "kernel") {
     diagnostics_.report(Diag::QualifierUnknown, locOf(parts.qualifier), {qualifier});
     return false;
   }
@@ -267,6 +268,8 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
     return fail(Diag::ArrayParameter, {name});
   }
   if (parts.isElement && parts.rank > 0) return fail(Diag::StreamAndGather, {name});
+  const bool isSink = qualifier == "vout" || (qualifier == "out" && parts.rank > 0);
+  if (isSink) return resolveSink(parts, kind);
   if (parts.rank > 2) return fail(Diag::GatherRank, {name, std::to_string(parts.rank)});
   if (parts.hasBoundary && (parts.rank == 0 || !qualifier.empty())) {
     diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.boundary), {nameOf(parts.boundary), name});
@@ -287,13 +290,12 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   }
   if (kind == FunctionKind::Helper) {
     if (parts.isElement) return fail(Diag::StreamInHelper, {name});
-    if (parts.rank > 0 && !qualifier.empty()) return fail(Diag::ScatterOutput, {name});
+    if (parts.rank > 0 && !qualifier.empty()) return fail(Diag::OutputBrackets, {name});
     if (qualifier == "reduce") return fail(Diag::AccumulatorOutsideReduce, {name});
     parts.syntax.role = parts.rank > 0      ? ir::ParamRole::Gather
                         : qualifier.empty() ? ir::ParamRole::Uniform
                                             : ir::ParamRole::Output;
   } else if (qualifier == "out" || qualifier == "inout") {
-    if (parts.rank > 0) return fail(Diag::ScatterOutput, {name});
     if (!parts.isElement || qualifier == "inout") return fail(Diag::OutputBrackets, {name});
     if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name});
     parts.syntax.role = ir::ParamRole::Output;
@@ -306,6 +308,29 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
                         : parts.rank > 0 ? ir::ParamRole::Gather
                                          : ir::ParamRole::Uniform;
   }
+  parts.syntax.rank = static_cast<std::uint8_t>(parts.rank);
+  return true;
+}
+
+/// `vout T r<>` and `out T r[]`, which only kernels have.
+bool ParameterEditor::resolveSink(Parts& parts, FunctionKind kind) {
+  const std::string name = nameOf(parts.name);
+  const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments) {
+    diagnostics_.report(diag, locOf(parts.name), arguments);
+    return false;
+  };
+  const bool isVariable = nameOf(parts.qualifier) == "vout";
+  if (kind == FunctionKind::Helper) return fail(Diag::SinkInHelper, {name});
+  if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name});
+  if (isVariable && (!parts.isElement || parts.rank > 0)) return fail(Diag::VariableOutputBrackets, {name});
+  if (parts.isElement && !isVariable) return fail(Diag::StreamAndGather, {name});
+  if (parts.rank > 4) return fail(Diag::ScatterRank, {name, std::to_string(parts.rank)});
+  if (parts.hasBoundary) {
+    diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.boundary), {nameOf(parts.boundary), name});
+    return false;
+  }
+  if (!parts.value.empty()) return fail(Diag::DefaultArgument, {name});
+  parts.syntax.role = isVariable ? ir::ParamRole::VariableOutput : ir::ParamRole::Scatter;
   parts.syntax.rank = static_cast<std::uint8_t>(parts.rank);
   return true;
 }
@@ -325,7 +350,12 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
       out.push_back(make(tok::greater, parts.close.getLocation()));
       break;
     case ir::ParamRole::VariableOutput:
-    case ir::ParamRole::Scatter: break;   // resolveRole() makes none yet
+    case ir::ParamRole::Scatter:
+      out.push_back(word(sinkTemplateName(syntax.rank), place));
+      out.push_back(make(tok::less, parts.open.getLocation()));
+      out.insert(out.end(), parts.type.begin(), parts.type.end());
+      out.push_back(make(tok::greater, parts.close.getLocation()));
+      break;
     case ir::ParamRole::Output:
     case ir::ParamRole::Accumulator:
       out.insert(out.end(), parts.type.begin(), parts.type.end());

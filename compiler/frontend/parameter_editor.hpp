@@ -45,6 +45,7 @@ class ParameterEditor {
   bool takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool resolveRole(Parts& parts, FunctionKind kind);
+  bool resolveSink(Parts& parts, FunctionKind kind);
   std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place);
   void print(const Parts& parts, FunctionKind kind, Tokens& out);
 

@@ -204,6 +204,24 @@ template <class T> T neighbor(gather_2d<T> a, int dx, int dy = 0);
 template <class T> T neighbor(gather_2d<T> a, int2 offset);
 template <class T> int4 indexof(const T& stream);
 template <class T> int4 extentof(const T& stream);
+template <class T> struct scatter_1d {
+  T& operator[](int) const; T& operator[](uint) const; T& operator[](float) const;
+};
+template <class T> struct scatter_2d {
+  scatter_1d<T> operator[](int) const; scatter_1d<T> operator[](uint) const;
+  scatter_1d<T> operator[](float) const; T& operator[](int2) const; T& operator[](float2) const;
+};
+template <class T> struct scatter_3d {
+  scatter_2d<T> operator[](int) const; scatter_2d<T> operator[](uint) const;
+  scatter_2d<T> operator[](float) const; T& operator[](int3) const; T& operator[](float3) const;
+};
+template <class T> struct scatter_4d {
+  scatter_3d<T> operator[](int) const; scatter_3d<T> operator[](uint) const;
+  scatter_3d<T> operator[](float) const; T& operator[](int4) const; T& operator[](float4) const;
+};
+template <class T> struct variable_output {};
+template <class T> struct __sk_same { using type = T; };
+template <class T> void push(variable_output<T> r, typename __sk_same<T>::type value);
 template <class M, class A, class B> decltype(A() + B()) select(M condition, A yes, B no);
 template <class T> T select(bool condition, T yes, T no);
 template <class T> void sincos(T x, T& sine, T& cosine);
@@ -268,5 +286,9 @@ std::optional<ir::Type> classType(std::string_view name) {
 std::string vectorConstructorName(std::string_view name) { return fmt::format("__sk_make_{}", name); }
 
 std::string gatherTemplateName(int rank) { return fmt::format("gather_{}d", rank); }
+
+std::string sinkTemplateName(int rank) {
+  return rank == 0 ? "variable_output" : fmt::format("scatter_{}d", rank);
+}
 
 }  // namespace skc::frontend

@@ -30,4 +30,7 @@ std::string vectorConstructorName(std::string_view name);
 /// The class template of a gather of this rank, 1 to 4: "gather_2d".
 std::string gatherTemplateName(int rank);
 
+/// The class template of a scatter output of this rank, 1 to 4, or, for 0, of a variable output.
+std::string sinkTemplateName(int rank);
+
 }  // namespace skc::frontend

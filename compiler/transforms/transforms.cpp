@@ -10,6 +10,7 @@
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "split/split_kernels.hpp"
+#include "transforms/bound_pushes.hpp"
 #include "transforms/derive_combine.hpp"
 #include "transforms/fold_constants.hpp"
 #include "transforms/guard_streams.hpp"
@@ -35,6 +36,8 @@ void plain(ir::Module& module, Diagnostics& diagnostics, const TransformOptions&
 // Folding before deriving, so that what a branch on a literal switches off does not hide the pattern
 // of a fold.
 // Folding before guarding, too: a branch that is gone needs no stream.
+// Bounding the pushes after folding, which makes loops of a known number of rounds and takes out what
+// never runs.
 // Deriving before removing, because it makes functions that use structs.
 // Removing after these, because all of them leave things without use; and before splitting, so that
 // nobody plans for what is not needed.
@@ -42,12 +45,11 @@ constexpr Transform transforms[] = {
     {"specialize-gathers", plain<specializeGathers>},
     {"fold-constants", plain<foldConstants>},
     {"guard-streams", plain<guardStreams>},
+    {"bound-pushes", plain<boundPushes>},
     {"derive-combine", plain<deriveCombine>},
     {"remove-unused", plain<removeUnused>},
-    {"split-kernels",
-     [](ir::Module& module, Diagnostics&, const TransformOptions& options) {
-       split::splitKernels(module, options.limits);
-     }},
+    {"split-kernels", [](ir::Module& module, Diagnostics&,
+                         const TransformOptions& options) { split::splitKernels(module, options.limits); }},
 };
 
 /// A violation is a bug of ours: says after which transform it appeared, and shows the module.

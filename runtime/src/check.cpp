@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/sinks.hpp"
 #include "device_state.hpp"
 #include "iterator.hpp"
 #include "plan_run.hpp"
@@ -55,7 +56,18 @@ StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const
     fail(kernel, "'{}' is declared as {}, but its stream holds {}", parameter.name, parameter.element->name,
          region.stream->element->name);
   }
-  return *region.stream;
+  StreamState& stream = *region.stream;
+  if (parameter.role == Role::VariableOutput) {
+    return stream;   // its size is about to change
+  }
+  stream.settle();
+  if (!isInside(region)) {
+    fail(kernel,
+         "'{}' is a view of shape {} that is no longer inside its stream, to which a kernel has pushed {} "
+         "element(s); make the view after that call",
+         parameter.name, toString(region.shape), stream.shape.size());
+  }
+  return stream;
 }
 
 void checkSameDevice(const Kernel& kernel, const Parameter& a, const StreamState& first, const Parameter& b,
@@ -75,17 +87,47 @@ void checkOutputShape(const Kernel& kernel, const Parameter& first, const Shape&
   }
 }
 
-void checkInputShape(const Kernel& kernel, const Parameter& input, const Shape& shape,
-                     const Parameter& output, const Shape& domain) {
+void checkInputShape(const Kernel& kernel, const Parameter& input, const Shape& shape, const Parameter& first,
+                     const Shape& domain) {
   bool fits = shape.rank() == domain.rank();
   for (int d = 0; fits && d < shape.rank(); ++d) {
     fits = shape[d] == domain[d] || shape[d] == 1;
   }
-  if (!fits) {
+  if (fits) {
+    return;
+  }
+  if (first.role != Role::Output) {
+    fail(
+        kernel,
+        "'{}' has shape {}, but the inputs together have {}; give them the same shape, or extent 1 where one "
+        "repeats",
+        input.name, toString(shape), toString(domain));
+  }
+  fail(kernel,
+       "'{}' has shape {}, but the output '{}' has {}; give them the same shape, or extent 1 where "
+       "'{}' repeats",
+       input.name, toString(shape), first.name, toString(domain), input.name);
+}
+
+/// The stream of a variable output is taken whole, and has one dimension afterwards.
+void checkVariableOutput(const Kernel& kernel, const Parameter& output, const StreamState& stream) {
+  if (stream.shape.rank() != 1) {
+    fail(kernel, "'{}' is a variable output, but its stream has shape {}; give it one of one dimension",
+         output.name, toString(stream.shape));
+  }
+}
+
+void checkScatter(const Kernel& kernel, const Parameter& output, const Shape& shape,
+                  const DeviceState& device) {
+  if (shape.rank() != output.rank) {
+    fail(kernel, "'{}' is declared with {} dimension(s), but its stream has shape {}", output.name,
+         output.rank, toString(shape));
+  }
+  if (output.scatter != program::ScatterOp::Store && !device.capabilities.blendsFloats) {
     fail(kernel,
-         "'{}' has shape {}, but the output '{}' has {}; give them the same shape, or extent 1 where "
-         "'{}' repeats",
-         input.name, toString(shape), output.name, toString(domain), input.name);
+         "'{}' combines what is scattered to it, but '{}' cannot blend 32-bit floats (GL_EXT_float_blend); "
+         "push indices and values to variable outputs, and combine them in a kernel",
+         output.name, device.capabilities.renderer);
   }
 }
 
@@ -115,8 +157,16 @@ bool overlap(const StreamRegion& a, const StreamRegion& b) {
 void checkDisjoint(const Kernel& kernel, std::span<const Argument> arguments,
                    const assemble::SpecValues& specs, std::size_t output) {
   for (std::size_t i = 0; i < output; ++i) {
-    if (kernel.parameters[i].role == Role::Output && isNeeded(kernel.parameters[i], specs) &&
-        overlap(arguments[i].region, arguments[output].region)) {
+    const Role role = kernel.parameters[i].role;
+    if ((role != Role::Output && !assemble::isSink(kernel.parameters[i])) ||
+        !isNeeded(kernel.parameters[i], specs)) {
+      continue;
+    }
+    const bool isWhole =
+        role == Role::VariableOutput || kernel.parameters[output].role == Role::VariableOutput;
+    const bool isShared = isWhole ? arguments[i].region.stream == arguments[output].region.stream
+                                  : overlap(arguments[i].region, arguments[output].region);
+    if (isShared) {
       fail(kernel,
            "the outputs '{}' and '{}' overlap: both write elements of one stream; give them different "
            "streams, or regions that have no element in common",
@@ -140,14 +190,31 @@ void checkPlanes(const Kernel& kernel, const DeviceState& device, std::size_t wr
   }
 }
 
-/// The first output that the spec parameters leave; where there is none, the number of parameters.
-std::size_t firstOutput(const Kernel& kernel, const assemble::SpecValues& specs) {
-  std::size_t i = 0;
-  while (i < kernel.parameters.size() &&
-         !(kernel.parameters[i].role == Role::Output && isNeeded(kernel.parameters[i], specs))) {
-    ++i;
+/// Planes of the passes that a sink adds: of its list, and, where it is counted, one of counts to the pass that
+/// writes the other outputs, and two of the tree to what its list's pass reads.
+struct SinkPlanes {
+  std::size_t counts = 0;
+  std::size_t list = 0;
+  std::size_t tree = 0;
+
+  void add(const Parameter& sink) {
+    const bool isCounted = assemble::isCounted(sink);
+    counts += isCounted ? 1 : 0;
+    tree = isCounted ? 2 : tree;
+    const std::size_t texels = sink.role == Role::Scatter ? 1 : 0;
+    list = std::max(list, sink.element->fields.size() + texels);
   }
-  return i;
+};
+
+/// The parameter whose stream says what device a kernel runs on: the first output that the spec parameters leave,
+/// or the first sink; where there is none, the number of parameters.
+std::size_t firstWritten(const Kernel& kernel, const assemble::SpecValues& specs) {
+  const auto isOutput = [&](const Parameter& p) { return p.role == Role::Output && isNeeded(p, specs); };
+  auto found = std::find_if(kernel.parameters.begin(), kernel.parameters.end(), isOutput);
+  if (found == kernel.parameters.end()) {
+    found = std::find_if(kernel.parameters.begin(), kernel.parameters.end(), assemble::isSink);
+  }
+  return static_cast<std::size_t>(found - kernel.parameters.begin());
 }
 
 bool isValue(const Parameter& parameter) {
@@ -200,15 +267,20 @@ DeviceState* checkCall(const Kernel& kernel, std::span<const Argument> arguments
     fail(kernel, "{} arguments are given, but {} are declared", arguments.size(), parameters.size());
   }
   const assemble::SpecValues specs = specsOf(kernel, arguments);
-  const std::size_t first = firstOutput(kernel, specs);
+  const std::size_t first = firstWritten(kernel, specs);
   if (first == parameters.size()) {
     return nullptr;
   }
   checkGiven(kernel, parameters[first], arguments[first]);
-  const Shape& domain = arguments[first].region.shape;
-  StreamState& firstStream = checkStream(kernel, parameters[first], arguments[first].region);
+  const StreamState& firstStream = checkStream(kernel, parameters[first], arguments[first].region);
+  DeviceState& device = *firstStream.device;
+  const Shape domain = domainOf(kernel, arguments, specs);
+  if (domain.rank() == 0) {
+    fail(kernel, "no input and no iterator with a shape says how many elements there are; give one");
+  }
   std::size_t written = 0;
   std::size_t read = 0;
+  SinkPlanes sinks;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& parameter = parameters[i];
     const StreamRegion& region = arguments[i].region;
@@ -220,25 +292,69 @@ DeviceState* checkCall(const Kernel& kernel, std::span<const Argument> arguments
       continue;
     }
     checkGiven(kernel, parameter, arguments[i]);
-    checkSameDevice(kernel, parameters[first], firstStream, parameter,
-                    checkStream(kernel, parameter, region));
-    if (parameter.role == Role::Output) {
-      written += parameter.element->fields.size();
-      checkOutputShape(kernel, parameters[first], domain, parameter, region.shape);
-      checkDisjoint(kernel, arguments, specs, i);
+    const StreamState& stream = checkStream(kernel, parameter, region);
+    checkSameDevice(kernel, parameters[first], firstStream, parameter, stream);
+    switch (parameter.role) {
+      case Role::Output:
+        written += parameter.element->fields.size();
+        checkOutputShape(kernel, parameters[first], domain, parameter, region.shape);
+        checkDisjoint(kernel, arguments, specs, i);
+        break;
+      case Role::VariableOutput:
+      case Role::Scatter:
+        sinks.add(parameter);
+        if (parameter.role == Role::Scatter) {
+          checkScatter(kernel, parameter, region.shape, device);
+        } else {
+          checkVariableOutput(kernel, parameter, stream);
+        }
+        checkDisjoint(kernel, arguments, specs, i);
+        break;
+      case Role::Gather:
+        read += parameter.element->fields.size();
+        checkGatherShape(kernel, parameter, region.shape, domain);
+        break;
+      case Role::Input:
+        read += parameter.element->fields.size();
+        checkInputShape(kernel, parameter, region.shape, parameters[first], domain);
+        break;
+      case Role::Uniform:
+      case Role::Iterator:
+      case Role::Spec:
+      case Role::Accumulator: break;
+    }
+  }
+  if (planFor(kernel, device.limits) == nullptr) {
+    checkPlanes(kernel, device, std::max(written + sinks.counts, sinks.list), read + sinks.tree);
+  }
+  const bool hasSinks = sinks.list > 0;  // which are emptied where there is no element
+  return domain.size() == 0 && !hasSinks ? nullptr : &device;
+}
+
+Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const assemble::SpecValues& specs) {
+  Shape domain;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const Role role = kernel.parameters[i].role;
+    const Shape& shape = arguments[i].region.shape;
+    if (!isNeeded(kernel.parameters[i], specs)) {
       continue;
     }
-    read += parameter.element->fields.size();
-    if (parameter.role == Role::Gather) {
-      checkGatherShape(kernel, parameter, region.shape, domain);
-    } else {
-      checkInputShape(kernel, parameter, region.shape, parameters[first], domain);
+    if (role == Role::Output) {
+      return shape;
+    }
+    if (role != Role::Input && role != Role::Iterator) {
+      continue;
+    }
+    if (domain.rank() == 0) {
+      domain = shape;
+    }
+    for (int d = 0; shape.rank() == domain.rank() && d < shape.rank(); ++d) {
+      if (domain[d] == 1) {
+        domain = domain.with(d, shape[d]);
+      }
     }
   }
-  if (planFor(kernel, firstStream.device->limits) == nullptr) {
-    checkPlanes(kernel, *firstStream.device, written, read);
-  }
-  return domain.size() == 0 ? nullptr : firstStream.device;
+  return domain;
 }
 
 DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input) {

@@ -19,8 +19,14 @@ assemble::SpecValues specsOf(const program::Kernel& kernel, std::span<const Argu
 
 /// Checks the arguments of a kernel: number, streams, device, element types, ranks, shapes, planes,
 /// outputs that overlap. Returns the device of all of them, null
-/// where the call has nothing to do: an empty domain, or no output that the spec parameters leave.
+/// where the call has nothing to do: no element output that the spec parameters leave, and no variable or scatter
+/// output, or an empty domain without the latter.
 DeviceState* checkCall(const program::Kernel& kernel, std::span<const Argument> arguments);
+
+/// The shape that a kernel runs over: that of its outputs, or, where it has only variable and scatter outputs,
+/// of its inputs without those that repeat, and iterators that have one. The arguments have been checked, or are about to be.
+Shape domainOf(const program::Kernel& kernel, std::span<const Argument> arguments,
+               const assemble::SpecValues& specs);
 
 /// Checks the input of a reduction, and that an empty one has an identity. Returns its device.
 DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input);

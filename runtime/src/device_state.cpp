@@ -19,7 +19,8 @@ DeviceState::DeviceState(gl::OpenedContext&& opened, std::int32_t textureLimit, 
       profile(assemble::findProfile(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300")),
       framebuffers(bound),
       pool(bound, framebuffers),
-      programs(*this) {
+      programs(*this),
+      sinkPrograms(*this) {
   limits.textureSize = capabilities.textureSize;
   if (textureLimit > 0 && textureLimit < limits.textureSize) {
     limits.textureSize = textureLimit;
@@ -51,11 +52,13 @@ DeviceState::~DeviceState() {
     remove(stream);
     stream.device = nullptr;
     stream.planes.clear();
+    stream.total_ = {};
   }
   if (current) {
     pool.clear();
     framebuffers.clear();
     programs.clear();
+    sinkPrograms.clear();
     vertexArray = {};
   }
 }
@@ -65,10 +68,12 @@ void DeviceState::forgetObjects() noexcept {
     for (Surface& plane : stream->planes) {
       plane.forget();
     }
+    stream->total_.forget();
   }
   pool.forget();
   framebuffers.forget();
   programs.forget();
+  sinkPrograms.forget();
   vertexArray.forget();
 }
 

@@ -16,6 +16,7 @@
 #include "gl/saved_state.hpp"
 #include "gl/vertex_array.hpp"
 #include "program_cache.hpp"
+#include "sink_programs.hpp"
 #include "sk/device.hpp"
 #include "surface.hpp"
 #include "variant.hpp"
@@ -50,6 +51,7 @@ class DeviceState {
   FramebufferCache framebuffers;
   SurfacePool pool;
   ProgramCache programs;
+  SinkPrograms sinkPrograms;
   gl::VertexArray vertexArray;
   std::vector<std::byte> staging;        ///< texels on their way; transfer.cpp's
   std::vector<Operand> operands;         ///< of the call that runs; run.cpp's

@@ -71,8 +71,8 @@ void drawRects(DeviceState& device, std::span<const Rect> rects) {
 
 void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
                 const Placement& domain, std::span<const Rect> rects, GLuint framebuffer,
-                std::span<const gl::ArrayTexture> bundles) {
-  KernelProgram& program = device.programs.kernelProgram(kernel, operands, domain);
+                std::span<const gl::ArrayTexture> bundles, const assemble::Task& task) {
+  KernelProgram& program = device.programs.kernelProgram(kernel, operands, domain, task);
   device.bound.program(program.program.name());
   device.bound.framebuffer(framebuffer);
   int unit = 0;
@@ -91,6 +91,9 @@ void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<co
     step.uniform.set(operands[step.parameter].step.data());
   }
   program.domain.set(domain);
+  if (task.work == assemble::Work::List) {
+    program.target.set(operands[task.sink].placement);
+  }
   drawRects(device, rects);
 }
 

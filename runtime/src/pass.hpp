@@ -27,10 +27,10 @@ void drawRects(DeviceState& device, std::span<const assemble::Rect> rects);
 
 /// Draws `rects` of `framebuffer` with a kernel. `operands`: one a parameter; those of outputs are not
 /// looked at, since `framebuffer` has their planes. No operand is a texture of the framebuffer. `bundles`:
-/// the array textures of the plan that the kernel is a pass of.
+/// the array textures of the plan that the kernel is a pass of. The tree of a list is bound by the caller.
 void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
                 const assemble::Placement& domain, std::span<const assemble::Rect> rects, GLuint framebuffer,
-                std::span<const gl::ArrayTexture> bundles = {});
+                std::span<const gl::ArrayTexture> bundles = {}, const assemble::Task& task = {});
 
 /// Copies one region to another of the same shape, plane by plane, wherever each lies. They are not of
 /// the same surface.

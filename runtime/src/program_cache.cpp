@@ -54,10 +54,10 @@ ProgramCache::ProgramCache(DeviceState& device) : device_(device) {}
 ProgramCache::~ProgramCache() = default;
 
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
-                                           const assemble::Placement& domain) {
-  std::unique_ptr<KernelProgram>& kept = kernels_[variantKey(kernel, operands, domain)];
+                                           const assemble::Placement& domain, const assemble::Task& task) {
+  std::unique_ptr<KernelProgram>& kept = kernels_[variantKey(kernel, operands, domain, task)];
   if (!kept) {
-    kept = makeKernelProgram(kernel, chooseVariant(kernel, operands, domain));
+    kept = makeKernelProgram(kernel, chooseVariant(kernel, operands, domain, task));
   }
   return *kept;
 }
@@ -85,11 +85,11 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
     } else if (parameter.role == program::Role::Uniform) {
       for (const auto parts : valuesOf(*parameter.element)) {
         const std::string_view path = parts.front().path;
-        const std::string name =
-            fmt::format("sk_arg_{}{}{}", parameter.symbol, path.empty() || path.front() == '[' ? "" : ".", path);
+        const std::string name = fmt::format("sk_arg_{}{}{}", parameter.symbol,
+                                             path.empty() || path.front() == '[' ? "" : ".", path);
         made->values.push_back({i, gl::FieldUniform(made->program.location(name), parts)});
       }
-    } else if (parameter.role != program::Role::Output) {
+    } else if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather) {
       made->reads.push_back({i, PlacementUniforms(made->program, fmt::format("sk_*_{}", parameter.symbol))});
       bindSamplers(made->program, parameter, unit);
     }
@@ -98,7 +98,31 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
   for (const std::size_t bundle : made->bundles) {
     made->program.setSampler(assemble::bundleName(bundle), unit++);
   }
+  made->units = unit;
+  if (variant.task.work == assemble::Work::List) {
+    findListUniforms(*made, kernel.parameters[variant.task.sink]);
+  }
   return made;
+}
+
+void ProgramCache::findListUniforms(KernelProgram& made, const program::Parameter& sink) {
+  made.target = PlacementUniforms(made.program, fmt::format("sk_*_{}", sink.symbol));
+  made.tree.shift = {made.program.location("sk_tree_shift"), false};
+  made.tree.levels = {made.program.location("sk_levels"), false};
+  for (std::size_t level = 0; level < made.tree.rows.size(); ++level) {
+    made.tree.rows[level] = {made.program.location(fmt::format("sk_rows[{}]", level)), false};
+  }
+  device_.bound.program(made.program.name());
+  made.program.setSampler("sk_odd", made.units);
+  made.program.setSampler("sk_even", made.units + 1);
+}
+
+void KernelProgram::Tree::set(const assemble::TreePlan& plan) {
+  shift.set(plan.shift);
+  levels.set(static_cast<std::int32_t>(plan.levels.size()));
+  for (std::size_t level = 0; level < plan.levels.size(); ++level) {
+    rows[level + 1].set(plan.levels[level].row);
+  }
 }
 
 void ProgramCache::bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit) {

@@ -4,6 +4,7 @@
 // until the device ends. Descriptors are known by their addresses: they must outlive the device.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <span>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "assemble/count_tree.hpp"
 #include "assemble/reduce_plan.hpp"
 #include "gl/program.hpp"
 #include "gl/uniform.hpp"
@@ -35,8 +37,19 @@ struct KernelProgram {
     PlacementUniforms uniforms;
   };
 
+  /// Where a list's program finds the tree over the counts (assemble/count_tree.hpp).
+  struct Tree {
+    gl::IntUniform shift, levels;
+    std::array<gl::IntUniform, assemble::mostTreeLevels + 1> rows;
+
+    void set(const assemble::TreePlan& plan);
+  };
+
   gl::Program program;
   PlacementUniforms domain;
+  PlacementUniforms target;     ///< of the scatter output whose list it makes
+  Tree tree;                    ///< its textures lie on the units from `units` on
+  int units = 0;                ///< what `reads` take
   std::vector<Value> values;
   std::vector<Value> steps;     ///< of iterators
   std::vector<Read> reads;      ///< their planes lie on consecutive texture units, from 0, in this order
@@ -60,7 +73,7 @@ class ProgramCache {
 
   /// Both throw sk::Error where the driver refuses the program, with its words.
   KernelProgram& kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
-                               const assemble::Placement& domain);
+                               const assemble::Placement& domain, const assemble::Task& task = {});
   ReduceProgram& reduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
 
   /// A kernel without inputs whose only output is the reduction's identity, which must exist.
@@ -75,6 +88,7 @@ class ProgramCache {
 
   std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
                                                    const assemble::Variant& variant);
+  void findListUniforms(KernelProgram& made, const program::Parameter& sink);
   gl::Program build(const program::Kernel& kernel, const std::string& fragmentSource);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "device_state.hpp"
+#include "sink_list.hpp"
 #include "sk/error.hpp"
 #include "stream_state.hpp"
 #include "transfer.hpp"
@@ -38,9 +39,52 @@ StreamState::StreamState(DeviceState& owner, const program::Element& type, const
 
 StreamState::~StreamState() {
   if (device != nullptr) {
+    if (total_) {
+      device->pool.give(std::move(total_));
+    }
     device->givePlanes(planes);
     device->remove(*this);
   }
+}
+
+void StreamState::become(std::vector<Surface>& elements, const Layout& list, Surface* total) {
+  std::swap(planes, elements);
+  layout = list;
+  if (total_) {
+    device->pool.give(std::move(total_));
+    total_ = {};
+  }
+  if (total != nullptr) {
+    total_ = std::move(*total);
+  } else {
+    takeSize(layout.whole.extent[0]);
+  }
+}
+
+void StreamState::settle() {
+  if (!total_) {
+    return;
+  }
+  const DeviceScope scope(*device);
+  takeSize(readTotal(*device, total_));
+  device->pool.give(std::move(total_));
+  total_ = {};
+}
+
+void StreamState::takeSize(std::int32_t count) {
+  shape = Shape(count);
+  layout.whole.extent = {count, 1, 1, 1};
+  layout.whole.stride = assemble::stridesOf(layout.whole.extent);
+  layout.draws = assemble::drawnTexels(layout.whole);
+}
+
+bool isInside(const StreamRegion& region) {
+  const Shape& shape = region.stream->shape;
+  bool inside = region.shape.rank() == shape.rank();
+  for (int d = 0; inside && d < shape.rank(); ++d) {
+    inside = region.begin[d] + region.shape[d] <= shape[d];
+  }
+  return inside;
 }
 
 StreamState& liveStream(const StreamRegion& region, std::string_view context) {
@@ -53,14 +97,26 @@ StreamState& liveStream(const StreamRegion& region, std::string_view context) {
                     "long as its streams are used",
                     context, toString(region.stream->shape)));
   }
+  region.stream->settle();
+  if (region.shape.rank() > 0 && !isInside(region)) {
+    throw Error(fmt::format(
+        "{}: a view from {} of shape {} is no longer inside its stream, to which a kernel has pushed {} "
+        "element(s); make the view after the call",
+        context, toString(region.begin), toString(region.shape), region.stream->shape.size()));
+  }
   return *region.stream;
 }
 
 void detail::StreamDeleter::operator()(StreamState* state) const noexcept { delete state; }
 
 StreamRegion detail::wholeRegion(StreamState* state) {
-  return state == nullptr ? StreamRegion{}
-                          : StreamRegion{state, Index::origin(state->shape.rank()), state->shape};
+  if (state == nullptr) {
+    return {};
+  }
+  if (state->device != nullptr) {
+    state->settle();
+  }
+  return {state, Index::origin(state->shape.rank()), state->shape};
 }
 
 StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, const Index& end) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "iterator.hpp"
 #include "layout.hpp"
 
 namespace sk {
@@ -17,11 +18,20 @@ using assemble::Addressing;
 using assemble::isNeeded;
 using assemble::Placement;
 using assemble::StreamAccess;
+using assemble::Task;
+using assemble::Work;
 using program::Parameter;
 using program::Role;
 
-constexpr bool isRead(const Parameter& parameter) {
-  return parameter.role == Role::Input || parameter.role == Role::Gather;
+/// Whether a program depends on where the elements of a parameter lie, beside the domain's.
+bool hasAccess(const program::Kernel& kernel, std::size_t i, const Task& task) {
+  const Role role = kernel.parameters[i].role;
+  return role == Role::Input || role == Role::Gather ||
+         (role == Role::Scatter && task.work == Work::List && task.sink == i);
+}
+
+assemble::Domain domainOf(const Placement& domain, const Task& task) {
+  return task.work == Work::List ? assemble::Domain::Entry : assemble::domainOf(domain);
 }
 
 /// Whether one step brings a neighbour's index back inside the gather, wherever the domain's index is.
@@ -37,9 +47,11 @@ bool isNearby(const Parameter& gather, const Placement& placement, const Placeme
   return true;
 }
 
-StreamAccess chooseAccess(const Parameter& parameter, const Placement& placement, const Placement& domain) {
+StreamAccess chooseAccess(const Parameter& parameter, const Placement& placement, const Placement& domain,
+                          const Task& task) {
   StreamAccess access;
-  if (parameter.role == Role::Input && haveSameTexels(placement, domain)) {
+  const bool isAligned = task.work != Work::List && haveSameTexels(placement, domain);
+  if (parameter.role == Role::Input && isAligned) {
     return access;
   }
   access.addressing = placement.linear ? Addressing::Linear : Addressing::Plane;
@@ -109,10 +121,19 @@ std::uint32_t specBits(const Parameter& parameter, const void* value) {
   return bits;
 }
 
+Operand iteration(const Parameter& iterator, const void* ends, const Shape& domain) {
+  Placement placement;
+  placement.extent = xFirst(domain);
+  placement.stride = assemble::stridesOf(placement.extent);
+  return {
+      .value = ends, .placement = placement, .step = stepOf(iterator, ends, domain), .rank = domain.rank()};
+}
+
 assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
-                                const Placement& domain) {
+                                const Placement& domain, const Task& task) {
   assemble::Variant variant;
-  variant.domain = assemble::domainOf(domain);
+  variant.task = task;
+  variant.domain = domainOf(domain, task);
   variant.domainView = isDomainView(domain);
   variant.domainRank = assemble::decodedRank(domain);
   variant.specs = specsOf(kernel, operands);
@@ -121,8 +142,8 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
     StreamAccess access;
     if (parameter.role == Role::Iterator) {
       access = chooseIteration(parameter, operands[i], domain);
-    } else if (isRead(parameter) && isNeeded(parameter, variant.specs)) {
-      access = chooseAccess(parameter, operands[i].placement, domain);
+    } else if (hasAccess(kernel, i, task) && isNeeded(parameter, variant.specs)) {
+      access = chooseAccess(parameter, operands[i].placement, domain, task);
     }
     variant.access.push_back(access);
   }
@@ -131,11 +152,13 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
 
 // Each entry is 4 bits, so that none is divided between words.
 ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
-                      const Placement& domain) {
+                      const Placement& domain, const Task& task) {
   ProgramKey key{&kernel, {}, specsOf(kernel, operands)};
   KeyBits bits(key);
-  bits.add(static_cast<std::uint64_t>(assemble::domainOf(domain)) | std::uint64_t{isDomainView(domain)} << 2,
-           4);
+  bits.add(static_cast<std::uint64_t>(domainOf(domain, task)) | std::uint64_t{isDomainView(domain)} << 3, 4);
+  bits.add(static_cast<std::uint64_t>(task.work), 4);
+  bits.add(task.sink & 15u, 4);
+  bits.add(task.sink >> 4, 4);
   bits.add(assemble::decodedRank(domain), 4);
   bool hasIterator = false;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
@@ -144,8 +167,8 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
       // both that chooseIteration() asks of the domain, for all iterators
       bits.add(std::uint64_t{operands[i].rank == 1} | std::uint64_t{isFlat(domain)} << 1, 4);
     }
-    if (isRead(parameter) && isNeeded(parameter, key.specs)) {
-      const StreamAccess access = chooseAccess(parameter, operands[i].placement, domain);
+    if (hasAccess(kernel, i, task) && isNeeded(parameter, key.specs)) {
+      const StreamAccess access = chooseAccess(parameter, operands[i].placement, domain, task);
       bits.add(static_cast<std::uint64_t>(access.addressing) | std::uint64_t{access.view} << 2 |
                    std::uint64_t{access.nearby} << 3,
                4);

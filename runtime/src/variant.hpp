@@ -43,11 +43,14 @@ struct ProgramKeyHash {
 /// The 32 bits of a Spec parameter's value, as assemble::SpecValues holds them.
 std::uint32_t specBits(const program::Parameter& parameter, const void* value);
 
+/// The operand of an iterator with these ends over a domain of this shape.
+Operand iteration(const program::Parameter& iterator, const void* ends, const Shape& domain);
+
 /// The variant of `kernel` for operands, one a parameter, over `domain`; `variant` and `key` hold the
 /// same choices. Planes that a kernel reads are few enough for the key (gl::maxTextureUnits).
 assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
-                                const assemble::Placement& domain);
+                                const assemble::Placement& domain, const assemble::Task& task = {});
 ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
-                      const assemble::Placement& domain);
+                      const assemble::Placement& domain, const assemble::Task& task = {});
 
 }  // namespace sk

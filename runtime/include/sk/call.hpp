@@ -80,7 +80,19 @@ Argument argumentOf(const Iter<T>& iterator) {
   return {.value = iterator.ends, .region = {.shape = iterator.shape}};
 }
 
-/// Runs a kernel over the domain that its outputs fix. Throws sk::Error naming the kernel and the
+/// A variable output: a stream that gets as many elements as are pushed. Views have a size of their own.
+template <class T>
+class VariableOut {
+ public:
+  VariableOut(Stream<T>& stream) : region_(stream.handle()) {}
+  const StreamRegion& region() const { return region_; }
+
+ private:
+  StreamRegion region_;
+};
+
+/// Runs a kernel over the domain that its outputs fix, or, where all of them are variable or scatter outputs,
+/// its inputs. Throws sk::Error naming the kernel and the
 /// parameter where the arguments do not fit.
 void run(const program::Kernel& kernel, std::span<const Argument> arguments);
 

@@ -35,8 +35,8 @@ struct StreamRegion {
 /// struct one for each member of scalar or vector type, in order of declaration.
 ///
 /// A stream of rank 1 or 2 whose extents fit the device's texture limit lies as it is: texel (x, y)
-/// holds row y, column x, and `linear` is false (rank 1: one row). Any other is linearised: element
-/// number i, row-major, is texel (i % width, i / width), and `width` is a power of two. Nothing is
+/// holds row y, column x, and `linear` is false (rank 1: one row). Any other, and one that a kernel has pushed
+/// to, is linearised: element number i, row-major, is texel (i % width, i / width), and `width` is a power of two. Nothing is
 /// said of the texels after the last element, nor of the fourth channel of a vector of three. A bool is
 /// an unsigned 0 or 1. The texture has one level and no filter.
 struct StreamTexture {
@@ -167,9 +167,13 @@ class Stream {
   View<T> domain(const Index& begin, const Index& end) { return all().domain(begin, end); }
   View<const T> domain(const Index& begin, const Index& end) const { return all().domain(begin, end); }
 
+  /// Where a kernel has pushed to the stream, the first of these that is called waits for it.
   Shape shape() const { return region().shape; }
   std::int64_t size() const { return region().shape.size(); }
   StreamRegion region() const { return detail::wholeRegion(state_.get()); }
+
+  /// The stream without its shape, which is not asked for.
+  StreamRegion handle() const { return {state_.get(), {}, {}}; }
 
   /// The texture of a plane, for drawing from it in the same context (an adopted one). It is good
   /// until a kernel next writes the stream: a call that reads and writes it puts another in its place.

@@ -35,6 +35,7 @@ enum class Domain : std::uint8_t {
   Plane,      ///< texel = origin + index.xy: a whole 2-D stream or a rectangle of one
   Linear,     ///< a whole linearised stream: element number = y << shift | x
   LinearBox,  ///< a box of a linearised stream: texels outside the box are discarded
+  Entry,      ///< of a sink's list, linearised: the element is the one that it comes from (sinks.hpp)
 };
 Domain domainOf(const Placement& output);
 
@@ -55,13 +56,28 @@ struct StreamAccess {
   auto operator<=>(const StreamAccess&) const = default;
 };
 
+/// What a program of a kernel computes (sinks.hpp).
+enum class Work : std::uint8_t {
+  Elements,  ///< its outputs; it has no sinks
+  Counts,    ///< its outputs, and how often each element pushes to each counted sink
+  List,      ///< the list of one sink, and nothing else
+};
+
+struct Task {
+  Work work = Work::Elements;
+  std::uint8_t sink = 0;            ///< List: the parameter
+  auto operator<=>(const Task&) const = default;
+};
+
 /// One way to lay a kernel out. `access` has one entry per parameter, in order (Uniform, Spec and Output
-/// entries are not looked at, nor those of streams that `specs` switches off).
+/// entries are not looked at, nor those of streams that `specs` switches off; a scatter output's says where its
+/// elements lie, for Work::List).
 struct Variant {
+  Task task = {};
   Domain domain = Domain::Plane;
-  bool domainView = false;          ///< Plane: the domain's origin is not (0, 0)
-  std::uint8_t domainRank = 2;      ///< Linear, LinearBox: dimensions that an index is decoded into;
-                                    ///< decodedRank() of the output, or more
+  bool domainView = false;  ///< Plane: the domain's origin is not (0, 0)
+  std::uint8_t domainRank = 2;  ///< Linear, LinearBox: dimensions that an index is decoded into;
+      ///< decodedRank() of the output, or more
   std::vector<StreamAccess> access;
   SpecValues specs{};
   auto operator<=>(const Variant&) const = default;
@@ -79,7 +95,11 @@ struct Variant {
 ///   sk_shift_P   int               Linear: log2 of the texture's width
 /// and for the domain (hence for every output, which has none of its own) the same with
 /// `sk_domain_origin sk_domain_shape sk_domain_stride sk_domain_shift`.
-/// Outputs are `layout(location = n) out`, one a plane, numbered in order of parameters and fields.
+/// Outputs are `layout(location = n) out`, one a plane, numbered in order of parameters and fields; those of
+/// Work::Counts have one more for each counted sink, and those of Work::List are the planes of the sink, for a
+/// scatter output after one for its texel. A list of a counted sink reads a tree (count_tree.hpp):
+///   sk_odd sk_even sk_tree_shift   its textures (samplers) and log2 of their width
+///   sk_levels, sk_rows[l]          the number of levels, and the first row of level l in its texture
 ///
 /// Indices and extents are below 2^30. Gathers are not empty: the runtime refuses such a call.
 std::string fragmentProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);

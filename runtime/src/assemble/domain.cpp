@@ -38,6 +38,7 @@ std::string DomainText::number() {
     case Domain::LinearBox:
       program_.require(Function::Ravel);
       return fmt::format("sk_ravel({}, {})", index(), program_.uniform("ivec4", "sk_domain_step"));
+    case Domain::Entry: return "sk_element";
   }
   return {};
 }
@@ -58,6 +59,11 @@ void DomainText::leaveOutside() {
       return;
     }
     case Domain::LinearBox: return;   // these are discarded
+    case Domain::Entry: {
+      const std::string stride = program_.uniform("ivec4", "sk_domain_stride");
+      program_.prologue(fmt::format("if (sk_element >= {}.w * {}.w) return;", stride, shape));
+      return;
+    }
   }
 }
 
@@ -74,7 +80,7 @@ void DomainText::defineIndex() {
     program_.function(signature, {fmt::format("return ivec4(ivec2(gl_FragCoord.xy){}, 0, 0);", origin)});
     return;
   }
-  program_.prologue(fmt::format("int sk_element = {};", texelNumber()));
+  if (domain_ != Domain::Entry) program_.prologue(fmt::format("int sk_element = {};", texelNumber()));
   std::string value = "ivec4(sk_element, 0, 0, 0)";
   if (rank_ > 1) {
     program_.require(rank_ == 2 ? Function::Unravel2 : rank_ == 3 ? Function::Unravel3 : Function::Unravel4);
@@ -82,7 +88,7 @@ void DomainText::defineIndex() {
   }
   program_.variable("ivec4", "sk_here");
   program_.function(signature, {"return sk_here;"});
-  if (domain_ == Domain::Linear) {
+  if (domain_ != Domain::LinearBox) {
     program_.prologue(fmt::format("sk_here = {};", value));
     return;
   }

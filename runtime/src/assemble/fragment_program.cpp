@@ -12,6 +12,7 @@
 #include "assemble/gather.hpp"
 #include "assemble/planes.hpp"
 #include "assemble/program_text.hpp"
+#include "assemble/sinks.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -25,6 +26,7 @@ std::string_view name(Domain domain) {
     case Domain::Plane: return "plane";
     case Domain::Linear: return "linear";
     case Domain::LinearBox: return "linear box";
+    case Domain::Entry: return "list";
   }
   return {};
 }
@@ -65,18 +67,23 @@ class KernelText {
         domain_(program_, variant.domain, variant.domainView, variant.domainRank) {}
 
   std::string write(const Profile& profile) {
+    if (isList()) findEntry(program_, kernel_.parameters[variant_.task.sink]);
     if (kernel_.usesLoops) domain_.leaveOutside();
     if (kernel_.usesIndex) domain_.index();
+    if (kernel_.usesExtent) {
+      program_.function("ivec4 sk_extent()",
+                        {fmt::format("return {};", program_.uniform("ivec4", "sk_domain_shape"))});
+    }
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
-      const Parameter& parameter = kernel_.parameters[i];
-      if (isNeeded(parameter, variant_.specs)) {
-        defineAccess(parameter, variant_.access[i]);
+      if (isNeeded(kernel_.parameters[i], variant_.specs)) {
+        defineAccess(i, variant_.access[i]);
       } else {
-        defineAbsent(parameter);
+        defineAbsent(kernel_.parameters[i]);
       }
     }
     program_.statement(call(kernel_.entry, arguments_, "      ") + ";");
     for (const auto& [parameter, variable] : results_) store(program_, *parameter, variable);
+    storeSinks();
     return program_.finish(profile, describe(profile, kernel_, variant_), kernel_);
   }
 
@@ -86,7 +93,10 @@ class KernelText {
     std::string variable;
   };
 
-  void defineAccess(const Parameter& parameter, const StreamAccess& access) {
+  bool isList() const { return variant_.task.work == Work::List; }
+
+  void defineAccess(std::size_t i, const StreamAccess& access) {
+    const Parameter& parameter = kernel_.parameters[i];
     switch (parameter.role) {
       case Role::Uniform: arguments_.push_back(uniform(parameter.element->glsl, "arg", parameter)); break;
       case Role::Input: defineInput(parameter, access); break;
@@ -99,7 +109,10 @@ class KernelText {
       case Role::Spec: arguments_.push_back(specConstant(parameter)); break;
       case Role::Accumulator: assert(!"a reduction has programs of its own"); break;
       case Role::VariableOutput:
-      case Role::Scatter: assert(!"sinks have programs of their own"); break;
+      case Role::Scatter:
+        defineSink(i, access);
+        defineExtent(parameter);
+        break;
     }
   }
 
@@ -159,10 +172,28 @@ class KernelText {
     defineExtent(parameter);
   }
 
+  void defineSink(std::size_t i, const StreamAccess& access) {
+    const Parameter& sink = kernel_.parameters[i];
+    if (!isList()) return defineCounting(program_, sink);
+    i == variant_.task.sink ? defineListed(program_, sink, access) : defineIgnored(program_, sink);
+  }
+
+  void storeSinks() {
+    if (isList()) return storeListed(program_, kernel_.parameters[variant_.task.sink]);
+    for (const Parameter& parameter : kernel_.parameters) {
+      if (isSink(parameter)) storeCount(program_, parameter);
+    }
+  }
+
   void defineOutput(const Parameter& parameter) {
-    declareOutputs(program_, parameter);
-    results_.push_back({&parameter, resultVariable(program_, parameter)});
-    arguments_.push_back(results_.back().variable);
+    if (isList()) {   // written by another pass
+      arguments_.push_back(fmt::format("sk_unused_{}", parameter.symbol));
+      program_.statement(fmt::format("{} {};", parameter.element->glsl, arguments_.back()));
+    } else {
+      declareOutputs(program_, parameter);
+      results_.push_back({&parameter, resultVariable(program_, parameter)});
+      arguments_.push_back(results_.back().variable);
+    }
     defineDomainGetters(parameter);
   }
 

@@ -184,6 +184,17 @@ std::string resultVariable(ProgramText& program, const Parameter& parameter) {
   return name;
 }
 
+void copyPlanes(ProgramText& program, const Parameter& parameter, std::string_view texel) {
+  static constexpr std::array<std::string_view, 5> swizzles = {"", ".x", ".xy", "", ""};
+  declareSamplers(program, parameter);
+  declareOutputs(program, parameter);
+  for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
+    program.statement(fmt::format("{} = texelFetch({}, {}, 0){};", outputName(parameter, plane),
+                                  samplerName(parameter, plane), texel,
+                                  swizzles[parameter.element->fields[plane].width]));
+  }
+}
+
 void store(ProgramText& program, const Parameter& parameter, std::string_view variable) {
   const Element& element = *parameter.element;
   const auto [first, end] = writtenPlanes(parameter);

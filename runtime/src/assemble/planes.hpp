@@ -30,6 +30,10 @@ std::string fetch(ProgramText& program, const program::Parameter& parameter, std
 /// output itself where that has the same type, else a local variable that is declared here.
 std::string resultVariable(ProgramText& program, const program::Parameter& parameter);
 
+/// Declares the samplers and outputs of the parameter's planes, and copies the texels at `texel` from the one to
+/// the other as they are.
+void copyPlanes(ProgramText& program, const program::Parameter& parameter, std::string_view texel);
+
 /// Statements that copy an element-typed variable to the parameter's outputs; none where the
 /// variable is the output.
 void store(ProgramText& program, const program::Parameter& parameter, std::string_view variable);

@@ -56,6 +56,10 @@ std::string ProgramText::uniform(std::string_view type, std::string_view name) {
   return std::string(name);
 }
 
+void ProgramText::flatInput(std::string_view type, std::string_view name) {
+  addOnce(uniforms_, fmt::format("flat in {} {};", type, name));
+}
+
 void ProgramText::output(std::string_view type, std::string_view name) {
   outputs_.push_back(fmt::format("layout(location = {}) out {} {};", outputs_.size(), type, name));
 }

@@ -31,6 +31,8 @@ class ProgramText {
  public:
   /// Declares a uniform unless it is declared, and gives its name.
   std::string uniform(std::string_view type, std::string_view name);
+  /// Declares an input that is the same for the whole point or triangle.
+  void flatInput(std::string_view type, std::string_view name);
   /// Declares the output of the next location.
   void output(std::string_view type, std::string_view name);
   /// Declares a global variable.

@@ -73,6 +73,7 @@ Capabilities readCapabilities() {
   if (found.version < 30) {
     return found;
   }
+  found.blendsFloats = found.api == Api::Gl || epoxy_has_gl_extension("GL_EXT_float_blend");
   if (found.api == Api::Gl && found.version >= 32) {
     found.isCompatibility = (integerOf(GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_COMPATIBILITY_PROFILE_BIT) != 0;
   }

@@ -16,6 +16,7 @@ struct Capabilities {
   int version = 0;               ///< 10 * major + minor
   bool isCompatibility = false;  ///< GL with the fixed functions
   bool isSoftware = false;
+  bool blendsFloats = false;     ///< of 32 bits
   std::string renderer;
   std::string driver;            ///< GL_VERSION, as the driver words it
   int textureSize = 0;           ///< also as a viewport

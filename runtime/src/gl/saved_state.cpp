@@ -47,6 +47,8 @@ constexpr std::array<Toggle, SavedState::toggleCount> toggles{{
     {GL_CLIP_DISTANCE5, Needs::Gl},
     {GL_CLIP_DISTANCE6, Needs::Gl},
     {GL_CLIP_DISTANCE7, Needs::Gl},
+    {GL_PROGRAM_POINT_SIZE, Needs::Gl},
+    {GL_POINT_SMOOTH, Needs::Compatibility},
     {GL_ALPHA_TEST, Needs::Compatibility},
     {GL_POLYGON_STIPPLE, Needs::Compatibility},
 }};
@@ -116,6 +118,7 @@ void setPassState(const Capabilities& capabilities) {
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   if (capabilities.api == Api::Gl) {
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glPointSize(1);
     glClampColor(GL_CLAMP_READ_COLOR, GL_FALSE);
   }
 }
@@ -167,6 +170,7 @@ void SavedState::saveViewport() {
   }
   if (capabilities_.api == Api::Gl) {
     glGetIntegerv(GL_POLYGON_MODE, polygonMode_.data());
+    glGetFloatv(GL_POINT_SIZE, &pointSize_);
   }
 }
 
@@ -178,6 +182,9 @@ void SavedState::restoreViewport() const {
     glViewport(static_cast<GLint>(viewport_[0]), static_cast<GLint>(viewport_[1]),
                static_cast<GLsizei>(viewport_[2]), static_cast<GLsizei>(viewport_[3]));
     set(GL_SCISSOR_TEST, isScissored_);
+  }
+  if (capabilities_.api == Api::Gl) {
+    glPointSize(pointSize_);
   }
   if (capabilities_.isCompatibility) {
     glPolygonMode(GL_FRONT, static_cast<GLenum>(polygonMode_[0]));

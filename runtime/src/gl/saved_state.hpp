@@ -26,7 +26,7 @@ class SavedState {
   SavedState(const SavedState&) = delete;
   SavedState& operator=(const SavedState&) = delete;
 
-  static constexpr std::size_t toggleCount = 19;
+  static constexpr std::size_t toggleCount = 21;
   static constexpr std::size_t pixelStoreCount = 16;
 
  private:
@@ -48,6 +48,7 @@ class SavedState {
   std::array<GLint, 2> polygonMode_{};
   GLint program_ = 0, vertexArray_ = 0, drawFramebuffer_ = 0, readFramebuffer_ = 0;
   GLint activeUnit_ = 0, packBuffer_ = 0, unpackBuffer_ = 0, clampReadColor_ = 0;
+  GLfloat pointSize_ = 1;
   bool isScissored_ = false;
   bool isFeedbackPaused_ = false;
 };

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "assemble/point_program.hpp"
+
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "assemble/planes.hpp"
+#include "assemble/program_text.hpp"
+
+namespace sk::assemble {
+namespace {
+
+using program::Parameter;
+using program::Scalar;
+using program::ScatterOp;
+
+constexpr std::string_view here = "ivec2(gl_FragCoord.xy)";
+
+std::string vectorOf(std::string_view scalar, std::string_view vector, int width) {
+  return width == 1 ? std::string(scalar) : fmt::format("{}{}", vector, width);
+}
+
+std::string_view name(PointStep step) {
+  static constexpr std::array<std::string_view, 9> names = {"store",
+                                                            "limbs of the elements",
+                                                            "limbs of the values",
+                                                            "elements of limbs",
+                                                            "upper halves of the elements",
+                                                            "upper halves of the values",
+                                                            "lower halves of the elements",
+                                                            "lower halves of the values",
+                                                            "elements of halves"};
+  return names[static_cast<std::size_t>(step)];
+}
+
+class PointText {
+ public:
+  PointText(const Parameter& sink, PointStep step)
+      : sink_(sink), step_(step), field_(sink.element->fields.front()) {}
+
+  std::string write(const Profile& profile) {
+    if (hasPoints(step_)) {
+      program_.flatInput("int", "sk_entry");
+      program_.require(Function::Texel);
+      program_.uniform("int", "sk_list_shift");
+      program_.statement("ivec2 sk_at = sk_texel(sk_entry, sk_list_shift);");
+    } else {
+      program_.statement(fmt::format("ivec2 sk_at = {};", here));
+    }
+    body();
+    program::Kernel declarations;
+    return program_.finish(profile, fmt::format("points of {}: {}", sink_.name, name(step_)), declarations);
+  }
+
+ private:
+  void body() {
+    switch (step_) {
+      case PointStep::Store: return copyPlanes(program_, sink_, "sk_at");
+      case PointStep::SplitLimbs:
+      case PointStep::AddLimbs: return splitLimbs();
+      case PointStep::JoinLimbs: return joinLimbs();
+      case PointStep::SplitUpper:
+      case PointStep::Upper: return upper();
+      case PointStep::SplitLower:
+      case PointStep::Lower: return lower();
+      case PointStep::JoinHalves: return joinHalves();
+    }
+  }
+
+  int width() const { return field_.width; }
+  std::string uvec() const { return vectorOf("uint", "uvec", width()); }
+  std::string vec() const { return vectorOf("float", "vec", width()); }
+  std::string_view swizzle() const {
+    static constexpr std::array<std::string_view, 5> swizzles = {"", ".x", ".xy", ".xyz", ""};
+    return swizzles[static_cast<std::size_t>(width())];
+  }
+  std::string component(std::string_view value, int c) const {
+    return width() == 1 ? std::string(value) : fmt::format("{}.{}", value, "xyzw"[c]);
+  }
+  /// Float targets have 4 channels where there are 3 components.
+  std::string target(const std::string& value) const {
+    return width() == 3 ? fmt::format("vec4({}, 0.0)", value) : value;
+  }
+  void declareHalf(std::string_view output) {
+    program_.output(vectorOf("float", "vec", width() == 3 ? 4 : width()), output);
+  }
+
+  /// `sk_bits`, the bits of the list's value or of the element.
+  void readBits() {
+    declareSamplers(program_, sink_);
+    program_.statement(fmt::format("{0} sk_bits = {0}({1});", uvec(), fetch(program_, sink_, "sk_at")));
+  }
+
+  /// The same in the order in which the largest is wanted.
+  void readOrdered() {
+    readBits();
+    if (const std::string flip = flipped(); !flip.empty())
+      program_.statement(fmt::format("sk_bits {};", flip));
+  }
+
+  /// Changes bits to the wanted order, or back.
+  std::string flipped() const {
+    const bool isSigned = field_.scalar == Scalar::Int;
+    const bool isMin = sink_.scatter == ScatterOp::Min;
+    if (!isSigned && !isMin) return "";
+    return fmt::format("^= {}", isSigned && isMin ? "0x7fffffffu" : isSigned ? "0x80000000u" : "0xffffffffu");
+  }
+
+  void splitLimbs() {
+    readBits();
+    for (int c = 0; c < width(); ++c) {
+      program_.output("vec4", fmt::format("sk_out{}", c));
+      program_.statement(fmt::format("sk_out{} = vec4(uvec4({}) >> uvec4(0u, 8u, 16u, 24u) & 255u);", c,
+                                     component("sk_bits", c)));
+    }
+  }
+
+  /// The limbs overlap once they have grown: the sum wraps, as that of the elements does.
+  void joinLimbs() {
+    declareOutputs(program_, sink_);
+    program_.function(
+        "uint sk_join(vec4 sk_l)",
+        {"uvec4 sk_u = uvec4(sk_l);", "return sk_u.x + (sk_u.y << 8) + (sk_u.z << 16) + (sk_u.w << 24);"});
+    std::vector<std::string> components;
+    for (int c = 0; c < width(); ++c) {
+      const std::string sampler = program_.uniform("sampler2D", fmt::format("sk_limbs{}", c));
+      components.push_back(fmt::format("sk_join(texelFetch({}, sk_at, 0))", sampler));
+    }
+    finishElement(fmt::format("{}({})", uvec(), fmt::join(components, ", ")));
+  }
+
+  void upper() {
+    readOrdered();
+    declareHalf("sk_half");
+    program_.statement(fmt::format("sk_half = {};", target(vec() + "(sk_bits >> 16)")));
+  }
+
+  /// Each component of those that lost by their upper half is below every lower half.
+  void lower() {
+    readOrdered();
+    declareHalf("sk_half");
+    const std::string won = program_.uniform("sampler2D", "sk_upper");
+    program_.statement(fmt::format("{} sk_won = texelFetch({}, {}, 0){};", vec(), won, here, swizzle()));
+    std::vector<std::string> components;
+    for (int c = 0; c < width(); ++c) {
+      const std::string bits = component("sk_bits", c);
+      components.push_back(
+          fmt::format("float({0} >> 16) == {1} ? float({0} & 0xffffu) : -1.0", bits, component("sk_won", c)));
+    }
+    program_.statement(
+        fmt::format("sk_half = {};", target(fmt::format("{}({})", vec(), fmt::join(components, ", ")))));
+  }
+
+  void joinHalves() {
+    declareOutputs(program_, sink_);
+    for (const std::string_view half : {"sk_upper", "sk_lower"}) {
+      program_.statement(fmt::format("{0} {1}_half = {0}(texelFetch({1}, sk_at, 0){2});", uvec(),
+                                     program_.uniform("sampler2D", half), swizzle()));
+    }
+    finishElement("sk_upper_half << 16 | sk_lower_half", flipped());
+  }
+
+  /// Stores bits as an element.
+  void finishElement(const std::string& bits, const std::string& change = "") {
+    program_.statement(fmt::format("{} sk_bits = {};", uvec(), bits));
+    if (!change.empty()) program_.statement(fmt::format("sk_bits {};", change));
+    program_.statement(fmt::format("{0} sk_element = {0}(sk_bits);", sink_.element->glsl));
+    store(program_, sink_, "sk_element");
+  }
+
+  const Parameter& sink_;
+  PointStep step_;
+  const program::Field& field_;
+  ProgramText program_;
+};
+
+}  // namespace
+
+bool hasPoints(PointStep step) {
+  switch (step) {
+    case PointStep::Store:
+    case PointStep::AddLimbs:
+    case PointStep::Upper:
+    case PointStep::Lower: return true;
+    case PointStep::SplitLimbs:
+    case PointStep::JoinLimbs:
+    case PointStep::SplitUpper:
+    case PointStep::SplitLower:
+    case PointStep::JoinHalves: break;
+  }
+  return false;
+}
+
+std::string pointVertexProgram(const Profile& profile) {
+  return fmt::format(R"({}
+// points at the texels of a list
+{}uniform isampler2D sk_targets;
+uniform int sk_list_shift;
+uniform int sk_first;
+uniform ivec4 sk_size;
+flat out int sk_entry;
+
+void main() {{
+  sk_entry = sk_first + gl_VertexID;
+  ivec2 sk_t = texelFetch(sk_targets,
+                          ivec2(sk_entry & ((1 << sk_list_shift) - 1), sk_entry >> sk_list_shift), 0).xy;
+  gl_PointSize = 1.0;
+  gl_Position = sk_t.x < 0 ? vec4(2.0, 2.0, 2.0, 1.0)
+                           : vec4(vec2(2 * sk_t + 1) / vec2(sk_size.xy) - 1.0, 0.0, 1.0);
+}}
+)",
+                     profile.version, profile.es ? "precision highp isampler2D;\n" : "");
+}
+
+std::string pointProgram(const Profile& profile, const Parameter& sink, PointStep step) {
+  return PointText(sink, step).write(profile);
+}
+
+}  // namespace sk::assemble

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+//
+// Where a pass draws the element outputs of a call: in place where they lie as the domain does and nobody
+// reads them, else aside, from where they are brought to their places afterwards.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "assemble/condition.hpp"
+#include "device_state.hpp"
+#include "layout.hpp"
+#include "sk/call.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+class OutputTargets {
+ public:
+  /// `domain` and `layout`: what the pass is drawn over. The arguments have been checked.
+  OutputTargets(DeviceState& device, const program::Kernel& kernel, std::span<const Argument> arguments,
+                const assemble::SpecValues& specs, std::span<const Operand> operands,
+                const assemble::Placement& domain, const Layout& layout);
+
+  /// Planes to draw to, in the order of outputs; for kernels that one pass writes.
+  std::span<Surface* const> planes() const { return std::span(targets_).first(count_); }
+  void add(Surface& plane) {
+    if (count_ < targets_.size()) {
+      targets_[count_] = &plane;
+    }
+    ++count_;
+  }
+  /// The same, output by output: empty where an argument is none.
+  std::vector<std::span<Surface>> planesOfOutputs() const;
+
+  /// Brings what was drawn aside to its place, once nothing reads the old elements any more.
+  void putInPlace();
+
+ private:
+  /// How the elements of an output get to where they belong.
+  enum class Way {
+    Direct,  ///< drawn in place
+    Swap,    ///< drawn to new planes, which become the stream's: the call reads the old ones
+    Copy,    ///< drawn to new planes, and copied from there
+  };
+
+  bool isOutput(std::size_t i) const {
+    return kernel_.parameters[i].role == program::Role::Output && isNeeded(i);
+  }
+  bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
+  Way wayOf(std::size_t output) const;
+  void addAside(std::size_t output, Way way);
+
+  DeviceState& device_;
+  const program::Kernel& kernel_;
+  std::span<const Argument> arguments_;
+  const assemble::SpecValues& specs_;
+  std::span<const Operand> operands_;
+  const assemble::Placement& domain_;
+  const Layout& layout_;
+  std::array<Surface*, gl::maxDrawBuffers> targets_{};
+  std::size_t count_ = 0;
+  std::vector<std::unique_ptr<PlanesLease>> aside_;   ///< one an argument, or none at all
+};
+
+}  // namespace sk

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+//
+// Stores, sums, smallest and largest: which steps each takes.
+#include "scatter_points.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "assemble/point_program.hpp"
+#include "device_state.hpp"
+#include "gl/points.hpp"
+#include "pass.hpp"
+#include "sk/types.hpp"
+
+namespace sk {
+
+namespace {
+
+using assemble::PointStep;
+using program::Scalar;
+using program::ScatterOp;
+
+constexpr const char* whatFor = "a scatter output of integers";
+
+/// A float for each component, as a plane of the same width.
+const program::Element& floatsOf(int width) {
+  switch (width) {
+    case 1: return ElementTraits<float>::element();
+    case 2: return ElementTraits<float2>::element();
+    case 3: return ElementTraits<float3>::element();
+    default: return ElementTraits<float4>::element();
+  }
+}
+
+class Scatterer {
+ public:
+  Scatterer(DeviceState& device, const program::Parameter& sink, std::span<Surface> list,
+            std::int32_t listShift, std::int32_t length, const assemble::Placement& placement,
+            std::span<Surface> planes)
+      : device_(device),
+        sink_(sink),
+        list_(list),
+        listShift_(listShift),
+        length_(length),
+        planes_(planes),
+        rects_(assemble::drawnTexels(placement)) {}
+
+  void run() {
+    const bool isFloat = sink_.element->fields.front().scalar == Scalar::Float;
+    switch (sink_.scatter) {
+      case ScatterOp::Store: return store(gl::Blend::None);
+      case ScatterOp::Add: return isFloat ? store(gl::Blend::Add) : addIntegers();
+      case ScatterOp::Min: return isFloat ? store(gl::Blend::Min) : extremeIntegers();
+      case ScatterOp::Max: return isFloat ? store(gl::Blend::Max) : extremeIntegers();
+    }
+  }
+
+ private:
+  void store(gl::Blend blend) { points(PointStep::Store, blend, planes_, 0, length_); }
+
+  /// In rounds of so many points that their limbs add up without rounding.
+  void addIntegers() {
+    PlanesLease limbs(device_);
+    for (int c = 0; c < width(); ++c) {
+      limbs.planes.push_back(floats(4));
+    }
+    for (std::int32_t first = 0; first < length_; first += assemble::mostLimbPoints) {
+      region(PointStep::SplitLimbs, limbs.planes);
+      points(PointStep::AddLimbs, gl::Blend::Add, limbs.planes, first,
+             std::min(assemble::mostLimbPoints, length_ - first));
+      bindAfterElements(limbs.planes);
+      region(PointStep::JoinLimbs, planes_);
+    }
+  }
+
+  void extremeIntegers() {
+    PlanesLease upper(device_);
+    PlanesLease lower(device_);
+    upper.planes.push_back(floats(width()));
+    lower.planes.push_back(floats(width()));
+    region(PointStep::SplitUpper, upper.planes);
+    points(PointStep::Upper, gl::Blend::Max, upper.planes, 0, length_);
+    bindAfterElements(upper.planes);
+    region(PointStep::SplitLower, lower.planes);
+    points(PointStep::Lower, gl::Blend::Max, lower.planes, 0, length_);
+    bindPlanes(device_, lower.planes, bindAfterElements(upper.planes));
+    region(PointStep::JoinHalves, planes_);
+  }
+
+  int width() const { return sink_.element->fields.front().width; }
+
+  /// A plane of floats as large as those of the output.
+  Surface floats(int width) {
+    const gl::Texture& texture = planes_.front().texture;
+    std::vector<Surface> planes =
+        device_.takePlanes(floatsOf(width), texture.width(), texture.height(), whatFor);
+    return std::move(planes.front());
+  }
+
+  /// Units 0 and 1 are those of a list, or of the elements.
+  int bindAfterElements(std::span<Surface> planes) { return bindPlanes(device_, planes, 2); }
+
+  void begin(StepProgram& program, std::span<Surface> targets) {
+    std::array<Surface*, gl::maxDrawBuffers> surfaces{};
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      surfaces[i] = &targets[i];
+    }
+    const GLuint framebuffer = framebufferOf(device_, std::span(surfaces).first(targets.size()));
+    device_.bound.program(program.program().name());
+    device_.bound.framebuffer(framebuffer);
+  }
+
+  void points(PointStep step, gl::Blend blend, std::span<Surface> targets, std::int32_t first,
+              std::int32_t count) {
+    StepProgram& program = device_.sinkPrograms.points(sink_, step);
+    begin(program, targets);
+    bindPlanes(device_, list_, 0);
+    const gl::Texture& texture = targets.front().texture;
+    program.set("sk_list_shift", listShift_);
+    program.set("sk_first", first);
+    program.set("sk_size", gl::Int4{texture.width(), texture.height(), 0, 0});
+    device_.bound.vertexArray(device_.vertexArray.name());
+    device_.bound.viewport(0, 0, texture.width(), texture.height());
+    const gl::Blending blending(device_.capabilities, blend, device_.context.isAdopted());
+    gl::drawPoints(count);
+  }
+
+  /// Over the region that is written. The steps that draw elements read none.
+  void region(PointStep step, std::span<Surface> targets) {
+    StepProgram& program = device_.sinkPrograms.points(sink_, step);
+    begin(program, targets);
+    bindPlanes(device_, planes_, 1);
+    drawRects(device_, rects_);
+  }
+
+  DeviceState& device_;
+  const program::Parameter& sink_;
+  std::span<Surface> list_;
+  std::int32_t listShift_;
+  std::int32_t length_;
+  std::span<Surface> planes_;
+  std::vector<assemble::Rect> rects_;
+};
+
+}  // namespace
+
+void scatterPoints(DeviceState& device, const program::Parameter& sink, std::span<Surface> list,
+                   std::int32_t listShift, std::int32_t length, const assemble::Placement& placement,
+                   std::span<Surface> planes) {
+  Scatterer(device, sink, list, listShift, length, placement, planes).run();
+}
+
+}  // namespace sk

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+//
+// Counts, trees, lists, and what becomes of the lists. All passes that run the kernel come before any that
+// changes a stream which it may read.
+#include "sink_call.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "assemble/sinks.hpp"
+#include "check.hpp"
+#include "device_state.hpp"
+#include "output_targets.hpp"
+#include "pass.hpp"
+#include "scatter_points.hpp"
+#include "sink_list.hpp"
+#include "stream_state.hpp"
+
+namespace sk {
+
+namespace {
+
+using assemble::Task;
+using assemble::Work;
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+/// Up to so many pushes an element, a variable output gets room for all that may come, and nobody waits for
+/// their number.
+constexpr std::int32_t mostRoom = 4;
+
+/// What was pushed to one sink.
+struct List {
+  explicit List(DeviceState& device) : planes(device), total(device) {}
+
+  std::size_t sink = 0;
+  Layout layout;         ///< of `planes`
+  PlanesLease planes;    ///< none where nothing was pushed; of a scatter output, the texels first
+  PlanesLease total;     ///< where the number of entries is not known: CountTree::totalTexture()
+};
+
+class SinkCall {
+ public:
+  SinkCall(DeviceState& device, const Kernel& kernel, std::span<const Argument> arguments, const Shape& shape)
+      : device_(device),
+        kernel_(kernel),
+        arguments_(arguments),
+        specs_(specsOf(kernel, arguments)),
+        layout_(layoutOf(shape, device.limits.textureSize)),
+        counts_(device) {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      operands_.push_back(operandOf(i, shape));
+    }
+  }
+
+  void run() {
+    OutputTargets outputs(device_, kernel_, arguments_, specs_, operands_, layout_.whole, layout_);
+    drawCounts(outputs);
+    std::vector<std::unique_ptr<List>> lists;
+    std::size_t counted = 0;
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      const Parameter& parameter = kernel_.parameters[i];
+      if (!assemble::isSink(parameter)) {
+        continue;
+      }
+      Surface* counts = assemble::isCounted(parameter) ? &counts_.planes[counted++] : nullptr;
+      lists.push_back(makeList(i, counts));
+    }
+    outputs.putInPlace();
+    for (const std::unique_ptr<List>& list : lists) {
+      putInPlace(*list);
+    }
+  }
+
+ private:
+  Operand operandOf(std::size_t i, const Shape& domain) const {
+    const Parameter& parameter = kernel_.parameters[i];
+    const Argument& argument = arguments_[i];
+    if (parameter.role == Role::Uniform || parameter.role == Role::Spec) {
+      return {.value = argument.value};
+    }
+    if (parameter.role == Role::Iterator) {
+      return iteration(parameter, argument.value, domain);
+    }
+    if (parameter.role == Role::VariableOutput || !assemble::isNeeded(parameter, specs_)) {
+      return {};
+    }
+    StreamState& stream = *argument.region.stream;
+    return {.placement = placementOf(argument.region, stream.layout), .planes = stream.planes};
+  }
+
+  /// Element outputs, and the counts of each counted sink.
+  void drawCounts(OutputTargets& targets) {
+    const auto counted =
+        std::count_if(kernel_.parameters.begin(), kernel_.parameters.end(),
+                      [](const Parameter& p) { return assemble::isSink(p) && assemble::isCounted(p); });
+    for (std::ptrdiff_t i = 0; i < counted; ++i) {
+      std::vector<Surface> plane = device_.takePlanes(ElementTraits<int>::element(), layout_.width,
+                                                      layout_.height, "the numbers of what a kernel pushes");
+      counts_.planes.push_back(std::move(plane.front()));
+    }
+    for (Surface& plane : counts_.planes) {
+      targets.add(plane);
+    }
+    if (targets.planes().empty()) {
+      return;
+    }
+    drawKernel(device_, kernel_, operands_, layout_.whole, layout_.draws,
+               framebufferOf(device_, targets.planes()), {}, {Work::Counts, 0});
+  }
+
+  /// Where `counts` is null, the list has slots.
+  std::unique_ptr<List> makeList(std::size_t i, Surface* counts) {
+    const Parameter& sink = kernel_.parameters[i];
+    const std::int64_t elements = assemble::elements(layout_.whole.extent);
+    auto list = std::make_unique<List>(device_);
+    list->sink = i;
+    std::optional<CountTree> tree;
+    std::int64_t length = elements * sink.pushes;
+    if (counts != nullptr) {
+      tree.emplace(device_, *counts, layout_);
+      if (hasRoom(sink, elements)) {
+        list->total.planes = tree->totalTexture();
+      } else {
+        length = tree->total();
+      }
+    }
+    list->layout = listLayout(length, device_.limits.textureSize);
+    if (length > 0) {
+      drawList(*list, tree ? &*tree : nullptr);
+    }
+    return list;
+  }
+
+  /// Whether the list can be made without its length.
+  bool hasRoom(const Parameter& sink, std::int64_t elements) const {
+    const std::int64_t most = std::int64_t{device_.limits.textureSize} * device_.limits.textureSize / 2;
+    return sink.role == Role::VariableOutput && sink.pushes >= 0 && sink.pushes <= mostRoom &&
+           elements * sink.pushes <= most;
+  }
+
+  void drawList(List& list, CountTree* tree) {
+    const Parameter& sink = kernel_.parameters[list.sink];
+    const auto take = [&](const program::Element& element) {
+      for (Surface& plane : device_.takePlanes(element, list.layout.width, list.layout.height,
+                                               "what a kernel pushes or scatters")) {
+        list.planes.planes.push_back(std::move(plane));
+      }
+    };
+    if (sink.role == Role::Scatter) {
+      take(ElementTraits<int2>::element());
+    }
+    take(*sink.element);
+    std::vector<Surface*> targets;
+    for (Surface& plane : list.planes.planes) {
+      targets.push_back(&plane);
+    }
+    assemble::Placement domain;  // of the elements, as their numbers are decoded; the list's own is `draws`
+    domain.linear = true;
+    domain.extent = layout_.whole.extent;
+    domain.stride = assemble::stridesOf(domain.extent);
+    domain.shift = list.layout.whole.shift;
+    const Task task{Work::List, static_cast<std::uint8_t>(list.sink)};
+    if (tree != nullptr) {
+      bindTree(task, domain, *tree);
+    }
+    drawKernel(device_, kernel_, operands_, domain, list.layout.draws, framebufferOf(device_, targets), {},
+               task);
+  }
+
+  void bindTree(const Task& task, const assemble::Placement& domain, CountTree& tree) {
+    KernelProgram& program = device_.programs.kernelProgram(kernel_, operands_, domain, task);
+    device_.bound.program(program.program.name());
+    device_.bound.texture(program.units, tree.odd().texture.name());
+    device_.bound.texture(program.units + 1, tree.even().texture.name());
+    program.tree.set(tree.plan());
+  }
+
+  void putInPlace(List& list) {
+    const Parameter& sink = kernel_.parameters[list.sink];
+    if (sink.role == Role::VariableOutput) {
+      const bool isKnown = list.total.planes.empty();
+      arguments_[list.sink].region.stream->become(list.planes.planes, list.layout,
+                                                  isKnown ? nullptr : &list.total.planes.front());
+      list.total.planes.clear();
+      return;
+    }
+    if (list.planes.planes.empty()) {
+      return;
+    }
+    StreamState& stream = *arguments_[list.sink].region.stream;
+    scatterPoints(device_, sink, list.planes.planes, list.layout.whole.shift, list.layout.whole.extent[0],
+                  operands_[list.sink].placement, stream.planes);
+  }
+
+  DeviceState& device_;
+  const Kernel& kernel_;
+  std::span<const Argument> arguments_;
+  const assemble::SpecValues specs_;
+  Layout layout_;  ///< of the domain
+  PlanesLease counts_;  ///< one a counted sink
+  std::vector<Operand> operands_;
+};
+
+}  // namespace
+
+bool hasSinks(const Kernel& kernel) {
+  return std::any_of(kernel.parameters.begin(), kernel.parameters.end(), assemble::isSink);
+}
+
+void runWithSinks(DeviceState& device, const Kernel& kernel, std::span<const Argument> arguments,
+                  const Shape& domain) {
+  SinkCall(device, kernel, arguments, domain).run();
+}
+
+void runOverNothing(const Kernel& kernel, std::span<const Argument> arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (kernel.parameters[i].role == Role::VariableOutput) {
+      std::vector<Surface> nothing;
+      arguments[i].region.stream->become(nothing, listLayout(0, 1), nullptr);
+    }
+  }
+}
+
+}  // namespace sk

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+//
+// Assembling, compiling and keeping programs of sinks.
+#include "sink_programs.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "assemble/count_tree.hpp"
+#include "device_state.hpp"
+#include "sk/error.hpp"
+
+namespace sk {
+
+using assemble::PointStep;
+
+gl::IntUniform& StepProgram::find(std::string_view name, bool isVector) {
+  const auto found = std::find_if(uniforms_.begin(), uniforms_.end(),
+                                  [&](const auto& known) { return known.first == name; });
+  if (found != uniforms_.end()) {
+    return found->second;
+  }
+  const std::string kept(name);
+  return uniforms_.emplace_back(kept, gl::IntUniform(program_.location(kept), isVector)).second;
+}
+
+std::unique_ptr<StepProgram> SinkPrograms::build(const std::string& vertexSource,
+                                                 const std::string& fragmentSource, std::string_view what) {
+  std::string log;
+  gl::Program program = gl::Program::build(vertexSource, fragmentSource, log);
+  if (!program) {
+    throw Error(fmt::format("the driver of '{}' refuses the program of {}:\n{}",
+                            device_.capabilities.renderer, what, log));
+  }
+  device_.bound.program(program.name());
+  return std::make_unique<StepProgram>(std::move(program));
+}
+
+StepProgram& SinkPrograms::tree(bool ofCounts) {
+  std::unique_ptr<StepProgram>& kept = trees_[ofCounts ? 1 : 0];
+  if (!kept) {
+    kept = build(assemble::vertexProgram(*device_.profile), assemble::treeProgram(*device_.profile, ofCounts),
+                 "sums of counts");
+    kept->program().setSampler("sk_below", 0);
+  }
+  return *kept;
+}
+
+StepProgram& SinkPrograms::points(const program::Parameter& sink, PointStep step) {
+  std::unique_ptr<StepProgram>& kept = points_[{&sink, step}];
+  if (!kept) {
+    const std::string vertexSource = assemble::hasPoints(step)
+                                         ? assemble::pointVertexProgram(*device_.profile)
+                                         : assemble::vertexProgram(*device_.profile);
+    kept = build(vertexSource, assemble::pointProgram(*device_.profile, sink, step), sink.name);
+    const gl::Program& program = kept->program();
+    int unit = 0;
+    program.setSampler("sk_targets", unit++);
+    for (std::size_t plane = 0; plane < sink.element->fields.size(); ++plane) {
+      program.setSampler(assemble::samplerName(sink, plane), unit++);
+    }
+    for (const char* name : {"sk_limbs0", "sk_limbs1", "sk_limbs2", "sk_limbs3"}) {
+      program.setSampler(name, unit++);
+    }
+    unit -= 4;
+    for (const char* name : {"sk_upper", "sk_lower"}) {
+      program.setSampler(name, unit++);
+    }
+  }
+  return *kept;
+}
+
+void SinkPrograms::clear() {
+  for (std::unique_ptr<StepProgram>& tree : trees_) {
+    tree.reset();
+  }
+  points_.clear();
+}
+
+void SinkPrograms::forget() noexcept {
+  for (std::unique_ptr<StepProgram>& tree : trees_) {
+    if (tree) {
+      tree->forget();
+    }
+  }
+  for (auto& [key, program] : points_) {
+    if (program) {
+      program->forget();
+    }
+  }
+}
+
+}  // namespace sk

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+//
+// The programs of a device that belong to no kernel's body: sums of counts, and points of scatter outputs.
+// They are made when first needed and kept until the device ends.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "assemble/point_program.hpp"
+#include "gl/program.hpp"
+#include "gl/uniform.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+class DeviceState;
+
+/// A program whose uniforms are integers, named as they are set. It must be bound then.
+class StepProgram {
+ public:
+  explicit StepProgram(gl::Program&& program) : program_(std::move(program)) {}
+
+  void set(std::string_view uniform, std::int32_t value) { find(uniform, false).set(value); }
+  void set(std::string_view uniform, const gl::Int4& value) { find(uniform, true).set(value); }
+  const gl::Program& program() const { return program_; }
+  void forget() noexcept { program_.forget(); }
+
+ private:
+  gl::IntUniform& find(std::string_view name, bool isVector);
+
+  gl::Program program_;
+  std::vector<std::pair<std::string, gl::IntUniform>> uniforms_;
+};
+
+class SinkPrograms {
+ public:
+  explicit SinkPrograms(DeviceState& device) : device_(device) {}
+
+  /// Reads from texture unit 0.
+  StepProgram& tree(bool ofCounts);
+  /// Units: 0 the texels of the list, then the values, or elements, plane by plane, then what earlier
+  /// steps have drawn.
+  StepProgram& points(const program::Parameter& sink, assemble::PointStep step);
+
+  void clear();
+  void forget() noexcept;
+
+ private:
+  using PointKey = std::pair<const program::Parameter*, assemble::PointStep>;
+
+  std::unique_ptr<StepProgram> build(const std::string& vertexSource, const std::string& fragmentSource,
+                                     std::string_view what);
+
+  DeviceState& device_;
+  std::unique_ptr<StepProgram> trees_[2];
+  std::map<PointKey, std::unique_ptr<StepProgram>> points_;
+};
+
+}  // namespace sk
