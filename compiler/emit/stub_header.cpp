@@ -114,12 +114,9 @@ class HeaderWriter {
     const std::string name = cppType(module_, type);
     std::vector<std::string> fields;
     for (const Plane& plane : elementLayout(module_, types_, type).planes) {
-      constexpr std::string_view scalars[] = {"Bool",   "Int",    "Uint",    "Float",  "Double",
-                                              "Half",   "Char",   "Uchar",   "Short",  "Ushort",
-                                              "Unorm8", "Snorm8", "Unorm16", "Snorm16"};
       const std::string part = plane.part < 0 ? "" : fmt::format(", {}", plane.part);
       fields.push_back(fmt::format("      {{\"{}\", sk::program::Scalar::{}, {}, offsetof({}, {}){}}}",
-                                   plane.path, scalars[static_cast<std::size_t>(plane.type.scalar)],
+                                   plane.path, scalarNames[static_cast<std::size_t>(plane.type.scalar)],
                                    plane.type.width, name, plane.member, part));
     }
     const std::string head = "  static constexpr sk::program::Element value{";

@@ -16,6 +16,11 @@ std::string stubHeader(const ir::Module& module, const Program& program,
 std::string stubSource(const ir::Module& module, const Program& program,
                        const std::vector<Callable>& callables, std::string_view fileName);
 
+/// Names of the enumerators of sk::program::Scalar, in their order.
+inline constexpr std::string_view scalarNames[] = {"Bool",   "Int",    "Uint",    "Float",  "Double",
+                                                   "Half",   "Char",   "Uchar",   "Short",  "Ushort",
+                                                   "Unorm8", "Snorm8", "Unorm16", "Snorm16"};
+
 /// A function of a callable: a kernel has one, a reduce one that returns a value and one that fills a
 /// stream.
 enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream };

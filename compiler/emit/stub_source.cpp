@@ -44,8 +44,6 @@ std::string quoted(std::string_view text) {
   return result + '"';
 }
 
-constexpr std::string_view scalarNames[] = {"Bool", "Int", "Uint", "Float"};
-
 class SourceWriter {
  public:
   SourceWriter(const Module& module, const Program& program)
@@ -159,11 +157,8 @@ class SourceWriter {
       }
       const std::string bundle = fmt::format("{}Bundle{}", name, i + 1);
       list("ArgumentPlane", bundle, places);
-      constexpr std::string_view scalars[] = {"Bool",   "Int",    "Uint",    "Float",  "Double",
-                                              "Half",   "Char",   "Uchar",   "Short",  "Ushort",
-                                              "Unorm8", "Snorm8", "Unorm16", "Snorm16"};
       bundles.push_back(fmt::format("{{Scalar::{}, {}, {}}}",
-                                    scalars[static_cast<std::size_t>(made.bundles[i].scalar)],
+                                    scalarNames[static_cast<std::size_t>(made.bundles[i].scalar)],
                                     made.bundles[i].width, bundle));
     }
     list("const Element*", name + "Temporaries", temporaries);
