@@ -22,16 +22,21 @@ namespace {
 
 using sk::assemble::Profile;
 
-/// The variant of streams that lie as they are and share one shape, as most calls have it. Spec
-/// parameters are true or 1.
+/// The variant of streams that share one shape, as most calls have it, and lie as they are where their
+/// rank lets them. Spec parameters are true or 1.
 sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel) {
   sk::assemble::Variant variant;
   std::size_t specs = 0;
   for (const sk::program::Parameter& parameter : kernel.parameters) {
     sk::assemble::StreamAccess access;
     if (parameter.role == sk::program::Role::Gather) {
-      access.addressing = sk::assemble::Addressing::Plane;
+      const bool isLinear = parameter.rank > 2;
+      access.addressing = isLinear ? sk::assemble::Addressing::Linear : sk::assemble::Addressing::Plane;
       access.nearby = parameter.reach >= 0;
+      if (isLinear) {
+        variant.domain = sk::assemble::Domain::Linear;
+        variant.domainRank = std::max(variant.domainRank, parameter.rank);
+      }
     } else if (parameter.role == sk::program::Role::Iterator) {
       const bool isScalar = parameter.element->fields.front().width == 1;
       if (isScalar) access.addressing = sk::assemble::Addressing::Linear;

@@ -58,6 +58,12 @@ bool isKind(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind kin
   return at < tokens.size() && tokens[at].is(kind);
 }
 
+/// `({0, 1})` without its parentheses, which no list of initialisers may have; any other as it is.
+std::vector<Token> borderValue(const std::vector<Token>& parenthesized) {
+  if (parenthesized[1].isNot(tok::l_brace)) return parenthesized;
+  return {parenthesized.begin() + 1, parenthesized.end() - 1};
+}
+
 bool isNamedWord(const Token& token, std::initializer_list<llvm::StringRef> words) {
   for (llvm::StringRef word : words) {
     if (isWord(token, word)) return true;
@@ -270,7 +276,7 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   if (parts.isElement && parts.rank > 0) return fail(Diag::StreamAndGather, {name});
   const bool isSink = qualifier == "vout" || (qualifier == "out" && parts.rank > 0);
   if (isSink) return resolveSink(parts, kind);
-  if (parts.rank > 2) return fail(Diag::GatherRank, {name, std::to_string(parts.rank)});
+  if (parts.rank > 4) return fail(Diag::StreamRank, {name, std::to_string(parts.rank)});
   if (parts.hasBoundary && (parts.rank == 0 || !qualifier.empty())) {
     diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.boundary), {nameOf(parts.boundary), name});
     return false;
@@ -324,7 +330,7 @@ bool ParameterEditor::resolveSink(Parts& parts, FunctionKind kind) {
   if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name});
   if (isVariable && (!parts.isElement || parts.rank > 0)) return fail(Diag::VariableOutputBrackets, {name});
   if (parts.isElement && !isVariable) return fail(Diag::StreamAndGather, {name});
-  if (parts.rank > 4) return fail(Diag::ScatterRank, {name, std::to_string(parts.rank)});
+  if (parts.rank > 4) return fail(Diag::StreamRank, {name, std::to_string(parts.rank)});
   if (parts.hasBoundary) {
     diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.boundary), {nameOf(parts.boundary), name});
     return false;
@@ -338,7 +344,7 @@ bool ParameterEditor::resolveSink(Parts& parts, FunctionKind kind) {
 void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) {
   const clang::SourceLocation place = parts.name.getLocation();
   ParamSyntax syntax = parts.syntax;
-  if (!parts.border.empty()) syntax.border = generateConstant(parts.type, parts.border, place);
+  if (!parts.border.empty()) syntax.border = generateConstant(parts.type, borderValue(parts.border), place);
   if (!parts.value.empty()) syntax.identity = generateConstant(parts.type, parts.value, place);
   const clang::SourceLocation start = parts.type.front().getLocation();
   switch (syntax.role) {

@@ -199,9 +199,21 @@ template <class T> struct gather_2d {
   gather_1d<T> operator[](int) const; gather_1d<T> operator[](uint) const;
   gather_1d<T> operator[](float) const; T operator[](int2) const; T operator[](float2) const;
 };
+template <class T> struct gather_3d {
+  gather_2d<T> operator[](int) const; gather_2d<T> operator[](uint) const;
+  gather_2d<T> operator[](float) const; T operator[](int3) const; T operator[](float3) const;
+};
+template <class T> struct gather_4d {
+  gather_3d<T> operator[](int) const; gather_3d<T> operator[](uint) const;
+  gather_3d<T> operator[](float) const; T operator[](int4) const; T operator[](float4) const;
+};
 template <class T> T neighbor(gather_1d<T> a, int dx);
 template <class T> T neighbor(gather_2d<T> a, int dx, int dy = 0);
 template <class T> T neighbor(gather_2d<T> a, int2 offset);
+template <class T> T neighbor(gather_3d<T> a, int dx, int dy = 0, int dz = 0);
+template <class T> T neighbor(gather_3d<T> a, int3 offset);
+template <class T> T neighbor(gather_4d<T> a, int dx, int dy = 0, int dz = 0, int dw = 0);
+template <class T> T neighbor(gather_4d<T> a, int4 offset);
 template <class T> int4 indexof(const T& stream);
 template <class T> int4 extentof(const T& stream);
 template <class T> struct scatter_1d {

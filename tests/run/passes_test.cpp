@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "support/devices.hpp"
+#include "support/host_array.hpp"
 #include "support/values.hpp"
 
 using namespace run_tests;
@@ -106,6 +107,43 @@ TEST_CASE("forty gathers in a loop") {
               return t;
             }) == "");
     }
+  });
+}
+
+TEST_CASE("32 gathers of rank 3") {
+  constexpr std::size_t count = 32;
+  onEveryLimit([](sk::Device& device) {
+    const sk::Shape domain{3, 4, 23};
+    std::vector<HostArray<int>> in;
+    std::vector<sk::Stream<int>> g;
+    for (std::uint32_t i = 0; i < count; ++i) {   // of several shapes
+      const sk::Shape shape{3 + i % 2, 4, 20 + i % 3};
+      in.emplace_back(shape, [&](std::size_t k) {
+        return static_cast<int>(hashed(static_cast<std::uint32_t>(k) + 999 * i));
+      });
+      g.push_back(in.back().on(device));
+    }
+    auto r = device.stream<int>(domain);
+    const auto call = [&]<std::size_t... i>(std::index_sequence<i...>) { passes::deepWalk(3, g[i]..., r); };
+    call(std::make_index_sequence<count>());
+    CHECK(difference(r.read(), [&](std::size_t e) {
+            const Position p = positionOf(domain, e);
+            unsigned t = 0;
+            for (int k = 0; k < 3; ++k) {
+              for (std::size_t i = 0; i < count; ++i) {
+                const auto at = [&](std::int64_t dx, std::int64_t dy, std::int64_t dz) {
+                  const auto wrapped = [&](std::size_t d, std::int64_t by) {
+                    const std::int64_t n = in[i].shape()[static_cast<int>(d)];
+                    return ((p[d] + by) % n + n) % n;
+                  };
+                  return static_cast<unsigned>(in[i][{wrapped(0, dz), wrapped(1, dy), wrapped(2, dx)}]);
+                };
+                const auto n = static_cast<std::int64_t>(i);
+                t = t * 3 + at(k, -n, t & 1u) + at(n, 0, -k);
+              }
+            }
+            return static_cast<int>(t);
+          }) == "");
   });
 }
 
