@@ -4,6 +4,7 @@
 # ./dev as a newcomer, CI and a machine without rights or network see it. A copy of it runs in an empty
 # folder with stand-ins for apt-get, cmake and ctest that note how they were called.
 set -euo pipefail
+unset SK_PACKAGES   # the caller's own wish
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
