@@ -43,11 +43,12 @@ ElementLayout matrixLayout(Type type) {
   return layout;
 }
 
-/// A double fills the two channels of a texel.
+/// Two doubles fill the four channels of a texel.
 ElementLayout doubleVectorLayout(Type type) {
   ElementLayout layout{{}, 8U * type.width, 8};
-  for (std::uint32_t i = 0; i < type.width; ++i) {
-    layout.planes.push_back({"", std::string(1, "xyzw"[i]), type.component(), 8 * i, static_cast<int>(i)});
+  for (const Type plane : doublePlanes(type)) {
+    const auto number = static_cast<std::uint32_t>(layout.planes.size());
+    layout.planes.push_back({"", number == 0 ? "x" : "z", plane, 16 * number, static_cast<int>(number)});
   }
   return layout;
 }
@@ -73,7 +74,7 @@ ElementLayout arrayLayout(const Module& module, const TypeNames& types, const Ar
 
 ElementLayout elementLayout(const Module& module, const TypeNames& types, Type type) {
   if (type.isMatrix()) return matrixLayout(type);
-  if (type.isVector() && type.scalar == Scalar::Double) return doubleVectorLayout(type);
+  if (type.isDouble() && type.width > 2) return doubleVectorLayout(type);
   if (type.isArithmetic()) {
     const std::uint32_t component = bytesOf(type.scalar);
     return {{{"", "", type, 0}}, component * type.width, component};

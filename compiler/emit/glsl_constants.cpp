@@ -16,6 +16,7 @@ using namespace ir;
 
 /// True if the node itself is printed as a call of a function.
 bool isCall(const Expr& expr, const std::vector<bool>& isFunction) {
+  if (expr.type.isDouble()) return true;
   if (const auto* n = std::get_if<Literal>(&expr.node)) {
     return expr.type.carrier().isFloat() && !std::isfinite(std::bit_cast<float>(n->bits));
   }

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "emit/doubles.hpp"
 #include "emit/stream_uses.hpp"
 #include "ir/print.hpp"
 #include "support/overloaded.hpp"
@@ -82,6 +83,25 @@ bool isNonNegative(const Expr& expr) {
   return n != nullptr && static_cast<std::int32_t>(n->bits) >= 0;
 }
 
+/// The component of a vector that an index names, if that is known.
+std::optional<std::uint32_t> knownComponent(const Index& n) {
+  const auto* literal = std::get_if<Literal>(&n.index->node);
+  return literal != nullptr && literal->bits < n.base->type.width ? std::optional(literal->bits) : std::nullopt;
+}
+
+/// True if GLSL can assign to the text of a place. Components of a vector of doubles are members of a
+/// struct: one of them that is known is a place, several or a computed one are not.
+bool isGlslPlace(const Expr& place) {
+  if (const auto* n = std::get_if<Swizzle>(&place.node)) {
+    return (!place.type.isDouble() || place.type.isScalar()) && isGlslPlace(*n->base);
+  }
+  if (const auto* n = std::get_if<Index>(&place.node)) {
+    return (!n->base->type.isDouble() || knownComponent(*n)) && isGlslPlace(*n->base);
+  }
+  if (const auto* n = std::get_if<Member>(&place.node)) return isGlslPlace(*n->base);
+  return true;
+}
+
 class GlslExpr {
  public:
   GlslExpr(const GlslContext& context, std::optional<FunctionId> function)
@@ -92,19 +112,37 @@ class GlslExpr {
     return whole.precedence < around ? "(" + whole.text + ")" : whole.text;
   }
 
+  /// Where a place is none in GLSL, what it is a part of becomes that with the part replaced.
+  std::string assigned(const Expr& place, const std::string& value) const {
+    if (isGlslPlace(place)) return text(place) + " = " + value;
+    if (const auto* n = std::get_if<Swizzle>(&place.node)) {
+      return assigned(*n->base,
+                      doubleWith(context_.polyfills, n->base->type, n->components, text(*n->base), value));
+    }
+    const auto& n = std::get<Index>(place.node);
+    return assigned(*n.base, doubleWithComponent(context_.polyfills, n.base->type, text(*n.base),
+                                                 intText(*n.index), value));
+  }
+
  private:
   Parts parts(const Expr& expr) const {
     return match(expr.node, [&](const auto& node) { return print(expr.type, node); });
   }
 
-  Parts print(Type type, const Literal& n) const { return literalText(type, n.bits); }
+  Parts print(Type type, const Literal& n) const {
+    return type.isDouble() ? Parts{doubleLiteral(n)} : literalText(type, n.bits);
+  }
   Parts print(Type, const VarRef& n) const { return {context_.names.variable(*function_, n.var)}; }
   Parts print(Type, const ConstantRef& n) const { return {context_.names.constant(n.constant)}; }
   Parts print(Type type, const Unary& n) const {
+    if (type.isDouble()) return {doubleNegated(context_.polyfills, type, text(*n.operand))};
     if (n.op == UnaryOp::LogicalNot && type.isVector()) return {"not(" + text(*n.operand) + ")"};
     return {std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary), Precedence::Unary};
   }
   Parts print(Type type, const Binary& n) const {
+    if (n.lhs->type.isDouble()) {
+      return {doubleBinary(context_.polyfills, n.op, n.lhs->type, n.rhs->type, text(*n.lhs), text(*n.rhs))};
+    }
     const bool isVector = n.lhs->type.isVector();
     if (isVector && !comparison(n.op).empty())
       return {fmt::format("{}{}", comparison(n.op), pair(*n.lhs, *n.rhs))};
@@ -137,14 +175,23 @@ class GlslExpr {
             Precedence::Conditional};
   }
   Parts print(Type type, const Convert& n) const {
+    if (type.isDouble() || n.operand->type.isDouble()) {
+      return {doubleConverted(context_.polyfills, n.operand->type, type, text(*n.operand))};
+    }
     const bool isCarried = carrierOf(n.operand->type.scalar) == carrierOf(type.scalar);
     if (isCarried && !type.isNarrow()) return parts(*n.operand);
     const std::string value = text(*n.operand);
     const std::string carried = isCarried ? value : context_.types.glsl(type) + "(" + value + ")";
     return {type.isNarrow() ? context_.polyfills.quantize(type) + "(" + carried + ")" : carried};
   }
-  Parts print(Type type, const Construct& n) const { return {context_.types.glsl(type) + list(n.args)}; }
-  Parts print(Type, const Swizzle& n) const {
+  Parts print(Type type, const Construct& n) const {
+    if (type.isDouble()) return {doubleVector(context_.polyfills, type, typesOf(n.args), texts(n.args))};
+    return {context_.types.glsl(type) + list(n.args)};
+  }
+  Parts print(Type type, const Swizzle& n) const {
+    if (type.isDouble() && type.isVector()) {
+      return {doubleSwizzle(context_.polyfills, n.base->type, n.components, text(*n.base))};
+    }
     std::string components;
     for (std::uint8_t component : n.components) components += "xyzw"[component];
     return {text(*n.base, Precedence::Primary) + "." + components};
@@ -153,12 +200,16 @@ class GlslExpr {
     return {text(*n.base, Precedence::Primary) + "." + context_.types.fieldName(n.base->type.index, n.field)};
   }
   Parts print(Type, const Index& n) const {
+    if (n.base->type.isDouble()) return doubleIndex(n);
     return {text(*n.base, Precedence::Primary) + "[" + indexText(n) + "]"};
   }
   Parts print(Type, const Call& n) const { return {context_.names.function(n.callee) + list(n.args)}; }
   Parts print(Type, const IntrinsicCall& n) const {
     const IntrinsicRow& entry = row(n.intrinsic);
     const Type argument = n.args[0]->type;
+    if (argument.isDouble()) {
+      return {doubleIntrinsic(context_.polyfills, n.intrinsic, typesOf(n.args), texts(n.args))};
+    }
     context_.polyfills.intrinsic(n.intrinsic, argument);
     const bool usesVectorColumn = argument.isVector() && !entry.glslVector.empty();
     const std::string_view pattern = usesVectorColumn ? entry.glslVector : entry.glsl;
@@ -200,6 +251,18 @@ class GlslExpr {
     return fmt::format("clamp({}, 0, {})", index, last);
   }
 
+  /// A component of a vector of doubles, which is no array.
+  Parts doubleIndex(const Index& n) const {
+    if (const auto component = knownComponent(n)) {
+      return {text(*n.base, Precedence::Primary) + "." + "xyzw"[*component]};
+    }
+    return {doubleComponent(context_.polyfills, n.base->type, text(*n.base), intText(*n.index))};
+  }
+
+  std::string intText(const Expr& index) const {
+    return index.type.scalar == Scalar::Int ? text(index) : "int(" + text(index) + ")";
+  }
+
   std::string operand(BinaryOp outer, const Expr& expr, Precedence around) const {
     const auto* inner = std::get_if<Binary>(&expr.node);
     const bool clearer =
@@ -209,11 +272,17 @@ class GlslExpr {
 
   std::string pair(const Expr& a, const Expr& b) const { return "(" + text(a) + ", " + text(b) + ")"; }
 
-  std::string list(const std::vector<ExprPtr>& items) const {
-    std::vector<std::string> texts;
-    for (const ExprPtr& item : items) texts.push_back(text(*item));
-    return "(" + join(texts, ", ") + ")";
+  std::vector<std::string> texts(const std::vector<ExprPtr>& items) const {
+    std::vector<std::string> list;
+    for (const ExprPtr& item : items) list.push_back(text(*item));
+    return list;
   }
+  static std::vector<Type> typesOf(const std::vector<ExprPtr>& items) {
+    std::vector<Type> types;
+    for (const ExprPtr& item : items) types.push_back(item->type);
+    return types;
+  }
+  std::string list(const std::vector<ExprPtr>& items) const { return "(" + join(texts(items), ", ") + ")"; }
 
   /// "($0 * $1 + $2)" with the arguments put in; the outer brackets go where they are not needed.
   Parts fromPattern(std::string_view pattern, const std::vector<ExprPtr>& args) const {
@@ -243,6 +312,23 @@ class GlslExpr {
 std::string glslExpr(const GlslContext& context, std::optional<FunctionId> function, const Expr& expr,
                      Precedence around) {
   return GlslExpr(context, function).text(expr, around);
+}
+
+std::string glslAssignment(const GlslContext& context, FunctionId function, const Expr& place,
+                           std::optional<BinaryOp> op, const Expr& value) {
+  const GlslExpr printer(context, function);
+  if (!place.type.isDouble()) {
+    return fmt::format("{} {}= {}", printer.text(place), op ? spelling(*op) : "", printer.text(value));
+  }
+  const std::string right = printer.text(value);
+  if (!op) return printer.assigned(place, right);
+  return printer.assigned(
+      place, doubleBinary(context.polyfills, *op, place.type, value.type, printer.text(place), right));
+}
+
+std::string glslAssignment(const GlslContext& context, FunctionId function, const Expr& place,
+                           const std::string& value) {
+  return GlslExpr(context, function).assigned(place, value);
 }
 
 }  // namespace skc::emit

@@ -28,4 +28,11 @@ struct GlslContext {
 std::string glslExpr(const GlslContext& context, std::optional<ir::FunctionId> function, const ir::Expr& expr,
                      ir::Precedence around = ir::Precedence::Lowest);
 
+/// "place = value", "place += value".
+std::string glslAssignment(const GlslContext& context, ir::FunctionId function, const ir::Expr& place,
+                           std::optional<ir::BinaryOp> op, const ir::Expr& value);
+/// The same for a value that is text.
+std::string glslAssignment(const GlslContext& context, ir::FunctionId function, const ir::Expr& place,
+                           const std::string& value);
+
 }  // namespace skc::emit

@@ -24,14 +24,12 @@ class SimplePrinter {
     return match(
         stmt.node,
         [&](const Declare& n) -> Text { return context_.types.declaration(typeOf(n), name(n)) + init(n); },
-        [&](const Assign& n) -> Text {
-          return fmt::format("{} {}= {}", expr(n.place), n.op ? spelling(*n.op) : "", expr(n.value));
-        },
+        [&](const Assign& n) -> Text { return glslAssignment(context_, id_, *n.place, n.op, *n.value); },
         [&](const CallStmt& n) -> Text {
           std::vector<std::string> args;
           for (const ExprPtr& arg : n.args) args.push_back(expr(arg));
-          return fmt::format("{}{}({})", n.result ? expr(n.result) + " = " : "",
-                             context_.names.function(n.callee), join(args, ", "));
+          const std::string call = context_.names.function(n.callee) + "(" + join(args, ", ") + ")";
+          return n.result ? glslAssignment(context_, id_, *n.result, call) : call;
         },
         [&](const Push& n) -> Text {
           return fmt::format("sk_push_{}({})", context_.names.symbol(n.stream.id), expr(n.value));

@@ -22,21 +22,29 @@ namespace {
 using namespace ir;
 using enum BinaryOp;
 
-constexpr std::string_view profileNames[] = {"glsl330", "essl300"};
+using sk::assemble::Profile;
+
+/// Both profiles, and once more the one whose doubles have another form on some devices.
+std::vector<Profile> profiles() {
+  std::vector<Profile> list = {*sk::assemble::findProfile("glsl330"), *sk::assemble::findProfile("essl300")};
+  list.push_back(list.front());
+  list.back().name = "glsl330-pairs";
+  list.back().doubles = sk::assemble::Doubles::PrecisePairs;
+  return list;
+}
 
 /// The module's kernels and reduces as whole programs, in a folder that glslang looks at.
 std::string glslangOn(const Module& module, std::string_view folderName) {
   const ToolFolder folder(folderName);
   const Program program(module);
-  for (std::string_view profileName : profileNames) {
-    const sk::assemble::Profile& profile = *sk::assemble::findProfile(profileName);
+  for (const Profile& profile : profiles()) {
     for (const Unit& unit : program.units()) {
       sk::assemble::Variant variant;
       variant.access.resize(unit.kernel.parameters.size(), {.addressing = sk::assemble::Addressing::Plane});
       const std::string text = unit.reduction != nullptr
                                    ? sk::assemble::reduceProgram(profile, *unit.reduction, {})
                                    : sk::assemble::fragmentProgram(profile, unit.kernel, variant);
-      folder.write(fmt::format("{}-{}.frag", unit.kernel.entry, profileName), text);
+      folder.write(fmt::format("{}-{}.frag", unit.kernel.entry, profile.name), text);
     }
   }
   return folder.glslang();
@@ -47,8 +55,8 @@ TEST_CASE("the sample file") { CHECK(glslangOn(sampleModule(), "sample") == "");
 TEST_CASE("every overload of every intrinsic") {
   Module module = testModule();
   KernelMaker k(module, "all");
-  VarId values[4][5];
-  for (Scalar scalar : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float}) {
+  VarId values[5][5];
+  for (Scalar scalar : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float, Scalar::Double}) {
     for (int width = 1; width <= 4; ++width) {
       values[static_cast<int>(scalar)][width] =
           k.uniform(spelling(scalar) + std::to_string(width), Type::of(scalar, width));
@@ -81,7 +89,7 @@ TEST_CASE("every operator on every type that has it") {
   Module module = testModule();
   KernelMaker k(module, "operators");
   std::vector<std::pair<VarId, Type>> values;
-  for (Scalar scalar : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float}) {
+  for (Scalar scalar : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float, Scalar::Double}) {
     for (int width = 1; width <= 4; ++width) {
       const Type type = Type::of(scalar, width);
       values.emplace_back(k.uniform(spelling(scalar) + std::to_string(width), type), type);
@@ -107,7 +115,7 @@ TEST_CASE("every operator on every type that has it") {
     if (!type.isBool()) add(binary(Mul, literalOf(type.component(), 2), self()));
     add(select(k.ref(values[type.width - 1U].first), self(), self()));
     add(select(literal(true), self(), self()));
-    for (Scalar to : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float}) {
+    for (Scalar to : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float, Scalar::Double}) {
       if (to != type.scalar) add(convert(to, self()));
     }
   }

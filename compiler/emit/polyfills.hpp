@@ -25,11 +25,13 @@ class Polyfills {
   /// A Convert of the carrier's value to a narrow type; returns the function's name.
   std::string quantize(ir::Type type);
 
+  /// Any other function, unless this very one is there.
+  void add(std::string function);
+
   /// Their definitions.
   const std::vector<std::string>& functions() const { return functions_; }
 
  private:
-  void add(std::string function);
   std::vector<std::string> functions_;
 };
 

@@ -13,6 +13,7 @@
 #include "emit/glsl_body.hpp"
 #include "emit/stream_uses.hpp"
 #include "ir/print.hpp"
+#include "ir/reach.hpp"
 
 namespace skc::emit {
 
@@ -103,7 +104,8 @@ class Builder {
             .sources = storage_.sources,
             .usesIndex = uses.domainIndex,
             .usesExtent = uses.domainExtent,
-            .usesLoops = uses.loops};
+            .usesLoops = uses.loops,
+            .usesDoubles = usesDoubles(module_, kernel)};
   }
 
   // ---- plans ------------------------------------------------------------------------------------

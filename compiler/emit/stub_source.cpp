@@ -189,6 +189,7 @@ class SourceWriter {
     if (kernel.usesIndex) members.emplace_back(".usesIndex = true");
     if (kernel.usesExtent) members.emplace_back(".usesExtent = true");
     if (kernel.usesLoops) members.emplace_back(".usesLoops = true");
+    if (kernel.usesDoubles) members.emplace_back(".usesDoubles = true");
     if (kernel.planCount > 0) {
       members.push_back(fmt::format(".plans = {}Plans", name));
       members.push_back(fmt::format(".planCount = {}", kernel.planCount));
@@ -225,9 +226,10 @@ class SourceWriter {
   void arrayElement(const std::string& unit, const sk::program::Parameter& param) {
     std::vector<std::string> fields;
     for (const sk::program::Field& field : param.element->fields) {
-      fields.push_back(fmt::format("{{\"{}\", Scalar::{}, {}, {}}}", field.path,
+      const std::string part = field.part < 0 ? "" : fmt::format(", {}", field.part);
+      fields.push_back(fmt::format("{{\"{}\", Scalar::{}, {}, {}{}}}", field.path,
                                    scalarNames[static_cast<std::size_t>(field.scalar)], field.width,
-                                   field.offset));
+                                   field.offset, part));
     }
     const std::string name = elementName(unit, param);
     const std::string head = fmt::format("constexpr Field {}Fields[] = {{", name);

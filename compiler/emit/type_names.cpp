@@ -44,8 +44,8 @@ TypeNames::TypeNames(const Module& module) : module_(&module) {
 }
 
 std::string glslSpelling(Scalar scalar, int width) {
-  constexpr std::array<std::string_view, 5> scalars = {"bool", "int", "uint", "float", "double"};
-  constexpr std::array<std::string_view, 5> vectors = {"bvec", "ivec", "uvec", "vec", "dvec"};
+  constexpr std::array<std::string_view, 5> scalars = {"bool", "int", "uint", "float", "sk_double"};
+  constexpr std::array<std::string_view, 5> vectors = {"bvec", "ivec", "uvec", "vec", "sk_double"};
   const auto row = static_cast<std::size_t>(carrierOf(scalar));
   return width == 1 ? std::string(scalars[row]) : std::string(vectors[row]) + std::to_string(width);
 }

@@ -30,7 +30,7 @@ class TypeNames {
   std::vector<std::vector<std::string>> fields_;
 };
 
-/// "float", "bvec2"; of a narrow scalar those of its carrier.
+/// "float", "bvec2"; of a narrow scalar those of its carrier; "sk_double", "sk_double2" (doubles.hpp).
 std::string glslSpelling(ir::Scalar scalar, int width);
 
 /// `base`, or the first of base_2, base_3 ... that `isTaken` lets through.

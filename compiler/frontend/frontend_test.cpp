@@ -106,6 +106,16 @@ TEST_CASE("literals are rounded once", "[frontend]") {
   CHECK(inKernel("v = 1;") == "v = 1.0;\n");
 }
 
+TEST_CASE("formulas of literals are double where they meet doubles", "[frontend]") {
+  CHECK(inKernel("double d = 0.1; v = float(d);") == "double d = 0.1d;\nv = float(d);\n");
+  CHECK(inKernel("double d = x; d *= -(1.0 / 3) + 0.1; v = x * 0.1;") ==
+        "double d = double(x);\nd *= -(1.0d / 3.0d) + 0.1d;\nv = x * 0.1;\n");
+  CHECK(inKernel("double d = max(double(x), 0.1) + double2(0.1, x).x; v = d > 0.1f ? 0.1 : 1;") ==
+        "double d = max(double(x), 0.1d) + double2{0.1d, double(x)}.x;\nv = d > 0.10000000149011612d ? 0.1 : 1.0;\n");
+  CHECK(inKernel("double d = x > 0 ? 0.1 : -0.2; v = d;") ==
+        "double d = x > 0.0 ? 0.1d : -0.2d;\nv = float(d);\n");
+}
+
 TEST_CASE("dependencies are the main file and what it includes", "[frontend]") {
   const SourceFile included("float twice(float x) { return 2 * x; }\n");
   const SourceFile main("#include \"" + included.path() +

@@ -96,8 +96,8 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   // ---- effects (lower_expr.cpp) -----------------------------------------------------------------
   ir::ExprPtr value(const clang::Expr* e);
   void discarded(const clang::Expr* e);
-  ir::ExprPtr valueInto(const clang::Expr* e, ir::Block& block);
-  Exprs valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions);
+  ir::ExprPtr valueInto(const clang::Expr* e, ir::Block& block, bool asDouble = false);
+  Exprs valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions, bool asDoubles = false);
   void spill(ir::ExprPtr& e);
   void keepInPlace(ir::ExprPtr& e);
   ir::ExprPtr place(const clang::Expr* e);
@@ -116,7 +116,12 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   // ---- values (lower_expr.cpp) ------------------------------------------------------------------
   ir::ExprPtr make(ir::Type type, clang::SourceLocation where, ir::Expr::Node node);
   ir::ExprPtr literal(ir::Type type, std::uint32_t bits, clang::SourceLocation where);
-  ir::ExprPtr floatLiteral(const clang::FloatingLiteral* e);
+  /// A formula of nothing but literals (lower_literal.cpp), which takes its precision from its place.
+  static bool isLiterals(const clang::Expr* e);
+  ir::ExprPtr literalsAsDouble(const clang::Expr* e);
+  ir::ExprPtr doubleValue(const clang::Expr* e);
+  ir::ExprPtr doubleLiteral(const clang::FloatingLiteral* e);
+  llvm::APFloat literalValue(const clang::FloatingLiteral* e, const llvm::fltSemantics& semantics);
   ir::ExprPtr integerConstant(const clang::Expr* e, ir::Type type);
   ir::ExprPtr zero(ir::Type type, clang::SourceLocation where);
   ir::ExprPtr convert(ir::ExprPtr e, ir::Scalar scalar);

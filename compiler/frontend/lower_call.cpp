@@ -104,8 +104,8 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
   if (name == "push") return push(e);
   if (name == "sincos" || name == "modf" || name == "frexp") return outParameterIntrinsic(e, name);
   if (name == "select") {
-    Exprs args = valuesInOrder({e->getArg(0), e->getArg(1), e->getArg(2)});
     const ir::Type type = module_.type(e->getType(), e->getBeginLoc());
+    Exprs args = valuesInOrder({e->getArg(0), e->getArg(1), e->getArg(2)}, type.isDouble());
     ExprPtr cond = toBool(std::move(args[0]));
     for (std::size_t i = 1; i < 3; ++i) {
       if (type.isArithmetic()) args[i] = splat(convert(std::move(args[i]), type.scalar), type.width);
@@ -122,7 +122,7 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
 /// float4(v.xy, 0, 1): components that add up, or one scalar for all.
 ExprPtr FunctionLowering::vectorConstructor(const clang::CallExpr* e, ir::Type type) {
   const SourceLocation where = e->getBeginLoc();
-  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()));
+  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), type.isDouble());
   if (type.isMatrix()) return matrix(type, std::move(args), where);
   int width = 0;
   for (std::size_t i = 0; i < args.size(); ++i) {
@@ -157,6 +157,8 @@ int conversionCost(ir::Type from, ir::Type to) {
     cost += 20;
   }
   if (from.scalar == to.scalar) return cost;
+  if (from.scalar == Scalar::Double) return impossible;
+  if (to.scalar == Scalar::Double) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
   if (to.scalar == Scalar::Float) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
   if (to.scalar == Scalar::Bool)
     return from.scalar == Scalar::Int && from.isVector() ? cost : impossible;  // a mask
@@ -193,13 +195,25 @@ std::optional<Match> bestMatch(llvm::StringRef name, ir::Type result, const std:
 
 }  // namespace
 
+namespace {
+
+bool isOfDoubles(const clang::Expr* e) {
+  const clang::QualType type = e->getType().getCanonicalType();
+  const auto* vector = type->getAs<clang::ExtVectorType>();
+  return (vector ? vector->getElementType() : type)->isSpecificBuiltinType(clang::BuiltinType::Double);
+}
+
+}  // namespace
+
 ExprPtr FunctionLowering::tableIntrinsic(const clang::CallExpr* e, llvm::StringRef name) {
-  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()));
+  const bool areDoubles = std::any_of(e->arg_begin(), e->arg_end(), isOfDoubles);
+  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), areDoubles);
   std::optional<Match> match = bestMatch(name, module_.type(e->getType(), e->getBeginLoc()), args);
   if (!match) {
     std::string types;
     for (const ExprPtr& arg : args) types += (types.empty() ? "" : ", ") + module_.spelling(arg->type);
-    module_.fail(Diag::NoIntrinsic, e->getBeginLoc(), {std::string_view(name), types});
+    module_.fail(areDoubles ? Diag::DoubleIntrinsic : Diag::NoIntrinsic, e->getBeginLoc(),
+                 {std::string_view(name), types});
   }
   for (std::size_t i = 0; i < args.size(); ++i) {
     const ir::Type wanted = match->overload.arguments[i];
@@ -218,7 +232,8 @@ ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::
   const Loc loc = module_.loc(where);
   ExprPtr x = value(e->getArg(0));
   if (!x->type.isFloat())
-    module_.fail(Diag::NoIntrinsic, where, {std::string_view(name), module_.spelling(x->type)});
+    module_.fail(x->type.isDouble() ? Diag::DoubleIntrinsic : Diag::NoIntrinsic, where,
+                 {std::string_view(name), module_.spelling(x->type)});
   // the argument is read twice, and an out argument may be the very same variable
   const ir::VarId kept = temporary(x->type, loc);
   const ir::Type type = x->type;

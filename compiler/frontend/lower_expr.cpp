@@ -173,11 +173,11 @@ void FunctionLowering::discarded(const clang::Expr* e) {
   value(e);
 }
 
-ExprPtr FunctionLowering::valueInto(const clang::Expr* e, ir::Block& block) {
+ExprPtr FunctionLowering::valueInto(const clang::Expr* e, ir::Block& block, bool asDouble) {
   ir::Block* outer = std::exchange(out_, &block);
   ExprPtr result;
   try {
-    result = value(e);
+    result = asDouble && isLiterals(e) ? literalsAsDouble(e) : value(e);
   } catch (const Abandoned&) {
     out_ = outer;
     throw;
@@ -186,11 +186,13 @@ ExprPtr FunctionLowering::valueInto(const clang::Expr* e, ir::Block& block) {
   return result;
 }
 
-FunctionLowering::Exprs FunctionLowering::valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions) {
+/// `asDoubles`: literals are doubles, since they meet some.
+FunctionLowering::Exprs FunctionLowering::valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions,
+                                                        bool asDoubles) {
   Exprs values;
   for (const clang::Expr* e : expressions) {
     ir::Block effects;
-    ExprPtr result = valueInto(e, effects);
+    ExprPtr result = valueInto(e, effects, asDoubles);
     if (!effects.empty()) {
       for (ExprPtr& earlier : values) spill(earlier);
       for (ir::Stmt& s : effects) out_->push_back(std::move(s));
@@ -320,6 +322,9 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
       if (const auto* constant = std::get_if<ir::Literal>(&operand->node);
           constant && !operand->type.isBool()) {
         // -1 is a literal to its reader: change the sign bit of a float, wrap an integer
+        if (operand->type.isDouble()) {
+          return make(operand->type, where, ir::Literal{constant->bits, constant->high ^ 0x80000000u});
+        }
         const std::uint32_t bits =
             operand->type.carrier().isFloat() ? constant->bits ^ 0x80000000u : 0u - constant->bits;
         return literal(operand->type, bits, where);

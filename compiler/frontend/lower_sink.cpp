@@ -126,6 +126,7 @@ void FunctionLowering::scatterCompound(const ScatterPlace& place, const clang::C
 ExprPtr FunctionLowering::combinedValue(const ScatterPlace& place, ExprPtr value, SourceLocation where) {
   const ir::Variable& sink = function_.variables[place.stream];
   const ir::Type type = sink.type;
+  if (type.isDouble()) module_.fail(Diag::DoubleScatter, where, {sink.name});
   const bool isNumber = type.isFloat() || type.isInteger();
   if (!isNumber || !value->type.isArithmetic() || value->type.scalar != type.scalar ||
       (value->type.width != 1 && value->type.width != type.width)) {

@@ -2,13 +2,11 @@
 //
 // Leaves, casts, members and initialisers: expressions without effects of their own.
 #include <algorithm>
+#include <bit>
 
 #include <clang/AST/ASTContext.h>
 #include <clang/AST/DeclCXX.h>
 #include <clang/AST/ExprCXX.h>
-#include <clang/Basic/SourceManager.h>
-#include <clang/Lex/Lexer.h>
-#include <llvm/ADT/APFloat.h>
 
 #include "frontend/clang_loc.hpp"
 #include "frontend/function_lowering.hpp"
@@ -58,41 +56,6 @@ ExprPtr FunctionLowering::VisitCXXDefaultInitExpr(const clang::CXXDefaultInitExp
 ExprPtr FunctionLowering::VisitIntegerLiteral(const clang::IntegerLiteral* e) {
   const ir::Type type = module_.type(e->getType(), e->getLocation());
   return literal(type, static_cast<std::uint32_t>(e->getValue().getZExtValue()), e->getLocation());
-}
-
-ExprPtr FunctionLowering::VisitFloatingLiteral(const clang::FloatingLiteral* e) { return floatLiteral(e); }
-
-/// Rounded once, from the text: through double, a literal could be rounded twice.
-ExprPtr FunctionLowering::floatLiteral(const clang::FloatingLiteral* e) {
-  llvm::APFloat exact = e->getValue();
-  bool inexact = false;
-  exact.convert(llvm::APFloat::IEEEsingle(), llvm::APFloat::rmNearestTiesToEven, &inexact);
-  llvm::SmallString<32> buffer;
-  std::string text = clang::Lexer::getSpelling(module_.sources().getSpellingLoc(e->getLocation()), buffer,
-                                               module_.sources(), module_.context().getLangOpts())
-                         .str();
-  std::erase(text, '\'');
-  const bool isHex = text.starts_with("0x") || text.starts_with("0X");
-  while (!text.empty() &&
-         (text.back() == 'f' || text.back() == 'F' || text.back() == 'l' || text.back() == 'L')) {
-    if (isHex && text.find_first_of("pP") == std::string::npos) break;
-    text.pop_back();
-  }
-  llvm::APFloat direct(llvm::APFloat::IEEEsingle());
-  auto status = direct.convertFromString(text, llvm::APFloat::rmNearestTiesToEven);
-  if (status) {
-    exact = direct;
-    if (*status & (llvm::APFloat::opOverflow | llvm::APFloat::opUnderflow)) {
-      module_.diagnostics().report(Diag::LiteralRange, locOf(e->getLocation()),
-                                   {text, direct.isInfinity() ? "infinity"
-                                          : direct.isZero()   ? "0"
-                                                              : "a denormal"});
-    }
-  } else {
-    llvm::consumeError(status.takeError());
-  }
-  return literal(ir::Type::of(ir::Scalar::Float),
-                 static_cast<std::uint32_t>(exact.bitcastToAPInt().getZExtValue()), e->getLocation());
 }
 
 ExprPtr FunctionLowering::VisitCXXBoolLiteralExpr(const clang::CXXBoolLiteralExpr* e) {
@@ -166,8 +129,10 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
     case clang::CK_LValueToRValue:
     case clang::CK_UserDefinedConversion:
     case clang::CK_ConstructorConversion: return value(operand);
-    case clang::CK_FloatingCast:   // of a double literal in float's place, too
-      return convert(value(operand), module_.type(e->getType(), where).scalar);
+    case clang::CK_FloatingCast: {   // of a double literal in float's place, too
+      const ir::Scalar to = module_.type(e->getType(), where).scalar;
+      return to == ir::Scalar::Double ? doubleValue(operand) : convert(value(operand), to);
+    }
     case clang::CK_IntegralCast:
       if (!isKernelInteger(operand->getType())) {
         if (ExprPtr constant = integerConstant(e, module_.type(e->getType(), where))) return constant;
@@ -176,7 +141,7 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
     case clang::CK_IntegralToFloating:
       if (!isKernelInteger(operand->getType())) {
         if (ExprPtr constant = integerConstant(operand, ir::Type::of(ir::Scalar::Int))) {
-          return convert(std::move(constant), ir::Scalar::Float);
+          return convert(std::move(constant), module_.type(e->getType(), where).scalar);
         }
       }
       return convert(value(operand), module_.type(e->getType(), where).scalar);
@@ -206,8 +171,9 @@ ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
   const bool isImplicit = llvm::isa<clang::ImplicitCastExpr>(e);
   const bool mixesSigns =
       isImplicit && !from.isBool() && !to.isBool();   // int4 / uint4 would follow the left side
-  if (!from.isVector() || !to.isVector() || from.width != to.width || from.carrier().isFloat() ||
-      to.carrier().isFloat() || mixesSigns) {
+  const bool areIntegers =
+      !from.carrier().isFloat() && !to.carrier().isFloat() && !from.isDouble() && !to.isDouble();
+  if (!from.isVector() || !to.isVector() || from.width != to.width || !areIntegers || mixesSigns) {
     module_.fail(isImplicit ? Diag::MixedVectors : Diag::BitCast, e->getBeginLoc(), {module_.spelling(to)});
   }
   ExprPtr operand = value(e->getSubExpr());
@@ -230,16 +196,32 @@ ExprPtr* maskedBool(ir::Expr& e) {
 
 }  // namespace
 
+namespace {
+
+/// A literal of 32 bits as a double, which holds it exactly.
+ExprPtr widened(ir::Scalar from, std::uint32_t bits, Loc loc) {
+  if (from == ir::Scalar::Float) return ir::literal(double{std::bit_cast<float>(bits)}, loc);
+  if (from == ir::Scalar::Int) return ir::literal(static_cast<double>(static_cast<std::int32_t>(bits)), loc);
+  return ir::literal(static_cast<double>(bits), loc);
+}
+
+}  // namespace
+
 ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
   if (!e->type.isArithmetic() || e->type.scalar == scalar) return e;
   if (scalar == ir::Scalar::Bool) return toBool(std::move(e));
   const Loc loc = e->loc;
+  if ((e->type.isNarrow() && scalar == ir::Scalar::Double) || (e->type.isDouble() && ir::isNarrow(scalar))) {
+    const ir::Scalar carrier = ir::carrierOf(e->type.isNarrow() ? e->type.scalar : scalar);
+    return convert(convert(std::move(e), carrier), scalar);
+  }
   if (auto* construct = std::get_if<ir::Construct>(&e->node);
       construct && e->type.isVector() && construct->args.size() == 1 && construct->args[0]->type.isScalar()) {
     return splat(convert(std::move(construct->args[0]), scalar), e->type.width);   // `2.0` beside a vector
   }
   if (auto* constant = std::get_if<ir::Literal>(&e->node)) {
     const ir::Scalar carrier = ir::carrierOf(scalar);
+    if (scalar == ir::Scalar::Double) return widened(e->type.scalar, constant->bits, loc);
     if (e->type.isNarrow()) {   // the bits are those of the carrier already
       e->type = e->type.carrier();
       return convert(std::move(e), scalar);

@@ -167,10 +167,11 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
       }
     }
   }
-  if (param.role == ir::ParamRole::Iterator && !param.type.isNumber()) {
+  if (param.role == ir::ParamRole::Iterator && (!param.type.isNumber() || param.type.isDouble())) {
     fail(Diag::IteratorType, declaration->getLocation(), {param.name, spelling(param.type)});
   }
-  if (param.role == ir::ParamRole::Spec && (!param.type.isScalar() || param.type.isNarrow())) {
+  if (param.role == ir::ParamRole::Spec &&
+      (!param.type.isScalar() || param.type.isNarrow() || param.type.isDouble())) {
     fail(Diag::SpecType, declaration->getLocation(), {param.name, spelling(param.type)});
   }
   if (syntax) {
@@ -292,7 +293,12 @@ ir::ExprPtr ModuleLowering::evaluated(const clang::VarDecl* declaration) {
   const clang::Expr* init = declaration->getAnyInitializer(declaration);
   const clang::APValue* value = declaration->evaluateValue();
   if (!value) return nullptr;
-  return evaluated(*value, type(declaration->getType(), init->getBeginLoc()), loc(init->getBeginLoc()));
+  const ir::Type wanted = type(declaration->getType(), init->getBeginLoc());
+  // Clang has made floats of the literals in the functions that it calls
+  if (ir::holdsDouble(module_, wanted)) {
+    fail(Diag::DoubleConstant, init->getBeginLoc(), {declaration->getNameAsString()});
+  }
+  return evaluated(*value, wanted, loc(init->getBeginLoc()));
 }
 
 /// Null where the value is of none of the kinds that kernels know.
@@ -382,6 +388,7 @@ std::optional<ir::Scalar> scalarOf(const clang::BuiltinType* builtin) {
     case clang::BuiltinType::Int: return ir::Scalar::Int;
     case clang::BuiltinType::UInt: return ir::Scalar::Uint;
     case clang::BuiltinType::Float: return ir::Scalar::Float;
+    case clang::BuiltinType::Double: return ir::Scalar::Double;
     default: return std::nullopt;
   }
 }
@@ -401,12 +408,12 @@ ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
   }
   if (const auto* builtin = canonical->getAs<clang::BuiltinType>()) {
     if (const auto scalar = scalarOf(builtin)) return ir::Type::of(*scalar);
-    const bool isDouble = builtin->getKind() == clang::BuiltinType::Double;
-    fail(isDouble ? Diag::DoubleType : Diag::ScalarType, use, {qualified.getUnqualifiedType().getAsString()});
+    fail(Diag::ScalarType, use, {qualified.getUnqualifiedType().getAsString()});
   }
   if (const auto* vector = canonical->getAs<clang::ExtVectorType>()) {
     const auto* element = vector->getElementType()->getAs<clang::BuiltinType>();
-    const auto scalar = element ? scalarOf(element) : std::nullopt;
+    const bool isMask = element && element->getKind() == clang::BuiltinType::Long;  // compared doubles
+    const auto scalar = isMask ? ir::Scalar::Int : element ? scalarOf(element) : std::nullopt;
     const unsigned width = vector->getNumElements();
     if (scalar && width >= 2 && width <= 4) return ir::Type::of(*scalar, static_cast<int>(width));
     fail(Diag::ScalarType, use, {qualified.getAsString()});

@@ -24,7 +24,8 @@ struct VectorFamily {
 
 // Vectors of `bool` have no swizzles in Clang, so their components are char32_t, a type that nothing
 // else uses and that has the size of the masks that vector comparisons give.
-constexpr std::array<VectorFamily, 9> families = {{{"float", "float", "float"},
+constexpr std::array<VectorFamily, 10> families = {{{"float", "float", "float"},
+                                                    {"double", "double", "double"},
                                                    {"int", "int", "int"},
                                                    {"uint", "unsigned", "uint"},
                                                    {"bool", "char32_t", "bool"},
@@ -39,7 +40,7 @@ constexpr std::array<std::string_view, 4> normalized = {"unorm8", "snorm8", "uno
 
 /// The class of values that a signature letter admits, as far as a result type depends on it.
 bool countsForResult(char letter) {
-  return std::string_view("FfVNnSQR").find(letter) != std::string_view::npos;
+  return std::string_view("FfVDdNnSQR").find(letter) != std::string_view::npos;
 }
 
 /// Letters between the parentheses of the first signature, and of every later one, by position.
@@ -60,7 +61,7 @@ std::vector<std::string> lettersByPosition(const std::vector<std::string_view>& 
 std::string declare(std::string_view name, const std::vector<std::string_view>& signatures) {
   const char result = signatures.front().front();
   const std::vector<std::string> positions = lettersByPosition(signatures);
-  if (result == 'w') return fmt::format("float3 {}(float3, float3);\n", name);
+  if (result == 'w') return fmt::format("float3 {0}(float3, float3); double3 {0}(double3, double3);\n", name);
   std::string parameters, arguments, deciding;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const char type = static_cast<char>('A' + i);
@@ -83,7 +84,7 @@ std::string declare(std::string_view name, const std::vector<std::string_view>& 
     case 'N':
     case 'S': type = fmt::format("__sk_N<{}>", deciding); break;
     case 'X': type = "A"; break;
-    case 'f': type = "float"; break;
+    case 'f': type = positions[0] == "X" ? "float" : fmt::format("__sk_f<{}>", deciding); break;
     case 'b': type = "bool"; break;
   }
   return fmt::format("template <{}> {} {}({});\n", parameters, type, name, arguments);
@@ -157,16 +158,18 @@ std::string matrixTypes() {
   return text;
 }
 
-/// __sk_traits<T>: the float, int, uint and bool types of T's width, and as N what T is computed in.
+/// __sk_traits<T>: the floating-point, int, uint and bool types of T's width, as f the former's component, and as
+/// N what T is computed in. What becomes floating-point becomes float, but double stays.
 std::string typeTraits() {
   std::string text = "template <class T> struct __sk_traits;\n";
   for (const VectorFamily& family : families) {
     for (int width = 1; width <= 4; ++width) {
       const std::string suffix = width == 1 ? "" : std::to_string(width);
+      const std::string_view real = family.scalar == "double" ? "double" : "float";
       text += fmt::format(
-          "template <> struct __sk_traits<{0}{1}> {{ using F = float{1}; using I = int{1}; "
+          "template <> struct __sk_traits<{0}{1}> {{ using F = {3}{1}; using f = {3}; using I = int{1}; "
           "using U = uint{1}; using B = bool{1}; using N = {2}{1}; }};\n",
-          family.scalar, suffix, family.carrier);
+          family.scalar, suffix, family.carrier, real);
     }
   }
   for (const std::string_view name : normalized) {
@@ -177,13 +180,13 @@ std::string typeTraits() {
     }
   }
   text +=
-      "template <> struct __sk_traits<double> : __sk_traits<float> {};\n"
       "template <> struct __sk_traits<char32_t> : __sk_traits<bool> {};\n"
       "template <> struct __sk_traits<signed char> : __sk_traits<char> {};\n"
       "template <class A> using __sk_one = __sk_traits<A>;\n"
       "template <class... A> struct __sk_sum : __sk_traits<decltype((A() + ...))> {};\n"
       "template <class A> struct __sk_sum<A> : __sk_traits<A> {};\n"
       "template <class... A> using __sk_F = typename __sk_sum<A...>::F;\n"
+      "template <class... A> using __sk_f = typename __sk_sum<A...>::f;\n"
       "template <class... A> using __sk_I = typename __sk_sum<A...>::I;\n"
       "template <class... A> using __sk_U = typename __sk_sum<A...>::U;\n"
       "template <class... A> using __sk_B = typename __sk_sum<A...>::B;\n"

@@ -36,12 +36,17 @@ std::optional<Type> typeOf(char letter, Choice choice) {
     case 'f': return Type::of(Float);
     case 'b': return Type::of(Bool);
     case 'w': return only(choice.width == 3, Float, 3);
+    case 'D': return Type::of(Double, choice.width);
+    case 'd': return Type::of(Double);
+    case 'k': return only(choice.width == 3, Double, 3);
     case 'V': return only(isVector, Float, choice.width);
     case 'X': return isVector ? std::optional(Type::matrix(choice.width)) : std::nullopt;
     case 'C': return only(isVector, Bool, choice.width);
     case 'N': return only(choice.generic != Bool, choice.generic, choice.width);
     case 'n': return only(choice.generic != Bool, choice.generic, 1);
-    case 'S': return only(choice.generic == Float || choice.generic == Int, choice.generic, choice.width);
+    case 'S':
+      return only(choice.generic == Float || choice.generic == Double || choice.generic == Int,
+                  choice.generic, choice.width);
     case 'Q': return only(isVector && choice.generic != Bool, choice.generic, choice.width);
     case 'R': return only(isVector, choice.generic, choice.width);
     default: break;   // no letter of the table's
@@ -78,7 +83,7 @@ std::vector<IntrinsicOverload> overloads(Intrinsic intrinsic) {
   while (!signatures.empty()) {
     const std::string_view signature = signatures.substr(0, signatures.find(' '));
     signatures.remove_prefix(std::min(signatures.size(), signature.size() + 1));
-    for (Scalar generic : {Scalar::Float, Scalar::Int, Scalar::Uint, Scalar::Bool}) {
+    for (Scalar generic : {Scalar::Float, Scalar::Int, Scalar::Uint, Scalar::Double, Scalar::Bool}) {
       for (int width = 1; width <= 4; ++width) {
         std::optional<IntrinsicOverload> one = resolve(signature, {width, generic});
         if (one && std::find(all.begin(), all.end(), *one) == all.end()) all.push_back(std::move(*one));

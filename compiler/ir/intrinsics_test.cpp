@@ -16,6 +16,7 @@ namespace {
 constexpr Type f(int width = 1) { return Type::of(Scalar::Float, width); }
 constexpr Type i(int width = 1) { return Type::of(Scalar::Int, width); }
 constexpr Type u(int width = 1) { return Type::of(Scalar::Uint, width); }
+constexpr Type d(int width = 1) { return Type::of(Scalar::Double, width); }
 constexpr Type b(int width = 1) { return Type::of(Scalar::Bool, width); }
 
 std::optional<Type> result(Intrinsic intrinsic, std::initializer_list<Type> arguments) {
@@ -46,6 +47,17 @@ TEST_CASE("results of another component type") {
   CHECK(result(Intrinsic::Dot, {f(4), f(4)}) == f());
   CHECK(result(Intrinsic::Cross, {f(3), f(3)}) == f(3));
   CHECK_FALSE(result(Intrinsic::Cross, {f(2), f(2)}));
+}
+
+TEST_CASE("doubles have what their letters and the generic ones say") {
+  CHECK(result(Intrinsic::Sqrt, {d(3)}) == d(3));
+  CHECK(result(Intrinsic::Min, {d(2), d()}) == d(2));
+  CHECK(result(Intrinsic::Sign, {d(4)}) == d(4));
+  CHECK(result(Intrinsic::Dot, {d(4), d(4)}) == d());
+  CHECK(result(Intrinsic::Cross, {d(3), d(3)}) == d(3));
+  CHECK(result(Intrinsic::LessThan, {d(2), d(2)}) == b(2));
+  CHECK_FALSE(result(Intrinsic::Sin, {d()}));
+  CHECK_FALSE(result(Intrinsic::Min, {d(), f()}));
 }
 
 TEST_CASE("comparisons are of vectors only") {

@@ -33,6 +33,11 @@ std::string literalText(Type type, std::uint32_t bits) {
   return shortestFloat(value);
 }
 
+/// As C++ has no suffix for doubles, the letter of theirs that is not taken: "0.1d".
+std::string doubleText(const Literal& literal) {
+  return shortestDouble(std::bit_cast<double>(std::uint64_t{literal.high} << 32 | literal.bits)) + "d";
+}
+
 class ExprPrinter {
  public:
   ExprPrinter(const Module& module, const Function& function) : module_(module), function_(function) {}
@@ -50,7 +55,10 @@ class ExprPrinter {
 
   Parts parts(const Expr& expr) const {
     return match(
-        expr.node, [&](const Literal& n) { return Parts{literalText(expr.type, n.bits)}; },
+        expr.node,
+        [&](const Literal& n) {
+          return Parts{expr.type.isDouble() ? doubleText(n) : literalText(expr.type, n.bits)};
+        },
         [&](const VarRef& n) { return Parts{nameOf(function_, n.var)}; },
         [&](const ConstantRef& n) { return Parts{module_.constants[n.constant].name}; },
         [&](const Unary& n) {

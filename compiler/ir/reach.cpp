@@ -56,4 +56,23 @@ std::optional<FunctionId> findRecursion(const Module& module) {
   return std::nullopt;
 }
 
+bool holdsDouble(const Module& module, Type type) {
+  if (type.kind == Type::Kind::Array) return holdsDouble(module, module.arrays[type.index].element);
+  if (type.kind != Type::Kind::Struct) return type.isDouble();
+  const std::vector<StructField>& fields = module.structs[type.index].fields;
+  return std::ranges::any_of(fields,
+                             [&](const StructField& field) { return holdsDouble(module, field.type); });
+}
+
+bool usesDoubles(const Module& module, const Kernel& kernel) {
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    const Function& function = module.functions[id];
+    bool uses = holdsDouble(module, function.result);
+    for (const Variable& variable : function.variables) uses = uses || holdsDouble(module, variable.type);
+    walkExprs(function.body, [&](const Expr& expr) { uses = uses || holdsDouble(module, expr.type); });
+    if (uses) return true;
+  }
+  return false;
+}
+
 }  // namespace skc::ir

@@ -17,6 +17,11 @@ std::vector<FunctionId> callees(const Function& function);
 /// combining function and all that these reach.
 std::vector<FunctionId> functionsOf(const Module& module, const Kernel& kernel);
 
+/// Whether a value of this type is a double or holds one.
+bool holdsDouble(const Module& module, Type type);
+/// Whether a kernel's parameters or functions have anything to do with doubles.
+bool usesDoubles(const Module& module, const Kernel& kernel);
+
 /// A function that reaches itself, if there is one.
 std::optional<FunctionId> findRecursion(const Module& module);
 

@@ -79,6 +79,7 @@ struct Type {
   bool isNumber() const { return isArithmetic() && scalar >= Scalar::Int && scalar <= Scalar::Double; }
   bool isNarrow() const { return isArithmetic() && ir::isNarrow(scalar); }
   bool isFloat() const { return isArithmetic() && scalar == Scalar::Float; }
+  bool isDouble() const { return isArithmetic() && scalar == Scalar::Double; }
   bool isBool() const { return isArithmetic() && scalar == Scalar::Bool; }
   bool isInteger() const { return isArithmetic() && (scalar == Scalar::Int || scalar == Scalar::Uint); }
   Type withScalar(Scalar s) const { return of(s, width); }
@@ -88,6 +89,14 @@ struct Type {
   Type carrier() const { return isNarrow() ? withScalar(carrierOf(scalar)) : *this; }
   bool operator==(const Type&) const = default;
 };
+
+/// The planes of a double or a vector of them: a texel holds two.
+inline std::vector<Type> doublePlanes(Type type) {
+  std::vector<Type> planes;
+  for (int left = type.width; left > 0; left -= 2)
+    planes.push_back(Type::of(Scalar::Double, left > 1 ? 2 : 1));
+  return planes;
+}
 
 struct StructField {
   std::string name;

@@ -13,7 +13,7 @@ namespace {
 
 using namespace ir;
 
-/// Vectors of three lie in texels of four.
+/// Vectors of three lie in texels of four. (None of doubles is a plane.)
 Type texelType(Type plane) { return plane.width == 3 ? Type::of(plane.scalar, 4) : plane; }
 
 struct ReadPlane {

@@ -25,6 +25,9 @@ void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
     }
   } else if (type.isMatrix()) {
     planes.insert(planes.end(), type.width, type.indexed());
+  } else if (type.isDouble()) {
+    const std::vector<Type> own = doublePlanes(type);
+    planes.insert(planes.end(), own.begin(), own.end());
   } else {
     planes.push_back(type);
   }
@@ -54,9 +57,11 @@ std::vector<Type> planesOf(const Module& module, Type type) {
   return planes;
 }
 
+double planeCost(Type plane) { return componentCost * plane.width * (plane.isDouble() ? 2 : 1); }
+
 double elementCost(const Module& module, Type type) {
   double cost = 0;
-  for (const Type plane : planesOf(module, type)) cost += componentCost * plane.width;
+  for (const Type plane : planesOf(module, type)) cost += planeCost(plane);
   return cost;
 }
 

@@ -20,6 +20,8 @@ inline constexpr double passCost = 64;
 
 /// Scalars and vectors that an element consists of: what one texel each holds.
 std::vector<ir::Type> planesOf(const ir::Module& module, ir::Type type);
+/// Of reading or writing one of these.
+double planeCost(ir::Type plane);
 /// Of reading or writing a whole element.
 double elementCost(const ir::Module& module, ir::Type type);
 

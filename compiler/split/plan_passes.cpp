@@ -212,7 +212,7 @@ class Planner {
     for (const Target& target : targets) {
       const std::vector<Type> planes = planesOf(module_, entry_.variables[target.var].type);
       for (std::uint32_t i = 0; i < target.planeCount; ++i) {
-        cost += componentCost * planes[target.firstPlane + i].width;
+        cost += planeCost(planes[target.firstPlane + i]);
       }
     }
     return cost;

@@ -10,13 +10,21 @@
 
 namespace skc {
 
-std::string shortestFloat(float value) {
+namespace {
+
+template <class T>
+std::string shortest(T value) {
   std::array<char, 32> buffer;
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
   std::string text(buffer.data(), end);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
   return text;
 }
+
+}  // namespace
+
+std::string shortestFloat(float value) { return shortest(value); }
+std::string shortestDouble(double value) { return shortest(value); }
 
 std::string join(std::span<const std::string> items, std::string_view separator) {
   std::string result;

@@ -13,6 +13,9 @@ namespace skc {
 /// "0.1", "1.0", "1e+30", "-0.0". `value` is finite.
 std::string shortestFloat(float value);
 
+/// The same for a double: "0.1", and of what is not finite "inf" and "nan".
+std::string shortestDouble(double value);
+
 /// The items with `separator` between them.
 std::string join(std::span<const std::string> items, std::string_view separator);
 

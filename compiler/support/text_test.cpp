@@ -13,6 +13,13 @@
 namespace skc {
 namespace {
 
+TEST_CASE("a double reads back as the same double") {
+  CHECK(shortestDouble(0.1) == "0.1");
+  CHECK(shortestDouble(1) == "1.0");
+  CHECK(shortestDouble(1e300) == "1e+300");
+  CHECK(shortestDouble(-1.0 / 0.0) == "-inf");
+}
+
 TEST_CASE("floats are short and always read as floats") {
   CHECK(shortestFloat(1.0F) == "1.0");
   CHECK(shortestFloat(0.1F) == "0.1");

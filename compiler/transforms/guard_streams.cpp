@@ -38,7 +38,7 @@ bool isFollowed(BinaryOp op, Type operands) {
     case BinaryOp::Equal:
     case BinaryOp::NotEqual:
     case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: return true;
+    case BinaryOp::LogicalOr: return !operands.isDouble();
     case BinaryOp::Div:   // what these give for some operands is the device's choice
     case BinaryOp::Rem:
     case BinaryOp::ShiftLeft:
@@ -267,7 +267,7 @@ class Follower {
 
   /// `if (n)` is `n != 0`; between the other types but float, the bits stay.
   ExprPtr converted(const Frame& frame, Type to, const Expr& operand) const {
-    const bool rounds = to.isFloat() || to.isNarrow() || operand.type.isNarrow();
+    const bool rounds = to.isFloat() || to.isDouble() || to.isNarrow() || operand.type.isNarrow();
     ExprPtr from = rounds ? nullptr : value(frame, operand);
     if (!from || (from->type.isFloat() && !to.isBool())) return nullptr;
     if (!to.isBool()) return convert(to.scalar, std::move(from));

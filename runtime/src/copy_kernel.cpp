@@ -21,7 +21,7 @@ constexpr int scalars = 14;
 program::Field texelField(const program::Field& field) {
   using program::Scalar;
   switch (field.scalar) {
-    case Scalar::Double: return {"", Scalar::Uint, 2, 0};
+    case Scalar::Double: return {"", Scalar::Uint, static_cast<std::uint8_t>(2 * field.width), 0};
     case Scalar::Snorm8: return {"", Scalar::Char, field.width, 0};
     case Scalar::Snorm16: return {"", Scalar::Short, field.width, 0};
     case Scalar::Unorm16: return {"", Scalar::Ushort, field.width, 0};

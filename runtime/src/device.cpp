@@ -49,11 +49,26 @@ bool wantsGuaranteed(const std::string& limits) {
   return limits == "guaranteed";
 }
 
+/// What doubles are to be. Where limits are what the profile guarantees, it guarantees no double either.
+bool wantsPairs(const std::string& doubles, bool guaranteedLimits) {
+  if (!doubles.empty() && doubles != "native" && doubles != "pairs") {
+    throw Error(
+        fmt::format("there are no doubles '{}'; choose native or pairs (option or SK_DOUBLES)", doubles));
+  }
+  return doubles.empty() ? guaranteedLimits : doubles == "pairs";
+}
+
+DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles) {
+  const bool guaranteedLimits = wantsGuaranteed(limits);
+  return {textureLimit, guaranteedLimits, wantsPairs(doubles, guaranteedLimits)};
+}
+
 std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
   const gl::OpenRequest request{chosen(options.device, "SK_DEVICE"),
                                 apiOf(chosen(options.profile, "SK_PROFILE"))};
-  return std::make_unique<DeviceState>(gl::openContext(request), options.textureLimit,
-                                       wantsGuaranteed(chosen(options.limits, "SK_LIMITS")));
+  const DeviceChoices choices = choicesOf(options.textureLimit, chosen(options.limits, "SK_LIMITS"),
+                                          chosen(options.doubles, "SK_DOUBLES"));
+  return std::make_unique<DeviceState>(gl::openContext(request), choices);
 }
 
 }  // namespace
@@ -67,8 +82,8 @@ Device::Device(Device&& other) noexcept = default;
 Device& Device::operator=(Device&& other) noexcept = default;
 
 Device Device::adopt(const DeviceOptions& options) {
-  return Device(std::make_unique<DeviceState>(gl::adoptContext(apiOf(options.profile)), options.textureLimit,
-                                              wantsGuaranteed(options.limits)));
+  const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles);
+  return Device(std::make_unique<DeviceState>(gl::adoptContext(apiOf(options.profile)), choices));
 }
 
 DeviceState& Device::state() const {
@@ -84,7 +99,7 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
 }
 
 const std::string& Device::name() const { return state().capabilities.renderer; }
-std::string_view Device::profile() const { return state().profile->name; }
+std::string_view Device::profile() const { return state().profile.name; }
 const DeviceLimits& Device::limits() const { return state().limits; }
 bool Device::isSoftware() const { return state().capabilities.isSoftware; }
 

@@ -13,23 +13,35 @@
 
 namespace sk {
 
-DeviceState::DeviceState(gl::OpenedContext&& opened, std::int32_t textureLimit, bool guaranteedLimits)
+namespace {
+
+assemble::Profile profileOf(const gl::Capabilities& capabilities, bool pairs) {
+  assemble::Profile profile = *assemble::findProfile(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300");
+  if (!capabilities.hasDoubles || pairs) {
+    profile.doubles = capabilities.hasPrecise ? assemble::Doubles::PrecisePairs : assemble::Doubles::Pairs;
+  }
+  return profile;
+}
+
+}  // namespace
+
+DeviceState::DeviceState(gl::OpenedContext&& opened, const DeviceChoices& choices)
     : context(std::move(opened.context)),
       capabilities(std::move(opened.capabilities)),
-      profile(assemble::findProfile(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300")),
+      profile(profileOf(capabilities, choices.pairs)),
       framebuffers(bound),
       pool(bound, framebuffers),
       programs(*this),
       sinkPrograms(*this) {
   limits.textureSize = capabilities.textureSize;
-  if (textureLimit > 0 && textureLimit < limits.textureSize) {
-    limits.textureSize = textureLimit;
+  if (choices.textureLimit > 0 && choices.textureLimit < limits.textureSize) {
+    limits.textureSize = choices.textureLimit;
   }
   limits.drawBuffers = capabilities.drawBuffers;
   limits.textureUnits = capabilities.textureUnits;
-  if (guaranteedLimits) {
-    limits.drawBuffers = profile->drawBuffers;
-    limits.textureUnits = profile->textureUnits;
+  if (choices.guaranteedLimits) {
+    limits.drawBuffers = profile.drawBuffers;
+    limits.textureUnits = profile.textureUnits;
   }
   const gl::CurrentScope current(context);
   vertexArray = gl::VertexArray::create();

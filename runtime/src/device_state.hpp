@@ -23,9 +23,16 @@
 
 namespace sk {
 
+/// What a user may choose of a device that is found.
+struct DeviceChoices {
+  std::int32_t textureLimit = 0;    ///< 0: the device's own
+  bool guaranteedLimits = false;
+  bool pairs = false;               ///< doubles are pairs of floats even where GLSL has double
+};
+
 class DeviceState {
  public:
-  DeviceState(gl::OpenedContext&& opened, std::int32_t textureLimit, bool guaranteedLimits);
+  DeviceState(gl::OpenedContext&& opened, const DeviceChoices& choices);
   ~DeviceState();
   DeviceState(const DeviceState&) = delete;
   DeviceState& operator=(const DeviceState&) = delete;
@@ -45,7 +52,7 @@ class DeviceState {
 
   gl::Context context;
   const gl::Capabilities capabilities;
-  const assemble::Profile* const profile;
+  const assemble::Profile profile;       ///< of the table, but for what the device has of doubles
   DeviceLimits limits;
   gl::BoundState bound;
   FramebufferCache framebuffers;

@@ -87,6 +87,9 @@ void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<co
   for (KernelProgram::Value& value : program.values) {
     value.uniform.set(operands[value.parameter].value);
   }
+  for (KernelProgram::Pair& pair : program.pairs) {
+    pair.uniform.set(operands[pair.parameter].value);
+  }
   for (KernelProgram::Value& step : program.steps) {
     step.uniform.set(operands[step.parameter].step.data());
   }

@@ -65,7 +65,7 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::s
 std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Kernel& kernel,
                                                                const assemble::Variant& variant) {
   auto made = std::make_unique<KernelProgram>();
-  made->program = build(kernel, assemble::fragmentProgram(*device_.profile, kernel, variant));
+  made->program = build(kernel, assemble::fragmentProgram(device_.profile, kernel, variant));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
   int unit = 0;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
@@ -83,12 +83,7 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
       made->steps.push_back({i, find("step")});
       made->reads.push_back({i, PlacementUniforms(made->program, fmt::format("sk_*_{}", parameter.symbol))});
     } else if (parameter.role == program::Role::Uniform) {
-      for (const auto parts : valuesOf(*parameter.element)) {
-        const std::string_view path = parts.front().path;
-        const std::string name = fmt::format("sk_arg_{}{}{}", parameter.symbol,
-                                             path.empty() || path.front() == '[' ? "" : ".", path);
-        made->values.push_back({i, gl::FieldUniform(made->program.location(name), parts)});
-      }
+      findValue(*made, i, parameter);
     } else if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather) {
       made->reads.push_back({i, PlacementUniforms(made->program, fmt::format("sk_*_{}", parameter.symbol))});
       bindSamplers(made->program, parameter, unit);
@@ -103,6 +98,27 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
     findListUniforms(*made, kernel.parameters[variant.task.sink]);
   }
   return made;
+}
+
+/// A pair of floats is a struct of two, and a vector of pairs a struct of these.
+void ProgramCache::findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter) {
+  for (const auto parts : valuesOf(*parameter.element)) {
+    const program::Field& first = parts.front();
+    const bool isMember = !first.path.empty() && first.path.front() != '[';
+    const std::string name = fmt::format("sk_arg_{}{}{}", parameter.symbol, isMember ? "." : "", first.path);
+    if (first.scalar != program::Scalar::Double || device_.profile.doubles == assemble::Doubles::Native) {
+      made.values.push_back({number, gl::FieldUniform(made.program.location(name), parts)});
+      continue;
+    }
+    std::size_t width = 0;
+    for (const program::Field& part : parts) width += part.width;
+    for (std::size_t c = 0; c < width; ++c) {
+      const std::string pair = width == 1 ? name : fmt::format("{}.{}", name, "xyzw"[c]);
+      const auto offset = static_cast<std::uint32_t>(first.offset + c * sizeof(double));
+      made.pairs.push_back({number, gl::PairUniform(made.program.location(pair + ".hi"),
+                                                    made.program.location(pair + ".lo"), offset)});
+    }
+  }
 }
 
 void ProgramCache::findListUniforms(KernelProgram& made, const program::Parameter& sink) {
@@ -136,14 +152,14 @@ void ProgramCache::bindSamplers(const gl::Program& program, const program::Param
 }
 
 gl::Program ProgramCache::build(const program::Kernel& kernel, const std::string& fragmentSource) {
-  const std::string vertexSource = assemble::vertexProgram(*device_.profile);
+  const std::string vertexSource = assemble::vertexProgram(device_.profile);
   std::string log;
   gl::Program program = gl::Program::build(vertexSource, fragmentSource, log);
   if (!program) {
     log.clear();
     gl::Program::build(vertexSource, withTellingLines(fragmentSource), log);
     throw Error(fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
-                            device_.capabilities.renderer, device_.profile->name,
+                            device_.capabilities.renderer, device_.profile.name,
                             withSourceNames(log, kernel.sources)));
   }
   return program;
@@ -154,7 +170,7 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
   std::unique_ptr<ReduceProgram>& kept = reductions_[{&reduction, variant}];
   if (!kept) {
     auto made = std::make_unique<ReduceProgram>();
-    made->program = build(reduction.fold, assemble::reduceProgram(*device_.profile, reduction, variant));
+    made->program = build(reduction.fold, assemble::reduceProgram(device_.profile, reduction, variant));
     const bool readsPartials = variant.walk == assemble::Walk::Partials;
     int unit = 0;
     bindSamplers(made->program, reduction.fold.parameters[readsPartials ? 1 : 0], unit);

@@ -32,6 +32,10 @@ struct KernelProgram {
     std::size_t parameter;
     gl::FieldUniform uniform;
   };
+  struct Pair {
+    std::size_t parameter;
+    gl::PairUniform uniform;
+  };
   struct Read {
     std::size_t parameter;
     PlacementUniforms uniforms;
@@ -51,6 +55,7 @@ struct KernelProgram {
   Tree tree;                    ///< its textures lie on the units from `units` on
   int units = 0;                ///< what `reads` take
   std::vector<Value> values;
+  std::vector<Pair> pairs;      ///< doubles, where they are pairs of floats
   std::vector<Value> steps;     ///< of iterators
   std::vector<Read> reads;      ///< their planes lie on consecutive texture units, from 0, in this order
   std::vector<std::size_t> bundles;   ///< of the plan, on the units after these
@@ -88,6 +93,7 @@ class ProgramCache {
 
   std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
                                                    const assemble::Variant& variant);
+  void findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter);
   void findListUniforms(KernelProgram& made, const program::Parameter& sink);
   gl::Program build(const program::Kernel& kernel, const std::string& fragmentSource);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);

@@ -40,7 +40,7 @@ std::unique_ptr<StepProgram> SinkPrograms::build(const std::string& vertexSource
 StepProgram& SinkPrograms::tree(bool ofCounts) {
   std::unique_ptr<StepProgram>& kept = trees_[ofCounts ? 1 : 0];
   if (!kept) {
-    kept = build(assemble::vertexProgram(*device_.profile), assemble::treeProgram(*device_.profile, ofCounts),
+    kept = build(assemble::vertexProgram(device_.profile), assemble::treeProgram(device_.profile, ofCounts),
                  "sums of counts");
     kept->program().setSampler("sk_below", 0);
   }
@@ -50,10 +50,9 @@ StepProgram& SinkPrograms::tree(bool ofCounts) {
 StepProgram& SinkPrograms::points(const program::Parameter& sink, PointStep step) {
   std::unique_ptr<StepProgram>& kept = points_[{&sink, step}];
   if (!kept) {
-    const std::string vertexSource = assemble::hasPoints(step)
-                                         ? assemble::pointVertexProgram(*device_.profile)
-                                         : assemble::vertexProgram(*device_.profile);
-    kept = build(vertexSource, assemble::pointProgram(*device_.profile, sink, step), sink.name);
+    const std::string vertexSource = assemble::hasPoints(step) ? assemble::pointVertexProgram(device_.profile)
+                                                               : assemble::vertexProgram(device_.profile);
+    kept = build(vertexSource, assemble::pointProgram(device_.profile, sink, step), sink.name);
     const gl::Program& program = kept->program();
     int unit = 0;
     program.setSampler("sk_targets", unit++);

@@ -48,6 +48,11 @@ TEST_CASE("a device tells what it is") {
   CHECK(es.limits().drawBuffers >= 4);
 }
 
+TEST_CASE("what doubles may be") {
+  CHECK(errorOf([] { Device(DeviceOptions{.doubles = "long"}); }) ==
+        "there are no doubles 'long'; choose native or pairs (option or SK_DOUBLES)");
+}
+
 TEST_CASE("a device is chosen by a part of its name, in any case") {
   Device device;
   std::string name = device.name();

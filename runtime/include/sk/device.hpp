@@ -31,6 +31,9 @@ struct DeviceOptions {
   /// the profile can write and read, to try out how a program runs elsewhere. Empty: environment
   /// variable SK_LIMITS, and without it "device".
   std::string limits = {};
+  /// "native": doubles are the device's own, where it has them. "pairs": they are pairs of floats. Empty:
+  /// environment variable SK_DOUBLES, and without it "native", or "pairs" where limits are "guaranteed".
+  std::string doubles = {};
 };
 
 struct DeviceLimits {

@@ -19,6 +19,10 @@
 //   void  sk_put_p(ivecN i, T v)   element of scatter output p at i becomes v, or what Parameter::scatter
 //                              makes of it and v; nothing where i is outside
 //
+// Doubles are of types sk_double, sk_double2, sk_double3 and sk_double4, whose components are members x, y, z
+// and w. A body computes with them by functions of one sk_double, which the assembler defines for native doubles or
+// for pairs of floats: assemble/doubles.hpp lists them.
+//
 // Every name that the assembler declares begins with `sk_`; names of the user never do.
 #pragma once
 
@@ -49,14 +53,14 @@ enum class Scalar : std::uint8_t {
   Snorm16,
 };
 
-/// One plane of an element: a scalar, a vector, a row of a matrix or a component of a vector of
+/// One plane of an element: a scalar, a vector, a row of a matrix or up to two components of a vector of
 /// doubles, which one texel of one texture holds.
 struct Field {
   std::string_view path;     ///< member path in GLSL ("t", "a.b"); empty where the element is no struct
   Scalar scalar;
   std::uint8_t width;        ///< components, 1 to 4
   std::uint32_t offset;      ///< bytes from the element's start in host memory
-  std::int8_t part = -1;     ///< which row or component of `path` it is: GLSL's index; -1: all of it
+  std::int8_t part = -1;  ///< which row of `path` it is, or which two components; -1: all of it
 };
 
 /// An element type: its GLSL spelling and its planes, in declaration order.
@@ -155,6 +159,7 @@ struct Kernel {
   bool usesExtent = false;     ///< the body calls sk_extent()
   bool usesLoops = false;      ///< the body has a loop: main() then leaves the helper invocations that
                                ///< GPUs run beside the domain, where what they read might never end it
+  bool usesDoubles = false;  ///< declarations or body speak of sk_double
   const Plan* plans = nullptr; ///< for devices that cannot run it in one pass, most generous first
   std::uint8_t planCount = 0;
 };

@@ -152,7 +152,7 @@ inline constexpr std::string_view boolGlsl[] = {"bool", "bvec2", "bvec3", "bvec4
 inline constexpr std::string_view intGlsl[] = {"int", "ivec2", "ivec3", "ivec4"};
 inline constexpr std::string_view uintGlsl[] = {"uint", "uvec2", "uvec3", "uvec4"};
 inline constexpr std::string_view floatGlsl[] = {"float", "vec2", "vec3", "vec4"};
-inline constexpr std::string_view doubleGlsl[] = {"double", "dvec2", "dvec3", "dvec4"};
+inline constexpr std::string_view doubleGlsl[] = {"sk_double", "sk_double2", "sk_double3", "sk_double4"};
 
 /// By program::Scalar.
 inline constexpr Spellings spellings[] = {
@@ -195,12 +195,13 @@ constexpr std::array<program::Field, Count> partsOf(program::Scalar scalar, std:
   return parts;
 }
 
-/// A vector of doubles has a field for each component.
+/// A vector of three or four doubles has a field for its first two components and one for the rest.
 template <class T, std::uint8_t Width>
 struct DoubleVectorElement {
   static_assert(sizeof(T) == sizeof(double) * Width, "StreamKernel: vectors are tightly packed");
   static constexpr const Spellings& spelling = spellings[static_cast<std::size_t>(program::Scalar::Double)];
-  static constexpr auto fields = partsOf<Width>(program::Scalar::Double, 1, sizeof(double));
+  static constexpr program::Field fields[2] = {{"", program::Scalar::Double, 2, 0, 0},
+                                               {"", program::Scalar::Double, Width - 2, 16, 1}};
   static constexpr program::Element value{spelling.names[Width - 1], spelling.glsl[Width - 1], sizeof(T),
                                           fields};
   static constexpr const program::Element& element() { return value; }
@@ -230,8 +231,6 @@ template <class C>
 struct ElementTraits<Vector3<C>> : detail::VectorElement<Vector3<C>, C, 3> {};
 template <class C>
 struct ElementTraits<Vector4<C>> : detail::VectorElement<Vector4<C>, C, 4> {};
-template <>
-struct ElementTraits<double2> : detail::DoubleVectorElement<double2, 2> {};
 template <>
 struct ElementTraits<double3> : detail::DoubleVectorElement<double3, 3> {};
 template <>

@@ -18,6 +18,13 @@
 
 namespace sk::assemble {
 
+/// What doubles are in a program (doubles.hpp).
+enum class Doubles : std::uint8_t {
+  Native,        ///< GLSL's own, by GL_ARB_gpu_shader_fp64
+  PrecisePairs,  ///< pairs of floats, kept from being reordered by `precise` (GL_ARB_gpu_shader5)
+  Pairs,         ///< pairs of floats, kept from it by a uniform
+};
+
 /// Limits and spellings of one version of a target. The rows are in profiles.cpp.
 struct Profile {
   std::string_view name;        ///< "glsl330", "essl300"
@@ -25,6 +32,7 @@ struct Profile {
   bool es;                      ///< precision statements, ES formats and limits
   int drawBuffers;              ///< guaranteed minimum
   int textureUnits;             ///< guaranteed minimum for a fragment program
+  Doubles doubles;              ///< the best form that devices of the profile have
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();

@@ -35,7 +35,8 @@ constexpr std::array<Spelling, 14> spellings = {{
     /* Int     */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
     /* Uint    */ {"usampler2D", "uint", "uvec", "0u", "uint", "uvec", "", ""},
     /* Float   */ {"sampler2D", "float", "vec", "0.0", "float", "vec", "", ""},
-    /* Double  */ {"usampler2D", "uint", "uvec", "0u", "double", "dvec", "", ""},
+    /* Double  */
+    {"usampler2D", "uint", "uvec", "0u", "sk_double", "sk_double", "sk_unpack({0})", "sk_pack({0})"},
     /* Half    */ {"sampler2D", "float", "vec", "0.0", "float", "vec", "", ""},
     /* Char    */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
     /* Uchar   */ {"usampler2D", "uint", "uvec", "0u", "int", "ivec", "{1}({0})", "{1}({0})"},
@@ -86,16 +87,45 @@ std::string converted(std::string_view pattern, std::string operand, const std::
   return fmt::format(fmt::runtime(pattern), operand, type);
 }
 
-/// The field of an element that `variable` holds.
+/// Components of a texel: a double takes two.
+int texelWidth(const Field& field) { return field.scalar == Scalar::Double ? 2 * field.width : field.width; }
+
 std::string memberOf(std::string_view variable, const Field& field) {
   std::string text(variable);
   if (!field.path.empty()) text += fmt::format(".{}", field.path);
-  if (field.part >= 0) text += fmt::format("[{}]", field.part);
   return text;
 }
 
+/// The first component in a part of a vector of doubles.
+char firstComponent(const Field& field) { return "xz"[field.part]; }
+char secondComponent(const Field& field) { return "yw"[field.part]; }
+
+/// The value of a field of the element that `variable` holds.
+std::string valueOf(std::string_view variable, const Field& field) {
+  const std::string member = memberOf(variable, field);
+  if (field.part < 0) return member;
+  if (field.scalar != Scalar::Double) return fmt::format("{}[{}]", member, field.part);
+  if (field.width == 1) return fmt::format("{}.{}", member, firstComponent(field));
+  return fmt::format("sk_double2({0}.{1}, {0}.{2})", member, firstComponent(field), secondComponent(field));
+}
+
+/// Statements that make `value` the field of the element that `variable` holds.
+void assignField(std::vector<std::string>& statements, std::string_view variable, const Field& field,
+                 std::string_view value) {
+  if (field.scalar != Scalar::Double || field.part < 0 || field.width == 1) {
+    statements.push_back(fmt::format("{} = {};", valueOf(variable, field), value));
+    return;
+  }
+  // a name of its own in a struct of several such vectors
+  const std::string two = fmt::format("sk_two{}", statements.size());
+  const std::string member = memberOf(variable, field);
+  statements.push_back(fmt::format("sk_double2 {} = {};", two, value));
+  statements.push_back(fmt::format("{}.{} = {}.x;", member, firstComponent(field), two));
+  statements.push_back(fmt::format("{}.{} = {}.y;", member, secondComponent(field), two));
+}
+
 /// Textures of 3 components are not renderable: those planes have 4.
-int outputWidth(const Field& field) { return field.width == 3 ? 4 : field.width; }
+int outputWidth(const Field& field) { return field.width == 3 ? 4 : texelWidth(field); }
 
 std::string planeName(std::string_view prefix, const Parameter& parameter, std::size_t plane) {
   if (parameter.element->fields.size() == 1) return fmt::format("{}_{}", prefix, parameter.symbol);
@@ -113,7 +143,7 @@ std::string fetchPlane(const Parameter& parameter, std::size_t plane, std::strin
   const std::string place =
       layer.bundle < 0 ? std::string(texel) : fmt::format("ivec3({}, {})", texel, layer.layer);
   std::string value = fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane), place,
-                                  swizzles[field.width - 1u]);
+                                  swizzles[static_cast<std::size_t>(texelWidth(field) - 1)]);
   if (field.scalar == Scalar::Bool) {
     return field.width == 1 ? value + " != 0u" : fmt::format("notEqual({}, uvec{}(0u))", value, field.width);
   }
@@ -122,7 +152,7 @@ std::string fetchPlane(const Parameter& parameter, std::size_t plane, std::strin
 
 /// `value`, of the field's type, as its output's type.
 std::string toOutput(const Field& field, std::string value) {
-  value = converted(spelling(field).store, std::move(value), texelType(field, field.width));
+  value = converted(spelling(field).store, std::move(value), texelType(field, texelWidth(field)));
   if (field.width == 3) value = fmt::format("{}({}, {})", texelType(field, 4), value, spelling(field).zero);
   return value;
 }
@@ -169,8 +199,7 @@ std::string fetch(ProgramText& program, const Parameter& parameter, std::string_
   if (!isStruct(element)) return fetchPlane(parameter, 0, texel);
   std::vector<std::string> statements = {fmt::format("{} sk_e;", element.glsl)};
   for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
-    statements.push_back(fmt::format("{} = {};", memberOf("sk_e", element.fields[plane]),
-                                     fetchPlane(parameter, plane, "sk_t")));
+    assignField(statements, "sk_e", element.fields[plane], fetchPlane(parameter, plane, "sk_t"));
   }
   statements.emplace_back("return sk_e;");
   program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", element.glsl, parameter.symbol), statements);
@@ -189,9 +218,9 @@ void copyPlanes(ProgramText& program, const Parameter& parameter, std::string_vi
   declareSamplers(program, parameter);
   declareOutputs(program, parameter);
   for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
-    program.statement(fmt::format("{} = texelFetch({}, {}, 0){};", outputName(parameter, plane),
-                                  samplerName(parameter, plane), texel,
-                                  swizzles[parameter.element->fields[plane].width]));
+    program.statement(fmt::format(
+        "{} = texelFetch({}, {}, 0){};", outputName(parameter, plane), samplerName(parameter, plane), texel,
+        swizzles[static_cast<std::size_t>(texelWidth(parameter.element->fields[plane]))]));
   }
 }
 
@@ -202,7 +231,7 @@ void store(ProgramText& program, const Parameter& parameter, std::string_view va
     const Field& field = element.fields[plane];
     const std::string output = outputName(parameter, plane);
     if (output == variable) continue;
-    program.statement(fmt::format("{} = {};", output, toOutput(field, memberOf(variable, field))));
+    program.statement(fmt::format("{} = {};", output, toOutput(field, valueOf(variable, field))));
   }
 }
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::array table = {
     // name      #version           es     draw buffers  texture units (minima that the standards guarantee)
-    Profile{"glsl330", "#version 330 core", false, 8, 16},
-    Profile{"essl300", "#version 300 es", true, 4, 16},
+    Profile{"glsl330", "#version 330 core", false, 8, 16, Doubles::Native},
+    Profile{"essl300", "#version 300 es", true, 4, 16, Doubles::Pairs},
 };
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "assemble/doubles.hpp"
+
 namespace sk::assemble {
 namespace {
 
@@ -93,7 +95,9 @@ void ProgramText::prologue(std::string_view line) {
 std::string ProgramText::finish(const Profile& profile, std::string_view comment,
                                 const program::Kernel& kernel) const {
   std::string program = fmt::format("{}\n// {}\n", profile.version, comment);
+  if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
   if (profile.es) program += esPrecision;
+  if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles);
   addForeign(program, kernel.declarations);
   program += '\n';
   addLines(program, uniforms_);

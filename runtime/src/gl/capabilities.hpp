@@ -17,6 +17,8 @@ struct Capabilities {
   bool isCompatibility = false;  ///< GL with the fixed functions
   bool isSoftware = false;
   bool blendsFloats = false;     ///< of 32 bits
+  bool hasDoubles = false;       ///< GLSL has double (GL_ARB_gpu_shader_fp64)
+  bool hasPrecise = false;       ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
   std::string renderer;
   std::string driver;            ///< GL_VERSION, as the driver words it
   int textureSize = 0;           ///< also as a viewport

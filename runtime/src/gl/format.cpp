@@ -72,13 +72,11 @@ std::size_t familyOf(program::Scalar scalar) {
 }  // namespace
 
 const Format& formatOf(program::Scalar scalar, int width) {
-  return table[familyOf(scalar) * formatsPerFamily + rowOfWidth[width - 1]];
+  const int channels = scalar == program::Scalar::Double ? 2 * width : width;   // a double has two halves
+  return table[familyOf(scalar) * formatsPerFamily + rowOfWidth[channels - 1]];
 }
 
-const Format& formatOf(const program::Field& field) {
-  // the halves of a double's bits are a texel
-  return formatOf(field.scalar, field.scalar == program::Scalar::Double ? 2 : field.width);
-}
+const Format& formatOf(const program::Field& field) { return formatOf(field.scalar, field.width); }
 
 std::size_t hostBytes(const program::Field& field) {
   const Format& format = formatOf(field);

@@ -3,6 +3,7 @@
 // Sending uniforms whose values have changed.
 #include "gl/uniform.hpp"
 
+#include <cmath>
 #include <cstring>
 
 #include "gl/format.hpp"
@@ -17,6 +18,7 @@ using program::Scalar;
 
 using Floats = std::array<GLfloat, 16>;
 using Ints = std::array<GLint, 4>;
+using Doubles = std::array<GLdouble, 4>;
 
 void sendInts(GLint location, int width, const GLint* v) {
   switch (width) {
@@ -42,6 +44,15 @@ void sendFloats(GLint location, int width, const GLfloat* v) {
     case 2: glUniform2fv(location, 1, v); return;
     case 3: glUniform3fv(location, 1, v); return;
     default: glUniform4fv(location, 1, v); return;
+  }
+}
+
+void sendDoubles(GLint location, std::size_t width, const GLdouble* v) {
+  switch (width) {
+    case 1: glUniform1dv(location, 1, v); return;
+    case 2: glUniform2dv(location, 1, v); return;
+    case 3: glUniform3dv(location, 1, v); return;
+    default: glUniform4dv(location, 1, v); return;
   }
 }
 
@@ -99,7 +110,7 @@ void sendField(GLint location, const Field& field, const std::byte* bytes) {
     case Scalar::Snorm8: return sendAsFloats<snorm8>(location, field, bytes);
     case Scalar::Unorm16: return sendAsFloats<unorm16>(location, field, bytes);
     case Scalar::Snorm16: return sendAsFloats<snorm16>(location, field, bytes);
-    case Scalar::Double: return;
+    case Scalar::Double: break;   // of which a value may have several fields
   }
 }
 
@@ -116,21 +127,42 @@ void IntUniform::send(const Int4& value) {
 }
 
 FieldUniform::FieldUniform(GLint location, std::span<const program::Field> parts)
-    : location_(location), field_(&parts.front()), parts_(static_cast<int>(parts.size())) {}
+    : location_(location), field_(&parts.front()), parts_(static_cast<int>(parts.size())) {
+  for (const Field& part : parts) {
+    size_ += hostBytes(part);
+  }
+}
 
 void FieldUniform::set(const void* value) {
   const std::byte* bytes = static_cast<const std::byte*>(value) + field_->offset;
-  const std::size_t size = hostBytes(*field_) * static_cast<std::size_t>(parts_);
-  if (location_ < 0 || (isKnown_ && std::memcmp(last_.data(), bytes, size) == 0)) {
+  if (location_ < 0 || (isKnown_ && std::memcmp(last_.data(), bytes, size_) == 0)) {
     return;
   }
-  std::memcpy(last_.data(), bytes, size);
+  std::memcpy(last_.data(), bytes, size_);
   isKnown_ = true;
-  if (parts_ == 1) {
+  if (field_->scalar == Scalar::Double) {
+    const std::size_t width = size_ / sizeof(GLdouble);
+    sendDoubles(location_, width, componentsOf<GLdouble, Doubles>(last_.data(), width).data());
+  } else if (parts_ == 1) {
     sendField(location_, *field_, last_.data());
   } else {
-    sendMatrix(location_, parts_, componentsOf<GLfloat, Floats>(last_.data(), size / sizeof(GLfloat)).data());
+    sendMatrix(location_, parts_,
+               componentsOf<GLfloat, Floats>(last_.data(), size_ / sizeof(GLfloat)).data());
   }
+}
+
+void PairUniform::set(const void* value) {
+  double whole = 0;
+  std::memcpy(&whole, static_cast<const std::byte*>(value) + offset_, sizeof whole);
+  if (isKnown_ && std::memcmp(&last_, &whole, sizeof whole) == 0) {
+    return;
+  }
+  last_ = whole;
+  isKnown_ = true;
+  const auto head = static_cast<float>(whole);
+  const float tail = std::isfinite(head) ? static_cast<float>(whole - head) : 0;
+  glUniform1f(head_, head);
+  glUniform1f(tail_, tail);
 }
 
 }  // namespace sk::gl

@@ -39,10 +39,25 @@ class IntUniform {
   Int4 value_{};
 };
 
+/// A double in the value of a uniform parameter, as a pair of floats.
+class PairUniform {
+ public:
+  PairUniform(GLint head, GLint tail, std::uint32_t offset) : head_(head), tail_(tail), offset_(offset) {}
+
+  /// `value`: of the whole parameter, in which the double lies `offset` bytes from the start.
+  void set(const void* value);
+
+ private:
+  GLint head_, tail_;
+  std::uint32_t offset_;
+  bool isKnown_ = false;
+  double last_ = 0;
+};
+
 /// A scalar, vector or matrix in the value of a uniform parameter.
 class FieldUniform {
  public:
-  /// `parts`: its one field, or the rows of a matrix in order.
+  /// `parts`: its one field, or the rows of a matrix or the parts of a vector of doubles in order.
   FieldUniform(GLint location, std::span<const program::Field> parts);
 
   /// `value`: of the whole parameter, laid out as its Element says.
@@ -52,6 +67,7 @@ class FieldUniform {
   GLint location_;
   const program::Field* field_;   ///< the first part
   int parts_;
+  std::size_t size_ = 0;          ///< in host memory
   bool isKnown_ = false;
   std::array<std::byte, 64> last_{};
 };

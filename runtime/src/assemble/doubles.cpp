@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+//
+// A pair is the sum of two floats, of which the second is at most half a unit in the last place of the
+// first: 48 bits of precision in the range of float. Its arithmetic is made of error-free steps, each of which
+// has to stay as it is written. Compilers reorder floats as they like, so each value is `precise` where GLSL has
+// that, and elsewhere goes through bits that a uniform, which is 0, changes as far as anyone can tell.
+//
+//   sum, product    Joldes, Muller, Popescu, ACM TOMS 44 (2017): algorithms 6 and 10
+//   product's error Dekker, Numerische Mathematik 18 (1971), with halves of 12 bits cut by a mask: no fma,
+//                   which need not be fused, and no overflow
+//   quotient, root  long division: what is left of the dividend is divided again, so that the device's own
+//                   division and root may be off by some units in the last place
+#include "assemble/doubles.hpp"
+
+namespace sk::assemble {
+namespace {
+
+constexpr std::string_view nativeText = R"(
+#define sk_double double
+#define sk_double2 dvec2
+#define sk_double3 dvec3
+#define sk_double4 dvec4
+double sk_unpack(uvec2 b) { return packDouble2x32(b); }
+dvec2 sk_unpack(uvec4 b) { return dvec2(packDouble2x32(b.xy), packDouble2x32(b.zw)); }
+uvec2 sk_pack(double a) { return unpackDouble2x32(a); }
+uvec4 sk_pack(dvec2 a) { return uvec4(unpackDouble2x32(a.x), unpackDouble2x32(a.y)); }
+double sk_to_double(float a) { return double(a); }
+double sk_to_double(int a) { return double(a); }
+double sk_to_double(uint a) { return double(a); }
+float sk_to_float(double a) { return float(a); }
+int sk_to_int(double a) { return int(a); }
+uint sk_to_uint(double a) { return uint(a); }
+double sk_neg(double a) { return -a; }
+double sk_add(double a, double b) { return a + b; }
+double sk_sub(double a, double b) { return a - b; }
+double sk_mul(double a, double b) { return a * b; }
+double sk_div(double a, double b) { return a / b; }
+bool sk_less(double a, double b) { return a < b; }
+bool sk_less_equal(double a, double b) { return a <= b; }
+bool sk_equal(double a, double b) { return a == b; }
+double sk_abs(double a) { return abs(a); }
+double sk_floor(double a) { return floor(a); }
+double sk_round(double a) { return roundEven(a); }
+double sk_sqrt(double a) { return sqrt(a); }
+bool sk_isnan(double a) {
+  uvec2 b = unpackDouble2x32(a) & uvec2(0xffffffffu, 0x7fffffffu);
+  return b.y > 0x7ff00000u || (b.y == 0x7ff00000u && b.x != 0u);
+}
+bool sk_isinf(double a) {
+  return (unpackDouble2x32(a) & uvec2(0xffffffffu, 0x7fffffffu)) == uvec2(0u, 0x7ff00000u);
+}
+)";
+
+constexpr std::string_view preciseText = R"(
+#define sk_precise precise
+#define sk_keep(x) (x)
+)";
+
+constexpr std::string_view barrierText = R"(
+#define sk_precise
+uniform uint sk_zero;   // never set, hence 0
+float sk_keep(float x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
+)";
+
+constexpr std::string_view pairText = R"(
+struct sk_double { float hi, lo; };
+struct sk_double2 { sk_double x, y; };
+struct sk_double3 { sk_double x, y, z; };
+struct sk_double4 { sk_double x, y, z, w; };
+
+bool sk_is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+
+// The sum of two floats, for |a| >= |b| or a = 0.
+sk_double sk_join(float a, float b) {
+  sk_precise float s = sk_keep(a + b);
+  sk_precise float t = sk_keep(s - a);
+  sk_precise float e = sk_keep(b - t);
+  if (b == 0.0) return sk_double(a, 0.0);   // and keeps the sign of a zero
+  return sk_double(s, sk_is_finite(s) ? e : 0.0);
+}
+
+sk_double sk_two_sum(float a, float b) {
+  sk_precise float s = sk_keep(a + b);
+  sk_precise float c = sk_keep(s - a);
+  sk_precise float d = sk_keep(s - c);
+  sk_precise float e = sk_keep(a - d);
+  sk_precise float f = sk_keep(b - c);
+  sk_precise float g = sk_keep(e + f);
+  return sk_double(s, g);
+}
+
+sk_double sk_two_product(float a, float b) {
+  sk_precise float p = sk_keep(a * b);
+  float ah = uintBitsToFloat(floatBitsToUint(a) & 0xfffff000u);
+  float bh = uintBitsToFloat(floatBitsToUint(b) & 0xfffff000u);
+  sk_precise float al = sk_keep(a - ah);
+  sk_precise float bl = sk_keep(b - bh);
+  sk_precise float hh = sk_keep(ah * bh);
+  sk_precise float hl = sk_keep(ah * bl);
+  sk_precise float lh = sk_keep(al * bh);
+  sk_precise float ll = sk_keep(al * bl);
+  sk_precise float d = sk_keep(hh - p);
+  sk_precise float e = sk_keep(d + hl);
+  sk_precise float f = sk_keep(e + lh);
+  sk_precise float g = sk_keep(f + ll);
+  return sk_double(p, sk_is_finite(p) ? g : 0.0);
+}
+
+sk_double sk_neg(sk_double a) { return sk_double(-a.hi, -a.lo); }
+
+sk_double sk_add(sk_double a, sk_double b) {
+  sk_double s = sk_two_sum(a.hi, b.hi);
+  sk_double t = sk_two_sum(a.lo, b.lo);
+  if (!sk_is_finite(s.hi)) return sk_double(s.hi, 0.0);
+  sk_precise float c = sk_keep(s.lo + t.hi);
+  sk_double v = sk_join(s.hi, c);
+  sk_precise float w = sk_keep(t.lo + v.lo);
+  return sk_join(v.hi, w);
+}
+
+sk_double sk_sub(sk_double a, sk_double b) { return sk_add(a, sk_neg(b)); }
+
+sk_double sk_mul(sk_double a, sk_double b) {
+  sk_double p = sk_two_product(a.hi, b.hi);
+  if (!sk_is_finite(p.hi)) return p;
+  sk_precise float c = sk_keep(a.hi * b.lo);
+  sk_precise float d = sk_keep(a.lo * b.hi);
+  sk_precise float e = sk_keep(c + d);
+  sk_precise float f = sk_keep(p.lo + e);
+  return sk_join(p.hi, f);
+}
+
+sk_double sk_div(sk_double a, sk_double b) {
+  sk_precise float q = sk_keep(a.hi / b.hi);
+  if (q == 0.0 || !sk_is_finite(q) || !sk_is_finite(b.hi)) return sk_double(q, 0.0);
+  sk_double left = sk_sub(a, sk_mul(b, sk_double(q, 0.0)));
+  sk_precise float r = sk_keep(left.hi / b.hi);
+  left = sk_sub(left, sk_mul(b, sk_double(r, 0.0)));
+  sk_precise float s = sk_keep(left.hi / b.hi);
+  sk_double sum = sk_join(q, r);
+  sk_precise float t = sk_keep(sum.lo + s);
+  return sk_join(sum.hi, t);
+}
+
+sk_double sk_sqrt(sk_double a) {
+  sk_precise float s = sk_keep(sqrt(a.hi));
+  if (s == 0.0 || !sk_is_finite(s)) return sk_double(s, 0.0);
+  sk_double left = sk_sub(a, sk_two_product(s, s));
+  sk_precise float t = sk_keep(0.5 * left.hi / s);
+  sk_double root = sk_join(s, t);
+  left = sk_sub(a, sk_mul(root, root));
+  sk_precise float u = sk_keep(0.5 * left.hi / s);
+  return sk_add(root, sk_double(u, 0.0));
+}
+
+bool sk_less(sk_double a, sk_double b) { return a.hi < b.hi || (a.hi == b.hi && a.lo < b.lo); }
+bool sk_less_equal(sk_double a, sk_double b) { return a.hi < b.hi || (a.hi == b.hi && a.lo <= b.lo); }
+bool sk_equal(sk_double a, sk_double b) { return a.hi == b.hi && a.lo == b.lo; }
+
+bool sk_isnan(sk_double a) { return (floatBitsToUint(a.hi) & 0x7fffffffu) > 0x7f800000u; }
+bool sk_isinf(sk_double a) { return (floatBitsToUint(a.hi) & 0x7fffffffu) == 0x7f800000u; }
+
+sk_double sk_abs(sk_double a) { return floatBitsToUint(a.hi) >> 31 != 0u ? sk_neg(a) : a; }
+
+sk_double sk_floor(sk_double a) {
+  float f = floor(a.hi);
+  return f == a.hi ? sk_join(f, floor(a.lo)) : sk_double(f, 0.0);
+}
+
+// To the nearest integer; of two, to the even one.
+sk_double sk_round(sk_double a) {
+  float r = roundEven(a.hi);
+  if (r == a.hi) {
+    float s = roundEven(a.lo);
+    if (abs(a.lo) == 0.5 && fract(0.5 * r) != 0.0) s = a.lo < 0.0 ? -1.0 : 1.0;
+    return sk_join(r, s);
+  }
+  bool between = abs(a.hi - r) == 0.5 && a.lo != 0.0;
+  return sk_double(!between ? r : a.lo < 0.0 ? floor(a.hi) : ceil(a.hi), 0.0);
+}
+
+// ---- IEEE 754's doubles, and integers -------------------------------------------------------------
+
+sk_double sk_unpack(uvec2 b) {
+  uint sign = b.y & 0x80000000u;
+  int e = int((b.y >> 20) & 0x7ffu) - 1023;
+  bool isNan = e == 1024 && ((b.y & 0xfffffu) | b.x) != 0u;
+  if (isNan) return sk_double(uintBitsToFloat(sign | 0x7fc00000u), 0.0);
+  if (e > 127) return sk_double(uintBitsToFloat(sign | 0x7f800000u), 0.0);
+  if (e < -126) return sk_double(uintBitsToFloat(sign), 0.0);
+  uint m = ((b.y & 0xfffffu) << 3) | (b.x >> 29);
+  int left = int(b.x & 0x1fffffffu);   // in units of 2^(e - 52)
+  if (left > 0x10000000 || (left == 0x10000000 && (m & 1u) != 0u)) {
+    left -= 0x20000000;
+    m += 1u;
+  }
+  uint hi = (uint(e + 127) << 23) + m;
+  if (hi >= 0x7f800000u) return sk_double(uintBitsToFloat(sign | 0x7f800000u), 0.0);
+  uint l = floatBitsToUint(float(left));
+  int f = int((l >> 23) & 0xffu) + e - 52;
+  uint lo = left == 0 || f <= 0 ? 0u : (l & 0x807fffffu) | (uint(f) << 23);
+  return sk_double(uintBitsToFloat(hi | sign), uintBitsToFloat(lo ^ sign));
+}
+
+// The nearest double to the pair's sum; of two, the even one.
+uvec2 sk_pack(sk_double a) {
+  uint h = floatBitsToUint(a.hi);
+  uint l = floatBitsToUint(a.lo);
+  uint sign = h & 0x80000000u;
+  uint m = h & 0x7fffffu;
+  int e = int((h >> 23) & 0xffu);
+  int f = int((l >> 23) & 0xffu);
+  if (e == 255) return uvec2(0u, sign | (m != 0u ? 0x7ff80000u : 0x7ff00000u));
+  if (e == 0) return uvec2(0u, sign);
+  bool isLess = f != 0 && (l & 0x80000000u) != sign;
+  int k = isLess && m == 0u ? 1 : 0;   // below a power of 2, units are half as large
+  int g = f + 179 + k - e;             // of the tail in units of the double's last place
+  uint tail = f == 0 || g <= 0 ? 0u : uint(roundEven(uintBitsToFloat((uint(g) << 23) | (l & 0x7fffffu))));
+  uvec2 sum = uvec2((m << 29) << k, ((m | 0x800000u) >> 3) << k);
+  uint low = isLess ? sum.x - tail : sum.x + tail;
+  uint high = isLess ? sum.y - (tail > sum.x ? 1u : 0u) : sum.y + (low < tail ? 1u : 0u);
+  return uvec2(low, sign | ((uint(e - k + 896) << 20) + (high - 0x100000u)));
+}
+
+sk_double2 sk_unpack(uvec4 b) { return sk_double2(sk_unpack(b.xy), sk_unpack(b.zw)); }
+uvec4 sk_pack(sk_double2 a) { return uvec4(sk_pack(a.x), sk_pack(a.y)); }
+
+sk_double sk_to_double(float a) { return sk_double(a, 0.0); }
+sk_double sk_to_double(int a) { return sk_join(float(a >> 16) * 65536.0, float(a & 0xffff)); }
+sk_double sk_to_double(uint a) { return sk_join(float(a >> 16) * 65536.0, float(a & 0xffffu)); }
+float sk_to_float(sk_double a) { return a.hi; }
+
+uint sk_to_uint(sk_double a) {
+  uvec2 b = sk_pack(a);
+  uint m = (b.y & 0xfffffu) | 0x100000u;
+  int e = int((b.y >> 20) & 0x7ffu) - 1023;
+  if (e < 0) return 0u;
+  if (e > 31) return 0xffffffffu;
+  return e <= 20 ? m >> (20 - e) : (m << (e - 20)) | (b.x >> (52 - e));
+}
+
+int sk_to_int(sk_double a) {
+  int n = int(sk_to_uint(sk_abs(a)));
+  return a.hi < 0.0 ? -n : n;
+}
+)";
+
+}  // namespace
+
+std::string_view doubleExtensions(Doubles form) {
+  switch (form) {
+    case Doubles::Native: return "#extension GL_ARB_gpu_shader_fp64 : require\n";
+    case Doubles::PrecisePairs: return "#extension GL_ARB_gpu_shader5 : require\n";
+    case Doubles::Pairs: break;
+  }
+  return "";
+}
+
+std::string doubleDefinitions(Doubles form) {
+  switch (form) {
+    case Doubles::Native: return std::string(nativeText);
+    case Doubles::PrecisePairs: return std::string(preciseText).append(pairText);
+    case Doubles::Pairs: break;
+  }
+  return std::string(barrierText).append(pairText);
+}
+
+}  // namespace sk::assemble

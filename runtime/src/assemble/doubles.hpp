@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+//
+// What a kernel's text means by doubles: the types sk_double to sk_double4 and the functions of one
+// sk_double that bodies call, for GLSL's own doubles or for pairs of floats.
+//
+//   sk_double sk_to_double(float | int | uint)    float sk_to_float(x)   int sk_to_int(x)   uint sk_to_uint(x)
+//   sk_double sk_neg(x)  sk_add(x, y)  sk_sub  sk_mul  sk_div            bool sk_less(x, y)  sk_less_equal  sk_equal
+//   sk_double sk_abs(x)  sk_floor(x)  sk_round(x)  sk_sqrt(x)            bool sk_isnan(x)  sk_isinf(x)
+//   sk_double sk_unpack(uvec2 bits)  sk_double2 sk_unpack(uvec4 bits)    uvec2 sk_pack(x)   uvec4 sk_pack(sk_double2)
+//
+// Streams hold the 64 bits of IEEE 754's doubles in either form, the lower half first.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "assemble/assemble.hpp"
+
+namespace sk::assemble {
+
+/// The #extension lines that stand first in a program that uses doubles; each ends its line.
+std::string_view doubleExtensions(Doubles form);
+/// The definitions, which stand before all others.
+std::string doubleDefinitions(Doubles form);
+
+}  // namespace sk::assemble

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+//
+// The forms that doubles have on devices, and test values that all of them hold exactly.
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "sk/sk.hpp"
+#include "support/values.hpp"
+
+namespace run_tests {
+
+struct Form {
+  std::string profile, doubles;
+  bool isNative() const { return doubles == "native"; }
+};
+
+inline sk::Device& deviceOf(const Form& form) {
+  static std::map<std::string, sk::Device> devices;
+  const std::string key = form.profile + form.doubles;
+  auto found = devices.find(key);
+  if (found == devices.end()) {
+    const sk::DeviceOptions options{.profile = form.profile, .doubles = form.doubles};
+    found = devices.emplace(key, sk::Device(options)).first;
+  }
+  return found->second;
+}
+
+/// test(device, form) on every form that there is.
+template <class Test>
+void onEveryForm(const Test& test) {
+  for (const Form& form : {Form{"glsl330", "native"}, Form{"glsl330", "pairs"}, Form{"essl300", "pairs"}}) {
+    INFO(form.profile << " with " << form.doubles << " doubles");
+    test(deviceOf(form), form);
+  }
+}
+
+/// Random doubles of 48 bits, which pairs hold exactly, with exponents from -range to range.
+inline std::vector<double> randomDoubles(std::size_t count, std::uint32_t seed, int range = 30) {
+  std::vector<double> list(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t a = hashed(static_cast<std::uint32_t>(i) * 3 + seed), b = hashed(a + 1),
+                        c = hashed(b + 2);
+    const auto mantissa =
+        static_cast<double>((std::uint64_t{a} << 16 | (b & 0xffffu)) | std::uint64_t{1} << 47);
+    const int exponent = static_cast<int>(c % static_cast<unsigned>(2 * range + 1)) - range - 47;
+    list[i] = std::ldexp(c & 0x10000u ? -mantissa : mantissa, exponent);
+  }
+  return list;
+}
+
+/// Of one operation, relative to its result.
+inline long double precisionOf(const Form& form) { return form.isNative() ? 0x1p-52L : 0x1p-45L; }
+
+}  // namespace run_tests
