@@ -16,6 +16,7 @@ using namespace ir;
 /// Rounds of a loop whose number only the data know.
 constexpr double unknownRounds = 16;
 constexpr double intrinsicCost = 4;
+constexpr double doubleCost = 6;   // of an operation: 2 in GLSL's own doubles, 9 to 15 in pairs of floats
 constexpr double addressCost = 4;
 
 void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
@@ -35,7 +36,7 @@ void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
 
 /// What a node costs by itself, without its operands.
 double nodeCost(const Module& module, const Expr& expr, const std::vector<double>& functions) {
-  const double width = expr.type.width;
+  const double width = expr.type.width * (expr.type.isDouble() ? doubleCost : 1);
   return match(
       expr.node, [](const Literal&) { return 0.0; }, [](const VarRef&) { return 0.0; },
       [](const ConstantRef&) { return 0.0; }, [&](const Unary&) { return width; },

@@ -275,3 +275,41 @@ TEST_CASE("variable and scatter outputs of doubles") {
     }
   });
 }
+
+TEST_CASE("doubles beyond the planes of a pass") {
+  std::vector<State> states(count);
+  const auto positions = vectorsOf<sk::double3>(count, 17), velocities = vectorsOf<sk::double3>(count, 18);
+  for (std::size_t i = 0; i < count; ++i) {
+    states[i] = {positions[i], velocities[i], {positions[i].x, positions[i].y}, 2};
+  }
+  const auto a = vectorsOf<sk::double4>(count, 19);
+  for (const char* profile : {"glsl330", "essl300"}) {
+    for (const char* doubles : {"native", "pairs"}) {
+      INFO(profile << " with " << doubles << " doubles");
+      sk::Device device(sk::DeviceOptions{.profile = profile, .limits = "guaranteed", .doubles = doubles});
+      auto r = device.stream<State>({extent});
+      auto e = device.stream<double>({extent});
+      advance(0.5, streamOf<State>(device, states), r, e);
+      const auto actual = r.read();
+      const auto energy = e.read();
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto& [position, velocity, spin, mass] = states[i];
+        const double square = velocity.x * velocity.x + velocity.y * velocity.y + velocity.z * velocity.z;
+        INFO(i);
+        CHECK((actual[i].position == sk::double3{position.x + 0.5 * velocity.x, position.y + 0.5 * velocity.y,
+                                                 position.z + 0.5 * velocity.z}));
+        CHECK((actual[i].velocity == sk::double3{velocity.x, velocity.y, velocity.z - square}));
+        CHECK((actual[i].spin == sk::double2{spin.y * 0.5, spin.x * 0.5}));
+        CHECK(energy[i] == square);
+      }
+      const auto v = streamOf<sk::double4>(device, a);
+      const auto u = streamOf<sk::double3>(device, positions);
+      gathered(v, v, v, v, v, v, v, v, u, e, e);
+      const auto sums = e.read();
+      for (std::size_t i = 0; i < count; ++i) {
+        const double dots = 4 * (a[i].x * a[i].x + a[i].y * a[i].y + a[i].z * a[i].z + a[i].w * a[i].w);
+        CHECK(sums[i] == dots + positions[i].z + energy[i]);
+      }
+    }
+  }
+}
