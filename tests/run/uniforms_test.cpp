@@ -31,6 +31,48 @@ TEST_CASE("uniform arrays") {
   });
 }
 
+TEST_CASE("uniform arrays of narrow types") {
+  onEveryProfile([](sk::Device& device) {
+    auto i = streamOf<int>(device, {-1, 0, 1, 2, 3, 4});
+    auto x = streamOf<float>(device, {-1, 0, 1, 2, 3, 4});
+    const sk::half w[3] = {0.5f, -2.25f, 1024.0f};
+    const std::array<sk::unorm8, 2> u = {0.2f, 1.0f};
+    const std::array<sk::snorm16x2, 2> n = {{{1.0f, -1.0f}, {0.0f, 1.0f}}};
+    auto r = device.stream<sk::float3>({6});
+    uniforms::narrow(w, u, n, x, r);
+    const sk::float3 last = {1024, 1, 1};
+    CHECK(r.read() ==
+          std::vector<sk::float3>{{0.5f, 0.2f, -1}, {0.5f, 0.2f, -1}, {-2.25f, 1, 1}, last, last, last});
+    const std::array<sk::short2, 2> s = {{{-32768, 32767}, {5, 6}}};
+    const std::array<sk::uchar3, 3> c = {{{1, 2, 255}, {3, 4, 5}, {6, 7, 8}}};
+    const std::array<std::int8_t, 5> b = {-128, 1, 2, 3, 127};
+    const std::array<bool, 3> on = {false, true, false};
+    auto t = device.stream<sk::int4>({6});
+    uniforms::narrowIntegers(s, c, b, on, i, t);
+    const sk::int4 first = {-32768, 32767, 255, -128};
+    CHECK(t.read() ==
+          std::vector<sk::int4>{first, first, {-5, -6, -5, -1}, {5, 6, 8, 2}, {5, 6, 8, 3}, {5, 6, 8, 127}});
+  });
+}
+
+TEST_CASE("uniform arrays of matrices, and of structs with them") {
+  onEveryProfile([](sk::Device& device) {
+    auto i = streamOf<int>(device, {0, 1});
+    const std::array<sk::float3x3, 2> m = {sk::float3x3{{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}},
+                                           sk::float3x3{{{-1, 0, 0}, {0, -2, 0}, {0, 0, -3}}}};
+    const std::array<uniforms::Turn, 2> turns = {
+        uniforms::Turn{1.0f, {{{1, 2}, {3, 4}}}, {{1, 2, 3}, {4, 5, 6}}},
+        uniforms::Turn{0.5f, {{{0, -1}, {1, 0}}}, {{7, 8, 9}, {-10, -11, -128}}}};
+    auto r = device.stream<sk::float3>({2});
+    auto t = device.stream<sk::float2>({2});
+    auto step = device.stream<sk::int3>({2});
+    uniforms::turned(m, turns, i, r, t, step);
+    CHECK(r.read() == std::vector<sk::float3>{{321, 654, 987}, {-1, -20, -300}});
+    CHECK(t.read() == std::vector<sk::float2>{{21, 43}, {-5, 0.5f}});
+    CHECK(step.read() == std::vector<sk::int3>{{4, 5, 6}, {-10, -11, -128}});
+  });
+}
+
 TEST_CASE("arrays in uniform structs") {
   onEveryProfile([](sk::Device& device) {
     auto i = streamOf<int>(device, {2}, {0, 10});
