@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -25,20 +26,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-frontend::Options frontendOptions(const Options& options) {
-  return {options.includeDirectories, options.definitions, options.warnings, options.color};
+/// What is compiled, and who hears of it.
+struct Job {
+  const Options& options;
+  std::string file;
+  const std::string* text = nullptr;   ///< of the file, if it is in memory
+  std::ostream& output = std::cout;
+  std::ostream& messages = std::cerr;
+};
+
+frontend::Options frontendOptions(const Job& job) {
+  const Options& options = job.options;
+  return {options.includeDirectories, options.definitions, options.warnings, options.color,
+          job.text == nullptr ? nullptr : &job.messages};
 }
 
-TransformOptions transformOptions(const Options& options) {
+TransformOptions transformOptions(const Options& options, std::ostream& output) {
   TransformOptions result;
   for (const sk::assemble::Profile& profile : sk::assemble::profiles()) {
     result.limits.push_back(
         {static_cast<std::uint32_t>(profile.drawBuffers), static_cast<std::uint32_t>(profile.textureUnits)});
   }
   if (!options.printAfter.empty()) {
-    result.after = [wanted = options.printAfter](std::string_view name, const ir::Module& module) {
+    result.after = [&output, wanted = options.printAfter](std::string_view name, const ir::Module& module) {
       if (wanted == "all" || wanted == name)
-        std::cout << "// after " << name << "\n" << ir::print(module) << "\n";
+        output << "// after " << name << "\n" << ir::print(module) << "\n";
     };
   }
   return result;
@@ -47,7 +59,7 @@ TransformOptions transformOptions(const Options& options) {
 std::string qualifiedName(const ir::Kernel& kernel) { return ir::qualifier(kernel.scope) + kernel.name; }
 
 /// Keeps the kernels that --kernel names, with or without their namespaces.
-bool selectKernel(ir::Module& module, const std::string& wanted) {
+bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& messages) {
   std::string known;
   for (const ir::Kernel& kernel : module.kernels)
     known += (known.empty() ? "" : ", ") + qualifiedName(kernel);
@@ -55,17 +67,18 @@ bool selectKernel(ir::Module& module, const std::string& wanted) {
     return kernel.name != wanted && qualifiedName(kernel) != wanted;
   });
   if (!module.kernels.empty()) return true;
-  fmt::print(stderr, "skc: '{}' has no kernel '{}'; it has {}\n", module.file, wanted, known);
+  messages << fmt::format("skc: '{}' has no kernel '{}'; it has {}\n", module.file, wanted, known);
   return false;
 }
 
-bool writeFile(const fs::path& path, const std::string& text) {
+bool writeFile(const fs::path& path, const std::string& text, std::ostream& messages) {
   errno = 0;
   std::ofstream out(path, std::ios::binary);
   out << text;
   out.close();
   if (out) return true;
-  fmt::print(stderr, "skc: '{}' cannot be written: {}\n", path.string(), std::strerror(errno ? errno : EIO));
+  messages << fmt::format("skc: '{}' cannot be written: {}\n", path.string(),
+                          std::strerror(errno ? errno : EIO));
   return false;
 }
 
@@ -80,47 +93,85 @@ std::string makeEscaped(const std::string& path) {
   return text;
 }
 
-bool writeStubs(const Options& options, const ir::Module& module, const frontend::Frontend& frontend) {
-  const emit::Program program(module);
-  const std::string name = fs::path(module.file).filename().string();
-  const emit::Stub stub = emit::emitStub(module, program, name);
+std::string fileName(const ir::Module& module) { return fs::path(module.file).filename().string(); }
+
+emit::Stub stubOf(const ir::Module& module) {
+  return emit::emitStub(module, emit::Program(module), fileName(module));
+}
+
+bool writeStubs(const Job& job, const ir::Module& module, const frontend::Frontend& frontend) {
+  const Options& options = job.options;
+  const emit::Stub stub = stubOf(module);
   std::error_code error;
   fs::create_directories(options.outputDirectory, error);   // a failure shows when the files are written
-  const fs::path base = fs::path(options.outputDirectory) / name;
+  const fs::path base = fs::path(options.outputDirectory) / fileName(module);
   const std::string header = base.string() + ".hpp";
   const std::string source = base.string() + ".cpp";
-  if (!writeFile(header, stub.header) || !writeFile(source, stub.source)) return false;
+  if (!writeFile(header, stub.header, job.messages) || !writeFile(source, stub.source, job.messages))
+    return false;
   if (options.depfile.empty()) return true;
   std::string rule = makeEscaped(header) + " " + makeEscaped(source) + ":";
   for (const std::string& file : frontend.dependencies()) rule += " \\\n  " + makeEscaped(file);
-  return writeFile(options.depfile, rule + "\n");
+  return writeFile(options.depfile, rule + "\n", job.messages);
+}
+
+/// Everything before the emitters; nothing after errors.
+std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend) {
+  const Options& options = job.options;
+  std::optional<ir::Module> module =
+      frontend.compile(job.file, job.text == nullptr ? std::nullopt : std::optional(*job.text));
+  if (!module || options.emit == Emit::Ast) return module;
+  if (!options.kernel.empty() && !selectKernel(*module, options.kernel, job.messages)) return std::nullopt;
+  checkOutputs(*module, frontend.diagnostics());   // on what the user wrote, before anything is rewritten
+  if (!frontend.diagnostics().hasErrors()) {
+    runTransforms(*module, frontend.diagnostics(), transformOptions(options, job.output));
+  }
+  if (frontend.diagnostics().hasErrors()) return std::nullopt;
+  return module;
+}
+
+int compile(const Job& job) {
+  const Options& options = job.options;
+  frontend::Frontend frontend(frontendOptions(job));
+  const std::optional<ir::Module> module = translate(job, frontend);
+  if (options.emit == Emit::Ast) frontend.dumpAst(job.output);   // of a program with mistakes, too
+  if (!module) return 1;
+  if (options.emit == Emit::Stubs && job.text == nullptr) return writeStubs(job, *module, frontend) ? 0 : 1;
+  job.output << emitText(options, *module);
+  job.output.flush();
+  return job.output ? 0 : 1;
 }
 
 }  // namespace
 
-int compile(const Options& options, const std::string& file) {
-  frontend::Frontend frontend(frontendOptions(options));
-  std::optional<ir::Module> module = frontend.compile(file);
-  if (options.emit == Emit::Ast) {
-    frontend.dumpAst(std::cout);
-    return module ? 0 : 1;
-  }
-  if (!module) return 1;
-  if (!options.kernel.empty() && !selectKernel(*module, options.kernel)) return 1;
-  checkOutputs(*module, frontend.diagnostics());   // on what the user wrote, before anything is rewritten
-  if (!frontend.diagnostics().hasErrors()) {
-    runTransforms(*module, frontend.diagnostics(), transformOptions(options));
-  }
-  if (frontend.diagnostics().hasErrors()) return 1;
+int compile(const Options& options, const std::string& file) { return compile(Job{options, file}); }
+
+std::string emitText(const Options& options, const ir::Module& module) {
   switch (options.emit) {
-    case Emit::Ir: std::cout << ir::print(*module); break;
-    case Emit::Glsl: std::cout << glslListing(emit::Program(*module), options.profile); break;
-    case Emit::Plan: std::cout << planListing(*module, options.profile); break;
-    case Emit::Stubs: return writeStubs(options, *module, frontend) ? 0 : 1;
-    case Emit::Ast: break;   // printed above
+    case Emit::Ir: return ir::print(module);
+    case Emit::Glsl: return glslListing(emit::Program(module), options.profile);
+    case Emit::Plan: return planListing(module, options.profile);
+    case Emit::Stubs: {
+      const emit::Stub stub = stubOf(module);
+      return stub.header + stub.source;
+    }
+    case Emit::Ast: break;   // the tree is the frontend's
   }
-  std::cout.flush();
-  return std::cout ? 0 : 1;
+  return {};
+}
+
+Outcome compileText(const Options& options, const std::string& file, const std::string& text) {
+  std::ostringstream output, messages;
+  const int status = compile(Job{options, file, &text, output, messages});
+  return {status, output.str(), messages.str()};
+}
+
+Translation translateText(const Options& options, const std::string& file, const std::string& text) {
+  std::ostringstream output, messages;
+  const Job job{options, file, &text, output, messages};
+  frontend::Frontend frontend(frontendOptions(job));
+  std::optional<ir::Module> module = translate(job, frontend);
+  return {std::move(module), messages.str()};
 }
 
 }  // namespace skc::driver

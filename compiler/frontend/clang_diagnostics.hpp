@@ -14,7 +14,10 @@ class ClangDiagnostics : public Diagnostics {
   explicit ClangDiagnostics(clang::DiagnosticsEngine& engine) : engine_(engine) {}
 
   void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments = {}) override;
-  bool hasErrors() const override { return engine_.hasErrorOccurred(); }
+  /// DiagnosticPrinter makes errors of some warnings, of which the engine does not know.
+  bool hasErrors() const override {
+    return engine_.hasErrorOccurred() || engine_.getClient()->getNumErrors() != 0;
+  }
 
  private:
   clang::DiagnosticsEngine& engine_;

@@ -10,15 +10,16 @@
 #include <clang/Basic/TargetInfo.h>
 #include <clang/Frontend/CompilerInstance.h>
 #include <clang/Frontend/CompilerInvocation.h>
-#include <clang/Frontend/TextDiagnosticPrinter.h>
 #include <clang/Frontend/Utils.h>
 #include <clang/Lex/Preprocessor.h>
 #include <clang/Parse/Parser.h>
 #include <clang/Sema/Sema.h>
 #include <llvm/Support/MemoryBuffer.h>
+#include <llvm/Support/VirtualFileSystem.h>
 #include <llvm/Support/raw_os_ostream.h>
 
 #include "frontend/clang_diagnostics.hpp"
+#include "frontend/diagnostic_printer.hpp"
 #include "frontend/lower_module.hpp"
 #include "frontend/prelude.hpp"
 #include "frontend/token_editor.hpp"
@@ -38,12 +39,13 @@ namespace {
 constexpr std::uintmax_t largestFile = std::uintmax_t{4} << 20;
 
 std::vector<std::string> compilerArguments(const Options& options, const std::string& path) {
-  std::vector<std::string> arguments = {
-      "-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++", "-std=c++20", "-nostdsysteminc",
-      "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all", "-cl-single-precision-constant",
-      "-fnative-half-arguments-and-returns", "-Wno-undefined-internal", "-Wno-undefined-inline",
-      // a mistaken -W or a long cascade must not bury the first message
-      "-ferror-limit", "20", "-fmessage-length=0"};
+  std::vector<std::string> arguments = {"-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++",
+                                        "-std=c++20", "-nostdsysteminc", "-nobuiltininc", "-fno-rtti",
+                                        "-flax-vector-conversions=all", "-cl-single-precision-constant",
+                                        "-fnative-half-arguments-and-returns", "-Wno-undefined-internal",
+                                        "-Wno-undefined-inline", narrowingArgument,
+                                        // a mistaken -W or a long cascade must not bury the first message
+                                        "-ferror-limit", "20", "-fmessage-length=0"};
   for (const std::string& directory : options.includeDirectories) arguments.push_back("-I" + directory);
   for (const std::string& definition : options.definitions) arguments.push_back("-D" + definition);
   for (const std::string& warning : options.warnings) arguments.push_back("-W" + warning);
@@ -57,17 +59,21 @@ std::vector<std::string> compilerArguments(const Options& options, const std::st
 class Frontend::Unit {
  public:
   explicit Unit(Options options) : options_(std::move(options)) {
-    compiler_.createDiagnostics();
-    diagnostics_ = std::make_unique<ClangDiagnostics>(compiler_.getDiagnostics());
+    if (options_.messages != nullptr) {
+      messages_ = std::make_unique<llvm::raw_os_ostream>(*options_.messages);
+    }
+    createDiagnostics();
   }
 
   ~Unit() {
     if (parsing_) compiler_.getDiagnosticClient().EndSourceFile();
   }
 
-  std::optional<ir::Module> compile(const std::string& path) {
+  std::optional<ir::Module> compile(const std::string& path, std::optional<std::string> text) {
     path_ = path;
-    if (!isReadable(path) || !setUp(path)) return std::nullopt;
+    const bool isInMemory = text.has_value();
+    text_ = isInMemory ? llvm::MemoryBuffer::getMemBufferCopy(*text, path) : readFile(path);
+    if (text_ == nullptr || !isProgram(text_->getBuffer()) || !setUp(isInMemory)) return std::nullopt;
     EditedTokens edited = editTokens(lex(), compiler_.getPreprocessor(), *diagnostics_);
     if (diagnostics_->hasErrors()) return std::nullopt;
     parse(edited.tokens);
@@ -98,23 +104,37 @@ class Frontend::Unit {
   Diagnostics& diagnostics() { return *diagnostics_; }
 
  private:
-  bool isReadable(const std::string& path) {
+  void createDiagnostics() {
+    llvm::raw_ostream* messages = messages_.get();
+    if (messages == nullptr) messages = &llvm::errs();
+    auto printer = std::make_unique<DiagnosticPrinter>(*messages, &compiler_.getDiagnosticOpts());
+    compiler_.createDiagnostics(printer.release());  // which takes it
+    diagnostics_ = std::make_unique<ClangDiagnostics>(compiler_.getDiagnostics());
+  }
+
+  /// Null, and told, where that is not possible.
+  std::unique_ptr<llvm::MemoryBuffer> readFile(const std::string& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) return fail(Diag::FileMissing, path);
-    if (std::filesystem::is_directory(status)) return fail(Diag::FileIsDirectory, path);
-    auto buffer = llvm::MemoryBuffer::getFile(path);
-    if (!buffer) {
+    if (!std::filesystem::exists(status)) {
+      fail(Diag::FileMissing, path);
+    } else if (std::filesystem::is_directory(status)) {
+      fail(Diag::FileIsDirectory, path);
+    } else if (auto buffer = llvm::MemoryBuffer::getFile(path)) {
+      return std::move(*buffer);
+    } else {
       diagnostics_->report(Diag::FileUnreadable, {}, {path, buffer.getError().message()});
-      return false;
     }
-    const llvm::StringRef text = (*buffer)->getBuffer();
+    return nullptr;
+  }
+
+  bool isProgram(llvm::StringRef text) {
     if (text.size() > largestFile) {
-      diagnostics_->report(Diag::FileTooLarge, {}, {path, std::to_string(text.size())});
+      diagnostics_->report(Diag::FileTooLarge, {}, {path_, std::to_string(text.size())});
       return false;
     }
-    if (text.contains('\0')) return fail(Diag::FileIsBinary, path);
-    if (text.trim().empty()) return fail(Diag::FileIsEmpty, path);
+    if (text.contains('\0')) return fail(Diag::FileIsBinary, path_);
+    if (text.trim().empty()) return fail(Diag::FileIsEmpty, path_);
     return true;
   }
 
@@ -123,8 +143,8 @@ class Frontend::Unit {
     return false;
   }
 
-  bool setUp(const std::string& path) {
-    const std::vector<std::string> arguments = compilerArguments(options_, path);
+  bool setUp(bool isInMemory) {
+    const std::vector<std::string> arguments = compilerArguments(options_, path_);
     std::vector<const char*> pointers;
     for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
     if (!clang::CompilerInvocation::CreateFromArgs(compiler_.getInvocation(), pointers,
@@ -132,11 +152,10 @@ class Frontend::Unit {
       return false;
     }
     // again, now with the options of the command line
-    compiler_.createDiagnostics();
-    diagnostics_ = std::make_unique<ClangDiagnostics>(compiler_.getDiagnostics());
+    createDiagnostics();
     compiler_.setTarget(clang::TargetInfo::CreateTargetInfo(compiler_.getDiagnostics(),
                                                             compiler_.getInvocation().TargetOpts));
-    compiler_.createFileManager();
+    compiler_.createFileManager(isInMemory ? filesWithText() : nullptr);
     compiler_.createSourceManager(compiler_.getFileManager());
     dependencyCollector_ = std::make_shared<clang::DependencyCollector>();
     compiler_.addDependencyCollector(dependencyCollector_);
@@ -149,6 +168,15 @@ class Frontend::Unit {
     compiler_.getDiagnosticClient().BeginSourceFile(compiler_.getLangOpts(), &preprocessor);
     parsing_ = true;
     return compiler_.InitializeSourceManager(compiler_.getFrontendOpts().Inputs.front());
+  }
+
+  /// The real files, with the main one as it is in memory.
+  llvm::IntrusiveRefCntPtr<llvm::vfs::FileSystem> filesWithText() {
+    auto memory = llvm::makeIntrusiveRefCnt<llvm::vfs::InMemoryFileSystem>();
+    auto files = llvm::makeIntrusiveRefCnt<llvm::vfs::OverlayFileSystem>(llvm::vfs::getRealFileSystem());
+    files->pushOverlay(memory);  // which tells it the working directory
+    memory->addFile(path_, 0, std::move(text_));
+    return files;
   }
 
   std::vector<clang::Token> lex() {
@@ -176,6 +204,8 @@ class Frontend::Unit {
 
   Options options_;
   std::string path_;
+  std::unique_ptr<llvm::MemoryBuffer> text_;
+  std::unique_ptr<llvm::raw_os_ostream> messages_;
   clang::CompilerInstance compiler_;
   std::unique_ptr<ClangDiagnostics> diagnostics_;
   std::shared_ptr<clang::DependencyCollector> dependencyCollector_;
@@ -185,7 +215,9 @@ class Frontend::Unit {
 Frontend::Frontend(const Options& options) : unit_(std::make_unique<Unit>(options)) {}
 Frontend::~Frontend() = default;
 
-std::optional<ir::Module> Frontend::compile(const std::string& path) { return unit_->compile(path); }
+std::optional<ir::Module> Frontend::compile(const std::string& path, std::optional<std::string> text) {
+  return unit_->compile(path, std::move(text));
+}
 void Frontend::dumpAst(std::ostream& out) const { unit_->dumpAst(out); }
 std::vector<std::string> Frontend::dependencies() const { return unit_->dependencies(); }
 Diagnostics& Frontend::diagnostics() { return unit_->diagnostics(); }

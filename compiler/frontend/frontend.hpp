@@ -20,6 +20,7 @@ struct Options {
   std::vector<std::string> definitions;          ///< -D: NAME or NAME=VALUE
   std::vector<std::string> warnings;             ///< -W, without the -W: "all", "error", "no-unused"
   bool color = false;
+  std::ostream* messages = nullptr;              ///< where messages go; null: standard error
 };
 
 /// One translation unit. It lives until the last diagnostic about it is reported.
@@ -31,8 +32,9 @@ class Frontend {
   Frontend& operator=(const Frontend&) = delete;
 
   /// Parses, checks and lowers `path`, which the messages name as given. Empty after errors, which
-  /// are on standard error by then. Called once.
-  std::optional<ir::Module> compile(const std::string& path);
+  /// are where Options has them by then. With a `text`, the file need not exist: it is compiled as if it held
+  /// that. Called once.
+  std::optional<ir::Module> compile(const std::string& path, std::optional<std::string> text = std::nullopt);
 
   /// Prints the tree of the file's own declarations, as Clang does. After compile().
   void dumpAst(std::ostream& out) const;

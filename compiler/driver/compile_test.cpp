@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+//
+// Compiling in memory: the same as from files, as often as one likes.
+#include "driver/compile.hpp"
+
+#include <catch2/catch.hpp>
+
+using skc::driver::compileText;
+using skc::driver::Emit;
+using skc::driver::Options;
+using skc::driver::Outcome;
+
+namespace {
+
+constexpr const char* program = "kernel void twice(float x<>, out float r<>) { r = 2 * x; }\n";
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a text compiles without a file") {
+  Options options;
+  const Outcome stubs = compileText(options, "nowhere/twice.sk", program);
+  CHECK(stubs.status == 0);
+  CHECK(contains(stubs.output, "#include \"twice.sk.hpp\""));
+  CHECK(stubs.messages.empty());
+  options.emit = Emit::Glsl;
+  CHECK(contains(compileText(options, "twice.sk", program).output, "#version 330 core"));
+  options.emit = Emit::Ast;
+  CHECK(contains(compileText(options, "twice.sk", program).output, "FunctionDecl"));
+}
+
+TEST_CASE("mistakes come back as messages, with the name that was given") {
+  const Outcome clangs = compileText({}, "wrong.sk", "kernel void f(out float r<>) { r = y; }\n");
+  CHECK(clangs.status == 1);
+  CHECK(contains(clangs.messages, "wrong.sk:1:36: error: use of undeclared identifier 'y'"));
+  CHECK(clangs.output.empty());
+  const Outcome ours = compileText({}, "wrong.sk", std::string("kernel\0", 7));
+  CHECK(ours.status == 1);
+  CHECK(contains(ours.messages, "'wrong.sk' is not a text file"));
+  Options options;
+  options.kernel = "thrice";
+  const Outcome unknown = compileText(options, "x.sk", program);
+  CHECK(unknown.status == 1);
+  CHECK(contains(unknown.messages, "'x.sk' has no kernel 'thrice'; it has twice"));
+}
+
+TEST_CASE("one compilation leaves nothing for the next") {
+  Options options;
+  options.emit = Emit::Glsl;
+  const std::string first = compileText(options, "twice.sk", program).output;
+  CHECK(compileText(options, "twice.sk", "kernel void twice(").status == 1);
+  CHECK(compileText(options, "twice.sk", program).output == first);
+}
