@@ -80,7 +80,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void parameters(const clang::FunctionDecl* declaration);
   void body(const clang::Stmt* statement, ir::Block& into);
   void statement(const clang::Stmt* statement);
-  void checkedStatement(const clang::Stmt* statement);
+  bool checkedStatement(const clang::Stmt* statement);   ///< whether it was lowered
   void declaration(const clang::DeclStmt* statement);
   void variable(const clang::VarDecl* declaration);
   void ifStatement(const clang::IfStmt* statement);

@@ -62,18 +62,11 @@ ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration) 
   const auto* compound = llvm::dyn_cast<clang::CompoundStmt>(declaration->getBody());
   if (!compound)
     module_.fail(Diag::Statement, declaration->getBody()->getBeginLoc(), {"a function try block"});
-  const bool clean = [&] {
-    bool all = true;
-    for (const clang::Stmt* inner : compound->body()) {
-      try {
-        statement(inner);
-      } catch (const Abandoned&) {
-        all = false;
-      }
-    }
-    return all;
-  }();
-  if (!clean) throw Abandoned{};
+  bool isClean = true;
+  for (const clang::Stmt* inner : compound->body()) {
+    if (!checkedStatement(inner)) isClean = false;
+  }
+  if (!isClean) throw Abandoned{};
   function_.body = std::move(body);
   return std::move(function_);
 }
@@ -162,12 +155,14 @@ void FunctionLowering::body(const clang::Stmt* statement, ir::Block& into) {
   out_ = outer;
 }
 
-void FunctionLowering::checkedStatement(const clang::Stmt* s) {
+bool FunctionLowering::checkedStatement(const clang::Stmt* s) {
   ir::Block* outer = out_;
   try {
     statement(s);
+    return true;
   } catch (const Abandoned&) {
     out_ = outer;   // the diagnostics hold the error; the module is not used
+    return false;
   }
 }
 
