@@ -112,11 +112,15 @@ bool isKernelInteger(clang::QualType type) {
 
 }  // namespace
 
-/// An integer constant whose own type kernels may not have, such as sizeof or 'a'; null if `e` is none.
+/// An integer constant whose own type kernels may not have, such as sizeof or 'a'; null if `e` is none, or needs
+/// more than 32 bits.
 ExprPtr FunctionLowering::integerConstant(const clang::Expr* e, ir::Type type) {
   clang::Expr::EvalResult result;
   if (e->isValueDependent() || !e->EvaluateAsInt(result, module_.context())) return nullptr;
-  return literal(type, static_cast<std::uint32_t>(result.Val.getInt().getExtValue()), e->getBeginLoc());
+  const llvm::APSInt& number = result.Val.getInt();
+  const bool fits = number.isNegative() ? number.isSignedIntN(32) : number.isIntN(32);
+  if (!fits) return nullptr;
+  return literal(type, static_cast<std::uint32_t>(number.getExtValue()), e->getBeginLoc());
 }
 
 // ---- casts ----------------------------------------------------------------------------------------

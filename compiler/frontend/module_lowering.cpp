@@ -21,6 +21,7 @@
 #include "ir/build.hpp"
 #include "ir/print.hpp"
 #include "ir/reach.hpp"
+#include "ir/value_size.hpp"
 #include "ir/walk.hpp"
 
 namespace skc::frontend {
@@ -490,6 +491,7 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
   const auto index = static_cast<std::uint32_t>(module_.structs.size());
   module_.structs.push_back(std::move(entry));
   structs_[record] = index;
+  checkSize(ir::Type::structType(index), record->getLocation());
   return ir::Type::structType(index);
 }
 
@@ -502,7 +504,16 @@ ir::Type ModuleLowering::arrayType(ir::Type element, std::uint64_t length, Sourc
   const auto found = std::find(module_.arrays.begin(), module_.arrays.end(), entry);
   const auto index = static_cast<std::uint32_t>(found - module_.arrays.begin());
   if (found == module_.arrays.end()) module_.arrays.push_back(entry);
+  checkSize(ir::Type::arrayType(index), use);
   return ir::Type::arrayType(index);
+}
+
+void ModuleLowering::checkSize(ir::Type type, SourceLocation use) {
+  constexpr std::uint64_t largest = 16384;
+  const std::uint64_t size = ir::numbersIn(module_, type);
+  if (size > largest) {
+    fail(Diag::ValueTooLarge, use, {ir::print(module_, type), std::to_string(size), std::to_string(largest)});
+  }
 }
 
 std::string ModuleLowering::spelling(ir::Type type) const {

@@ -92,6 +92,7 @@ class ModuleLowering {
   ir::ExprPtr evaluated(const clang::APValue& value, ir::Type type, Loc loc) const;
   ir::Type structType(const clang::CXXRecordDecl* declaration, clang::SourceLocation use);
   ir::Type arrayType(ir::Type element, std::uint64_t length, clang::SourceLocation use);
+  void checkSize(ir::Type type, clang::SourceLocation use);
   std::vector<std::string> scopeOf(const clang::Decl* declaration) const;
 
   clang::Sema& sema_;

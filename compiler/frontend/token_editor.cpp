@@ -229,10 +229,24 @@ class Editor {
   int constants_ = 0;
 };
 
+/// `a<b<c<d`: Clang tries each `<` as a bracket and as an operator, so that each doubles the time.
+void refuseDeepAngles(const std::vector<Token>& tokens, Diagnostics& diagnostics) {
+  constexpr int deepest = 12;
+  int depth = 0;
+  for (std::size_t i = 1; i < tokens.size(); ++i) {
+    if (tokens[i].is(tok::less) && tokens[i - 1].is(tok::identifier)) {
+      if (++depth <= deepest) continue;
+      return diagnostics.report(Diag::NestedTooDeep, locOf(tokens[i]), {std::to_string(deepest)});
+    }
+    if (tokens[i].isNot(tok::identifier)) depth = 0;
+  }
+}
+
 }  // namespace
 
 EditedTokens editTokens(const std::vector<Token>& tokens, clang::Preprocessor& preprocessor,
                         Diagnostics& diagnostics) {
+  refuseDeepAngles(tokens, diagnostics);
   return Editor(tokens, preprocessor, diagnostics).run();
 }
 

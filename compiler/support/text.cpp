@@ -95,16 +95,22 @@ std::string wrapLine(std::string_view line, std::size_t limit, std::size_t conti
   const bool isTooFar = continuation > limit * 3 / 4;
   const std::string margin(continuation == 0 || isTooFar ? indent + 4 : continuation, ' ');
   std::string result;
-  std::string rest(line);
-  while (rest.size() > limit) {
-    const std::size_t first = result.empty() ? indent : margin.size();
-    const std::optional<std::size_t> at = chooseBreak(rest, first + (limit - first) / 3, limit);
+  std::size_t before = 0;   // the margin, which stands in front of `line`
+  while (before + line.size() > limit) {
+    const std::size_t first = result.empty() ? indent : before;
+    if (first >= limit) break;
+    // Nothing behind the limit is looked at: lists of a thousand items come here.
+    const std::optional<std::size_t> at =
+        chooseBreak(line.substr(0, limit - before + 1), first + (limit - first) / 3 - before, limit - before);
     if (!at) break;
-    result += rest.substr(0, *at);
+    if (!result.empty()) result += margin;
+    result += line.substr(0, *at);
     result += '\n';
-    rest.replace(0, *at + 1, margin);
+    line.remove_prefix(*at + 1);
+    before = margin.size();
   }
-  return result + rest;
+  if (!result.empty()) result += margin;
+  return result + std::string(line);
 }
 
 }  // namespace skc

@@ -63,7 +63,7 @@ TEST_CASE("string literals are not broken") {
 
 TEST_CASE("no line passes the limit where breaks exist") {
   std::string line = "  total = ";
-  for (int i = 0; i < 60; ++i) line += "f(x, " + std::to_string(i) + ") + ";
+  for (int i = 0; i < 20000; ++i) line += "f(x, " + std::to_string(i) + ") + ";
   line += "1;";
   std::istringstream lines(wrapLine(line, 80));
   for (std::string one; std::getline(lines, one);) CHECK(one.size() <= 80);
