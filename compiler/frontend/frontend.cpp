@@ -39,13 +39,13 @@ namespace {
 constexpr std::uintmax_t largestFile = std::uintmax_t{4} << 20;
 
 std::vector<std::string> compilerArguments(const Options& options, const std::string& path) {
-  std::vector<std::string> arguments = {"-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++",
-                                        "-std=c++20", "-nostdsysteminc", "-nobuiltininc", "-fno-rtti",
-                                        "-flax-vector-conversions=all", "-cl-single-precision-constant",
-                                        "-fnative-half-arguments-and-returns", "-Wno-undefined-internal",
-                                        "-Wno-undefined-inline", narrowingArgument,
-                                        // a mistaken -W or a long cascade must not bury the first message
-                                        "-ferror-limit", "20", "-fmessage-length=0"};
+  std::vector<std::string> arguments = {
+      "-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++", "-std=c++20", "-nostdsysteminc",
+      "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all", "-cl-single-precision-constant",
+      "-fnative-half-arguments-and-returns", "-Wno-undefined-internal", "-Wno-undefined-inline",
+      narrowingArgument,
+      // a mistaken -W or a long cascade must not bury the first message
+      "-ferror-limit", "20", "-fmessage-length=0"};
   for (const std::string& directory : options.includeDirectories) arguments.push_back("-I" + directory);
   for (const std::string& definition : options.definitions) arguments.push_back("-D" + definition);
   for (const std::string& warning : options.warnings) arguments.push_back("-W" + warning);

@@ -41,7 +41,7 @@ stand_in dpkg-query "$all_installed"
 
 # Help, and commands that do not exist.
 run 0 help
-for command in demo build test bench format lint install; do says "  $command"; done
+for command in demo build test bench fuzz format lint install; do says "  $command"; done
 run 0
 says 'usage: ./dev COMMAND'
 run 1 biuld
@@ -49,6 +49,8 @@ says "no command 'biuld'"
 says 'usage: ./dev COMMAND'
 run 1 build relaese
 says "no preset 'relaese': release, debug or asan"
+run 1 fuzz runtime
+says 'fuzz what? ./dev fuzz mutate'
 never_called cmake
 
 # All is installed: no apt-get; configure, build, test, whose closing line comes last.

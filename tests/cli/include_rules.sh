@@ -26,6 +26,7 @@ tests                 sk
 tests/bench           sk epoxy
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
+tests/fuzz            sk ir emit driver
 '
 guarded='support|ir|split|transforms|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+//
+// fuzz_mutate: programs of the corpus with random changes, compiled in every form. skc must give a result or an
+// error, whatever it is given. Input N of a seed is always the same. Exit status 1 after a finding.
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include <CLI/CLI.hpp>
+
+#include "corpus.hpp"
+#include "isolation.hpp"
+#include "judge.hpp"
+#include "mutation.hpp"
+#include "reduction.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::uint64_t seed = 1, first = 0, count = 1000;
+  unsigned seconds = 10;
+  std::vector<std::string> corpus = {SK_SOURCE_FOLDER "/tests", SK_SOURCE_FOLDER "/examples",
+                                     SK_SOURCE_FOLDER "/docs"};
+  std::string out = "fuzz-findings";
+  std::vector<std::string> files;  ///< judged instead of mutants
+  std::string reduce;  ///< a file to make smaller
+  bool show = false;  ///< prints the mutants instead
+};
+
+fuzz::Program programOf(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error("'" + file + "' cannot be read");
+  return {file, {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}};
+}
+
+void tell(const fuzz::Finding& finding, const std::string& again) {
+  std::cout << "input " << finding.number << ": " << finding.what << "\n" << finding.log;
+  std::cout << "again by: " << again << "\n" << std::flush;
+}
+
+int conclude(const fuzz::Summary& summary) {
+  std::cout << summary.inputs << " inputs, " << summary.findings << " findings";
+  for (const auto& [name, count] : summary.tallies) std::cout << ", " << count << " " << name;
+  std::cout << "; the largest process took " << summary.largestProcess / 1024 << " MiB\n";
+  return summary.findings == 0 ? 0 : 1;
+}
+
+int mutate(const Options& options, const char* program) {
+  const fuzz::Corpus corpus({options.corpus.begin(), options.corpus.end()});
+  const auto make = [&](std::uint64_t number) {
+    fuzz::Random random(options.seed, number);
+    return fuzz::mutant(corpus, random);
+  };
+  if (options.show) {
+    for (std::uint64_t i = 0; i < options.count; ++i) std::cout << make(options.first + i).text << "\n";
+    return 0;
+  }
+  fuzz::Campaign campaign{.first = options.first, .count = options.count, .seconds = options.seconds};
+  campaign.check = [&](std::uint64_t number) { return fuzz::judge(make(number)); };
+  campaign.onFinding = [&](const fuzz::Finding& finding) {
+    const fuzz::Program mutant = make(finding.number);
+    fs::create_directories(options.out);
+    const fs::path file = fs::path(options.out) / ("mutate-" + std::to_string(options.seed) + "-" +
+                                                   std::to_string(finding.number) + ".sk");
+    std::ofstream(file, std::ios::binary) << mutant.text;
+    tell(finding, std::string(program) + " " + file.string() + "   (from " + mutant.path + ")");
+  };
+  std::cout << corpus.programs().size() << " programs to start from\n";
+  return conclude(fuzz::run(campaign));
+}
+
+int judgeFiles(const Options& options, const char* program) {
+  fuzz::Campaign campaign{.count = options.files.size(), .batch = 1, .seconds = options.seconds};
+  campaign.check = [&](std::uint64_t i) { return fuzz::judge(programOf(options.files[i])); };
+  campaign.onFinding = [&](const fuzz::Finding& finding) {
+    tell(finding, std::string(program) + " " + options.files[finding.number]);
+  };
+  return conclude(fuzz::run(campaign));
+}
+
+/// Findings are the same where their first words are.
+std::string kindOf(const std::string& what) { return what.substr(0, 24); }
+
+int reduce(const Options& options) {
+  const fuzz::Program program = programOf(options.reduce);
+  const auto finding = [&](const std::string& text) {
+    std::string kind;
+    fuzz::Campaign campaign{.count = 1, .seconds = options.seconds};
+    campaign.check = [&](std::uint64_t) { return fuzz::judge({program.path, text}); };
+    campaign.onFinding = [&](const fuzz::Finding& one) { kind = kindOf(one.what); };
+    fuzz::run(campaign);
+    return kind;
+  };
+  const std::string kind = finding(program.text);
+  if (kind.empty()) throw std::runtime_error("nothing is wrong with '" + options.reduce + "'");
+  std::cout << fuzz::reduced(program.text, [&](const std::string& text) { return finding(text) == kind; });
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"fuzz_mutate: shows skc mutated programs; FILEs are judged as they are", "fuzz_mutate"};
+  app.add_option("FILE", options.files, "Judge these programs instead of mutants");
+  app.add_option("--seed", options.seed, "Which mutants: each seed has its own");
+  app.add_option("--first", options.first, "Number of the first mutant");
+  app.add_option("--count", options.count, "How many");
+  app.add_option("--seconds", options.seconds, "A compilation that takes longer hangs");
+  app.add_option("--corpus", options.corpus, "Folders with .sk and .md files to start from");
+  app.add_option("--out", options.out, "Where mutants with findings are written to");
+  app.add_option("--reduce", options.reduce, "Make this program smaller as long as it fails, and print it");
+  app.add_flag("--show", options.show, "Print the mutants instead of compiling them");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (!options.reduce.empty()) return reduce(options);
+    return options.files.empty() ? mutate(options, argv[0]) : judgeFiles(options, argv[0]);
+  } catch (const std::exception& error) {
+    std::cerr << "fuzz_mutate: " << error.what() << "\n";
+    return 1;
+  }
+}

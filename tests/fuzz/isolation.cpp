@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "isolation.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace fuzz {
+namespace {
+
+constexpr std::size_t longestLog = 6000;
+
+/// A line for each thing that a child tells: a letter, the input's number, a text without line breaks.
+class Reporter {
+ public:
+  explicit Reporter(int pipe) : out_(fdopen(pipe, "w")) {}
+  void tell(char what, std::uint64_t number, std::string text = {}) {
+    for (char& c : text) c = c == '\n' ? '\1' : c;
+    std::fprintf(out_, "%c %llu %s\n", what, static_cast<unsigned long long>(number), text.c_str());
+    std::fflush(out_);
+  }
+
+ private:
+  std::FILE* out_;
+};
+
+[[noreturn]] void beChild(const Campaign& campaign, std::uint64_t first, std::uint64_t end, int pipe,
+                          int log) {
+  dup2(log, STDERR_FILENO);
+  Reporter reporter(pipe);
+  campaign.begin();
+  for (std::uint64_t number = first; number < end; ++number) {
+    reporter.tell('b', number);
+    alarm(campaign.seconds);   // its signal ends the process
+    const Verdict verdict = campaign.check(number);
+    alarm(0);
+    if (!verdict.finding.empty()) reporter.tell('f', number, verdict.finding);
+    reporter.tell('t', number, verdict.tally);
+  }
+  std::exit(0);   // with the sanitizer's search for leaks
+}
+
+/// The end of a file that a child has written.
+std::string tailOf(int file) {
+  const off_t size = lseek(file, 0, SEEK_END);
+  const auto length = std::min<std::size_t>(static_cast<std::size_t>(size), longestLog);
+  std::string text(length, '\0');
+  const ssize_t got = pread(file, text.data(), length, size - static_cast<off_t>(length));
+  text.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
+  return text;
+}
+
+/// Why a process ended; empty where it ended well.
+std::string deathOf(int status, unsigned seconds) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    if (signal == SIGALRM) return "took more than " + std::to_string(seconds) + " seconds";
+    return "died by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
+  }
+  const int code = WEXITSTATUS(status);
+  return code == 0 ? "" : "ended its process with status " + std::to_string(code);
+}
+
+class Runner {
+ public:
+  explicit Runner(const Campaign& campaign) : campaign_(campaign) {}
+
+  Summary run() {
+    const std::uint64_t end = campaign_.first + campaign_.count;
+    for (std::uint64_t next = campaign_.first; next < end;) {
+      next = batch(next, std::min(next + campaign_.batch, end));
+    }
+    return std::move(summary_);
+  }
+
+ private:
+  /// Runs [first, end) as far as the child lives. The first that is still to do.
+  std::uint64_t batch(std::uint64_t first, std::uint64_t end) {
+    int ends[2];
+    if (pipe(ends) != 0) throw std::runtime_error(std::string("pipe: ") + std::strerror(errno));
+    std::FILE* log = std::tmpfile();
+    if (log == nullptr) throw std::runtime_error(std::string("tmpfile: ") + std::strerror(errno));
+    std::cout.flush();
+    const pid_t child = fork();
+    if (child < 0) throw std::runtime_error(std::string("fork: ") + std::strerror(errno));
+    if (child == 0) {
+      close(ends[0]);
+      beChild(campaign_, first, end, ends[1], fileno(log));
+    }
+    close(ends[1]);
+    std::uint64_t current = first;
+    bool isDone = false;
+    listen(ends[0], current, isDone);
+    int status = 0;
+    rusage usage{};
+    wait4(child, &status, 0, &usage);
+    summary_.largestProcess = std::max<std::int64_t>(summary_.largestProcess, usage.ru_maxrss);
+    const std::string death = deathOf(status, campaign_.seconds);
+    if (!death.empty()) {
+      const bool isAfterLast = isDone && current + 1 == end;
+      if (!isDone) ++summary_.inputs;
+      find({current, death + (isAfterLast ? ", after the last input of its process" : ""),
+            tailOf(fileno(log))});
+    }
+    std::fclose(log);
+    return death.empty() ? end : current + 1;
+  }
+
+  /// Until the child has nothing more to say.
+  void listen(int pipe, std::uint64_t& current, bool& isDone) {
+    std::FILE* in = fdopen(pipe, "r");
+    char* line = nullptr;
+    std::size_t capacity = 0;
+    for (ssize_t length = 0; (length = getline(&line, &capacity, in)) > 0;) {
+      std::istringstream words(std::string(line, static_cast<std::size_t>(length) - 1));
+      char what = 0;
+      std::string text;
+      words >> what >> current;
+      words.get();
+      std::getline(words, text);
+      for (char& c : text) c = c == '\1' ? '\n' : c;
+      isDone = what == 't';
+      if (what == 'f') find({current, text, {}});
+      if (what != 't') continue;
+      ++summary_.inputs;
+      if (!text.empty()) ++summary_.tallies[text];
+    }
+    std::free(line);
+    std::fclose(in);
+  }
+
+  void find(const Finding& finding) {
+    ++summary_.findings;
+    campaign_.onFinding(finding);
+  }
+
+  const Campaign& campaign_;
+  Summary summary_;
+};
+
+}  // namespace
+
+Summary run(const Campaign& campaign) { return Runner(campaign).run(); }
+
+}  // namespace fuzz
