@@ -63,9 +63,18 @@ bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& m
   std::string known;
   for (const ir::Kernel& kernel : module.kernels)
     known += (known.empty() ? "" : ", ") + qualifiedName(kernel);
-  std::erase_if(module.kernels, [&](const ir::Kernel& kernel) {
-    return kernel.name != wanted && qualifiedName(kernel) != wanted;
-  });
+  const auto isWanted = [&](const ir::Kernel& kernel) {
+    return kernel.name == wanted || qualifiedName(kernel) == wanted;
+  };
+  std::vector<ir::KernelId> numbers;   // of what is kept; overloads that combine have the same name
+  ir::KernelId next = 0;
+  for (const ir::Kernel& kernel : module.kernels) numbers.push_back(isWanted(kernel) ? next++ : next);
+  std::erase_if(module.kernels, [&](const ir::Kernel& kernel) { return !isWanted(kernel); });
+  for (ir::Kernel& kernel : module.kernels) {
+    if (kernel.reduction && kernel.reduction->combine) {
+      kernel.reduction->combine = numbers[*kernel.reduction->combine];
+    }
+  }
   if (!module.kernels.empty()) return true;
   messages << fmt::format("skc: '{}' has no kernel '{}'; it has {}\n", module.file, wanted, known);
   return false;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "assemble/assemble.hpp"
@@ -101,14 +102,30 @@ std::string sinksListing(const Profile& profile, const sk::program::Kernel& kern
   return skc::join(programs, "\n");
 }
 
+/// Adds what the arguments decide: that of streams which lie as they are.
+void addPlainAccess(const sk::program::Reduction& reduction, sk::assemble::ReduceVariant& variant) {
+  const bool isPartial = variant.walk == sk::assemble::Walk::Partials;
+  const sk::program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
+  sk::assemble::Variant plain = plainVariant(kernel);
+  for (std::size_t i = 0; i < plain.access.size(); ++i) {
+    const bool isInput = kernel.parameters[i].role == sk::program::Role::Input;
+    if (isInput && !isPartial) plain.access[i].addressing = sk::assemble::Addressing::Plane;
+  }
+  variant.access = std::move(plain.access);
+  variant.specs = plain.specs;
+}
+
 /// Every program that folds a 1024 x 1024 stream to a value, once.
 std::string reductionListing(const Profile& profile, const sk::program::Reduction& reduction) {
   sk::assemble::Placement input;
   input.extent = {1024, 1024, 1, 1};
   std::string text;
   std::set<sk::assemble::ReduceVariant> seen;
-  for (const sk::assemble::ReducePass& pass :
-       sk::assemble::planReduction(input, sk::assemble::valuePlacement(), {.textureSize = 16384})) {
+  const bool byIndex = sk::assemble::asksForPlace(reduction.fold);
+  for (sk::assemble::ReducePass& pass :
+       sk::assemble::planReduction(input, sk::assemble::valuePlacement(), {.textureSize = 16384},
+                                   {.blocks = {1, 1, 1, 1}, .byIndex = byIndex})) {
+    addPlainAccess(reduction, pass.variant);
     if (!seen.insert(pass.variant).second) continue;
     if (!text.empty()) text += "\n";
     text += sk::assemble::reduceProgram(profile, reduction, pass.variant);

@@ -28,6 +28,7 @@ struct Program::Storage {
   std::deque<std::vector<sk::program::Parameter>> parameters;
   std::vector<std::string_view> sources;
   std::deque<sk::program::Reduction> reductions;
+  std::deque<std::vector<std::uint8_t>> combineOperands;
   std::deque<std::vector<sk::program::Layer>> layers;
   std::deque<std::vector<const sk::program::Element*>> temporaries;
   std::deque<std::vector<sk::program::ArgumentPlane>> bundleLayers;
@@ -68,14 +69,11 @@ class Builder {
  private:
   void add(KernelId id) {
     const Kernel& kernel = module_.kernels[id];
-    if (kernel.pass) return;
+    if (kernel.pass || kernel.isCombination) return;
     Unit unit{.id = id, .kernel = describe(kernel)};
     addPlans(kernel, unit.kernel);
     if (kernel.reduction) {
-      const KernelNames names(module_, kernel, types_);
-      const std::string& combine = names.function(*kernel.reduction->combine);
-      unit.reduction = &storage_.reductions.emplace_back(
-          sk::program::Reduction{unit.kernel, storage_.keep(combine), kernel.reduction->seeded});
+      unit.reduction = &storage_.reductions.emplace_back(reduction(kernel, unit.kernel));
     }
     storage_.units.push_back(unit);
   }
@@ -106,6 +104,18 @@ class Builder {
             .usesExtent = uses.domainExtent,
             .usesLoops = uses.loops,
             .usesDoubles = usesDoubles(module_, kernel)};
+  }
+
+  sk::program::Reduction reduction(const Kernel& kernel, const sk::program::Kernel& fold) {
+    const Kernel& combine = module_.kernels[*kernel.reduction->combine];
+    std::vector<std::uint8_t>& operands = storage_.combineOperands.emplace_back();
+    for (std::uint32_t operand : kernel.reduction->operands) {
+      operands.push_back(static_cast<std::uint8_t>(operand));
+    }
+    return {.fold = fold,
+            .combine = &combine == &kernel ? fold : describe(combine),
+            .combineOperands = operands,
+            .seeded = kernel.reduction->seeded};
   }
 
   // ---- plans ------------------------------------------------------------------------------------

@@ -42,7 +42,7 @@ TEST_CASE("a reduce's descriptor") {
   const Module module = sampleModule();
   const Program program(module);
   const sk::program::Reduction& nearest = *program.units()[2].reduction;
-  CHECK(nearest.combine == "nearest");
+  CHECK(nearest.combine.entry == "nearest");
   CHECK(nearest.seeded);
   CHECK(nearest.fold.parameters[1].identity.empty());
   const sk::program::Element& hit = *nearest.fold.parameters[0].element;
@@ -52,7 +52,8 @@ TEST_CASE("a reduce's descriptor") {
   CHECK(hit.fields[1].path == "id");
   CHECK(hit.fields[1].offset == 4);
   const sk::program::Reduction& power = *program.units()[3].reduction;
-  CHECK(power.combine == "power_combine");
+  CHECK(power.combine.entry == "power_combine");
+  CHECK(power.fold.body.find("power_combine") == std::string_view::npos);
   CHECK(power.fold.parameters[1].identity == "0.0");
 }
 

@@ -57,13 +57,19 @@ void addDiffuse(Module& module) {
            "kernel void diffuse(float k, [[wrap]] float u[][], out float v<>)");
 }
 
+/// For the last kernel.
+void combineByItself(Module& module, bool seeded) {
+  const auto id = static_cast<KernelId>(module.kernels.size() - 1);
+  module.kernels[id].reduction = Reduction{id, {0, 1}, seeded};
+}
+
 void addSum(Module& module) {
   KernelMaker k(module, "sum", 20);
   const VarId x = k.input("x", floatType);
   const VarId total = k.accumulator("total", floatType, literal(0.0F));
   k.finish(block(assign(k.ref(total), Add, k.ref(x), atLine(20))),
            "reduce void sum(float x<>, reduce float total<> = 0)");
-  module.kernels.back().reduction = Reduction{module.kernels.back().entry, false};
+  combineByItself(module, false);
 }
 
 void addNearest(Module& module) {
@@ -74,7 +80,7 @@ void addNearest(Module& module) {
   ExprPtr nearer = binary(Less, member(module, k.ref(h), 0), member(module, k.ref(best), 0));
   k.finish(block(ifStmt(std::move(nearer), block(assign(k.ref(best), k.ref(h), atLine(22))), {}, atLine(22))),
            "reduce void nearest(Hit h<>, reduce Hit best<>)");
-  module.kernels.back().reduction = Reduction{module.kernels.back().entry, true};
+  combineByItself(module, true);
 }
 
 void addPower(Module& module) {
@@ -83,14 +89,14 @@ void addPower(Module& module) {
   const VarId total = k.accumulator("total", floatType, literal(0.0F));
   k.finish(block(assign(k.ref(total), Add, binary(Mul, k.ref(x), k.ref(x)), atLine(24))),
            "reduce void power(float x<>, reduce float total<>)");
-  Function combine;
-  combine.name = "power_combine";
-  combine.loc = atLine(24);
-  addVariable(combine, "x", floatType, VarRole::In);
-  addVariable(combine, "total", floatType, VarRole::InOut);
-  Block body = block(assign(varRef(combine, 1), Add, varRef(combine, 0), atLine(24)));
-  module.kernels.back().reduction =
-      Reduction{addFunction(module, std::move(combine), std::move(body)), false};
+  const auto power = static_cast<KernelId>(module.kernels.size() - 1);
+  module.kernels[power].reduction = Reduction{power + 1, {0, 0}, false};
+  KernelMaker combine(module, "power_combine", 24);
+  combine.kernel().isCombination = true;
+  const VarId part = combine.input("total_part", floatType);
+  const VarId whole = combine.accumulator("total", floatType);
+  combine.finish(block(assign(combine.ref(whole), Add, combine.ref(part), atLine(24))));
+  combineByItself(module, true);
 }
 
 }  // namespace

@@ -92,9 +92,8 @@ class Collector {
 StreamUses streamUses(const Module& module, const Kernel& kernel) { return Collector(module, kernel).run(); }
 
 std::uint32_t domainParam(const Kernel& kernel) {
-  const auto found = std::find_if(kernel.params.begin(), kernel.params.end(), [](const KernelParam& param) {
-    return param.role == ParamRole::Output || param.role == ParamRole::Accumulator;
-  });
+  const auto found = std::find_if(kernel.params.begin(), kernel.params.end(),
+                                  [](const KernelParam& param) { return param.role == ParamRole::Output; });
   return static_cast<std::uint32_t>(found - kernel.params.begin());
 }
 

@@ -27,8 +27,7 @@ struct StreamUses {
 
 StreamUses streamUses(const ir::Module& module, const ir::Kernel& kernel);
 
-/// The parameter whose shape is the domain's: the first output; of a reduce, the accumulator; the number
-/// of parameters where there is neither.
+/// The parameter whose shape is the domain's: the first output; the number of parameters where there is none.
 std::uint32_t domainParam(const ir::Kernel& kernel);
 
 }  // namespace skc::emit

@@ -48,7 +48,12 @@ std::vector<Form> formsOf(const Kernel& kernel) {
 
 std::string resultType(const Module& module, const Kernel& kernel, Form form,
                        const std::vector<std::string>& scope) {
-  return form == Form::ReduceToValue ? cppType(module, kernel.params[1].type, scope) : "void";
+  if (form != Form::ReduceToValue) return "void";
+  std::vector<std::string> types;
+  for (const KernelParam& param : kernel.params) {
+    if (param.role == ParamRole::Accumulator) types.push_back(cppType(module, param.type, scope));
+  }
+  return types.size() == 1 ? types.front() : fmt::format("std::tuple<{}>", join(types, ", "));
 }
 
 std::string parameterList(const Module& module, const Kernel& kernel, Form form,

@@ -54,6 +54,7 @@ class SourceWriter {
                         fileName);
     text_ += "namespace sk::program {\nnamespace {\n\n";
     sources();
+    isWritten_.assign(names_.size(), false);
     for (std::size_t i = 0; i < names_.size(); ++i) descriptors(i);
     text_ += "}  // namespace\n}  // namespace sk::program\n";
     for (const Callable& callable : callables) {
@@ -74,21 +75,45 @@ class SourceWriter {
 
   // ---- descriptors ------------------------------------------------------------------------------
 
+  /// Those of an overload that combines come before those that name it.
   void descriptors(std::size_t unit) {
+    if (isWritten_[unit]) return;
+    isWritten_[unit] = true;
     const sk::program::Kernel& kernel = program_.units()[unit].kernel;
     const std::string& name = names_[unit];
     const Kernel& declared = kernelOf(unit);
     kernelParts(kernel, declared, name);
     if (!declared.plans.empty()) plans(kernel, declared, name);
+    text_ += fmt::format("constexpr Kernel {}Kernel = {};\n\n", name, kernelText(kernel, name, 4));
     const sk::program::Reduction* reduction = program_.units()[unit].reduction;
-    if (reduction == nullptr) {
-      text_ += fmt::format("constexpr Kernel {}Kernel = {};\n\n", name, kernelText(kernel, name, 4));
-    } else {
-      text_ += fmt::format(
-          "constexpr Reduction {}Reduction = {{\n    .fold = {},\n    .combine = \"{}\",\n"
-          "    .seeded = {}}};\n\n",
-          name, kernelText(kernel, name, 13), reduction->combine, reduction->seeded);
+    if (reduction == nullptr) return;
+    const std::string combine = combination(unit, *reduction);
+    const Kernel& combining = module_.kernels[*declared.reduction->combine];
+    const bool hasOperands =
+        std::any_of(combining.params.begin(), combining.params.end(), [](const KernelParam& param) {
+          return param.role != ParamRole::Input && param.role != ParamRole::Accumulator;
+        });
+    std::vector<std::string> operands;
+    for (std::uint8_t operand : reduction->combineOperands) operands.push_back(std::to_string(operand));
+    if (hasOperands) list("std::uint8_t", name + "Operands", operands);
+    text_ += fmt::format(
+        "constexpr Reduction {0}Reduction = {{\n    .fold = {0}Kernel,\n    .combine = {1}Kernel,\n"
+        "    .combineOperands = {2},\n    .seeded = {3}}};\n\n",
+        name, combine, hasOperands ? name + "Operands" : "{}", reduction->seeded);
+  }
+
+  /// The descriptor of what combines, which this writes unless it is there: "sum", "squaresCombine".
+  std::string combination(std::size_t unit, const sk::program::Reduction& reduction) {
+    const KernelId id = *kernelOf(unit).reduction->combine;
+    for (std::size_t other = 0; other < names_.size(); ++other) {
+      if (program_.units()[other].id != id) continue;
+      descriptors(other);
+      return names_[other];
     }
+    const std::string name = names_[unit] + "Combine";
+    kernelParts(reduction.combine, module_.kernels[id], name);
+    text_ += fmt::format("constexpr Kernel {}Kernel = {};\n\n", name, kernelText(reduction.combine, name, 4));
+    return name;
   }
 
   /// What the descriptor of a kernel refers to.
@@ -294,21 +319,28 @@ class SourceWriter {
       case Form::Run: run(kernel, unit); break;
       case Form::ReduceToValue: reduceToValue(kernel, unit); break;
       case Form::ReduceToStream:
-        text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {}.region(), {}.region());\n",
-                             names_[unit], kernel.params[0].name, kernel.params[1].name);
+        text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {});\n", names_[unit],
+                             arguments(kernel, form));
     }
     text_ += "}\n";
   }
 
   void run(const Kernel& kernel, std::size_t unit) {
+    text_ +=
+        fmt::format("  sk::run(sk::program::{}Kernel, {});\n", names_[unit], arguments(kernel, Form::Run));
+  }
+
+  /// Writes the array of arguments, and gives its name.
+  std::string arguments(const Kernel& kernel, Form form) {
     std::vector<std::string> items;
     for (const KernelParam& param : kernel.params) {
-      items.push_back(argument(param));
+      const bool isReturned = param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
+      items.push_back(isReturned ? "{}" : argument(param));
     }
     const std::string list = localName(kernel, "arguments");
     const std::string head = fmt::format("  const sk::Argument {}[] = {{", list);
     text_ += wrapLine(head + join(items, ", ") + "};", 100, head.size()) + "\n";
-    text_ += fmt::format("  sk::run(sk::program::{}Kernel, {});\n", names_[unit], list);
+    return list;
   }
 
   static std::string argument(const KernelParam& param) {
@@ -321,10 +353,21 @@ class SourceWriter {
   }
 
   void reduceToValue(const Kernel& kernel, std::size_t unit) {
+    const auto count =
+        std::count_if(kernel.params.begin(), kernel.params.end(),
+                      [](const KernelParam& param) { return param.role == ParamRole::Accumulator; });
     const std::string value = localName(kernel, "value");
-    text_ += fmt::format(
-        "  {} {};\n  sk::reduce(sk::program::{}Reduction, {}.region(), &{});\n  return {};\n",
-        cppType(module_, kernel.params[1].type), value, names_[unit], kernel.params[0].name, value, value);
+    std::vector<std::string> places;
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      places.push_back(count == 1 ? "&" + value : fmt::format("&std::get<{}>({})", i, value));
+    }
+    text_ += fmt::format("  {} {};\n", resultType(module_, kernel, Form::ReduceToValue, {}), value);
+    const std::string list = arguments(kernel, Form::ReduceToValue);
+    const std::string results = localName(kernel, "results");
+    const std::string head = fmt::format("  void* const {}[] = {{", results);
+    text_ += wrapLine(head + join(places, ", ") + "};", 100, head.size()) + "\n";
+    text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {}, {});\n  return {};\n", names_[unit],
+                         list, results, value);
   }
 
   /// A local beside the parameters.
@@ -342,6 +385,7 @@ class SourceWriter {
   const Module& module_;
   const Program& program_;
   std::vector<std::string> names_;
+  std::vector<bool> isWritten_;   ///< descriptors, by unit
   std::string text_;
 };
 

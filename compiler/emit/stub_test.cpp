@@ -84,15 +84,23 @@ constexpr Kernel diffuseKernel = {
     .sources = sources,
     .usesIndex = true};
 )"));
-  CHECK(contains(source, R"(constexpr Reduction nearestReduction = {
-    .fold = {.name = "nearest",
-             .entry = "nearest",
-             .declarations = nearestDeclarations,
-             .body = nearestBody,
-             .parameters = nearestParameters,
-             .sources = sources},
-    .combine = "nearest",
+  CHECK(contains(source, R"(constexpr Kernel nearestKernel = {
+    .name = "nearest",
+    .entry = "nearest",
+    .declarations = nearestDeclarations,
+    .body = nearestBody,
+    .parameters = nearestParameters,
+    .sources = sources};
+
+constexpr Reduction nearestReduction = {
+    .fold = nearestKernel,
+    .combine = nearestKernel,
+    .combineOperands = {},
     .seeded = true};
+)"));
+  CHECK(contains(source, R"(constexpr Reduction powerReduction = {
+    .fold = powerKernel,
+    .combine = powerCombineKernel,
 )"));
   CHECK(contains(source, R"(
 void heat::DiffuseKernel::operator()(float k, const sk::In<float>& u,
@@ -104,7 +112,9 @@ void heat::DiffuseKernel::operator()(float k, const sk::In<float>& u,
   CHECK(contains(source, R"(
 Hit NearestReduce::operator()(const sk::In<Hit>& h) const {
   Hit value;
-  sk::reduce(sk::program::nearestReduction, h.region(), &value);
+  const sk::Argument arguments[] = {{.region = h.region()}, {}};
+  void* const results[] = {&value};
+  sk::reduce(sk::program::nearestReduction, arguments, results);
   return value;
 }
 )"));
@@ -134,7 +144,7 @@ Module awkwardModule() {
   const VarId x = k.input("value", Type::of(Scalar::Int, 2));
   const VarId n = k.accumulator("arguments", Type::of(Scalar::Int, 2));
   k.finish(block(assign(k.ref(n), BinaryOp::Add, k.ref(x), atLine(9))), "reduce void count(...)");
-  module.kernels.back().reduction = Reduction{module.kernels.back().entry, true};
+  module.kernels.back().reduction = Reduction{static_cast<KernelId>(module.kernels.size() - 1), {0, 1}, true};
   return module;
 }
 

@@ -200,33 +200,57 @@ void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation w
       fail(Diag::KernelWithoutDomain, where, {kernel.name});
     return;
   }
-  if (kernel.params.size() != 2 || kernel.params[0].role != ir::ParamRole::Input ||
-      kernel.params[1].role != ir::ParamRole::Accumulator) {
+  if (count(ir::ParamRole::Input) == 0 || count(ir::ParamRole::Accumulator) == 0) {
     fail(Diag::ReduceParameters, where, {kernel.name});
-  }
-  // a run of elements has no index of its own, and partial results fold without any
-  for (const ir::FunctionId id : ir::functionsOf(module_, kernel)) {
-    ir::walkExprs(module_.functions[id].body, [&](const ir::Expr& expr) {
-      if (std::holds_alternative<ir::IndexOf>(expr.node) || std::holds_alternative<ir::ExtentOf>(expr.node)) {
-        fail(Diag::IndexInReduce, clangLocation(expr.loc), {kernel.name});
-      }
-    });
   }
 }
 
-/// Where an accumulator's type differs from the element's, an overload that folds two accumulators
-/// says how partial results combine.
+namespace {
+
+std::vector<ir::Type> typesOf(const ir::Kernel& kernel, ir::ParamRole role) {
+  std::vector<ir::Type> types;
+  for (const ir::KernelParam& param : kernel.params) {
+    if (param.role == role) types.push_back(param.type);
+  }
+  return types;
+}
+
+/// For each parameter of `combine` that is no element and no accumulator, the same one of `kernel`; nothing
+/// where there is none of that name and kind.
+std::optional<std::vector<std::uint32_t>> operandsOf(const ir::Kernel& combine, const ir::Kernel& kernel) {
+  std::vector<std::uint32_t> operands;
+  for (const ir::KernelParam& param : combine.params) {
+    operands.push_back(0);
+    if (param.role == ir::ParamRole::Input || param.role == ir::ParamRole::Accumulator) continue;
+    const auto found =
+        std::find_if(kernel.params.begin(), kernel.params.end(), [&](const ir::KernelParam& other) {
+          return other.name == param.name && other.role == param.role && other.type == param.type &&
+                 other.rank == param.rank;
+        });
+    if (found == kernel.params.end()) return std::nullopt;
+    operands.back() = static_cast<std::uint32_t>(found - kernel.params.begin());
+  }
+  return operands;
+}
+
+}  // namespace
+
+/// Where the accumulators' types differ from the elements', an overload that folds accumulators says how
+/// partial results combine. It may take uniforms and gathers of the reduce, too.
 void ModuleLowering::pairReductions() {
-  std::vector<bool> isCombination(module_.kernels.size(), false);
   for (ir::Kernel& kernel : module_.kernels) {
-    if (!kernel.reduction || kernel.params[0].type == kernel.params[1].type) continue;
-    for (std::size_t i = 0; i < module_.kernels.size(); ++i) {
-      const ir::Kernel& other = module_.kernels[i];
+    if (!kernel.reduction) continue;
+    const std::vector<ir::Type> accumulators = typesOf(kernel, ir::ParamRole::Accumulator);
+    if (typesOf(kernel, ir::ParamRole::Input) == accumulators) continue;
+    for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
+      const ir::Kernel& other = module_.kernels[id];
       if (!other.reduction || other.name != kernel.name || other.scope != kernel.scope) continue;
-      if (other.params[0].type == kernel.params[1].type && other.params[1].type == kernel.params[1].type) {
-        kernel.reduction->combine = other.entry;
-        isCombination[i] = true;
+      if (typesOf(other, ir::ParamRole::Input) != accumulators ||
+          typesOf(other, ir::ParamRole::Accumulator) != accumulators) {
+        continue;
       }
+      std::optional<std::vector<std::uint32_t>> operands = operandsOf(other, kernel);
+      if (operands) kernel.reduction = ir::Reduction{id, std::move(*operands), false};
     }
   }
 }

@@ -283,7 +283,7 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   }
   if (!parts.value.empty() && qualifier != "reduce") return fail(Diag::DefaultArgument, {name});
   if (qualifier == "iter" || qualifier == "spec") {
-    if (kind != FunctionKind::Kernel) {
+    if (kind == FunctionKind::Helper) {
       diagnostics_.report(Diag::QualifierOutsideKernel, locOf(parts.qualifier), {qualifier, name});
       return false;
     }

@@ -27,6 +27,8 @@
 //   * Each kernel has an entry function, with one variable per kernel parameter, in order. After
 //     `specialize-gathers`, no function but an entry has Gather or Sink parameters, and every StreamRef
 //     names a kernel parameter; the functions that a kernel reaches are then its own.
+//   * A reduce has inputs and accumulators. Partial results are combined by a reduce whose inputs have the
+//     types of its accumulators, and which does not ask where an element is.
 //   * A kernel that some target cannot run in one pass has plans after `split-kernels`. The kernels
 //     of their passes stand in the module like all others.
 //
@@ -211,10 +213,11 @@ struct KernelParam {
 };
 
 /// How partial results of a reduce combine; set by derive-combine (frontend: where the user wrote
-/// an overload that folds two accumulators).
+/// an overload that folds accumulators).
 struct Reduction {
-  std::optional<FunctionId> combine;   ///< void (In A x, InOut A total); may be the entry itself
-  bool seeded = false;                 ///< see sk::program::Reduction
+  std::optional<KernelId> combine = {};      ///< a reduce of accumulators; may be the very kernel
+  std::vector<std::uint32_t> operands = {};  ///< one a parameter of it: see sk::program::Reduction
+  bool seeded = false;                       ///< likewise
 };
 
 // ---- plans ------------------------------------------------------------------------------------
@@ -280,8 +283,9 @@ struct Kernel {
                                        ///< Uniform, Iterator and Spec In, Input Element,
                                        ///< Output and Accumulator InOut, Gather Gather,
                                        ///< VariableOutput and Scatter Sink
-  std::vector<KernelParam> params;     ///< of a reduce: an Input, then an Accumulator
+  std::vector<KernelParam> params;
   std::optional<Reduction> reduction;  ///< set for `reduce`
+  bool isCombination = false;          ///< made to combine partial results: C++ cannot call it
   std::vector<Plan> plans;             ///< for targets that it is too large for, the most generous first
   std::optional<PassOf> pass;
   Loc loc;

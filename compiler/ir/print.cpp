@@ -141,8 +141,11 @@ std::string printParam(const Module& module, const Function& entry, const Kernel
 std::string printKernel(const Module& module, const Kernel& kernel) {
   std::string text = fmt::format("{} {}{}: entry @{}", kernel.reduction ? "reduce" : "kernel",
                                  qualifier(kernel.scope), kernel.name, kernel.entry);
-  if (kernel.reduction && kernel.reduction->combine)
-    text += fmt::format(", combine @{}", *kernel.reduction->combine);
+  if (kernel.reduction && kernel.reduction->combine) {
+    const Kernel& combine = module.kernels[*kernel.reduction->combine];
+    text += fmt::format(", combined by {}", &combine == &kernel ? "itself" : combine.name);
+    if (combine.name == kernel.name && &combine != &kernel) text += fmt::format(" @{}", combine.entry);
+  }
   if (kernel.reduction && kernel.reduction->seeded) text += ", seeded";
   if (kernel.pass) text += fmt::format(", pass {} of {}", kernel.pass->number, kernel.pass->count);
   text += "\n";

@@ -43,8 +43,27 @@ std::vector<FunctionId> functionsOf(const Module& module, const Kernel& kernel) 
   std::vector<Mark> marks(module.functions.size(), Mark::New);
   std::vector<FunctionId> order;
   visit(module, kernel.entry, marks, order);
-  if (kernel.reduction && kernel.reduction->combine) visit(module, *kernel.reduction->combine, marks, order);
   return order;
+}
+
+std::optional<Loc> usesPlace(const Module& module, const Kernel& kernel) {
+  std::optional<Loc> found;
+  for (const KernelParam& param : kernel.params) {
+    if (param.role == ParamRole::Iterator) found = param.loc;
+  }
+  for (FunctionId id : functionsOf(module, kernel)) {
+    walkExprs(module.functions[id].body, [&](const Expr& expr) {
+      const auto* extent = std::get_if<ExtentOf>(&expr.node);
+      const bool isOfGather = extent != nullptr &&
+                              extent->stream.space == StreamRef::Space::KernelParameter &&
+                              kernel.params[extent->stream.id].role == ParamRole::Gather;
+      const bool isPlace = std::holds_alternative<IndexOf>(expr.node) ||
+                           std::holds_alternative<NeighborRead>(expr.node) ||
+                           (extent != nullptr && !isOfGather);
+      if (isPlace && !found) found = expr.loc;
+    });
+  }
+  return found;
 }
 
 std::optional<FunctionId> findRecursion(const Module& module) {

@@ -228,18 +228,37 @@ void checkNeed(const Module& module, Stage stage, const Kernel& kernel, const Ke
   });
 }
 
+std::vector<Type> typesOf(const Kernel& kernel, ParamRole role) {
+  std::vector<Type> types;
+  for (const KernelParam& param : kernel.params) {
+    if (param.role == role) types.push_back(param.type);
+  }
+  return types;
+}
+
 void checkReduction(const Module& module, const Kernel& kernel) {
-  require(kernel.params.size() == 2 && kernel.params[0].role == ParamRole::Input &&
-              kernel.params[1].role == ParamRole::Accumulator,
-          "a reduce has an input, then an accumulator");
+  const std::vector<Type> accumulators = typesOf(kernel, ParamRole::Accumulator);
+  require(!typesOf(kernel, ParamRole::Input).empty(), "a reduce has no input");
+  for (const KernelParam& param : kernel.params) {
+    require(param.role != ParamRole::Output && param.role != ParamRole::VariableOutput &&
+                param.role != ParamRole::Scatter,
+            "a reduce has an output");
+  }
   if (!kernel.reduction->combine) return;
-  require(*kernel.reduction->combine < module.functions.size(), "the combining function is not in the table");
-  const Function& combine = module.functions[*kernel.reduction->combine];
-  const Type accumulator = kernel.params[1].type;
-  require(combine.result.isVoid() && combine.parameterCount == 2 &&
-              combine.variables[0].type == accumulator && combine.variables[1].type == accumulator &&
-              combine.variables[1].role == VarRole::InOut,
-          "the combining function does not fold two accumulators");
+  require(*kernel.reduction->combine < module.kernels.size(), "the combining kernel is not in the table");
+  const Kernel& combine = module.kernels[*kernel.reduction->combine];
+  require(typesOf(combine, ParamRole::Input) == accumulators &&
+              typesOf(combine, ParamRole::Accumulator) == accumulators,
+          "the combining kernel does not fold accumulators");
+  const std::vector<std::uint32_t>& operands = kernel.reduction->operands;
+  require(operands.size() == combine.params.size(), "the combining kernel has too many or too few operands");
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    const ParamRole role = combine.params[i].role;
+    if (role == ParamRole::Input || role == ParamRole::Accumulator) continue;
+    require(operands[i] < kernel.params.size() && kernel.params[operands[i]].role == role &&
+                kernel.params[operands[i]].type == combine.params[i].type,
+            "an operand of the combining kernel is not there, or of another kind");
+  }
 }
 
 void checkPlan(const Module& module, const Kernel& kernel, const Plan& plan) {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "transforms/derive_combine.hpp"
 
-#include <bit>
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "ir/build.hpp"
 #include "ir/print.hpp"
+#include "ir/reach.hpp"
 #include "transforms/fold_pattern.hpp"
 
 namespace skc {
@@ -17,15 +18,43 @@ using namespace ir;
 
 // ---- identities -------------------------------------------------------------------------------
 
+/// A literal of a narrow type, given as its carrier's.
+ExprPtr narrowed(Scalar scalar, ExprPtr value) {
+  value->type = Type::of(scalar);
+  return value;
+}
+
 /// The smallest or largest value of a component type.
 ExprPtr extreme(Scalar scalar, bool largest) {
-  const float infinity = std::numeric_limits<float>::infinity();
   using Int = std::numeric_limits<std::int32_t>;
-  if (scalar == Scalar::Int) return literal(largest ? Int::max() : Int::min());
-  if (scalar == Scalar::Uint) return literal(largest ? 0xffffffffU : 0U);
-  if (scalar == Scalar::Bool) return literal(largest);
-  if (scalar == Scalar::Double) return literal(largest ? double{infinity} : -double{infinity});
-  return literal(largest ? infinity : -infinity);
+  const float infinity = std::numeric_limits<float>::infinity();
+  const auto integer = [&](std::int32_t low, std::int32_t high) {
+    return narrowed(scalar, literal(largest ? high : low));
+  };
+  const auto real = [&](float low, float high) { return narrowed(scalar, literal(largest ? high : low)); };
+  switch (scalar) {
+    case Scalar::Bool: return literal(largest);
+    case Scalar::Int: return literal(largest ? Int::max() : Int::min());
+    case Scalar::Uint: return literal(largest ? 0xffffffffU : 0U);
+    case Scalar::Char: return integer(-128, 127);
+    case Scalar::Uchar: return integer(0, 255);
+    case Scalar::Short: return integer(-32768, 32767);
+    case Scalar::Ushort: return integer(0, 65535);
+    case Scalar::Unorm8:
+    case Scalar::Unorm16: return real(0, 1);
+    case Scalar::Snorm8:
+    case Scalar::Snorm16: return real(-1, 1);
+    case Scalar::Double: return literal(largest ? double{infinity} : -double{infinity});
+    case Scalar::Float:
+    case Scalar::Half: break;
+  }
+  return real(-infinity, infinity);
+}
+
+/// All bits of an integer.
+ExprPtr allBits(Scalar scalar) {
+  const bool isUnsigned = scalar == Scalar::Uchar || scalar == Scalar::Ushort;
+  return isUnsigned ? extreme(scalar, true) : literalOf(Type::of(scalar), -1);
 }
 
 /// The neutral element of an operator that foldOf lets through and isAssociative holds for.
@@ -34,22 +63,35 @@ ExprPtr neutral(FoldOp op, Scalar scalar) {
     return extreme(scalar, *intrinsic == Intrinsic::Min);
   const Type type = Type::of(scalar);
   const BinaryOp binary = std::get<BinaryOp>(op);
-  if (binary == BinaryOp::BitAnd) return literalOf(type, -1);
+  if (binary == BinaryOp::BitAnd) return allBits(scalar);
   if (binary == BinaryOp::Mul || binary == BinaryOp::LogicalAnd) return literalOf(type, 1);
   return literalOf(type, 0);
 }
 
-/// The identity of the scalar or vector member at `members`; null where a component is not folded.
-ExprPtr leafIdentity(const FoldPattern& pattern, const std::vector<std::uint32_t>& members, Type type) {
+/// A value with this in every component.
+ExprPtr everywhere(Type type, const Expr& component) {
+  if (type.isScalar()) return clone(component);
+  if (type.isVector()) return construct(type, exprs(clone(component)));
+  std::vector<ExprPtr> rows;
+  for (int i = 0; i < type.width; ++i) rows.push_back(everywhere(type.indexed(), component));
+  return construct(type, std::move(rows));
+}
+
+/// The way to a member of an accumulator.
+struct MemberPath {
+  VarId accumulator;
+  std::vector<std::uint32_t> members;
+};
+
+/// The identity of the scalar, vector or matrix member there; null where a component is not folded.
+ExprPtr leafIdentity(const FoldPattern& pattern, const MemberPath& path, Type type) {
   std::vector<ExprPtr> components(type.width);
   for (const FoldPart& part : pattern.parts) {
-    if (part.members != members) continue;
-    if (part.isWhole()) {
-      ExprPtr one = neutral(part.op, type.scalar);
-      return type.isScalar() ? std::move(one) : construct(type, exprs(std::move(one)));
-    }
+    if (part.accumulator != path.accumulator || part.members != path.members) continue;
+    const ExprPtr one = neutral(part.op, type.scalar);
+    if (part.isWhole()) return everywhere(type, *one);
     for (unsigned i = 0; i < type.width; ++i) {
-      if ((part.components >> i & 1U) != 0) components[i] = neutral(part.op, type.scalar);
+      if ((part.components >> i & 1U) != 0) components[i] = clone(*one);
     }
   }
   for (const ExprPtr& component : components) {
@@ -58,16 +100,15 @@ ExprPtr leafIdentity(const FoldPattern& pattern, const std::vector<std::uint32_t
   return construct(type, std::move(components));
 }
 
-ExprPtr identityOf(const Module& module, const FoldPattern& pattern, std::vector<std::uint32_t> members,
-                   Type type) {
-  if (type.isArithmetic()) return leafIdentity(pattern, members, type);
+ExprPtr identityOf(const Module& module, const FoldPattern& pattern, MemberPath path, Type type) {
+  if (type.isArithmetic() || type.isMatrix()) return leafIdentity(pattern, path, type);
   if (type.kind != Type::Kind::Struct) return nullptr;
   std::vector<ExprPtr> fields;
-  members.push_back(0);
+  path.members.push_back(0);
   for (const StructField& field : module.structs[type.index].fields) {
-    fields.push_back(identityOf(module, pattern, members, field.type));
+    fields.push_back(identityOf(module, pattern, path, field.type));
     if (!fields.back()) return nullptr;
-    ++members.back();
+    ++path.members.back();
   }
   return construct(type, std::move(fields));
 }
@@ -86,28 +127,73 @@ ExprPtr access(const Module& module, const Function& function, VarId var, const 
   return swizzle(std::move(expr), components, part.loc);
 }
 
-Stmt combinePart(const Module& module, const Function& function, const FoldPart& part) {
-  const auto partial = [&] { return access(module, function, 0, part); };
-  const auto total = [&] { return access(module, function, 1, part); };
+/// `partial` and `total`: variables of the combining function.
+Stmt combinePart(const Module& module, const Function& function, const FoldPart& part, VarId partial,
+                 VarId total) {
+  const auto as = [&](Scalar scalar, ExprPtr value) {
+    return value->type.isMatrix() ? std::move(value) : convert(scalar, std::move(value), part.loc);
+  };
+  const auto read = [&](VarId var) {   // operators know only carriers
+    return as(carrierOf(part.type.scalar), access(module, function, var, part));
+  };
+  ExprPtr place = access(module, function, total, part);
   if (const auto* n = std::get_if<Intrinsic>(&part.op)) {
-    return assign(total(), intrinsic(*n, exprs(total(), partial()), part.loc), part.loc);
+    ExprPtr value = intrinsic(*n, exprs(read(total), read(partial)), part.loc);
+    return assign(std::move(place), as(part.type.scalar, std::move(value)), part.loc);
   }
   const BinaryOp op = std::get<BinaryOp>(part.op);
-  if (op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr) {
-    return assign(total(), binary(op, total(), partial(), part.loc), part.loc);
+  const bool isLogical = op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr;
+  if (!isLogical && !part.type.isNarrow() && !part.type.isMatrix()) {
+    return assign(std::move(place), op, access(module, function, partial, part), part.loc);
   }
-  return assign(total(), op, partial(), part.loc);
+  ExprPtr value = binary(op, read(total), read(partial), part.loc);
+  return assign(std::move(place), as(part.type.scalar, std::move(value)), part.loc);
 }
 
-FunctionId makeCombine(Module& module, const Kernel& kernel, const FoldPattern& pattern) {
-  const Type type = kernel.params[1].type;
-  Function function{
-      .name = kernel.name + "_combine", .result = {}, .variables = {}, .body = {}, .loc = kernel.loc};
-  addVariable(function, kernel.params[0].name, type, VarRole::In, kernel.params[0].loc);
-  addVariable(function, kernel.params[1].name, type, VarRole::InOut, kernel.params[1].loc);
-  for (const FoldPart& part : pattern.parts) function.body.push_back(combinePart(module, function, part));
-  module.functions.push_back(std::move(function));
-  return static_cast<FunctionId>(module.functions.size() - 1);
+/// Adds a parameter to a kernel and to its entry function.
+void addParam(Kernel& kernel, Function& entry, std::string name, const KernelParam& like, ParamRole role) {
+  KernelParam param;
+  param.name = name;
+  param.role = role;
+  param.type = like.type;
+  param.loc = like.loc;
+  kernel.params.push_back(std::move(param));
+  addVariable(entry, std::move(name), like.type, role == ParamRole::Input ? VarRole::Element : VarRole::InOut,
+              like.loc);
+}
+
+/// The reduce that combines what `kernel`, of a known pattern, has folded: `total op= total_part` for each part.
+KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern) {
+  const Kernel& kernel = module.kernels[id];
+  const Loc loc = kernel.loc;
+  Kernel made;
+  made.name = kernel.name + "_combine";
+  made.scope = kernel.scope;
+  made.loc = loc;
+  made.isCombination = true;
+  Function entry{.name = made.name, .result = {}, .variables = {}, .body = {}, .loc = loc};
+  std::vector<VarId> accumulators;
+  for (VarId i = 0; i < kernel.params.size(); ++i) {
+    if (kernel.params[i].role == ParamRole::Accumulator) accumulators.push_back(i);
+  }
+  for (const ParamRole role : {ParamRole::Input, ParamRole::Accumulator}) {
+    for (VarId i : accumulators) {
+      const KernelParam& param = kernel.params[i];
+      addParam(made, entry, param.name + (role == ParamRole::Input ? "_part" : ""), param, role);
+    }
+  }
+  for (const FoldPart& part : pattern.parts) {
+    const auto found = std::find(accumulators.begin(), accumulators.end(), part.accumulator);
+    const auto partial = static_cast<VarId>(found - accumulators.begin());
+    const auto total = static_cast<VarId>(accumulators.size()) + partial;
+    entry.body.push_back(combinePart(module, entry, part, partial, total));
+  }
+  const auto madeId = static_cast<KernelId>(module.kernels.size());
+  made.entry = static_cast<FunctionId>(module.functions.size());
+  made.reduction = Reduction{madeId, std::vector<std::uint32_t>(made.params.size()), true};
+  module.functions.push_back(std::move(entry));
+  module.kernels.push_back(std::move(made));
+  return madeId;
 }
 
 // ---- the cases --------------------------------------------------------------------------------
@@ -141,52 +227,106 @@ class State {
  public:
   State(Module& module, Diagnostics& diagnostics) : module_(module), diagnostics_(diagnostics) {}
 
-  void derive(Kernel& kernel) {
-    Reduction& reduction = *kernel.reduction;
-    KernelParam& accumulator = kernel.params[1];
-    const bool given = accumulator.identity != nullptr;
-    const bool sameType = kernel.params[0].type == accumulator.type;
-    const std::optional<FoldPattern> pattern = recogniseFold(module_.functions[kernel.entry]);
-    if (pattern && !reduction.combine && !checkAssociative(*pattern, accumulator)) return;
-    if (pattern && !given) accumulator.identity = identityOf(module_, *pattern, {}, accumulator.type);
-    if (reduction.combine) {
-      reduction.seeded = false;
-    } else if (pattern ? pattern->isPlain : sameType) {
-      reduction.combine = kernel.entry;
-      reduction.seeded = !given;
+  void derive(KernelId id) {
+    Kernel& kernel = module_.kernels[id];
+    const std::optional<FoldPattern> pattern = recogniseFold(kernel, module_.functions[kernel.entry]);
+    if (pattern && !kernel.reduction->combine && !checkAssociative(kernel, *pattern)) return;
+    const bool isGiven = anyAccumulator(kernel, [](const KernelParam& param) { return !!param.identity; });
+    if (pattern) addIdentities(kernel, *pattern);
+    if (kernel.reduction->combine) {
+      if (!checkCombination(kernel)) return;
+    } else if (pattern ? pattern->isPlain : foldsAccumulators(kernel)) {
+      if (!checkOwnCombination(kernel, id)) return;
+      combineByItself(kernel, id, !isGiven);
     } else if (pattern) {
-      reduction.combine = makeCombine(module_, kernel, *pattern);
+      const KernelId made = makeCombination(module_, id, *pattern);
+      std::vector<std::uint32_t> operands(module_.kernels[made].params.size());
+      module_.kernels[id].reduction = Reduction{made, std::move(operands), false};
     } else {
-      return complain(Diag::ReduceNeedsCombine, kernel);
+      return needCombine(kernel);
     }
-    if (!reduction.seeded && !accumulator.identity) complain(Diag::ReduceNeedsIdentity, kernel);
+    checkIdentities(module_.kernels[id]);
   }
 
  private:
-  bool checkAssociative(const FoldPattern& pattern, const KernelParam& accumulator) {
+  template <class Predicate>
+  static bool anyAccumulator(const Kernel& kernel, Predicate&& holds) {
+    return std::any_of(kernel.params.begin(), kernel.params.end(), [&](const KernelParam& param) {
+      return param.role == ParamRole::Accumulator && holds(param);
+    });
+  }
+
+  void addIdentities(Kernel& kernel, const FoldPattern& pattern) const {
+    for (VarId i = 0; i < kernel.params.size(); ++i) {
+      KernelParam& param = kernel.params[i];
+      if (param.role != ParamRole::Accumulator || param.identity) continue;
+      param.identity = identityOf(module_, pattern, {i, {}}, param.type);
+    }
+  }
+
+  /// A run that starts from its first elements needs them, whatever the spec parameters are.
+  static void combineByItself(Kernel& kernel, KernelId id, bool seeded) {
+    Reduction& reduction = *kernel.reduction;
+    reduction.combine = id;
+    reduction.seeded = seeded;
+    for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
+      reduction.operands.push_back(i);
+      if (kernel.params[i].role == ParamRole::Input) kernel.params[i].neededIf = nullptr;
+    }
+  }
+
+  /// Partial results have no index.
+  bool checkCombination(const Kernel& kernel) {
+    const std::optional<Loc> place = usesPlace(module_, module_.kernels[*kernel.reduction->combine]);
+    if (place) diagnostics_.report(Diag::CombineUsesIndex, *place, {kernel.name});
+    return !place;
+  }
+  bool checkOwnCombination(const Kernel& kernel, KernelId id) {
+    const std::optional<Loc> place = usesPlace(module_, kernel);
+    const bool isTold = std::any_of(  // where it is the overload that combines for another
+        module_.kernels.begin(), module_.kernels.end(),
+        [&](const Kernel& other) { return other.reduction && other.reduction->combine == id; });
+    if (place && !isTold) diagnostics_.report(Diag::ReduceIndexCombine, *place, {kernel.name});
+    return !place;
+  }
+
+  bool checkAssociative(const Kernel& kernel, const FoldPattern& pattern) {
     for (const FoldPart& part : pattern.parts) {
       if (isAssociative(part.op)) continue;
       const BinaryOp op = std::get<BinaryOp>(part.op);
+      const std::string& name = kernel.params[part.accumulator].name;
       std::string advice = "fold with '+', '*', '&', '|', '^', min or max";
-      if (op == BinaryOp::Sub)
-        advice = "write '" + accumulator.name + " += ...' and subtract once, from the result";
-      if (op == BinaryOp::Div)
-        advice = "write '" + accumulator.name + " *= ...' and divide once, by the result";
-      diagnostics_.report(Diag::ReduceNotAssociative, part.loc, {spelling(op), accumulator.name, advice});
+      if (op == BinaryOp::Sub) advice = "write '" + name + " += ...' and subtract once, from the result";
+      if (op == BinaryOp::Div) advice = "write '" + name + " *= ...' and divide once, by the result";
+      diagnostics_.report(Diag::ReduceNotAssociative, part.loc, {spelling(op), name, advice});
       return false;
     }
     return true;
   }
 
-  void complain(Diag diag, const Kernel& kernel) {
-    const KernelParam& accumulator = kernel.params[1];
-    const std::string type = print(module_, accumulator.type);
-    const std::string element = print(module_, kernel.params[0].type);
-    if (diag == Diag::ReduceNeedsCombine) {
-      diagnostics_.report(diag, kernel.loc, {kernel.name, type, accumulator.name});
-    } else {
-      diagnostics_.report(diag, accumulator.loc, {kernel.name, element, type, accumulator.name});
+  void checkIdentities(const Kernel& kernel) {
+    if (kernel.reduction->seeded) return;
+    std::string elements;
+    for (const KernelParam& param : kernel.params) {
+      if (param.role != ParamRole::Input) continue;
+      elements += (elements.empty() ? "'" : " and '") + print(module_, param.type) + "'";
     }
+    for (const KernelParam& param : kernel.params) {
+      if (param.role != ParamRole::Accumulator || param.identity) continue;
+      diagnostics_.report(Diag::ReduceNeedsIdentity, param.loc,
+                          {kernel.name, elements, print(module_, param.type), param.name});
+    }
+  }
+
+  void needCombine(const Kernel& kernel) {
+    std::string parts, totals;
+    for (const KernelParam& param : kernel.params) {
+      if (param.role != ParamRole::Accumulator) continue;
+      const std::string type = print(module_, param.type);
+      parts += type + " " + param.name + "_part<>, ";
+      totals += (totals.empty() ? "reduce " : ", reduce ") + type + " " + param.name + "<>";
+    }
+    diagnostics_.report(Diag::ReduceNeedsCombine, kernel.loc, {kernel.name, parts + totals});
   }
 
   Module& module_;
@@ -197,8 +337,9 @@ class State {
 
 void deriveCombine(Module& module, Diagnostics& diagnostics) {
   State state(module, diagnostics);
-  for (Kernel& kernel : module.kernels) {
-    if (kernel.reduction) state.derive(kernel);
+  const std::size_t declared = module.kernels.size();  // before those that this adds
+  for (KernelId id = 0; id < declared; ++id) {
+    if (module.kernels[id].reduction) state.derive(id);
   }
 }
 

@@ -4,16 +4,17 @@
 //
 //   before   reduce void sumSquares(float x<>, reduce float total<>) { total += x * x; }
 //   after    the same, with identity 0 and
-//            void sumSquares_combine(float x, inout float total) { total += x; }
+//            reduce void sumSquares_combine(float total_part<>, reduce float total<>) { total += total_part; }
 //
 // Cases, in this order:
-//   * The author wrote an overload that folds two accumulators: it stays.
+//   * The author wrote an overload that folds accumulators: it stays.
 //   * The body folds by known operators (fold_pattern.hpp). `total += x` on x itself combines by
-//     itself; any other gets a function `accumulator op= x`, member by member. Subtraction and
+//     itself; any other gets a reduce `accumulator op= part`, member by member. Subtraction and
 //     division are errors: partial results of them do not combine.
-//   * The element's and the accumulator's types are the same: the entry combines, since the language
-//     demands that the operation is associative.
+//   * The elements' and the accumulators' types are the same, one by one: the reduce combines by itself,
+//     since the language demands that the operation is associative.
 //   * Otherwise the author has to write that overload.
+// What combines may not ask where an element is: a partial result is nowhere.
 //
 // Identities and -0. Where the author gives an identity, every run of elements starts from it, as the
 // text says: the sum of a stream of -0 with `= 0` is 0 + -0 = +0, as in C++, and `max` with `= -inf`

@@ -49,9 +49,9 @@ Outcome derive(Type element, Type accumulator, ExprPtr identity, const Body& bod
   const Kernel& kernel = module.kernels[0];
   Outcome outcome{.seeded = kernel.reduction->seeded};
   REQUIRE(kernel.reduction->combine);
-  const FunctionId combine = *kernel.reduction->combine;
-  const std::string text = print(module, module.functions[combine]);
-  outcome.combine = combine == kernel.entry ? "entry" : text.substr(text.find('{'));
+  const KernelId combine = *kernel.reduction->combine;
+  const std::string text = print(module, module.functions[module.kernels[combine].entry]);
+  outcome.combine = combine == 0 ? "entry" : text.substr(text.find('{'));
   if (kernel.params[1].identity) outcome.identity = print(module, Function{}, *kernel.params[1].identity);
   return outcome;
 }
@@ -119,13 +119,13 @@ TEST_CASE("bits and truth") {
   };
   CHECK(truth(LogicalAnd).identity == "true");
   CHECK(truth(LogicalOr).identity == "false");
-  CHECK(truth(LogicalAnd).combine == "{\n  total = total && x;\n}\n");
+  CHECK(truth(LogicalAnd).combine == "{\n  total = total && total_part;\n}\n");
 }
 
 TEST_CASE("something made from x: a function combines, and runs start with the identity") {
   const Outcome outcome =
       derive([](Module&, KernelMaker& k) { return fold(k, Add, binary(Mul, k.ref(x), k.ref(x))); });
-  CHECK(outcome.combine == "{\n  total += x;\n}\n");
+  CHECK(outcome.combine == "{\n  total += total_part;\n}\n");
   CHECK(outcome.identity == "0.0");
   CHECK_FALSE(outcome.seeded);
 }
@@ -136,7 +136,7 @@ TEST_CASE("through locals, branches and loops") {
     return block(declare(y, binary(Mul, k.ref(x), k.ref(x))),
                  ifStmt(binary(Less, k.ref(y), literal(1.0F)), block(assign(k.ref(total), Add, k.ref(y)))));
   });
-  CHECK(outcome.combine == "{\n  total += x;\n}\n");
+  CHECK(outcome.combine == "{\n  total += total_part;\n}\n");
 }
 
 TEST_CASE("another type of accumulator, member by member") {
@@ -149,7 +149,8 @@ TEST_CASE("another type of accumulator, member by member") {
   };
   const Outcome outcome = derive(floatType, stats, nullptr, body);
   CHECK(outcome.combine ==
-        "{\n  total.sum += x.sum;\n  total.low = min(total.low, x.low);\n  total.count += x.count;\n}\n");
+        "{\n  total.sum += total_part.sum;\n  total.low = min(total.low, total_part.low);\n"
+        "  total.count += total_part.count;\n}\n");
   CHECK(outcome.identity == "Stats{0.0, inf, 0}");
   CHECK_FALSE(outcome.seeded);
 }
@@ -175,13 +176,13 @@ TEST_CASE("vectors, whole and by component") {
   const Type float2 = Type::of(Scalar::Float, 2);
   const Outcome whole =
       derive(floatType, float2, nullptr, [](Module&, KernelMaker& k) { return fold(k, Add, k.ref(x)); });
-  CHECK(whole.combine == "{\n  total += x;\n}\n");
+  CHECK(whole.combine == "{\n  total += total_part;\n}\n");
   CHECK(whole.identity == "float2{0.0}");
   const Outcome parts = derive(floatType, float2, nullptr, [](Module&, KernelMaker& k) {
     return block(assign(swizzle(k.ref(total), "x"), Add, k.ref(x)),
                  assign(swizzle(k.ref(total), "y"), Mul, k.ref(x)));
   });
-  CHECK(parts.combine == "{\n  total.x += x.x;\n  total.y *= x.y;\n}\n");
+  CHECK(parts.combine == "{\n  total.x += total_part.x;\n  total.y *= total_part.y;\n}\n");
   CHECK(parts.identity == "float2{0.0, 1.0}");
 }
 
@@ -218,18 +219,17 @@ TEST_CASE("a general body on two types needs an overload or an identity") {
                         block(assign(k.ref(total), convert(Scalar::Float, k.ref(x))))));
   };
   CHECK(derive(intType, floatType, literal(0.0F), general).error ==
-        "how partial results of 'fold' combine does not follow from its body; add an overload that folds two "
-        "accumulators: 'reduce void fold(float x<>, reduce float total<>)'");
+        "how partial results of 'fold' combine does not follow from its body; add an overload that folds "
+        "accumulators: 'reduce void fold(float total_part<>, reduce float total<>)'");
 }
 
-/// void combine(float a, inout float b) { b += a; }, as the author's overload.
+/// reduce void fold(float a<>, reduce float b<>) { b += a; }, as the author's overload.
 void addOverload(Module& module) {
-  Function f;
-  f.name = "fold";
-  const VarId a = addVariable(f, "a", floatType, VarRole::In);
-  const VarId b = addVariable(f, "b", floatType, VarRole::InOut);
-  Block statements = block(assign(varRef(f, b), Add, varRef(f, a)));
-  module.kernels[0].reduction->combine = addFunction(module, std::move(f), std::move(statements));
+  KernelMaker k(module, "fold", 9);
+  const VarId a = k.input("a", floatType);
+  const VarId b = k.accumulator("b", floatType);
+  k.finish(block(assign(k.ref(b), Add, k.ref(a))));
+  module.kernels[0].reduction = Reduction{1, {0, 0}, false};
 }
 
 TEST_CASE("the author's overload stays, and an identity must be there or follow") {
@@ -241,6 +241,100 @@ TEST_CASE("the author's overload stays, and an identity must be there or follow"
   CHECK(derive(intType, floatType, nullptr, general, addOverload).error ==
         "'fold' folds 'int' into 'float', so it needs a value to start from; write 'reduce float total<> = "
         "...'");
+}
+
+/// The module of a reduce that `make` declares, after derive-combine.
+Module derived(const std::function<void(Module&)>& make) {
+  Module module = testModule();
+  make(module);
+  REQUIRE(validate(module, Stage::Specialized) == "");
+  DiagnosticLog log;
+  deriveCombine(module, log);
+  REQUIRE_FALSE(log.hasErrors());
+  REQUIRE(validate(module, Stage::Specialized) == "");
+  return module;
+}
+
+TEST_CASE("several accumulators combine each with its own part, and uniforms need not come along") {
+  const Module module = derived([](Module& m) {
+    KernelMaker k(m, "stats");
+    const VarId p = k.uniform("p", floatType);
+    const VarId element = k.input("x", floatType);
+    const VarId s = k.accumulator("s", floatType);
+    const VarId high = k.accumulator("high", floatType);
+    k.finish(block(assign(k.ref(s), Add, binary(Mul, k.ref(p), k.ref(element))),
+                   assign(k.ref(high), intrinsic(Intrinsic::Max, exprs(k.ref(high), k.ref(element))))));
+  });
+  const Kernel& kernel = module.kernels[0];
+  REQUIRE(*kernel.reduction->combine == 1);
+  CHECK(print(module, Function{}, *kernel.params[2].identity) == "0.0");
+  CHECK(print(module, Function{}, *kernel.params[3].identity) == "-inf");
+  CHECK(module.kernels[1].isCombination);
+  CHECK(print(module, module.functions[1]) ==
+        "  s_part: element float\n  high_part: element float\n  s: inout float\n  high: inout float\n"
+        "{\n  s += s_part;\n  high = max(high, high_part);\n}\n");
+}
+
+TEST_CASE("elements of the accumulators' types, one by one, are folded like them") {
+  const auto crossed = [](bool isCrossed) {
+    return derived([&](Module& m) {
+      KernelMaker k(m, "both");
+      const VarId a = k.input("a", floatType);
+      const VarId b = k.input("b", floatType);
+      const VarId s = k.accumulator("s", floatType);
+      const VarId t = k.accumulator("t", floatType);
+      k.finish(block(assign(k.ref(s), Add, k.ref(isCrossed ? b : a)),
+                     assign(k.ref(t), Mul, k.ref(isCrossed ? a : b))));
+    });
+  };
+  CHECK(crossed(false).kernels.size() == 1);
+  CHECK(crossed(false).kernels[0].reduction->seeded);
+  CHECK(crossed(true).kernels.size() == 2);
+}
+
+TEST_CASE("narrow accumulators are computed in their carriers") {
+  const Type half = Type::of(Scalar::Half);
+  const Outcome outcome = derive(floatType, half, nullptr, [](Module&, KernelMaker& k) {
+    ExprPtr sum = binary(Add, convert(Scalar::Float, k.ref(total)), k.ref(x));
+    return block(assign(k.ref(total), convert(Scalar::Half, std::move(sum))));
+  });
+  CHECK(outcome.combine == "{\n  total = half(float(total) + float(total_part));\n}\n");
+  CHECK(outcome.identity == "0.0");
+  const Type uchar = Type::of(Scalar::Uchar);
+  const Outcome least = derive(intType, uchar, nullptr, [](Module&, KernelMaker& k) {
+    ExprPtr low = intrinsic(Intrinsic::Min, exprs(convert(Scalar::Int, k.ref(total)), k.ref(x)));
+    return block(assign(k.ref(total), convert(Scalar::Uchar, std::move(low))));
+  });
+  CHECK(least.identity == "255");
+}
+
+TEST_CASE("sums of matrices are known, products are not") {
+  const Type matrix = Type::matrix(2);
+  const auto with = [&](BinaryOp op) {
+    return derive(floatType, matrix, nullptr, [op](Module&, KernelMaker& k) {
+      ExprPtr rows =
+          construct(Type::matrix(2), exprs(construct(Type::of(Scalar::Float, 2), exprs(k.ref(x))),
+                                           construct(Type::of(Scalar::Float, 2), exprs(k.ref(x)))));
+      return block(assign(k.ref(total), binary(op, k.ref(total), std::move(rows))));
+    });
+  };
+  CHECK(with(Add).combine == "{\n  total = total + total_part;\n}\n");
+  CHECK(with(Add).identity == "float2x2{float2{0.0}, float2{0.0}}");
+  CHECK(with(Mul).error.find("add an overload that folds accumulators") != std::string::npos);
+}
+
+TEST_CASE("an index belongs to an element, not to a partial result") {
+  const Body asks = [](Module&, KernelMaker& k) {
+    ExprPtr at = convert(Scalar::Float, swizzle(indexOf({StreamRef::Space::KernelParameter, x}), "x"));
+    return block(ifStmt(binary(Less, k.ref(x), k.ref(total)), block(assign(k.ref(total), std::move(at)))));
+  };
+  CHECK(derive(asks).error.find("'fold' asks where an element is") == 0);
+  const Outcome last = derive(floatType, intType, nullptr, [](Module&, KernelMaker& k) {
+    ExprPtr at = swizzle(indexOf({StreamRef::Space::KernelParameter, x}), "x");
+    return block(assign(k.ref(total), intrinsic(Intrinsic::Max, exprs(k.ref(total), std::move(at)))));
+  });
+  CHECK(last.combine == "{\n  total = max(total, total_part);\n}\n");
+  CHECK_FALSE(last.seeded);
 }
 
 }  // namespace

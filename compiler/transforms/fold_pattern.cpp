@@ -11,35 +11,23 @@ namespace {
 
 using namespace ir;
 
-constexpr VarId element = 0;
-constexpr VarId accumulator = 1;
-
-int countAccumulator(const Expr& expr) {
-  int count = 0;
-  walkExprs(expr, [&](const Expr& inner) {
-    const auto* n = std::get_if<VarRef>(&inner.node);
-    if (n != nullptr && n->var == accumulator) ++count;
-  });
-  return count;
-}
-
 /// A place made of members and at most one swizzle: all that is known before the program runs.
 struct StaticPlace {
+  VarId root;
   std::vector<std::uint32_t> members;
   Type type;
   unsigned components = 0;
   bool operator==(const StaticPlace&) const = default;
 };
 
-/// Of `variable`; nothing for other expressions.
-std::optional<StaticPlace> staticPlace(const Expr& expr, VarId variable) {
-  StaticPlace place;
+std::optional<StaticPlace> staticPlace(const Expr& expr) {
+  StaticPlace place{};
   const Expr* base = &expr;
   if (const auto* n = std::get_if<Swizzle>(&expr.node)) {
     for (std::uint8_t component : n->components) place.components |= 1U << component;
     base = n->base.get();
   }
-  if (!base->type.isArithmetic()) return std::nullopt;
+  if (!base->type.isArithmetic() && !base->type.isMatrix()) return std::nullopt;
   place.type = base->type;
   if (place.components == 0) place.components = (1U << base->type.width) - 1;
   while (const auto* n = std::get_if<Member>(&base->node)) {
@@ -47,8 +35,17 @@ std::optional<StaticPlace> staticPlace(const Expr& expr, VarId variable) {
     base = n->base.get();
   }
   const auto* root = std::get_if<VarRef>(&base->node);
-  if (root == nullptr || root->var != variable) return std::nullopt;
+  if (root == nullptr) return std::nullopt;
+  place.root = root->var;
   return place;
+}
+
+/// What a conversion between a narrow type and its carrier converts: operators know only the carrier.
+const Expr& withoutCarrier(const Expr& expr) {
+  const auto* n = std::get_if<Convert>(&expr.node);
+  const bool isCarried = n != nullptr && (expr.type.isNarrow() || n->operand->type.isNarrow()) &&
+                         carrierOf(expr.type.scalar) == carrierOf(n->operand->type.scalar);
+  return isCarried ? *n->operand : expr;
 }
 
 bool isCommutative(BinaryOp op) {
@@ -57,12 +54,7 @@ bool isCommutative(BinaryOp op) {
   return std::find(std::begin(all), std::end(all), op) != std::end(all);
 }
 
-bool isPlaceOf(VarId variable, const Expr& expr, const StaticPlace& place) {
-  const std::optional<StaticPlace> other = staticPlace(expr, variable);
-  return other && *other == place;
-}
-
-bool isSame(const Expr& expr, const StaticPlace& place) { return isPlaceOf(accumulator, expr, place); }
+bool isSame(const Expr& expr, const StaticPlace& place) { return staticPlace(withoutCarrier(expr)) == place; }
 
 std::optional<FoldOp> minOrMax(Intrinsic intrinsic) {
   if (intrinsic == Intrinsic::Min || intrinsic == Intrinsic::Fmin) return Intrinsic::Min;
@@ -74,7 +66,8 @@ std::optional<FoldOp> minOrMax(Intrinsic intrinsic) {
 std::optional<FoldOp> selfFold(const Expr& value, const StaticPlace& place) {
   if (const auto* n = std::get_if<Binary>(&value.node)) {
     if (isComparison(n->op)) return std::nullopt;
-    if (n->lhs->type.isMatrix() || n->rhs->type.isMatrix()) return std::nullopt;   // its * has an order
+    const bool hasMatrix = n->lhs->type.isMatrix() || n->rhs->type.isMatrix();
+    if (hasMatrix && n->op != BinaryOp::Add) return std::nullopt;   // their products have an order
     if (isSame(*n->lhs, place) || selfFold(*n->lhs, place) == FoldOp(n->op)) return n->op;
     if (isCommutative(n->op) && isSame(*n->rhs, place)) return n->op;
   }
@@ -85,23 +78,10 @@ std::optional<FoldOp> selfFold(const Expr& value, const StaticPlace& place) {
   return std::nullopt;
 }
 
-/// A statement that folds into the accumulator.
-std::optional<FoldPart> foldOf(const Stmt& stmt) {
-  const auto* n = std::get_if<Assign>(&stmt.node);
-  if (n == nullptr) return std::nullopt;
-  const std::optional<StaticPlace> place = staticPlace(*n->place, accumulator);
-  if (!place) return std::nullopt;
-  const std::optional<FoldOp> op = n->op ? FoldOp(*n->op) : selfFold(*n->value, *place);
-  if (!op) return std::nullopt;
-  const int reads = n->op ? 0 : 1;
-  if (countAccumulator(*n->value) != reads) return std::nullopt;
-  return FoldPart{place->members, place->type, place->components, *op, stmt.loc};
-}
-
 /// Adds a part; false where one of its components is folded by another operator already.
 bool add(std::vector<FoldPart>& parts, FoldPart part) {
   for (FoldPart& other : parts) {
-    if (other.members != part.members) continue;
+    if (other.accumulator != part.accumulator || other.members != part.members) continue;
     if (other.op == part.op) {
       other.components |= part.components;
       return true;
@@ -112,38 +92,106 @@ bool add(std::vector<FoldPart>& parts, FoldPart part) {
   return true;
 }
 
-/// `place op= element`, in any of the forms, with the same place in the element.
-bool isPlain(const Stmt& stmt) {
-  const auto* n = std::get_if<Assign>(&stmt.node);
-  if (n == nullptr) return false;
-  const std::optional<StaticPlace> place = staticPlace(*n->place, accumulator);
-  const auto isElement = [&](const Expr& expr) { return isPlaceOf(element, expr, *place); };
-  if (!place) return false;
-  if (n->op) return isElement(*n->value);
-  if (const auto* b = std::get_if<Binary>(&n->value->node)) return isElement(*b->lhs) || isElement(*b->rhs);
-  const auto* c = std::get_if<IntrinsicCall>(&n->value->node);
-  return c != nullptr &&
-         std::any_of(c->args.begin(), c->args.end(), [&](const ExprPtr& arg) { return isElement(*arg); });
-}
+class Recogniser {
+ public:
+  explicit Recogniser(const Kernel& kernel) : kernel_(kernel) {}
+
+  std::optional<FoldPattern> run(const Block& body) const {
+    FoldPattern pattern{{}, false};
+    bool matches = true;
+    walkStmts(body, [&](const Stmt& stmt) {
+      std::optional<FoldPart> part = foldOf(stmt);
+      if (part) {
+        matches = matches && add(pattern.parts, std::move(*part));
+        return;
+      }
+      forEachOperand(stmt, [&](const ExprPtr& operand) { matches = matches && reads(*operand) == 0; });
+    });
+    if (!matches || pattern.parts.empty()) return std::nullopt;
+    pattern.isPlain = foldsAccumulators(kernel_) &&
+                      std::all_of(body.begin(), body.end(), [&](const Stmt& stmt) { return isPlain(stmt); });
+    return pattern;
+  }
+
+ private:
+  bool isAccumulator(VarId var) const {
+    return var < kernel_.params.size() && kernel_.params[var].role == ParamRole::Accumulator;
+  }
+
+  /// How often an expression names an accumulator.
+  int reads(const Expr& expr) const {
+    int count = 0;
+    walkExprs(expr, [&](const Expr& inner) {
+      const auto* n = std::get_if<VarRef>(&inner.node);
+      if (n != nullptr && isAccumulator(n->var)) ++count;
+    });
+    return count;
+  }
+
+  /// Of an accumulator; nothing for other expressions.
+  std::optional<StaticPlace> placeOf(const Expr& expr) const {
+    std::optional<StaticPlace> place = staticPlace(expr);
+    return place && isAccumulator(place->root) ? place : std::nullopt;
+  }
+
+  /// A statement that folds into an accumulator.
+  std::optional<FoldPart> foldOf(const Stmt& stmt) const {
+    const auto* n = std::get_if<Assign>(&stmt.node);
+    if (n == nullptr) return std::nullopt;
+    const std::optional<StaticPlace> place = placeOf(*n->place);
+    if (!place) return std::nullopt;
+    const std::optional<FoldOp> op = n->op ? FoldOp(*n->op) : selfFold(withoutCarrier(*n->value), *place);
+    if (!op) return std::nullopt;
+    if (place->type.isMatrix() && op != FoldOp(BinaryOp::Add)) return std::nullopt;
+    if (reads(*n->value) != (n->op ? 0 : 1)) return std::nullopt;
+    return FoldPart{place->root, place->members, place->type, place->components, *op, stmt.loc};
+  }
+
+  /// The input that stands where an accumulator does among them.
+  VarId elementOf(VarId accumulator) const {
+    const auto isOf = [](ParamRole role) {
+      return [role](const KernelParam& param) { return param.role == role; };
+    };
+    auto before = std::count_if(kernel_.params.begin(), kernel_.params.begin() + accumulator,
+                                isOf(ParamRole::Accumulator));
+    VarId element = 0;
+    while (kernel_.params[element].role != ParamRole::Input || before-- > 0) ++element;
+    return element;
+  }
+
+  /// `place op= its element`, in any of the forms, with the same place in the element.
+  bool isPlain(const Stmt& stmt) const {
+    const auto* n = std::get_if<Assign>(&stmt.node);
+    if (n == nullptr) return false;
+    std::optional<StaticPlace> place = placeOf(*n->place);
+    if (!place) return false;
+    place->root = elementOf(place->root);
+    if (n->op) return isSame(*n->value, *place);
+    const Expr& value = withoutCarrier(*n->value);
+    if (const auto* b = std::get_if<Binary>(&value.node)) {
+      return isSame(*b->lhs, *place) || isSame(*b->rhs, *place);
+    }
+    const auto* c = std::get_if<IntrinsicCall>(&value.node);
+    return c != nullptr && std::any_of(c->args.begin(), c->args.end(),
+                                       [&](const ExprPtr& arg) { return isSame(*arg, *place); });
+  }
+
+  const Kernel& kernel_;
+};
 
 }  // namespace
 
-std::optional<FoldPattern> recogniseFold(const Function& entry) {
-  FoldPattern pattern{{}, false};
-  bool matches = true;
-  walkStmts(entry.body, [&](const Stmt& stmt) {
-    std::optional<FoldPart> part = foldOf(stmt);
-    if (part) {
-      matches = matches && add(pattern.parts, std::move(*part));
-      return;
-    }
-    forEachOperand(stmt,
-                   [&](const ExprPtr& operand) { matches = matches && countAccumulator(*operand) == 0; });
-  });
-  if (!matches || pattern.parts.empty()) return std::nullopt;
-  pattern.isPlain = entry.variables[element].type == entry.variables[accumulator].type &&
-                    std::all_of(entry.body.begin(), entry.body.end(), isPlain);
-  return pattern;
+bool foldsAccumulators(const Kernel& kernel) {
+  std::vector<Type> inputs, accumulators;
+  for (const KernelParam& param : kernel.params) {
+    if (param.role == ParamRole::Input) inputs.push_back(param.type);
+    if (param.role == ParamRole::Accumulator) accumulators.push_back(param.type);
+  }
+  return inputs == accumulators;
+}
+
+std::optional<FoldPattern> recogniseFold(const Kernel& kernel, const Function& entry) {
+  return Recogniser(kernel).run(entry.body);
 }
 
 }  // namespace skc

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Recognises reduces whose body only folds into the accumulator, or into members of it, by operators
-// that are known: every statement that names the accumulator is `place op= f`, `place = place op f`
-// or `place = min(place, f)`, and no f reads it. Whatever loops and branches stand around them, the
-// body is then `accumulator op (something made from the element)`.
+// Recognises reduces whose body only folds into the accumulators, or into members of them, by operators
+// that are known: every statement that names an accumulator is `place op= f`, `place = place op f`
+// or `place = min(place, f)`, and no f reads one. Whatever loops and branches stand around them, the
+// body is then `accumulator op (something made from the elements)`.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,9 @@ namespace skc {
 /// An operator of a compound assignment, && or ||; or Min or Max.
 using FoldOp = std::variant<ir::BinaryOp, ir::Intrinsic>;
 
-/// Some components of the accumulator, or of a scalar or vector member of it, and their operator.
+/// Some components of an accumulator, or of a scalar, vector or matrix member of one, and their operator.
 struct FoldPart {
+  ir::VarId accumulator;
   std::vector<std::uint32_t> members;   ///< way from the accumulator to the member
   ir::Type type;                        ///< of the member
   unsigned components;                  ///< bit i: component i
@@ -30,10 +31,13 @@ struct FoldPart {
 
 struct FoldPattern {
   std::vector<FoldPart> parts;   ///< in the order of the statements; no component in two of them
-  bool isPlain;  ///< the body is `accumulator op= element`, whole or by member, and nothing else
+  bool isPlain;  ///< the body is `accumulator op= its element`, whole or by member, and nothing else
 };
 
-/// The pattern of the entry function of a reduce: variable 0 the element, 1 the accumulator.
-std::optional<FoldPattern> recogniseFold(const ir::Function& entry);
+/// The pattern of a reduce with this entry function.
+std::optional<FoldPattern> recogniseFold(const ir::Kernel& kernel, const ir::Function& entry);
+
+/// Whether its inputs have the types of its accumulators, one by one, so that each accumulator has an element.
+bool foldsAccumulators(const ir::Kernel& kernel);
 
 }  // namespace skc

@@ -140,9 +140,6 @@ void removeFunctions(Module& module) {
   }
   for (Kernel& kernel : module.kernels) {
     kernel.entry = numbers[kernel.entry];
-    if (kernel.reduction && kernel.reduction->combine) {
-      kernel.reduction->combine = numbers[*kernel.reduction->combine];
-    }
   }
 }
 

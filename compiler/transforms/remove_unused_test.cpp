@@ -110,19 +110,18 @@ TEST_CASE("functions, constants and types without use go, and the others are ren
   CHECK(body(module, 1) == "{\n  r = used(o.inner.a + used);\n}\n");
 }
 
-TEST_CASE("the combining function and the constants of borders and identities are needed") {
+TEST_CASE("the combining kernel's function and the constants of borders and identities are needed") {
   Module module = testModule();
   module.constants.push_back({"zero", floatType, literal(0.0F), {}});
   KernelMaker k(module, "sum");
   const VarId x = k.input("x", intType);
   const VarId total = k.accumulator("total", floatType, constantRef(module, 0));
   k.finish(block(assign(k.ref(total), BinaryOp::Add, convert(Scalar::Float, k.ref(x)))));
-  Function combine;
-  combine.name = "sum";
-  const VarId a = addVariable(combine, "a", floatType, VarRole::In);
-  const VarId b = addVariable(combine, "b", floatType, VarRole::InOut);
-  Block statements = block(assign(varRef(combine, b), BinaryOp::Add, varRef(combine, a)));
-  module.kernels[0].reduction->combine = addFunction(module, std::move(combine), std::move(statements));
+  KernelMaker combine(module, "sum");
+  const VarId a = combine.input("a", floatType);
+  const VarId b = combine.accumulator("b", floatType);
+  combine.finish(block(assign(combine.ref(b), BinaryOp::Add, combine.ref(a))));
+  module.kernels[0].reduction = Reduction{1, {0, 0}, false};
   run(module);
   CHECK(module.functions.size() == 2);
   CHECK(module.constants.size() == 1);

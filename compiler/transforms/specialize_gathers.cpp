@@ -78,10 +78,6 @@ class State {
         binding[i] = {StreamRef::Space::KernelParameter, i};
     }
     kernel.entry = make(source, binding, true);
-    if (kernel.reduction && kernel.reduction->combine) {
-      FunctionId& combine = *kernel.reduction->combine;
-      combine = combine == source ? kernel.entry : instantiate(combine, {domain, domain});
-    }
     nameInstances(kernel);
   }
 

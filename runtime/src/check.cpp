@@ -5,13 +5,10 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
 #include "assemble/sinks.hpp"
+#include "check_argument.hpp"
 #include "device_state.hpp"
-#include "iterator.hpp"
 #include "plan_run.hpp"
-#include "sk/error.hpp"
 #include "stream_state.hpp"
 #include "variant.hpp"
 
@@ -20,64 +17,9 @@ namespace sk {
 namespace {
 
 using assemble::isNeeded;
-using program::Element;
-using program::Field;
 using program::Kernel;
 using program::Parameter;
 using program::Role;
-
-template <class... Values>
-[[noreturn]] void fail(const Kernel& kernel, fmt::format_string<Values...> format, Values&&... values) {
-  throw Error(fmt::format("{}: {}", kernel.name, fmt::format(format, std::forward<Values>(values)...)));
-}
-
-bool isSameField(const Field& a, const Field& b) {
-  return a.scalar == b.scalar && a.width == b.width && a.offset == b.offset && a.part == b.part;
-}
-
-/// Descriptors of one type may exist several times: in the headers of the runtime and in each .sk.cpp.
-bool isSameElement(const Element& a, const Element& b) {
-  return &a == &b || (a.size == b.size && a.fields.size() == b.fields.size() &&
-                      std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), isSameField));
-}
-
-/// A stream that lives, of the type that the parameter declares.
-StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const StreamRegion& region) {
-  if (region.stream == nullptr) {
-    fail(kernel, "'{}' is a stream that was moved from", parameter.name);
-  }
-  if (region.stream->device == nullptr) {
-    fail(kernel,
-         "'{}' is a stream whose device has been destroyed; keep the device for as long as its streams "
-         "are used",
-         parameter.name);
-  }
-  if (!isSameElement(*region.stream->element, *parameter.element)) {
-    fail(kernel, "'{}' is declared as {}, but its stream holds {}", parameter.name, parameter.element->name,
-         region.stream->element->name);
-  }
-  StreamState& stream = *region.stream;
-  if (parameter.role == Role::VariableOutput) {
-    return stream;   // its size is about to change
-  }
-  stream.settle();
-  if (!isInside(region)) {
-    fail(kernel,
-         "'{}' is a view of shape {} that is no longer inside its stream, to which a kernel has pushed {} "
-         "element(s); make the view after that call",
-         parameter.name, toString(region.shape), stream.shape.size());
-  }
-  return stream;
-}
-
-void checkSameDevice(const Kernel& kernel, const Parameter& a, const StreamState& first, const Parameter& b,
-                     const StreamState& second) {
-  if (first.device != second.device) {
-    fail(kernel,
-         "'{}' and '{}' are streams of two devices ('{}' and '{}'); copy one of them through host memory",
-         a.name, b.name, first.device->capabilities.renderer, second.device->capabilities.renderer);
-  }
-}
 
 void checkOutputShape(const Kernel& kernel, const Parameter& first, const Shape& domain,
                       const Parameter& output, const Shape& shape) {
@@ -85,28 +27,6 @@ void checkOutputShape(const Kernel& kernel, const Parameter& first, const Shape&
     fail(kernel, "the outputs '{}' and '{}' have shapes {} and {}; give them the same shape", first.name,
          output.name, toString(domain), toString(shape));
   }
-}
-
-void checkInputShape(const Kernel& kernel, const Parameter& input, const Shape& shape, const Parameter& first,
-                     const Shape& domain) {
-  bool fits = shape.rank() == domain.rank();
-  for (int d = 0; fits && d < shape.rank(); ++d) {
-    fits = shape[d] == domain[d] || shape[d] == 1;
-  }
-  if (fits) {
-    return;
-  }
-  if (first.role != Role::Output) {
-    fail(
-        kernel,
-        "'{}' has shape {}, but the inputs together have {}; give them the same shape, or extent 1 where one "
-        "repeats",
-        input.name, toString(shape), toString(domain));
-  }
-  fail(kernel,
-       "'{}' has shape {}, but the output '{}' has {}; give them the same shape, or extent 1 where "
-       "'{}' repeats",
-       input.name, toString(shape), first.name, toString(domain), input.name);
 }
 
 /// The stream of a variable output is taken whole, and has one dimension afterwards.
@@ -129,29 +49,6 @@ void checkScatter(const Kernel& kernel, const Parameter& output, const Shape& sh
          "push indices and values to variable outputs, and combine them in a kernel",
          output.name, device.capabilities.renderer);
   }
-}
-
-void checkGatherShape(const Kernel& kernel, const Parameter& gather, const Shape& shape,
-                      const Shape& domain) {
-  if (shape.rank() != gather.rank) {
-    fail(kernel, "'{}' is declared with {} dimension(s), but its stream has shape {}", gather.name,
-         gather.rank, toString(shape));
-  }
-  if (shape.size() == 0 && domain.size() != 0) {
-    fail(kernel, "'{}' has shape {}: there is no element to read", gather.name, toString(shape));
-  }
-}
-
-bool overlap(const StreamRegion& a, const StreamRegion& b) {
-  if (a.stream != b.stream || a.shape.size() == 0 || b.shape.size() == 0) {
-    return false;
-  }
-  for (int d = 0; d < a.shape.rank(); ++d) {
-    if (a.begin[d] + a.shape[d] <= b.begin[d] || b.begin[d] + b.shape[d] <= a.begin[d]) {
-      return false;
-    }
-  }
-  return true;
 }
 
 void checkDisjoint(const Kernel& kernel, std::span<const Argument> arguments,
@@ -215,37 +112,6 @@ std::size_t firstWritten(const Kernel& kernel, const assemble::SpecValues& specs
     found = std::find_if(kernel.parameters.begin(), kernel.parameters.end(), assemble::isSink);
   }
   return static_cast<std::size_t>(found - kernel.parameters.begin());
-}
-
-bool isValue(const Parameter& parameter) {
-  return parameter.role == Role::Uniform || parameter.role == Role::Iterator || parameter.role == Role::Spec;
-}
-
-/// Everything but streams: that there is a value, and that iterators go over the domain.
-void checkValue(const Kernel& kernel, const Parameter& parameter, const Argument& argument,
-                const Shape& domain) {
-  if (argument.value == nullptr) {
-    fail(kernel, "'{}' has no value", parameter.name);
-  }
-  if (parameter.role != Role::Iterator) {
-    return;
-  }
-  const Shape& shape = argument.region.shape;
-  if (shape.rank() != 0 && shape != domain) {
-    fail(kernel,
-         "the iterator '{}' has shape {}, but the domain is {}; make it with the same shape, or with none",
-         parameter.name, toString(shape), toString(domain));
-  }
-  if (domain.size() != 0) {
-    checkIterator(kernel, parameter, argument.value, domain);
-  }
-}
-
-void checkGiven(const Kernel& kernel, const Parameter& parameter, const Argument& argument) {
-  if (argument.isNone) {
-    fail(kernel, "'{}' is sk::none, but the kernel needs it here, where {} holds; give a stream",
-         parameter.name, parameter.neededIf.text);
-  }
 }
 
 }  // namespace
@@ -355,44 +221,6 @@ Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const 
     }
   }
   return domain;
-}
-
-DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input) {
-  const Kernel& fold = reduction.fold;
-  const Parameter& element = fold.parameters[0];
-  const Parameter& accumulator = fold.parameters[1];
-  DeviceState& device = *checkStream(fold, element, input).device;
-  const std::size_t partial = accumulator.element->fields.size();
-  checkPlanes(fold, device, partial, std::max(element.element->fields.size(), partial));
-  if (input.shape.size() == 0 && accumulator.identity.empty()) {
-    fail(fold, "'{}' has shape {}: there is no element to fold, and '{}' declares no identity", element.name,
-         toString(input.shape), accumulator.name);
-  }
-  return device;
-}
-
-DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input,
-                            const StreamRegion& output) {
-  const Kernel& fold = reduction.fold;
-  const Parameter& element = fold.parameters[0];
-  const Parameter& accumulator = fold.parameters[1];
-  const StreamState& inputStream = checkStream(fold, element, input);
-  const StreamState& outputStream = checkStream(fold, accumulator, output);
-  checkSameDevice(fold, element, inputStream, accumulator, outputStream);
-  bool fits = input.shape.rank() == output.shape.rank();
-  for (int d = 0; fits && d < input.shape.rank(); ++d) {
-    fits = output.shape[d] == 0 ? input.shape[d] == 0 : input.shape[d] % output.shape[d] == 0;
-  }
-  if (!fits) {
-    fail(fold,
-         "'{}' has shape {}, and the output '{}' has {}; give the output as many dimensions, each extent a "
-         "divisor of the input's",
-         element.name, toString(input.shape), accumulator.name, toString(output.shape));
-  }
-  if (output.shape.size() == 0) {
-    return *inputStream.device;
-  }
-  return checkReduction(reduction, input);
 }
 
 }  // namespace sk

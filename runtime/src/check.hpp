@@ -28,11 +28,4 @@ DeviceState* checkCall(const program::Kernel& kernel, std::span<const Argument> 
 Shape domainOf(const program::Kernel& kernel, std::span<const Argument> arguments,
                const assemble::SpecValues& specs);
 
-/// Checks the input of a reduction, and that an empty one has an identity. Returns its device.
-DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input);
-
-/// The same for a reduction to a stream, and that the output's extents divide the input's.
-DeviceState& checkReduction(const program::Reduction& reduction, const StreamRegion& input,
-                            const StreamRegion& output);
-
 }  // namespace sk

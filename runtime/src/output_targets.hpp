@@ -46,8 +46,10 @@ class OutputTargets {
     Copy,    ///< drawn to new planes, and copied from there
   };
 
+  /// Of a reduction: an accumulator.
   bool isOutput(std::size_t i) const {
-    return kernel_.parameters[i].role == program::Role::Output && isNeeded(i);
+    const program::Role role = kernel_.parameters[i].role;
+    return (role == program::Role::Output || role == program::Role::Accumulator) && isNeeded(i);
   }
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
   Way wayOf(std::size_t output) const;

@@ -69,12 +69,8 @@ void drawRects(DeviceState& device, std::span<const Rect> rects) {
   }
 }
 
-void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
-                const Placement& domain, std::span<const Rect> rects, GLuint framebuffer,
-                std::span<const gl::ArrayTexture> bundles, const assemble::Task& task) {
-  KernelProgram& program = device.programs.kernelProgram(kernel, operands, domain, task);
-  device.bound.program(program.program.name());
-  device.bound.framebuffer(framebuffer);
+void bindOperands(DeviceState& device, KernelProgram& program, const program::Kernel& kernel,
+                  std::span<const Operand> operands, std::span<const gl::ArrayTexture> bundles) {
   int unit = 0;
   for (KernelProgram::Read& read : program.reads) {
     const Operand& operand = operands[read.parameter];
@@ -93,6 +89,15 @@ void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<co
   for (KernelProgram::Value& step : program.steps) {
     step.uniform.set(operands[step.parameter].step.data());
   }
+}
+
+void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
+                const Placement& domain, std::span<const Rect> rects, GLuint framebuffer,
+                std::span<const gl::ArrayTexture> bundles, const assemble::Task& task) {
+  KernelProgram& program = device.programs.kernelProgram(kernel, operands, domain, task);
+  device.bound.program(program.program.name());
+  device.bound.framebuffer(framebuffer);
+  bindOperands(device, program, kernel, operands, bundles);
   program.domain.set(domain);
   if (task.work == assemble::Work::List) {
     program.target.set(operands[task.sink].placement);

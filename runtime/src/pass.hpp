@@ -15,6 +15,7 @@
 namespace sk {
 
 class DeviceState;
+struct KernelProgram;
 
 /// Binds the planes of an operand to consecutive texture units from `unit` on; the unit after them.
 int bindPlanes(DeviceState& device, std::span<Surface> planes, int unit);
@@ -24,6 +25,11 @@ GLuint framebufferOf(DeviceState& device, std::span<Surface* const> planes);
 
 /// Draws each rectangle with what is bound.
 void drawRects(DeviceState& device, std::span<const assemble::Rect> rects);
+
+/// Binds the planes that a kernel's program reads, and sets the uniforms of its parameters; the program is
+/// bound. `operands` and `bundles`: as for drawKernel().
+void bindOperands(DeviceState& device, KernelProgram& program, const program::Kernel& kernel,
+                  std::span<const Operand> operands, std::span<const gl::ArrayTexture> bundles = {});
 
 /// Draws `rects` of `framebuffer` with a kernel. `operands`: one a parameter; those of outputs are not
 /// looked at, since `framebuffer` has their planes. No operand is a texture of the framebuffer. `bundles`:

@@ -42,16 +42,7 @@ std::vector<std::span<const program::Field>> valuesOf(const program::Element& el
 
 }  // namespace
 
-/// A kernel that is made here, with all that its descriptor refers to.
-struct ProgramCache::IdentityKernel {
-  std::string name;
-  std::string body;
-  program::Parameter parameter;
-  program::Kernel kernel;
-};
-
 ProgramCache::ProgramCache(DeviceState& device) : device_(device) {}
-ProgramCache::~ProgramCache() = default;
 
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                            const assemble::Placement& domain, const assemble::Task& task) {
@@ -67,37 +58,42 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
   auto made = std::make_unique<KernelProgram>();
   made->program = build(kernel, assemble::fragmentProgram(device_.profile, kernel, variant));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
+  findParameters(*made, kernel, variant.specs);
+  if (variant.task.work == assemble::Work::List) {
+    findListUniforms(*made, kernel.parameters[variant.task.sink]);
+  }
+  return made;
+}
+
+void ProgramCache::findParameters(KernelProgram& made, const program::Kernel& kernel,
+                                  const assemble::SpecValues& specs) {
   int unit = 0;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const program::Parameter& parameter = kernel.parameters[i];
-    if (!assemble::isNeeded(parameter, variant.specs) || parameter.role == program::Role::Spec) {
+    if (!assemble::isNeeded(parameter, specs) || parameter.role == program::Role::Spec) {
       continue;
     }
     if (parameter.role == program::Role::Iterator) {
       const program::Field& field = parameter.element->fields.front();
       const auto find = [&](std::string_view kind) {
-        return gl::FieldUniform(made->program.location(fmt::format("sk_{}_{}", kind, parameter.symbol)),
+        return gl::FieldUniform(made.program.location(fmt::format("sk_{}_{}", kind, parameter.symbol)),
                                 {&field, 1});
       };
-      made->values.push_back({i, find("begin")});
-      made->steps.push_back({i, find("step")});
-      made->reads.push_back({i, PlacementUniforms(made->program, fmt::format("sk_*_{}", parameter.symbol))});
+      made.values.push_back({i, find("begin")});
+      made.steps.push_back({i, find("step")});
+      made.reads.push_back({i, PlacementUniforms(made.program, fmt::format("sk_*_{}", parameter.symbol))});
     } else if (parameter.role == program::Role::Uniform) {
-      findValue(*made, i, parameter);
+      findValue(made, i, parameter);
     } else if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather) {
-      made->reads.push_back({i, PlacementUniforms(made->program, fmt::format("sk_*_{}", parameter.symbol))});
-      bindSamplers(made->program, parameter, unit);
+      made.reads.push_back({i, PlacementUniforms(made.program, fmt::format("sk_*_{}", parameter.symbol))});
+      bindSamplers(made.program, parameter, unit);
     }
   }
-  made->bundles = bundlesOf(kernel);
-  for (const std::size_t bundle : made->bundles) {
-    made->program.setSampler(assemble::bundleName(bundle), unit++);
+  made.bundles = bundlesOf(kernel);
+  for (const std::size_t bundle : made.bundles) {
+    made.program.setSampler(assemble::bundleName(bundle), unit++);
   }
-  made->units = unit;
-  if (variant.task.work == assemble::Work::List) {
-    findListUniforms(*made, kernel.parameters[variant.task.sink]);
-  }
-  return made;
+  made.units = unit;
 }
 
 /// A pair of floats is a struct of two, and a vector of pairs a struct of these.
@@ -170,10 +166,12 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
   std::unique_ptr<ReduceProgram>& kept = reductions_[{&reduction, variant}];
   if (!kept) {
     auto made = std::make_unique<ReduceProgram>();
-    made->program = build(reduction.fold, assemble::reduceProgram(device_.profile, reduction, variant));
-    const bool readsPartials = variant.walk == assemble::Walk::Partials;
-    int unit = 0;
-    bindSamplers(made->program, reduction.fold.parameters[readsPartials ? 1 : 0], unit);
+    const bool isPartial = variant.walk == assemble::Walk::Partials;
+    const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
+    made->kernel.program = build(kernel, assemble::reduceProgram(device_.profile, reduction, variant));
+    if (variant.walk != assemble::Walk::Nothing) {
+      findParameters(made->kernel, kernel, variant.specs);
+    }
     kept = std::move(made);
   }
   return *kept;
@@ -186,34 +184,12 @@ gl::IntUniform& ReduceProgram::uniform(const assemble::UniformValue& value) {
     return found->second;
   }
   const std::string name(value.name);
-  return uniforms.emplace_back(name, gl::IntUniform(program.location(name), value.isVector)).second;
-}
-
-const program::Kernel& ProgramCache::identityKernel(const program::Reduction& reduction) {
-  std::unique_ptr<IdentityKernel>& kept = identities_[&reduction];
-  if (!kept) {
-    const program::Parameter& accumulator = reduction.fold.parameters[1];
-    auto made = std::make_unique<IdentityKernel>();
-    made->name = fmt::format("identity of {}", reduction.fold.name);
-    made->body = fmt::format("{}\n#line 1 0\nvoid sk_identity(out {} sk_result) {{ sk_result = {}; }}\n",
-                             reduction.fold.body, accumulator.element->glsl, accumulator.identity);
-    made->parameter = {
-        .name = "result", .symbol = "result", .role = program::Role::Output, .element = accumulator.element};
-    made->kernel = reduction.fold;
-    made->kernel.name = made->name;
-    made->kernel.entry = "sk_identity";
-    made->kernel.body = made->body;
-    made->kernel.parameters = {&made->parameter, 1};
-    made->kernel.usesIndex = made->kernel.usesLoops = false;
-    kept = std::move(made);
-  }
-  return kept->kernel;
+  return uniforms.emplace_back(name, gl::IntUniform(kernel.program.location(name), value.isVector)).second;
 }
 
 void ProgramCache::clear() {
   kernels_.clear();
   reductions_.clear();
-  identities_.clear();
 }
 
 void ProgramCache::forget() noexcept {
@@ -224,7 +200,7 @@ void ProgramCache::forget() noexcept {
   }
   for (auto& [key, kept] : reductions_) {
     if (kept) {
-      kept->program.forget();
+      kept->kernel.program.forget();
     }
   }
 }

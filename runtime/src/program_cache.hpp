@@ -61,9 +61,9 @@ struct KernelProgram {
   std::vector<std::size_t> bundles;   ///< of the plan, on the units after these
 };
 
-/// One variant of a reduction's passes. The planes that it reads lie on units from 0.
+/// One variant of a reduction's passes.
 struct ReduceProgram {
-  gl::Program program;
+  KernelProgram kernel;         ///< with the parameters of the kernel that it calls
   std::vector<std::pair<std::string, gl::IntUniform>> uniforms;
 
   gl::IntUniform& uniform(const assemble::UniformValue& value);
@@ -72,7 +72,6 @@ struct ReduceProgram {
 class ProgramCache {
  public:
   explicit ProgramCache(DeviceState& device);
-  ~ProgramCache();
   ProgramCache(const ProgramCache&) = delete;
   ProgramCache& operator=(const ProgramCache&) = delete;
 
@@ -81,18 +80,15 @@ class ProgramCache {
                                const assemble::Placement& domain, const assemble::Task& task = {});
   ReduceProgram& reduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
 
-  /// A kernel without inputs whose only output is the reduction's identity, which must exist.
-  const program::Kernel& identityKernel(const program::Reduction& reduction);
-
   void clear();
   void forget() noexcept;
 
  private:
-  struct IdentityKernel;
   using ReduceKey = std::pair<const program::Reduction*, assemble::ReduceVariant>;
 
   std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
                                                    const assemble::Variant& variant);
+  void findParameters(KernelProgram& made, const program::Kernel& kernel, const assemble::SpecValues& specs);
   void findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter);
   void findListUniforms(KernelProgram& made, const program::Parameter& sink);
   gl::Program build(const program::Kernel& kernel, const std::string& fragmentSource);
@@ -101,7 +97,6 @@ class ProgramCache {
   DeviceState& device_;
   std::unordered_map<ProgramKey, std::unique_ptr<KernelProgram>, ProgramKeyHash> kernels_;
   std::map<ReduceKey, std::unique_ptr<ReduceProgram>> reductions_;
-  std::map<const program::Reduction*, std::unique_ptr<IdentityKernel>> identities_;
 };
 
 }  // namespace sk

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// sk::reduce: runs the assembler's schedule, from the input's planes through temporary ones to the
-// result's.
-#include <array>
+// sk::reduce: runs the assembler's schedule, from the inputs' planes through temporary ones to the
+// results'.
+#include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "assemble/reduce_plan.hpp"
-#include "check.hpp"
+#include "check_reduction.hpp"
 #include "device_state.hpp"
+#include "output_targets.hpp"
 #include "pass.hpp"
 #include "sk/call.hpp"
 #include "stream_state.hpp"
@@ -18,92 +19,250 @@ namespace sk {
 
 namespace {
 
+using assemble::Addressing;
+using assemble::Index4;
 using assemble::Placement;
 using assemble::ReducePass;
-using program::Element;
+using assemble::StreamAccess;
+using assemble::Walk;
+using program::Kernel;
+using program::Parameter;
 using program::Reduction;
+using program::Role;
 
-const Element& accumulatorOf(const Reduction& reduction) { return *reduction.fold.parameters[1].element; }
-
-GLuint framebufferOf(DeviceState& device, std::span<Surface> planes) {
-  std::array<Surface*, gl::maxDrawBuffers> targets{};
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    targets[i] = &planes[i];
-  }
-  return framebufferOf(device, std::span<Surface* const>(targets.data(), planes.size()));
-}
-
-void drawPass(DeviceState& device, const Reduction& reduction, const ReducePass& pass,
-              std::span<Surface> source, std::span<Surface> target) {
-  ReduceProgram& program = device.programs.reduceProgram(reduction, pass.variant);
-  device.bound.program(program.program.name());
-  device.bound.framebuffer(framebufferOf(device, target));
-  bindPlanes(device, source, 0);
-  for (const assemble::UniformValue& value : pass.uniforms) {
-    program.uniform(value).set(value.value);
-  }
-  drawRects(device, pass.draws);
-}
-
-/// Folds the elements of a region, which is not empty, to the planes of a result.
-void fold(DeviceState& device, const Reduction& reduction, const StreamRegion& input,
-          std::span<Surface> result, const Placement& placement, bool aliased) {
-  StreamState& stream = *input.stream;
-  const assemble::ReduceLimits limits{.textureSize = device.limits.textureSize};
-  PlanesLease partials(device);
-  std::span<Surface> source = stream.planes;
-  for (const ReducePass& pass :
-       assemble::planReduction(placementOf(input, stream.layout), placement, limits, aliased)) {
-    if (pass.toResult) {
-      drawPass(device, reduction, pass, source, result);
-      continue;
+/// fn(element, its planes) for each accumulator, given the planes of all of them.
+template <class Plane, class Fn>
+void forEachAccumulator(const Kernel& fold, std::span<Plane> planes, Fn&& fn) {
+  for (const Parameter& parameter : fold.parameters) {
+    if (parameter.role == Role::Accumulator) {
+      const std::size_t count = parameter.element->fields.size();
+      fn(*parameter.element, planes.first(count));
+      planes = planes.subspan(count);
     }
-    PlanesLease target(device);
-    target.planes = device.takePlanes(accumulatorOf(reduction), pass.width, pass.height, "partial results");
-    drawPass(device, reduction, pass, source, target.planes);
-    std::swap(partials.planes, target.planes);
-    source = partials.planes;
   }
 }
 
-/// Fills a region with the identity.
-void fill(DeviceState& device, const Reduction& reduction, std::span<Surface> planes,
-          const Placement& placement) {
-  const Operand operands[] = {{nullptr, placement, planes}};
-  drawKernel(device, device.programs.identityKernel(reduction), operands, placement,
-             assemble::drawnTexels(placement), framebufferOf(device, planes));
+/// New planes of all accumulators, in their order.
+void takeAccumulators(DeviceState& device, const Kernel& fold, std::int32_t width, std::int32_t height,
+                      std::string_view whatFor, PlanesLease& lease) {
+  for (const Parameter& parameter : fold.parameters) {
+    if (parameter.role == Role::Accumulator) {
+      for (Surface& plane : device.takePlanes(*parameter.element, width, height, whatFor)) {
+        lease.planes.push_back(std::move(plane));
+      }
+    }
+  }
 }
+
+std::vector<Surface*> pointersTo(std::span<Surface> planes) {
+  std::vector<Surface*> pointers;
+  for (Surface& plane : planes) {
+    pointers.push_back(&plane);
+  }
+  return pointers;
+}
+
+/// One call, its arguments checked.
+class ReduceCall {
+ public:
+  ReduceCall(DeviceState& device, const Reduction& reduction, std::span<const Argument> arguments,
+             const Shape& domain)
+      : device_(device), reduction_(reduction), specs_(specsOf(reduction.fold, arguments)) {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      operands_.push_back(operandOf(i, arguments[i], domain));
+    }
+    elements_ = placementOfElements(xFirst(domain));
+  }
+
+  std::span<const Operand> operands() const { return operands_; }
+
+  /// Folds the elements, of which there are some, to the planes of all results.
+  void fold(const Index4& blocks, const Placement& result, std::span<Surface* const> targets) {
+    const assemble::ReduceLimits limits{.textureSize = device_.limits.textureSize};
+    PlanesLease partials(device_);
+    for (const ReducePass& pass :
+         assemble::planReduction(elements_, result, limits, {.blocks = blocks, .byIndex = foldsByIndex()})) {
+      if (pass.toResult) {
+        draw(pass, partials.planes, targets);
+        continue;
+      }
+      PlanesLease next(device_);
+      takeAccumulators(device_, reduction_.fold, pass.width, pass.height, "partial results", next);
+      draw(pass, partials.planes, pointersTo(next.planes));
+      std::swap(partials.planes, next.planes);
+    }
+  }
+
+  /// Fills the planes of all results with the identities.
+  void fill(const Placement& result, std::span<Surface* const> targets) {
+    draw(assemble::planIdentities(result), {}, targets);
+  }
+
+ private:
+  Operand operandOf(std::size_t i, const Argument& argument, const Shape& domain) const {
+    const Parameter& parameter = reduction_.fold.parameters[i];
+    switch (parameter.role) {
+      case Role::Uniform:
+      case Role::Spec: return {.value = argument.value};
+      case Role::Iterator:
+        return domain.size() == 0 ? Operand{} : iteration(parameter, argument.value, domain);
+      case Role::Input:
+      case Role::Gather:
+      case Role::Accumulator: break;
+      case Role::Output:
+      case Role::VariableOutput:
+      case Role::Scatter: return {};
+    }
+    if (argument.region.stream == nullptr || !assemble::isNeeded(parameter, specs_)) {
+      return {};
+    }
+    StreamState& stream = *argument.region.stream;
+    return {.placement = placementOf(argument.region, stream.layout), .planes = stream.planes};
+  }
+
+  /// That of the first input which does not repeat. Where all do, each in another dimension, there is no
+  /// such place, and elements are found by their index.
+  Placement placementOfElements(const Index4& shape) const {
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      if (isRead(i) && operands_[i].placement.extent == shape) {
+        return operands_[i].placement;
+      }
+    }
+    return {.extent = shape};
+  }
+
+  bool isRead(std::size_t i) const {
+    const Parameter& parameter = reduction_.fold.parameters[i];
+    return parameter.role == Role::Input && assemble::isNeeded(parameter, specs_);
+  }
+
+  /// Whether a run has to know where each of its elements is.
+  bool foldsByIndex() const {
+    bool byIndex = assemble::asksForPlace(reduction_.fold);
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      byIndex = byIndex || (isRead(i) && !haveSameTexels(operands_[i].placement, elements_));
+    }
+    return byIndex;
+  }
+
+  /// The operands of the combining kernel: planes of partial results, and arguments of the fold.
+  std::vector<Operand> operandsOfCombine(std::span<Surface> partials) const {
+    std::vector<Operand> operands;
+    const Kernel& combine = reduction_.combine;
+    for (std::size_t i = 0; i < combine.parameters.size(); ++i) {
+      const Parameter& parameter = combine.parameters[i];
+      if (parameter.role == Role::Input) {
+        const std::size_t count = parameter.element->fields.size();
+        operands.push_back({.placement = elements_, .planes = partials.first(count)});
+        partials = partials.subspan(count);
+      } else if (parameter.role == Role::Accumulator) {
+        operands.emplace_back();
+      } else {
+        operands.push_back(operands_[reduction_.combineOperands[i]]);
+      }
+    }
+    return operands;
+  }
+
+  /// Draws a pass, for as many of the targets at a time as the device draws to.
+  void draw(const ReducePass& pass, std::span<Surface> partials, std::span<Surface* const> targets) {
+    assemble::ReduceVariant variant = pass.variant;
+    const bool isPartial = variant.walk == Walk::Partials;
+    const Kernel& kernel = isPartial ? reduction_.combine : reduction_.fold;
+    const std::vector<Operand> operands = isPartial ? operandsOfCombine(partials) : operands_;
+    if (variant.walk != Walk::Nothing) {
+      addAccess(variant, kernel, operands);
+    }
+    const auto most = static_cast<std::size_t>(device_.limits.drawBuffers);
+    for (std::size_t first = 0; first < targets.size(); first += most) {
+      const std::size_t count = std::min(most, targets.size() - first);
+      if (targets.size() > most) {
+        variant.firstPlane = static_cast<std::uint8_t>(first);
+        variant.planeCount = static_cast<std::uint8_t>(count);
+      }
+      ReduceProgram& program = device_.programs.reduceProgram(reduction_, variant);
+      device_.bound.program(program.kernel.program.name());
+      device_.bound.framebuffer(framebufferOf(device_, targets.subspan(first, count)));
+      bindOperands(device_, program.kernel, kernel, operands);
+      for (const assemble::UniformValue& value : pass.uniforms) {
+        program.uniform(value).set(value.value);
+      }
+      drawRects(device_, pass.draws);
+    }
+  }
+
+  /// Adds the choices that depend on the operands.
+  void addAccess(assemble::ReduceVariant& variant, const Kernel& kernel,
+                 std::span<const Operand> operands) const {
+    assemble::Variant chosen = chooseVariant(kernel, operands, elements_);
+    variant.specs = chosen.specs;
+    for (std::size_t i = 0; i < operands.size(); ++i) {
+      StreamAccess& access = chosen.access[i];
+      if (variant.walk == Walk::Index && kernel.parameters[i].role == Role::Input) {
+        const Placement& placement = operands[i].placement;
+        access.addressing = placement.linear ? Addressing::Linear : Addressing::Plane;
+        access.view = placement.origin != Index4{};
+      }
+    }
+    variant.access = std::move(chosen.access);
+  }
+
+  DeviceState& device_;
+  const Reduction& reduction_;
+  const assemble::SpecValues specs_;
+  std::vector<Operand> operands_;   ///< of the fold
+  Placement elements_;
+};
 
 }  // namespace
 
-void reduce(const Reduction& reduction, const StreamRegion& input, void* result) {
-  DeviceState& device = checkReduction(reduction, input);
+void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results) {
+  const CheckedReduction checked = checkReduction(reduction, arguments);
+  DeviceState& device = checked.device;
   const DeviceScope scope(device);
   const Placement placement = assemble::valuePlacement();
   PlanesLease value(device);
-  value.planes = device.takePlanes(accumulatorOf(reduction), placement.extent[0], placement.extent[1],
-                                   "the result of a reduction");
-  if (input.shape.size() == 0) {
-    fill(device, reduction, value.planes, placement);
+  takeAccumulators(device, reduction.fold, placement.extent[0], placement.extent[1],
+                   "the result of a reduction", value);
+  ReduceCall call(device, reduction, arguments, checked.domain);
+  if (checked.domain.size() == 0) {
+    call.fill(placement, pointersTo(value.planes));
   } else {
-    fold(device, reduction, input, value.planes, placement, false);
+    call.fold(placement.extent, placement, pointersTo(value.planes));
   }
-  download(device, accumulatorOf(reduction), value.planes, placement, static_cast<std::byte*>(result));
+  auto result = results.begin();
+  forEachAccumulator(reduction.fold, std::span<Surface>(value.planes),
+                     [&](const program::Element& element, std::span<Surface> planes) {
+                       download(device, element, planes, placement, static_cast<std::byte*>(*result++));
+                     });
 }
 
-void reduce(const Reduction& reduction, const StreamRegion& input, const StreamRegion& output) {
-  DeviceState& device = checkReduction(reduction, input, output);
-  if (output.shape.size() == 0) {
+void reduce(const Reduction& reduction, std::span<const Argument> arguments) {
+  const CheckedReduction checked = checkReductionToStreams(reduction, arguments);
+  if (checked.blocks.size() == 0) {
     return;
   }
+  DeviceState& device = checked.device;
   const DeviceScope scope(device);
-  StreamState& result = *output.stream;
-  const Placement placement = placementOf(output, result.layout);
-  if (input.shape.size() == 0) {
-    fill(device, reduction, result.planes, placement);
-  } else {
-    fold(device, reduction, input, result.planes, placement, input.stream == output.stream);
+  ReduceCall call(device, reduction, arguments, checked.domain);
+  const Kernel& fold = reduction.fold;
+  const auto first = static_cast<std::size_t>(
+      std::ranges::find(fold.parameters, Role::Accumulator, &Parameter::role) - fold.parameters.begin());
+  const Placement& placement = call.operands()[first].placement;
+  OutputTargets targets(device, fold, arguments, specsOf(fold, arguments), call.operands(), placement,
+                        arguments[first].region.stream->layout);
+  std::vector<Surface*> drawn;
+  for (const std::span<Surface> planes : targets.planesOfOutputs()) {
+    for (Surface& plane : planes) {
+      drawn.push_back(&plane);
+    }
   }
+  if (checked.domain.size() == 0) {
+    call.fill(placement, drawn);
+  } else {
+    call.fold(xFirst(checked.blocks), placement, drawn);
+  }
+  targets.putInPlace();
 }
 
 }  // namespace sk

@@ -54,7 +54,14 @@ TestReduction::TestReduction(std::string_view name, std::string_view body,
   reduction_.fold.body = body;
   reduction_.fold.parameters = parameters_;
   reduction_.fold.sources = sources_;
-  reduction_.combine = combine.empty() ? name : combine;
+  reduction_.combine = reduction_.fold;
+  if (!combine.empty()) {
+    combined_ = {parameters_[1], parameters_[1]};
+    combined_[0].role = program::Role::Input;
+    combined_[0].symbol = "part";
+    reduction_.combine.entry = combine;
+    reduction_.combine.parameters = combined_;
+  }
   reduction_.seeded = seeded;
 }
 

@@ -84,7 +84,8 @@ class TestKernel {
   program::Kernel kernel_;
 };
 
-/// A reduction whose fold bears its name; `combine` is the fold where none is given.
+/// A reduction of one input, whose fold bears its name; `combine`, another function of the body, is the fold
+/// where none is given.
 class TestReduction {
  public:
   TestReduction(std::string_view name, std::string_view body, std::vector<program::Parameter> parameters,
@@ -95,16 +96,20 @@ class TestReduction {
   template <class A, class S>
   A value(const S& stream) const {
     A result{};
-    reduce(reduction_, regionOf(stream), &result);
+    const Argument arguments[] = {argumentOf(stream), {}};
+    void* const results[] = {&result};
+    reduce(reduction_, arguments, results);
     return result;
   }
   template <class S, class R>
   void operator()(const S& stream, const R& result) const {
-    reduce(reduction_, regionOf(stream), regionOf(result));
+    const Argument arguments[] = {argumentOf(stream), argumentOf(result)};
+    reduce(reduction_, arguments);
   }
 
  private:
   std::vector<program::Parameter> parameters_;
+  std::array<program::Parameter, 2> combined_;
   std::array<std::string_view, 1> sources_{"test.sk"};
   program::Reduction reduction_;
 };

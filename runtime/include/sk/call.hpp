@@ -96,12 +96,17 @@ class VariableOut {
 /// parameter where the arguments do not fit.
 void run(const program::Kernel& kernel, std::span<const Argument> arguments);
 
-/// Folds `input` to one value, written to `result` (laid out as the accumulator's Element says).
-/// An empty input gives the identity, or throws where there is none.
-void reduce(const program::Reduction& reduction, const StreamRegion& input, void* result);
+/// Folds the inputs, which together are the domain, to one value for each accumulator, in their order,
+/// written to `results` (laid out as the accumulators' Elements say). `arguments` are one a parameter of the
+/// fold; nobody looks at those of the accumulators. Where there is no element, a result is the identity;
+/// throws sk::Error where there is none, and where the arguments do not fit.
+void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
+            std::span<void* const> results);
 
-/// Folds `input` to the smaller stream `output` of the same rank, whose extents divide those of
-/// `input`: each element of `output` folds one block of `input` in row-major order.
-void reduce(const program::Reduction& reduction, const StreamRegion& input, const StreamRegion& output);
+/// Folds the inputs to smaller streams, the arguments of the accumulators, all of one shape. Its extents
+/// divide those of the inputs, and each of its elements folds one block of them in row-major order. Of
+/// fewer dimensions, it is what remains of such a shape without some extents of 1; where that does not
+/// tell which, the call throws sk::Error.
+void reduce(const program::Reduction& reduction, std::span<const Argument> arguments);
 
 }  // namespace sk

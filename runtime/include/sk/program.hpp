@@ -15,6 +15,7 @@
 //   T     sk_at_p(ivecN i)     element of gather p at i; N is its rank, `int` if 1   (usesAt)
 //   T     sk_near_p(ivecN d)   element of gather p at the current index plus d       (usesNear)
 //   ivec4 sk_extent()          shape of the domain, where no output has it           (usesExtent)
+//                              (of a reduction, the domain is what its elements lie in)
 //   void  sk_push_p(T v)       appends v to variable output p
 //   void  sk_put_p(ivecN i, T v)   element of scatter output p at i becomes v, or what Parameter::scatter
 //                              makes of it and v; nothing where i is outside
@@ -198,15 +199,18 @@ struct Plan {
   std::span<const Pass> passes;
 };
 
-/// A reduction: `void entry(E x, inout A total)` folds an element into an accumulator, and
-/// `void combine(A x, inout A total)` the accumulator of a later run of elements into an earlier
-/// one. Both are in `fold.body`; they are the same function where E is A and the operation is its
-/// own combination. `fold.parameters` holds one Input, then one Accumulator.
+/// A reduction. `fold` is a kernel whose entry takes every Input by value and every Accumulator as `inout`,
+/// among its other parameters, and folds an element into the accumulators. `combine` is one of the same
+/// kind: its Inputs, as many as `fold` has Accumulators and of their types, are the accumulators of a later
+/// run of elements, which it folds into those of an earlier one. It uses no index, and may be `fold` itself.
 struct Reduction {
   Kernel fold;
-  std::string_view combine;
-  bool seeded;                 ///< a run may start from its first element, taken as the accumulator
-                               ///< (E is A); else it starts from the identity, which then exists
+  Kernel combine;
+  std::span<const std::uint8_t> combineOperands;  ///< one a parameter of `combine`: that of `fold` whose
+                               ///< argument it gets; nobody looks at those of Inputs and Accumulators
+  bool seeded;                 ///< a run may start from its first elements, taken as the accumulators
+      ///< (they have the same types); else it starts from the identities, which
+      ///< then all exist
 };
 
 }  // namespace sk::program

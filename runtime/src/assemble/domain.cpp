@@ -8,14 +8,14 @@
 
 namespace sk::assemble {
 
-DomainText::DomainText(ProgramText& program, Domain domain, bool view, int rank)
-    : program_(program), domain_(domain), view_(view), rank_(rank) {
+DomainText::DomainText(ProgramText& program, Domain domain, bool view, int rank, std::string_view function)
+    : program_(program), domain_(domain), view_(view), rank_(rank), function_(function) {
   if (domain_ == Domain::LinearBox) defineIndex();
 }
 
 std::string DomainText::index() {
   defineIndex();
-  return "sk_index()";
+  return fmt::format("{}()", function_);
 }
 
 std::string DomainText::position(int components) {
@@ -73,7 +73,7 @@ std::string DomainText::texelNumber() {
 }
 
 void DomainText::defineIndex() {
-  static constexpr std::string_view signature = "ivec4 sk_index()";
+  const std::string signature = fmt::format("ivec4 {}()", function_);
   if (program_.isDefined(signature)) return;
   if (domain_ == Domain::Plane) {
     const std::string origin = view_ ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";

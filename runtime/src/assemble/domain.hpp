@@ -6,6 +6,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "assemble/assemble.hpp"
 #include "assemble/program_text.hpp"
@@ -14,10 +15,11 @@ namespace sk::assemble {
 
 class DomainText {
  public:
-  /// `rank`: of the domain's stream, for domains of linearised streams.
-  DomainText(ProgramText& program, Domain domain, bool view, int rank);
+  /// `rank`: of the domain's stream, for domains of linearised streams. `function`: what index() calls.
+  DomainText(ProgramText& program, Domain domain, bool view, int rank,
+             std::string_view function = "sk_index");
 
-  /// sk_index(), an ivec4.
+  /// A call of the function, which gives an ivec4.
   std::string index();
   /// The first components of the index: an int or an ivec2 to ivec4 expression.
   std::string position(int components);
@@ -38,6 +40,7 @@ class DomainText {
   Domain domain_;
   bool view_;
   int rank_;
+  std::string_view function_;
 };
 
 }  // namespace sk::assemble

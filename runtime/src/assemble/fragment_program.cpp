@@ -2,11 +2,11 @@
 //
 // The program of a kernel for one variant. Sections are filled parameter by parameter; main() is one
 // call of the kernel's entry function between fetches and stores.
-#include <array>
 #include <cassert>
 
 #include <fmt/format.h>
 
+#include "assemble/arguments.hpp"
 #include "assemble/assemble.hpp"
 #include "assemble/domain.hpp"
 #include "assemble/gather.hpp"
@@ -78,7 +78,7 @@ class KernelText {
       if (isNeeded(kernel_.parameters[i], variant_.specs)) {
         defineAccess(i, variant_.access[i]);
       } else {
-        defineAbsent(kernel_.parameters[i]);
+        defineUnused(kernel_.parameters[i]);
       }
     }
     program_.statement(call(kernel_.entry, arguments_, "      ") + ";");
@@ -98,78 +98,44 @@ class KernelText {
   void defineAccess(std::size_t i, const StreamAccess& access) {
     const Parameter& parameter = kernel_.parameters[i];
     switch (parameter.role) {
-      case Role::Uniform: arguments_.push_back(uniform(parameter.element->glsl, "arg", parameter)); break;
+      case Role::Uniform:
+        arguments_.push_back(parameterUniform(program_, parameter.element->glsl, "arg", parameter));
+        break;
       case Role::Input: defineInput(parameter, access); break;
       case Role::Output: defineOutput(parameter); break;
       case Role::Gather:
-        defineGather(program_, domain_, parameter, access);
-        defineExtent(parameter);
+        defineGather(
+            program_, [&](int components) { return domain_.position(components); }, parameter, access);
+        defineExtent(program_, parameter);
         break;
-      case Role::Iterator: arguments_.push_back(iteratorValue(parameter, access)); break;
-      case Role::Spec: arguments_.push_back(specConstant(parameter)); break;
+      case Role::Iterator:
+        arguments_.push_back(iteratorValue(program_, parameter, access, domain_.index()));
+        break;
+      case Role::Spec:
+        arguments_.push_back(specConstant(program_, parameter, variant_.specs[specs_++]));
+        break;
       case Role::Accumulator: assert(!"a reduction has programs of its own"); break;
       case Role::VariableOutput:
       case Role::Scatter:
         defineSink(i, access);
-        defineExtent(parameter);
+        defineExtent(program_, parameter);
         break;
     }
   }
 
-  /// A stream that the body names only where the values of spec parameters never let it come.
-  void defineAbsent(const Parameter& parameter) {
-    const std::string_view type = parameter.element->glsl;
-    const std::string none = fmt::format("sk_none_{}", parameter.symbol);
-    if (parameter.role == Role::Gather) {
-      const std::string vector = parameter.rank == 1 ? "int" : fmt::format("ivec{}", parameter.rank);
-      const std::vector<std::string> nothing = {fmt::format("{} {};", type, none),
-                                                fmt::format("return {};", none)};
-      if (parameter.usesAt) {
-        program_.function(fmt::format("{} sk_at_{}({} sk_i)", type, parameter.symbol, vector), nothing);
-      }
-      if (parameter.usesNear) {
-        program_.function(fmt::format("{} sk_near_{}({} sk_d)", type, parameter.symbol, vector), nothing);
-      }
-    } else {
-      program_.statement(fmt::format("{} {};", type, none));
-      arguments_.push_back(none);
-    }
-    if (parameter.role != Role::Output) {
-      if (parameter.usesIndex) defineGetter("index", parameter, "ivec4(0)");
-      if (parameter.usesExtent) defineGetter("extent", parameter, "ivec4(0)");
-    } else {
-      defineDomainGetters(parameter);
-    }
-  }
-
-  /// A multiplication and an addition; integers wrap.
-  std::string iteratorValue(const Parameter& parameter, const StreamAccess& access) {
-    static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
-    const std::string_view type = parameter.element->glsl;
-    std::string position = domain_.index();
-    if (access.addressing == Addressing::Linear) {
-      program_.require(Function::Ravel);
-      position = fmt::format("sk_ravel({}, {})", position, uniform("ivec4", "stride", parameter));
-    } else {
-      position += swizzles[parameter.element->fields.front().width - 1u];
-    }
-    return fmt::format("{} + {}({}) * {}", uniform(type, "begin", parameter), type, position,
-                       uniform(type, "step", parameter));
-  }
-
-  std::string specConstant(const Parameter& parameter) {
-    const std::string name = fmt::format("sk_spec_{}", parameter.symbol);
-    const program::Scalar scalar = parameter.element->fields.front().scalar;
-    program_.variable(fmt::format("const {}", parameter.element->glsl),
-                      fmt::format("{} = {}", name, glslLiteral(scalar, variant_.specs[specs_++])));
-    return name;
+  void defineUnused(const Parameter& parameter) {
+    defineAbsent(program_, parameter);
+    if (parameter.role != Role::Gather) arguments_.push_back(absentElement(parameter));
+    if (parameter.role == Role::Output) defineDomainGetters(parameter);
   }
 
   void defineInput(const Parameter& parameter, const StreamAccess& access) {
     declareSamplers(program_, parameter);
-    if (parameter.usesIndex || access.addressing != Addressing::Aligned) defineIndex(parameter, access);
-    arguments_.push_back(fetch(program_, parameter, texel(parameter, access)));
-    defineExtent(parameter);
+    const bool isAligned = access.addressing == Addressing::Aligned;
+    if (parameter.usesIndex || !isAligned) defineInputIndex(program_, parameter, access, domain_.index());
+    const std::string texel = isAligned ? "ivec2(gl_FragCoord.xy)" : inputTexel(program_, parameter, access);
+    arguments_.push_back(fetch(program_, parameter, texel));
+    defineExtent(program_, parameter);
   }
 
   void defineSink(std::size_t i, const StreamAccess& access) {
@@ -198,47 +164,10 @@ class KernelText {
   }
 
   void defineDomainGetters(const Parameter& parameter) {
-    if (parameter.usesIndex) defineGetter("index", parameter, domain_.index());
+    if (parameter.usesIndex) defineGetter(program_, "index", parameter, domain_.index());
     if (parameter.usesExtent) {
-      defineGetter("extent", parameter, program_.uniform("ivec4", "sk_domain_shape"));
+      defineGetter(program_, "extent", parameter, program_.uniform("ivec4", "sk_domain_shape"));
     }
-  }
-
-  /// An input of extent 1 in a dimension repeats its only element there.
-  void defineIndex(const Parameter& parameter, const StreamAccess& access) {
-    const std::string index = domain_.index();
-    const bool mayRepeat = access.addressing != Addressing::Aligned;
-    defineGetter(
-        "index", parameter,
-        mayRepeat ? fmt::format("min({}, {} - 1)", index, uniform("ivec4", "shape", parameter)) : index);
-  }
-
-  void defineExtent(const Parameter& parameter) {
-    if (parameter.usesExtent) defineGetter("extent", parameter, uniform("ivec4", "shape", parameter));
-  }
-
-  std::string texel(const Parameter& parameter, const StreamAccess& access) {
-    if (access.addressing == Addressing::Aligned) return "ivec2(gl_FragCoord.xy)";
-    const std::string index = fmt::format("sk_index_{}()", parameter.symbol);
-    const std::string origin = access.view ? " + " + uniform("ivec4", "origin", parameter) : "";
-    if (access.addressing == Addressing::Plane) {
-      return access.view ? fmt::format("{}.xy{}.xy", index, origin) : index + ".xy";
-    }
-    program_.require(Function::Ravel);
-    program_.require(Function::Texel);
-    const std::string stride = uniform("ivec4", "stride", parameter);
-    const std::string shift = uniform("int", "shift", parameter);
-    return fmt::format("sk_texel(sk_ravel({}{}, {}), {})", index, origin, stride, shift);
-  }
-
-  std::string uniform(std::string_view type, std::string_view kind, const Parameter& parameter) {
-    return program_.uniform(type, fmt::format("sk_{}_{}", kind, parameter.symbol));
-  }
-
-  /// What the body calls as `sk_index_p` or `sk_extent_p`.
-  void defineGetter(std::string_view kind, const Parameter& parameter, std::string_view value) {
-    program_.function(fmt::format("ivec4 sk_{}_{}()", kind, parameter.symbol),
-                      {fmt::format("return {};", value)});
   }
 
   const Kernel& kernel_;

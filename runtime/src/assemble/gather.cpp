@@ -21,8 +21,9 @@ constexpr std::int32_t largestSafeReach = 1 << 30;
 
 class GatherText {
  public:
-  GatherText(ProgramText& program, DomainText& domain, const Parameter& parameter, const StreamAccess& access)
-      : program_(program), domain_(domain), parameter_(parameter), access_(access), rank_(parameter.rank) {
+  GatherText(ProgramText& program, const Position& here, const Parameter& parameter,
+             const StreamAccess& access)
+      : program_(program), here_(here), parameter_(parameter), access_(access), rank_(parameter.rank) {
     assert(rank_ >= 1 && rank_ <= 4 && access.addressing != Addressing::Aligned);
   }
 
@@ -92,7 +93,7 @@ class GatherText {
 
   /// From any offset `sk_d` to the index `sk_p`, inside, of the current element's neighbour there.
   void bringNeighbourInside(std::vector<std::string>& lines) {
-    const std::string here = domain_.position(rank_);
+    const std::string here = here_(rank_);
     switch (parameter_.boundary) {
       case Boundary::Clamp:
         if (parameter_.reach >= 0 && parameter_.reach <= largestSafeReach) {
@@ -162,7 +163,7 @@ class GatherText {
   }
 
   ProgramText& program_;
-  DomainText& domain_;
+  const Position& here_;
   const Parameter& parameter_;
   const StreamAccess& access_;
   int rank_;
@@ -170,10 +171,10 @@ class GatherText {
 
 }  // namespace
 
-void defineGather(ProgramText& program, DomainText& domain, const Parameter& parameter,
+void defineGather(ProgramText& program, const Position& here, const Parameter& parameter,
                   const StreamAccess& access) {
   declareSamplers(program, parameter);
-  GatherText gather(program, domain, parameter, access);
+  GatherText gather(program, here, parameter, access);
   if (parameter.usesAt) gather.defineAt();
   if (parameter.usesNear) gather.defineNear();
 }

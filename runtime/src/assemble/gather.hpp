@@ -5,14 +5,19 @@
 // that a view never shows what lies around it.
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include "assemble/assemble.hpp"
-#include "assemble/domain.hpp"
 #include "assemble/program_text.hpp"
 
 namespace sk::assemble {
 
+/// The first components of the current index: an int or an ivec2 to ivec4 expression.
+using Position = std::function<std::string(int components)>;
+
 /// Declares the gather's samplers and defines the functions that the body calls.
-void defineGather(ProgramText& program, DomainText& domain, const program::Parameter& parameter,
+void defineGather(ProgramText& program, const Position& here, const program::Parameter& parameter,
                   const StreamAccess& access);
 
 }  // namespace sk::assemble

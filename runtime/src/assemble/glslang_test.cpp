@@ -180,3 +180,31 @@ TEST_CASE("glslang accepts every pass of a reduction") {
   REQUIRE(programs.count() == 2 * 3 * 4 * 3 * 4 * 4);
   checkAccepted(programs);
 }
+
+TEST_CASE("glslang accepts folds of several inputs to several accumulators, by index") {
+  Programs programs("weighings");
+  constexpr StreamAccess plane{Addressing::Plane, true};
+  constexpr StreamAccess linear{Addressing::Linear};
+  for (const Profile& profile : profiles()) {
+    for (const Walk walk : {Walk::Index, Walk::Partials, Walk::Nothing}) {
+      for (const auto& [x, y] : {std::pair(plane, linear), std::pair(linear, plane)}) {
+        for (const auto [domain, view] : domains) {
+          for (const std::uint8_t first : {std::uint8_t{0}, std::uint8_t{2}}) {
+            const auto count = static_cast<std::uint8_t>(first == 0 ? 0 : 3);
+            programs.add(reduceProgram(profile, samples::weigh,
+                                       {.walk = walk,
+                                        .runs = Runs::Split,
+                                        .domain = domain,
+                                        .domainView = view,
+                                        .domainRank = 4,
+                                        .axes = 4,
+                                        .firstPlane = first,
+                                        .planeCount = count,
+                                        .access = {{}, x, y, {Addressing::Plane}, {}, {}}}));
+          }
+        }
+      }
+    }
+  }
+  checkAccepted(programs);
+}

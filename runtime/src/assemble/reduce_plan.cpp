@@ -5,6 +5,7 @@
 // and the number of passes is that of a tree over a block's elements.
 #include "assemble/reduce_plan.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -20,11 +21,11 @@ struct Axes {
   Index4 stride = {1, 1, 1, 1};
 };
 
-Axes collapse(const Placement& input, const Placement& result) {
+Axes collapse(const Placement& input, const Index4& division) {
   Axes axes;
   for (std::size_t d = 0; d < input.extent.size(); ++d) {
     if (input.extent[d] == 1) continue;
-    const std::int32_t blocks = result.extent[d];
+    const std::int32_t blocks = division[d];
     const std::int32_t extent = input.extent[d] / blocks;
     if (axes.count > 0) {
       const std::size_t below = axes.count - 1u;
@@ -46,19 +47,34 @@ Axes collapse(const Placement& input, const Placement& result) {
 
 std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a + b - 1) / b; }
 
+/// Tells a pass where it writes. `usesIndex`: its program asks for more than the number of a result.
+void addDomain(ReducePass& pass, const Placement& domain, bool usesIndex) {
+  pass.variant.domain = domainOf(domain);
+  pass.variant.domainView = !domain.linear && domain.origin != Index4{};
+  if (usesIndex || pass.variant.domain == Domain::LinearBox) pass.variant.domainRank = decodedRank(domain);
+  pass.draws = drawnTexels(domain);
+  pass.uniforms.push_back({"sk_domain_origin", true, domain.origin});
+  pass.uniforms.push_back({"sk_domain_shape", true, domain.extent});
+  pass.uniforms.push_back({"sk_domain_stride", true, domain.stride});
+  pass.uniforms.push_back({"sk_domain_shift", false, {domain.shift}});
+  pass.uniforms.push_back({"sk_domain_step", true, stridesOf(domain.extent)});
+}
+
 class Planner {
  public:
-  Planner(const Placement& input, const Placement& result, const ReduceLimits& limits, bool aliased)
-      : input_(input), result_(result), limits_(limits), aliased_(aliased) {
+  Planner(const Placement& input, const Placement& result, const ReduceLimits& limits,
+          const Division& division)
+      : input_(input), result_(result), limits_(limits), division_(division) {
     for (std::size_t d = 0; d < input.extent.size(); ++d) {
-      assert(result.extent[d] > 0 && input.extent[d] > 0 && input.extent[d] % result.extent[d] == 0);
+      assert(division.blocks[d] > 0 && input.extent[d] > 0 && input.extent[d] % division.blocks[d] == 0);
     }
+    assert(elements(division.blocks) == elements(result.extent));
     blocks_ = static_cast<std::int32_t>(elements(result.extent));
     left_ = static_cast<std::int32_t>(elements(input.extent)) / blocks_;
   }
 
   std::vector<ReducePass> plan() {
-    addPass(input_.linear ? Walk::Box : Walk::Plane);
+    addPass(division_.byIndex ? Walk::Index : input_.linear ? Walk::Box : Walk::Plane);
     while (!passes_.back().toResult) addPass(Walk::Partials);
     return std::move(passes_);
   }
@@ -69,10 +85,12 @@ class Planner {
     const std::int32_t runs = divideUp(left_, limits_.fanIn);
     const std::int32_t fan = divideUp(left_, runs);   // runs of nearly equal length
     ReducePass pass{};
-    pass.toResult = runs == 1 && (walk == Walk::Partials || !aliased_);
+    pass.toResult = runs == 1;
     pass.variant.runs = blocks_ == 1 ? Runs::OneBlock : pass.toResult ? Runs::WholeBlocks : Runs::Split;
-    pass.uniforms = {
-        {"sk_fan", false, {fan}}, {"sk_length", false, {left_}}, {"sk_blocks", false, {blocks_}}};
+    pass.uniforms = {{"sk_fan", false, {fan}},
+                     {"sk_length", false, {left_}},
+                     {"sk_blocks", false, {blocks_}},
+                     {"sk_item_shape", true, input_.extent}};
     setSource(pass, walk);
     setDomain(pass, pass.toResult ? result_ : partials(runs));
     left_ = runs;
@@ -93,16 +111,24 @@ class Planner {
     if (walk == Walk::Partials) {
       pass.uniforms.push_back({"sk_shift", false, {sourceShift_}});
     } else if (walk == Walk::Plane) {
-      setBlocks(pass, {input_.extent[0] / result_.extent[0], input_.extent[1] / result_.extent[1], 1, 1},
-                result_.extent);
+      setBlocks(pass, blockShape(), division_.blocks);
       pass.uniforms.push_back({"sk_origin", true, input_.origin});
+    } else if (walk == Walk::Index) {
+      pass.variant.axes = decodedRank({.extent = input_.extent});
+      setBlocks(pass, blockShape(), division_.blocks);
     } else {
       setLinearSource(pass);
     }
   }
 
+  Index4 blockShape() const {
+    Index4 shape{};
+    for (std::size_t d = 0; d < shape.size(); ++d) shape[d] = input_.extent[d] / division_.blocks[d];
+    return shape;
+  }
+
   void setLinearSource(ReducePass& pass) const {
-    const Axes axes = collapse(input_, result_);
+    const Axes axes = collapse(input_, division_.blocks);
     std::int32_t start = 0;
     for (std::size_t d = 0; d < input_.origin.size(); ++d) start += input_.origin[d] * input_.stride[d];
     pass.uniforms.push_back({"sk_start", false, {start}});
@@ -123,16 +149,9 @@ class Planner {
   }
 
   void setDomain(ReducePass& pass, const Placement& domain) {
-    pass.variant.domain = domainOf(domain);
-    pass.variant.domainView = !domain.linear && domain.origin != Index4{};
-    const bool usesIndex = pass.variant.walk == Walk::Plane && pass.variant.runs == Runs::WholeBlocks;
-    if (usesIndex || pass.variant.domain == Domain::LinearBox) pass.variant.domainRank = decodedRank(domain);
-    pass.draws = drawnTexels(domain);
-    pass.uniforms.push_back({"sk_domain_origin", true, domain.origin});
-    pass.uniforms.push_back({"sk_domain_shape", true, domain.extent});
-    pass.uniforms.push_back({"sk_domain_stride", true, domain.stride});
-    pass.uniforms.push_back({"sk_domain_shift", false, {domain.shift}});
-    pass.uniforms.push_back({"sk_domain_step", true, stridesOf(domain.extent)});
+    const bool isByBlocks = pass.variant.walk == Walk::Plane && pass.variant.runs == Runs::WholeBlocks;
+    pass.variant.reshaped = isByBlocks && domain.extent != division_.blocks;
+    addDomain(pass, domain, isByBlocks && !pass.variant.reshaped);
     if (pass.toResult) return;
     sourceShift_ = domain.shift;
     pass.width = 1 << domain.shift;
@@ -143,7 +162,7 @@ class Planner {
   const Placement& input_;
   const Placement& result_;
   const ReduceLimits& limits_;
-  bool aliased_;
+  const Division& division_;
   std::int32_t blocks_;
   std::int32_t left_;               ///< elements or partial results of each block
   std::int32_t sourceShift_ = 0;    ///< of the partial results' texture
@@ -152,10 +171,31 @@ class Planner {
 
 }  // namespace
 
-std::vector<ReducePass> planReduction(const Placement& input, const Placement& result,
-                                      const ReduceLimits& limits, bool aliased) {
+bool asksForPlace(const program::Kernel& fold) {
+  using program::Role;
+  return fold.usesIndex || std::ranges::any_of(fold.parameters, [](const program::Parameter& parameter) {
+           return parameter.role == Role::Iterator || parameter.usesNear ||
+                  (parameter.role == Role::Input && parameter.usesIndex);
+         });
+}
+
+std::vector<ReducePass> planReduction(const Placement& elements, const Placement& result,
+                                      const ReduceLimits& limits, const Division& division) {
   assert(limits.fanIn >= 2);
-  return Planner(input, result, limits, aliased).plan();
+  return Planner(elements, result, limits, division).plan();
+}
+
+std::vector<ReducePass> planReduction(const Placement& elements, const Placement& result,
+                                      const ReduceLimits& limits) {
+  return planReduction(elements, result, limits, {.blocks = result.extent});
+}
+
+ReducePass planIdentities(const Placement& result) {
+  ReducePass pass{};
+  pass.toResult = true;
+  pass.variant.walk = Walk::Nothing;
+  addDomain(pass, result, false);
+  return pass;
 }
 
 Placement valuePlacement() { return {.linear = true}; }

@@ -2,11 +2,14 @@
 //
 // The passes of a reduction as a pure schedule. To run one:
 //
-//   source = the input's planes
-//   for each pass: target = pass.toResult ? the result's planes
-//                                         : new planes of the accumulator's type, pass.width x pass.height
+//   source = the inputs' planes
+//   for each pass: target = pass.toResult ? the results' planes
+//                                         : new planes of the accumulators' types, pass.width x pass.height
 //                  use reduceProgram(pass.variant), set pass.uniforms, bind source and target,
 //                  draw each rectangle of pass.draws (viewport = rectangle);  source = target
+//
+// Where the targets are more than the device draws to at once, a pass is drawn for a part of them at a
+// time (ReduceVariant::firstPlane). What only the arguments decide (access, specs) is the caller's to add.
 //
 // A first pass folds elements in runs of up to `fanIn`; the later ones fold its partial results in
 // the same way until one is left for each block. Order is row-major throughout. Partial result r of
@@ -43,11 +46,25 @@ struct ReduceLimits {
   std::int32_t fanIn = 32;              ///< elements a run, 2 or more
 };
 
-/// The passes that fold `input` into `result`, whose extents divide those of `input`; neither is empty.
-/// `aliased`: the result lies in a texture of the input's, which must then not be read by the pass
-/// that writes it.
-std::vector<ReducePass> planReduction(const Placement& input, const Placement& result,
-                                      const ReduceLimits& limits, bool aliased = false);
+/// Whether a fold asks where its elements are, so that it has to find them by their index.
+bool asksForPlace(const program::Kernel& fold);
+
+/// How the elements are divided into blocks, and found.
+struct Division {
+  Index4 blocks;         ///< in each dimension of the elements: divisors of their extents
+  bool byIndex = false;  ///< Walk::Index; of the elements' placement only the extent counts then
+};
+
+/// The passes that fold elements into `result`, whose elements are the blocks, in their order. There are
+/// some of both. No pass that writes the result may read a texture of its planes.
+std::vector<ReducePass> planReduction(const Placement& elements, const Placement& result,
+                                      const ReduceLimits& limits, const Division& division);
+/// The same where result's extents are the numbers of blocks.
+std::vector<ReducePass> planReduction(const Placement& elements, const Placement& result,
+                                      const ReduceLimits& limits);
+
+/// The pass that writes the identities to `result`, which has elements.
+ReducePass planIdentities(const Placement& result);
 
 /// The result of a reduction to a value: a 1 x 1 texture.
 Placement valuePlacement();

@@ -69,11 +69,24 @@ bool inside(const Index4& index, const Index4& extent) {
   return true;
 }
 
+/// A region of a stream: a whole one, or a part with margins around it.
+struct Region {
+  Placement placement;
+  int width, height;   ///< of its texture
+
+  std::pair<int, int> texel(const Index4& index) const {
+    const Index4 p = index + placement.origin;
+    if (!placement.linear) return {p[0], p[1]};
+    const int number = ravel(p, placement.stride);
+    return {number & ((1 << placement.shift) - 1), number >> placement.shift};
+  }
+};
+
 /// One fragment of one pass.
 class Fragment {
  public:
-  Fragment(const ReducePass& pass, Texture& source, int x, int y)
-      : pass_(pass), source_(source), x_(x), y_(y) {}
+  Fragment(const ReducePass& pass, Texture& source, const Region& input, int x, int y)
+      : pass_(pass), source_(source), input_(input), x_(x), y_(y) {}
 
   /// Nothing where the fragment is discarded.
   std::optional<Name> run() {
@@ -133,8 +146,10 @@ class Fragment {
       case Walk::Partials: at_ = first_ * integer("sk_blocks") + block_; return;
       case Walk::Plane: {
         Index4 block{};
-        if (pass_.variant.runs == Runs::WholeBlocks) block = index_;
-        if (pass_.variant.runs == Runs::Split) block = unravel(block_, vector("sk_blocks_step"), 2);
+        const bool isReshaped = pass_.variant.reshaped;
+        if (pass_.variant.runs == Runs::WholeBlocks && !isReshaped) block = index_;
+        if (pass_.variant.runs == Runs::Split || isReshaped)
+          block = unravel(block_, vector("sk_blocks_step"), 2);
         corner_ = vector("sk_origin") + block * vector("sk_block_shape");
         const int y = first_ / vector("sk_block_shape")[0];
         p_ = corner_ + Index4{first_ - y * vector("sk_block_shape")[0], y, 0, 0};
@@ -150,6 +165,13 @@ class Fragment {
         p_ = unravel(first_, vector("sk_block_step"), axes);
         return;
       }
+      case Walk::Index: {
+        const int axes = pass_.variant.axes;
+        if (many) corner_ = unravel(block_, vector("sk_blocks_step"), axes) * vector("sk_block_shape");
+        p_ = unravel(first_, vector("sk_block_step"), axes);
+        return;
+      }
+      case Walk::Nothing: throw std::logic_error("walk");
     }
   }
 
@@ -157,7 +179,7 @@ class Fragment {
     if (pass_.variant.walk == Walk::Plane) {
       ++p_[0];
       if (p_[0] == corner_[0] + vector("sk_block_shape")[0]) p_ = {corner_[0], p_[1] + 1, 0, 0};
-    } else if (pass_.variant.walk == Walk::Box) {
+    } else if (pass_.variant.walk == Walk::Box || pass_.variant.walk == Walk::Index) {
       ++p_[0];
       for (std::size_t axis = 0; axis + 1 < pass_.variant.axes; ++axis) {
         if (p_[axis] == vector("sk_block_shape")[axis]) p_[axis] = 0, ++p_[axis + 1];
@@ -171,6 +193,11 @@ class Fragment {
       case Walk::Line: return numbered(at_ + k);
       case Walk::Partials: return numbered(at_ + k * integer("sk_blocks"));
       case Walk::Box: return numbered(at_ + ravel(p_, vector("sk_stride")));
+      case Walk::Index: {
+        const auto [x, y] = input_.texel(corner_ + p_);
+        return element(x, y);
+      }
+      case Walk::Nothing: break;
     }
     throw std::logic_error("walk");
   }
@@ -188,22 +215,10 @@ class Fragment {
 
   const ReducePass& pass_;
   Texture& source_;
+  const Region& input_;
   int x_, y_;
   Index4 index_{}, corner_{}, p_{};
   int number_ = 0, block_ = 0, first_ = 0, count_ = 0, at_ = 0;
-};
-
-/// A region of a stream: a whole one, or a part with margins around it.
-struct Region {
-  Placement placement;
-  int width, height;   ///< of its texture
-
-  std::pair<int, int> texel(const Index4& index) const {
-    const Index4 p = index + placement.origin;
-    if (!placement.linear) return {p[0], p[1]};
-    const int number = ravel(p, placement.stride);
-    return {number & ((1 << placement.shift) - 1), number >> placement.shift};
-  }
 };
 
 /// As the runtime lays streams out; nothing where the stream does not fit in one texture.
@@ -234,34 +249,33 @@ void forEach(const Index4& extent, Visit visit) {
   }
 }
 
-void draw(const ReducePass& pass, Texture& source, Texture& target) {
+void draw(const ReducePass& pass, Texture& source, const Region& input, Texture& target) {
   std::set<std::pair<int, int>> drawn;
   for (const Rect& rect : pass.draws) {
     for (int y = rect.y; y < rect.y + rect.height; ++y) {
       for (int x = rect.x; x < rect.x + rect.width; ++x) {
         if (!drawn.insert({x, y}).second) throw std::logic_error("a texel is drawn twice");
-        if (auto value = Fragment(pass, source, x, y).run()) target.at(x, y) = std::move(value);
+        if (auto value = Fragment(pass, source, input, x, y).run()) target.at(x, y) = std::move(value);
       }
     }
   }
 }
 
 /// What the runtime's executor does.
-Texture execute(const std::vector<ReducePass>& passes, Texture source, const Region& result) {
+Texture execute(const std::vector<ReducePass>& passes, Texture source, const Region& input,
+                const Region& result) {
   for (const ReducePass& pass : passes) {
     Texture target = pass.toResult ? Texture(result.width, result.height) : Texture(pass.width, pass.height);
-    draw(pass, source, target);
+    draw(pass, source, input, target);
     source = std::move(target);
   }
   return source;
 }
 
-void checkSchedule(const std::vector<ReducePass>& passes, const ReduceLimits& limits, std::int64_t length,
-                   bool aliased) {
+void checkSchedule(const std::vector<ReducePass>& passes, const ReduceLimits& limits, std::int64_t length) {
   std::size_t needed = 1;
   for (std::int64_t left = length; left > limits.fanIn; left = (left + limits.fanIn - 1) / limits.fanIn)
     ++needed;
-  if (aliased) needed = std::max<std::size_t>(needed, 2);
   REQUIRE(passes.size() == needed);
   std::set<ReduceVariant> programs;
   for (const ReducePass& pass : passes) {
@@ -272,10 +286,10 @@ void checkSchedule(const std::vector<ReducePass>& passes, const ReduceLimits& li
   REQUIRE(programs.size() <= 3);
 }
 
-/// Reduces and compares every element of the result; `blocks` is the result's shape.
-void check(const Region& input, const Region& result, const ReduceLimits& limits, bool aliased = false) {
+/// Reduces to `blocks` and compares every element of the result.
+void check(const Region& input, const Region& result, const ReduceLimits& limits, const Index4& blocks,
+           bool byIndex = false) {
   const Index4& extent = input.placement.extent;
-  const Index4& blocks = result.placement.extent;
   Texture source(input.width, input.height);
   char16_t name = 0;
   forEach(extent, [&](const Index4& i) {
@@ -290,11 +304,12 @@ void check(const Region& input, const Region& result, const ReduceLimits& limits
     expected[static_cast<std::size_t>(ravel(block, stridesOf(blocks)))] += ++name;
   });
 
-  const auto passes = planReduction(input.placement, result.placement, limits, aliased);
-  checkSchedule(passes, limits, elements(extent) / elements(blocks), aliased);
-  Texture output = execute(passes, std::move(source), result);
+  const auto passes =
+      planReduction(input.placement, result.placement, limits, {.blocks = blocks, .byIndex = byIndex});
+  checkSchedule(passes, limits, elements(extent) / elements(blocks));
+  Texture output = execute(passes, std::move(source), input, result);
   std::size_t written = 0;
-  forEach(blocks, [&](const Index4& b) {
+  forEach(result.placement.extent, [&](const Index4& b) {
     const auto [x, y] = result.texel(b);
     const auto& value = output.at(x, y);
     if (!value || *value != expected[written++]) FAIL("block " << written - 1 << " is wrong");
@@ -328,7 +343,7 @@ void checkShape(const Index4& extent, int rank, const ReduceLimits& limits) {
                        layOut(extent, rank, before, after, limits.textureSize),
                        layOut(extent, rank, rowsBefore, none, limits.textureSize)};
   for (const auto& input : inputs) {
-    if (input) check(*input, value, limits);
+    if (input) check(*input, value, limits, {1, 1, 1, 1});
   }
   for (const auto x : divisors(extent[0])) {
     for (const auto y : divisors(extent[1])) {
@@ -338,7 +353,7 @@ void checkShape(const Index4& extent, int rank, const ReduceLimits& limits) {
           for (const Index4& margin : {none, before}) {
             const auto result = layOut(blocks, rank, margin, none, limits.textureSize);
             for (const auto& input : inputs) {
-              if (input && result) check(*input, *result, limits, margin != none);
+              if (input && result) check(*input, *result, limits, blocks, margin != none);
             }
           }
         }
@@ -386,6 +401,30 @@ TEST_CASE("reductions of rank 4 keep the order") {
     for (const int depth : lengths) {
       for (const int height : lengths) {
         for (const int width : lengths) checkShape({width, height, depth, duration}, 4, {64, 3});
+      }
+    }
+  }
+}
+
+TEST_CASE("results of other dimensions than the blocks keep the order") {
+  for (const auto& [extent, blocks] : {std::pair(Index4{12, 10, 1, 1}, Index4{1, 5, 1, 1}),
+                                       std::pair(Index4{12, 10, 1, 1}, Index4{1, 10, 1, 1}),
+                                       std::pair(Index4{6, 4, 5, 1}, Index4{3, 1, 5, 1}),
+                                       std::pair(Index4{6, 4, 5, 3}, Index4{1, 2, 1, 3})}) {
+    Index4 reshaped{1, 1, 1, 1};
+    int rank = 0;
+    for (const std::int32_t count : blocks) {
+      if (count > 1) reshaped[static_cast<std::size_t>(rank++)] = count;
+    }
+    for (const int limit : {8, 64}) {
+      const auto input = layOut(extent, 4, none, none, limit);
+      const auto plane = layOut(extent, 2, none, none, limit);
+      for (const Index4& margin : {none, Index4{2, 0, 0, 0}}) {
+        const auto result = layOut(reshaped, rank, margin, none, limit);
+        for (const bool byIndex : {false, true}) {
+          if (input) check(*input, *result, {limit, 4}, blocks, byIndex);
+          if (plane && extent[2] == 1) check(*plane, *result, {limit, 64}, blocks, byIndex);
+        }
       }
     }
   }

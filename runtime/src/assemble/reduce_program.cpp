@@ -4,26 +4,34 @@
 // where the run starts, and folds the run's elements with one loop.
 #include "assemble/reduce_program.hpp"
 
+#include <algorithm>
+#include <array>
 #include <initializer_list>
 
 #include <fmt/format.h>
 
+#include "assemble/arguments.hpp"
 #include "assemble/domain.hpp"
+#include "assemble/gather.hpp"
 #include "assemble/planes.hpp"
 #include "assemble/program_text.hpp"
 
 namespace sk::assemble {
 namespace {
 
+using program::Kernel;
 using program::Parameter;
 using program::Reduction;
+using program::Role;
 
 std::string_view name(Walk walk) {
   switch (walk) {
     case Walk::Line: return "elements of a line";
     case Walk::Plane: return "elements of a plane";
     case Walk::Box: return "elements of a box";
+    case Walk::Index: return "elements by index";
     case Walk::Partials: return "partial results";
+    case Walk::Nothing: return "no elements";
   }
   return {};
 }
@@ -37,46 +45,154 @@ std::string_view name(Runs runs) {
   return {};
 }
 
+/// The kernel that a walk calls: none, but for the identities, where there is no element.
+Kernel kernelOf(const Reduction& reduction, Walk walk) {
+  if (walk == Walk::Partials) return reduction.combine;
+  Kernel kernel = reduction.fold;
+  if (walk == Walk::Nothing) {
+    kernel.body = {};
+    kernel.usesIndex = kernel.usesExtent = kernel.usesLoops = false;
+  }
+  return kernel;
+}
+
 class ReductionText {
  public:
   ReductionText(const Reduction& reduction, const ReduceVariant& variant)
       : reduction_(reduction),
         variant_(variant),
-        source_(reduction.fold.parameters[variant.walk == Walk::Partials ? 1 : 0]),
-        accumulator_(reduction.fold.parameters[1]),
-        domain_(program_, variant.domain, variant.domainView, variant.domainRank) {}
+        kernel_(kernelOf(reduction, variant.walk)),
+        domain_(program_, variant.domain, variant.domainView, variant.domainRank, "sk_result") {
+    for (const Parameter& parameter : kernel_.parameters) {
+      if (parameter.role == Role::Input) inputs_.push_back(&parameter);
+      if (parameter.role == Role::Accumulator) accumulators_.push_back(&parameter);
+    }
+  }
 
   std::string write(const Profile& profile) {
-    if (reduction_.fold.usesLoops) domain_.leaveOutside();
-    declareSamplers(program_, source_);
-    declareOutputs(program_, accumulator_);
-    findRun();
-    startWalk();
-    foldRun();
+    if (kernel_.usesLoops) domain_.leaveOutside();
+    if (variant_.walk != Walk::Nothing) defineParameters();
+    std::vector<Parameter> written = writtenParameters();
+    for (const Parameter& parameter : written) declareOutputs(program_, parameter);
+    if (variant_.walk == Walk::Nothing) {
+      startFromIdentities();
+    } else {
+      findRun();
+      startWalk();
+      foldRun();
+    }
+    for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
     const std::string comment = fmt::format("{} for {}: {}, {}", reduction_.fold.name, profile.name,
                                             name(variant_.walk), name(variant_.runs));
-    return program_.finish(profile, comment, reduction_.fold);
+    return program_.finish(profile, comment, kernel_);
   }
 
  private:
+  // ---- parameters -------------------------------------------------------------------------------
+
+  StreamAccess access(std::size_t i) const {
+    return variant_.access.empty() ? StreamAccess{} : variant_.access[i];
+  }
+
+  /// The variable that holds an accumulator.
+  std::string total(const Parameter& accumulator) const {
+    return accumulators_.size() == 1 ? "sk_total" : fmt::format("sk_total_{}", accumulator.symbol);
+  }
+
+  /// The index of the element that is folded, among all elements.
+  std::string item() {
+    program_.variable("ivec4", "sk_item");
+    return "sk_item";
+  }
+
+  std::string itemPosition(int components) {
+    static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
+    return fmt::format("{}{}", item(), swizzles[static_cast<std::size_t>(components - 1)]);
+  }
+
+  void defineParameters() {
+    if (kernel_.usesIndex) program_.function("ivec4 sk_index()", {fmt::format("return {};", item())});
+    if (kernel_.usesExtent) {
+      const std::string shape = program_.uniform("ivec4", "sk_item_shape");
+      program_.function("ivec4 sk_extent()", {fmt::format("return {};", shape)});
+    }
+    std::size_t specs = 0;
+    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+      const Parameter& parameter = kernel_.parameters[i];
+      if (parameter.role == Role::Spec) {
+        arguments_.push_back(specConstant(program_, parameter, variant_.specs[specs++]));
+      } else if (isNeeded(parameter, variant_.specs)) {
+        defineParameter(parameter, access(i));
+      } else {
+        defineAbsent(program_, parameter);
+      }
+    }
+  }
+
+  void defineParameter(const Parameter& parameter, const StreamAccess& access) {
+    switch (parameter.role) {
+      case Role::Uniform:
+        arguments_.push_back(parameterUniform(program_, parameter.element->glsl, "arg", parameter));
+        return;
+      case Role::Iterator: arguments_.push_back(iteratorValue(program_, parameter, access, item())); return;
+      case Role::Input:
+        declareSamplers(program_, parameter);
+        if (variant_.walk == Walk::Index) defineInputIndex(program_, parameter, access, item());
+        defineExtent(program_, parameter);
+        return;
+      case Role::Gather:
+        defineGather(program_, [&](int components) { return itemPosition(components); }, parameter, access);
+        defineExtent(program_, parameter);
+        return;
+      case Role::Spec:
+      case Role::Accumulator:
+      case Role::Output:
+      case Role::VariableOutput:
+      case Role::Scatter: return;
+    }
+  }
+
+  /// Those accumulators of which this program writes planes, and which.
+  std::vector<Parameter> writtenParameters() const {
+    std::vector<Parameter> written;
+    std::size_t before = 0;   // planes of the accumulators so far
+    const std::size_t first = variant_.firstPlane;
+    const std::size_t end = variant_.planeCount == 0 ? SIZE_MAX : first + variant_.planeCount;
+    for (const Parameter* accumulator : accumulators_) {
+      const std::size_t after = before + accumulator->element->fields.size();
+      const std::size_t from = std::max(first, before);
+      const std::size_t to = std::min(end, after);
+      if (from < to) {
+        written.push_back(*accumulator);
+        written.back().firstPlane = static_cast<std::uint8_t>(from - before);
+        written.back().planeCount = static_cast<std::uint8_t>(to - from);
+      }
+      before = after;
+    }
+    return written;
+  }
+
+  // ---- the walk ---------------------------------------------------------------------------------
+
   /// Defines sk_block (its number), sk_first (the run's first element in it) and sk_count, as far as
   /// they are not constants.
   void findRun() {
-    const std::string number = domain_.number();
     switch (variant_.runs) {
       case Runs::OneBlock:
         integers({"sk_fan", "sk_length"});
-        statement("int sk_first = (" + number + ") * sk_fan;");
+        statement("int sk_first = (" + domain_.number() + ") * sk_fan;");
         statement("int sk_count = min(sk_fan, sk_length - sk_first);");
         return;
       case Runs::WholeBlocks:
         integers({"sk_length"});
-        if (variant_.walk != Walk::Plane) statement("int sk_block = " + number + ";");
+        if (variant_.walk != Walk::Plane || variant_.reshaped) {
+          statement("int sk_block = " + domain_.number() + ";");
+        }
         statement("int sk_count = sk_length;");
         return;
       case Runs::Split:
         integers({"sk_blocks", "sk_fan", "sk_length"});
-        statement("int sk_number = " + number + ";");
+        statement("int sk_number = " + domain_.number() + ";");
         statement("int sk_run = sk_number / sk_blocks;");
         statement("int sk_block = sk_number - sk_run * sk_blocks;");
         statement("int sk_first = sk_run * sk_fan;");
@@ -90,7 +206,9 @@ class ReductionText {
       case Walk::Line: startLine(); return;
       case Walk::Plane: startPlane(); return;
       case Walk::Box: startBox(); return;
+      case Walk::Index: startIndex(); return;
       case Walk::Partials: startPartials(); return;
+      case Walk::Nothing: return;
     }
   }
 
@@ -135,7 +253,7 @@ class ReductionText {
   }
 
   std::string blockIndex() {
-    if (variant_.runs == Runs::WholeBlocks) return domain_.index();
+    if (variant_.runs == Runs::WholeBlocks && !variant_.reshaped) return domain_.index();
     program_.require(Function::Unravel2);
     vectors({"sk_blocks_step"});
     return "sk_unravel(sk_block, sk_blocks_step)";
@@ -152,13 +270,33 @@ class ReductionText {
       block = fmt::format(" + sk_ravel({} * sk_block_shape, sk_stride)", index);
     }
     statement("int sk_at = sk_start" + block + ";");
+    walkBox();
+    first_ = next_ = numberedTexel("sk_at + sk_ravel(sk_p, sk_stride)");
+  }
+
+  /// sk_p steps through the indices in a block.
+  void walkBox() {
+    vectors({"sk_block_shape"});
     statement("ivec4 sk_p = " + (startsInside() ? unravel("sk_first", "sk_block_step") : "ivec4(0)") + ";");
     step_ = {"++sk_p.x;"};
     for (std::size_t axis = 0; axis + 1 < variant_.axes; ++axis) {
       step_.push_back(fmt::format("if (sk_p.{0} == sk_block_shape.{0}) {{ sk_p.{0} = 0; ++sk_p.{1}; }}",
                                   "xyzw"[axis], "xyzw"[axis + 1]));
     }
-    first_ = next_ = numberedTexel("sk_at + sk_ravel(sk_p, sk_stride)");
+  }
+
+  /// sk_item is the index of the element, sk_corner that of the block's first one.
+  void startIndex() {
+    std::string place = "sk_p";
+    if (manyBlocks()) {
+      vectors({"sk_block_shape"});
+      statement(fmt::format("ivec4 sk_corner = {} * sk_block_shape;", unravel("sk_block", "sk_blocks_step")));
+      place = "sk_corner + sk_p";
+    }
+    walkBox();
+    const std::string here = fmt::format("{} = {};", item(), place);
+    statement(here);
+    step_.push_back(here);
   }
 
   std::string unravel(std::string_view number, std::string_view strides) {
@@ -170,25 +308,67 @@ class ReductionText {
     return fmt::format("sk_unravel({}, {})", number, strides);
   }
 
+  // ---- the fold ---------------------------------------------------------------------------------
+
+  /// The element of an input at a texel of the walk, or at a place of its own.
+  std::string element(std::size_t i, std::string_view texel) {
+    const Parameter& input = kernel_.parameters[i];
+    if (!isNeeded(input, variant_.specs)) return absentElement(input);
+    if (variant_.walk != Walk::Index) return fetch(program_, input, texel);
+    return fetch(program_, input, inputTexel(program_, input, access(i)));
+  }
+
+  /// The arguments of the kernel's entry, in its order.
+  std::string folding() {
+    std::vector<std::string> arguments;
+    std::size_t values = 0;
+    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+      const Parameter& parameter = kernel_.parameters[i];
+      switch (parameter.role) {
+        case Role::Uniform:
+        case Role::Iterator:
+        case Role::Spec: arguments.push_back(arguments_[values++]); break;
+        case Role::Input: arguments.push_back(element(i, next_)); break;
+        case Role::Accumulator: arguments.push_back(total(parameter)); break;
+        case Role::Gather:
+        case Role::Output:
+        case Role::VariableOutput:
+        case Role::Scatter: break;
+      }
+    }
+    return "  " + call(kernel_.entry, arguments, "        ") + ";";
+  }
+
+  void startFromIdentities() {
+    for (const Parameter* accumulator : accumulators_) {
+      statement(
+          fmt::format("{} {} = {};", accumulator->element->glsl, total(*accumulator), accumulator->identity));
+    }
+  }
+
+  void startFromElements() {
+    for (std::size_t k = 0; k < accumulators_.size(); ++k) {
+      const auto i = static_cast<std::size_t>(inputs_[k] - kernel_.parameters.data());
+      statement(fmt::format("{} {} = {};", accumulators_[k]->element->glsl, total(*accumulators_[k]),
+                            element(i, first_)));
+    }
+  }
+
   /// A run starts from its first element, or else from the identity.
   void foldRun() {
-    const bool partials = variant_.walk == Walk::Partials;
-    const std::string_view type = accumulator_.element->glsl;
-    const std::string_view function = partials ? reduction_.combine : reduction_.fold.entry;
-    const std::string fold = fmt::format("  {}({}, sk_total);", function, fetch(program_, source_, next_));
-    if (partials || reduction_.seeded) {
-      statement(fmt::format("{} sk_total = {};", type, fetch(program_, source_, first_)));
+    const std::string fold = folding();
+    if (variant_.walk == Walk::Partials || reduction_.seeded) {
+      startFromElements();
       statement("for (int sk_k = 1; sk_k < sk_count; ++sk_k) {");
       for (const std::string& line : step_) statement("  " + line);
       statement(fold);
     } else {
-      statement(fmt::format("{} sk_total = {};", type, accumulator_.identity));
+      startFromIdentities();
       statement("for (int sk_k = 0; sk_k < sk_count; ++sk_k) {");
       statement(fold);
       for (const std::string& line : step_) statement("  " + line);
     }
     statement("}");
-    store(program_, accumulator_, "sk_total");
   }
 
   std::string numberedTexel(std::string_view number) {
@@ -207,8 +387,10 @@ class ReductionText {
 
   const Reduction& reduction_;
   const ReduceVariant& variant_;
-  const Parameter& source_;
-  const Parameter& accumulator_;
+  const Kernel kernel_;
+  std::vector<const Parameter*> inputs_;
+  std::vector<const Parameter*> accumulators_;
+  std::vector<std::string> arguments_;   ///< those that are the same for all elements, and iterators
   ProgramText program_;
   DomainText domain_;
   std::string first_;                 ///< texel of the run's first element

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "assemble/assemble.hpp"
 #include "sk/program.hpp"
@@ -18,7 +19,9 @@ enum class Walk : std::uint8_t {
   Line,      ///< a linearised stream whose blocks are consecutive elements
   Plane,     ///< a 2-D texture, a block being a rectangle of it
   Box,       ///< a linearised stream, a block being a box of up to 4 axes
+  Index,     ///< elements by their index, wherever each input has its own
   Partials,  ///< the partial results of the pass before
+  Nothing,   ///< no element at all: the identities
 };
 
 /// How many runs and blocks there are; a block is what one element of the result folds.
@@ -28,20 +31,28 @@ enum class Runs : std::uint8_t {
   Split,       ///< several runs a block
 };
 
-/// One program of a reduction. Passes with equal variants share it.
+/// One program of a reduction. Passes with equal variants share it. Where the walk is Partials or Nothing,
+/// `access` says nothing of inputs; where it is Index, none is aligned; else all are, and lie alike.
 struct ReduceVariant {
   Walk walk = Walk::Line;
   Runs runs = Runs::OneBlock;
   Domain domain = Domain::Linear;
   bool domainView = false;       ///< Domain::Plane: the domain's origin is not (0, 0)
   std::uint8_t domainRank = 1;   ///< Domain::LinearBox: rank of its stream
-  std::uint8_t axes = 1;         ///< Walk::Box
+  std::uint8_t axes = 1;         ///< Walk::Box and Walk::Index
+  bool reshaped = false;         ///< the result's dimensions are not those of the blocks
+  std::uint8_t firstPlane = 0;   ///< of those of all accumulators: the first that is written,
+  std::uint8_t planeCount = 0;   ///< and how many; 0 is all of them
+  std::vector<StreamAccess> access = {};  ///< one a parameter of `fold`, for Walk::Partials of `combine`;
+                                 ///< or none, where there are no gathers, iterators and indices
+  SpecValues specs{};            ///< of the same
   auto operator<=>(const ReduceVariant&) const = default;
 };
 
-/// The fragment program. Its samplers are samplerName() of the fold's Input parameter, or of its
-/// Accumulator parameter where the walk is Partials; its outputs are the accumulator's planes from
-/// location 0; the names of its integer uniforms are those that the plan gives values for.
+/// The fragment program. Its samplers are samplerName() of the inputs of `fold`, for Walk::Partials of
+/// `combine`, and of gathers; its outputs the accumulators' planes, in their order, from location 0. The
+/// names of its integer uniforms are those that the plan gives values for; all that belong to a parameter
+/// are those of a kernel's program (assemble.hpp).
 std::string reduceProgram(const Profile& profile, const program::Reduction& reduction,
                           const ReduceVariant& variant);
 

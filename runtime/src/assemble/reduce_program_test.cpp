@@ -80,7 +80,7 @@ TEST_CASE("small blocks take no division, and a run without a seed starts from t
       mainOf(samples::countTrue, {.walk = Walk::Plane, .runs = Runs::WholeBlocks, .domain = Domain::Plane}) ==
       R"(void main() {
   int sk_count = sk_length;
-  ivec2 sk_corner = sk_origin.xy + sk_index().xy * sk_block_shape.xy;
+  ivec2 sk_corner = sk_origin.xy + sk_result().xy * sk_block_shape.xy;
   ivec2 sk_p = sk_corner;
   int sk_end = sk_corner.x + sk_block_shape.x;
   ivec3 sk_total = ivec3(0);
@@ -102,9 +102,11 @@ TEST_CASE("later passes combine partial results") {
   int sk_first = sk_run * sk_fan;
   int sk_count = min(sk_fan, sk_length - sk_first);
   int sk_at = sk_first * sk_blocks + sk_block;
-  ivec3 sk_total = texelFetch(sk_tex_count, sk_texel(sk_at, sk_shift), 0).xyz;
+  ivec3 sk_total = texelFetch(sk_tex_count_part, sk_texel(sk_at, sk_shift), 0).xyz;
   for (int sk_k = 1; sk_k < sk_count; ++sk_k) {
-    countTrue_combine(texelFetch(sk_tex_count, sk_texel(sk_at + sk_k * sk_blocks, sk_shift), 0).xyz, sk_total);
+    addCounts(
+        texelFetch(sk_tex_count_part, sk_texel(sk_at + sk_k * sk_blocks, sk_shift), 0).xyz,
+        sk_total);
   }
   sk_out_count = ivec4(sk_total, 0);
 }
@@ -116,9 +118,9 @@ TEST_CASE("structs are folded plane by plane") {
   CHECK(text == R"(void main() {
   int sk_block = int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x);
   int sk_count = sk_length;
-  Hit sk_total = sk_fetch_best(sk_texel(sk_block, sk_shift));
+  Hit sk_total = sk_fetch_h(sk_texel(sk_block, sk_shift));
   for (int sk_k = 1; sk_k < sk_count; ++sk_k) {
-    firstHit(sk_fetch_best(sk_texel(sk_block + sk_k * sk_blocks, sk_shift)), sk_total);
+    firstHit(sk_fetch_h(sk_texel(sk_block + sk_k * sk_blocks, sk_shift)), sk_total);
   }
   sk_out0_best = sk_total.t;
   sk_out1_best = vec4(sk_total.at.normal, 0.0);
@@ -145,6 +147,66 @@ TEST_CASE("a box is walked axis by axis") {
     sum(texelFetch(sk_tex_x, sk_texel(sk_at + sk_ravel(sk_p, sk_stride), sk_shift), 0).x, sk_total);
   }
   sk_out_total = sk_total;
+}
+)");
+}
+
+TEST_CASE("elements that lie apart, or are asked for their place, are found by their index") {
+  const ReduceVariant variant{
+      .walk = Walk::Index,
+      .runs = Runs::Split,
+      .axes = 2,
+      .access = {{}, {Addressing::Plane, true}, {Addressing::Linear}, {Addressing::Plane}, {}, {}}};
+  const std::string text = reduceProgram(glsl, samples::weigh, variant);
+  CHECK(text.find("ivec4 sk_index_x() {\n  return min(sk_item, sk_shape_x - 1);\n}") != std::string::npos);
+  CHECK(text.find("ivec4 sk_extent() {\n  return sk_item_shape;\n}") != std::string::npos);
+  CHECK(text.substr(text.find("void main")) == R"(void main() {
+  int sk_number = int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x);
+  int sk_run = sk_number / sk_blocks;
+  int sk_block = sk_number - sk_run * sk_blocks;
+  int sk_first = sk_run * sk_fan;
+  int sk_count = min(sk_fan, sk_length - sk_first);
+  ivec4 sk_corner = sk_unravel(sk_block, sk_blocks_step) * sk_block_shape;
+  ivec4 sk_p = sk_unravel(sk_first, sk_block_step);
+  sk_item = sk_corner + sk_p;
+  float sk_total_total = 0.0;
+  Hit sk_total_best = Hit(1e30, Place(vec3(0.0), false), -1);
+  for (int sk_k = 0; sk_k < sk_count; ++sk_k) {
+    weigh(
+        sk_arg_p,
+        texelFetch(sk_tex_x, sk_index_x().xy + sk_origin_x.xy, 0).x,
+        texelFetch(sk_tex_y, sk_texel(sk_ravel(sk_index_y(), sk_stride_y), sk_shift_y), 0).xyz,
+        sk_total_total,
+        sk_total_best);
+    ++sk_p.x;
+    if (sk_p.x == sk_block_shape.x) { sk_p.x = 0; ++sk_p.y; }
+    sk_item = sk_corner + sk_p;
+  }
+  sk_out_total = sk_total_total;
+  sk_out0_best = sk_total_best.t;
+  sk_out1_best = vec4(sk_total_best.at.normal, 0.0);
+  sk_out2_best = uint(sk_total_best.at.inside);
+  sk_out3_best = sk_total_best.id;
+}
+)");
+}
+
+TEST_CASE("a pass may write some planes of all") {
+  const std::string text = mainOf(samples::weigh, {.walk = Walk::Partials, .firstPlane = 3, .planeCount = 2});
+  CHECK(text.find("weigh(") != std::string::npos);
+  CHECK(text.substr(text.find("  sk_out")) == R"(  sk_out2_best = uint(sk_total_best.at.inside);
+  sk_out3_best = sk_total_best.id;
+}
+)");
+}
+
+TEST_CASE("where there is no element, the identities are written without the kernel") {
+  const std::string text = reduceProgram(glsl, samples::weigh, {.walk = Walk::Nothing, .planeCount = 1});
+  CHECK(text.find("weigh(") == std::string::npos);
+  CHECK(text.substr(text.find("void main")) == R"(void main() {
+  float sk_total_total = 0.0;
+  Hit sk_total_best = Hit(1e30, Place(vec3(0.0), false), -1);
+  sk_out_total = sk_total_total;
 }
 )");
 }

@@ -86,6 +86,46 @@ constexpr Parameter firstHitParameters[] = {
     {.name = "best", .symbol = "best", .role = Role::Accumulator, .element = &hitElement},
 };
 
+constexpr Parameter addCountsParameters[] = {
+    {.name = "count_part", .symbol = "count_part", .role = Role::Input, .element = &int3Element},
+    {.name = "count", .symbol = "count", .role = Role::Accumulator, .element = &int3Element},
+};
+
+constexpr Parameter weighTotal{.name = "total",
+                               .symbol = "total",
+                               .role = Role::Accumulator,
+                               .element = &floatElement,
+                               .identity = "0.0"};
+constexpr Parameter weighBest{.name = "best",
+                              .symbol = "best",
+                              .role = Role::Accumulator,
+                              .element = &hitElement,
+                              .identity = "Hit(1e30, Place(vec3(0.0), false), -1)"};
+
+constexpr Parameter weighParameters[] = {
+    {.name = "p", .symbol = "p", .role = Role::Uniform, .element = &floatElement},
+    {.name = "x", .symbol = "x", .role = Role::Input, .element = &floatElement, .usesIndex = true},
+    {.name = "y", .symbol = "y", .role = Role::Input, .element = &float3Element, .usesExtent = true},
+    {.name = "w",
+     .symbol = "w",
+     .role = Role::Gather,
+     .element = &floatElement,
+     .rank = 1,
+     .usesAt = true,
+     .usesNear = true,
+     .reach = 1},
+    weighTotal,
+    weighBest,
+};
+
+constexpr Parameter weighTwoParameters[] = {
+    {.name = "total_part", .symbol = "total_part", .role = Role::Input, .element = &floatElement},
+    {.name = "best_part", .symbol = "best_part", .role = Role::Input, .element = &hitElement},
+    {.name = "p", .symbol = "p", .role = Role::Uniform, .element = &floatElement},
+    weighTotal,
+    weighBest,
+};
+
 constexpr Parameter countTrueParameters[] = {
     {.name = "b", .symbol = "b", .role = Role::Input, .element = &bool3Element},
     {.name = "count",
@@ -120,48 +160,88 @@ void heat_diffuse(float k, out float v) {
                          .parameters = diffuseParameters,
                          .sources = sources};
 
-constexpr Reduction sum{.fold = {.name = "sum",
-                                 .entry = "sum",
-                                 .declarations = {},
-                                 .body = R"(#line 1 1
+namespace {
+
+constexpr Kernel sumKernel{.name = "sum",
+                           .entry = "sum",
+                           .declarations = {},
+                           .body = R"(#line 1 1
 void sum(float x, inout float total) {
   total += x;
 }
 )",
-                                 .parameters = sumParameters,
-                                 .sources = sources},
-                        .combine = "sum",
-                        .seeded = true};
+                           .parameters = sumParameters,
+                           .sources = sources};
 
-constexpr Reduction firstHit{.fold = {.name = "firstHit",
-                                      .entry = "firstHit",
-                                      .declarations = hitDeclarations,
-                                      .body = R"(#line 11 1
+constexpr Kernel firstHitKernel{.name = "firstHit",
+                                .entry = "firstHit",
+                                .declarations = hitDeclarations,
+                                .body = R"(#line 11 1
 void firstHit(Hit h, inout Hit best) {
   if (h.t < best.t) best = h;
 }
 )",
-                                      .parameters = firstHitParameters,
-                                      .sources = sources},
-                             .combine = "firstHit",
-                             .seeded = true};
+                                .parameters = firstHitParameters,
+                                .sources = sources};
 
-constexpr Reduction countTrue{.fold = {.name = "countTrue",
-                                       .entry = "countTrue",
-                                       .declarations = {},
-                                       .body = R"(#line 1 1
+constexpr Kernel countTrueKernel{.name = "countTrue",
+                                 .entry = "countTrue",
+                                 .declarations = {},
+                                 .body = R"(#line 1 1
 void countTrue(bvec3 b, inout ivec3 count) {
   count += ivec3(b);
 }
-#line 4 1
-void countTrue_combine(ivec3 x, inout ivec3 count) {
-  count += x;
+)",
+                                 .parameters = countTrueParameters,
+                                 .sources = sources};
+
+constexpr Kernel addCountsKernel{.name = "addCounts",
+                                 .entry = "addCounts",
+                                 .declarations = {},
+                                 .body = R"(#line 4 1
+void addCounts(ivec3 count_part, inout ivec3 count) {
+  count += count_part;
 }
 )",
-                                       .parameters = countTrueParameters,
-                                       .sources = sources},
-                              .combine = "countTrue_combine",
-                              .seeded = false};
+                                 .parameters = addCountsParameters,
+                                 .sources = sources};
+
+constexpr Kernel weighKernel{.name = "weigh",
+                             .entry = "weigh",
+                             .declarations = hitDeclarations,
+                             .body = R"(#line 1 1
+void weigh(float p, float x, vec3 y, inout float total, inout Hit best) {
+  total += p * x * sk_at_w(sk_index_x().x) * sk_near_w(1);
+  if (y.x < best.t) best = Hit(y.x, Place(y, true), sk_extent().x - sk_extent_y().x);
+}
+)",
+                             .parameters = weighParameters,
+                             .sources = sources,
+                             .usesExtent = true};
+
+constexpr Kernel weighTwoKernel{.name = "weigh",
+                                .entry = "weigh",
+                                .declarations = hitDeclarations,
+                                .body = R"(#line 7 1
+void weigh(float total_part, Hit best_part, float p, inout float total, inout Hit best) {
+  total += total_part;
+  if (best_part.t < p * best.t) best = best_part;
+}
+)",
+                                .parameters = weighTwoParameters,
+                                .sources = sources};
+
+constexpr std::uint8_t weighOperands[] = {0, 0, 0, 0, 0};
+
+}  // namespace
+
+constexpr Reduction sum{.fold = sumKernel, .combine = sumKernel, .combineOperands = {}, .seeded = true};
+constexpr Reduction firstHit{
+    .fold = firstHitKernel, .combine = firstHitKernel, .combineOperands = {}, .seeded = true};
+constexpr Reduction countTrue{
+    .fold = countTrueKernel, .combine = addCountsKernel, .combineOperands = {}, .seeded = false};
+constexpr Reduction weigh{
+    .fold = weighKernel, .combine = weighTwoKernel, .combineOperands = weighOperands, .seeded = false};
 
 EveryAccess::EveryAccess(const Element& element, std::string_view border, int rank, Boundary boundary,
                          int reach)

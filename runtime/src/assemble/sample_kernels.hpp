@@ -18,8 +18,9 @@ extern const program::Element floatElement, float3Element, intElement, int3Eleme
 extern const program::Kernel saxpy;
 /// Five-point stencil.
 extern const program::Kernel diffuse;
-/// Sum and an associative operation on structs that does not commute.
-extern const program::Reduction sum, firstHit, countTrue;
+/// Sum and an associative operation on structs that does not commute; a fold that another kernel combines; one of
+/// two inputs to two accumulators, with a uniform, a gather and indices.
+extern const program::Reduction sum, firstHit, countTrue, weigh;
 
 /// A kernel that reads and writes elements of a type in every way that there is: an input, a gather
 /// of a rank and boundary by sk_at and sk_near, and an output, with all the index functions.
