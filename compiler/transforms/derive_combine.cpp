@@ -235,6 +235,7 @@ class State {
     if (pattern) addIdentities(kernel, *pattern);
     if (kernel.reduction->combine) {
       if (!checkCombination(kernel)) return;
+      needInputs(module_.kernels[*kernel.reduction->combine]);
     } else if (pattern ? pattern->isPlain : foldsAccumulators(kernel)) {
       if (!checkOwnCombination(kernel, id)) return;
       combineByItself(kernel, id, !isGiven);
@@ -264,14 +265,18 @@ class State {
     }
   }
 
-  /// A run that starts from its first elements needs them, whatever the spec parameters are.
   static void combineByItself(Kernel& kernel, KernelId id, bool seeded) {
     Reduction& reduction = *kernel.reduction;
     reduction.combine = id;
     reduction.seeded = seeded;
-    for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
-      reduction.operands.push_back(i);
-      if (kernel.params[i].role == ParamRole::Input) kernel.params[i].neededIf = nullptr;
+    for (std::uint32_t i = 0; i < kernel.params.size(); ++i) reduction.operands.push_back(i);
+    needInputs(kernel);
+  }
+
+  /// A run that starts from its first elements needs them, whatever the spec parameters are.
+  static void needInputs(Kernel& kernel) {
+    for (KernelParam& param : kernel.params) {
+      if (param.role == ParamRole::Input) param.neededIf = nullptr;
     }
   }
 

@@ -177,22 +177,22 @@ class ReductionText {
   /// Defines sk_block (its number), sk_first (the run's first element in it) and sk_count, as far as
   /// they are not constants.
   void findRun() {
+    const bool isByBlock = variant_.runs == Runs::WholeBlocks && variant_.walk == Walk::Plane;
+    const std::string number = isByBlock && !variant_.reshaped ? std::string() : domain_.number();
     switch (variant_.runs) {
       case Runs::OneBlock:
         integers({"sk_fan", "sk_length"});
-        statement("int sk_first = (" + domain_.number() + ") * sk_fan;");
+        statement("int sk_first = (" + number + ") * sk_fan;");
         statement("int sk_count = min(sk_fan, sk_length - sk_first);");
         return;
       case Runs::WholeBlocks:
         integers({"sk_length"});
-        if (variant_.walk != Walk::Plane || variant_.reshaped) {
-          statement("int sk_block = " + domain_.number() + ";");
-        }
+        if (!number.empty()) statement("int sk_block = " + number + ";");
         statement("int sk_count = sk_length;");
         return;
       case Runs::Split:
         integers({"sk_blocks", "sk_fan", "sk_length"});
-        statement("int sk_number = " + domain_.number() + ";");
+        statement("int sk_number = " + number + ";");
         statement("int sk_run = sk_number / sk_blocks;");
         statement("int sk_block = sk_number - sk_run * sk_blocks;");
         statement("int sk_first = sk_run * sk_fan;");
