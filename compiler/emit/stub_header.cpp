@@ -152,11 +152,12 @@ class HeaderWriter {
   }
 
   static std::string purpose(const Kernel& kernel, Form form) {
+    if (form == Form::Run) return "";
     const std::string from = namesOf(kernel, ParamRole::Input);
     const std::string to = namesOf(kernel, ParamRole::Accumulator);
     const bool isOne = accumulatorsOf(kernel) == 1;
     switch (form) {
-      case Form::Run: return "";
+      case Form::Run: break;
       case Form::ReduceToValue:
         return fmt::format("  /// Folds all of {} to {}.\n", from,
                            isOne ? "one value" : fmt::format("a value of each of {}", to));
