@@ -20,6 +20,7 @@
 
 #include "frontend/clang_diagnostics.hpp"
 #include "frontend/diagnostic_printer.hpp"
+#include "frontend/float_literals.hpp"
 #include "frontend/lower_module.hpp"
 #include "frontend/prelude.hpp"
 #include "frontend/token_editor.hpp"
@@ -41,7 +42,7 @@ constexpr std::uintmax_t largestFile = std::uintmax_t{4} << 20;
 std::vector<std::string> compilerArguments(const Options& options, const std::string& path) {
   std::vector<std::string> arguments = {
       "-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++", "-std=c++20", "-nostdsysteminc",
-      "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all", "-cl-single-precision-constant",
+      "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all", "-Wno-literal-range",
       "-fnative-half-arguments-and-returns", "-Wno-undefined-internal", "-Wno-undefined-inline",
       narrowingArgument,
       // a mistaken -W or a long cascade must not bury the first message
@@ -74,7 +75,9 @@ class Frontend::Unit {
     const bool isInMemory = text.has_value();
     text_ = isInMemory ? llvm::MemoryBuffer::getMemBufferCopy(*text, path) : readFile(path);
     if (text_ == nullptr || !isProgram(text_->getBuffer()) || !setUp(isInMemory)) return std::nullopt;
-    EditedTokens edited = editTokens(lex(), compiler_.getPreprocessor(), *diagnostics_);
+    std::vector<clang::Token> tokens = lex();
+    suffixFloats(tokens, compiler_.getPreprocessor());
+    EditedTokens edited = editTokens(tokens, compiler_.getPreprocessor(), *diagnostics_);
     if (diagnostics_->hasErrors()) return std::nullopt;
     parse(edited.tokens);
     if (diagnostics_->hasErrors()) return std::nullopt;

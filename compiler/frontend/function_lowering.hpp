@@ -14,6 +14,7 @@
 
 #include <clang/AST/StmtVisitor.h>
 
+#include "frontend/float_literals.hpp"
 #include "frontend/module_lowering.hpp"
 
 namespace skc::frontend {
@@ -117,11 +118,13 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr make(ir::Type type, clang::SourceLocation where, ir::Expr::Node node);
   ir::ExprPtr literal(ir::Type type, std::uint32_t bits, clang::SourceLocation where);
   /// A formula of nothing but literals (lower_literal.cpp), which takes its precision from its place.
-  static bool isLiterals(const clang::Expr* e);
+  bool isLiterals(const clang::Expr* e) const;
   ir::ExprPtr literalsAsDouble(const clang::Expr* e);
   ir::ExprPtr doubleValue(const clang::Expr* e);
   ir::ExprPtr doubleLiteral(const clang::FloatingLiteral* e);
-  llvm::APFloat literalValue(const clang::FloatingLiteral* e, const llvm::fltSemantics& semantics);
+  llvm::APFloat literalValue(const clang::FloatingLiteral* e, const llvm::fltSemantics& semantics,
+                             std::string_view type);
+  LiteralParts partsOf(const clang::FloatingLiteral* e) const;
   ir::ExprPtr integerConstant(const clang::Expr* e, ir::Type type);
   ir::ExprPtr zero(ir::Type type, clang::SourceLocation where);
   ir::ExprPtr convert(ir::ExprPtr e, ir::Scalar scalar);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Floating-point literals. Clang gives `0.1` a double that it casts to float at once
-// (-cl-single-precision-constant), so that `x * 0.1` is float for a float x. A formula of nothing but such
-// literals takes its precision from its place: where it becomes a double, or meets one, it never was float.
+// Floating-point literals. To Clang, `0.1` is a float (float_literals.hpp), so that `x * 0.1` is float for a
+// float x. A formula of nothing but such literals takes its precision from its place: where it becomes a
+// double, or meets one, it never was float, and is read anew from its text.
 //
 //   double d = 0.1;              the nearest double
 //   d *= 1.0 / 3.0;              divided in double
@@ -26,19 +26,7 @@ using ir::ExprPtr;
 
 namespace {
 
-/// The literal's digits, without suffix.
-std::string digitsOf(std::string text) {
-  std::erase(text, '\'');
-  const bool isHex = text.starts_with("0x") || text.starts_with("0X");
-  while (!text.empty() &&
-         (text.back() == 'f' || text.back() == 'F' || text.back() == 'l' || text.back() == 'L')) {
-    if (isHex && text.find_first_of("pP") == std::string::npos) break;
-    text.pop_back();
-  }
-  return text;
-}
-
-/// Looks through what changes nothing, and through the cast that makes a float of a literal.
+/// Looks through what changes nothing, and through the cast that makes a float of an integer or of `0.1L`.
 const clang::Expr* bare(const clang::Expr* e) {
   while (true) {
     e = e->IgnoreParens();
@@ -63,15 +51,20 @@ bool isSign(clang::UnaryOperatorKind kind) { return kind == clang::UO_Plus || ki
 
 }  // namespace
 
-/// From the text where it can be read: through double, a literal of float could be rounded twice.
-llvm::APFloat FunctionLowering::literalValue(const clang::FloatingLiteral* e,
-                                             const llvm::fltSemantics& semantics) {
+/// As it stands in the source.
+LiteralParts FunctionLowering::partsOf(const clang::FloatingLiteral* e) const {
   llvm::SmallString<32> buffer;
   const clang::SourceLocation spelled = module_.sources().getSpellingLoc(e->getLocation());
-  const std::string text = digitsOf(
+  return literalParts(
       clang::Lexer::getSpelling(spelled, buffer, module_.sources(), module_.context().getLangOpts()).str());
+}
+
+/// From the text where it can be read: through another type, a literal could be rounded twice.
+llvm::APFloat FunctionLowering::literalValue(const clang::FloatingLiteral* e,
+                                             const llvm::fltSemantics& semantics, std::string_view type) {
+  const std::string digits = partsOf(e).digits;
   llvm::APFloat direct(semantics);
-  auto status = direct.convertFromString(text, llvm::APFloat::rmNearestTiesToEven);
+  auto status = direct.convertFromString(digits, llvm::APFloat::rmNearestTiesToEven);
   if (!status) {
     llvm::consumeError(status.takeError());
     llvm::APFloat rounded = e->getValue();
@@ -79,31 +72,33 @@ llvm::APFloat FunctionLowering::literalValue(const clang::FloatingLiteral* e,
     rounded.convert(semantics, llvm::APFloat::rmNearestTiesToEven, &inexact);
     return rounded;
   }
-  const bool isFloat = &semantics == &llvm::APFloat::IEEEsingle();   // of a double, Clang tells
-  if (isFloat && (*status & (llvm::APFloat::opOverflow | llvm::APFloat::opUnderflow))) {
+  if (*status & (llvm::APFloat::opOverflow | llvm::APFloat::opUnderflow)) {
     module_.diagnostics().report(Diag::LiteralRange, locOf(e->getLocation()),
-                                 {text, direct.isInfinity() ? "infinity"
-                                        : direct.isZero()   ? "0"
-                                                            : "a denormal"});
+                                 {digits, type,
+                                  direct.isInfinity() ? "infinity"
+                                  : direct.isZero()   ? "0"
+                                                      : "a denormal"});
   }
   return direct;
 }
 
 ExprPtr FunctionLowering::VisitFloatingLiteral(const clang::FloatingLiteral* e) {
-  const llvm::APFloat value = literalValue(e, llvm::APFloat::IEEEsingle());
+  const llvm::APFloat value = literalValue(e, llvm::APFloat::IEEEsingle(), "float");
   return literal(ir::Type::of(ir::Scalar::Float),
                  static_cast<std::uint32_t>(value.bitcastToAPInt().getZExtValue()), e->getLocation());
 }
 
 ExprPtr FunctionLowering::doubleLiteral(const clang::FloatingLiteral* e) {
-  const llvm::APFloat value = literalValue(e, llvm::APFloat::IEEEdouble());
+  const llvm::APFloat value = literalValue(e, llvm::APFloat::IEEEdouble(), "double");
   return ir::literal(value.convertToDouble(), module_.loc(e->getLocation()));
 }
 
-bool FunctionLowering::isLiterals(const clang::Expr* e) {
+bool FunctionLowering::isLiterals(const clang::Expr* e) const {
   e = bare(e);
-  if (const auto* literal = llvm::dyn_cast<clang::FloatingLiteral>(e))
-    return !literal->getType()->isSpecificBuiltinType(clang::BuiltinType::Float);
+  if (const auto* literal = llvm::dyn_cast<clang::FloatingLiteral>(e)) {
+    const std::string_view suffix = partsOf(literal).suffix;
+    return suffix != "f" && suffix != "F";
+  }
   if (llvm::isa<clang::IntegerLiteral>(e)) return true;
   if (const auto* sign = llvm::dyn_cast<clang::UnaryOperator>(e))
     return isSign(sign->getOpcode()) && isLiterals(sign->getSubExpr());

@@ -133,7 +133,7 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
     case clang::CK_LValueToRValue:
     case clang::CK_UserDefinedConversion:
     case clang::CK_ConstructorConversion: return value(operand);
-    case clang::CK_FloatingCast: {   // of a double literal in float's place, too
+    case clang::CK_FloatingCast: {
       const ir::Scalar to = module_.type(e->getType(), where).scalar;
       return to == ir::Scalar::Double ? doubleValue(operand) : convert(value(operand), to);
     }

@@ -222,6 +222,18 @@ TEST_CASE("literals take the precision of their place") {
       if (std::fabs(second[i] - wanted) > static_cast<double>(u) * (std::fabs(x[i]) + 1))
         FAIL_CHECK("element " << i);
     }
+    auto t = device.stream<sk::double2>({500});
+    ofTemplates(streamOf<float>(device, f), streamOf<double>(device, x), r3, r0, t);
+    CHECK(difference(r3.read(), [&](std::size_t i) { return f[i] * 0.1f + 1.0f / 3.0f; }) == "");
+    const auto scaled = r0.read();
+    const auto both = t.read();
+    for (std::size_t i = 0; i < scaled.size(); ++i) {
+      const double error = static_cast<double>(u) * (std::fabs(x[i]) + 1);
+      if (std::fabs(scaled[i] - (x[i] * 0.1 + 1.0 / 3.0)) > error) FAIL_CHECK("element " << i);
+      if (both[i].x != scaled[i] || std::fabs(both[i].y - (f[i] * 0.1 + 1.0 / 3.0)) > error * 8) {
+        FAIL_CHECK("element " << i);
+      }
+    }
     auto w = device.stream<double>({5});
     table(streamOf<int>(device, {0, 1, 2, 3, 4}), w);
     const std::vector<double> weights = w.read();
