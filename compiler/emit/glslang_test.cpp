@@ -22,22 +22,11 @@ namespace {
 using namespace ir;
 using enum BinaryOp;
 
-using sk::assemble::Profile;
-
-/// Both profiles, and once more the one whose doubles have another form on some devices.
-std::vector<Profile> profiles() {
-  std::vector<Profile> list = {*sk::assemble::findProfile("glsl330"), *sk::assemble::findProfile("essl300")};
-  list.push_back(list.front());
-  list.back().name = "glsl330-pairs";
-  list.back().doubles = sk::assemble::Doubles::PrecisePairs;
-  return list;
-}
-
 /// The module's kernels and reduces as whole programs, in a folder that glslang looks at.
 std::string glslangOn(const Module& module, std::string_view folderName) {
   const ToolFolder folder(folderName);
   const Program program(module);
-  for (const Profile& profile : profiles()) {
+  for (const sk::assemble::Profile& profile : sk::assemble::profiles()) {
     for (const Unit& unit : program.units()) {
       sk::assemble::Variant variant;
       variant.access.resize(unit.kernel.parameters.size(), {.addressing = sk::assemble::Addressing::Plane});

@@ -186,7 +186,7 @@ std::string typeTraits() {
       "template <class... A> struct __sk_sum : __sk_traits<decltype((A() + ...))> {};\n"
       "template <class A> struct __sk_sum<A> : __sk_traits<A> {};\n"
       "template <class... A> using __sk_F = typename __sk_sum<A...>::F;\n"
-      "template <class... A> using __sk_f = typename __sk_sum<A...>::f;\n"
+      "template <class... A> using __sk_f = decltype((typename __sk_traits<A>::f() + ...));\n"
       "template <class... A> using __sk_I = typename __sk_sum<A...>::I;\n"
       "template <class... A> using __sk_U = typename __sk_sum<A...>::U;\n"
       "template <class... A> using __sk_B = typename __sk_sum<A...>::B;\n"
