@@ -34,6 +34,7 @@ sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel) {
       const bool isLinear = parameter.rank > 2;
       access.addressing = isLinear ? sk::assemble::Addressing::Linear : sk::assemble::Addressing::Plane;
       access.nearby = parameter.reach >= 0;
+      access.filtered = sk::assemble::mayFilter(parameter);
       if (isLinear) {
         variant.domain = sk::assemble::Domain::Linear;
         variant.domainRank = std::max(variant.domainRank, parameter.rank);

@@ -223,6 +223,9 @@ class GlslExpr {
   Parts print(Type, const NeighborRead& n) const {
     return {call("sk_near", n.stream) + "(" + text(*n.offset) + ")"};
   }
+  Parts print(Type, const Sample& n) const {
+    return {call("sk_sample", n.stream) + "(" + text(*n.position) + ")"};
+  }
   Parts print(Type, const IndexOf& n) const {
     const bool isInput = n.stream.space == StreamRef::Space::KernelParameter &&
                          context_.kernel.params[n.stream.id].role == ParamRole::Input;

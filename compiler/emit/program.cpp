@@ -191,6 +191,8 @@ class Builder {
             .usesExtent = use.extent,
             .usesAt = use.at,
             .usesNear = use.near,
+            .usesSample = use.sample,
+            .filter = param.filter,
             .reach = use.reach,
             .neededIf = condition(context, param),
             .firstPlane = static_cast<std::uint8_t>(param.firstPlane),

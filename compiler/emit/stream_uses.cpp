@@ -58,6 +58,7 @@ class Collector {
   void collect(const Expr& expr) {
     if (const auto* n = std::get_if<GatherRead>(&expr.node)) uses_.params[n->stream.id].at = true;
     if (const auto* n = std::get_if<NeighborRead>(&expr.node)) collectNear(*n);
+    if (const auto* n = std::get_if<Sample>(&expr.node)) uses_.params[n->stream.id].sample = true;
     if (const auto* n = std::get_if<ExtentOf>(&expr.node)) {
       const bool isDomain = n->stream.space == StreamRef::Space::Domain;
       const std::uint32_t param = isDomain ? domainParam(kernel_) : n->stream.id;

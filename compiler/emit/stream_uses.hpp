@@ -15,6 +15,7 @@ struct StreamUse {
   bool extent = false;
   bool at = false;
   bool near = false;
+  bool sample = false;
   std::int32_t reach = -1;   ///< largest |offset| of constant neighbour reads; -1 if one is not constant
 };
 

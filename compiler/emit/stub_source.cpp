@@ -292,6 +292,8 @@ class SourceWriter {
     if (param.usesExtent) text += ", .usesExtent = true";
     if (param.usesAt) text += ", .usesAt = true";
     if (param.usesNear) text += ", .usesNear = true";
+    if (param.usesSample) text += ", .usesSample = true";
+    if (param.filter) text += ", .filter = true";
     if (param.reach >= 0) text += fmt::format(", .reach = {}", param.reach);
     if (!param.neededIf.steps.empty()) {
       text += fmt::format(", .neededIf = {{{}, \"{}\"}}", conditionName(unit, param), param.neededIf.text);

@@ -101,6 +101,7 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
   if (name == "indexof") return indexOrExtent(e, true);
   if (name == "extentof") return indexOrExtent(e, false);
   if (name == "neighbor") return neighbor(e);
+  if (name == "sample") return sample(e);
   if (name == "push") return push(e);
   if (name == "sincos" || name == "modf" || name == "frexp") return outParameterIntrinsic(e, name);
   if (name == "select") {
@@ -327,7 +328,7 @@ ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) 
   return make(type, where, ir::ExtentOf{stream});
 }
 
-/// neighbor(a, dx), neighbor(a, dx, dy), neighbor(a, int2)
+/// neighbor(a, dx), neighbor(a, dx, dy) ..., neighbor(a, int2) ...
 ExprPtr FunctionLowering::neighbor(const clang::CallExpr* e) {
   const SourceLocation where = e->getBeginLoc();
   const ir::VarId stream = gatherVariable(e->getArg(0));
@@ -341,6 +342,16 @@ ExprPtr FunctionLowering::neighbor(const clang::CallExpr* e) {
   }
   return make(gather.type, where,
               ir::NeighborRead{{ir::StreamRef::Space::Variable, stream}, std::move(offset)});
+}
+
+/// sample(a, position): of floats, however they are kept.
+ExprPtr FunctionLowering::sample(const clang::CallExpr* e) {
+  const SourceLocation where = e->getBeginLoc();
+  const ir::VarId stream = gatherVariable(e->getArg(0));
+  const ir::Variable gather = function_.variables[stream];
+  const ir::Type type = gather.type.carrier();
+  if (!type.isFloat()) module_.fail(Diag::SampleType, where, {gather.name, module_.spelling(gather.type)});
+  return make(type, where, ir::Sample{{ir::StreamRef::Space::Variable, stream}, value(e->getArg(1))});
 }
 
 /// a[i], a[i][j], a[int2], a[float2]

@@ -178,6 +178,7 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
   if (syntax) {
     param.rank = syntax->rank;
     param.boundary = syntax->boundary;
+    param.filter = syntax->filter;
     if (!syntax->border.empty()) param.border = generatedConstant(syntax->border);
     if (!syntax->identity.empty()) param.identity = generatedConstant(syntax->identity);
   }

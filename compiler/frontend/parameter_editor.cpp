@@ -2,6 +2,7 @@
 #include "frontend/parameter_editor.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,7 +28,8 @@ struct ParameterEditor::Parts {
   Token open, close;               ///< the first and the last bracket of either kind
   Tokens length;                   ///< `[9]`, brackets included, of a uniform array
   Tokens value;                    ///< after `=`
-  Token boundary;                  ///< the word in [[...]]
+  Token attribute;                 ///< the last word in [[...]]
+  bool hasAttribute = false;
   bool hasBoundary = false;
   Tokens border;                   ///< between the parentheses of border(...)
   Tokens rest;                     ///< what follows the name of an ordinary parameter
@@ -114,30 +116,13 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
   print(parts, kind, out);
 }
 
-/// [[clamp]] [[wrap]] [[mirror]] [[border(v)]]
+/// [[clamp]] [[wrap]] [[mirror]] [[border(v)]] [[filter]] [[wrap, filter]]
 bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, Parts& parts) {
   while (isKind(parameter, at, tok::l_square) && isKind(parameter, at + 1, tok::l_square)) {
-    at += 2;
-    if (at >= parameter.size()) {
-      diagnostics_.report(Diag::ParameterAttribute, locOf(parameter.back()), {""});
-      return false;
-    }
-    parts.boundary = parameter[at];
-    parts.hasBoundary = true;
-    const Token& name = parameter[at++];
-    if (isWord(name, "clamp"))
-      parts.syntax.boundary = ir::Boundary::Clamp;
-    else if (isWord(name, "wrap"))
-      parts.syntax.boundary = ir::Boundary::Wrap;
-    else if (isWord(name, "mirror"))
-      parts.syntax.boundary = ir::Boundary::Mirror;
-    else if (isWord(name, "border")) {
-      parts.syntax.boundary = ir::Boundary::Border;
-      if (!takeBorder(parameter, at, parts)) return false;
-    } else {
-      diagnostics_.report(Diag::ParameterAttribute, locOf(name), {preprocessor_.getSpelling(name)});
-      return false;
-    }
+    ++at;
+    do {
+      if (!takeAttribute(parameter, ++at, parts)) return false;
+    } while (isKind(parameter, at, tok::comma));
     if (!isKind(parameter, at, tok::r_square) || !isKind(parameter, at + 1, tok::r_square)) {
       diagnostics_.report(Diag::AttributeEnd,
                           locOf(at < parameter.size() ? parameter[at] : parameter.back()));
@@ -146,6 +131,38 @@ bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, P
     at += 2;
   }
   return true;
+}
+
+/// One name between the brackets.
+bool ParameterEditor::takeAttribute(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  if (at >= parameter.size()) {
+    diagnostics_.report(Diag::ParameterAttribute, locOf(parameter.back()), {""});
+    return false;
+  }
+  const Token& name = parameter[at++];
+  parts.attribute = name;
+  parts.hasAttribute = true;
+  if (isWord(name, "filter")) {
+    parts.syntax.filter = true;
+    return true;
+  }
+  if (isWord(name, "clamp")) {
+    parts.syntax.boundary = ir::Boundary::Clamp;
+  } else if (isWord(name, "wrap")) {
+    parts.syntax.boundary = ir::Boundary::Wrap;
+  } else if (isWord(name, "mirror")) {
+    parts.syntax.boundary = ir::Boundary::Mirror;
+  } else if (isWord(name, "border")) {
+    parts.syntax.boundary = ir::Boundary::Border;
+  } else {
+    diagnostics_.report(Diag::ParameterAttribute, locOf(name), {preprocessor_.getSpelling(name)});
+    return false;
+  }
+  if (std::exchange(parts.hasBoundary, true)) {
+    diagnostics_.report(Diag::BoundaryTwice, locOf(name), {nameOf(name)});
+    return false;
+  }
+  return parts.syntax.boundary != ir::Boundary::Border || takeBorder(parameter, at, parts);
 }
 
 bool ParameterEditor::takeBorder(const Tokens& parameter, std::size_t& at, Parts& parts) {
@@ -158,7 +175,7 @@ bool ParameterEditor::takeBorder(const Tokens& parameter, std::size_t& at, Parts
     } while (depth > 0 && at < parameter.size());
   }
   if (depth != 0 || parts.border.size() < 3) {
-    diagnostics_.report(Diag::BorderValue, locOf(parts.boundary));
+    diagnostics_.report(Diag::BorderValue, locOf(parts.attribute));
     return false;
   }
   return true;
@@ -270,15 +287,15 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
     return false;
   }
   if (!parts.length.empty() &&
-      (parts.isElement || parts.rank > 0 || parts.hasBoundary || !qualifier.empty())) {
+      (parts.isElement || parts.rank > 0 || parts.hasAttribute || !qualifier.empty())) {
     return fail(Diag::ArrayParameter, {name});
   }
   if (parts.isElement && parts.rank > 0) return fail(Diag::StreamAndGather, {name});
   const bool isSink = qualifier == "vout" || (qualifier == "out" && parts.rank > 0);
   if (isSink) return resolveSink(parts, kind);
   if (parts.rank > 4) return fail(Diag::StreamRank, {name, std::to_string(parts.rank)});
-  if (parts.hasBoundary && (parts.rank == 0 || !qualifier.empty())) {
-    diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.boundary), {nameOf(parts.boundary), name});
+  if (parts.hasAttribute && (parts.rank == 0 || !qualifier.empty())) {
+    diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.attribute), {nameOf(parts.attribute), name});
     return false;
   }
   if (!parts.value.empty() && qualifier != "reduce") return fail(Diag::DefaultArgument, {name});
@@ -331,8 +348,8 @@ bool ParameterEditor::resolveSink(Parts& parts, FunctionKind kind) {
   if (isVariable && (!parts.isElement || parts.rank > 0)) return fail(Diag::VariableOutputBrackets, {name});
   if (parts.isElement && !isVariable) return fail(Diag::StreamAndGather, {name});
   if (parts.rank > 4) return fail(Diag::StreamRank, {name, std::to_string(parts.rank)});
-  if (parts.hasBoundary) {
-    diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.boundary), {nameOf(parts.boundary), name});
+  if (parts.hasAttribute) {
+    diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.attribute), {nameOf(parts.attribute), name});
     return false;
   }
   if (!parts.value.empty()) return fail(Diag::DefaultArgument, {name});

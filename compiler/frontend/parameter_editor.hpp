@@ -40,6 +40,7 @@ class ParameterEditor {
 
   void editParameter(const Tokens& parameter, FunctionKind kind, Tokens& out);
   bool takeAttributes(const Tokens& parameter, std::size_t& at, Parts& parts);
+  bool takeAttribute(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool takeBorder(const Tokens& parameter, std::size_t& at, Parts& parts);
   void takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts);

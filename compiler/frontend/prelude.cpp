@@ -217,6 +217,15 @@ template <class T> T neighbor(gather_3d<T> a, int dx, int dy = 0, int dz = 0);
 template <class T> T neighbor(gather_3d<T> a, int3 offset);
 template <class T> T neighbor(gather_4d<T> a, int dx, int dy = 0, int dz = 0, int dw = 0);
 template <class T> T neighbor(gather_4d<T> a, int4 offset);
+template <class...> using __sk_void = void;
+template <class T, class = void> struct __sk_sampled { using type = float; };
+template <class T> struct __sk_sampled<T, __sk_void<typename __sk_traits<T>::F>> {
+  using type = typename __sk_traits<T>::F;
+};
+template <class T> typename __sk_sampled<T>::type sample(gather_1d<T> a, float position);
+template <class T> typename __sk_sampled<T>::type sample(gather_2d<T> a, float2 position);
+template <class T> typename __sk_sampled<T>::type sample(gather_3d<T> a, float3 position);
+template <class T> typename __sk_sampled<T>::type sample(gather_4d<T> a, float4 position);
 template <class T> int4 indexof(const T& stream);
 template <class T> int4 extentof(const T& stream);
 template <class T> struct scatter_1d {

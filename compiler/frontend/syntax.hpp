@@ -26,6 +26,7 @@ struct ParamSyntax {
   ir::ParamRole role = ir::ParamRole::Uniform;
   std::uint8_t rank = 0;
   ir::Boundary boundary = ir::Boundary::Clamp;
+  bool filter = false;
   std::string border;                ///< name of the generated constant that holds [[border(v)]]
   std::string identity;              ///< name of the generated constant that holds `= identity`
 };

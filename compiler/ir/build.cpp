@@ -190,6 +190,7 @@ Expr::Node cloneNode(const Expr::Node& node) {
       [](const IntrinsicCall& n) -> N { return IntrinsicCall{n.intrinsic, cloneAll(n.args)}; },
       [](const GatherRead& n) -> N { return GatherRead{n.stream, clone(n.index)}; },
       [](const NeighborRead& n) -> N { return NeighborRead{n.stream, clone(n.offset)}; },
+      [](const Sample& n) -> N { return Sample{n.stream, clone(n.position)}; },
       [](const IndexOf& n) -> N { return n; }, [](const ExtentOf& n) -> N { return n; });
 }
 

@@ -22,8 +22,8 @@
 //   * A function's parameters are its first `parameterCount` variables. `In` is a copy;
 //     `InOut` copies in and out, and no variable is bound to two InOut parameters of one call.
 //     `Gather`, `Element` and `Sink` parameters stand for streams: they may only be used by the stream
-//     expressions (GatherRead, NeighborRead, IndexOf, ExtentOf) and, a Sink, by the stream statements
-//     (Push, Scatter), or handed to another function; an Element may be read by VarRef too.
+//     expressions (GatherRead, NeighborRead, Sample, IndexOf, ExtentOf) and, a Sink, by the stream
+//     statements (Push, Scatter), or handed to another function; an Element may be read by VarRef too.
 //   * Each kernel has an entry function, with one variable per kernel parameter, in order. After
 //     `specialize-gathers`, no function but an entry has Gather or Sink parameters, and every StreamRef
 //     names a kernel parameter; the functions that a kernel reaches are then its own.
@@ -100,13 +100,16 @@ struct StreamRef {
 };
 struct GatherRead { StreamRef stream; ExprPtr index; };       ///< int (rank 1), int2 .. int4; x fastest
 struct NeighborRead { StreamRef stream; ExprPtr offset; };    ///< likewise
+/// Linear interpolation of a gather of floats at a float (rank 1), float2 .. float4; x fastest. Its type is
+/// the carrier of the element's.
+struct Sample { StreamRef stream; ExprPtr position; };
 struct IndexOf { StreamRef stream; };                         ///< int4
 struct ExtentOf { StreamRef stream; };                        ///< int4
 
 struct Expr {
   using Node = std::variant<Literal, VarRef, ConstantRef, Unary, Binary, Select, Convert, Construct,
                             Swizzle, Member, Index, Call, IntrinsicCall, GatherRead, NeighborRead,
-                            IndexOf, ExtentOf>;
+                            Sample, IndexOf, ExtentOf>;
   Type type;
   Loc loc;
   Node node;
@@ -200,6 +203,7 @@ struct KernelParam {
   std::uint8_t rank = 0;               ///< Gather, Scatter
   Boundary boundary = Boundary::Clamp; ///< Gather
   ExprPtr border;                      ///< Gather with Border: constant expression
+  bool filter = false;                 ///< Gather: sampled by the device's own filter where it can
   ExprPtr identity;                    ///< Accumulator: constant expression, or null
   std::uint32_t firstPlane = 0;        ///< Output of a pass that writes only some planes of the element:
   std::uint32_t planeCount = 0;        ///< the first, and how many; 0 is all of them

@@ -95,6 +95,7 @@ class ExprPrinter {
         [&](const NeighborRead& n) {
           return Parts{"neighbor(" + stream(n.stream) + ", " + text(*n.offset) + ")"};
         },
+        [&](const Sample& n) { return Parts{"sample(" + stream(n.stream) + ", " + text(*n.position) + ")"}; },
         [&](const IndexOf& n) { return Parts{"indexof(" + stream(n.stream) + ")"}; },
         [&](const ExtentOf& n) { return Parts{"extentof(" + stream(n.stream) + ")"}; });
   }

@@ -182,29 +182,39 @@ class ExprChecker {
   }
   void rule(Type type, const GatherRead& n) const { read(type, n.stream, n.index->type); }
   void rule(Type type, const NeighborRead& n) const { read(type, n.stream, n.offset->type); }
+  void rule(Type type, const Sample& n) const {
+    const GatherType gather = gatherType(n.stream);
+    require(gather.element.carrier().isFloat(), "a gather that holds no floats is interpolated");
+    require(n.position->type == Type::of(Scalar::Float, gather.rank),
+            "the position in a gather is not float of its rank");
+    require(gather.element.carrier() == type,
+            "an interpolated value has another type than the stream's element");
+  }
   void rule(Type type, const IndexOf& n) const { shape(type, n.stream); }
   void rule(Type type, const ExtentOf& n) const { shape(type, n.stream); }
 
-  void read(Type type, StreamRef stream, Type index) const {
+  struct GatherType {
+    Type element;
+    int rank;
+  };
+  GatherType gatherType(StreamRef stream) const {
     require(stream.space != StreamRef::Space::Domain, "the domain is read");
     checkStream(stream);
-    bool isGather = false;
-    Type element;
-    int rank = 0;
+    constexpr const char* noGather = "a stream that is no gather is read by index";
     if (stream.space == StreamRef::Space::Variable) {
       const Variable& var = context_.function->variables[stream.id];
-      isGather = var.role == VarRole::Gather;
-      element = var.type;
-      rank = var.rank;
-    } else {
-      const KernelParam& param = context_.kernel->params[stream.id];
-      isGather = param.role == ParamRole::Gather;
-      element = param.type;
-      rank = param.rank;
+      require(var.role == VarRole::Gather, noGather);
+      return {var.type, var.rank};
     }
-    require(isGather, "a stream that is no gather is read by index");
-    require(index == Type::of(Scalar::Int, rank), "the index of a gather is not int of its rank");
-    require(element == type, "a read has another type than the stream's element");
+    const KernelParam& param = context_.kernel->params[stream.id];
+    require(param.role == ParamRole::Gather, noGather);
+    return {param.type, param.rank};
+  }
+
+  void read(Type type, StreamRef stream, Type index) const {
+    const GatherType gather = gatherType(stream);
+    require(index == Type::of(Scalar::Int, gather.rank), "the index of a gather is not int of its rank");
+    require(gather.element == type, "a read has another type than the stream's element");
   }
 
   void shape(Type type, StreamRef stream) const {

@@ -38,6 +38,7 @@ void forEachOperand(E& expr, Fn&& fn) {
       [&](Like<E, IntrinsicCall>& n) { each(n.args); },
       [&](Like<E, GatherRead>& n) { fn(n.index); },
       [&](Like<E, NeighborRead>& n) { fn(n.offset); },
+      [&](Like<E, Sample>& n) { fn(n.position); },
       [](const IndexOf&) {}, [](const ExtentOf&) {});
 }
 

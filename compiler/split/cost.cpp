@@ -47,6 +47,11 @@ double nodeCost(const Module& module, const Expr& expr, const std::vector<double
       [&](const IntrinsicCall&) { return intrinsicCost * width; },
       [&](const GatherRead&) { return addressCost + elementCost(module, expr.type); },
       [&](const NeighborRead&) { return addressCost + elementCost(module, expr.type); },
+      [&](const Sample& n) {
+        // every neighbour is read, then each pair of them weighted
+        const double neighbours = 1 << n.position->type.width;
+        return neighbours * (addressCost + elementCost(module, expr.type) + 3 * width);
+      },
       [](const IndexOf&) { return 0.0; }, [](const ExtentOf&) { return 0.0; });
 }
 

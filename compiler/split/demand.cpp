@@ -16,6 +16,7 @@ std::optional<std::uint32_t> streamOf(const Expr& expr) {
   std::optional<StreamRef> stream;
   if (const auto* n = std::get_if<GatherRead>(&expr.node)) stream = n->stream;
   if (const auto* n = std::get_if<NeighborRead>(&expr.node)) stream = n->stream;
+  if (const auto* n = std::get_if<Sample>(&expr.node)) stream = n->stream;
   if (const auto* n = std::get_if<IndexOf>(&expr.node)) stream = n->stream;
   if (const auto* n = std::get_if<ExtentOf>(&expr.node)) stream = n->stream;
   if (!stream || stream->space != StreamRef::Space::KernelParameter) return std::nullopt;

@@ -178,6 +178,7 @@ class Maker {
     walkExprs(block, [&](Expr& expr) {
       if (auto* n = std::get_if<GatherRead>(&expr.node)) bind(n->stream);
       if (auto* n = std::get_if<NeighborRead>(&expr.node)) bind(n->stream);
+      if (auto* n = std::get_if<Sample>(&expr.node)) bind(n->stream);
       if (auto* n = std::get_if<IndexOf>(&expr.node)) bind(n->stream);
       if (auto* n = std::get_if<ExtentOf>(&expr.node)) bind(n->stream);
       if (auto* n = std::get_if<Call>(&expr.node)) n->callee = copyOf(n->callee);

@@ -212,6 +212,7 @@ class Follower {
     if (const auto* n = std::get_if<Call>(&expr.node)) call(frame, n->callee, n->args, guard);
     if (const auto* n = std::get_if<GatherRead>(&expr.node)) use(n->stream, guard);
     if (const auto* n = std::get_if<NeighborRead>(&expr.node)) use(n->stream, guard);
+    if (const auto* n = std::get_if<Sample>(&expr.node)) use(n->stream, guard);
     if (const auto* n = std::get_if<IndexOf>(&expr.node)) use(n->stream, guard);
     if (const auto* n = std::get_if<ExtentOf>(&expr.node)) use(n->stream, guard);
     forEachOperand(expr, [&](const ExprPtr& operand) { expression(frame, *operand, guard); });

@@ -29,6 +29,7 @@ template <class Fn>
 void withStream(Expr& expr, Fn&& fn) {
   if (auto* n = std::get_if<GatherRead>(&expr.node)) fn(n->stream);
   if (auto* n = std::get_if<NeighborRead>(&expr.node)) fn(n->stream);
+  if (auto* n = std::get_if<Sample>(&expr.node)) fn(n->stream);
   if (auto* n = std::get_if<IndexOf>(&expr.node)) fn(n->stream);
   if (auto* n = std::get_if<ExtentOf>(&expr.node)) fn(n->stream);
 }

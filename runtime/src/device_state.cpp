@@ -71,6 +71,7 @@ DeviceState::~DeviceState() {
     framebuffers.clear();
     programs.clear();
     sinkPrograms.clear();
+    samplers.clear();
     vertexArray = {};
   }
 }
@@ -86,6 +87,7 @@ void DeviceState::forgetObjects() noexcept {
   framebuffers.forget();
   programs.forget();
   sinkPrograms.forget();
+  samplers.forget();
   vertexArray.forget();
 }
 

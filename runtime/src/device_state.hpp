@@ -12,6 +12,7 @@
 #include "assemble/assemble.hpp"
 #include "framebuffer_cache.hpp"
 #include "gl/bound_state.hpp"
+#include "gl/linear_samplers.hpp"
 #include "gl/open_context.hpp"
 #include "gl/saved_state.hpp"
 #include "gl/vertex_array.hpp"
@@ -59,6 +60,7 @@ class DeviceState {
   SurfacePool pool;
   ProgramCache programs;
   SinkPrograms sinkPrograms;
+  gl::LinearSamplers samplers;
   gl::VertexArray vertexArray;
   std::vector<std::byte> staging;        ///< texels on their way; transfer.cpp's
   std::vector<Operand> operands;         ///< of the call that runs; run.cpp's

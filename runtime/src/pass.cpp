@@ -72,8 +72,14 @@ void drawRects(DeviceState& device, std::span<const Rect> rects) {
 void bindOperands(DeviceState& device, KernelProgram& program, const program::Kernel& kernel,
                   std::span<const Operand> operands, std::span<const gl::ArrayTexture> bundles) {
   int unit = 0;
+  std::array<int, gl::maxTextureUnits> filtered{};
+  std::size_t filteredCount = 0;
   for (KernelProgram::Read& read : program.reads) {
     const Operand& operand = operands[read.parameter];
+    if (read.sampler != 0) {
+      device.bound.sampler(unit, read.sampler);
+      filtered[filteredCount++] = unit;
+    }
     unit = bindOwnPlanes(device, kernel.parameters[read.parameter], operand.planes, unit);
     read.uniforms.set(operand.placement);
   }
@@ -103,6 +109,9 @@ void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<co
     program.target.set(operands[task.sink].placement);
   }
   drawRects(device, rects);
+  for (std::size_t i = 0; i < filteredCount; ++i) {
+    device.bound.sampler(filtered[i], 0);
+  }
 }
 
 void copyRegion(DeviceState& device, const program::Element& element, std::span<Surface> from,

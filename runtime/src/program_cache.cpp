@@ -46,9 +46,11 @@ ProgramCache::ProgramCache(DeviceState& device) : device_(device) {}
 
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                            const assemble::Placement& domain, const assemble::Task& task) {
-  std::unique_ptr<KernelProgram>& kept = kernels_[variantKey(kernel, operands, domain, task)];
+  std::unique_ptr<KernelProgram>& kept =
+      kernels_[variantKey(kernel, operands, domain, task, device_.capabilities.filtersFloats)];
   if (!kept) {
-    kept = makeKernelProgram(kernel, chooseVariant(kernel, operands, domain, task));
+    kept = makeKernelProgram(
+        kernel, chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats));
   }
   return *kept;
 }
@@ -59,6 +61,10 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
   made->program = build(kernel, assemble::fragmentProgram(device_.profile, kernel, variant));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
   findParameters(*made, kernel, variant.specs);
+  for (KernelProgram::Read& read : made->reads) {
+    const bool isFiltered = variant.access[read.parameter].filtered;
+    read.sampler = isFiltered ? device_.samplers.name(kernel.parameters[read.parameter].boundary) : 0;
+  }
   if (variant.task.work == assemble::Work::List) {
     findListUniforms(*made, kernel.parameters[variant.task.sink]);
   }

@@ -39,6 +39,7 @@ struct KernelProgram {
   struct Read {
     std::size_t parameter;
     PlacementUniforms uniforms;
+    GLuint sampler = 0;         ///< for its only plane; 0: the texture's own settings
   };
 
   /// Where a list's program finds the tree over the counts (assemble/count_tree.hpp).

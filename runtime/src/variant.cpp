@@ -47,8 +47,14 @@ bool isNearby(const Parameter& gather, const Placement& placement, const Placeme
   return true;
 }
 
+/// Whether the sampler's filter reads what sample() means: the whole of a texture, at its edges too.
+bool isFiltered(const Parameter& gather, const Placement& placement, bool filtersFloats) {
+  const bool isFloat = gather.element->fields.front().scalar == program::Scalar::Float;
+  return assemble::mayFilter(gather) && !placement.linear && !placement.view && (!isFloat || filtersFloats);
+}
+
 StreamAccess chooseAccess(const Parameter& parameter, const Placement& placement, const Placement& domain,
-                          const Task& task) {
+                          const Task& task, bool filtersFloats) {
   StreamAccess access;
   const bool isAligned = task.work != Work::List && haveSameTexels(placement, domain);
   if (parameter.role == Role::Input && isAligned) {
@@ -57,6 +63,7 @@ StreamAccess chooseAccess(const Parameter& parameter, const Placement& placement
   access.addressing = placement.linear ? Addressing::Linear : Addressing::Plane;
   access.view = placement.origin != assemble::Index4{};
   access.nearby = parameter.role == Role::Gather && isNearby(parameter, placement, domain);
+  access.filtered = parameter.role == Role::Gather && isFiltered(parameter, placement, filtersFloats);
   return access;
 }
 
@@ -130,7 +137,7 @@ Operand iteration(const Parameter& iterator, const void* ends, const Shape& doma
 }
 
 assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
-                                const Placement& domain, const Task& task) {
+                                const Placement& domain, const Task& task, bool filtersFloats) {
   assemble::Variant variant;
   variant.task = task;
   variant.domain = domainOf(domain, task);
@@ -143,7 +150,7 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
     if (parameter.role == Role::Iterator) {
       access = chooseIteration(parameter, operands[i], domain);
     } else if (hasAccess(kernel, i, task) && isNeeded(parameter, variant.specs)) {
-      access = chooseAccess(parameter, operands[i].placement, domain, task);
+      access = chooseAccess(parameter, operands[i].placement, domain, task, filtersFloats);
     }
     variant.access.push_back(access);
   }
@@ -152,7 +159,7 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
 
 // Each entry is 4 bits, so that none is divided between words.
 ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
-                      const Placement& domain, const Task& task) {
+                      const Placement& domain, const Task& task, bool filtersFloats) {
   ProgramKey key{&kernel, {}, specsOf(kernel, operands)};
   KeyBits bits(key);
   bits.add(static_cast<std::uint64_t>(domainOf(domain, task)) | std::uint64_t{isDomainView(domain)} << 3, 4);
@@ -168,10 +175,13 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
       bits.add(std::uint64_t{operands[i].rank == 1} | std::uint64_t{isFlat(domain)} << 1, 4);
     }
     if (hasAccess(kernel, i, task) && isNeeded(parameter, key.specs)) {
-      const StreamAccess access = chooseAccess(parameter, operands[i].placement, domain, task);
+      const StreamAccess access = chooseAccess(parameter, operands[i].placement, domain, task, filtersFloats);
       bits.add(static_cast<std::uint64_t>(access.addressing) | std::uint64_t{access.view} << 2 |
                    std::uint64_t{access.nearby} << 3,
                4);
+      if (parameter.filter) {
+        bits.add(std::uint64_t{access.filtered}, 4);
+      }
     }
   }
   return key;

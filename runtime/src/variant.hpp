@@ -48,9 +48,12 @@ Operand iteration(const program::Parameter& iterator, const void* ends, const Sh
 
 /// The variant of `kernel` for operands, one a parameter, over `domain`; `variant` and `key` hold the
 /// same choices. Planes that a kernel reads are few enough for the key (gl::maxTextureUnits).
+/// `filtersFloats`: what the device can.
 assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
-                                const assemble::Placement& domain, const assemble::Task& task = {});
+                                const assemble::Placement& domain, const assemble::Task& task = {},
+                                bool filtersFloats = false);
 ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
-                      const assemble::Placement& domain, const assemble::Task& task = {});
+                      const assemble::Placement& domain, const assemble::Task& task = {},
+                      bool filtersFloats = false);
 
 }  // namespace sk

@@ -103,3 +103,36 @@ TEST_CASE("a gather is near only where one step always brings its index back") {
   CHECK_FALSE(choose(whole({2, 9}), whole({2, 9}), whole({2, 9})).variant.access[2].nearby);
   CHECK_FALSE(choose(whole({8, 9}), whole({8, 8}), whole({8, 9})).variant.access[2].nearby);
 }
+
+TEST_CASE("the device's filter reads whole textures of floats that it can filter, at edges that it knows") {
+  program::Parameter gather = parameters[2];
+  gather.usesSample = gather.filter = true;
+  program::Kernel sampling = makeKernel();
+  const auto isFiltered = [&](const Placement& placement, bool filtersFloats) {
+    const program::Parameter list[] = {gather, parameters[3]};
+    sampling.parameters = list;
+    const Placement domain = whole({8, 9});
+    const Operand operands[] = {{nullptr, placement, {}}, {nullptr, domain, {}}};
+    const bool is = chooseVariant(sampling, operands, domain, {}, filtersFloats).access[0].filtered;
+    const bool hasKeyOfItsOwn = variantKey(sampling, operands, domain, {}, filtersFloats) !=
+                                variantKey(sampling, operands, domain, {}, false);
+    CHECK((is && gather.element == &ElementTraits<float>::element()) == hasKeyOfItsOwn);
+    return is;
+  };
+  const Placement plane = whole({8, 9});
+  CHECK(isFiltered(plane, true));
+  CHECK_FALSE(isFiltered(plane, false));
+  CHECK_FALSE(isFiltered(whole({8, 90}), true));
+  CHECK_FALSE(isFiltered(region({8, 9}, {0, 0}, {4, 4}), true));
+  gather.boundary = program::Boundary::Border;
+  CHECK_FALSE(isFiltered(plane, true));
+  gather.boundary = program::Boundary::Mirror;
+  CHECK(isFiltered(plane, true));
+  gather.element = &ElementTraits<half>::element();
+  CHECK(isFiltered(plane, false));
+  gather.element = &ElementTraits<unorm8>::element();
+  CHECK_FALSE(isFiltered(plane, true));
+  gather.element = &ElementTraits<float>::element();
+  gather.filter = false;
+  CHECK_FALSE(isFiltered(plane, true));
+}

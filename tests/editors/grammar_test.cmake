@@ -64,7 +64,7 @@ set(ofStreams indexof extentof neighbor sample push)
 set(intrinsics ${table} ${written})
 list(REMOVE_ITEM intrinsics ${ofStreams})
 expect(intrinsics 0 ${intrinsics})
-list(REMOVE_ITEM ofStreams sample push)
+list(REMOVE_ITEM ofStreams push)
 expect(streams 0 ${ofStreams})
 
 spellings(modes compiler/frontend/parameter_editor.cpp "isWord\\(name, \"([a-z]+)\"\\)")

@@ -14,6 +14,7 @@
 //   ivec4 sk_extent_p()        shape of p's stream, x fastest, missing dimensions 1  (usesExtent)
 //   T     sk_at_p(ivecN i)     element of gather p at i; N is its rank, `int` if 1   (usesAt)
 //   T     sk_near_p(ivecN d)   element of gather p at the current index plus d       (usesNear)
+//   T     sk_sample_p(vecN x)  gather p of floats, interpolated at x; `float` if 1   (usesSample)
 //   ivec4 sk_extent()          shape of the domain, where no output has it           (usesExtent)
 //                              (of a reduction, the domain is what its elements lie in)
 //   void  sk_push_p(T v)       appends v to variable output p
@@ -137,6 +138,8 @@ struct Parameter {
   bool usesExtent = false;     ///< the body calls sk_extent_p()
   bool usesAt = false;         ///< the body calls sk_at_p()
   bool usesNear = false;       ///< the body calls sk_near_p()
+  bool usesSample = false;     ///< the body calls sk_sample_p()
+  bool filter = false;         ///< gathers: sk_sample_p() may leave the interpolation to the device
   std::int32_t reach = -1;     ///< largest |offset| of its sk_near_p() calls; -1 if not constant
   Condition neededIf = {};     ///< inputs, outputs, gathers: where it is false, the stream may be left out
   std::uint8_t firstPlane = 0; ///< outputs of a pass that writes only some planes: the first,

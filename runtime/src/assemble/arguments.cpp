@@ -88,6 +88,10 @@ void defineAbsent(ProgramText& program, const Parameter& parameter) {
     if (parameter.usesNear) {
       program.function(fmt::format("{} sk_near_{}({} sk_d)", type, parameter.symbol, vector), nothing);
     }
+    if (parameter.usesSample) {
+      const std::string floats = parameter.rank == 1 ? "float" : fmt::format("vec{}", parameter.rank);
+      program.function(fmt::format("{} sk_sample_{}({} sk_x)", type, parameter.symbol, floats), nothing);
+    }
   } else {
     program.statement(fmt::format("{} {};", type, none));
   }

@@ -61,8 +61,13 @@ struct StreamAccess {
   bool nearby = false;   ///< gathers: Parameter::reach is known and below every extent, and no extent
                          ///< of the domain is above the gather's, so that one step wraps or mirrors
                          ///< a neighbour's index
+  bool filtered = false; ///< gathers: sk_sample_p() is left to the sampler's linear filter (mayFilter())
   auto operator<=>(const StreamAccess&) const = default;
 };
+
+/// Whether a sampler's linear filter can stand for sk_sample_p(), where the whole of a texture that lies as
+/// it is (Addressing::Plane) is read; a gather of floats, if the device filters these.
+bool mayFilter(const program::Parameter& gather);
 
 /// What a program of a kernel computes (sinks.hpp).
 enum class Work : std::uint8_t {

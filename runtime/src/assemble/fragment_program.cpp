@@ -53,8 +53,8 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
     }
     if (!isRead) continue;
     const StreamAccess& access = variant.access[i];
-    text += fmt::format("; {} {}{}{}", parameter.name, name(access.addressing), access.view ? " view" : "",
-                        access.nearby ? " nearby" : "");
+    text += fmt::format("; {} {}{}{}{}", parameter.name, name(access.addressing), access.view ? " view" : "",
+                        access.nearby ? " nearby" : "", access.filtered ? " filtered" : "");
   }
   return text;
 }

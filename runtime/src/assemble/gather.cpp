@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// sk_at_p and sk_near_p. An index that the body computes may be any int at all; the current index is
+// sk_at_p, sk_near_p and sk_sample_p. An index that the body computes may be any int at all; the current index is
 // not negative and, like every extent, below 2^30.
 #include "assemble/gather.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -33,6 +35,33 @@ class GatherText {
     finish(fmt::format("{} sk_at_{}({} sk_i)", parameter_.element->glsl, parameter_.symbol, vector()), lines);
   }
 
+  /// Weights the neighbours pair by pair, x first. From 2^24 on floats are whole, so that only NaN leaves
+  /// the weights anything but numbers.
+  void defineSample() {
+    const std::string floats = rank_ == 1 ? "float" : fmt::format("vec{}", rank_);
+    const std::string weights =
+        rank_ == 1
+            ? "abs(sk_x) >= 16777216.0 ? 0.0 : sk_x - sk_f"
+            : fmt::format("mix(sk_x - sk_f, {0}(0.0), greaterThanEqual(abs(sk_x), {0}(16777216.0)))", floats);
+    defineLerp();
+    program_.function(
+        fmt::format("{} sk_sample_{}({} sk_x)", parameter_.element->glsl, parameter_.symbol, floats),
+        {fmt::format("{} sk_f = floor(sk_x);", floats), fmt::format("{} sk_t = {};", floats, weights),
+         fmt::format("{0} sk_i = {0}(clamp(sk_f, -2147483648.0, 2147483520.0));", vector()),
+         fmt::format("return {};", weighted(rank_, {}))});
+  }
+
+  /// The device's own filter, its boundary mode the sampler's.
+  void defineFiltered() {
+    static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
+    const std::string place = rank_ == 1 ? fmt::format("vec2((sk_x + 0.5) / float({}), 0.5)", shape())
+                                         : fmt::format("(sk_x + 0.5) / vec2({})", shape());
+    program_.function(fmt::format("{} sk_sample_{}({} sk_x)", parameter_.element->glsl, parameter_.symbol,
+                                  rank_ == 1 ? "float" : "vec2"),
+                      {fmt::format("return textureLod({}, {}, 0.0){};", samplerName(parameter_, 0), place,
+                                   swizzles[parameter_.element->fields.front().width - 1u])});
+  }
+
   void defineNear() {
     std::vector<std::string> lines;
     bringNeighbourInside(lines);
@@ -52,6 +81,33 @@ class GatherText {
     return program_.uniform("ivec4", fmt::format("sk_{}_{}", kind, parameter_.symbol));
   }
   std::string shape() { return fmt::format("{}{}", uniform("shape"), swizzle()); }
+
+  /// A neighbour of no weight is not looked at, whatever it holds.
+  void defineLerp() {
+    const std::string signature =
+        fmt::format("{0} sk_lerp({0} sk_a, {0} sk_b, float sk_t)", parameter_.element->glsl);
+    if (program_.isDefined(signature)) return;
+    program_.function(signature, {"if (sk_t <= 0.0) return sk_a;", "if (sk_t >= 1.0) return sk_b;",
+                                  "return sk_a * (1.0 - sk_t) + sk_b * sk_t;"});
+  }
+
+  /// What the first `dimensions` interpolate to, at `ahead` (0 or 1) of sk_i in each of the others.
+  std::string weighted(int dimensions, std::array<int, 4> ahead) const {
+    if (dimensions == 0) return fmt::format("sk_at_{}({})", parameter_.symbol, stepped(ahead));
+    const auto last = static_cast<std::size_t>(dimensions - 1);
+    const std::string low = weighted(dimensions - 1, ahead);
+    ahead[last] = 1;
+    return fmt::format("sk_lerp({}, {}, sk_t{}{})", low, weighted(dimensions - 1, ahead),
+                       rank_ == 1 ? "" : ".",
+                       rank_ == 1 ? std::string_view() : std::string_view("xyzw").substr(last, 1));
+  }
+
+  /// "sk_i + ivec2(1, 0)"
+  std::string stepped(const std::array<int, 4>& ahead) const {
+    const std::span steps(ahead.data(), static_cast<std::size_t>(rank_));
+    if (std::count(steps.begin(), steps.end(), 0) == rank_) return "sk_i";
+    return rank_ == 1 ? "sk_i + 1" : fmt::format("sk_i + {}({})", vector(), fmt::join(steps, ", "));
+  }
 
   /// `function` of each component of the operands; "0" and the like have none.
   std::string componentwise(std::string_view function, const std::vector<std::string>& operands) const {
@@ -171,12 +227,21 @@ class GatherText {
 
 }  // namespace
 
+bool mayFilter(const Parameter& gather) {
+  const program::Scalar scalar = gather.element->fields.front().scalar;
+  return gather.filter && gather.usesSample && gather.rank <= 2 && gather.boundary != Boundary::Border &&
+         gather.layers.empty() && (scalar == program::Scalar::Float || scalar == program::Scalar::Half);
+}
+
 void defineGather(ProgramText& program, const Position& here, const Parameter& parameter,
                   const StreamAccess& access) {
   declareSamplers(program, parameter);
   GatherText gather(program, here, parameter, access);
-  if (parameter.usesAt) gather.defineAt();
+  const bool interpolates = parameter.usesSample && !access.filtered;
+  if (parameter.usesAt || interpolates) gather.defineAt();
   if (parameter.usesNear) gather.defineNear();
+  if (interpolates) gather.defineSample();
+  if (access.filtered) gather.defineFiltered();
 }
 
 }  // namespace sk::assemble

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The two functions by which a kernel's body reads a gather: at an index, and near the current one.
+// The functions by which a kernel's body reads a gather: at an index, near the current one, and between
+// elements.
 // Boundary modes are here; every index is brought inside before the region's origin is added, so
 // that a view never shows what lies around it.
 #pragma once

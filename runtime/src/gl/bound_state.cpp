@@ -19,6 +19,12 @@ void BoundState::readFramebuffer(GLuint name) {
   }
 }
 
+void BoundState::sampler(int unit, GLuint name) {
+  activateUnit(unit);
+  keepUnit(static_cast<std::size_t>(unit));
+  glBindSampler(static_cast<GLuint>(unit), name);
+}
+
 void BoundState::forget() {
   program_ = vertexArray_ = drawFramebuffer_ = readFramebuffer_ = unknown;
   viewport_ = {-1, -1, -1, -1};

@@ -39,6 +39,8 @@ class BoundState {
       bindArrayTexture(unit, name);
     }
   }
+  /// Not kept track of: who binds a sampler takes it off again with 0.
+  void sampler(int unit, GLuint name);
   /// Binds a texture where glTexImage2D and the like change it: to unit 0, which is then the active one.
   void textureToChange(GLuint name) {
     activateUnit(0);

@@ -76,6 +76,7 @@ Capabilities readCapabilities() {
   found.blendsFloats = found.api == Api::Gl || epoxy_has_gl_extension("GL_EXT_float_blend");
   found.hasDoubles = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader_fp64");
   found.hasPrecise = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader5");
+  found.filtersFloats = found.api == Api::Gl || epoxy_has_gl_extension("GL_OES_texture_float_linear");
   if (found.api == Api::Gl && found.version >= 32) {
     found.isCompatibility = (integerOf(GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_COMPATIBILITY_PROFILE_BIT) != 0;
   }

@@ -19,6 +19,7 @@ struct Capabilities {
   bool blendsFloats = false;     ///< of 32 bits
   bool hasDoubles = false;       ///< GLSL has double (GL_ARB_gpu_shader_fp64)
   bool hasPrecise = false;       ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
+  bool filtersFloats = false;    ///< of 32 bits, linearly
   std::string renderer;
   std::string driver;            ///< GL_VERSION, as the driver words it
   int textureSize = 0;           ///< also as a viewport
