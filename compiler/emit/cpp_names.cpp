@@ -13,23 +13,6 @@ namespace {
 
 using namespace ir;
 
-/// "gray_scott" gives "GrayScott".
-std::string pascalCase(std::string_view name) {
-  std::string result;
-  bool startsWord = true;
-  for (char c : name) {
-    if (c == '_') {
-      startsWord = true;
-      continue;
-    }
-    const auto byte = static_cast<unsigned char>(c);
-    result += startsWord && byte < 0x80 ? static_cast<char>(std::toupper(byte)) : c;
-    startsWord = false;
-  }
-  const bool isName = !result.empty() && std::isdigit(static_cast<unsigned char>(result.front())) == 0;
-  return isName ? result : "K" + result;
-}
-
 std::string camelCase(std::string_view name) {
   std::string result = pascalCase(name);
   const auto first = static_cast<unsigned char>(result.front());
@@ -58,6 +41,22 @@ std::string cppScalar(Scalar scalar) {
 }
 
 }  // namespace
+
+std::string pascalCase(std::string_view name) {
+  std::string result;
+  bool startsWord = true;
+  for (char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && std::isalnum(byte) == 0) {
+      startsWord = true;
+      continue;
+    }
+    result += startsWord && byte < 0x80 ? static_cast<char>(std::toupper(byte)) : c;
+    startsWord = false;
+  }
+  const bool isName = !result.empty() && std::isdigit(static_cast<unsigned char>(result.front())) == 0;
+  return isName ? result : "K" + result;
+}
 
 std::vector<Callable> callables(const Module& module, const Program& program) {
   std::set<std::string> taken;   // with their namespaces

@@ -29,6 +29,13 @@ void addKernel(Module& module, std::string name, Type type, std::vector<std::str
   k.finish({});
 }
 
+TEST_CASE("file names become names of types") {
+  CHECK(pascalCase("gray_scott") == "GrayScott");
+  CHECK(pascalCase("my-file.v2") == "MyFileV2");
+  CHECK(pascalCase("2d heat") == "K2dHeat");
+  CHECK(pascalCase("") == "K");
+}
+
 TEST_CASE("objects and their types") {
   Module module = testModule();
   module.structs.push_back({"GrayScottKernel", {}, {{"a", floatType}}, {}});

@@ -67,8 +67,9 @@ std::string parameterList(const Module& module, const Kernel& kernel, Form form,
 }
 
 Stub emitStub(const Module& module, const Program& program, std::string_view fileName) {
-  const std::vector<Callable> list = callables(module, program);
-  return {stubHeader(module, program, list, fileName), stubSource(module, program, list, fileName)};
+  StubParts parts{callables(module, program), {}, fileName};
+  parts.streams = streamStructs(module, parts.callables, fileName);
+  return {stubHeader(module, program, parts), stubSource(module, program, parts)};
 }
 
 }  // namespace skc::emit

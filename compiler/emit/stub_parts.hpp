@@ -8,13 +8,19 @@
 #include <vector>
 
 #include "emit/cpp_names.hpp"
+#include "emit/stream_structs.hpp"
 
 namespace skc::emit {
 
-std::string stubHeader(const ir::Module& module, const Program& program,
-                       const std::vector<Callable>& callables, std::string_view fileName);
-std::string stubSource(const ir::Module& module, const Program& program,
-                       const std::vector<Callable>& callables, std::string_view fileName);
+/// What a stub declares beside the structs that kernels take.
+struct StubParts {
+  std::vector<Callable> callables;
+  std::vector<StreamStruct> streams;
+  std::string_view fileName;
+};
+
+std::string stubHeader(const ir::Module& module, const Program& program, const StubParts& parts);
+std::string stubSource(const ir::Module& module, const Program& program, const StubParts& parts);
 
 /// Names of the enumerators of sk::program::Scalar, in their order.
 inline constexpr std::string_view scalarNames[] = {"Bool",   "Int",    "Uint",    "Float",  "Double",

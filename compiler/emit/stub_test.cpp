@@ -168,9 +168,60 @@ TEST_CASE("awkward names and nested structs") {
   CHECK(contains(stub.source, "\"odd \\\"name\\\".sk\""));
 }
 
+/// Streams in two namespaces, whose file, extents and names are awkward.
+Module streamModule() {
+  Module module = sampleModule();
+  module.structs.push_back({"Cell", {"grid"}, {{"flow", Type::of(Scalar::Float, 2)}}, {}});
+  const auto cell = static_cast<std::uint32_t>(module.structs.size() - 1);
+  module.streams.push_back({"u", {}, floatType, {{"height"}, {"width"}}, {}});
+  module.streams.push_back({"device", {}, Type::of(Scalar::Uint, 4), {{"width"}, {"", 4}}, {}});
+  module.streams.push_back(
+      {"cells", {"grid"}, Type::structType(cell), {{"", 2}, {"", 3}, {"", 4}, {"", 5}}, {}});
+  module.structs.push_back({"HeatStreams", {}, {{"a", floatType}}, {}});
+  return module;
+}
+
+TEST_CASE("streams that belong together have a struct in each namespace") {
+  const Stub stub = stubOf(streamModule());
+  CHECK(contains(stub.header, R"(
+/// Streams that heat.sk declares, with extents that they share.
+struct HeatStreams_2 {
+  HeatStreams_2(sk::Device& device_2, std::int64_t height, std::int64_t width);
+
+  sk::Stream<float> u;   ///< {height, width}
+  sk::Stream<sk::uint4> device;   ///< {width, 4}
+};
+)"));
+  CHECK(contains(stub.header, R"(
+namespace grid {
+
+/// Streams that heat.sk declares, with extents that they share.
+struct HeatStreams {
+  explicit HeatStreams(sk::Device& device);
+
+  sk::Stream<Cell> cells;   ///< {2, 3, 4, 5}
+};
+
+}  // namespace grid
+)"));
+  CHECK(contains(stub.header, "struct sk::ElementTraits<grid::Cell>"));
+  CHECK(contains(stub.source, R"(
+HeatStreams_2::HeatStreams_2(sk::Device& device_2, std::int64_t height, std::int64_t width)
+    : u(device_2.stream<float>({height, width})),
+      device(device_2.stream<sk::uint4>({width, 4})) {}
+
+grid::HeatStreams::HeatStreams(sk::Device& device)
+    : cells(device.stream<grid::Cell>({2, 3, 4, 5})) {}
+)"));
+  Module empty = testModule();
+  empty.streams = streamModule().streams;
+  empty.streams.pop_back();
+  CHECK_FALSE(contains(stubOf(empty).source, "sources"));
+}
+
 TEST_CASE("a C++ compiler takes the stubs without a warning") {
   const ToolFolder folder("stubs");
-  const Stub stubs[] = {stubOf(sampleModule()), stubOf(awkwardModule())};
+  const Stub stubs[] = {stubOf(sampleModule()), stubOf(awkwardModule()), stubOf(streamModule())};
   for (const Stub& stub : stubs) {
     folder.write("heat.sk.hpp", stub.header);
     folder.write("heat.sk.cpp", stub.source);

@@ -38,7 +38,8 @@ ir::Module ModuleLowering::run(const std::string& file) {
   module_.sources.push_back(file);
   sourceIndex_[file] = 0;
   declarations(context().getTranslationUnitDecl());
-  if (module_.kernels.empty() && !diagnostics_.hasErrors()) diagnostics_.report(Diag::NoKernels, {}, {file});
+  if (module_.kernels.empty() && module_.streams.empty() && !diagnostics_.hasErrors())
+    diagnostics_.report(Diag::NoKernels, {}, {file});
   if (!diagnostics_.hasErrors()) pairReductions();
   return std::move(module_);
 }
@@ -53,7 +54,13 @@ void ModuleLowering::declarations(const clang::DeclContext* scope) {
       } else if (const auto* linkage = llvm::dyn_cast<clang::LinkageSpecDecl>(declaration)) {
         declarations(linkage);
       } else if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declaration)) {
-        if (!isGenerated(variable)) constant(variable, variable->getLocation());
+        if (isGenerated(variable)) {
+          generatedExtents_[variable->getName().str()] = variable;
+        } else if (const StreamSyntax* declared = syntax_.stream(variable->getLocation())) {
+          stream(variable, *declared);
+        } else {
+          constant(variable, variable->getLocation());
+        }
       } else if (const auto* pattern = llvm::dyn_cast<clang::FunctionTemplateDecl>(declaration)) {
         kernelTemplate(pattern);
       } else if (const auto* function = llvm::dyn_cast<clang::FunctionDecl>(declaration)) {
@@ -161,12 +168,8 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
   param.role = syntax ? syntax->role : ir::ParamRole::Uniform;
   param.type = variable.type;
   param.loc = loc(declaration->getLocation());
-  if (param.type.kind == ir::Type::Kind::Struct && param.role != ir::ParamRole::Uniform) {
-    for (const ir::StructField& field : module_.structs[param.type.index].fields) {
-      if (field.type.kind == ir::Type::Kind::Array) {
-        fail(Diag::ArrayInElement, declaration->getLocation(), {param.name, field.name});
-      }
-    }
+  if (param.role != ir::ParamRole::Uniform) {
+    checkElement(param.type, param.name, declaration->getLocation());
   }
   if (param.role == ir::ParamRole::Iterator && (!param.type.isNumber() || param.type.isDouble())) {
     fail(Diag::IteratorType, declaration->getLocation(), {param.name, spelling(param.type)});
@@ -183,6 +186,14 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
     if (!syntax->identity.empty()) param.identity = generatedConstant(syntax->identity);
   }
   return param;
+}
+
+/// An element of a stream holds no arrays.
+void ModuleLowering::checkElement(ir::Type type, std::string_view name, SourceLocation where) {
+  if (type.kind != ir::Type::Kind::Struct) return;
+  for (const ir::StructField& field : module_.structs[type.index].fields) {
+    if (field.type.kind == ir::Type::Kind::Array) fail(Diag::ArrayInElement, where, {name, field.name});
+  }
 }
 
 void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation where) {
@@ -269,6 +280,9 @@ ir::ExprPtr ModuleLowering::constant(const clang::VarDecl* declaration, SourceLo
   if (failedConstants_.contains(definition)) {
     if (constantsInProgress_.contains(declaration)) fail(Diag::NotConstant, use);  // its value names itself
     throw Abandoned{};  // told already
+  }
+  if (syntax_.stream(definition->getLocation())) {
+    fail(Diag::StreamInBody, use, {definition->getNameAsString()});
   }
   if (!definition->getType().isConstQualified()) {
     failedConstants_.insert(definition);

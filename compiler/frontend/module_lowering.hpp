@@ -84,8 +84,12 @@ class ModuleLowering {
   void nameInstance(const clang::FunctionDecl* instance, ir::Kernel& kernel);
   std::string spelling(const clang::TemplateArgument& argument, clang::SourceLocation use);
   ir::KernelParam kernelParam(const clang::ParmVarDecl* declaration, const ir::Variable& variable);
+  void checkElement(ir::Type type, std::string_view name, clang::SourceLocation where);
   void checkKernelShape(const ir::Kernel& kernel, clang::SourceLocation where);
   void pairReductions();
+  void stream(const clang::VarDecl* declaration, const StreamSyntax& syntax);
+  ir::DeclaredExtent streamExtent(const ExtentSyntax& syntax, const clang::VarDecl* stream);
+  const clang::ValueDecl* visibleValue(const clang::VarDecl* stream, const clang::IdentifierInfo* name);
   ir::ExprPtr generatedConstant(const std::string& name);
   ir::ExprPtr constantValue(const clang::VarDecl* declaration, bool inlined);
   ir::ExprPtr evaluated(const clang::VarDecl* declaration);
@@ -103,7 +107,7 @@ class ModuleLowering {
   std::unordered_map<const clang::Decl*, ir::ConstantId> constants_;
   std::unordered_map<const clang::Decl*, FunctionEntry> functions_;
   std::unordered_map<std::string, std::uint32_t> sourceIndex_;
-  std::unordered_map<std::string, const clang::VarDecl*> generated_;
+  std::unordered_map<std::string, const clang::VarDecl*> generated_, generatedExtents_;
   std::unordered_set<const clang::Decl*> failedConstants_, constantsInProgress_;
   bool inlineConstants_ = false;
 };

@@ -85,7 +85,7 @@ std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind ki
       diagnostics_.report(Diag::EmptyParameter, locOf(following));
       continue;
     }
-    if (out.size() > 1) out.push_back(make(tok::comma, parameters[i].front().getLocation()));
+    if (out.size() > 1) out.push_back(maker_.make(tok::comma, parameters[i].front().getLocation()));
     editParameter(parameters[i], kind, out);
   }
   out.push_back(declared.back());
@@ -367,38 +367,38 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
   switch (syntax.role) {
     case ir::ParamRole::Gather:
       // Three places of their own: Clang finds its way back to a template's name by its location
-      out.push_back(word(gatherTemplateName(syntax.rank), place));
-      out.push_back(make(tok::less, parts.open.getLocation()));
+      out.push_back(maker_.word(gatherTemplateName(syntax.rank), place));
+      out.push_back(maker_.make(tok::less, parts.open.getLocation()));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      out.push_back(make(tok::greater, parts.close.getLocation()));
+      out.push_back(maker_.make(tok::greater, parts.close.getLocation()));
       break;
     case ir::ParamRole::VariableOutput:
     case ir::ParamRole::Scatter:
-      out.push_back(word(sinkTemplateName(syntax.rank), place));
-      out.push_back(make(tok::less, parts.open.getLocation()));
+      out.push_back(maker_.word(sinkTemplateName(syntax.rank), place));
+      out.push_back(maker_.make(tok::less, parts.open.getLocation()));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      out.push_back(make(tok::greater, parts.close.getLocation()));
+      out.push_back(maker_.make(tok::greater, parts.close.getLocation()));
       break;
     case ir::ParamRole::Output:
     case ir::ParamRole::Accumulator:
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      out.push_back(make(tok::amp, place));
+      out.push_back(maker_.make(tok::amp, place));
       break;
     case ir::ParamRole::Input:
     case ir::ParamRole::Uniform:
     case ir::ParamRole::Iterator:
     case ir::ParamRole::Spec:
-      if (parts.type.front().isNot(tok::kw_const)) out.push_back(word("const", start));
+      if (parts.type.front().isNot(tok::kw_const)) out.push_back(maker_.word("const", start));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       break;
   }
   if (parts.length.empty()) {
     out.push_back(parts.name);
   } else {   // a reference, since C++ passes no arrays
-    out.push_back(make(tok::l_paren, place));
-    out.push_back(make(tok::amp, place));
+    out.push_back(maker_.make(tok::l_paren, place));
+    out.push_back(maker_.make(tok::amp, place));
     out.push_back(parts.name);
-    out.push_back(make(tok::r_paren, place));
+    out.push_back(maker_.make(tok::r_paren, place));
     out.insert(out.end(), parts.length.begin(), parts.length.end());
   }
   if (kind != FunctionKind::Helper || syntax.role == ir::ParamRole::Gather) {
@@ -406,48 +406,12 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
   }
 }
 
-/// `static const T __sk_constant3 __attribute__((unused)) = value;`: of a kernel, at the beginning of its
-/// body; of a helper, in front of it.
+/// Of a kernel, at the beginning of its body; of a helper, in front of it.
 std::string ParameterEditor::generateConstant(const Tokens& type, const Tokens& value,
                                               clang::SourceLocation place) {
   std::string name = fmt::format("__sk_constant{}", constants_++);
-  before_.push_back(word("static", place));
-  before_.push_back(word("const", place));
-  before_.insert(before_.end(), type.begin(), type.end());
-  before_.push_back(word(name, place));
-  before_.push_back(word("__attribute__", place));
-  before_.push_back(make(tok::l_paren, place));
-  before_.push_back(make(tok::l_paren, place));
-  before_.push_back(word("unused", place));
-  before_.push_back(make(tok::r_paren, place));
-  before_.push_back(make(tok::r_paren, place));
-  before_.push_back(make(tok::equal, place));
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    Token token = value[i];
-    if (token.is(tok::identifier) && isKind(value, i + 1, tok::l_paren) && isVectorTypeName(nameOf(token))) {
-      token.setIdentifierInfo(preprocessor_.getIdentifierInfo(vectorConstructorName(nameOf(token))));
-    }
-    before_.push_back(token);
-  }
-  before_.push_back(make(tok::semi, place));
+  maker_.constant(name, type, value, place, before_);
   return name;
-}
-
-Token ParameterEditor::make(tok::TokenKind kind, clang::SourceLocation place) const {
-  Token token;
-  token.startToken();
-  token.setKind(kind);
-  token.setLocation(place);
-  token.setLength(0);
-  return token;
-}
-
-/// An identifier or keyword with this spelling.
-Token ParameterEditor::word(llvm::StringRef name, clang::SourceLocation place) const {
-  clang::IdentifierInfo* info = preprocessor_.getIdentifierInfo(name);
-  Token token = make(info->getTokenID(), place);
-  token.setIdentifierInfo(info);
-  return token;
 }
 
 }  // namespace skc::frontend

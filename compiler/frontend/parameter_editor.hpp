@@ -10,6 +10,7 @@
 #include <clang/Lex/Token.h>
 
 #include "frontend/syntax.hpp"
+#include "frontend/token_maker.hpp"
 #include "support/diagnostics.hpp"
 
 namespace clang {
@@ -26,6 +27,7 @@ class ParameterEditor {
   ParameterEditor(clang::Preprocessor& preprocessor, Diagnostics& diagnostics, DeclarationSyntax& syntax,
                   int& constants, std::vector<clang::Token>& before)
       : preprocessor_(preprocessor),
+        maker_(preprocessor),
         diagnostics_(diagnostics),
         syntax_(syntax),
         constants_(constants),
@@ -50,10 +52,8 @@ class ParameterEditor {
   std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place);
   void print(const Parts& parts, FunctionKind kind, Tokens& out);
 
-  clang::Token make(clang::tok::TokenKind kind, clang::SourceLocation place) const;
-  clang::Token word(llvm::StringRef name, clang::SourceLocation place) const;
-
   clang::Preprocessor& preprocessor_;
+  TokenMaker maker_;
   Diagnostics& diagnostics_;
   DeclarationSyntax& syntax_;
   int& constants_;

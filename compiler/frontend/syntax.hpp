@@ -10,10 +10,15 @@
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
+#include <vector>
 
 #include <clang/Basic/SourceLocation.h>
 
 #include "ir/ir.hpp"
+
+namespace clang {
+class IdentifierInfo;
+}
 
 namespace skc::frontend {
 
@@ -31,6 +36,17 @@ struct ParamSyntax {
   std::string identity;              ///< name of the generated constant that holds `= identity`
 };
 
+/// An extent of a `stream` declaration: one name, or the generated constant that holds it.
+struct ExtentSyntax {
+  clang::SourceLocation place;
+  const clang::IdentifierInfo* name = nullptr;
+  std::string constant;
+};
+
+struct StreamSyntax {
+  std::vector<ExtentSyntax> extents;   ///< slowest first
+};
+
 class DeclarationSyntax {
  public:
   void add(clang::SourceLocation name, KernelSyntax kernel) {
@@ -40,6 +56,10 @@ class DeclarationSyntax {
     params_[name.getRawEncoding()] = std::move(param);
   }
 
+  void add(clang::SourceLocation name, StreamSyntax stream) {
+    streams_[name.getRawEncoding()] = std::move(stream);
+  }
+
   /// `name`: a token before the parameters of `template kernel void f<float>(...);`.
   void addInstantiation(clang::SourceLocation name) { instantiations_.insert(name.getRawEncoding()); }
   bool isInstantiation(clang::SourceLocation name) const {
@@ -47,6 +67,7 @@ class DeclarationSyntax {
   }
 
   const KernelSyntax* kernel(clang::SourceLocation name) const { return find(kernels_, name); }
+  const StreamSyntax* stream(clang::SourceLocation name) const { return find(streams_, name); }
   const ParamSyntax* param(clang::SourceLocation name) const { return find(params_, name); }
 
  private:
@@ -58,6 +79,7 @@ class DeclarationSyntax {
 
   std::unordered_map<std::uint32_t, KernelSyntax> kernels_;
   std::unordered_map<std::uint32_t, ParamSyntax> params_;
+  std::unordered_map<std::uint32_t, StreamSyntax> streams_;
   std::unordered_set<std::uint32_t> instantiations_;
 };
 

@@ -9,6 +9,7 @@
 #include "frontend/clang_loc.hpp"
 #include "frontend/parameter_editor.hpp"
 #include "frontend/prelude.hpp"
+#include "frontend/stream_editor.hpp"
 #include "frontend/token_cursor.hpp"
 
 namespace skc::frontend {
@@ -48,10 +49,7 @@ class Editor {
 
   void editDeclaration() {
     if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) return editKernel();
-    if (atDeclarationWord("stream")) {
-      diagnostics_.report(Diag::StreamDeclaration, locOf(cursor_.peek()));
-      return copyDeclaration();
-    }
+    if (atDeclarationWord("stream")) return editStream();
     if (cursor_.at(tok::kw_namespace)) return copyUntilBodyOrEnd();
     if (cursor_.at(tok::kw_template)) return editTemplate();
     copyDeclaration();
@@ -79,6 +77,7 @@ class Editor {
         copyToken();
       } while (depth > 0 && !cursor_.at(tok::eof));
     }
+    if (atDeclarationWord("stream")) diagnostics_.report(Diag::StreamTemplate, locOf(cursor_.peek()));
   }
 
   /// Clang instantiates; that it is the template of a kernel, the lowering sees to.
@@ -114,6 +113,10 @@ class Editor {
       if (head[at].is(tok::less) && --depth == 0) return at - 1;
     }
     return 0;
+  }
+
+  void editStream() {
+    StreamEditor(TokenMaker(preprocessor_), diagnostics_, syntax_, constants_).edit(cursor_, out_);
   }
 
   void editKernel() {
@@ -186,6 +189,7 @@ class Editor {
     copyToken();
     out_.insert(out_.end(), constants.begin(), constants.end());
     for (int depth = 1; depth > 0 && !cursor_.at(tok::eof); copyToken()) {
+      checkInner();
       if (cursor_.at(tok::l_brace)) ++depth;
       if (cursor_.at(tok::r_brace)) --depth;
     }
@@ -194,10 +198,20 @@ class Editor {
   void copyBraces() {
     int depth = 0;
     do {
+      checkInner();
       if (cursor_.at(tok::l_brace)) ++depth;
       if (cursor_.at(tok::r_brace)) --depth;
       copyToken();
     } while (depth > 0 && !cursor_.at(tok::eof));
+  }
+
+  /// In a body or a struct, `stream float a<n>` is no word for Clang.
+  void checkInner() {
+    const bool starts = out_.back().isOneOf(tok::l_brace, tok::r_brace, tok::semi);
+    const bool names = cursor_.peek(2).is(tok::identifier) && cursor_.peek(3).is(tok::less);
+    if (starts && names && atDeclarationWord("stream")) {
+      diagnostics_.report(Diag::StreamInside, locOf(cursor_.peek()), {nameOf(cursor_.peek(2))});
+    }
   }
 
   /// Copies one token; `float4(` becomes a call of its constructor function.

@@ -295,6 +295,22 @@ struct Kernel {
   Loc loc;
 };
 
+/// An extent of a declared stream: a constant, or, where it has a name, an argument of the struct that
+/// the stub declares for the streams of a namespace.
+struct DeclaredExtent {
+  std::string name;
+  std::int64_t value = 0;
+};
+
+/// `stream T name<extents>`: no kernel knows it.
+struct DeclaredStream {
+  std::string name;
+  std::vector<std::string> scope;      ///< enclosing namespaces, outermost first
+  Type type;                           ///< of one element
+  std::vector<DeclaredExtent> extents; ///< slowest first
+  Loc loc;
+};
+
 struct Module {
   std::string file;                    ///< path of the main file as given
   std::vector<std::string> sources;    ///< Loc::file indexes this
@@ -303,6 +319,7 @@ struct Module {
   std::vector<Constant> constants;
   std::vector<Function> functions;
   std::vector<Kernel> kernels;
+  std::vector<DeclaredStream> streams;
 };
 
 }  // namespace skc::ir

@@ -155,6 +155,15 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
   return text + "\n";
 }
 
+std::string printStream(const Module& module, const DeclaredStream& stream) {
+  std::vector<std::string> extents;
+  for (const DeclaredExtent& extent : stream.extents) {
+    extents.push_back(extent.name.empty() ? std::to_string(extent.value) : extent.name);
+  }
+  return fmt::format("stream {} {}{}<{}>;\n\n", print(module, stream.type), qualifier(stream.scope),
+                     stream.name, join(extents, ", "));
+}
+
 std::string printStruct(const Module& module, const Struct& type) {
   std::string text = fmt::format("struct {}{} {{\n", qualifier(type.scope), type.name);
   for (const StructField& field : type.fields) {
@@ -174,6 +183,7 @@ std::string print(const Module& module, const Function& function) {
 std::string print(const Module& module) {
   std::string text = fmt::format("module {}\n\n", module.file);
   for (const Struct& type : module.structs) text += printStruct(module, type);
+  for (const DeclaredStream& stream : module.streams) text += printStream(module, stream);
   for (const Constant& constant : module.constants) {
     text += fmt::format("const {} {} = {};\n\n", print(module, constant.type), constant.name,
                         print(module, Function{}, *constant.value));

@@ -326,6 +326,15 @@ void checkTables(const Module& module, Stage stage) {
     within("array", [&] { checkType(module, array.element); });
     require(array.length > 0, "an array has no elements");
   }
+  for (const DeclaredStream& stream : module.streams) {
+    within("stream " + stream.name, [&] {
+      checkType(module, stream.type);
+      require(!stream.extents.empty() && stream.extents.size() <= 4, "it has no rank of 1 to 4");
+      for (const DeclaredExtent& extent : stream.extents) {
+        require(extent.name.empty() == (extent.value > 0), "an extent is no constant and no name");
+      }
+    });
+  }
   for (std::size_t i = 0; i < module.constants.size(); ++i) {
     const Constant& constant = module.constants[i];
     within("constant " + constant.name, [&] {

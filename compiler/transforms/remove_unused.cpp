@@ -121,6 +121,7 @@ void forEachType(Module& module, Fn&& fn) {
   for (Kernel& kernel : module.kernels) {
     for (KernelParam& param : kernel.params) fn(param.type);
   }
+  for (DeclaredStream& stream : module.streams) fn(stream.type);
 }
 
 void removeFunctions(Module& module) {

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// Makes tokens that the user did not write, each at a place that he did.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <clang/Lex/Token.h>
+
+namespace clang {
+class Preprocessor;
+}
+
+namespace skc::frontend {
+
+class TokenMaker {
+ public:
+  explicit TokenMaker(clang::Preprocessor& preprocessor) : preprocessor_(preprocessor) {}
+
+  clang::Token make(clang::tok::TokenKind kind, clang::SourceLocation place) const;
+  /// An identifier or keyword with this spelling.
+  clang::Token word(llvm::StringRef name, clang::SourceLocation place) const;
+  /// `static const T NAME __attribute__((unused)) = value;` at the end of `out`.
+  void constant(const std::string& name, const std::vector<clang::Token>& type,
+                const std::vector<clang::Token>& value, clang::SourceLocation place,
+                std::vector<clang::Token>& out) const;
+
+ private:
+  clang::Preprocessor& preprocessor_;
+};
+
+}  // namespace skc::frontend
