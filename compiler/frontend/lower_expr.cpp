@@ -488,7 +488,7 @@ void FunctionLowering::abandonIfUnknown(const clang::Stmt* s) const {
   throw Abandoned{};
 }
 
-/// Calls with reference parameters are statements; calls without are values.
+/// Calls with reference parameters, or that may push and scatter, are statements; others are values.
 ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
   for (const clang::Stmt* part : e->children()) abandonIfUnknown(part);
   const SourceLocation where = e->getBeginLoc();
@@ -523,6 +523,7 @@ ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::Functi
       }
       for (ir::Stmt& s : effects) out_->push_back(std::move(s));
     }
+    if (parameter.role == ir::VarRole::Sink) hasEffects = true;
     if (parameter.role == ir::VarRole::InOut) {
       hasEffects = true;
       for (const std::size_t other : written) {

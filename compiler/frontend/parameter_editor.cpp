@@ -335,7 +335,7 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   return true;
 }
 
-/// `vout T r<>` and `out T r[]`, which only kernels have.
+/// `vout T r<>` and `out T r[]`, of kernels and of the functions that they hand theirs to.
 bool ParameterEditor::resolveSink(Parts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
   const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments) {
@@ -343,7 +343,6 @@ bool ParameterEditor::resolveSink(Parts& parts, FunctionKind kind) {
     return false;
   };
   const bool isVariable = nameOf(parts.qualifier) == "vout";
-  if (kind == FunctionKind::Helper) return fail(Diag::SinkInHelper, {name});
   if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name});
   if (isVariable && (!parts.isElement || parts.rank > 0)) return fail(Diag::VariableOutputBrackets, {name});
   if (parts.isElement && !isVariable) return fail(Diag::StreamAndGather, {name});
@@ -401,7 +400,9 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
     out.push_back(maker_.make(tok::r_paren, place));
     out.insert(out.end(), parts.length.begin(), parts.length.end());
   }
-  if (kind != FunctionKind::Helper || syntax.role == ir::ParamRole::Gather) {
+  const bool isByIndex = syntax.role == ir::ParamRole::Gather || syntax.role == ir::ParamRole::Scatter ||
+                         syntax.role == ir::ParamRole::VariableOutput;
+  if (kind != FunctionKind::Helper || isByIndex) {
     syntax_.add(place, std::move(syntax));
   }
 }

@@ -175,6 +175,42 @@ TEST_CASE("indices of four dimensions, with an input that repeats") {
   });
 }
 
+TEST_CASE("helpers push in the order of the calls") {
+  run_tests::onEveryProfile([](sk::Device& device) {
+    for (const std::int64_t size : sizes) {
+      INFO("size " << size);
+      std::vector<int> list, r, s, counts;
+      const auto pushUnless = [](int x, int none, std::vector<int>& into) {
+        if (x != none) into.push_back(x);
+        return x != none;
+      };
+      const auto pushAll = [&](int x, int count, std::vector<int>& into, std::vector<int>& ends) {
+        int pushed = 0;
+        for (int k = 0; k < count; ++k) pushed += pushUnless(x + k, 3, into) ? 1 : 0;
+        if (count > 0) ends.insert(ends.end(), {x, x + count});
+        return pushed;
+      };
+      for (std::int64_t i = 0; i < size; ++i) {
+        const int x = static_cast<int>(i * 7 % 23) - 9;
+        list.push_back(x);
+        const int pushed = pushAll(x, x & 3, r, s);
+        counts.push_back(pushed + (pushUnless(x, 7, s) ? 100 : 200));
+        if (x < 0) {
+          const int more = pushAll(x, 2, s, r);
+          r.insert(r.end(), {x, more});
+        }
+      }
+      auto x = device.stream<int>({size}), count = device.stream<int>({size});
+      auto first = device.stream<int>({0}), second = device.stream<int>({0});
+      x.write(list);
+      handOn(x, first, second, count);
+      CHECK(first.read() == r);
+      CHECK(second.read() == s);
+      CHECK(count.read() == counts);
+    }
+  });
+}
+
 TEST_CASE("pushes that do not fit say so") {
   sk::Device& device = run_tests::device("glsl330");
   auto x = device.stream<int>({8});

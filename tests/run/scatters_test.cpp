@@ -270,6 +270,49 @@ TEST_CASE("reading and writing one stream, and nothing at all") {
   });
 }
 
+TEST_CASE("helpers scatter for their kernels") {
+  run_tests::onEveryProfile([](sk::Device& device) {
+    for (const std::int64_t size : sizes) {
+      INFO("size " << size);
+      const std::vector<int> at = indicesInto(67, size, 21);
+      const std::vector<float> x = eighths(size, 22);
+      std::vector<float> r(67, 1), total;
+      std::vector<Mark> marks(2 * 67);
+      const auto add = [&](std::int64_t i, float v) {
+        if (i >= 0 && i < 67) r[static_cast<std::size_t>(i)] += v;
+      };
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        for (int k = 0; k < 2; ++k) {
+          const auto place = static_cast<int>(static_cast<unsigned>(at[i]) + static_cast<unsigned>(k));
+          for (const int step : {0, 1}) {
+            add(static_cast<int>(static_cast<unsigned>(place) + static_cast<unsigned>(step)), x[i]);
+            add(static_cast<int>(static_cast<unsigned>(at[i]) + static_cast<unsigned>(step)), 1);
+          }
+        }
+        total.push_back(2 * x[i] + 2);
+        if (x[i] > 0 && at[i] >= 0 && at[i] < 67) {
+          marks[67 + static_cast<std::size_t>(at[i])] = {static_cast<int>(i), {}, true};
+        }
+      }
+      auto ats = device.stream<int>({size});
+      auto xs = device.stream<float>({size}), rs = device.stream<float>({67}),
+           totals = device.stream<float>({size});
+      auto plane = device.stream<Mark>({2, 67});
+      ats.write(at);
+      xs.write(x);
+      rs.write(std::vector<float>(67, 1));
+      plane.write(std::vector<Mark>(2 * 67));
+      handOn(ats, xs, rs, plane, totals);
+      CHECK(rs.read() == r);
+      CHECK(totals.read() == total);
+      const std::vector<Mark> read = plane.read();
+      for (std::size_t i = 0; i < marks.size(); ++i) {
+        REQUIRE((read[i].id == marks[i].id && read[i].set == marks[i].set));
+      }
+    }
+  });
+}
+
 TEST_CASE("a sparse matrix times a vector") {
   onEveryLayout([](sk::Device& device) {
     const std::vector<sk::int2> cell = {{0, 0}, {2, 0}, {1, 1}, {0, 2}, {1, 2}, {2, 2}};
