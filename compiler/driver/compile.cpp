@@ -18,6 +18,7 @@
 #include "emit/stub.hpp"
 #include "frontend/frontend.hpp"
 #include "ir/print.hpp"
+#include "transforms/check_limits.hpp"
 #include "transforms/check_outputs.hpp"
 #include "transforms/transforms.hpp"
 
@@ -76,7 +77,8 @@ bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& m
     }
   }
   if (!module.kernels.empty()) return true;
-  messages << fmt::format("skc: '{}' has no kernel '{}'; it has {}\n", module.file, wanted, known);
+  messages << fmt::format("skc: '{}' has no kernel '{}'; it has {}\n", module.file, wanted,
+                          known.empty() ? "none" : known);
   return false;
 }
 
@@ -131,6 +133,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
       frontend.compile(job.file, job.text == nullptr ? std::nullopt : std::optional(*job.text));
   if (!module || options.emit == Emit::Ast) return module;
   if (!options.kernel.empty() && !selectKernel(*module, options.kernel, job.messages)) return std::nullopt;
+  checkLimits(*module, frontend.diagnostics());
   checkOutputs(*module, frontend.diagnostics());   // on what the user wrote, before anything is rewritten
   if (!frontend.diagnostics().hasErrors()) {
     runTransforms(*module, frontend.diagnostics(), transformOptions(options, job.output));

@@ -176,12 +176,9 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
     }
     if (hasAccess(kernel, i, task) && isNeeded(parameter, key.specs)) {
       const StreamAccess access = chooseAccess(parameter, operands[i].placement, domain, task, filtersFloats);
-      bits.add(static_cast<std::uint64_t>(access.addressing) | std::uint64_t{access.view} << 2 |
-                   std::uint64_t{access.nearby} << 3,
-               4);
-      if (parameter.filter) {
-        bits.add(std::uint64_t{access.filtered}, 4);
-      }
+      // what is filtered lies in a plane, and is no view
+      const std::uint64_t addressing = access.filtered ? 3 : static_cast<std::uint64_t>(access.addressing);
+      bits.add(addressing | std::uint64_t{access.view} << 2 | std::uint64_t{access.nearby} << 3, 4);
     }
   }
   return key;

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+//
+// Refuses kernels with more parameters and planes than their descriptors and the runtime's keys can number
+// (sk/program.hpp, runtime/src/variant.hpp). Kernels that exceed what a device can do in a pass are
+// split-kernels' business.
+#pragma once
+
+#include "ir/ir.hpp"
+#include "support/diagnostics.hpp"
+
+namespace skc {
+
+void checkLimits(const ir::Module& module, Diagnostics& diagnostics);
+
+}  // namespace skc
