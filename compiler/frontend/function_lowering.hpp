@@ -39,6 +39,9 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   explicit FunctionLowering(ModuleLowering& module) : module_(module) {}
 
   ir::Function function(const clang::FunctionDecl* declaration);
+  /// Whether a function gives its own object: a member function of the type `S&`, which can only end with
+  /// `return *this;`. It is void in the IR, and the value of a call is the object's.
+  static bool givesItself(const clang::FunctionDecl* declaration);
   /// An initialiser outside any function; null where it has effects.
   ir::ExprPtr constantInitializer(const clang::Expr* init);
 
@@ -187,6 +190,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::Function function_;
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
   std::optional<ir::VarId> this_;
+  bool givesItself_ = false;
   ir::Block* out_ = nullptr;       ///< where statements go at the moment
   int depth_ = 0;                  ///< of expressions and statements around the present one
 };

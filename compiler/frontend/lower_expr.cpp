@@ -350,6 +350,9 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
                                                  : std::move(result);
     }
     case clang::UO_Deref:
+      if (const auto* self = llvm::dyn_cast<clang::CXXThisExpr>(e->getSubExpr()->IgnoreParenImpCasts())) {
+        return VisitCXXThisExpr(self);
+      }
       value(e->getSubExpr());   // says what is wrong with it, if it is more than a pointer
       module_.fail(Diag::Pointer, where, {e->getSubExpr()->getType().getAsString()});
     case clang::UO_AddrOf: module_.fail(Diag::Pointer, where, {e->getType().getAsString()});
@@ -537,6 +540,11 @@ ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::Functi
   }
   if (!hasEffects) return make(target.result, where, ir::Call{id, std::move(arguments)});
   const Loc loc = module_.loc(where);
+  if (givesItself(callee)) {
+    ExprPtr object = ir::clone(*arguments[0]);
+    emit(loc, ir::CallStmt{id, std::move(arguments), nullptr});
+    return object;
+  }
   if (target.result.isVoid()) {
     emit(loc, ir::CallStmt{id, std::move(arguments), nullptr});
     return ir::literal(false, loc);   // nobody looks at the value of a void call

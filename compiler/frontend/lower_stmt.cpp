@@ -47,14 +47,23 @@ std::string functionName(const clang::FunctionDecl* declaration) {
 
 }  // namespace
 
+bool FunctionLowering::givesItself(const clang::FunctionDecl* declaration) {
+  const auto* method = llvm::dyn_cast<clang::CXXMethodDecl>(declaration);
+  const clang::QualType result = declaration->getReturnType();
+  return method && method->isInstance() && result->isLValueReferenceType() &&
+         result->getPointeeType()->getAsCXXRecordDecl() == method->getParent();
+}
+
 ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration) {
   function_.name = functionName(declaration);
   function_.loc = module_.loc(declaration->getLocation());
-  if (declaration->getReturnType()->isReferenceType()) {
+  givesItself_ = givesItself(declaration);
+  if (declaration->getReturnType()->isReferenceType() && !givesItself_) {
     module_.fail(Diag::ReferenceType, declaration->getLocation(),
                  {declaration->getReturnType().getAsString()});
   }
-  function_.result = module_.type(declaration->getReturnType(), declaration->getLocation());
+  function_.result = givesItself_ ? ir::Type::voidType()
+                                  : module_.type(declaration->getReturnType(), declaration->getLocation());
   parameters(declaration);
   function_.parameterCount = static_cast<std::uint32_t>(function_.variables.size());
   ir::Block body;
@@ -393,9 +402,40 @@ void FunctionLowering::switchStatement(const clang::SwitchStmt* s) {
   emit(module_.loc(s->getBeginLoc()), std::move(result));
 }
 
+namespace {
+
+/// `*this`, or `this`, which stands unseen before a call of a member function.
+bool isThisObject(const clang::Expr* e) {
+  e = e->IgnoreParenImpCasts();
+  const auto* dereference = llvm::dyn_cast<clang::UnaryOperator>(e);
+  if (dereference && dereference->getOpcode() == clang::UO_Deref) {
+    e = dereference->getSubExpr()->IgnoreParenImpCasts();
+  }
+  return llvm::isa<clang::CXXThisExpr>(e);
+}
+
+/// `*this += 1` or `add(1)`, of a function that gives its own object.
+bool isCallOnThisObject(const clang::Expr* e) {
+  const auto* call = llvm::dyn_cast<clang::CallExpr>(e->IgnoreParenImpCasts());
+  const clang::FunctionDecl* callee = call ? call->getDirectCallee() : nullptr;
+  if (!callee || !FunctionLowering::givesItself(callee)) return false;
+  if (const auto* member = llvm::dyn_cast<clang::CXXMemberCallExpr>(call)) {
+    return isThisObject(member->getImplicitObjectArgument());
+  }
+  return isThisObject(call->getArg(0));
+}
+
+}  // namespace
+
 void FunctionLowering::returnStatement(const clang::ReturnStmt* s) {
   ir::Return result;
-  if (const clang::Expr* returned = s->getRetValue()) {
+  if (givesItself_) {
+    if (isCallOnThisObject(s->getRetValue())) {
+      discarded(s->getRetValue());
+    } else if (!isThisObject(s->getRetValue())) {
+      module_.fail(Diag::ReturnedReference, s->getBeginLoc());
+    }
+  } else if (const clang::Expr* returned = s->getRetValue()) {
     if (returned->getType()->isVoidType()) {
       discarded(returned);
     } else {

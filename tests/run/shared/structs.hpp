@@ -10,7 +10,8 @@
   CASE(conditional) CASE(arrayOfStructs) CASE(arrayInStruct) CASE(arrayCopies) CASE(arrayZeroed)   \
   CASE(arrayDynamicIndex) CASE(arrayOfFloats) CASE(constantTable) CASE(structConstant)             \
   CASE(staticMembers) CASE(localStruct) CASE(sameNames) CASE(structInLoop) CASE(selfAssignment)    \
-  CASE(arrayByReference) CASE(arrayParameter) CASE(boolMembers) CASE(templateStruct)
+  CASE(arrayByReference) CASE(arrayParameter) CASE(boolMembers) CASE(templateStruct)             \
+  CASE(givesItself) CASE(thisObject)
 // clang-format on
 
 namespace structs {
@@ -328,6 +329,42 @@ inline int templateStruct(int x, int y) {
   Both<int> i = {x, y};
   Both<float> f = {x * 0.5f, 1.5f};
   return i.larger() * 10 + int(f.larger() * 2);
+}
+
+struct Counter {
+  int n, calls;
+  Counter& operator+=(int d) {
+    n += d;
+    ++calls;
+    return *this;
+  }
+  Counter& operator++() { return *this += 1; }
+  Counter& limit(int most) {
+    if (n <= most) return *this;
+    n = most;
+    return (*this);
+  }
+  const Counter& same() const { return *this; }
+  Counter twice() const {
+    Counter copy = *this;
+    copy += n;
+    return copy;
+  }
+  int times(int k) const { return k == 0 ? 0 : same().n * k; }
+};
+inline int givesItself(int x, int y) {
+  Counter a = {x, 0}, list[3] = {{y, 0}, {1, 0}, {2, 0}};
+  (a += y) += 2;
+  ++(++a);
+  a.limit(20).limit(10) += 1;
+  list[1] += (a += 3).n;
+  int i = x & 1;
+  Counter copy = list[i] += 5;
+  return a.n + 10 * a.calls + 100 * copy.n + 1000 * list[1].n + (++list[2]).calls + a.same().twice().n;
+}
+inline int thisObject(int x, int y) {
+  Counter a = {x, y};
+  return a.twice().n + a.times(y) + a.same().calls;
 }
 
 }  // namespace structs
