@@ -7,8 +7,8 @@
 #include <clang/Lex/Preprocessor.h>
 
 #include "frontend/clang_loc.hpp"
+#include "frontend/constructor_editor.hpp"
 #include "frontend/parameter_editor.hpp"
-#include "frontend/prelude.hpp"
 #include "frontend/stream_editor.hpp"
 #include "frontend/token_cursor.hpp"
 
@@ -22,7 +22,10 @@ namespace tok = clang::tok;
 class Editor {
  public:
   Editor(const std::vector<Token>& tokens, clang::Preprocessor& preprocessor, Diagnostics& diagnostics)
-      : preprocessor_(preprocessor), diagnostics_(diagnostics), cursor_(tokens) {}
+      : preprocessor_(preprocessor),
+        diagnostics_(diagnostics),
+        cursor_(tokens),
+        constructors_(TokenMaker(preprocessor)) {}
 
   EditedTokens run() {
     copyPrelude();
@@ -214,14 +217,7 @@ class Editor {
     }
   }
 
-  /// Copies one token; `float4(` becomes a call of its constructor function.
-  void copyToken() {
-    Token token = cursor_.take();
-    if (token.is(tok::identifier) && cursor_.at(tok::l_paren) && isVectorTypeName(nameOf(token))) {
-      token.setIdentifierInfo(preprocessor_.getIdentifierInfo(vectorConstructorName(nameOf(token))));
-    }
-    out_.push_back(token);
-  }
+  void copyToken() { constructors_.copy(cursor_, out_); }
 
   std::string signature(const Token& start, const std::vector<Token>& head,
                         const std::vector<Token>& declared) {
@@ -238,6 +234,7 @@ class Editor {
   clang::Preprocessor& preprocessor_;
   Diagnostics& diagnostics_;
   TokenCursor cursor_;
+  ConstructorEditor constructors_;
   std::vector<Token> out_;
   DeclarationSyntax syntax_;
   int constants_ = 0;

@@ -337,3 +337,34 @@ TEST_CASE("vectors of integers and bools are compared and selected") {
           }) == "");
   });
 }
+
+TEST_CASE("variables and aliases of vectors are made with parentheses") {
+  const auto v = values<float2>(50);
+  const auto n = values<int>(50, 1);
+  onEveryProfile([&](sk::Device& device) {
+    auto a = device.stream<float4>({50});
+    auto b = device.stream<int2>({50});
+    auto c = device.stream<float2>({50});
+    auto d = device.stream<sk::half2>({50});
+    std::vector<int> small;
+    for (const int k : n) small.push_back(k % 1000);
+    vectors::variables(streamOf<float2>(device, v), streamOf<int>(device, small), a, b, c, d);
+    CHECK(difference(a.read(), [&](std::size_t i) {
+            const auto k = static_cast<float>(small[i]);
+            const float4 colour{1 + 3, v[i].y + 4, v[i].x + k, k};
+            return float4{2 * colour.x + v[i].x, colour.y + 1, colour.z + 1, 2 * colour.w + 0.5f};
+          }) == "");
+    CHECK(difference(b.read(), [&](std::size_t i) {
+            const int k = small[i];
+            return int2{(k + 3) * 7 + k + 1, (k + 1 + 3) * 7 + k};
+          }) == "");
+    CHECK(difference(c.read(), [&](std::size_t i) {
+            return float2{(v[i].x + 2 * v[i].y) * 0.5f, (v[i].y + 2 * v[i].x) * 0.5f};
+          }) == "");
+    const auto halves = d.read();
+    for (std::size_t i = 0; i < halves.size(); ++i) {
+      CHECK(float(halves[i].x) == 1.5f);
+      CHECK(float(halves[i].y) == static_cast<float>(small[i] & 7));
+    }
+  });
+}
