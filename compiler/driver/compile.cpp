@@ -38,7 +38,11 @@ struct Job {
 
 frontend::Options frontendOptions(const Job& job) {
   const Options& options = job.options;
-  return {options.includeDirectories, options.definitions, options.warnings, options.color,
+  return {options.includeDirectories,
+          options.definitions,
+          options.warnings,
+          options.color,
+          options.fixIts,
           job.text == nullptr ? nullptr : &job.messages};
 }
 

@@ -118,6 +118,8 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   app.add_option("--color", color, "Colour the messages: auto, always, never")
       ->check(CLI::IsMember({"auto", "always", "never"}))
       ->type_name("WHEN");
+  app.add_flag("--fixits", options.fixIts,
+               "Print the mends of messages as Clang's -fdiagnostics-parseable-fixits does");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

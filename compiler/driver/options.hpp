@@ -22,6 +22,7 @@ struct Options {
   std::string depfile;                      ///< empty: none
   std::string printAfter;                   ///< a transform, "all", or empty
   bool color = false;
+  bool fixIts = false;                      ///< print mends for tools, too
 };
 
 /// The options, or the exit status where there is nothing to compile: 0 after --help and --version,

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "frontend/clang_diagnostics.hpp"
 
+#include <clang/Basic/SourceManager.h>
+#include <clang/Lex/Lexer.h>
+
 #include "frontend/clang_loc.hpp"
 
 namespace skc::frontend {
@@ -18,15 +21,30 @@ clang::DiagnosticIDs::Level levelOf(Severity severity, const clang::DiagnosticsE
   return engine.getWarningsAsErrors() ? clang::DiagnosticIDs::Error : clang::DiagnosticIDs::Warning;
 }
 
+clang::FixItHint hint(const Mend& mend, const clang::SourceManager& sources) {
+  const clang::SourceLocation first = clangLocation(mend.first);
+  switch (mend.kind) {
+    case Mend::Kind::Remove: return clang::FixItHint::CreateRemoval({first, clangLocation(mend.last)});
+    case Mend::Kind::InsertBefore: return clang::FixItHint::CreateInsertion(first, mend.text);
+    case Mend::Kind::InsertAfter: break;
+  }
+  const clang::SourceLocation end =
+      clang::Lexer::getLocForEndOfToken(first, 0, sources, clang::LangOptions());
+  return clang::FixItHint::CreateInsertion(end, mend.text);
+}
+
 }  // namespace
 
-void ClangDiagnostics::report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments) {
+void ClangDiagnostics::report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments,
+                              const std::vector<Mend>& mends) {
   const DiagRow& entry = row(diag);
   const clang::DiagnosticIDs::Level level = levelOf(entry.severity, engine_);
   if (level == clang::DiagnosticIDs::Ignored) return;
   // The text is put together here and handed over as an argument: a user's `%` is no placeholder then.
   const unsigned id = engine_.getDiagnosticIDs()->getCustomDiagID(level, "%0");
-  engine_.Report(clangLocation(loc), id) << format(diag, arguments);
+  const clang::DiagnosticBuilder message = engine_.Report(clangLocation(loc), id);
+  message << format(diag, arguments);
+  for (const Mend& mend : mends) message << hint(mend, engine_.getSourceManager());
 }
 
 }  // namespace skc::frontend

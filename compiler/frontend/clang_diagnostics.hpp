@@ -13,7 +13,11 @@ class ClangDiagnostics : public Diagnostics {
  public:
   explicit ClangDiagnostics(clang::DiagnosticsEngine& engine) : engine_(engine) {}
 
-  void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments = {}) override;
+  void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments = {}) override {
+    report(diag, loc, arguments, {});
+  }
+  void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments,
+              const std::vector<Mend>& mends) override;
   /// DiagnosticPrinter makes errors of some warnings, of which the engine does not know.
   bool hasErrors() const override {
     return engine_.hasErrorOccurred() || engine_.getClient()->getNumErrors() != 0;

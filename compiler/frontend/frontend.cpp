@@ -50,6 +50,7 @@ std::vector<std::string> compilerArguments(const Options& options, const std::st
   for (const std::string& directory : options.includeDirectories) arguments.push_back("-I" + directory);
   for (const std::string& definition : options.definitions) arguments.push_back("-D" + definition);
   for (const std::string& warning : options.warnings) arguments.push_back("-W" + warning);
+  if (options.fixIts) arguments.push_back("-fdiagnostics-parseable-fixits");
   if (options.color) arguments.push_back("-fcolor-diagnostics");
   arguments.push_back(path);
   return arguments;

@@ -20,6 +20,7 @@ struct Options {
   std::vector<std::string> definitions;          ///< -D: NAME or NAME=VALUE
   std::vector<std::string> warnings;             ///< -W, without the -W: "all", "error", "no-unused"
   bool color = false;
+  bool fixIts = false;                           ///< in Clang's parseable form
   std::ostream* messages = nullptr;              ///< where messages go; null: standard error
 };
 

@@ -38,15 +38,41 @@ struct ParameterEditor::Parts {
 
 namespace {
 
+/// The place of the `>` that closes a list of values or types behind a name; 0 where `<` is none.
+std::size_t endOfList(const std::vector<Token>& tokens, std::size_t less) {
+  if (tokens[less - 1].isNot(tok::identifier)) return 0;
+  int depth = 0;
+  int parentheses = 0;
+  for (std::size_t i = less; i < tokens.size(); ++i) {
+    const Token& token = tokens[i];
+    if (token.isOneOf(tok::equal, tok::l_brace, tok::semi, tok::greaterequal)) return 0;
+    if (token.is(tok::l_paren)) ++parentheses;
+    if (token.is(tok::r_paren) && --parentheses < 0) return 0;
+    if (parentheses > 0) continue;
+    if (token.is(tok::less)) ++depth;
+    if (token.is(tok::greater) && --depth == 0) return i;
+  }
+  return 0;
+}
+
 /// Splits the tokens between the parentheses at commas outside any bracket.
 std::vector<std::vector<Token>> splitAtCommas(const std::vector<Token>& declared) {
   std::vector<std::vector<Token>> parts(1);
   int depth = 0;
+  bool isValue = false;   // behind `=`, `<` compares
   for (std::size_t i = 1; i + 1 < declared.size(); ++i) {
     const Token& token = declared[i];
     if (token.isOneOf(tok::l_paren, tok::l_square, tok::l_brace)) ++depth;
     if (token.isOneOf(tok::r_paren, tok::r_square, tok::r_brace)) --depth;
+    if (token.is(tok::equal)) isValue = true;
+    if (const std::size_t end = token.is(tok::less) && !isValue ? endOfList(declared, i) : 0; end != 0) {
+      parts.back().insert(parts.back().end(), declared.begin() + static_cast<std::ptrdiff_t>(i),
+                          declared.begin() + static_cast<std::ptrdiff_t>(end) + 1);
+      i = end;
+      continue;
+    }
     if (token.is(tok::comma) && depth == 0) {
+      isValue = false;
       parts.emplace_back();
     } else {
       parts.back().push_back(token);
@@ -64,6 +90,14 @@ bool isKind(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind kin
 std::vector<Token> borderValue(const std::vector<Token>& parenthesized) {
   if (parenthesized[1].isNot(tok::l_brace)) return parenthesized;
   return {parenthesized.begin() + 1, parenthesized.end() - 1};
+}
+
+/// Takes out what stands from `at` to the bracket that should have been there.
+std::vector<Mend> removal(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind close) {
+  for (std::size_t i = at; i < tokens.size(); ++i) {
+    if (tokens[i].is(close)) return {Mend::remove(locOf(tokens[at]), locOf(tokens[i - 1]))};
+  }
+  return {};
 }
 
 bool isNamedWord(const Token& token, std::initializer_list<llvm::StringRef> words) {
@@ -226,7 +260,8 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
     parts.open = parameter[at++];
     if (!isKind(parameter, at, tok::greater) && !isKind(parameter, at, tok::greaterequal)) {
       const Token& place = at < parameter.size() ? parameter[at] : parameter.back();
-      diagnostics_.report(Diag::StreamBrackets, locOf(place), {name});
+      const std::vector<Mend> mends = removal(parameter, at, tok::greater);
+      diagnostics_.report(Diag::StreamBrackets, locOf(place), {name}, mends);
       return false;
     }
     parts.close = parameter[at];
@@ -239,7 +274,8 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
       const bool closed = std::any_of(parameter.begin() + static_cast<std::ptrdiff_t>(at), parameter.end(),
                                       [](const Token& token) { return token.is(tok::r_square); });
       if (!closed || parts.rank > 0) {
-        diagnostics_.report(Diag::GatherBrackets, locOf(bracket), {name});
+        diagnostics_.report(Diag::GatherBrackets, locOf(bracket), {name},
+                            removal(parameter, at, tok::r_square));
         return false;
       }
       parts.length.push_back(bracket);
@@ -273,12 +309,25 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
   return true;
 }
 
+/// `<>` behind the name of a parameter without brackets.
+std::vector<Mend> ParameterEditor::addedBrackets(const Parts& parts) {
+  if (parts.rank > 0 || parts.isElement || !parts.length.empty()) return {};
+  return {Mend::insertAfter(locOf(parts.name), "<>")};
+}
+
+/// Without the `<>` of a parameter that has no other brackets.
+std::vector<Mend> ParameterEditor::removedBrackets(const Parts& parts) {
+  if (!parts.isElement || parts.rank > 0) return {};
+  return {Mend::remove(locOf(parts.open), locOf(parts.close))};
+}
+
 /// The table of DESIGN's parameters: qualifier, `<>` and brackets decide together.
 bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
   const Loc place = locOf(parts.name);
-  const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments) {
-    diagnostics_.report(diag, place, arguments);
+  const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments,
+                        const std::vector<Mend>& mends = {}) {
+    diagnostics_.report(diag, place, arguments, mends);
     return false;
   };
   const std::string qualifier = parts.hasQualifier ? nameOf(parts.qualifier) : "";
@@ -306,24 +355,28 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
     }
     const bool isIterator = qualifier == "iter";
     if (parts.rank > 0 || parts.isElement != isIterator) {
-      return fail(isIterator ? Diag::IteratorBrackets : Diag::SpecBrackets, {name});
+      return fail(isIterator ? Diag::IteratorBrackets : Diag::SpecBrackets, {name},
+                  isIterator ? addedBrackets(parts) : removedBrackets(parts));
     }
     parts.syntax.role = isIterator ? ir::ParamRole::Iterator : ir::ParamRole::Spec;
     return true;
   }
   if (kind == FunctionKind::Helper) {
-    if (parts.isElement) return fail(Diag::StreamInHelper, {name});
+    if (parts.isElement) return fail(Diag::StreamInHelper, {name}, removedBrackets(parts));
     if (parts.rank > 0 && !qualifier.empty()) return fail(Diag::OutputBrackets, {name});
     if (qualifier == "reduce") return fail(Diag::AccumulatorOutsideReduce, {name});
     parts.syntax.role = parts.rank > 0      ? ir::ParamRole::Gather
                         : qualifier.empty() ? ir::ParamRole::Uniform
                                             : ir::ParamRole::Output;
   } else if (qualifier == "out" || qualifier == "inout") {
-    if (!parts.isElement || qualifier == "inout") return fail(Diag::OutputBrackets, {name});
+    if (!parts.isElement || qualifier == "inout") {
+      return fail(Diag::OutputBrackets, {name},
+                  qualifier == "out" ? addedBrackets(parts) : std::vector<Mend>());
+    }
     if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name});
     parts.syntax.role = ir::ParamRole::Output;
   } else if (qualifier == "reduce") {
-    if (!parts.isElement) return fail(Diag::AccumulatorBrackets, {name});
+    if (!parts.isElement) return fail(Diag::AccumulatorBrackets, {name}, addedBrackets(parts));
     if (kind == FunctionKind::Kernel) return fail(Diag::AccumulatorOutsideReduce, {name});
     parts.syntax.role = ir::ParamRole::Accumulator;
   } else {
@@ -338,13 +391,16 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
 /// `vout T r<>` and `out T r[]`, of kernels and of the functions that they hand theirs to.
 bool ParameterEditor::resolveSink(Parts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
-  const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments) {
-    diagnostics_.report(diag, locOf(parts.name), arguments);
+  const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments,
+                        const std::vector<Mend>& mends = {}) {
+    diagnostics_.report(diag, locOf(parts.name), arguments, mends);
     return false;
   };
   const bool isVariable = nameOf(parts.qualifier) == "vout";
   if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name});
-  if (isVariable && (!parts.isElement || parts.rank > 0)) return fail(Diag::VariableOutputBrackets, {name});
+  if (isVariable && (!parts.isElement || parts.rank > 0)) {
+    return fail(Diag::VariableOutputBrackets, {name}, addedBrackets(parts));
+  }
   if (parts.isElement && !isVariable) return fail(Diag::StreamAndGather, {name});
   if (parts.rank > 4) return fail(Diag::StreamRank, {name, std::to_string(parts.rank)});
   if (parts.hasAttribute) {

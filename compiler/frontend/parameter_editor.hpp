@@ -47,6 +47,8 @@ class ParameterEditor {
   void takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
+  static std::vector<Mend> addedBrackets(const Parts& parts);
+  static std::vector<Mend> removedBrackets(const Parts& parts);
   bool resolveRole(Parts& parts, FunctionKind kind);
   bool resolveSink(Parts& parts, FunctionKind kind);
   std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place);

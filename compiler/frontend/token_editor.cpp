@@ -53,8 +53,10 @@ class Editor {
   void editDeclaration() {
     if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) return editKernel();
     if (atDeclarationWord("stream")) return editStream();
+    if (atWord("iter") && listedName() > 1) return refuseIterator();
     if (cursor_.at(tok::kw_namespace)) return copyUntilBodyOrEnd();
     if (cursor_.at(tok::kw_template)) return editTemplate();
+    if (const std::size_t name = brookStream(); name != 0) return refuseStream(name);
     copyDeclaration();
   }
 
@@ -120,6 +122,43 @@ class Editor {
 
   void editStream() {
     StreamEditor(TokenMaker(preprocessor_), diagnostics_, syntax_, constants_).edit(cursor_, out_);
+  }
+
+  /// Brook's `iter float x<100> = iter(0, 1);`
+  void refuseIterator() {
+    diagnostics_.report(Diag::IteratorDeclaration, locOf(cursor_.peek()));
+    skipDeclaration();
+  }
+
+  /// The place of the first `<` in `T name<`, less one; 0 where the declaration has none there.
+  std::size_t listedName() const {
+    std::size_t at = 0;
+    while (startsType(cursor_.peek(at)) && cursor_.peek(at + 1).isNot(tok::less)) ++at;
+    return cursor_.peek(at).is(tok::identifier) ? at : 0;
+  }
+
+  /// The place of `a` in Brook's `float a<100>;`, where C++ would have arguments of a template but a name
+  /// behind them; 0 where something else is declared.
+  std::size_t brookStream() const {
+    const std::size_t at = listedName();
+    if (at == 0) return 0;
+    for (std::size_t i = at + 2; !cursor_.peek(i).isOneOf(tok::eof, tok::semi, tok::l_brace, tok::less);
+         ++i) {
+      if (cursor_.peek(i).is(tok::greater))
+        return cursor_.peek(i + 1).isOneOf(tok::semi, tok::comma) ? at : 0;
+    }
+    return 0;
+  }
+
+  void refuseStream(std::size_t name) {
+    diagnostics_.report(Diag::StreamKeyword, locOf(cursor_.peek(name)), {nameOf(cursor_.peek(name))},
+                        {Mend::insertBefore(locOf(cursor_.peek()), "stream ")});
+    skipDeclaration();
+  }
+
+  void skipDeclaration() {
+    while (!cursor_.atEndOfDeclaration()) cursor_.take();
+    if (cursor_.at(tok::semi)) cursor_.take();
   }
 
   void editKernel() {

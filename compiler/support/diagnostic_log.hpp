@@ -18,6 +18,7 @@ class DiagnosticLog : public Diagnostics {
     std::string text;
   };
 
+  using Diagnostics::report;
   void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments = {}) override;
   bool hasErrors() const override;
   const std::vector<Entry>& entries() const { return entries_; }

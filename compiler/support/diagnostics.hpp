@@ -9,6 +9,8 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "support/loc.hpp"
 
@@ -29,10 +31,32 @@ struct DiagRow {
 };
 const DiagRow& row(Diag diag);
 
+/// A change of the file that mends a mistake, for certain and by itself.
+struct Mend {
+  enum class Kind : std::uint8_t { Remove, InsertBefore, InsertAfter };
+  Kind kind;
+  Loc first;           ///< the token that it is about; of Remove, the first one
+  Loc last;            ///< of Remove, the last one
+  std::string text;    ///< to insert
+
+  static Mend remove(Loc first, Loc last) { return {Kind::Remove, first, last, {}}; }
+  static Mend insertBefore(Loc token, std::string text) {
+    return {Kind::InsertBefore, token, {}, std::move(text)};
+  }
+  static Mend insertAfter(Loc token, std::string text) {
+    return {Kind::InsertAfter, token, {}, std::move(text)};
+  }
+};
+
 class Diagnostics {
  public:
   virtual ~Diagnostics() = default;
   virtual void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments = {}) = 0;
+  /// With what would mend it, for those who can show that.
+  virtual void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments,
+                      const std::vector<Mend>& /*mends*/) {
+    report(diag, loc, arguments);
+  }
   virtual bool hasErrors() const = 0;
 };
 
