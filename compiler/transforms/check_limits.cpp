@@ -14,6 +14,20 @@ using namespace ir;
 constexpr std::size_t mostParameters = 250;   // descriptors number them with 8 bits
 constexpr std::size_t mostPlanes = 250;       // and the planes of bundles
 constexpr std::size_t mostReads = 120;        // a program's key has 4 bits for each stream that is read
+constexpr std::size_t promisedVectors = 200;  // of the 224 of ES 3.0; programs have uniforms of their own
+
+/// Vectors of four that a uniform takes where nothing is packed.
+std::size_t vectorsOf(const Module& module, Type type) {
+  if (type.kind == Type::Kind::Array) {
+    const Array& array = module.arrays[type.index];
+    return array.length * vectorsOf(module, array.element);
+  }
+  if (type.isMatrix()) return type.width;
+  if (type.kind != Type::Kind::Struct) return 1;
+  std::size_t vectors = 0;
+  for (const StructField& field : module.structs[type.index].fields) vectors += vectorsOf(module, field.type);
+  return vectors;
+}
 
 bool isRead(const KernelParam& param) {
   return param.role == ParamRole::Input || param.role == ParamRole::Gather;
@@ -28,9 +42,10 @@ bool isStream(const KernelParam& param) {
 
 void checkLimits(const Module& module, Diagnostics& diagnostics) {
   for (const Kernel& kernel : module.kernels) {
-    std::size_t reads = 0, planes = 0;
+    std::size_t reads = 0, planes = 0, vectors = 0;
     for (const KernelParam& param : kernel.params) {
       if (isRead(param)) ++reads;
+      if (param.role == ParamRole::Uniform) vectors += vectorsOf(module, param.type);
       if (isStream(param)) planes += split::planesOf(module, param.type).size();
     }
     const auto require = [&](Diag diag, std::size_t count, std::size_t most) {
@@ -40,6 +55,7 @@ void checkLimits(const Module& module, Diagnostics& diagnostics) {
     require(Diag::KernelParameters, kernel.params.size(), mostParameters);
     require(Diag::KernelReads, reads, mostReads);
     require(Diag::KernelPlanes, planes, mostPlanes);
+    require(Diag::UniformSize, vectors, promisedVectors);
   }
 }
 

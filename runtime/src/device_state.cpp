@@ -39,9 +39,11 @@ DeviceState::DeviceState(gl::OpenedContext&& opened, const DeviceChoices& choice
   }
   limits.drawBuffers = capabilities.drawBuffers;
   limits.textureUnits = capabilities.textureUnits;
+  limits.uniformComponents = capabilities.uniformComponents;
   if (choices.guaranteedLimits) {
     limits.drawBuffers = profile.drawBuffers;
     limits.textureUnits = profile.textureUnits;
+    limits.uniformComponents = profile.uniformComponents;
   }
   const gl::CurrentScope current(context);
   vertexArray = gl::VertexArray::create();

@@ -194,3 +194,18 @@ TEST_CASE("a program that the driver refuses names the line of the .sk file") {
   CHECK(error.find("nothing") != std::string::npos);
   CHECK(errorOf([&] { wrong(r); }) == error);
 }
+
+TEST_CASE("uniforms that a device has no room for") {
+  std::vector<program::Parameter> parameters(225, uniform<float4>("k"));
+  parameters.push_back(output<float>("v"));
+  static const TestKernel kernel("many", "void many(out float v) { v = 0.0; }\n", parameters);
+  const float4 k{};
+  Device device({.profile = "essl300", .limits = "guaranteed"});
+  CHECK(device.limits().uniformComponents == 896);
+  auto v = device.stream<float>({3});
+  std::vector<Argument> arguments(225, Argument{&k, {}});
+  arguments.push_back(argumentOf(v));
+  CHECK(errorOf([&] { run(kernel.kernel(), arguments); }) ==
+        "many: its uniforms have 900 components, but this device has room for 896; read large arrays as "
+        "gathers");
+}

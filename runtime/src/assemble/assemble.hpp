@@ -32,6 +32,7 @@ struct Profile {
   bool es;                      ///< precision statements, ES formats and limits
   int drawBuffers;              ///< guaranteed minimum
   int textureUnits;             ///< guaranteed minimum for a fragment program
+  int uniformComponents;        ///< likewise; ES counts vectors of four
   Doubles doubles;              ///< the best form that devices of the profile have
 };
 const Profile* findProfile(std::string_view name);

@@ -10,9 +10,9 @@ namespace sk::assemble {
 namespace {
 
 constexpr std::array table = {
-    // name      #version           es     draw buffers  texture units (minima that the standards guarantee)
-    Profile{"glsl330", "#version 330 core", false, 8, 16, Doubles::Native},
-    Profile{"essl300", "#version 300 es", true, 4, 16, Doubles::Pairs},
+    // name      #version           es     draw buffers  texture units  uniform components (guaranteed minima)
+    Profile{"glsl330", "#version 330 core", false, 8, 16, 1024, Doubles::Native},
+    Profile{"essl300", "#version 300 es", true, 4, 16, 896, Doubles::Pairs},
 };
 
 }  // namespace

@@ -84,6 +84,8 @@ Capabilities readCapabilities() {
   found.drawBuffers =
       std::min({integerOf(GL_MAX_DRAW_BUFFERS), integerOf(GL_MAX_COLOR_ATTACHMENTS), maxDrawBuffers});
   found.textureUnits = std::min(integerOf(GL_MAX_TEXTURE_IMAGE_UNITS), maxTextureUnits);
+  found.uniformComponents = found.api == Api::Gl ? integerOf(GL_MAX_FRAGMENT_UNIFORM_COMPONENTS)
+                                                 : 4 * integerOf(GL_MAX_FRAGMENT_UNIFORM_VECTORS);
   return found;
 }
 

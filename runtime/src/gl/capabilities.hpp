@@ -25,6 +25,7 @@ struct Capabilities {
   int textureSize = 0;           ///< also as a viewport
   int drawBuffers = 0;
   int textureUnits = 0;          ///< at most maxTextureUnits
+  int uniformComponents = 0;     ///< of a fragment program
 };
 
 /// Planes that one pass may write at most, whatever the device allows.
