@@ -110,6 +110,7 @@ bool isNamedWord(const Token& token, std::initializer_list<llvm::StringRef> word
 }  // namespace
 
 std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind kind) {
+  inputs_.clear();
   Tokens out{declared.front()};
   const std::vector<Tokens> parameters = splitAtCommas(declared);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -439,7 +440,7 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       out.push_back(maker_.make(tok::amp, place));
       break;
-    case ir::ParamRole::Input:
+    case ir::ParamRole::Input: inputs_.push_back({parts.type.front(), parts.name}); [[fallthrough]];
     case ir::ParamRole::Uniform:
     case ir::ParamRole::Iterator:
     case ir::ParamRole::Spec:

@@ -33,6 +33,13 @@ class ParameterEditor {
         constants_(constants),
         before_(before) {}
 
+  /// `T x<>` without a qualifier.
+  struct Input {
+    clang::Token first, name;
+  };
+  /// Those of the list that was edited last.
+  const std::vector<Input>& inputs() const { return inputs_; }
+
   /// `declared` and the result include the parentheses.
   std::vector<clang::Token> edit(const std::vector<clang::Token>& declared, FunctionKind kind);
 
@@ -60,6 +67,7 @@ class ParameterEditor {
   DeclarationSyntax& syntax_;
   int& constants_;
   std::vector<clang::Token>& before_;
+  std::vector<Input> inputs_;
 };
 
 }  // namespace skc::frontend

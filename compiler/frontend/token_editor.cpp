@@ -186,10 +186,42 @@ class Editor {
     syntax_.add(head[at].getLocation(), std::move(kernel));
     out_.insert(out_.end(), head.begin(), head.end());
     out_.insert(out_.end(), edited.begin(), edited.end());
-    if (cursor_.at(tok::l_brace)) return copyBody(constants);
+    if (cursor_.at(tok::l_brace)) {
+      for (const ParameterEditor::Input& input : parameters.inputs()) refuseIfOnlyAssigned(input);
+      return copyBody(constants);
+    }
     if (cursor_.at(tok::semi)) return copyToken();
     diagnostics_.report(Diag::KernelBody, locOf(cursor_.peek()), {nameOf(head[at])});
     copyDeclaration();
+  }
+
+  /// An input that the body, which follows, names only to assign to it, was meant to be an output.
+  void refuseIfOnlyAssigned(const ParameterEditor::Input& input) {
+    bool isNamed = false;
+    int depth = 0;
+    for (std::size_t i = 0; cursor_.peek(i).isNot(tok::eof); ++i) {
+      const Token& token = cursor_.peek(i);
+      if (token.is(tok::l_brace)) ++depth;
+      if (token.is(tok::r_brace) && --depth == 0) break;
+      const bool isMember = i > 0 && cursor_.peek(i - 1).isOneOf(tok::period, tok::coloncolon);
+      if (isMember || token.isNot(tok::identifier) ||
+          token.getIdentifierInfo() != input.name.getIdentifierInfo()) {
+        continue;
+      }
+      if (!isAssignedAt(i)) return;
+      isNamed = true;
+    }
+    if (!isNamed) return;
+    diagnostics_.report(Diag::InputAssigned, locOf(input.name), {nameOf(input.name)},
+                        {Mend::insertBefore(locOf(input.first), "out ")});
+  }
+
+  /// `x = ` or `x.y = ` at the beginning of a statement.
+  bool isAssignedAt(std::size_t at) const {
+    const Token& before = cursor_.peek(at - 1);
+    if (!before.isOneOf(tok::l_brace, tok::r_brace, tok::semi, tok::r_paren, tok::kw_else)) return false;
+    while (cursor_.peek(at + 1).is(tok::period)) at += 2;
+    return cursor_.peek(at + 1).is(tok::equal);
   }
 
   /// Any other declaration: copied, but for the parameter list of a function.
