@@ -204,7 +204,7 @@ TEST_CASE("uniforms that a device has no room for") {
   CHECK(device.limits().uniformComponents == 896);
   auto v = device.stream<float>({3});
   std::vector<Argument> arguments(225, Argument{&k, {}});
-  arguments.push_back(argumentOf(v));
+  arguments.push_back({nullptr, regionOf(v)});
   CHECK(errorOf([&] { run(kernel.kernel(), arguments); }) ==
         "many: its uniforms have 900 components, but this device has room for 896; read large arrays as "
         "gathers");
