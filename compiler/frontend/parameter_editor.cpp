@@ -41,9 +41,10 @@ namespace {
 /// The place of the `>` that closes a list of values or types behind a name; 0 where `<` is none.
 std::size_t endOfList(const std::vector<Token>& tokens, std::size_t less) {
   if (tokens[less - 1].isNot(tok::identifier)) return 0;
+  constexpr std::size_t longest = 256;   // tokens, so that many that end nowhere take no time
   int depth = 0;
   int parentheses = 0;
-  for (std::size_t i = less; i < tokens.size(); ++i) {
+  for (std::size_t i = less; i < std::min(tokens.size(), less + longest); ++i) {
     const Token& token = tokens[i];
     if (token.isOneOf(tok::equal, tok::l_brace, tok::semi, tok::greaterequal)) return 0;
     if (token.is(tok::l_paren)) ++parentheses;
