@@ -42,9 +42,10 @@ constexpr std::uintmax_t largestFile = std::uintmax_t{4} << 20;
 std::vector<std::string> compilerArguments(const Options& options, const std::string& path) {
   std::vector<std::string> arguments = {
       "-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++", "-std=c++20", "-nostdsysteminc",
-      "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all", "-Wno-literal-range",
+      "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all",
       "-fnative-half-arguments-and-returns", "-Wno-undefined-internal", "-Wno-undefined-inline",
       narrowingArgument,
+      "-Wno-literal-range",   // lowering tells, which knows whether a literal is a double
       // a mistaken -W or a long cascade must not bury the first message
       "-ferror-limit", "20", "-fmessage-length=0"};
   for (const std::string& directory : options.includeDirectories) arguments.push_back("-I" + directory);

@@ -254,6 +254,26 @@ TEST_CASE("reduces of doubles") {
   });
 }
 
+TEST_CASE("reduces of floats to doubles, with uniforms, gathers and several accumulators") {
+  const auto x = values<float>(extent, 21);
+  const auto y = vectorsOf<sk::double2>(count, 22);
+  const auto w = smallDoubles(count, 23);
+  onEveryForm([&](sk::Device& device, const Form& form) {
+    double wanted = 0, size = 0;
+    sk::double3 most = {-1e30, -1e30, -1e30};
+    for (std::size_t i = 0; i < count; ++i) {
+      wanted += 0.3 * x[i] * w[i] + 0.1;
+      size += std::fabs(0.3 * x[i] * w[i]) + 0.1;
+      most = {std::max(most.x, y[i].x), std::max(most.y, y[i].y), std::max(most.z, double{x[i]})};
+    }
+    const auto [total, ends, n] = weighed(0.3, streamOf<float>(device, x), streamOf<sk::double2>(device, y),
+                                          streamOf<double>(device, w));
+    CHECK(std::fabs(total - wanted) <= 100 * static_cast<double>(precisionOf(form)) * size);
+    CHECK(ends == most);
+    CHECK(n == static_cast<int>(count));
+  });
+}
+
 TEST_CASE("variable and scatter outputs of doubles") {
   const auto x = smallDoubles(count, 15);
   const auto v = vectorsOf<sk::double2>(count, 16);
