@@ -248,9 +248,16 @@ class GlslExpr {
   std::string indexText(const Index& n) const {
     const std::string index = text(*n.index);
     const Type base = n.base->type;
-    if (base.isVector() || std::holds_alternative<Literal>(n.index->node)) return index;
-    const std::uint32_t last = (base.isMatrix() ? base.width : context_.module.arrays[base.index].length) - 1;
-    if (n.index->type.scalar == Scalar::Uint) return fmt::format("min({}, {}u)", index, last);
+    const bool isArray = base.kind == Type::Kind::Array;
+    const std::uint32_t last = (isArray ? context_.module.arrays[base.index].length : base.width) - 1;
+    const bool isUint = n.index->type.scalar == Scalar::Uint;
+    if (const auto* literal = std::get_if<Literal>(&n.index->node)) {  // one outside is an error in GLSL
+      if (literal->bits <= last) return index;
+      const bool isBelow = !isUint && static_cast<std::int32_t>(literal->bits) < 0;
+      return fmt::format("{}{}", isBelow ? 0 : last, isUint ? "u" : "");
+    }
+    if (base.isVector()) return index;
+    if (isUint) return fmt::format("min({}, {}u)", index, last);
     return fmt::format("clamp({}, 0, {})", index, last);
   }
 

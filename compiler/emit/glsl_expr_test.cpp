@@ -94,6 +94,10 @@ TEST_CASE("conversions, constructors, swizzles, elements") {
   const auto pair = [&] { return construct(array, exprs(literal(1.0F), literal(2.0F))); };
   CHECK(t.text(pair()) == "float[2](1.0, 2.0)");
   CHECK(t.text(index(t.module, pair(), literal(1))) == "float[2](1.0, 2.0)[1]");
+  CHECK(t.text(index(t.module, pair(), literal(2))) == "float[2](1.0, 2.0)[1]");
+  CHECK(t.text(index(t.module, pair(), literal(-7))) == "float[2](1.0, 2.0)[0]");
+  CHECK(t.text(index(t.module, pair(), literal(0xffffffffu))) == "float[2](1.0, 2.0)[1u]");
+  CHECK(t.text(index(t.module, t.ref(t.v), literal(4))) == "v[1]");
   CHECK(t.text(index(t.module, pair(), t.ref(t.i))) == "float[2](1.0, 2.0)[clamp(i, 0, 1)]");
   CHECK(t.text(index(t.module, pair(), convert(Scalar::Uint, t.ref(t.i)))) ==
         "float[2](1.0, 2.0)[min(uint(i), 1u)]");
