@@ -27,6 +27,7 @@ struct Options {
   std::vector<std::string> files;  ///< judged instead of mutants
   std::string reduce;  ///< a file to make smaller
   bool show = false;  ///< prints the mutants instead
+  bool withGlslang = false;
 };
 
 fuzz::Program programOf(const std::string& file) {
@@ -58,7 +59,7 @@ int mutate(const Options& options, const char* program) {
     return 0;
   }
   fuzz::Campaign campaign{.first = options.first, .count = options.count, .seconds = options.seconds};
-  campaign.check = [&](std::uint64_t number) { return fuzz::judge(make(number)); };
+  campaign.check = [&](std::uint64_t number) { return fuzz::judge(make(number), options.withGlslang); };
   campaign.onFinding = [&](const fuzz::Finding& finding) {
     const fuzz::Program mutant = make(finding.number);
     fs::create_directories(options.out);
@@ -73,7 +74,9 @@ int mutate(const Options& options, const char* program) {
 
 int judgeFiles(const Options& options, const char* program) {
   fuzz::Campaign campaign{.count = options.files.size(), .batch = 1, .seconds = options.seconds};
-  campaign.check = [&](std::uint64_t i) { return fuzz::judge(programOf(options.files[i])); };
+  campaign.check = [&](std::uint64_t i) {
+    return fuzz::judge(programOf(options.files[i]), options.withGlslang);
+  };
   campaign.onFinding = [&](const fuzz::Finding& finding) {
     tell(finding, std::string(program) + " " + options.files[finding.number]);
   };
@@ -88,7 +91,7 @@ int reduce(const Options& options) {
   const auto finding = [&](const std::string& text) {
     std::string kind;
     fuzz::Campaign campaign{.count = 1, .seconds = options.seconds};
-    campaign.check = [&](std::uint64_t) { return fuzz::judge({program.path, text}); };
+    campaign.check = [&](std::uint64_t) { return fuzz::judge({program.path, text}, options.withGlslang); };
     campaign.onFinding = [&](const fuzz::Finding& one) { kind = kindOf(one.what); };
     fuzz::run(campaign);
     return kind;
@@ -112,6 +115,7 @@ int main(int argc, char** argv) {
   app.add_option("--corpus", options.corpus, "Folders with .sk and .md files to start from");
   app.add_option("--out", options.out, "Where mutants with findings are written to");
   app.add_option("--reduce", options.reduce, "Make this program smaller as long as it fails, and print it");
+  app.add_flag("--glslang", options.withGlslang, "Show what skc accepts to glslang, too");
   app.add_flag("--show", options.show, "Print the mutants instead of compiling them");
   CLI11_PARSE(app, argc, argv);
   try {

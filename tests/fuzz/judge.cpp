@@ -2,9 +2,12 @@
 #include "judge.hpp"
 
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "driver/big_stack.hpp"
 #include "driver/compile.hpp"
+#include "shaders.hpp"
 
 namespace fuzz {
 namespace {
@@ -23,7 +26,7 @@ constexpr Form forms[] = {
 
 bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
-Verdict compile(const Program& program) {
+Verdict compile(const Program& program, bool withGlslang) {
   skc::driver::Options options;
   const auto [module, messages] = skc::driver::translateText(options, program.path, program.text);
   if (contains(messages, "internal error")) return {"speaks of an internal error: " + messages, "refused"};
@@ -35,23 +38,24 @@ Verdict compile(const Program& program) {
     return {"", "refused"};
   }
   if (contains(messages, "error:")) return {"accepted, with an error: " + messages, "accepted"};
+  std::vector<std::string> listings;
   for (const Form& form : forms) {
     options.emit = form.emit;
     options.profile = form.profile;
-    if (emitText(options, *module).empty()) {
-      return {std::string("accepted, but emits no ") + form.name, "accepted"};
-    }
+    const std::string text = emitText(options, *module);
+    if (text.empty()) return {std::string("accepted, but emits no ") + form.name, "accepted"};
+    if (form.emit == Emit::Glsl) listings.push_back(text);
   }
-  return {"", "accepted"};
+  return {withGlslang ? complaints(listings) : "", "accepted"};
 }
 
 }  // namespace
 
-Verdict judge(const Program& program) {
+Verdict judge(const Program& program, bool withGlslang) {
   Verdict verdict;
   skc::driver::withBigStack([&] {
     try {
-      verdict = compile(program);
+      verdict = compile(program, withGlslang);
     } catch (const std::exception& error) {
       verdict = {std::string("throws ") + error.what(), "refused"};
     }

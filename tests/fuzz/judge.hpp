@@ -9,7 +9,7 @@
 
 namespace fuzz {
 
-/// Tallied as "accepted" or "refused".
-Verdict judge(const Program& program);
+/// Tallied as "accepted" or "refused". `withGlslang`: what is accepted is shown to glslang, too.
+Verdict judge(const Program& program, bool withGlslang);
 
 }  // namespace fuzz
