@@ -50,7 +50,7 @@ says 'usage: ./dev COMMAND'
 run 1 build relaese
 says "no preset 'relaese': release, debug or asan"
 run 1 fuzz runtime
-says 'fuzz what? ./dev fuzz mutate'
+says 'fuzz what? ./dev fuzz mutate, or ./dev fuzz kernels'
 never_called cmake
 
 # All is installed: no apt-get; configure, build, test, whose closing line comes last.

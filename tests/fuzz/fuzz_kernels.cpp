@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+//
+// fuzz_kernels: random kernels that are right, compiled in this process, shown to glslang, run on every profile, and
+// compared with what they mean (kernels/model.hpp). Kernel N of a seed is always the same. Exit status 1 after a
+// finding. Where the driver itself dies, that is counted apart.
+#include <csignal>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <optional>
+
+#include <execinfo.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include "driver/big_stack.hpp"
+#include "driver/compile.hpp"
+#include "emit/program.hpp"
+#include "isolation.hpp"
+#include "kernels/device_run.hpp"
+#include "shaders.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using skc::driver::Emit;
+
+struct Options {
+  std::uint64_t seed = 1, first = 0, count = 100;
+  unsigned seconds = 120;
+  std::string out = "fuzz-findings";
+  bool show = false, withoutDevice = false;
+};
+
+/// The devices of a child; both profiles with their own limits and with those that are guaranteed.
+struct Devices {
+  sk::Device many{sk::DeviceOptions{.profile = "glsl330", .limits = "device"}};
+  sk::Device few{sk::DeviceOptions{.profile = "essl300", .textureLimit = 64, .limits = "guaranteed"}};
+  sk::Device fewOfMany{sk::DeviceOptions{.profile = "glsl330", .textureLimit = 64, .limits = "guaranteed"}};
+};
+
+/// What a child keeps: devices know descriptors by their addresses.
+struct Kept {
+  std::deque<skc::emit::Program> programs;
+  std::optional<Devices> devices;
+};
+
+std::string check(const Options& options, const fuzz::RandomKernel& kernel, Kept& kept) {
+  skc::driver::Options compiling;
+  const auto [module, messages] = skc::driver::translateText(compiling, "random.sk", kernel.text());
+  if (!module) return "refused: " + messages;
+  std::vector<std::string> listings;
+  compiling.emit = Emit::Glsl;
+  for (const char* profile : {"glsl330", "essl300"}) {
+    compiling.profile = profile;
+    listings.push_back(emitText(compiling, *module));
+  }
+  if (const std::string complaint = fuzz::complaints(listings); !complaint.empty()) return complaint;
+  if (options.withoutDevice) return {};
+  const skc::emit::Program& program = kept.programs.emplace_back(*module);
+  if (!kept.devices) kept.devices.emplace();
+  for (sk::Device* device : {&kept.devices->many, &kept.devices->few, &kept.devices->fewOfMany}) {
+    const std::string wrong = fuzz::difference(*device, program.units()[0].kernel, kernel);
+    if (!wrong.empty()) {
+      return std::string(device->profile()) +
+             (device == &kept.devices->many ? ": " : ", guaranteed limits: ") + wrong;
+    }
+  }
+  return {};
+}
+
+/// Where a process dies, told on standard error before it does.
+void traceDeath(int signal) {
+  void* frames[40];
+  const int count = backtrace(frames, 40);
+  backtrace_symbols_fd(frames, count, STDERR_FILENO);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+/// Whether a trace begins in the GL driver: in Mesa, or in the LLVM that it compiles with.
+bool isDriversDeath(const fuzz::Finding& finding) {
+  std::istringstream frames(finding.log);
+  for (std::string frame; std::getline(frames, frame);) {
+    if (frame.find("fuzz_kernels") != std::string::npos || frame.find("libc.so") != std::string::npos)
+      continue;
+    return frame.find("dri") != std::string::npos || frame.find("gallium") != std::string::npos ||
+           frame.find("libLLVM-1") != std::string::npos;
+  }
+  return false;
+}
+
+int fuzzKernels(const Options& options) {
+  if (options.show) {
+    for (std::uint64_t i = 0; i < options.count; ++i) {
+      std::cout << fuzz::RandomKernel(options.seed, options.first + i).text() << "\n";
+    }
+    return 0;
+  }
+  Kept kept;
+  std::uint64_t driverDeaths = 0;
+  fuzz::Campaign campaign{
+      .first = options.first, .count = options.count, .batch = 25, .seconds = options.seconds};
+  campaign.begin = [] {
+    for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, traceDeath);
+  };
+  campaign.check = [&](std::uint64_t number) {
+    fuzz::Verdict verdict;
+    skc::driver::withBigStack([&] {
+      try {
+        verdict.finding = check(options, fuzz::RandomKernel(options.seed, number), kept);
+      } catch (const std::exception& error) {
+        verdict.finding = std::string("throws ") + error.what();
+      }
+      if (kept.devices) {  // the next kernel runs on another thread
+        kept.devices->many.release(), kept.devices->few.release(), kept.devices->fewOfMany.release();
+      }
+      return 0;
+    });
+    verdict.tally = verdict.finding.empty() ? "agree" : "do not";
+    return verdict;
+  };
+  campaign.onFinding = [&](const fuzz::Finding& finding) {
+    const bool isDrivers = isDriversDeath(finding);
+    driverDeaths += isDrivers;
+    fs::create_directories(options.out);
+    const fs::path file = fs::path(options.out) / ("kernel-" + std::to_string(options.seed) + "-" +
+                                                   std::to_string(finding.number) + ".sk");
+    std::ofstream(file) << fuzz::RandomKernel(options.seed, finding.number).text();
+    std::cout << "kernel " << finding.number << (isDrivers ? " (the driver died): " : ": ") << finding.what
+              << "\n"
+              << finding.log << "again by: fuzz_kernels --seed " << options.seed << " --first "
+              << finding.number << " --count 1   (" << file.string() << ")\n"
+              << std::flush;
+  };
+  const fuzz::Summary summary = fuzz::run(campaign);
+  std::cout << summary.inputs << " kernels, " << summary.findings - driverDeaths << " findings, "
+            << driverDeaths << " deaths of the driver; the largest process took "
+            << summary.largestProcess / 1024 << " MiB\n";
+  return summary.findings == driverDeaths ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"fuzz_kernels: compares random kernels with what they mean", "fuzz_kernels"};
+  app.add_option("--seed", options.seed, "Which kernels: each seed has its own");
+  app.add_option("--first", options.first, "Number of the first kernel");
+  app.add_option("--count", options.count, "How many");
+  app.add_option("--seconds", options.seconds, "A kernel that takes longer hangs");
+  app.add_option("--out", options.out, "Where kernels with findings are written to");
+  app.add_flag("--show", options.show, "Print the kernels instead");
+  app.add_flag("--without-device", options.withoutDevice,
+               "Compile them and show them to glslang, but do not run them");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return fuzzKernels(options);
+  } catch (const std::exception& error) {
+    std::cerr << "fuzz_kernels: " << error.what() << "\n";
+    return 1;
+  }
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+//
+// Random kernels: a program as text, its arguments, and what it must compute.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kernels/expressions.hpp"
+#include "kernels/model.hpp"
+#include "kernels/types.hpp"
+#include "random.hpp"
+
+namespace fuzz {
+
+using Role = sk::program::Role;
+
+struct Parameter {
+  Role role;
+  Variable variable;             ///< of a gather only its name and type count
+  std::vector<Value>
+      values;     ///< of a uniform, one an element of its array; of an iterator its begin and step
+};
+
+class RandomKernel {
+ public:
+  RandomKernel(std::uint64_t seed, std::uint64_t number);
+  RandomKernel(const RandomKernel&) = delete;
+  RandomKernel& operator=(const RandomKernel&) = delete;
+
+  const std::string& text() const { return text_; }
+  const Records& records() const { return records_; }
+  const std::vector<Parameter>& parameters() const { return parameters_; }
+  const std::vector<std::int64_t>& domain() const { return domain_; }
+  /// One a parameter: what is in inputs and gathers, and nothing in others.
+  const std::vector<HostStream>& streams() const { return streams_; }
+
+  /// What each output must hold; one a parameter, and nothing for others.
+  std::vector<HostStream> results() const;
+
+ private:
+  class Maker;
+
+  Records records_;
+  std::vector<Parameter> parameters_;
+  std::vector<std::int64_t> domain_;
+  std::vector<HostStream> streams_;
+  std::vector<std::pair<int, Value>> constants_;   ///< slots of global constants
+  std::function<Flow(Frame&)> body_;
+  int slots_ = 0;
+  std::string text_;
+};
+
+}  // namespace fuzz
