@@ -90,14 +90,14 @@ std::string sinksListing(const Profile& profile, const sk::program::Kernel& kern
     if (sk::assemble::isCounted(sink) && !hasTree) {
       hasTree = true;
       for (const bool ofCounts : {true, false}) {
-        programs.push_back(sk::assemble::treeProgram(profile, ofCounts));
+        programs.push_back(sk::assemble::treeProgram(profile, {.ofCounts = ofCounts}));
       }
     }
     variant.task.sink = static_cast<std::uint8_t>(i);
     programs.push_back(sk::assemble::fragmentProgram(profile, kernel, variant));
     if (sink.role == sk::program::Role::VariableOutput) continue;
     for (const sk::assemble::PointStep step : pointSteps(sink)) {
-      programs.push_back(sk::assemble::pointProgram(profile, sink, step));
+      programs.push_back(sk::assemble::pointProgram(profile, sink, step, {}));
     }
   }
   return skc::join(programs, "\n");
@@ -116,6 +116,25 @@ void addPlainAccess(const sk::program::Reduction& reduction, sk::assemble::Reduc
   variant.specs = plain.specs;
 }
 
+/// A pass, or the several that write as many planes at a time as the profile guarantees to draw to.
+std::vector<sk::assemble::ReduceVariant> drawnVariants(const Profile& profile,
+                                                       const sk::program::Reduction& reduction,
+                                                       const sk::assemble::ReduceVariant& whole) {
+  std::size_t planes = 0;
+  for (const sk::program::Parameter& parameter : reduction.fold.parameters) {
+    if (parameter.role == sk::program::Role::Accumulator) planes += parameter.element->fields.size();
+  }
+  const auto most = static_cast<std::size_t>(profile.drawBuffers);
+  if (planes <= most) return {whole};
+  std::vector<sk::assemble::ReduceVariant> parts;
+  for (std::size_t first = 0; first < planes; first += most) {
+    parts.push_back(whole);
+    parts.back().firstPlane = static_cast<std::uint8_t>(first);
+    parts.back().planeCount = static_cast<std::uint8_t>(std::min(most, planes - first));
+  }
+  return parts;
+}
+
 /// Every program that folds a 1024 x 1024 stream to a value, once.
 std::string reductionListing(const Profile& profile, const sk::program::Reduction& reduction) {
   sk::assemble::Placement input;
@@ -124,12 +143,14 @@ std::string reductionListing(const Profile& profile, const sk::program::Reductio
   std::set<sk::assemble::ReduceVariant> seen;
   const bool byIndex = sk::assemble::asksForPlace(reduction.fold);
   for (sk::assemble::ReducePass& pass :
-       sk::assemble::planReduction(input, sk::assemble::valuePlacement(), {.textureSize = 16384},
+       sk::assemble::planReduction(input, sk::assemble::valuePlacement(), {.texture = {16384, 256}},
                                    {.blocks = {1, 1, 1, 1}, .byIndex = byIndex})) {
     addPlainAccess(reduction, pass.variant);
-    if (!seen.insert(pass.variant).second) continue;
-    if (!text.empty()) text += "\n";
-    text += sk::assemble::reduceProgram(profile, reduction, pass.variant);
+    for (const sk::assemble::ReduceVariant& variant : drawnVariants(profile, reduction, pass.variant)) {
+      if (!seen.insert(variant).second) continue;
+      if (!text.empty()) text += "\n";
+      text += sk::assemble::reduceProgram(profile, reduction, variant);
+    }
   }
   return text;
 }

@@ -117,7 +117,7 @@ class PlanPrinter {
     sk::assemble::Placement input;
     input.extent = {1024, 1024, 1, 1};
     const auto passes =
-        sk::assemble::planReduction(input, sk::assemble::valuePlacement(), {.textureSize = 16384});
+        sk::assemble::planReduction(input, sk::assemble::valuePlacement(), {.texture = {16384, 256}});
     text_ += counted(passes.size(), "pass") + " for 1024 x 1024 elements to a value\n";
     std::int64_t left = sk::assemble::elements(input.extent);
     for (std::size_t i = 0; i < passes.size(); ++i) {

@@ -164,7 +164,8 @@ class Builder {
       const std::vector<ArgumentPlane>& places = plan.bundles[b].layers;
       for (std::size_t layer = 0; layer < places.size(); ++layer) {
         if (places[layer].argument != argument) continue;
-        layers[places[layer].plane] = {static_cast<std::int8_t>(b), static_cast<std::uint8_t>(layer)};
+        layers[places[layer].plane] = {static_cast<std::int8_t>(b), static_cast<std::uint8_t>(layer),
+                                       static_cast<std::uint8_t>(places.size())};
         isBundled = true;
       }
     }

@@ -29,7 +29,7 @@ std::string parameter(const Module& module, const KernelParam& param, const std:
     case ParamRole::Uniform:
       return param.type.isArithmetic() ? fmt::format("{} {}", type, param.name)
                                        : fmt::format("const {}& {}", type, param.name);
-    case ParamRole::Input:
+    case ParamRole::Input: return stream("ElementIn");
     case ParamRole::Gather: return stream("In");
     case ParamRole::VariableOutput: return fmt::format("const sk::VariableOut<{}>& {}", type, param.name);
     case ParamRole::Output:

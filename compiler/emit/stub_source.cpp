@@ -144,7 +144,7 @@ class SourceWriter {
     if (parameter.layers.empty()) return;
     std::vector<std::string> items;
     for (const sk::program::Layer& layer : parameter.layers) {
-      items.push_back(fmt::format("{{{}, {}}}", layer.bundle, layer.layer));
+      items.push_back(fmt::format("{{{}, {}, {}}}", layer.bundle, layer.layer, layer.count));
     }
     text_ += fmt::format("constexpr Layer {}Layers{}[] = {{{}}};\n", name, number, join(items, ", "));
   }
@@ -354,7 +354,7 @@ class SourceWriter {
     if (param.role == ParamRole::Uniform || param.role == ParamRole::Spec) {
       return fmt::format("{{.value = &{}}}", param.name);
     }
-    return param.neededIf ? param.name + ".argument()" : fmt::format("{{.region = {}.region()}}", param.name);
+    return param.name + ".argument()";
   }
 
   void reduceToValue(const Kernel& kernel, std::size_t unit) {

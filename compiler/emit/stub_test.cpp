@@ -56,9 +56,9 @@ inline constexpr DiffuseKernel diffuse{};
 /// reduce void sum(float x<>, reduce float total<> = 0)
 struct SumReduce {
   /// Folds all of x to one value.
-  float operator()(const sk::In<float>& x) const;
+  float operator()(const sk::ElementIn<float>& x) const;
   /// Folds each block of x to one element of total, whose extents divide those of x.
-  void operator()(const sk::In<float>& x, const sk::Out<float>& total) const;
+  void operator()(const sk::ElementIn<float>& x, const sk::Out<float>& total) const;
 };
 inline constexpr SumReduce sum{};
 )",
@@ -105,14 +105,14 @@ constexpr Reduction nearestReduction = {
   CHECK(contains(source, R"(
 void heat::DiffuseKernel::operator()(float k, const sk::In<float>& u,
                                      const sk::Out<float>& v) const {
-  const sk::Argument arguments[] = {{.value = &k}, {.region = u.region()}, {.region = v.region()}};
+  const sk::Argument arguments[] = {{.value = &k}, u.argument(), v.argument()};
   sk::run(sk::program::diffuseKernel, arguments);
 }
 )"));
   CHECK(contains(source, R"(
-Hit NearestReduce::operator()(const sk::In<Hit>& h) const {
+Hit NearestReduce::operator()(const sk::ElementIn<Hit>& h) const {
   Hit value;
-  const sk::Argument arguments[] = {{.region = h.region()}, {}};
+  const sk::Argument arguments[] = {h.argument(), {}};
   void* const results[] = {&value};
   sk::reduce(sk::program::nearestReduction, arguments, results);
   return value;
@@ -164,7 +164,7 @@ TEST_CASE("awkward names and nested structs") {
   CHECK(contains(stub.header,
                  "void operator()(sk::bool3 arguments, const sk::Out<sk::bool3>& value) const;\n"));
   CHECK(contains(stub.source,
-                 "const sk::Argument arguments_[] = {{.value = &arguments}, {.region = value.region()}};"));
+                 "const sk::Argument arguments_[] = {{.value = &arguments}, value.argument()};"));
   CHECK(contains(stub.source, "\"odd \\\"name\\\".sk\""));
 }
 

@@ -156,7 +156,9 @@ DeviceState* checkCall(const Kernel& kernel, std::span<const Argument> arguments
   DeviceState& device = *firstStream.device;
   const Shape domain = domainOf(kernel, arguments, specs);
   if (domain.rank() == 0) {
-    fail(kernel, "no input and no iterator with a shape says how many elements there are; give one");
+    fail(kernel,
+         "no input of the domain's own shape and no iterator with one says how many elements there are; "
+         "give one");
   }
   std::size_t written = 0;
   std::size_t read = 0;
@@ -196,7 +198,7 @@ DeviceState* checkCall(const Kernel& kernel, std::span<const Argument> arguments
         break;
       case Role::Input:
         read += parameter.element->fields.size();
-        checkInputShape(kernel, parameter, region.shape, parameters[first], domain);
+        checkInputShape(kernel, parameter, arguments[i], parameters[first], domain);
         break;
       case Role::Uniform:
       case Role::Iterator:
@@ -223,7 +225,7 @@ Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const 
     if (role == Role::Output) {
       return shape;
     }
-    if (role != Role::Input && role != Role::Iterator) {
+    if ((role != Role::Input && role != Role::Iterator) || arguments[i].fit != program::Fit::Same) {
       continue;
     }
     if (domain.rank() == 0) {

@@ -13,6 +13,7 @@ namespace sk {
 
 using program::Element;
 using program::Field;
+using program::Fit;
 using program::Kernel;
 using program::Parameter;
 using program::Role;
@@ -27,6 +28,20 @@ bool isSameField(const Field& a, const Field& b) {
 bool isSameElement(const Element& a, const Element& b) {
   return &a == &b || (a.size == b.size && a.fields.size() == b.fields.size() &&
                       std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), isSameField));
+}
+
+bool isMultiple(std::int64_t extent, std::int64_t of) { return of > 0 ? extent % of == 0 : extent == 0; }
+
+bool fitsDomain(const Shape& shape, Fit fit, const Shape& domain) {
+  bool fits = shape.rank() == domain.rank();
+  for (int d = 0; fits && d < shape.rank(); ++d) {
+    switch (fit) {
+      case Fit::Same: fits = shape[d] == domain[d] || shape[d] == 1; break;
+      case Fit::Stretched: fits = isMultiple(domain[d], shape[d]); break;
+      case Fit::Strided: fits = domain.size() == 0 || isMultiple(shape[d], domain[d]); break;
+    }
+  }
+  return fits;
 }
 
 }  // namespace
@@ -68,14 +83,17 @@ void checkSameDevice(const Kernel& kernel, const Parameter& a, const StreamState
   }
 }
 
-void checkInputShape(const Kernel& kernel, const Parameter& input, const Shape& shape, const Parameter& first,
-                     const Shape& domain) {
-  bool fits = shape.rank() == domain.rank();
-  for (int d = 0; fits && d < shape.rank(); ++d) {
-    fits = shape[d] == domain[d] || shape[d] == 1;
-  }
-  if (fits) {
+void checkInputShape(const Kernel& kernel, const Parameter& input, const Argument& argument,
+                     const Parameter& first, const Shape& domain) {
+  const Shape& shape = argument.region.shape;
+  if (fitsDomain(shape, argument.fit, domain)) {
     return;
+  }
+  if (argument.fit != Fit::Same) {
+    const bool isStretched = argument.fit == Fit::Stretched;
+    fail(kernel, "'{}' has shape {}, and the domain {}; {}", input.name, toString(shape), toString(domain),
+         isStretched ? "to stretch it, each of its extents must divide the domain's"
+                     : "to stride through it, each of its extents must be a multiple of the domain's");
   }
   if (first.role != Role::Output) {
     fail(

@@ -29,7 +29,7 @@ void checkSameDevice(const program::Kernel& kernel, const program::Parameter& a,
                      const program::Parameter& b, const StreamState& second);
 
 /// `first`: the parameter that the domain is told by: an output, or any other where the inputs make it.
-void checkInputShape(const program::Kernel& kernel, const program::Parameter& input, const Shape& shape,
+void checkInputShape(const program::Kernel& kernel, const program::Parameter& input, const Argument& argument,
                      const program::Parameter& first, const Shape& domain);
 
 void checkGatherShape(const program::Kernel& kernel, const program::Parameter& gather, const Shape& shape,

@@ -82,7 +82,7 @@ class Arguments {
     } else if (!assemble::isNeeded(parameter, specs_)) {
       return;
     } else if (parameter.role == Role::Input) {
-      checkInputShape(fold_, parameter, arguments_[i].region.shape, parameter, domain);
+      checkInputShape(fold_, parameter, arguments_[i], parameter, domain);
     } else if (parameter.role == Role::Gather) {
       checkGatherShape(fold_, parameter, arguments_[i].region.shape, domain);
     }

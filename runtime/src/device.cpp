@@ -3,6 +3,7 @@
 // Devices: what the user and the environment ask for, and the public face of DeviceState.
 #include "sk/device.hpp"
 
+#include <charconv>
 #include <cstdlib>
 #include <optional>
 #include <utility>
@@ -49,6 +50,21 @@ bool wantsGuaranteed(const std::string& limits) {
   return limits == "guaranteed";
 }
 
+/// The option, else what the environment says. Too few texels would not hold the results of a device's own passes.
+std::int32_t textureLimitOf(std::int32_t option) {
+  constexpr int least = 4;
+  const std::string text = option != 0 ? std::to_string(option) : chosen({}, "SK_TEXTURE_LIMIT");
+  std::int32_t limit = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), limit);
+  const bool isNumber = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+  if (!text.empty() && (!isNumber || limit < least)) {
+    throw Error(
+        fmt::format("the texture limit '{}' is no number of texels from {} on (option or SK_TEXTURE_LIMIT)",
+                    text, least));
+  }
+  return limit;
+}
+
 /// What doubles are to be. Where limits are what the profile guarantees, it guarantees no double either.
 bool wantsPairs(const std::string& doubles, bool guaranteedLimits) {
   if (!doubles.empty() && doubles != "native" && doubles != "pairs") {
@@ -60,7 +76,7 @@ bool wantsPairs(const std::string& doubles, bool guaranteedLimits) {
 
 DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles) {
   const bool guaranteedLimits = wantsGuaranteed(limits);
-  return {textureLimit, guaranteedLimits, wantsPairs(doubles, guaranteedLimits)};
+  return {textureLimitOf(textureLimit), guaranteedLimits, wantsPairs(doubles, guaranteedLimits)};
 }
 
 std::unique_ptr<DeviceState> open(const DeviceOptions& options) {

@@ -3,6 +3,7 @@
 // A device's beginning and end.
 #include "device_state.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,6 +35,7 @@ DeviceState::DeviceState(gl::OpenedContext&& opened, const DeviceChoices& choice
       programs(*this),
       sinkPrograms(*this) {
   limits.textureSize = capabilities.textureSize;
+  limits.textureLayers = capabilities.textureLayers;
   if (choices.textureLimit > 0 && choices.textureLimit < limits.textureSize) {
     limits.textureSize = choices.textureLimit;
   }
@@ -109,20 +111,21 @@ void DeviceState::remove(StreamState& stream) noexcept {
   stream.previous_ = stream.next_ = nullptr;
 }
 
-std::vector<Surface> DeviceState::takePlanes(const program::Element& element, std::int32_t width,
-                                             std::int32_t height, std::string_view whatFor) {
+std::vector<Surface> DeviceState::takePlanes(const program::Element& element,
+                                             const assemble::TextureShape& shape, std::string_view whatFor) {
   std::vector<Surface> planes;
   planes.reserve(element.fields.size());
   for (const program::Field& field : element.fields) {
     const gl::Format& format = gl::formatOf(field);
-    Surface plane = pool.take(format, width, height);
+    Surface plane = pool.take(format, shape);
     if (!plane) {
       givePlanes(planes);
-      const std::size_t bytes =
-          format.texelBytes() * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+      const std::int64_t texels = std::int64_t{shape.width} * shape.height * std::max(shape.layers, 1);
       throw Error(
-          fmt::format("'{}' has no memory for {}: {} texture(s) of {} x {} texels, one of them of {} MiB",
-                      capabilities.renderer, whatFor, element.fields.size(), width, height, bytes >> 20));
+          fmt::format("'{}' has no memory for {}: {} texture(s) of {} x {}{} texels, one of them of {} MiB",
+                      capabilities.renderer, whatFor, element.fields.size(), shape.width, shape.height,
+                      shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
+                      (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20));
     }
     planes.push_back(std::move(plane));
   }

@@ -44,9 +44,11 @@ class DeviceState {
 
   /// New planes of an element type, with undefined texels. Throws sk::Error saying what for, where
   /// there is no memory.
-  std::vector<Surface> takePlanes(const program::Element& element, std::int32_t width, std::int32_t height,
+  std::vector<Surface> takePlanes(const program::Element& element, const assemble::TextureShape& shape,
                                   std::string_view whatFor);
   void givePlanes(std::vector<Surface>& planes) noexcept;
+
+  assemble::TextureLimits textureLimits() const { return {limits.textureSize, limits.textureLayers}; }
 
   /// Throws sk::Error where the driver has reported an error since it was last asked.
   void throwPendingError();

@@ -18,22 +18,22 @@ std::size_t FramebufferCache::Hash::operator()(const Key& key) const {
   return hash ^ hash >> 32;
 }
 
-GLuint FramebufferCache::framebufferName(std::span<const GLuint> textures) {
+gl::Framebuffer& FramebufferCache::framebufferOf(std::span<const GLuint> textures, bool isLayered) {
   Key key{};
   std::copy(textures.begin(), textures.end(), key.begin());
   if (const auto found = framebuffers_.find(key); found != framebuffers_.end()) {
-    return found->second.name();
+    return found->second;
   }
   if (framebuffers_.size() >= capacity) {
     framebuffers_.clear();
     bound_.forget();
   }
-  gl::Framebuffer made(bound_, textures);
+  gl::Framebuffer made(bound_, textures, isLayered);
   if (!gl::Framebuffer::isComplete()) {
     bound_.framebuffer(0);
     throw Error("the driver cannot draw to these textures at once; write fewer outputs in one kernel");
   }
-  return framebuffers_.emplace(key, std::move(made)).first->second.name();
+  return framebuffers_.emplace(key, std::move(made)).first->second;
 }
 
 void FramebufferCache::dropTexture(GLuint texture) {

@@ -17,9 +17,9 @@ class FramebufferCache {
  public:
   explicit FramebufferCache(gl::BoundState& bound) : bound_(bound) {}
 
-  /// The framebuffer that draws to `textures`, 1 to gl::maxDrawBuffers. Throws sk::Error where the
-  /// driver cannot draw to these together.
-  GLuint framebufferName(std::span<const GLuint> textures);
+  /// The framebuffer that draws to `textures`, 1 to gl::maxDrawBuffers, all with layers or none. Throws
+  /// sk::Error where the driver cannot draw to these together.
+  gl::Framebuffer& framebufferOf(std::span<const GLuint> textures, bool isLayered);
 
   /// Forgets the framebuffers of a texture that is about to be deleted.
   void dropTexture(GLuint texture);

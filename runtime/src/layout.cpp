@@ -3,6 +3,9 @@
 // From shapes to textures.
 #include "layout.hpp"
 
+#include <optional>
+#include <string_view>
+
 #include <fmt/format.h>
 
 #include "sk/error.hpp"
@@ -11,36 +14,38 @@ namespace sk {
 
 namespace {
 
-bool liesAsItIs(const Shape& shape, std::int32_t textureLimit) {
+bool liesAsItIs(const Shape& shape, std::int32_t longest) {
   if (shape.rank() > 2) {
     return false;
   }
   for (int d = 0; d < shape.rank(); ++d) {
-    if (shape[d] > textureLimit) {
+    if (shape[d] > longest) {
       return false;
     }
   }
   return true;
 }
 
-Layout linearised(const Shape& shape, std::int32_t textureLimit) {
-  const std::int64_t count = shape.size();
-  const std::int32_t shift = assemble::linearShift(count, textureLimit);
-  const std::int64_t width = std::int64_t{1} << shift;
-  const std::int64_t height = (count + width - 1) >> shift;
-  if (height > textureLimit) {
+/// The texture of so many elements, 1 or more, of `what`.
+assemble::TextureShape textureOf(std::int64_t count, const assemble::TextureLimits& limits,
+                                 std::string_view what, std::string_view advice) {
+  const std::optional<assemble::TextureShape> texture = assemble::linearTexture(count, limits);
+  if (!texture) {
     throw Error(
-        fmt::format("a stream of shape {} has {} elements, but one texture of this device holds {} "
-                    "({} x {} texels); divide it into several streams",
-                    toString(shape), count, width * textureLimit, width, textureLimit));
+        fmt::format("{} has {} elements, but a texture of this device holds no more than {} layers of "
+                    "{} x {} texels, and a stream {} elements; {}",
+                    what, count, limits.layers, limits.size, limits.size, assemble::mostElements, advice));
   }
+  return *texture;
+}
+
+Layout linearised(const Shape& shape, const assemble::TextureLimits& limits) {
   Layout layout;
-  layout.whole.linear = true;
+  layout.texture = textureOf(shape.size(), limits, fmt::format("a stream of shape {}", toString(shape)),
+                             "divide it into several streams");
+  layout.whole = assemble::linearPlacement(shape.size(), layout.texture);
   layout.whole.extent = xFirst(shape);
   layout.whole.stride = assemble::stridesOf(layout.whole.extent);
-  layout.whole.shift = shift;
-  layout.width = static_cast<std::int32_t>(width);
-  layout.height = static_cast<std::int32_t>(height);
   return layout;
 }
 
@@ -54,7 +59,7 @@ assemble::Index4 xFirst(const Shape& shape) {
   return extent;
 }
 
-Layout layoutOf(const Shape& shape, std::int32_t textureLimit) {
+Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits) {
   if (shape.rank() == 0) {
     throw Error("a stream needs a shape of 1 to 4 dimensions");
   }
@@ -62,13 +67,23 @@ Layout layoutOf(const Shape& shape, std::int32_t textureLimit) {
     return {};
   }
   Layout layout;
-  if (liesAsItIs(shape, textureLimit)) {
+  if (liesAsItIs(shape, limits.size)) {
     layout.whole.extent = xFirst(shape);
-    layout.width = layout.whole.extent[0];
-    layout.height = layout.whole.extent[1];
+    layout.texture = {layout.whole.extent[0], layout.whole.extent[1]};
   } else {
-    layout = linearised(shape, textureLimit);
+    layout = linearised(shape, limits);
   }
+  layout.draws = assemble::drawnTexels(layout.whole);
+  return layout;
+}
+
+Layout listLayout(std::int64_t length, const assemble::TextureLimits& limits) {
+  Layout layout;
+  if (length > 0) {
+    layout.texture = textureOf(length, limits, "what a kernel pushes or scatters", "divide the domain");
+  }
+  layout.whole =
+      assemble::linearPlacement(length, length > 0 ? layout.texture : assemble::TextureShape{1, 0});
   layout.draws = assemble::drawnTexels(layout.whole);
   return layout;
 }
@@ -87,7 +102,7 @@ assemble::Placement placementOf(const StreamRegion& region, const Layout& layout
 }
 
 bool haveSameTexels(const assemble::Placement& a, const assemble::Placement& b) {
-  return a.extent == b.extent && a.origin == b.origin && a.linear == b.linear &&
+  return a.extent == b.extent && a.origin == b.origin && a.linear == b.linear && a.layered == b.layered &&
          (!a.linear || (a.shift == b.shift && a.stride == b.stride));
 }
 

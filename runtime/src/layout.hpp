@@ -15,14 +15,16 @@ namespace sk {
 
 struct Layout {
   assemble::Placement whole;             ///< where the stream's elements are
-  std::int32_t width = 0;                ///< of each texture; 0 where the stream is empty
-  std::int32_t height = 0;
+  assemble::TextureShape texture;        ///< of each plane; of no size where the stream is empty
   std::vector<assemble::Rect> draws;     ///< what a pass over the whole stream draws
 };
 
-/// The layout of a stream of this shape where no texture may be wider or higher than `textureLimit`.
-/// Throws sk::Error where it does not fit in one texture, or has no dimension.
-Layout layoutOf(const Shape& shape, std::int32_t textureLimit);
+/// The layout of a stream of this shape. Throws sk::Error where no texture holds it, or it has no dimension.
+Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits);
+
+/// That of a list of so many elements: linearised, whatever their number. Throws sk::Error where no texture
+/// holds them.
+Layout listLayout(std::int64_t length, const assemble::TextureLimits& limits);
 
 /// Where the elements of a region lie, given the layout of its stream.
 assemble::Placement placementOf(const StreamRegion& region, const Layout& layout);

@@ -60,7 +60,7 @@ void OutputTargets::addAside(std::size_t output, Way way) {
   aside_.resize(arguments_.size());
   aside_[output] = std::make_unique<PlanesLease>(device_);
   aside_[output]->planes =
-      device_.takePlanes(*stream.element, layout.width, layout.height, "an output that the kernel reads too");
+      device_.takePlanes(*stream.element, layout.texture, "an output that the kernel reads too");
   for (Surface& plane : aside_[output]->planes) {
     add(plane);
   }

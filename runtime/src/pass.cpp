@@ -8,6 +8,7 @@
 #include "copy_kernel.hpp"
 #include "device_state.hpp"
 #include "gl/commands.hpp"
+#include "texel_runs.hpp"
 
 namespace sk {
 
@@ -17,8 +18,8 @@ using assemble::Placement;
 using assemble::Rect;
 
 void blit(DeviceState& device, Surface& from, const Placement& source, Surface& to, const Placement& target) {
-  const GLuint read = from.framebufferName(device.bound);
-  const GLuint draw = to.framebufferName(device.bound);
+  const GLuint read = from.framebufferIn(device.bound).name();
+  const GLuint draw = to.framebufferIn(device.bound).name();
   gl::blit(device.bound, read, {source.origin[0], source.origin[1]}, draw,
            {target.origin[0], target.origin[1]}, target.extent[0], target.extent[1]);
 }
@@ -45,46 +46,68 @@ int bindOwnPlanes(DeviceState& device, const program::Parameter& parameter, std:
 
 int bindPlanes(DeviceState& device, std::span<Surface> planes, int unit) {
   for (const Surface& plane : planes) {
-    device.bound.texture(unit++, plane.texture.name());
+    device.bound.texture(unit, plane.texture.name(), plane.texture.isLayered());
+    device.bound.sampler(unit++, 0);   // the texture's own settings
   }
   return unit;
 }
 
-GLuint framebufferOf(DeviceState& device, std::span<Surface* const> planes) {
+Target targetOf(DeviceState& device, Surface& plane) {
+  const gl::Texture& texture = plane.texture;
+  return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0};
+}
+
+Target targetOf(DeviceState& device, std::span<Surface* const> planes) {
+  Surface& first = *planes[0];
   if (planes.size() == 1) {
-    return planes[0]->framebufferName(device.bound);
+    return targetOf(device, first);
   }
   std::array<GLuint, gl::maxDrawBuffers> names{};
   for (std::size_t i = 0; i < planes.size(); ++i) {
     names[i] = planes[i]->texture.name();
   }
-  return device.framebuffers.framebufferName(std::span(names).first(planes.size()));
+  const bool isLayered = first.texture.isLayered();
+  return {&device.framebuffers.framebufferOf(std::span(names).first(planes.size()), isLayered),
+          isLayered ? first.texture.shape().height : 0};
 }
 
-void drawRects(DeviceState& device, std::span<const Rect> rects) {
+void drawRects(DeviceState& device, const Target& target, std::span<const Rect> rects, gl::IntUniform& row) {
   device.bound.vertexArray(device.vertexArray.name());
   for (const Rect& rect : rects) {
-    device.bound.viewport(rect.x, rect.y, rect.width, rect.height);
-    gl::drawTriangle();
+    forEachLayer(rect, target.layerRows, [&](const Rect& part, std::int32_t layer, std::int32_t) {
+      selectLayer(device, target, layer, row);
+      device.bound.viewport(part.x, part.y, part.width, part.height);
+      gl::drawTriangle();
+    });
   }
+}
+
+void selectLayer(DeviceState& device, const Target& target, std::int32_t layer, gl::IntUniform& row) {
+  if (target.layerRows == 0) {
+    device.bound.framebuffer(target.framebuffer->name());
+    row.set(0);
+    return;
+  }
+  target.framebuffer->selectLayer(device.bound, layer);
+  row.set(layer * target.layerRows);
 }
 
 void bindOperands(DeviceState& device, KernelProgram& program, const program::Kernel& kernel,
-                  std::span<const Operand> operands, std::span<const gl::ArrayTexture> bundles) {
+                  std::span<const Operand> operands, std::span<const gl::Texture> bundles) {
   int unit = 0;
-  std::array<int, gl::maxTextureUnits> filtered{};
-  std::size_t filteredCount = 0;
   for (KernelProgram::Read& read : program.reads) {
     const Operand& operand = operands[read.parameter];
+    const int next = bindOwnPlanes(device, kernel.parameters[read.parameter], operand.planes, unit);
     if (read.sampler != 0) {
       device.bound.sampler(unit, read.sampler);
-      filtered[filteredCount++] = unit;
     }
-    unit = bindOwnPlanes(device, kernel.parameters[read.parameter], operand.planes, unit);
+    unit = next;
     read.uniforms.set(operand.placement);
+    read.ratio.set(operand.ratio);
   }
   for (const std::size_t bundle : program.bundles) {
-    device.bound.arrayTexture(unit++, bundles[bundle].name());
+    device.bound.texture(unit, bundles[bundle].name(), true);
+    device.bound.sampler(unit++, 0);
   }
   for (KernelProgram::Value& value : program.values) {
     value.uniform.set(operands[value.parameter].value);
@@ -98,20 +121,16 @@ void bindOperands(DeviceState& device, KernelProgram& program, const program::Ke
 }
 
 void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
-                const Placement& domain, std::span<const Rect> rects, GLuint framebuffer,
-                std::span<const gl::ArrayTexture> bundles, const assemble::Task& task) {
+                const Placement& domain, std::span<const Rect> rects, const Target& target,
+                std::span<const gl::Texture> bundles, const assemble::Task& task) {
   KernelProgram& program = device.programs.kernelProgram(kernel, operands, domain, task);
   device.bound.program(program.program.name());
-  device.bound.framebuffer(framebuffer);
   bindOperands(device, program, kernel, operands, bundles);
   program.domain.set(domain);
   if (task.work == assemble::Work::List) {
     program.target.set(operands[task.sink].placement);
   }
-  drawRects(device, rects);
-  for (std::size_t i = 0; i < filteredCount; ++i) {
-    device.bound.sampler(filtered[i], 0);
-  }
+  drawRects(device, target, rects, program.domainRow);
 }
 
 void copyRegion(DeviceState& device, const program::Element& element, std::span<Surface> from,
@@ -123,7 +142,7 @@ void copyRegion(DeviceState& device, const program::Element& element, std::span<
     }
     const Operand operands[] = {{nullptr, source, from.subspan(plane, 1)}, {}};
     drawKernel(device, copyKernel(element.fields[plane]), operands, target, assemble::drawnTexels(target),
-               to[plane].framebufferName(device.bound));
+               targetOf(device, to[plane]));
   }
 }
 

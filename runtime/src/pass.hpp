@@ -7,7 +7,9 @@
 #include <span>
 
 #include "assemble/placement.hpp"
-#include "gl/array_texture.hpp"
+#include "gl/framebuffer.hpp"
+#include "gl/texture.hpp"
+#include "gl/uniform.hpp"
 #include "sk/program.hpp"
 #include "surface.hpp"
 #include "variant.hpp"
@@ -20,23 +22,35 @@ struct KernelProgram;
 /// Binds the planes of an operand to consecutive texture units from `unit` on; the unit after them.
 int bindPlanes(DeviceState& device, std::span<Surface> planes, int unit);
 
-/// The framebuffer that draws to these planes, 1 to gl::maxDrawBuffers.
-GLuint framebufferOf(DeviceState& device, std::span<Surface* const> planes);
+/// What a pass draws to: planes of one shape.
+struct Target {
+  gl::Framebuffer* framebuffer;
+  std::int32_t layerRows;   ///< 0 where the planes have no layers
+};
 
-/// Draws each rectangle with what is bound.
-void drawRects(DeviceState& device, std::span<const assemble::Rect> rects);
+/// Draws to these planes, 1 to gl::maxDrawBuffers. Good until the next one is asked for.
+Target targetOf(DeviceState& device, std::span<Surface* const> planes);
+Target targetOf(DeviceState& device, Surface& plane);
+
+/// Binds the framebuffer with a layer of its planes, and tells the program that is bound.
+void selectLayer(DeviceState& device, const Target& target, std::int32_t layer, gl::IntUniform& row);
+
+/// Draws each rectangle of a target with the program that is bound, whose `sk_domain_row` is `row`.
+void drawRects(DeviceState& device, const Target& target, std::span<const assemble::Rect> rects,
+               gl::IntUniform& row);
 
 /// Binds the planes that a kernel's program reads, and sets the uniforms of its parameters; the program is
 /// bound. `operands` and `bundles`: as for drawKernel().
 void bindOperands(DeviceState& device, KernelProgram& program, const program::Kernel& kernel,
-                  std::span<const Operand> operands, std::span<const gl::ArrayTexture> bundles = {});
+                  std::span<const Operand> operands, std::span<const gl::Texture> bundles = {});
 
-/// Draws `rects` of `framebuffer` with a kernel. `operands`: one a parameter; those of outputs are not
-/// looked at, since `framebuffer` has their planes. No operand is a texture of the framebuffer. `bundles`:
+/// Draws `rects` of `target` with a kernel. `operands`: one a parameter; those of outputs are not
+/// looked at, since `target` has their planes. No operand is a texture of the target. `bundles`:
 /// the array textures of the plan that the kernel is a pass of. The tree of a list is bound by the caller.
 void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
-                const assemble::Placement& domain, std::span<const assemble::Rect> rects, GLuint framebuffer,
-                std::span<const gl::ArrayTexture> bundles = {}, const assemble::Task& task = {});
+                const assemble::Placement& domain, std::span<const assemble::Rect> rects,
+                const Target& target, std::span<const gl::Texture> bundles = {},
+                const assemble::Task& task = {});
 
 /// Copies one region to another of the same shape, plane by plane, wherever each lies. They are not of
 /// the same surface.

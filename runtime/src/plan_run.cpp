@@ -11,7 +11,7 @@
 
 #include "assemble/plans.hpp"
 #include "device_state.hpp"
-#include "gl/array_texture.hpp"
+#include "gl/texture.hpp"
 #include "pass.hpp"
 #include "sk/error.hpp"
 
@@ -25,37 +25,43 @@ using program::Pass;
 using program::Plan;
 using program::Role;
 
-gl::ArrayTexture copyBundle(DeviceState& device, const Bundle& bundle, std::span<const Operand> operands) {
-  const auto isGiven = [&](const program::ArgumentPlane& place) {   // streams may be left out
-    return !operands[place.argument].planes.empty();
-  };
-  const auto planeOf = [&](const program::ArgumentPlane& place) -> Surface& {
-    return operands[place.argument].planes[place.plane];
-  };
-  GLsizei width = 1;
-  GLsizei height = 1;
+/// Copies the layers of a plane, or its only one, to layers first, first + step, ...
+void copyLayers(DeviceState& device, Surface& plane, gl::Texture& to, std::int32_t first, std::int32_t step) {
+  const assemble::TextureShape& shape = plane.texture.shape();
+  gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound);
+  for (std::int32_t layer = 0; layer < std::max(shape.layers, 1); ++layer) {
+    if (shape.layers > 0) {
+      framebuffer.selectLayer(device.bound, layer);
+    }
+    to.copyLayer(device.bound, framebuffer.name(), first + layer * step, shape.width, shape.height);
+  }
+}
+
+/// Copies the planes of a bundle to one array texture: the first layer of each, the second ones, and so on.
+gl::Texture copyBundle(DeviceState& device, const Bundle& bundle, std::span<const Operand> operands) {
+  std::vector<Surface*> planes;   // null where a stream is left out
+  const auto count = static_cast<std::int32_t>(bundle.layers.size());
+  assemble::TextureShape shape{1, 1, 1};
   for (const program::ArgumentPlane& place : bundle.layers) {
-    if (!isGiven(place)) {
-      continue;
+    const std::span<Surface> surfaces = operands[place.argument].planes;
+    planes.push_back(surfaces.empty() ? nullptr : &surfaces[place.plane]);
+    if (!surfaces.empty()) {
+      const assemble::TextureShape& plane = surfaces[place.plane].texture.shape();
+      shape.width = std::max(shape.width, plane.width);
+      shape.height = std::max(shape.height, plane.height);
+      shape.layers = std::max(shape.layers, plane.layers);
     }
-    width = std::max(width, planeOf(place).texture.width());
-    height = std::max(height, planeOf(place).texture.height());
   }
-  const gl::Format& format = gl::formatOf(bundle.scalar, bundle.width);
-  const auto layers = static_cast<GLsizei>(bundle.layers.size());
-  gl::ArrayTexture made(device.bound, format, width, height, layers);
+  shape.layers *= count;
+  gl::Texture made(device.bound, gl::formatOf(bundle.scalar, bundle.width), shape);
   if (made.name() == 0) {
-    throw Error(fmt::format("'{}' has no memory for inputs that share a texture: {} layers of {} x {} texels",
-                            device.capabilities.renderer, layers, width, height));
+    throw Error(fmt::format("'{}' has no room for inputs that share a texture: {} layers of {} x {} texels",
+                            device.capabilities.renderer, shape.layers, shape.width, shape.height));
   }
-  for (GLint layer = 0; layer < layers; ++layer) {
-    const program::ArgumentPlane& place = bundle.layers[static_cast<std::size_t>(layer)];
-    if (!isGiven(place)) {
-      continue;
+  for (std::int32_t i = 0; i < count; ++i) {
+    if (Surface* plane = planes[static_cast<std::size_t>(i)]) {
+      copyLayers(device, *plane, made, i, count);
     }
-    Surface& plane = planeOf(place);
-    made.copyLayer(device.bound, plane.framebufferName(device.bound), layer, plane.texture.width(),
-                   plane.texture.height());
   }
   return made;
 }
@@ -65,7 +71,7 @@ class PlanRun {
   PlanRun(DeviceState& device, const Plan& plan, const PlannedCall& call) : device_(device), call_(call) {
     for (const program::Element* element : plan.temporaries) {
       temporaries_.emplace_back(device).planes =
-          device.takePlanes(*element, call.layout.width, call.layout.height, "a value saved between passes");
+          device.takePlanes(*element, call.layout.texture, "a value saved between passes");
     }
     for (const Bundle& bundle : plan.bundles) {
       bundles_.push_back(copyBundle(device, bundle, call.operands));
@@ -94,7 +100,7 @@ class PlanRun {
     if (targets_.empty()) {   // all of its outputs are left out
       return;
     }
-    drawKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, framebufferOf(device_, targets_),
+    drawKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, targetOf(device_, targets_),
                bundles_);
   }
 
@@ -122,7 +128,7 @@ class PlanRun {
   DeviceState& device_;
   const PlannedCall& call_;
   std::deque<PlanesLease> temporaries_;
-  std::vector<gl::ArrayTexture> bundles_;
+  std::vector<gl::Texture> bundles_;
   std::vector<Operand> operands_;
   std::vector<Surface*> targets_;
 };

@@ -40,6 +40,12 @@ std::vector<std::span<const program::Field>> valuesOf(const program::Element& el
   return values;
 }
 
+KernelProgram::Read readOf(const gl::Program& program, std::size_t i, const program::Parameter& parameter) {
+  return {i,
+          PlacementUniforms(program, fmt::format("sk_*_{}", parameter.symbol)),
+          {program.location(fmt::format("sk_ratio_{}", parameter.symbol)), true}};
+}
+
 }  // namespace
 
 ProgramCache::ProgramCache(DeviceState& device) : device_(device) {}
@@ -60,6 +66,7 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
   auto made = std::make_unique<KernelProgram>();
   made->program = build(kernel, assemble::fragmentProgram(device_.profile, kernel, variant));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
+  made->domainRow = {made->program.location("sk_domain_row"), false};
   findParameters(*made, kernel, variant.specs);
   for (KernelProgram::Read& read : made->reads) {
     const bool isFiltered = variant.access[read.parameter].filtered;
@@ -87,11 +94,11 @@ void ProgramCache::findParameters(KernelProgram& made, const program::Kernel& ke
       };
       made.values.push_back({i, find("begin")});
       made.steps.push_back({i, find("step")});
-      made.reads.push_back({i, PlacementUniforms(made.program, fmt::format("sk_*_{}", parameter.symbol))});
+      made.reads.push_back(readOf(made.program, i, parameter));
     } else if (parameter.role == program::Role::Uniform) {
       findValue(made, i, parameter);
     } else if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather) {
-      made.reads.push_back({i, PlacementUniforms(made.program, fmt::format("sk_*_{}", parameter.symbol))});
+      made.reads.push_back(readOf(made.program, i, parameter));
       bindSamplers(made.program, parameter, unit);
     }
   }
@@ -175,6 +182,7 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     const bool isPartial = variant.walk == assemble::Walk::Partials;
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
     made->kernel.program = build(kernel, assemble::reduceProgram(device_.profile, reduction, variant));
+    made->kernel.domainRow = {made->kernel.program.location("sk_domain_row"), false};
     if (variant.walk != assemble::Walk::Nothing) {
       findParameters(made->kernel, kernel, variant.specs);
     }

@@ -39,6 +39,7 @@ struct KernelProgram {
   struct Read {
     std::size_t parameter;
     PlacementUniforms uniforms;
+    gl::IntUniform ratio;
     GLuint sampler = 0;         ///< for its only plane; 0: the texture's own settings
   };
 
@@ -52,6 +53,7 @@ struct KernelProgram {
 
   gl::Program program;
   PlacementUniforms domain;
+  gl::IntUniform domainRow;     ///< of a layered domain: the first row of the layer that is drawn
   PlacementUniforms target;     ///< of the scatter output whose list it makes
   Tree tree;                    ///< its textures lie on the units from `units` on
   int units = 0;                ///< what `reads` take

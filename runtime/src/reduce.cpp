@@ -43,11 +43,11 @@ void forEachAccumulator(const Kernel& fold, std::span<Plane> planes, Fn&& fn) {
 }
 
 /// New planes of all accumulators, in their order.
-void takeAccumulators(DeviceState& device, const Kernel& fold, std::int32_t width, std::int32_t height,
+void takeAccumulators(DeviceState& device, const Kernel& fold, const assemble::TextureShape& shape,
                       std::string_view whatFor, PlanesLease& lease) {
   for (const Parameter& parameter : fold.parameters) {
     if (parameter.role == Role::Accumulator) {
-      for (Surface& plane : device.takePlanes(*parameter.element, width, height, whatFor)) {
+      for (Surface& plane : device.takePlanes(*parameter.element, shape, whatFor)) {
         lease.planes.push_back(std::move(plane));
       }
     }
@@ -78,7 +78,7 @@ class ReduceCall {
 
   /// Folds the elements, of which there are some, to the planes of all results.
   void fold(const Index4& blocks, const Placement& result, std::span<Surface* const> targets) {
-    const assemble::ReduceLimits limits{.textureSize = device_.limits.textureSize};
+    const assemble::ReduceLimits limits{.texture = device_.textureLimits()};
     PlanesLease partials(device_);
     for (const ReducePass& pass :
          assemble::planReduction(elements_, result, limits, {.blocks = blocks, .byIndex = foldsByIndex()})) {
@@ -87,7 +87,7 @@ class ReduceCall {
         continue;
       }
       PlanesLease next(device_);
-      takeAccumulators(device_, reduction_.fold, pass.width, pass.height, "partial results", next);
+      takeAccumulators(device_, reduction_.fold, pass.texture, "partial results", next);
       draw(pass, partials.planes, pointersTo(next.planes));
       std::swap(partials.planes, next.planes);
     }
@@ -116,8 +116,7 @@ class ReduceCall {
     if (argument.region.stream == nullptr || !assemble::isNeeded(parameter, specs_)) {
       return {};
     }
-    StreamState& stream = *argument.region.stream;
-    return {.placement = placementOf(argument.region, stream.layout), .planes = stream.planes};
+    return regionOperand(argument, domain);
   }
 
   /// That of the first input which does not repeat. Where all do, each in another dimension, there is no
@@ -182,12 +181,12 @@ class ReduceCall {
       }
       ReduceProgram& program = device_.programs.reduceProgram(reduction_, variant);
       device_.bound.program(program.kernel.program.name());
-      device_.bound.framebuffer(framebufferOf(device_, targets.subspan(first, count)));
       bindOperands(device_, program.kernel, kernel, operands);
       for (const assemble::UniformValue& value : pass.uniforms) {
         program.uniform(value).set(value.value);
       }
-      drawRects(device_, pass.draws);
+      drawRects(device_, targetOf(device_, targets.subspan(first, count)), pass.draws,
+                program.kernel.domainRow);
     }
   }
 
@@ -200,7 +199,8 @@ class ReduceCall {
       StreamAccess& access = chosen.access[i];
       if (variant.walk == Walk::Index && kernel.parameters[i].role == Role::Input) {
         const Placement& placement = operands[i].placement;
-        access.addressing = placement.linear ? Addressing::Linear : Addressing::Plane;
+        access.addressing = addressingOf(placement);
+        access.fit = operands[i].fit;
         access.view = placement.origin != Index4{};
       }
     }
@@ -222,8 +222,7 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
   const DeviceScope scope(device);
   const Placement placement = assemble::valuePlacement();
   PlanesLease value(device);
-  takeAccumulators(device, reduction.fold, placement.extent[0], placement.extent[1],
-                   "the result of a reduction", value);
+  takeAccumulators(device, reduction.fold, {1, 1}, "the result of a reduction", value);
   ReduceCall call(device, reduction, arguments, checked.domain);
   if (checked.domain.size() == 0) {
     call.fill(placement, pointersTo(value.planes));

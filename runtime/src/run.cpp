@@ -75,8 +75,7 @@ class KernelCall {
       const std::vector<std::span<Surface>> drawn = targets.planesOfOutputs();
       runPlan(device_, *plan, {operands_, drawn, domain(), layout, rects.get()});
     } else {
-      drawKernel(device_, kernel_, operands_, domain(), rects.get(),
-                 framebufferOf(device_, targets.planes()));
+      drawKernel(device_, kernel_, operands_, domain(), rects.get(), targetOf(device_, targets.planes()));
     }
     targets.putInPlace();
   }
@@ -94,8 +93,7 @@ class KernelCall {
     if (!isNeeded(i)) {
       return {};
     }
-    StreamState& stream = *argument.region.stream;
-    return {.placement = placementOf(argument.region, stream.layout), .planes = stream.planes};
+    return regionOperand(argument, arguments_[first_].region.shape);
   }
 
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }

@@ -12,6 +12,7 @@
 #include "gl/points.hpp"
 #include "pass.hpp"
 #include "sk/types.hpp"
+#include "texel_runs.hpp"
 
 namespace sk {
 
@@ -36,13 +37,14 @@ const program::Element& floatsOf(int width) {
 class Scatterer {
  public:
   Scatterer(DeviceState& device, const program::Parameter& sink, std::span<Surface> list,
-            std::int32_t listShift, std::int32_t length, const assemble::Placement& placement,
+            const assemble::Placement& listPlacement, const assemble::Placement& placement,
             std::span<Surface> planes)
       : device_(device),
         sink_(sink),
         list_(list),
-        listShift_(listShift),
-        length_(length),
+        listPlacement_(listPlacement),
+        length_(listPlacement.extent[0]),
+        placement_(placement),
         planes_(planes),
         rects_(assemble::drawnTexels(placement)) {}
 
@@ -92,53 +94,65 @@ class Scatterer {
 
   /// A plane of floats as large as those of the output.
   Surface floats(int width) {
-    const gl::Texture& texture = planes_.front().texture;
     std::vector<Surface> planes =
-        device_.takePlanes(floatsOf(width), texture.width(), texture.height(), whatFor);
+        device_.takePlanes(floatsOf(width), planes_.front().texture.shape(), whatFor);
     return std::move(planes.front());
   }
 
   /// Units 0 and 1 are those of a list, or of the elements.
   int bindAfterElements(std::span<Surface> planes) { return bindPlanes(device_, planes, 2); }
 
-  void begin(StepProgram& program, std::span<Surface> targets) {
-    std::array<Surface*, gl::maxDrawBuffers> surfaces{};
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-      surfaces[i] = &targets[i];
-    }
-    const GLuint framebuffer = framebufferOf(device_, std::span(surfaces).first(targets.size()));
+  StepProgram& programOf(PointStep step) {
+    StepProgram& program =
+        device_.sinkPrograms.points(sink_, step, {listPlacement_.layered, placement_.layered});
     device_.bound.program(program.program().name());
-    device_.bound.framebuffer(framebuffer);
+    program.set("sk_domain_shift", placement_.shift);
+    return program;
   }
 
+  Target target(std::span<Surface> planes) {
+    std::array<Surface*, gl::maxDrawBuffers> surfaces{};
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      surfaces[i] = &planes[i];
+    }
+    return targetOf(device_, std::span(surfaces).first(planes.size()));
+  }
+
+  /// Every point is drawn to every layer, of which it is outside of all but one.
   void points(PointStep step, gl::Blend blend, std::span<Surface> targets, std::int32_t first,
               std::int32_t count) {
-    StepProgram& program = device_.sinkPrograms.points(sink_, step);
-    begin(program, targets);
+    StepProgram& program = programOf(step);
+    const Target drawn = target(targets);
     bindPlanes(device_, list_, 0);
     const gl::Texture& texture = targets.front().texture;
-    program.set("sk_list_shift", listShift_);
+    const assemble::TextureShape& shape = texture.shape();
+    program.set("sk_list_shift", listPlacement_.shift);
     program.set("sk_first", first);
-    program.set("sk_size", gl::Int4{texture.width(), texture.height(), 0, 0});
+    program.set("sk_size", gl::Int4{shape.width, shape.height, 0, 0});
     device_.bound.vertexArray(device_.vertexArray.name());
-    device_.bound.viewport(0, 0, texture.width(), texture.height());
     const gl::Blending blending(device_.capabilities, blend, device_.context.isAdopted());
-    gl::drawPoints(count);
+    const assemble::Rect whole{0, 0, shape.width, texture.rows()};
+    forEachLayer(whole, drawn.layerRows, [&](const assemble::Rect& part, std::int32_t layer, std::int32_t) {
+      selectLayer(device_, drawn, layer, program.row());
+      device_.bound.viewport(0, 0, part.width, part.height);
+      gl::drawPoints(count);
+    });
   }
 
   /// Over the region that is written. The steps that draw elements read none.
   void region(PointStep step, std::span<Surface> targets) {
-    StepProgram& program = device_.sinkPrograms.points(sink_, step);
-    begin(program, targets);
+    StepProgram& program = programOf(step);
+    const Target drawn = target(targets);
     bindPlanes(device_, planes_, 1);
-    drawRects(device_, rects_);
+    drawRects(device_, drawn, rects_, program.row());
   }
 
   DeviceState& device_;
   const program::Parameter& sink_;
   std::span<Surface> list_;
-  std::int32_t listShift_;
+  const assemble::Placement& listPlacement_;
   std::int32_t length_;
+  const assemble::Placement& placement_;
   std::span<Surface> planes_;
   std::vector<assemble::Rect> rects_;
 };
@@ -146,9 +160,9 @@ class Scatterer {
 }  // namespace
 
 void scatterPoints(DeviceState& device, const program::Parameter& sink, std::span<Surface> list,
-                   std::int32_t listShift, std::int32_t length, const assemble::Placement& placement,
+                   const assemble::Placement& listPlacement, const assemble::Placement& placement,
                    std::span<Surface> planes) {
-  Scatterer(device, sink, list, listShift, length, placement, planes).run();
+  Scatterer(device, sink, list, listPlacement, placement, planes).run();
 }
 
 }  // namespace sk

@@ -48,7 +48,7 @@ class SinkCall {
         kernel_(kernel),
         arguments_(arguments),
         specs_(specsOf(kernel, arguments)),
-        layout_(layoutOf(shape, device.limits.textureSize)),
+        layout_(layoutOf(shape, device.textureLimits())),
         counts_(device) {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
       operands_.push_back(operandOf(i, shape));
@@ -87,8 +87,7 @@ class SinkCall {
     if (parameter.role == Role::VariableOutput || !assemble::isNeeded(parameter, specs_)) {
       return {};
     }
-    StreamState& stream = *argument.region.stream;
-    return {.placement = placementOf(argument.region, stream.layout), .planes = stream.planes};
+    return regionOperand(argument, domain);
   }
 
   /// Element outputs, and the counts of each counted sink.
@@ -97,8 +96,8 @@ class SinkCall {
         std::count_if(kernel_.parameters.begin(), kernel_.parameters.end(),
                       [](const Parameter& p) { return assemble::isSink(p) && assemble::isCounted(p); });
     for (std::ptrdiff_t i = 0; i < counted; ++i) {
-      std::vector<Surface> plane = device_.takePlanes(ElementTraits<int>::element(), layout_.width,
-                                                      layout_.height, "the numbers of what a kernel pushes");
+      std::vector<Surface> plane = device_.takePlanes(ElementTraits<int>::element(), layout_.texture,
+                                                      "the numbers of what a kernel pushes");
       counts_.planes.push_back(std::move(plane.front()));
     }
     for (Surface& plane : counts_.planes) {
@@ -107,8 +106,8 @@ class SinkCall {
     if (targets.planes().empty()) {
       return;
     }
-    drawKernel(device_, kernel_, operands_, layout_.whole, layout_.draws,
-               framebufferOf(device_, targets.planes()), {}, {Work::Counts, 0});
+    drawKernel(device_, kernel_, operands_, layout_.whole, layout_.draws, targetOf(device_, targets.planes()),
+               {}, {Work::Counts});
   }
 
   /// Where `counts` is null, the list has slots.
@@ -127,7 +126,7 @@ class SinkCall {
         length = tree->total();
       }
     }
-    list->layout = listLayout(length, device_.limits.textureSize);
+    list->layout = listLayout(length, device_.textureLimits());
     if (length > 0) {
       drawList(*list, tree ? &*tree : nullptr);
     }
@@ -144,8 +143,8 @@ class SinkCall {
   void drawList(List& list, CountTree* tree) {
     const Parameter& sink = kernel_.parameters[list.sink];
     const auto take = [&](const program::Element& element) {
-      for (Surface& plane : device_.takePlanes(element, list.layout.width, list.layout.height,
-                                               "what a kernel pushes or scatters")) {
+      for (Surface& plane :
+           device_.takePlanes(element, list.layout.texture, "what a kernel pushes or scatters")) {
         list.planes.planes.push_back(std::move(plane));
       }
     };
@@ -161,20 +160,21 @@ class SinkCall {
     domain.linear = true;
     domain.extent = layout_.whole.extent;
     domain.stride = assemble::stridesOf(domain.extent);
+    domain.layered = list.layout.whole.layered;
     domain.shift = list.layout.whole.shift;
-    const Task task{Work::List, static_cast<std::uint8_t>(list.sink)};
+    const Task task{Work::List, static_cast<std::uint8_t>(list.sink),
+                    tree != nullptr && tree->plan().isLayered()};
     if (tree != nullptr) {
       bindTree(task, domain, *tree);
     }
-    drawKernel(device_, kernel_, operands_, domain, list.layout.draws, framebufferOf(device_, targets), {},
-               task);
+    drawKernel(device_, kernel_, operands_, domain, list.layout.draws, targetOf(device_, targets), {}, task);
   }
 
   void bindTree(const Task& task, const assemble::Placement& domain, CountTree& tree) {
     KernelProgram& program = device_.programs.kernelProgram(kernel_, operands_, domain, task);
     device_.bound.program(program.program.name());
-    device_.bound.texture(program.units, tree.odd().texture.name());
-    device_.bound.texture(program.units + 1, tree.even().texture.name());
+    bindPlanes(device_, {&tree.odd(), 1}, program.units);
+    bindPlanes(device_, {&tree.even(), 1}, program.units + 1);
     program.tree.set(tree.plan());
   }
 
@@ -191,8 +191,8 @@ class SinkCall {
       return;
     }
     StreamState& stream = *arguments_[list.sink].region.stream;
-    scatterPoints(device_, sink, list.planes.planes, list.layout.whole.shift, list.layout.whole.extent[0],
-                  operands_[list.sink].placement, stream.planes);
+    scatterPoints(device_, sink, list.planes.planes, list.layout.whole, operands_[list.sink].placement,
+                  stream.planes);
   }
 
   DeviceState& device_;
@@ -219,7 +219,7 @@ void runOverNothing(const Kernel& kernel, std::span<const Argument> arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (kernel.parameters[i].role == Role::VariableOutput) {
       std::vector<Surface> nothing;
-      arguments[i].region.stream->become(nothing, listLayout(0, 1), nullptr);
+      arguments[i].region.stream->become(nothing, listLayout(0, {1, 1}), nullptr);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include "sink_list.hpp"
 
 #include <array>
+#include <bit>
 
 #include <fmt/format.h>
 
@@ -25,38 +26,36 @@ const program::Element& sums() { return ElementTraits<int4>::element(); }
 CountTree::CountTree(DeviceState& device, Surface& counts, const Layout& layout)
     : device_(device),
       plan_(assemble::planTree(static_cast<std::int32_t>(assemble::elements(layout.whole.extent)),
-                               device.limits.textureSize)),
+                               device.textureLimits())),
       odd_(device),
       even_(device) {
-  const std::int32_t width = 1 << plan_.shift;
-  odd_.planes = device.takePlanes(sums(), width, plan_.oddRows, whatFor);
-  if (plan_.evenRows > 0) {
-    even_.planes = device.takePlanes(sums(), width, plan_.evenRows, whatFor);
+  odd_.planes = device.takePlanes(sums(), plan_.odd, whatFor);
+  if (plan_.even.height > 0) {
+    even_.planes = device.takePlanes(sums(), plan_.even, whatFor);
   }
-  draw(plan_.levels.front(), counts, layout.width, 0);
+  draw(plan_.levels.front(), counts, true, 0);
   for (std::size_t level = 2; level <= plan_.levels.size(); ++level) {
-    draw(plan_.levels[level - 1], ofLevel(level - 1), 0, plan_.levels[level - 2].row);
+    draw(plan_.levels[level - 1], ofLevel(level - 1), false, plan_.levels[level - 2].row);
   }
 }
 
-/// A level of counts, where their texture's width is given, or else of nodes that start in row `belowRow`.
-void CountTree::draw(const assemble::TreeLevel& level, Surface& below, std::int32_t belowWidth,
-                     std::int32_t belowRow) {
-  const bool ofCounts = belowWidth > 0;
-  StepProgram& program = device_.sinkPrograms.tree(ofCounts);
+/// A level over counts, or over nodes that start in row `belowRow`.
+void CountTree::draw(const assemble::TreeLevel& level, Surface& below, bool ofCounts, std::int32_t belowRow) {
+  const assemble::TextureShape& shape = below.texture.shape();
+  StepProgram& program = device_.sinkPrograms.tree({ofCounts, below.texture.isLayered(), plan_.isLayered()});
   const auto number = static_cast<std::size_t>(&level - plan_.levels.data()) + 1;
   device_.bound.program(program.program().name());
-  device_.bound.framebuffer(ofLevel(number).framebufferName(device_.bound));
-  device_.bound.texture(0, below.texture.name());
+  bindPlanes(device_, {&below, 1}, 0);
   program.set("sk_children", level.children);
   program.set("sk_tree_shift", plan_.shift);
   program.set("sk_row", level.row);
   if (ofCounts) {
-    program.set("sk_below_width", belowWidth);
+    program.set("sk_below_width", shape.width);
+    program.set("sk_below_shift", std::bit_width(static_cast<std::uint32_t>(shape.height)) - 1);
   } else {
     program.set("sk_below_row", belowRow);
   }
-  drawRects(device_, level.draws);
+  drawRects(device_, targetOf(device_, ofLevel(number)), level.draws, program.row());
 }
 
 std::int32_t CountTree::total() {
@@ -66,39 +65,23 @@ std::int32_t CountTree::total() {
 }
 
 std::vector<Surface> CountTree::totalTexture() {
-  std::vector<Surface> total = device_.takePlanes(sums(), 1, 1, whatFor);
-  const GLuint from = ofLevel(plan_.levels.size()).framebufferName(device_.bound);
-  const GLuint to = total.front().framebufferName(device_.bound);
-  gl::blit(device_.bound, from, {0, plan_.levels.back().row}, to, {0, 0}, 1, 1);
+  std::vector<Surface> total = device_.takePlanes(sums(), {1, 1}, whatFor);
+  gl::Framebuffer& from = ofLevel(plan_.levels.size()).framebufferIn(device_.bound);
+  const GLuint to = total.front().framebufferIn(device_.bound).name();
+  std::int32_t row = plan_.levels.back().row;
+  if (plan_.isLayered()) {
+    from.selectLayer(device_.bound, row >> plan_.shift);
+    row &= (1 << plan_.shift) - 1;
+  }
+  gl::blit(device_.bound, from.name(), {0, row}, to, {0, 0}, 1, 1);
   return total;
 }
 
 std::int32_t readTotal(DeviceState& device, Surface& total) {
   std::array<std::int32_t, 4> sums{};
-  total.framebufferName(device.bound);
-  total.framebuffer.read(device.bound, total.texture.format().tight, 0, 0, 1, 1, sums.data());
+  total.framebufferIn(device.bound).read(device.bound, total.texture.format().tight, 0, 0, 1, 1, sums.data());
   device.throwPendingError();
   return sums[3];
-}
-
-Layout listLayout(std::int64_t length, std::int32_t textureSize) {
-  Layout layout;
-  layout.whole.linear = true;
-  layout.whole.shift = assemble::linearShift(length, textureSize);
-  const std::int64_t width = std::int64_t{1} << layout.whole.shift;
-  const std::int64_t height = (length + width - 1) >> layout.whole.shift;
-  if (height > textureSize) {
-    throw Error(
-        fmt::format("{} elements are pushed or scattered, but one texture of this device holds {} "
-                    "({} x {} texels); divide the domain",
-                    length, width * textureSize, width, textureSize));
-  }
-  layout.whole.extent = {static_cast<std::int32_t>(length), 1, 1, 1};
-  layout.whole.stride = assemble::stridesOf(layout.whole.extent);
-  layout.width = static_cast<std::int32_t>(width);
-  layout.height = static_cast<std::int32_t>(height);
-  layout.draws = assemble::drawnTexels(layout.whole);
-  return layout;
 }
 
 }  // namespace sk

@@ -28,7 +28,7 @@ class CountTree {
   std::vector<Surface> totalTexture();
 
  private:
-  void draw(const assemble::TreeLevel& level, Surface& below, std::int32_t belowWidth, std::int32_t belowRow);
+  void draw(const assemble::TreeLevel& level, Surface& below, bool ofCounts, std::int32_t belowRow);
   Surface& ofLevel(std::size_t level) { return level % 2 == 1 ? odd() : even(); }
 
   DeviceState& device_;
@@ -38,9 +38,5 @@ class CountTree {
 
 /// The number in a texel of totalTexture().
 std::int32_t readTotal(DeviceState& device, Surface& total);
-
-/// Where `length` entries lie: linearised, whatever their number. Throws sk::Error where one texture does not
-/// hold them.
-Layout listLayout(std::int64_t length, std::int32_t textureSize);
 
 }  // namespace sk

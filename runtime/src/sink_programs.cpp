@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "assemble/count_tree.hpp"
+#include "assemble/assemble.hpp"
 #include "device_state.hpp"
 #include "sk/error.hpp"
 
@@ -37,22 +37,24 @@ std::unique_ptr<StepProgram> SinkPrograms::build(const std::string& vertexSource
   return std::make_unique<StepProgram>(std::move(program));
 }
 
-StepProgram& SinkPrograms::tree(bool ofCounts) {
-  std::unique_ptr<StepProgram>& kept = trees_[ofCounts ? 1 : 0];
+StepProgram& SinkPrograms::tree(const assemble::TreeTextures& textures) {
+  std::unique_ptr<StepProgram>& kept = trees_[textures];
   if (!kept) {
-    kept = build(assemble::vertexProgram(device_.profile), assemble::treeProgram(device_.profile, ofCounts),
+    kept = build(assemble::vertexProgram(device_.profile), assemble::treeProgram(device_.profile, textures),
                  "sums of counts");
     kept->program().setSampler("sk_below", 0);
   }
   return *kept;
 }
 
-StepProgram& SinkPrograms::points(const program::Parameter& sink, PointStep step) {
-  std::unique_ptr<StepProgram>& kept = points_[{&sink, step}];
+StepProgram& SinkPrograms::points(const program::Parameter& sink, PointStep step,
+                                  const assemble::PointTextures& textures) {
+  std::unique_ptr<StepProgram>& kept = points_[{&sink, step, textures}];
   if (!kept) {
-    const std::string vertexSource = assemble::hasPoints(step) ? assemble::pointVertexProgram(device_.profile)
-                                                               : assemble::vertexProgram(device_.profile);
-    kept = build(vertexSource, assemble::pointProgram(device_.profile, sink, step), sink.name);
+    const std::string vertexSource = assemble::hasPoints(step)
+                                         ? assemble::pointVertexProgram(device_.profile, textures)
+                                         : assemble::vertexProgram(device_.profile);
+    kept = build(vertexSource, assemble::pointProgram(device_.profile, sink, step, textures), sink.name);
     const gl::Program& program = kept->program();
     int unit = 0;
     program.setSampler("sk_targets", unit++);
@@ -71,16 +73,14 @@ StepProgram& SinkPrograms::points(const program::Parameter& sink, PointStep step
 }
 
 void SinkPrograms::clear() {
-  for (std::unique_ptr<StepProgram>& tree : trees_) {
-    tree.reset();
-  }
+  trees_.clear();
   points_.clear();
 }
 
 void SinkPrograms::forget() noexcept {
-  for (std::unique_ptr<StepProgram>& tree : trees_) {
-    if (tree) {
-      tree->forget();
+  for (auto& [key, program] : trees_) {
+    if (program) {
+      program->forget();
     }
   }
   for (auto& [key, program] : points_) {

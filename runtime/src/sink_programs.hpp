@@ -8,9 +8,11 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "assemble/count_tree.hpp"
 #include "assemble/point_program.hpp"
 #include "gl/program.hpp"
 #include "gl/uniform.hpp"
@@ -27,6 +29,8 @@ class StepProgram {
 
   void set(std::string_view uniform, std::int32_t value) { find(uniform, false).set(value); }
   void set(std::string_view uniform, const gl::Int4& value) { find(uniform, true).set(value); }
+  /// `sk_domain_row`, of those that draw to layers.
+  gl::IntUniform& row() { return find("sk_domain_row", false); }
   const gl::Program& program() const { return program_; }
   void forget() noexcept { program_.forget(); }
 
@@ -42,22 +46,23 @@ class SinkPrograms {
   explicit SinkPrograms(DeviceState& device) : device_(device) {}
 
   /// Reads from texture unit 0.
-  StepProgram& tree(bool ofCounts);
+  StepProgram& tree(const assemble::TreeTextures& textures);
   /// Units: 0 the texels of the list, then the values, or elements, plane by plane, then what earlier
   /// steps have drawn.
-  StepProgram& points(const program::Parameter& sink, assemble::PointStep step);
+  StepProgram& points(const program::Parameter& sink, assemble::PointStep step,
+                      const assemble::PointTextures& textures);
 
   void clear();
   void forget() noexcept;
 
  private:
-  using PointKey = std::pair<const program::Parameter*, assemble::PointStep>;
+  using PointKey = std::tuple<const program::Parameter*, assemble::PointStep, assemble::PointTextures>;
 
   std::unique_ptr<StepProgram> build(const std::string& vertexSource, const std::string& fragmentSource,
                                      std::string_view what);
 
   DeviceState& device_;
-  std::unique_ptr<StepProgram> trees_[2];
+  std::map<assemble::TreeTextures, std::unique_ptr<StepProgram>> trees_;
   std::map<PointKey, std::unique_ptr<StepProgram>> points_;
 };
 

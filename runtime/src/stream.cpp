@@ -29,9 +29,9 @@ StreamState* checkTransfer(const StreamRegion& region, std::size_t count, const 
 }  // namespace
 
 StreamState::StreamState(DeviceState& owner, const program::Element& type, const Shape& extents)
-    : device(&owner), element(&type), shape(extents), layout(layoutOf(extents, owner.limits.textureSize)) {
-  if (layout.width > 0) {
-    planes = owner.takePlanes(type, layout.width, layout.height,
+    : device(&owner), element(&type), shape(extents), layout(layoutOf(extents, owner.textureLimits())) {
+  if (layout.texture.width > 0) {
+    planes = owner.takePlanes(type, layout.texture,
                               fmt::format("a stream of {} of shape {}", type.name, toString(extents)));
   }
   owner.add(*this);
@@ -169,8 +169,9 @@ StreamTexture detail::textureOf(StreamState* state, int plane) {
     return {};
   }
   const gl::Texture& texture = stream.planes[static_cast<std::size_t>(plane)].texture;
-  return {texture.name(), texture.format().internalFormat, texture.width(), texture.height(),
-          stream.layout.whole.linear};
+  const assemble::TextureShape& shape = texture.shape();
+  return {texture.name(), texture.format().internalFormat, shape.width,
+          shape.height,   stream.layout.whole.linear,      shape.layers};
 }
 
 }  // namespace sk

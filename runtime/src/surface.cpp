@@ -7,12 +7,12 @@
 
 namespace sk {
 
-GLuint Surface::framebufferName(gl::BoundState& bound) {
+gl::Framebuffer& Surface::framebufferIn(gl::BoundState& bound) {
   if (!framebuffer) {
     const GLuint textures[] = {texture.name()};
-    framebuffer = gl::Framebuffer(bound, textures);
+    framebuffer = gl::Framebuffer(bound, textures, texture.isLayered());
   }
-  return framebuffer.name();
+  return framebuffer;
 }
 
 void Surface::forget() noexcept {
@@ -20,24 +20,27 @@ void Surface::forget() noexcept {
   framebuffer.forget();
 }
 
-std::uint64_t SurfacePool::key(const gl::Format& format, std::int32_t width, std::int32_t height) {
-  constexpr unsigned sizeBits = 28;
-  return format.index << (2 * sizeBits) | static_cast<std::uint64_t>(width) << sizeBits |
-         static_cast<std::uint64_t>(height);
+std::uint64_t SurfacePool::key(const gl::Format& format, const assemble::TextureShape& shape) {
+  constexpr unsigned sizeBits = 20;
+  constexpr unsigned layerBits = 16;
+  return ((format.index << layerBits | static_cast<std::uint64_t>(shape.layers)) << sizeBits |
+          static_cast<std::uint64_t>(shape.width))
+             << sizeBits |
+         static_cast<std::uint64_t>(shape.height);
 }
 
-Surface SurfacePool::take(const gl::Format& format, std::int32_t width, std::int32_t height) {
-  const auto found = idle_.find(key(format, width, height));
+Surface SurfacePool::take(const gl::Format& format, const assemble::TextureShape& shape) {
+  const auto found = idle_.find(key(format, shape));
   if (found != idle_.end() && !found->second.empty()) {
     Surface surface = std::move(found->second.back().surface);
     found->second.pop_back();
     bytes_ -= surface.texture.bytes();
     return surface;
   }
-  Surface surface{gl::Texture(bound_, format, width, height), {}};
+  Surface surface{gl::Texture(bound_, format, shape), {}};
   if (!surface && bytes_ > 0) {
     clear();
-    surface.texture = gl::Texture(bound_, format, width, height);
+    surface.texture = gl::Texture(bound_, format, shape);
   }
   return surface;
 }
@@ -48,7 +51,7 @@ void SurfacePool::give(Surface&& surface) noexcept {
   const gl::Texture& texture = surface.texture;
   const std::size_t bytes = texture.bytes();
   try {
-    std::vector<Idle>& shelf = idle_[key(texture.format(), texture.width(), texture.height())];
+    std::vector<Idle>& shelf = idle_[key(texture.format(), texture.shape())];
     shelf.reserve(shelf.size() + 1);
     shelf.push_back({std::move(surface), clock_});
     bytes_ += bytes;

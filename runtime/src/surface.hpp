@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "assemble/placement.hpp"
 #include "framebuffer_cache.hpp"
 #include "gl/bound_state.hpp"
 #include "gl/framebuffer.hpp"
@@ -21,7 +22,7 @@ struct Surface {
   gl::Texture texture;
   gl::Framebuffer framebuffer;   ///< made when first needed
 
-  GLuint framebufferName(gl::BoundState& bound);
+  gl::Framebuffer& framebufferIn(gl::BoundState& bound);
   explicit operator bool() const { return texture.name() != 0; }
   void forget() noexcept;
 };
@@ -32,7 +33,7 @@ class SurfacePool {
       : bound_(bound), framebuffers_(framebuffers) {}
 
   /// A surface with undefined texels; an empty one where there is no memory for it.
-  Surface take(const gl::Format& format, std::int32_t width, std::int32_t height);
+  Surface take(const gl::Format& format, const assemble::TextureShape& shape);
   void give(Surface&& surface) noexcept;
 
   /// Deletes what has lain unused for a while, where there is much of it. Once a call.
@@ -53,7 +54,7 @@ class SurfacePool {
   static constexpr std::size_t keptBytes = std::size_t{256} << 20;
   static constexpr std::int64_t keptCalls = 16;
 
-  static std::uint64_t key(const gl::Format& format, std::int32_t width, std::int32_t height);
+  static std::uint64_t key(const gl::Format& format, const assemble::TextureShape& shape);
   void deleteOlderThan(std::int64_t time);
 
   gl::BoundState& bound_;

@@ -17,6 +17,23 @@ struct TexelRun {
   std::int64_t first;
 };
 
+/// Calls visit(part, layer, first) for the parts of a rectangle that lie in one layer each: `part` counts rows
+/// in its layer, and `first` is its first row in the rectangle. `layerRows`: 0 where there are no layers.
+template <class Visit>
+void forEachLayer(const assemble::Rect& rect, std::int32_t layerRows, Visit&& visit) {
+  if (layerRows == 0) {
+    visit(rect, 0, 0);
+    return;
+  }
+  for (std::int32_t first = 0; first < rect.height;) {
+    const std::int32_t layer = (rect.y + first) / layerRows;
+    const std::int32_t y = rect.y + first - layer * layerRows;
+    const std::int32_t height = std::min(rect.height - first, layerRows - y);
+    visit(assemble::Rect{rect.x, y, rect.width, height}, layer, first);
+    first += height;
+  }
+}
+
 /// A linearised region as runs of elements that are consecutive in the stream: `count` runs of
 /// `length` elements each.
 struct ElementRuns {
@@ -30,7 +47,7 @@ struct ElementRuns {
 
  private:
   const assemble::Placement& region_;
-  std::size_t axis_ = 0;       ///< the runs differ in this dimension and those above
+  std::size_t axis_ = 0;  ///< the runs differ in this dimension and those above
 };
 
 /// Calls visit(const TexelRun&) for consecutive elements `first ...` of a region that lie at numbers

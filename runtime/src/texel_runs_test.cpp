@@ -3,6 +3,7 @@
 // Runs are checked against the definition: element n is texel (n & (w - 1), n >> shift).
 #include "texel_runs.hpp"
 
+#include <array>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -65,9 +66,11 @@ TEST_CASE("runs are the elements of a region, in order") {
       {{3, 4, 5, 6}, {1, 1, 1, 1}, {1, 2, 2, 4}, -1},
       {{3, 4, 5, 6}, {0, 1, 0, 0}, {3, 1, 5, 6}, -1},
       {{200, 3}, {7, 1}, {100, 1}, 100},
+      {{100, 100}, {0, 0}, {100, 100}, 2},           // in layers: rows go on
+      {{100, 100}, {3, 5}, {90, 80}, -1},
   };
   for (const Case& c : cases) {
-    const sk::Layout layout = sk::layoutOf(c.shape, 64);
+    const sk::Layout layout = sk::layoutOf(c.shape, {64, 256});
     REQUIRE(layout.whole.linear);
     const Placement placement = placementOf({nullptr, c.begin, c.part}, layout);
     INFO(toString(c.shape) << " from " << toString(c.begin) << " " << toString(c.part));
@@ -83,8 +86,21 @@ TEST_CASE("runs are the elements of a region, in order") {
   }
 }
 
+TEST_CASE("rectangles are cut where layers end") {
+  std::vector<std::array<int, 4>> parts;
+  const auto visit = [&](const Rect& part, std::int32_t layer, std::int32_t first) {
+    CHECK((part.x == 3 && part.width == 4));
+    parts.push_back({layer, part.y, part.height, first});
+  };
+  sk::forEachLayer({3, 10, 4, 30}, 16, visit);
+  CHECK(parts == std::vector<std::array<int, 4>>{{0, 10, 6, 0}, {1, 0, 16, 6}, {2, 0, 8, 22}});
+  parts.clear();
+  sk::forEachLayer({3, 10, 4, 30}, 0, visit);
+  CHECK(parts == std::vector<std::array<int, 4>>{{0, 10, 30, 0}});
+}
+
 TEST_CASE("a region of a plane is one rectangle") {
-  const sk::Layout layout = sk::layoutOf({10, 20}, 64);
+  const sk::Layout layout = sk::layoutOf({10, 20}, {64, 256});
   int count = 0;
   forEachTexelRun(placementOf({nullptr, Index(2, 3), Shape(4, 5)}, layout), [&](const TexelRun& run) {
     ++count;

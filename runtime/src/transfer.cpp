@@ -113,12 +113,30 @@ class PlaneTransfer {
     }
   }
 
+  std::int32_t layerRows() const {
+    return surface_.texture.isLayered() ? surface_.texture.shape().height : 0;
+  }
+  std::size_t bytesOfRows(const Rect& rect, std::int32_t rows) const {
+    return static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rows) * format_.texelBytes();
+  }
+
   void writeTexels(const Rect& rect, const std::byte* texels) {
-    surface_.texture.write(device_.bound, rect.x, rect.y, rect.width, rect.height, texels);
+    forEachLayer(rect, layerRows(), [&](const Rect& part, std::int32_t layer, std::int32_t first) {
+      surface_.texture.write(device_.bound, part, layer, texels + bytesOfRows(rect, first));
+    });
   }
 
   void readTexels(const Rect& rect, std::byte* texels) {
-    surface_.framebufferName(device_.bound);
+    gl::Framebuffer& framebuffer = surface_.framebufferIn(device_.bound);
+    forEachLayer(rect, layerRows(), [&](const Rect& part, std::int32_t layer, std::int32_t first) {
+      if (surface_.texture.isLayered()) {
+        framebuffer.selectLayer(device_.bound, layer);
+      }
+      readAttached(part, texels + bytesOfRows(rect, first));
+    });
+  }
+
+  void readAttached(const Rect& rect, std::byte* texels) {
     if (readsTight()) {
       surface_.framebuffer.read(device_.bound, format_.tight, rect.x, rect.y, rect.width, rect.height,
                                 texels);

@@ -9,6 +9,7 @@
 
 #include "iterator.hpp"
 #include "layout.hpp"
+#include "stream_state.hpp"
 
 namespace sk {
 
@@ -20,6 +21,7 @@ using assemble::Placement;
 using assemble::StreamAccess;
 using assemble::Task;
 using assemble::Work;
+using program::Fit;
 using program::Parameter;
 using program::Role;
 
@@ -53,15 +55,17 @@ bool isFiltered(const Parameter& gather, const Placement& placement, bool filter
   return assemble::mayFilter(gather) && !placement.linear && !placement.view && (!isFloat || filtersFloats);
 }
 
-StreamAccess chooseAccess(const Parameter& parameter, const Placement& placement, const Placement& domain,
+StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, const Placement& domain,
                           const Task& task, bool filtersFloats) {
   StreamAccess access;
+  const Placement& placement = operand.placement;
   const bool isAligned = task.work != Work::List && haveSameTexels(placement, domain);
   if (parameter.role == Role::Input && isAligned) {
     return access;
   }
-  access.addressing = placement.linear ? Addressing::Linear : Addressing::Plane;
-  access.view = placement.origin != assemble::Index4{};
+  access.addressing = addressingOf(placement);
+  access.fit = operand.fit;
+  access.view = access.fit != Fit::Same || placement.origin != assemble::Index4{};
   access.nearby = parameter.role == Role::Gather && isNearby(parameter, placement, domain);
   access.filtered = parameter.role == Role::Gather && isFiltered(parameter, placement, filtersFloats);
   return access;
@@ -88,6 +92,16 @@ assemble::SpecValues specsOf(const program::Kernel& kernel, std::span<const Oper
 }
 
 bool isDomainView(const Placement& domain) { return !domain.linear && domain.origin != assemble::Index4{}; }
+
+/// A fitted input is taken as a view, and no input is nearby, so that two bits tell all choices apart.
+std::uint64_t choiceBits(const StreamAccess& access) {
+  switch (access.fit) {
+    case Fit::Same: break;
+    case Fit::Stretched: return 2;
+    case Fit::Strided: return 3;
+  }
+  return std::uint64_t{access.view} | std::uint64_t{access.nearby} << 1;
+}
 
 /// Packs small numbers into the words of a key.
 class KeyBits {
@@ -128,6 +142,33 @@ std::uint32_t specBits(const Parameter& parameter, const void* value) {
   return bits;
 }
 
+Addressing addressingOf(const Placement& placement) {
+  if (!placement.linear) {
+    return Addressing::Plane;
+  }
+  return placement.layered ? Addressing::Layered : Addressing::Linear;
+}
+
+Operand regionOperand(const Argument& argument, const Shape& domain) {
+  StreamState& stream = *argument.region.stream;
+  Operand operand{.placement = placementOf(argument.region, stream.layout), .planes = stream.planes};
+  const assemble::Index4 whole = xFirst(domain);
+  for (std::size_t d = 0; d < whole.size(); ++d) {
+    switch (argument.fit) {
+      case Fit::Same: break;
+      case Fit::Stretched:
+        operand.fit = Fit::Stretched;
+        operand.ratio[d] = whole[d] / operand.placement.extent[d];
+        break;
+      case Fit::Strided:
+        operand.fit = Fit::Strided;
+        operand.ratio[d] = operand.placement.extent[d] / whole[d];
+        break;
+    }
+  }
+  return operand;
+}
+
 Operand iteration(const Parameter& iterator, const void* ends, const Shape& domain) {
   Placement placement;
   placement.extent = xFirst(domain);
@@ -142,6 +183,7 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
   variant.task = task;
   variant.domain = domainOf(domain, task);
   variant.domainView = isDomainView(domain);
+  variant.domainLayered = domain.layered;
   variant.domainRank = assemble::decodedRank(domain);
   variant.specs = specsOf(kernel, operands);
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
@@ -150,7 +192,7 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
     if (parameter.role == Role::Iterator) {
       access = chooseIteration(parameter, operands[i], domain);
     } else if (hasAccess(kernel, i, task) && isNeeded(parameter, variant.specs)) {
-      access = chooseAccess(parameter, operands[i].placement, domain, task, filtersFloats);
+      access = chooseAccess(parameter, operands[i], domain, task, filtersFloats);
     }
     variant.access.push_back(access);
   }
@@ -162,8 +204,10 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
                       const Placement& domain, const Task& task, bool filtersFloats) {
   ProgramKey key{&kernel, {}, specsOf(kernel, operands)};
   KeyBits bits(key);
-  bits.add(static_cast<std::uint64_t>(domainOf(domain, task)) | std::uint64_t{isDomainView(domain)} << 3, 4);
-  bits.add(static_cast<std::uint64_t>(task.work), 4);
+  bits.add(static_cast<std::uint64_t>(domainOf(domain, task)) | std::uint64_t{domain.layered} << 2 |
+               std::uint64_t{isDomainView(domain)} << 3,
+           4);
+  bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{task.treeLayered} << 3, 4);
   bits.add(task.sink & 15u, 4);
   bits.add(task.sink >> 4, 4);
   bits.add(assemble::decodedRank(domain), 4);
@@ -175,10 +219,10 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
       bits.add(std::uint64_t{operands[i].rank == 1} | std::uint64_t{isFlat(domain)} << 1, 4);
     }
     if (hasAccess(kernel, i, task) && isNeeded(parameter, key.specs)) {
-      const StreamAccess access = chooseAccess(parameter, operands[i].placement, domain, task, filtersFloats);
-      // what is filtered lies in a plane, and is no view
-      const std::uint64_t addressing = access.filtered ? 3 : static_cast<std::uint64_t>(access.addressing);
-      bits.add(addressing | std::uint64_t{access.view} << 2 | std::uint64_t{access.nearby} << 3, 4);
+      const StreamAccess access = chooseAccess(parameter, operands[i], domain, task, filtersFloats);
+      // what is filtered lies in a plane and is no view; no gather is aligned
+      const Addressing addressing = access.filtered ? Addressing::Aligned : access.addressing;
+      bits.add(static_cast<std::uint64_t>(addressing) | choiceBits(access) << 2, 4);
     }
   }
   return key;

@@ -12,6 +12,7 @@
 #include "assemble/assemble.hpp"
 #include "assemble/placement.hpp"
 #include "iterator.hpp"
+#include "sk/call.hpp"
 #include "sk/program.hpp"
 #include "surface.hpp"
 
@@ -25,6 +26,8 @@ struct Operand {
   std::span<Surface> planes = {};
   IteratorStep step = {};
   int rank = 0;                      ///< iterators: of the domain's shape
+  program::Fit fit = program::Fit::Same;      ///< inputs
+  assemble::Index4 ratio = {1, 1, 1, 1};        ///< fitted inputs: the stretch or stride
 };
 
 /// A program's identity: the address of its descriptor and the packed choices of its variant.
@@ -42,6 +45,12 @@ struct ProgramKeyHash {
 
 /// The 32 bits of a Spec parameter's value, as assemble::SpecValues holds them.
 std::uint32_t specBits(const program::Parameter& parameter, const void* value);
+
+/// How an element is found in the textures of a region that lies so, by its index.
+assemble::Addressing addressingOf(const assemble::Placement& placement);
+
+/// The operand of a region that is given as `argument` of a call over a domain of this shape.
+Operand regionOperand(const Argument& argument, const Shape& domain);
 
 /// The operand of an iterator with these ends over a domain of this shape.
 Operand iteration(const program::Parameter& iterator, const void* ends, const Shape& domain);

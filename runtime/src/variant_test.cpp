@@ -38,7 +38,7 @@ program::Kernel makeKernel() {
 const program::Kernel kernel = makeKernel();
 
 Placement region(const Shape& stream, const Index& begin, const Shape& shape) {
-  return placementOf({nullptr, begin, shape}, layoutOf(stream, 64));
+  return placementOf({nullptr, begin, shape}, layoutOf(stream, {64, 256}));
 }
 Placement whole(const Shape& stream) { return region(stream, Index::origin(stream.rank()), stream); }
 

@@ -21,7 +21,7 @@ template <class Test>
 void onEveryLimit(const Test& test) {
   for (const std::string profile : {"glsl330", "essl300"}) {
     for (const std::string limits : {"guaranteed", "device"}) {
-      for (const std::int32_t textureLimit : {0, smallLimit}) {
+      for (const std::int32_t textureLimit : {0, smallLimits[0], smallLimits[1]}) {
         INFO("profile " << profile << ", limits " << limits << ", texture limit " << textureLimit);
         sk::Device device({.profile = profile, .textureLimit = textureLimit, .limits = limits});
         test(device);

@@ -86,6 +86,81 @@ TEST_CASE("an input of extent 1 repeats along that dimension") {
   });
 }
 
+TEST_CASE("inputs stretch and stride to the domain by whole ratios") {
+  struct Row {
+    sk::Shape x, y, z, r;   ///< x is stretched, y strided
+  };
+  const std::vector<Row> rows = {
+      {{7}, {21}, {1}, {7}},
+      {{2}, {1021 * 2}, {1}, {1021 * 2}},
+      {{5}, {1300}, {1}, {65}},
+      {{2, 3}, {8, 18}, {1, 9}, {4, 9}},
+      {{13, 1}, {39, 70}, {39, 1}, {39, 35}},
+      {{1, 2, 3}, {4, 6, 12}, {1, 1, 1}, {2, 6, 12}},
+      {{2, 1, 2, 3}, {4, 3, 8, 6}, {2, 3, 4, 1}, {2, 3, 4, 3}},
+  };
+  onEveryLayout([&](sk::Device& device) {
+    for (const Row& row : rows) {
+      INFO(sk::toString(row.x) << sk::toString(row.y) << sk::toString(row.z) << " to "
+                               << sk::toString(row.r));
+      const auto numbered = [](const sk::Shape& shape) {
+        return HostArray<int>(shape, [](std::size_t i) { return static_cast<int>(i % 1000); });
+      };
+      const auto x = numbered(row.x), y = numbered(row.y), z = numbered(row.z);
+      auto r = device.stream<int>(row.r);
+      auto at = device.stream<sk::int4>(row.r);
+      streams::repeat(sk::stretch(x.on(device)), sk::stride(y.on(device)), z.on(device), r, at);
+      const auto scaled = [&](Position p, const sk::Shape& shape) {
+        for (int d = 0; d < shape.rank(); ++d) {
+          auto& q = p[static_cast<std::size_t>(d)];
+          q = q * shape[d] / row.r[d];   // both are whole
+        }
+        return p;
+      };
+      CHECK(difference(r.read(), [&](std::size_t i) {
+              const Position p = positionOf(row.r, i);
+              return x[scaled(p, row.x)] + 1000 * y[scaled(p, row.y)] + 1000000 * z.repeated(p);
+            }) == "");
+      CHECK(difference(at.read(), [&](std::size_t i) {
+              const Position p = positionOf(row.r, i);
+              const int rank = row.r.rank();
+              const auto component = [&](const sk::Shape& shape, int c) {
+                const auto q = scaled(p, shape);
+                return c < rank ? static_cast<int>(q[static_cast<std::size_t>(rank - 1 - c)]) : 0;
+              };
+              return sk::int4{component(row.x, 0), component(row.y, 0), component(row.x, 1),
+                              component(row.y, 1)};
+            }) == "");
+    }
+    const HostArray<int> u({12, 14}, [](std::size_t i) { return static_cast<int>(i); });
+    auto stream = u.on(device);
+    auto r = device.stream<int>({4, 6});
+    auto at = device.stream<sk::int4>({4, 6});
+    streams::repeat(sk::stretch(stream.domain({5, 1}, {7, 4})), sk::stride(stream.domain({4, 2}, {12, 14})),
+                    stream.domain({0, 0}, {1, 1}), r, at);
+    CHECK(difference(r.read(), [&](std::size_t i) {
+            const Position p = positionOf({4, 6}, i);
+            return u[{5 + p[0] / 2, 1 + p[1] / 2}] + 1000 * u[{4 + 2 * p[0], 2 + 2 * p[1]}];
+          }) == "");
+  });
+}
+
+TEST_CASE("what does not stretch or stride is an error, and nothing is written") {
+  sk::Device& device = run_tests::device("glsl330");
+  auto x = device.stream<int>({4, 6}), y = device.stream<int>({3, 6}), r = device.stream<int>({4, 6});
+  auto at = device.stream<sk::int4>({4, 6});
+  r.write(std::vector<int>(24, 7));
+  CHECK_THROWS_WITH(
+      streams::repeat(x, sk::stretch(y), x, r, at),
+      "streams::repeat: 'y' has shape {3, 6}, and the domain {4, 6}; to stretch it, each of its extents "
+      "must divide the domain's");
+  CHECK_THROWS_WITH(streams::repeat(sk::stride(y), x, x, r, at),
+                    Catch::Contains("to stride through it, each of its extents must be a multiple"));
+  auto flat = device.stream<int>(24);
+  CHECK_THROWS_AS(streams::repeat(x, x, sk::stretch(flat), r, at), sk::Error);
+  CHECK(r.read() == std::vector<int>(24, 7));
+}
+
 TEST_CASE("a view is written where it is, and nowhere else") {
   struct Row {
     sk::Shape shape;

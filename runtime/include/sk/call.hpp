@@ -22,6 +22,7 @@ struct Argument {
                                    ///< the two ends, one after the other
   StreamRegion region = {};        ///< everything else; of an iterator just the shape, or none
   bool isNone = false;             ///< sk::none
+  program::Fit fit = program::Fit::Same;             ///< element inputs
 };
 
 /// In place of a stream that the values of a kernel's spec parameters switch off.
@@ -34,16 +35,52 @@ template <class S, class T>
 concept StreamOf = requires { typename std::remove_cvref_t<S>::value_type; } &&
                    std::same_as<typename std::remove_cvref_t<S>::value_type, T>;
 
+/// An element input that fits itself to the domain. Made by stretch() and stride().
+template <class T>
+struct Fitted {
+  StreamRegion region;
+  program::Fit fit;
+};
+
+/// A stream or view whose extents divide the domain's: along a dimension where it has n elements and the domain n * k,
+/// each serves k of these in a row. A call throws sk::Error where they do not divide.
+template <class S>
+  requires requires { typename S::value_type; }
+Fitted<typename S::value_type> stretch(const S& stream) {
+  return {regionOf(stream), program::Fit::Stretched};
+}
+
+/// A stream or view whose extents are multiples of the domain's: along a dimension where it has n * k elements and
+/// the domain n, every k-th is read, from the first on. A call throws sk::Error where they are none.
+template <class S>
+  requires requires { typename S::value_type; }
+Fitted<typename S::value_type> stride(const S& stream) {
+  return {regionOf(stream), program::Fit::Strided};
+}
+
 /// Parameter types of the stubs: any stream or view of T. They last for one call.
 template <class T>
 class In {
  public:
   template <StreamOf<T> S>
   In(const S& stream) : region_(regionOf(stream)) {}
-  const StreamRegion& region() const { return region_; }
+  Argument argument() const { return {.region = region_}; }
 
  private:
   StreamRegion region_;
+};
+
+/// In that may be fitted to the domain.
+template <class T>
+class ElementIn {
+ public:
+  template <StreamOf<T> S>
+  ElementIn(const S& stream) : argument_{.region = regionOf(stream)} {}
+  ElementIn(const Fitted<T>& stream) : argument_{.region = stream.region, .fit = stream.fit} {}
+  Argument argument() const { return argument_; }
+
+ private:
+  Argument argument_;
 };
 
 template <class T>
@@ -54,7 +91,7 @@ class Out {
     static_assert(isWritable<std::remove_reference_t<S>>,
                   "StreamKernel: the kernel writes this stream, but it is const");
   }
-  const StreamRegion& region() const { return region_; }
+  Argument argument() const { return {.region = region_}; }
 
  private:
   StreamRegion region_;
@@ -66,13 +103,12 @@ class Optional {
  public:
   template <class S>
     requires std::constructible_from<Parameter, S&&>
-  Optional(S&& stream) : region_(Parameter(std::forward<S>(stream)).region()), isNone_(false) {}
-  Optional(None) {}
-  Argument argument() const { return {.region = region_, .isNone = isNone_}; }
+  Optional(S&& stream) : argument_(Parameter(std::forward<S>(stream)).argument()) {}
+  Optional(None) : argument_{.isNone = true} {}
+  Argument argument() const { return argument_; }
 
  private:
-  StreamRegion region_;
-  bool isNone_ = true;
+  Argument argument_;
 };
 
 template <class T>
@@ -85,7 +121,7 @@ template <class T>
 class VariableOut {
  public:
   VariableOut(Stream<T>& stream) : region_(stream.handle()) {}
-  const StreamRegion& region() const { return region_; }
+  Argument argument() const { return {.region = region_}; }
 
  private:
   StreamRegion region_;

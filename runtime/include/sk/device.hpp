@@ -25,7 +25,9 @@ struct DeviceOptions {
   /// "glsl330" or "essl300". Empty: environment variable SK_PROFILE, and without it glsl330 where
   /// the device has OpenGL 3.3, else essl300.
   std::string profile = {};
-  /// Extents above this are linearised. 0: the device's own limit, which it cannot pass. For tests.
+  /// No texture is wider or higher than this: larger extents are linearised, and larger streams lie in several
+  /// layers. 0: environment variable SK_TEXTURE_LIMIT, and without it the device's own limit, which this cannot
+  /// pass. For tests.
   std::int32_t textureLimit = 0;
   /// "device": what the device can do. "guaranteed": no more planes in a pass than every device of
   /// the profile can write and read, to try out how a program runs elsewhere. Empty: environment
@@ -38,6 +40,7 @@ struct DeviceOptions {
 
 struct DeviceLimits {
   std::int32_t textureSize = 0;    ///< largest width and height of a texture
+  std::int32_t textureLayers = 0;  ///< most layers of one: a stream has as many times more elements
   std::int32_t drawBuffers = 0;    ///< planes that one pass may write
   std::int32_t textureUnits = 0;   ///< planes that one pass may read
   std::int32_t uniformComponents = 0;   ///< components of the uniform arguments of a kernel

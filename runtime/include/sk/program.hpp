@@ -85,6 +85,13 @@ enum class Role : std::uint8_t {
   Spec,         ///< `spec T c`: a bool, int, uint or float whose value makes a variant
 };
 
+/// How an element input whose shape is not the domain's is read.
+enum class Fit : std::uint8_t {
+  Same,       ///< it has the domain's extents, or 1 where it repeats
+  Stretched,  ///< its extents divide the domain's: each element serves several of these in a row
+  Strided,    ///< its extents are multiples of the domain's: the first of several elements is read
+};
+
 /// What a scatter output does with the element that it holds and the value that comes.
 enum class ScatterOp : std::uint8_t { Store, Add, Min, Max };
 
@@ -119,6 +126,7 @@ struct Condition {
 struct Layer {
   std::int8_t bundle = -1;     ///< -1: it has a texture of its own
   std::uint8_t layer = 0;
+  std::uint8_t count = 1;      ///< planes in the bundle
 };
 
 struct Parameter {

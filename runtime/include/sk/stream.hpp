@@ -36,15 +36,17 @@ struct StreamRegion {
 ///
 /// A stream of rank 1 or 2 whose extents fit the device's texture limit lies as it is: texel (x, y)
 /// holds row y, column x, and `linear` is false (rank 1: one row). Any other, and one that a kernel has pushed
-/// to, is linearised: element number i, row-major, is texel (i % width, i / width), and `width` is a power of two. Nothing is
+/// to, is linearised: element number i, row-major, is texel (i % width, i / width), and `width` is a power of two. Where
+/// one such texture does not hold them, there are `layers` of them, one after the other, in an array texture. Nothing is
 /// said of the texels after the last element, nor of the fourth channel of a vector of three. A bool is
 /// an unsigned 0 or 1. The texture has one level and no filter.
 struct StreamTexture {
-  std::uint32_t name = 0;  ///< of the GL texture (target GL_TEXTURE_2D), 0 where the stream is empty
+  std::uint32_t name = 0;  ///< of the GL texture, 0 where the stream is empty
   std::uint32_t internalFormat = 0;  ///< GL_R32F, GL_RGBA32F, GL_R32I, GL_R8UI (bool) ...
   std::int32_t width = 0;
   std::int32_t height = 0;
   bool linear = false;
+  std::int32_t layers = 0;  ///< 0: the target is GL_TEXTURE_2D, else GL_TEXTURE_2D_ARRAY
 };
 
 /// What a host array of T is made of: T itself, but bytes of 0 and 1 for bool, because a

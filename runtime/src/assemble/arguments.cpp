@@ -32,25 +32,32 @@ void defineExtent(ProgramText& program, const Parameter& parameter) {
 
 void defineInputIndex(ProgramText& program, const Parameter& input, const StreamAccess& access,
                       const std::string& index) {
-  const bool mayRepeat = access.addressing != Addressing::Aligned;
-  const std::string own =
-      mayRepeat ? fmt::format("min({}, {} - 1)", index, parameterUniform(program, "ivec4", "shape", input))
-                : index;
+  const auto uniform = [&](std::string_view kind) { return parameterUniform(program, "ivec4", kind, input); };
+  std::string own = index;
+  switch (access.fit) {
+    case program::Fit::Same:
+      if (access.addressing == Addressing::Aligned) break;
+      own = fmt::format("min({}, {} - 1)", index, uniform("shape"));
+      break;
+    case program::Fit::Stretched: own = fmt::format("{} / {}", index, uniform("ratio")); break;
+    case program::Fit::Strided: own = fmt::format("{} * {}", index, uniform("ratio")); break;
+  }
   defineGetter(program, "index", input, own);
 }
 
-std::string inputTexel(ProgramText& program, const Parameter& input, const StreamAccess& access) {
+Texel inputTexel(ProgramText& program, const Parameter& input, const StreamAccess& access) {
   const std::string index = fmt::format("sk_index_{}()", input.symbol);
   const std::string origin =
       access.view ? " + " + parameterUniform(program, "ivec4", "origin", input) : std::string();
   if (access.addressing == Addressing::Plane) {
-    return access.view ? fmt::format("{}.xy{}.xy", index, origin) : index + ".xy";
+    return {access.view ? fmt::format("{}.xy{}.xy", index, origin) : index + ".xy"};
   }
   program.require(Function::Ravel);
   program.require(Function::Texel);
   const std::string stride = parameterUniform(program, "ivec4", "stride", input);
   const std::string shift = parameterUniform(program, "int", "shift", input);
-  return fmt::format("sk_texel(sk_ravel({}{}, {}), {})", index, origin, stride, shift);
+  return {fmt::format("sk_texel(sk_ravel({}{}, {}), {})", index, origin, stride, shift),
+          access.addressing == Addressing::Layered ? shift : ""};
 }
 
 std::string iteratorValue(ProgramText& program, const Parameter& iterator, const StreamAccess& access,

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "assemble/assemble.hpp"
+#include "assemble/planes.hpp"
 #include "assemble/program_text.hpp"
 
 namespace sk::assemble {
@@ -25,12 +26,12 @@ void defineGetter(ProgramText& program, std::string_view kind, const program::Pa
 /// Defines sk_extent_p where the body calls it.
 void defineExtent(ProgramText& program, const program::Parameter& parameter);
 
-/// Defines sk_index_p of an input. One of extent 1 in a dimension repeats its only element there.
+/// Defines sk_index_p of an input, fitted or not. One of extent 1 in a dimension repeats its only element there.
 void defineInputIndex(ProgramText& program, const program::Parameter& input, const StreamAccess& access,
                       const std::string& index);
 
 /// The texel of the current element of an input that is not aligned, by its sk_index_p.
-std::string inputTexel(ProgramText& program, const program::Parameter& input, const StreamAccess& access);
+Texel inputTexel(ProgramText& program, const program::Parameter& input, const StreamAccess& access);
 
 /// The current value of an iterator: a multiplication and an addition; integers wrap.
 std::string iteratorValue(ProgramText& program, const program::Parameter& iterator,

@@ -54,6 +54,7 @@ enum class Addressing : std::uint8_t {
   Plane,    ///< texel = index.xy (plus the view's origin)
   Linear,   ///< element number = dot(index, strides), texel = (number & mask, number >> shift);
             ///< iterators: all components run over that number
+  Layered,  ///< the same in an array texture
 };
 
 struct StreamAccess {
@@ -63,6 +64,7 @@ struct StreamAccess {
                          ///< of the domain is above the gather's, so that one step wraps or mirrors
                          ///< a neighbour's index
   bool filtered = false; ///< gathers: sk_sample_p() is left to the sampler's linear filter (mayFilter())
+  program::Fit fit = program::Fit::Same;  ///< inputs
   auto operator<=>(const StreamAccess&) const = default;
 };
 
@@ -80,6 +82,7 @@ enum class Work : std::uint8_t {
 struct Task {
   Work work = Work::Elements;
   std::uint8_t sink = 0;            ///< List: the parameter
+  bool treeLayered = false;         ///< List: the tree of a counted sink is
   auto operator<=>(const Task&) const = default;
 };
 
@@ -90,6 +93,7 @@ struct Variant {
   Task task = {};
   Domain domain = Domain::Plane;
   bool domainView = false;  ///< Plane: the domain's origin is not (0, 0)
+  bool domainLayered = false;  ///< what is drawn to is layered
   std::uint8_t domainRank = 2;  ///< Linear, LinearBox: dimensions that an index is decoded into;
       ///< decodedRank() of the output, or more
   std::vector<StreamAccess> access;
@@ -107,8 +111,10 @@ struct Variant {
 ///   sk_stride_P  ivec4             Linear: elements to step for each dimension of its stream; of an
 ///                                  iterator, of the domain
 ///   sk_shift_P   int               Linear: log2 of the texture's width
+///   sk_ratio_P   ivec4             of a fitted input: its stretch or stride in each dimension
 /// and for the domain (hence for every output, which has none of its own) the same with
-/// `sk_domain_origin sk_domain_shape sk_domain_stride sk_domain_shift`.
+/// `sk_domain_origin sk_domain_shape sk_domain_stride sk_domain_shift`; and `sk_domain_row`, an int, where that is
+/// layered: the first row of the layer that is drawn.
 /// Outputs are `layout(location = n) out`, one a plane, numbered in order of parameters and fields; those of
 /// Work::Counts have one more for each counted sink, and those of Work::List are the planes of the sink, for a
 /// scatter output after one for its texel. A list of a counted sink reads a tree (count_tree.hpp):

@@ -21,8 +21,8 @@ namespace sk::assemble {
 /// Counts and sums above this are this: more than any texture holds, and four of them fit an int.
 inline constexpr std::int32_t countLimit = (1 << 29) - 1;
 
-/// The most levels that a tree has, over 2^28 elements; `sk_rows` of a list's program has one more.
-inline constexpr int mostTreeLevels = 15;
+/// The most levels that a tree has, over 2^31 elements; `sk_rows` of a list's program has one more.
+inline constexpr int mostTreeLevels = 16;
 
 struct TreeLevel {
   std::int32_t children;  ///< nodes, or counts, that it sums
@@ -32,20 +32,31 @@ struct TreeLevel {
 
 struct TreePlan {
   std::int32_t shift = 0;  ///< log2 of the width of both textures
-  std::int32_t oddRows = 0;  ///< height of each
-  std::int32_t evenRows = 0;
+  TextureShape odd, even;  ///< layers in both, or in none; there may be no even one
   std::vector<TreeLevel> levels;  ///< from level 1 on
+
+  bool isLayered() const { return odd.layers > 0; }
 };
 
 /// The tree over `count` elements, 1 or more.
-TreePlan planTree(std::int32_t count, std::int32_t textureSize);
+TreePlan planTree(std::int32_t count, const TextureLimits& limits);
+
+/// Which textures are array textures.
+struct TreeTextures {
+  bool ofCounts = false;  ///< a first level
+  bool belowLayered = false;
+  bool layered = false;  ///< what is drawn to
+  auto operator<=>(const TreeTextures&) const = default;
+};
 
 /// The program of a level. Uniforms, all `int` but the sampler:
 ///   sk_below                  the counts, or the level below
 ///   sk_children               how many there are of them
-///   sk_below_width            of the texture of counts           (`ofCounts`)
+///   sk_below_width            of the texture of counts, for their numbers (`ofCounts`)
+///   sk_below_shift            log2 of the rows of its layers     (`belowLayered`)
 ///   sk_below_row              first row of the level below       (otherwise)
 ///   sk_tree_shift sk_row      of this level
-std::string treeProgram(const Profile& profile, bool ofCounts);
+///   sk_domain_row             first row of the layer that is drawn (`layered`)
+std::string treeProgram(const Profile& profile, const TreeTextures& textures);
 
 }  // namespace sk::assemble

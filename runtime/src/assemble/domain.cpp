@@ -8,8 +8,9 @@
 
 namespace sk::assemble {
 
-DomainText::DomainText(ProgramText& program, Domain domain, bool view, int rank, std::string_view function)
-    : program_(program), domain_(domain), view_(view), rank_(rank), function_(function) {
+DomainText::DomainText(ProgramText& program, Domain domain, bool view, int rank, bool layered,
+                       std::string_view function)
+    : program_(program), domain_(domain), view_(view), rank_(rank), layered_(layered), function_(function) {
   if (domain_ == Domain::LinearBox) defineIndex();
 }
 
@@ -67,9 +68,18 @@ void DomainText::leaveOutside() {
   }
 }
 
+Texel DomainText::texel() {
+  if (!layered_) return {"ivec2(gl_FragCoord.xy)"};
+  const std::string row = program_.uniform("int", "sk_domain_row");
+  return {fmt::format("ivec2(gl_FragCoord.xy) + ivec2(0, {})", row),
+          program_.uniform("int", "sk_domain_shift")};
+}
+
 std::string DomainText::texelNumber() {
-  return fmt::format("int(gl_FragCoord.y) << {} | int(gl_FragCoord.x)",
-                     program_.uniform("int", "sk_domain_shift"));
+  const std::string row =
+      layered_ ? fmt::format("({} + int(gl_FragCoord.y))", program_.uniform("int", "sk_domain_row"))
+               : "int(gl_FragCoord.y)";
+  return fmt::format("{} << {} | int(gl_FragCoord.x)", row, program_.uniform("int", "sk_domain_shift"));
 }
 
 void DomainText::defineIndex() {

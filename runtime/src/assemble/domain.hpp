@@ -9,20 +9,26 @@
 #include <string_view>
 
 #include "assemble/assemble.hpp"
+#include "assemble/planes.hpp"
 #include "assemble/program_text.hpp"
 
 namespace sk::assemble {
 
 class DomainText {
  public:
-  /// `rank`: of the domain's stream, for domains of linearised streams. `function`: what index() calls.
-  DomainText(ProgramText& program, Domain domain, bool view, int rank,
+  /// `rank`: of the domain's stream, for domains of linearised streams. `layered`: what is drawn to are layers.
+  /// `function`: what index() calls.
+  DomainText(ProgramText& program, Domain domain, bool view, int rank, bool layered,
              std::string_view function = "sk_index");
 
   /// A call of the function, which gives an ivec4.
   std::string index();
   /// The first components of the index: an int or an ivec2 to ivec4 expression.
   std::string position(int components);
+  /// The texel under the fragment.
+  Texel texel();
+  /// That texel's number, linearised: an int expression that wants brackets.
+  std::string texelNumber();
   /// The element's row-major number in the domain: an int expression without the need of brackets
   /// as an operand of `=`. A box of a linearised stream is numbered by `sk_domain_step`, the strides
   /// that a whole stream of its shape has.
@@ -34,12 +40,12 @@ class DomainText {
 
  private:
   void defineIndex();
-  std::string texelNumber();
 
   ProgramText& program_;
   Domain domain_;
   bool view_;
   int rank_;
+  bool layered_;
   std::string_view function_;
 };
 

@@ -17,6 +17,7 @@
 namespace sk::assemble {
 namespace {
 
+using program::Fit;
 using program::Kernel;
 using program::Parameter;
 using program::Role;
@@ -36,13 +37,24 @@ std::string_view name(Addressing addressing) {
     case Addressing::Aligned: return "aligned";
     case Addressing::Plane: return "plane";
     case Addressing::Linear: return "linear";
+    case Addressing::Layered: return "layered";
+  }
+  return {};
+}
+
+std::string_view name(Fit fit) {
+  switch (fit) {
+    case Fit::Same: return "";
+    case Fit::Stretched: return " stretched";
+    case Fit::Strided: return " strided";
   }
   return {};
 }
 
 /// "diffuse for glsl330: plane domain; u plane view nearby".
 std::string describe(const Profile& profile, const Kernel& kernel, const Variant& variant) {
-  std::string text = fmt::format("{} for {}: {}{} domain", kernel.name, profile.name, name(variant.domain),
+  std::string text = fmt::format("{} for {}: {}{}{} domain", kernel.name, profile.name,
+                                 variant.domainLayered ? "layered " : "", name(variant.domain),
                                  variant.domainView ? " view" : "");
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
@@ -54,7 +66,7 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
     if (!isRead) continue;
     const StreamAccess& access = variant.access[i];
     text += fmt::format("; {} {}{}{}{}", parameter.name, name(access.addressing), access.view ? " view" : "",
-                        access.nearby ? " nearby" : "", access.filtered ? " filtered" : "");
+                        access.nearby ? " nearby" : "", access.filtered ? " filtered" : name(access.fit));
   }
   return text;
 }
@@ -64,10 +76,11 @@ class KernelText {
   KernelText(const Kernel& kernel, const Variant& variant)
       : kernel_(kernel),
         variant_(variant),
-        domain_(program_, variant.domain, variant.domainView, variant.domainRank) {}
+        domain_(program_, variant.domain, variant.domainView, variant.domainRank, variant.domainLayered) {}
 
   std::string write(const Profile& profile) {
-    if (isList()) findEntry(program_, kernel_.parameters[variant_.task.sink]);
+    if (isList())
+      findEntry(program_, domain_, kernel_.parameters[variant_.task.sink], variant_.task.treeLayered);
     if (kernel_.usesLoops) domain_.leaveOutside();
     if (kernel_.usesIndex) domain_.index();
     if (kernel_.usesExtent) {
@@ -130,10 +143,11 @@ class KernelText {
   }
 
   void defineInput(const Parameter& parameter, const StreamAccess& access) {
-    declareSamplers(program_, parameter);
     const bool isAligned = access.addressing == Addressing::Aligned;
+    declareSamplers(program_, parameter,
+                    isAligned ? variant_.domainLayered : access.addressing == Addressing::Layered);
     if (parameter.usesIndex || !isAligned) defineInputIndex(program_, parameter, access, domain_.index());
-    const std::string texel = isAligned ? "ivec2(gl_FragCoord.xy)" : inputTexel(program_, parameter, access);
+    const Texel texel = isAligned ? domain_.texel() : inputTexel(program_, parameter, access);
     arguments_.push_back(fetch(program_, parameter, texel));
     defineExtent(program_, parameter);
   }

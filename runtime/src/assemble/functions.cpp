@@ -55,6 +55,13 @@ ivec2 sk_texel(int sk_n, int sk_s) {
   return ivec2(sk_n & ((1 << sk_s) - 1), sk_n >> sk_s);
 }
 )";
+    case Function::Layered:
+      return R"(
+// Texel t of layers of 1 << s rows each, which continue each other.
+ivec3 sk_layered(ivec2 sk_t, int sk_s) {
+  return ivec3(sk_t.x, sk_t.y & ((1 << sk_s) - 1), sk_t.y >> sk_s);
+}
+)";
     case Function::Wrap:
       return R"(
 // i + d in a period of n elements, for i >= 0 and any d.

@@ -21,6 +21,8 @@ using program::Parameter;
 
 constexpr std::int32_t largestSafeReach = 1 << 30;
 
+bool isLayered(const StreamAccess& access) { return access.addressing == Addressing::Layered; }
+
 class GatherText {
  public:
   GatherText(ProgramText& program, const Position& here, const Parameter& parameter,
@@ -193,15 +195,15 @@ class GatherText {
     lines.push_back(fmt::format("if ({}) return {};", outside, parameter_.border));
   }
 
-  std::string texel(std::vector<std::string>& lines) {
-    if (access_.addressing == Addressing::Linear) {
+  Texel texel(std::vector<std::string>& lines) {
+    if (access_.addressing != Addressing::Plane) {
       if (access_.view) lines.push_back(fmt::format("sk_p += {}{};", uniform("origin"), swizzle()));
       program_.require(Function::Texel);
       const std::string shift = program_.uniform("int", fmt::format("sk_shift_{}", parameter_.symbol));
-      return fmt::format("sk_texel({}, {})", number(), shift);
+      return {fmt::format("sk_texel({}, {})", number(), shift), isLayered(access_) ? shift : ""};
     }
     const std::string inside = rank_ == 1 ? "ivec2(sk_p, 0)" : rank_ == 2 ? "sk_p" : "sk_p.xy";
-    return access_.view ? fmt::format("{} + {}.xy", inside, uniform("origin")) : inside;
+    return {access_.view ? fmt::format("{} + {}.xy", inside, uniform("origin")) : inside};
   }
 
   std::string number() {
@@ -213,7 +215,7 @@ class GatherText {
   }
 
   void finish(const std::string& signature, std::vector<std::string>& lines) {
-    const std::string place = texel(lines);
+    const Texel place = texel(lines);
     lines.push_back(fmt::format("return {};", fetch(program_, parameter_, place)));
     program_.function(signature, lines);
   }
@@ -235,7 +237,7 @@ bool mayFilter(const Parameter& gather) {
 
 void defineGather(ProgramText& program, const Position& here, const Parameter& parameter,
                   const StreamAccess& access) {
-  declareSamplers(program, parameter);
+  declareSamplers(program, parameter, isLayered(access));
   GatherText gather(program, here, parameter, access);
   const bool interpolates = parameter.usesSample && !access.filtered;
   if (parameter.usesAt || interpolates) gather.defineAt();

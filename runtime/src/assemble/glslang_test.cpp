@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
 
+#include "assemble/count_tree.hpp"
+#include "assemble/point_program.hpp"
 #include "assemble/reduce_program.hpp"
 #include "assemble/sample_kernels.hpp"
 
@@ -148,6 +150,51 @@ TEST_CASE("glslang accepts every type and rank with every boundary") {
     }
   }
   REQUIRE(programs.count() == 8 * 4 * 2 * 2 * 4 * 3);
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts layers, of what is drawn and of what is read") {
+  Programs programs("layers");
+  constexpr std::array layered = {StreamAccess{Addressing::Aligned}, StreamAccess{Addressing::Layered},
+                                  StreamAccess{Addressing::Layered, true}};
+  for (const Profile& profile : profiles()) {
+    for (const Type& type : types) {
+      for (const StreamAccess& input : layered) {
+        for (const Domain domain : {Domain::Linear, Domain::LinearBox}) {
+          const samples::EveryAccess sample(*type.element, type.border, 2, Boundary::Border, -1);
+          programs.add(fragmentProgram(profile, sample.kernel(),
+                                       {.domain = domain,
+                                        .domainLayered = true,
+                                        .access = {{}, input, {Addressing::Layered, true}, {}, {}}}));
+        }
+      }
+    }
+    for (const bool source : {false, true}) {
+      for (const bool domain : {false, true}) {
+        programs.add(
+            reduceProgram(profile, samples::firstHit,
+                          {.walk = Walk::Partials, .sourceLayered = source, .domainLayered = domain}));
+        programs.add(treeProgram(profile, {true, source, domain}));
+        programs.add(treeProgram(profile, {false, source, domain}));
+      }
+    }
+  }
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts the points of a scatter output, in layers or not") {
+  Programs programs("points");
+  const Parameter sink{
+      .name = "r", .symbol = "r", .role = Role::Scatter, .element = &samples::int3Element, .rank = 1};
+  for (const Profile& profile : profiles()) {
+    for (const PointTextures& textures :
+         {PointTextures{false, false}, {false, true}, {true, false}, {true, true}}) {
+      programs.add(pointVertexProgram(profile, textures), "vert");
+      for (int step = 0; step <= static_cast<int>(PointStep::JoinHalves); ++step) {
+        programs.add(pointProgram(profile, sink, static_cast<PointStep>(step), textures));
+      }
+    }
+  }
   checkAccepted(programs);
 }
 

@@ -45,12 +45,28 @@ std::uint8_t decodedRank(const Placement& region) {
   return rank;
 }
 
-std::int32_t linearShift(std::int64_t count, std::int32_t textureLimit) {
-  assert(textureLimit > 0);
-  const int limit = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(textureLimit))) - 1;
-  std::int32_t shift = 0;
-  while (shift < limit && std::int64_t{1} << (2 * shift) < count) ++shift;
-  return shift;
+std::optional<TextureShape> linearTexture(std::int64_t count, const TextureLimits& limits) {
+  assert(count > 0 && limits.size > 0);
+  if (count > mostElements) return std::nullopt;
+  const auto divideUp = [&](int shift) { return static_cast<std::int32_t>(((count - 1) >> shift) + 1); };
+  const int widest = std::bit_width(static_cast<std::uint32_t>(limits.size)) - 1;
+  int shift = 0;
+  while (shift < widest && std::int64_t{1} << (2 * shift) < count) ++shift;
+  if (divideUp(shift) <= limits.size) return TextureShape{1 << shift, divideUp(shift), 0};
+  const auto unused = [&] { return (std::int64_t{divideUp(2 * shift)} << (2 * shift)) - count; };
+  while (unused() > count / 8 && divideUp(2 * (shift - 1)) <= limits.layers) --shift;
+  if (divideUp(2 * shift) > limits.layers) return std::nullopt;
+  return TextureShape{1 << shift, 1 << shift, divideUp(2 * shift)};
+}
+
+Placement linearPlacement(std::int64_t count, const TextureShape& texture) {
+  Placement placement;
+  placement.linear = true;
+  placement.layered = texture.layers > 0;
+  placement.extent = {static_cast<std::int32_t>(count), 1, 1, 1};
+  placement.stride = stridesOf(placement.extent);
+  placement.shift = std::bit_width(static_cast<std::uint32_t>(texture.width)) - 1;
+  return placement;
 }
 
 std::vector<Rect> drawnTexels(const Placement& region) {

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace sk::assemble {
@@ -15,14 +16,17 @@ namespace sk::assemble {
 using Index4 = std::array<std::int32_t, 4>;
 
 /// A region of a stream. Plane: element (x, y) of the stream is texel (x, y). Linear: element number
-/// n, row-major in the stream's whole shape, is texel (n & (1 << shift) - 1, n >> shift).
+/// n, row-major in the stream's whole shape, is texel (n & (1 << shift) - 1, n >> shift). Layered: linear in an
+/// array texture whose layers are as high as they are wide and continue each other, so that texel (x, y) is texel
+/// (x, y & (1 << shift) - 1) of layer y >> shift.
 struct Placement {
   bool linear = false;
-  bool view = false;             ///< less than the whole stream
+  bool layered = false;  ///< only where linear
+  bool view = false;  ///< less than the whole stream
   Index4 origin = {0, 0, 0, 0};  ///< first index of the region in its stream
   Index4 extent = {1, 1, 1, 1};  ///< shape of the region; missing dimensions 1
   Index4 stride = {1, 1, 1, 1};  ///< linear: stridesOf() the whole stream
-  std::int32_t shift = 0;        ///< linear: log2 of the texture's width
+  std::int32_t shift = 0;  ///< linear: log2 of the texture's width
 
   bool operator==(const Placement&) const = default;
 };
@@ -36,11 +40,32 @@ Index4 stridesOf(const Index4& extent);
 /// How many dimensions of an index in the region can be other than 0: Variant::domainRank for it.
 std::uint8_t decodedRank(const Placement& region);
 
-/// log2 of the width of the near-square texture that holds `count` linearised elements: the smallest
-/// power of two that is not below sqrt(count), but at most `textureLimit`.
-std::int32_t linearShift(std::int64_t count, std::int32_t textureLimit);
+/// How large a texture may be.
+struct TextureLimits {
+  std::int32_t size;  ///< width and height
+  std::int32_t layers;  ///< of an array texture
+};
 
-/// A rectangle of texels.
+/// How large a texture is.
+struct TextureShape {
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+  std::int32_t layers = 0;  ///< 0: it is no array texture
+  bool operator==(const TextureShape&) const = default;
+};
+
+/// The most elements that a stream may have: they are numbered by an int.
+inline constexpr std::int64_t mostElements = (std::int64_t{1} << 31) - 1;
+
+/// The texture of `count` linearised elements, 1 or more. Its width is the smallest power of two that is not below
+/// sqrt(count) but fits; where such a texture does not hold them, it has layers, of the largest size that leaves
+/// at most an eighth of the texels unused. None where those are too many.
+std::optional<TextureShape> linearTexture(std::int64_t count, const TextureLimits& limits);
+
+/// Where `count` elements lie in it by their numbers alone.
+Placement linearPlacement(std::int64_t count, const TextureShape& texture);
+
+/// A rectangle of texels. In a layered texture, rows count on from layer to layer.
 struct Rect {
   std::int32_t x, y, width, height;
   bool operator==(const Rect&) const = default;

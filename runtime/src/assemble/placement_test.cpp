@@ -12,11 +12,17 @@ using namespace sk::assemble;
 
 namespace {
 
-Placement linearStream(const Index4& extent, std::int32_t limit = 64) {
-  return {.linear = true,
-          .extent = extent,
-          .stride = stridesOf(extent),
-          .shift = linearShift(elements(extent), limit)};
+constexpr TextureLimits limits{64, 256};
+
+Placement linearStream(const Index4& extent) {
+  Placement placement = linearPlacement(elements(extent), *linearTexture(elements(extent), limits));
+  placement.extent = extent;
+  placement.stride = stridesOf(extent);
+  return placement;
+}
+
+std::int32_t widthOf(std::int64_t count, std::int32_t size) {
+  return linearTexture(count, {size, 256})->width;
 }
 
 /// How often each texel is drawn.
@@ -33,15 +39,17 @@ std::map<std::pair<int, int>, int> drawn(const Placement& region) {
 }  // namespace
 
 TEST_CASE("the texture of a linearised stream is near-square and as wide as a power of two") {
-  CHECK(linearShift(1, 8192) == 0);
-  CHECK(linearShift(2, 8192) == 1);
-  CHECK(linearShift(4, 8192) == 1);
-  CHECK(linearShift(5, 8192) == 2);
-  CHECK(linearShift(1 << 20, 8192) == 10);
-  CHECK(linearShift((1 << 20) + 1, 8192) == 11);
-  CHECK(linearShift(1 << 26, 8192) == 13);
-  CHECK(linearShift(1 << 26, 10000) == 13);
-  CHECK(linearShift(1 << 26, 4096) == 12);
+  CHECK(widthOf(1, 8192) == 1);
+  CHECK(widthOf(2, 8192) == 2);
+  CHECK(widthOf(4, 8192) == 2);
+  CHECK(widthOf(5, 8192) == 4);
+  CHECK(widthOf(1 << 20, 8192) == 1 << 10);
+  CHECK(widthOf((1 << 20) + 1, 8192) == 1 << 11);
+  CHECK(widthOf(1 << 26, 8192) == 1 << 13);
+  CHECK(widthOf(1 << 26, 10000) == 1 << 13);
+  CHECK(linearTexture(1 << 26, {4096, 256}) == TextureShape{4096, 4096, 4});
+  CHECK_FALSE(linearTexture(1 << 26, {4096, 3}));
+  CHECK_FALSE(linearTexture(mostElements + 1, {1 << 20, 256}));
 }
 
 TEST_CASE("a whole linearised stream draws its elements once and not the end of the last row") {

@@ -136,13 +136,22 @@ std::string outputName(const Parameter& parameter, std::size_t plane) {
   return planeName("sk_out", parameter, plane);
 }
 
-std::string fetchPlane(const Parameter& parameter, std::size_t plane, std::string_view texel) {
+/// In a bundle, the first layers of all planes come first, then the second ones.
+std::string placeOfPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
+                         const Texel& texel) {
+  const program::Layer& layer = layerOf(parameter, plane);
+  if (layer.bundle < 0) return place(program, texel);
+  if (texel.shift.empty()) return fmt::format("ivec3({}, {})", texel.at, layer.layer);
+  return fmt::format("{} * ivec3(1, 1, {}) + ivec3(0, 0, {})", place(program, texel), layer.count,
+                     layer.layer);
+}
+
+std::string fetchPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
+                       const Texel& texel) {
   static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
   const Field& field = parameter.element->fields[plane];
-  const program::Layer& layer = layerOf(parameter, plane);
-  const std::string place =
-      layer.bundle < 0 ? std::string(texel) : fmt::format("ivec3({}, {})", texel, layer.layer);
-  std::string value = fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane), place,
+  std::string value = fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane),
+                                  placeOfPlane(program, parameter, plane, texel),
                                   swizzles[static_cast<std::size_t>(texelWidth(field) - 1)]);
   if (field.scalar == Scalar::Bool) {
     return field.width == 1 ? value + " != 0u" : fmt::format("notEqual({}, uvec{}(0u))", value, field.width);
@@ -177,12 +186,21 @@ bool isStruct(const Element& element) {
   return !first.path.empty() || first.part >= 0;
 }
 
-void declareSamplers(ProgramText& program, const Parameter& parameter) {
+std::string place(ProgramText& program, const Texel& texel) {
+  if (texel.shift.empty()) return texel.at;
+  program.require(Function::Layered);
+  return fmt::format("sk_layered({}, {})", texel.at, texel.shift);
+}
+
+std::string samplerType(std::string_view sampler, bool isArray) {
+  return isArray ? fmt::format("highp {}Array", sampler) : std::string(sampler);
+}
+
+void declareSamplers(ProgramText& program, const Parameter& parameter, bool layered) {
   for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
     const std::string_view sampler = spelling(parameter.element->fields[plane]).sampler;
-    const bool isOwn = layerOf(parameter, plane).bundle < 0;
-    program.uniform(isOwn ? std::string(sampler) : fmt::format("highp {}Array", sampler),
-                    samplerName(parameter, plane));
+    const bool isArray = layered || layerOf(parameter, plane).bundle >= 0;
+    program.uniform(samplerType(sampler, isArray), samplerName(parameter, plane));
   }
 }
 
@@ -194,16 +212,17 @@ void declareOutputs(ProgramText& program, const Parameter& parameter) {
   }
 }
 
-std::string fetch(ProgramText& program, const Parameter& parameter, std::string_view texel) {
+std::string fetch(ProgramText& program, const Parameter& parameter, const Texel& texel) {
   const Element& element = *parameter.element;
-  if (!isStruct(element)) return fetchPlane(parameter, 0, texel);
+  if (!isStruct(element)) return fetchPlane(program, parameter, 0, texel);
   std::vector<std::string> statements = {fmt::format("{} sk_e;", element.glsl)};
   for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
-    assignField(statements, "sk_e", element.fields[plane], fetchPlane(parameter, plane, "sk_t"));
+    assignField(statements, "sk_e", element.fields[plane],
+                fetchPlane(program, parameter, plane, {"sk_t", texel.shift}));
   }
   statements.emplace_back("return sk_e;");
   program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", element.glsl, parameter.symbol), statements);
-  return fmt::format("sk_fetch_{}({})", parameter.symbol, texel);
+  return fmt::format("sk_fetch_{}({})", parameter.symbol, texel.at);
 }
 
 std::string resultVariable(ProgramText& program, const Parameter& parameter) {
@@ -213,14 +232,15 @@ std::string resultVariable(ProgramText& program, const Parameter& parameter) {
   return name;
 }
 
-void copyPlanes(ProgramText& program, const Parameter& parameter, std::string_view texel) {
+void copyPlanes(ProgramText& program, const Parameter& parameter, const Texel& texel) {
   static constexpr std::array<std::string_view, 5> swizzles = {"", ".x", ".xy", "", ""};
-  declareSamplers(program, parameter);
+  declareSamplers(program, parameter, !texel.shift.empty());
   declareOutputs(program, parameter);
   for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
-    program.statement(fmt::format(
-        "{} = texelFetch({}, {}, 0){};", outputName(parameter, plane), samplerName(parameter, plane), texel,
-        swizzles[static_cast<std::size_t>(texelWidth(parameter.element->fields[plane]))]));
+    program.statement(
+        fmt::format("{} = texelFetch({}, {}, 0){};", outputName(parameter, plane),
+                    samplerName(parameter, plane), place(program, texel),
+                    swizzles[static_cast<std::size_t>(texelWidth(parameter.element->fields[plane]))]));
   }
 }
 

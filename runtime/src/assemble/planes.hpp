@@ -16,15 +16,27 @@ namespace sk::assemble {
 /// Whether an element, a struct or a matrix, is rebuilt part by part; else it is its only plane.
 bool isStruct(const program::Element& element);
 
+/// Where an element lies in its textures.
+struct Texel {
+  std::string at;           ///< an ivec2 expression
+  std::string shift = {};   ///< of layered textures, an int expression: log2 of the rows of a layer
+};
+
+/// The texel as texelFetch() takes it: an ivec2 expression, or an ivec3 of a layered texture.
+std::string place(ProgramText& program, const Texel& texel);
+
+/// The type of a sampler of 2-D textures ("isampler2D"), or of array textures.
+std::string samplerType(std::string_view sampler, bool isArray);
+
 /// Declares the samplers of the parameter's planes.
-void declareSamplers(ProgramText& program, const program::Parameter& parameter);
+void declareSamplers(ProgramText& program, const program::Parameter& parameter, bool layered);
 
 /// Declares the outputs of the parameter's planes.
 void declareOutputs(ProgramText& program, const program::Parameter& parameter);
 
-/// An expression for the element at a texel, given as an ivec2 expression. Structs are fetched by a
-/// function, which the first such expression of a parameter defines.
-std::string fetch(ProgramText& program, const program::Parameter& parameter, std::string_view texel);
+/// An expression for the element at a texel. Structs are fetched by a function, which the first such
+/// expression of a parameter defines.
+std::string fetch(ProgramText& program, const program::Parameter& parameter, const Texel& texel);
 
 /// An lvalue of the element's type to which main() may compute the parameter's new element: its
 /// output itself where that has the same type, else a local variable that is declared here.
@@ -32,7 +44,7 @@ std::string resultVariable(ProgramText& program, const program::Parameter& param
 
 /// Declares the samplers and outputs of the parameter's planes, and copies the texels at `texel` from the one to
 /// the other as they are.
-void copyPlanes(ProgramText& program, const program::Parameter& parameter, std::string_view texel);
+void copyPlanes(ProgramText& program, const program::Parameter& parameter, const Texel& texel);
 
 /// Statements that copy an element-typed variable to the parameter's outputs; none where the
 /// variable is the output.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/domain.hpp"
 #include "assemble/planes.hpp"
 #include "assemble/program_text.hpp"
 
@@ -15,8 +16,6 @@ namespace {
 using program::Parameter;
 using program::Scalar;
 using program::ScatterOp;
-
-constexpr std::string_view here = "ivec2(gl_FragCoord.xy)";
 
 std::string vectorOf(std::string_view scalar, std::string_view vector, int width) {
   return width == 1 ? std::string(scalar) : fmt::format("{}{}", vector, width);
@@ -37,8 +36,12 @@ std::string_view name(PointStep step) {
 
 class PointText {
  public:
-  PointText(const Parameter& sink, PointStep step)
-      : sink_(sink), step_(step), field_(sink.element->fields.front()) {}
+  PointText(const Parameter& sink, PointStep step, const PointTextures& textures)
+      : sink_(sink),
+        step_(step),
+        textures_(textures),
+        field_(sink.element->fields.front()),
+        domain_(program_, Domain::Linear, false, 1, textures.elements) {}
 
   std::string write(const Profile& profile) {
     if (hasPoints(step_)) {
@@ -47,7 +50,7 @@ class PointText {
       program_.uniform("int", "sk_list_shift");
       program_.statement("ivec2 sk_at = sk_texel(sk_entry, sk_list_shift);");
     } else {
-      program_.statement(fmt::format("ivec2 sk_at = {};", here));
+      program_.statement(fmt::format("ivec2 sk_at = {};", domain_.texel().at));
     }
     body();
     program::Kernel declarations;
@@ -57,7 +60,7 @@ class PointText {
  private:
   void body() {
     switch (step_) {
-      case PointStep::Store: return copyPlanes(program_, sink_, "sk_at");
+      case PointStep::Store: return copyPlanes(program_, sink_, texel());
       case PointStep::SplitLimbs:
       case PointStep::AddLimbs: return splitLimbs();
       case PointStep::JoinLimbs: return joinLimbs();
@@ -67,6 +70,17 @@ class PointText {
       case PointStep::Lower: return lower();
       case PointStep::JoinHalves: return joinHalves();
     }
+  }
+
+  /// `sk_at`, in the list or in the output.
+  Texel texel() {
+    if (hasPoints(step_)) return {"sk_at", textures_.list ? "sk_list_shift" : ""};
+    return {"sk_at", domain_.texel().shift};
+  }
+  /// A texel of what an earlier step has drawn.
+  std::string drawn(const std::string& sampler) {
+    program_.uniform(samplerType("sampler2D", textures_.elements), sampler);
+    return fmt::format("texelFetch({}, {}, 0)", sampler, place(program_, domain_.texel()));
   }
 
   int width() const { return field_.width; }
@@ -89,8 +103,8 @@ class PointText {
 
   /// `sk_bits`, the bits of the list's value or of the element.
   void readBits() {
-    declareSamplers(program_, sink_);
-    program_.statement(fmt::format("{0} sk_bits = {0}({1});", uvec(), fetch(program_, sink_, "sk_at")));
+    declareSamplers(program_, sink_, !texel().shift.empty());
+    program_.statement(fmt::format("{0} sk_bits = {0}({1});", uvec(), fetch(program_, sink_, texel())));
   }
 
   /// The same in the order in which the largest is wanted.
@@ -125,8 +139,7 @@ class PointText {
         {"uvec4 sk_u = uvec4(sk_l);", "return sk_u.x + (sk_u.y << 8) + (sk_u.z << 16) + (sk_u.w << 24);"});
     std::vector<std::string> components;
     for (int c = 0; c < width(); ++c) {
-      const std::string sampler = program_.uniform("sampler2D", fmt::format("sk_limbs{}", c));
-      components.push_back(fmt::format("sk_join(texelFetch({}, sk_at, 0))", sampler));
+      components.push_back(fmt::format("sk_join({})", drawn(fmt::format("sk_limbs{}", c))));
     }
     finishElement(fmt::format("{}({})", uvec(), fmt::join(components, ", ")));
   }
@@ -141,8 +154,7 @@ class PointText {
   void lower() {
     readOrdered();
     declareHalf("sk_half");
-    const std::string won = program_.uniform("sampler2D", "sk_upper");
-    program_.statement(fmt::format("{} sk_won = texelFetch({}, {}, 0){};", vec(), won, here, swizzle()));
+    program_.statement(fmt::format("{} sk_won = {}{};", vec(), drawn("sk_upper"), swizzle()));
     std::vector<std::string> components;
     for (int c = 0; c < width(); ++c) {
       const std::string bits = component("sk_bits", c);
@@ -155,9 +167,8 @@ class PointText {
 
   void joinHalves() {
     declareOutputs(program_, sink_);
-    for (const std::string_view half : {"sk_upper", "sk_lower"}) {
-      program_.statement(fmt::format("{0} {1}_half = {0}(texelFetch({1}, sk_at, 0){2});", uvec(),
-                                     program_.uniform("sampler2D", half), swizzle()));
+    for (const char* half : {"sk_upper", "sk_lower"}) {
+      program_.statement(fmt::format("{0} {1}_half = {0}({2}{3});", uvec(), half, drawn(half), swizzle()));
     }
     finishElement("sk_upper_half << 16 | sk_lower_half", flipped());
   }
@@ -172,8 +183,10 @@ class PointText {
 
   const Parameter& sink_;
   PointStep step_;
+  const PointTextures& textures_;
   const program::Field& field_;
   ProgramText program_;
+  DomainText domain_;      ///< texels of the output
 };
 
 }  // namespace
@@ -193,29 +206,38 @@ bool hasPoints(PointStep step) {
   return false;
 }
 
-std::string pointVertexProgram(const Profile& profile) {
-  return fmt::format(R"({}
+std::string pointVertexProgram(const Profile& profile, const PointTextures& textures) {
+  std::string functions(text(Function::Texel));
+  std::string at = "sk_texel(sk_entry, sk_list_shift)";
+  if (textures.list) {
+    functions += text(Function::Layered);
+    at = fmt::format("sk_layered({}, sk_list_shift)", at);
+  }
+  return fmt::format(R"({0}
 // points at the texels of a list
-{}uniform isampler2D sk_targets;
+{1}uniform {2} sk_targets;
 uniform int sk_list_shift;
 uniform int sk_first;
 uniform ivec4 sk_size;
+uniform int sk_domain_row;
 flat out int sk_entry;
-
+{3}
 void main() {{
   sk_entry = sk_first + gl_VertexID;
-  ivec2 sk_t = texelFetch(sk_targets,
-                          ivec2(sk_entry & ((1 << sk_list_shift) - 1), sk_entry >> sk_list_shift), 0).xy;
+  ivec2 sk_t = texelFetch(sk_targets, {4}, 0).xy - ivec2(0, sk_domain_row);
+  bool sk_inside = sk_t.x >= 0 && sk_t.y >= 0 && sk_t.y < sk_size.y;
   gl_PointSize = 1.0;
-  gl_Position = sk_t.x < 0 ? vec4(2.0, 2.0, 2.0, 1.0)
-                           : vec4(vec2(2 * sk_t + 1) / vec2(sk_size.xy) - 1.0, 0.0, 1.0);
+  gl_Position = sk_inside ? vec4(vec2(2 * sk_t + 1) / vec2(sk_size.xy) - 1.0, 0.0, 1.0)
+                          : vec4(2.0, 2.0, 2.0, 1.0);
 }}
 )",
-                     profile.version, profile.es ? "precision highp isampler2D;\n" : "");
+                     profile.version, profile.es ? "precision highp int;\nprecision highp isampler2D;\n" : "",
+                     samplerType("isampler2D", textures.list), functions, at);
 }
 
-std::string pointProgram(const Profile& profile, const Parameter& sink, PointStep step) {
-  return PointText(sink, step).write(profile);
+std::string pointProgram(const Profile& profile, const Parameter& sink, PointStep step,
+                         const PointTextures& textures) {
+  return PointText(sink, step, textures).write(profile);
 }
 
 }  // namespace sk::assemble

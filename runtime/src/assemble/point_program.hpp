@@ -38,14 +38,23 @@ enum class PointStep : std::uint8_t {
 /// Whether the step draws the list, else the region.
 bool hasPoints(PointStep step);
 
+/// Which textures are array textures.
+struct PointTextures {
+  bool list = false;
+  bool elements = false;  ///< of the output, and what other steps draw
+  auto operator<=>(const PointTextures&) const = default;
+};
+
 /// The vertex program of points. Uniforms: `sk_targets`, the texels of the entries (sampler), `sk_list_shift`,
-/// log2 of its width, `sk_first`, the entry of the first point, and `sk_size` (ivec4), width and height of
-/// the target. A texel with negative coordinates is nowhere.
-std::string pointVertexProgram(const Profile& profile);
+/// log2 of its width, `sk_first`, the entry of the first point, `sk_size` (ivec4), width and height of
+/// the target, and `sk_domain_row`, the first row of its layer. A texel with negative coordinates is nowhere.
+std::string pointVertexProgram(const Profile& profile, const PointTextures& textures);
 
 /// The fragment program of a step for scatter output `sink`. Samplers, as far as the step reads them:
 /// samplerName() the values of the list, or the elements where it is no step of points; `sk_limbs0` ...,
-/// `sk_upper`, `sk_lower`: what earlier steps have drawn.
-std::string pointProgram(const Profile& profile, const program::Parameter& sink, PointStep step);
+/// `sk_upper`, `sk_lower`: what earlier steps have drawn. Where the elements have layers, `sk_domain_row` and
+/// `sk_domain_shift` are the first row of the one that is drawn, and log2 of its rows.
+std::string pointProgram(const Profile& profile, const program::Parameter& sink, PointStep step,
+                         const PointTextures& textures);
 
 }  // namespace sk::assemble

@@ -51,6 +51,7 @@ std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a + b - 1) / b; 
 void addDomain(ReducePass& pass, const Placement& domain, bool usesIndex) {
   pass.variant.domain = domainOf(domain);
   pass.variant.domainView = !domain.linear && domain.origin != Index4{};
+  pass.variant.domainLayered = domain.layered;
   if (usesIndex || pass.variant.domain == Domain::LinearBox) pass.variant.domainRank = decodedRank(domain);
   pass.draws = drawnTexels(domain);
   pass.uniforms.push_back({"sk_domain_origin", true, domain.origin});
@@ -92,22 +93,24 @@ class Planner {
                      {"sk_blocks", false, {blocks_}},
                      {"sk_item_shape", true, input_.extent}};
     setSource(pass, walk);
-    setDomain(pass, pass.toResult ? result_ : partials(runs));
+    setDomain(pass, pass.toResult ? result_ : partials(pass, runs));
     left_ = runs;
     passes_.push_back(std::move(pass));
   }
 
-  /// Where a pass puts `runs` partial results of each block.
-  Placement partials(std::int32_t runs) const {
-    Placement placement{.linear = true};
-    placement.extent[0] = runs * blocks_;
-    placement.stride = stridesOf(placement.extent);
-    placement.shift = linearShift(placement.extent[0], limits_.textureSize);
-    return placement;
+  /// Where a pass puts `runs` partial results of each block: fewer than there are elements, for which there
+  /// is a texture.
+  Placement partials(ReducePass& pass, std::int32_t runs) const {
+    const std::int64_t count = std::int64_t{runs} * blocks_;
+    const std::optional<TextureShape> texture = linearTexture(count, limits_.texture);
+    assert(texture);
+    pass.texture = *texture;
+    return linearPlacement(count, *texture);
   }
 
   void setSource(ReducePass& pass, Walk walk) {
     pass.variant.walk = walk;
+    pass.variant.sourceLayered = walk == Walk::Partials ? partialsLayered_ : input_.layered;
     if (walk == Walk::Partials) {
       pass.uniforms.push_back({"sk_shift", false, {sourceShift_}});
     } else if (walk == Walk::Plane) {
@@ -154,9 +157,7 @@ class Planner {
     addDomain(pass, domain, isByBlocks && !pass.variant.reshaped);
     if (pass.toResult) return;
     sourceShift_ = domain.shift;
-    pass.width = 1 << domain.shift;
-    pass.height = divideUp(domain.extent[0], pass.width);
-    assert(pass.height <= limits_.textureSize);
+    partialsLayered_ = domain.layered;
   }
 
   const Placement& input_;
@@ -164,8 +165,9 @@ class Planner {
   const ReduceLimits& limits_;
   const Division& division_;
   std::int32_t blocks_;
-  std::int32_t left_;               ///< elements or partial results of each block
-  std::int32_t sourceShift_ = 0;    ///< of the partial results' texture
+  std::int32_t left_;  ///< elements or partial results of each block
+  std::int32_t sourceShift_ = 0;  ///< of the partial results' texture
+  bool partialsLayered_ = false;  ///< whether it is
   std::vector<ReducePass> passes_;
 };
 

@@ -4,7 +4,7 @@
 //
 //   source = the inputs' planes
 //   for each pass: target = pass.toResult ? the results' planes
-//                                         : new planes of the accumulators' types, pass.width x pass.height
+//                                         : new planes of the accumulators' types and of pass.texture's shape
 //                  use reduceProgram(pass.variant), set pass.uniforms, bind source and target,
 //                  draw each rectangle of pass.draws (viewport = rectangle);  source = target
 //
@@ -28,22 +28,22 @@ namespace sk::assemble {
 /// Value of an `int` or `ivec4` uniform. A name that the program turned out not to use (location -1)
 /// is to be skipped.
 struct UniformValue {
-  std::string_view name;   ///< static
+  std::string_view name;  ///< static
   bool isVector;
-  Index4 value;            ///< an int is value[0]
+  Index4 value;  ///< an int is value[0]
 };
 
 struct ReducePass {
   ReduceVariant variant;
-  bool toResult;                        ///< renders into the result, else into a temporary
-  std::int32_t width, height;           ///< of the temporary; 0 where toResult
+  bool toResult;  ///< renders into the result, else into a temporary
+  TextureShape texture;  ///< of the temporary; of no size where toResult
   std::vector<Rect> draws;
   std::vector<UniformValue> uniforms;
 };
 
 struct ReduceLimits {
-  std::int32_t textureSize;             ///< largest width and height
-  std::int32_t fanIn = 32;              ///< elements a run, 2 or more
+  TextureLimits texture;
+  std::int32_t fanIn = 32;  ///< elements a run, 2 or more
 };
 
 /// Whether a fold asks where its elements are, so that it has to find them by their index.
@@ -51,7 +51,7 @@ bool asksForPlace(const program::Kernel& fold);
 
 /// How the elements are divided into blocks, and found.
 struct Division {
-  Index4 blocks;         ///< in each dimension of the elements: divisors of their extents
+  Index4 blocks;  ///< in each dimension of the elements: divisors of their extents
   bool byIndex = false;  ///< Walk::Index; of the elements' placement only the extent counts then
 };
 

@@ -221,6 +221,13 @@ class Fragment {
   int number_ = 0, block_ = 0, first_ = 0, count_ = 0, at_ = 0;
 };
 
+constexpr std::int32_t mostLayers = 8;
+
+/// Layers are as good as one tall texture.
+std::pair<int, int> sizeOf(const TextureShape& texture) {
+  return {texture.width, texture.height * std::max(texture.layers, 1)};
+}
+
 /// As the runtime lays streams out; nothing where the stream does not fit in one texture.
 std::optional<Region> layOut(const Index4& extent, int rank, const Index4& before, const Index4& after,
                              int limit) {
@@ -228,12 +235,14 @@ std::optional<Region> layOut(const Index4& extent, int rank, const Index4& befor
   Region region{{.view = whole != extent, .origin = before, .extent = extent}, whole[0], whole[1]};
   if (rank <= 2 && whole[0] <= limit && whole[1] <= limit) return region;
   Placement& placement = region.placement;
+  const std::optional<TextureShape> texture = linearTexture(elements(whole), {limit, mostLayers});
+  if (!texture) return {};
+  const Placement linear = linearPlacement(elements(whole), *texture);
   placement.linear = true;
+  placement.layered = linear.layered;
   placement.stride = stridesOf(whole);
-  placement.shift = linearShift(elements(whole), limit);
-  region.width = 1 << placement.shift;
-  region.height = static_cast<int>((elements(whole) + region.width - 1) / region.width);
-  if (region.height > limit) return {};
+  placement.shift = linear.shift;
+  std::tie(region.width, region.height) = sizeOf(*texture);
   return region;
 }
 
@@ -265,7 +274,9 @@ void draw(const ReducePass& pass, Texture& source, const Region& input, Texture&
 Texture execute(const std::vector<ReducePass>& passes, Texture source, const Region& input,
                 const Region& result) {
   for (const ReducePass& pass : passes) {
-    Texture target = pass.toResult ? Texture(result.width, result.height) : Texture(pass.width, pass.height);
+    const auto [width, height] =
+        pass.toResult ? std::pair(result.width, result.height) : sizeOf(pass.texture);
+    Texture target(width, height);
     draw(pass, source, input, target);
     source = std::move(target);
   }
@@ -281,9 +292,9 @@ void checkSchedule(const std::vector<ReducePass>& passes, const ReduceLimits& li
   for (const ReducePass& pass : passes) {
     programs.insert(pass.variant);
     REQUIRE(pass.toResult == (&pass == &passes.back()));
-    REQUIRE((pass.width <= limits.textureSize && pass.height <= limits.textureSize));
+    REQUIRE((pass.texture.width <= limits.texture.size && pass.texture.height <= limits.texture.size));
   }
-  REQUIRE(programs.size() <= 3);
+  REQUIRE(programs.size() <= (passes.front().variant.domainLayered ? 4 : 3));
 }
 
 /// Reduces to `blocks` and compares every element of the result.
@@ -330,7 +341,7 @@ constexpr Index4 none{};
 
 /// Every block shape, between whole streams, views, and both; and to a value.
 void checkShape(const Index4& extent, int rank, const ReduceLimits& limits) {
-  CAPTURE(extent[0], extent[1], extent[2], extent[3], rank, limits.textureSize, limits.fanIn);
+  CAPTURE(extent[0], extent[1], extent[2], extent[3], rank, limits.texture.size, limits.fanIn);
   Index4 before{}, after{};
   for (std::size_t d = 0; d < static_cast<std::size_t>(rank); ++d) {
     before[d] = d % 2 == 0 ? 2 : 1;
@@ -339,9 +350,9 @@ void checkShape(const Index4& extent, int rank, const ReduceLimits& limits) {
   Index4 rowsBefore{};   // a view of whole rows, planes, ...: its elements are consecutive
   rowsBefore[static_cast<std::size_t>(rank - 1)] = 3;
   const Region value{valuePlacement(), 1, 1};
-  const auto inputs = {layOut(extent, rank, none, none, limits.textureSize),
-                       layOut(extent, rank, before, after, limits.textureSize),
-                       layOut(extent, rank, rowsBefore, none, limits.textureSize)};
+  const auto inputs = {layOut(extent, rank, none, none, limits.texture.size),
+                       layOut(extent, rank, before, after, limits.texture.size),
+                       layOut(extent, rank, rowsBefore, none, limits.texture.size)};
   for (const auto& input : inputs) {
     if (input) check(*input, value, limits, {1, 1, 1, 1});
   }
@@ -351,7 +362,7 @@ void checkShape(const Index4& extent, int rank, const ReduceLimits& limits) {
         for (const auto w : divisors(extent[3])) {
           const Index4 blocks = {x, y, z, w};
           for (const Index4& margin : {none, before}) {
-            const auto result = layOut(blocks, rank, margin, none, limits.textureSize);
+            const auto result = layOut(blocks, rank, margin, none, limits.texture.size);
             for (const auto& input : inputs) {
               if (input && result) check(*input, *result, limits, blocks, margin != none);
             }
@@ -367,21 +378,31 @@ void checkShape(const Index4& extent, int rank, const ReduceLimits& limits) {
 TEST_CASE("reductions of rank 1 keep the order, for every length to 70") {
   for (const int limit : {8, 64}) {
     for (const int fanIn : {2, 3, 32}) {
-      for (int n = 1; n <= 70; ++n) checkShape({n, 1, 1, 1}, 1, {limit, fanIn});
+      for (int n = 1; n <= 70; ++n) checkShape({n, 1, 1, 1}, 1, {{limit, mostLayers}, fanIn});
     }
   }
 }
 
 TEST_CASE("reductions of long streams keep the order") {
-  for (const int n : {127, 128, 1000, 1021, 1024, 1025, 3600, 4093}) checkShape({n, 1, 1, 1}, 1, {64, 16});
+  for (const int n : {127, 128, 1000, 1021, 1024, 1025, 3600, 4093})
+    checkShape({n, 1, 1, 1}, 1, {{64, mostLayers}, 16});
+}
+
+TEST_CASE("reductions of streams in layers keep the order") {
+  for (const int n : {65, 200, 509}) checkShape({n, 1, 1, 1}, 1, {{8, mostLayers}, 3});
+  checkShape({12, 36, 1, 1}, 2, {{8, mostLayers}, 4});
+  checkShape({8, 6, 10, 1}, 3, {{8, mostLayers}, 5});
+  CHECK(planReduction(linearPlacement(500, {8, 8, 8}), valuePlacement(), {{8, mostLayers}, 2})
+            .front()
+            .variant.domainLayered);
 }
 
 TEST_CASE("reductions of rank 2 keep the order") {
   const auto lengths = {1, 2, 3, 4, 6, 7, 8, 9, 13, 16, 31, 36, 64, 67};
   for (const int height : lengths) {
     for (const int width : lengths) {
-      checkShape({width, height, 1, 1}, 2, {64, 4});
-      if (width * height <= 64) checkShape({width, height, 1, 1}, 2, {8, 3});
+      checkShape({width, height, 1, 1}, 2, {{64, mostLayers}, 4});
+      if (width * height <= 64) checkShape({width, height, 1, 1}, 2, {{8, mostLayers}, 3});
     }
   }
 }
@@ -390,7 +411,7 @@ TEST_CASE("reductions of rank 3 keep the order") {
   const auto lengths = {1, 2, 3, 5, 6, 8};
   for (const int depth : lengths) {
     for (const int height : lengths) {
-      for (const int width : lengths) checkShape({width, height, depth, 1}, 3, {64, 5});
+      for (const int width : lengths) checkShape({width, height, depth, 1}, 3, {{64, mostLayers}, 5});
     }
   }
 }
@@ -400,7 +421,8 @@ TEST_CASE("reductions of rank 4 keep the order") {
   for (const int duration : lengths) {
     for (const int depth : lengths) {
       for (const int height : lengths) {
-        for (const int width : lengths) checkShape({width, height, depth, duration}, 4, {64, 3});
+        for (const int width : lengths)
+          checkShape({width, height, depth, duration}, 4, {{64, mostLayers}, 3});
       }
     }
   }
@@ -434,7 +456,7 @@ TEST_CASE("a linearised stream is seen with as few axes as it allows") {
   const auto walk = [](const Index4& extent, const Index4& blocks) {
     Placement input{.linear = true, .extent = extent, .stride = stridesOf(extent), .shift = 4};
     Placement result{.linear = true, .extent = blocks, .stride = stridesOf(blocks), .shift = 4};
-    const ReduceVariant variant = planReduction(input, result, {1024}).front().variant;
+    const ReduceVariant variant = planReduction(input, result, {{1024, mostLayers}}).front().variant;
     return std::pair(variant.walk, int{variant.axes});
   };
   CHECK(walk({4, 5, 6, 7}, {1, 1, 1, 1}).first == Walk::Line);
@@ -447,10 +469,10 @@ TEST_CASE("a linearised stream is seen with as few axes as it allows") {
 
 TEST_CASE("a reduction to a value takes two programs and the fewest passes") {
   const Placement square{.extent = {4096, 4096, 1, 1}};
-  const auto passes = planReduction(square, valuePlacement(), {16384, 32});
+  const auto passes = planReduction(square, valuePlacement(), {{16384, 256}, 32});
   REQUIRE(passes.size() == 5);
   CHECK(passes[0].variant.walk == Walk::Plane);
-  CHECK((passes[0].width == 1024 && passes[0].height == 512));
+  CHECK(passes[0].texture == TextureShape{1024, 512, 0});
   for (std::size_t i = 1; i < passes.size(); ++i) CHECK(passes[i].variant == passes[1].variant);
   CHECK(passes.back().draws == std::vector<Rect>{{0, 0, 1, 1}});
 }

@@ -62,7 +62,8 @@ class ReductionText {
       : reduction_(reduction),
         variant_(variant),
         kernel_(kernelOf(reduction, variant.walk)),
-        domain_(program_, variant.domain, variant.domainView, variant.domainRank, "sk_result") {
+        domain_(program_, variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
+                "sk_result") {
     for (const Parameter& parameter : kernel_.parameters) {
       if (parameter.role == Role::Input) inputs_.push_back(&parameter);
       if (parameter.role == Role::Accumulator) accumulators_.push_back(&parameter);
@@ -136,7 +137,9 @@ class ReductionText {
         return;
       case Role::Iterator: arguments_.push_back(iteratorValue(program_, parameter, access, item())); return;
       case Role::Input:
-        declareSamplers(program_, parameter);
+        declareSamplers(
+            program_, parameter,
+            variant_.walk == Walk::Index ? access.addressing == Addressing::Layered : variant_.sourceLayered);
         if (variant_.walk == Walk::Index) defineInputIndex(program_, parameter, access, item());
         defineExtent(program_, parameter);
         return;
@@ -249,7 +252,7 @@ class ReductionText {
     }
     statement("int sk_end = sk_corner.x + sk_block_shape.x;");
     step_ = {"++sk_p.x;", "if (sk_p.x == sk_end) sk_p = ivec2(sk_corner.x, sk_p.y + 1);"};
-    first_ = next_ = "sk_p";
+    first_ = next_ = {"sk_p"};
   }
 
   std::string blockIndex() {
@@ -311,7 +314,7 @@ class ReductionText {
   // ---- the fold ---------------------------------------------------------------------------------
 
   /// The element of an input at a texel of the walk, or at a place of its own.
-  std::string element(std::size_t i, std::string_view texel) {
+  std::string element(std::size_t i, const Texel& texel) {
     const Parameter& input = kernel_.parameters[i];
     if (!isNeeded(input, variant_.specs)) return absentElement(input);
     if (variant_.walk != Walk::Index) return fetch(program_, input, texel);
@@ -371,10 +374,10 @@ class ReductionText {
     statement("}");
   }
 
-  std::string numberedTexel(std::string_view number) {
+  Texel numberedTexel(std::string_view number) {
     program_.require(Function::Texel);
     integers({"sk_shift"});
-    return fmt::format("sk_texel({}, sk_shift)", number);
+    return {fmt::format("sk_texel({}, sk_shift)", number), variant_.sourceLayered ? "sk_shift" : ""};
   }
 
   void integers(std::initializer_list<std::string_view> uniforms) {
@@ -393,8 +396,8 @@ class ReductionText {
   std::vector<std::string> arguments_;   ///< those that are the same for all elements, and iterators
   ProgramText program_;
   DomainText domain_;
-  std::string first_;                 ///< texel of the run's first element
-  std::string next_;                  ///< texel of its element sk_k
+  Texel first_;                       ///< of the run's first element
+  Texel next_;                        ///< of its element sk_k
   std::vector<std::string> step_;     ///< statements that go from one element to the next
 };
 

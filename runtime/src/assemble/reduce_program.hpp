@@ -40,6 +40,8 @@ struct ReduceVariant {
   bool domainView = false;       ///< Domain::Plane: the domain's origin is not (0, 0)
   std::uint8_t domainRank = 1;   ///< Domain::LinearBox: rank of its stream
   std::uint8_t axes = 1;         ///< Walk::Box and Walk::Index
+  bool sourceLayered = false;    ///< what is read, but for Walk::Index
+  bool domainLayered = false;
   bool reshaped = false;         ///< the result's dimensions are not those of the blocks
   std::uint8_t firstPlane = 0;   ///< of those of all accumulators: the first that is written,
   std::uint8_t planeCount = 0;   ///< and how many; 0 is all of them

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/count_tree.hpp"
 #include "assemble/planes.hpp"
 
 namespace sk::assemble {
@@ -93,10 +94,9 @@ void storeCount(ProgramText& program, const Parameter& sink) {
 
 void defineIgnored(ProgramText& program, const Parameter& sink) { program.function(signatureOf(sink), {}); }
 
-void findEntry(ProgramText& program, const Parameter& sink) {
+void findEntry(ProgramText& program, DomainText& domain, const Parameter& sink, bool treeLayered) {
   program.variable("int", "sk_wanted");
-  program.prologue(fmt::format("int sk_entry = int(gl_FragCoord.y) << {} | int(gl_FragCoord.x);",
-                               program.uniform("int", "sk_domain_shift")));
+  program.prologue(fmt::format("int sk_entry = {};", domain.texelNumber()));
   if (!isCounted(sink)) {
     const bool isOnly = slotsOf(sink) == 1;
     program.prologue(isOnly ? "int sk_element = sk_entry;"
@@ -105,15 +105,17 @@ void findEntry(ProgramText& program, const Parameter& sink) {
                             : fmt::format("sk_wanted = sk_entry - sk_element * {};", slotsOf(sink)));
     return;
   }
-  program.uniform("isampler2D", "sk_odd");
-  program.uniform("isampler2D", "sk_even");
+  program.uniform(samplerType("isampler2D", treeLayered), "sk_odd");
+  program.uniform(samplerType("isampler2D", treeLayered), "sk_even");
   program.uniform("int", "sk_tree_shift");
-  program.uniform("int", "sk_rows[16]");
+  program.uniform("int", fmt::format("sk_rows[{}]", mostTreeLevels + 1));
   program.uniform("int", "sk_levels");
-  program.function("ivec4 sk_node(int sk_l, int sk_n)",
-                   {"ivec2 sk_t = ivec2(sk_n & ((1 << sk_tree_shift) - 1), (sk_n >> sk_tree_shift) + "
-                    "sk_rows[sk_l]);",
-                    "return (sk_l & 1) == 1 ? texelFetch(sk_odd, sk_t, 0) : texelFetch(sk_even, sk_t, 0);"});
+  const std::string node = place(program, {"sk_t", treeLayered ? "sk_tree_shift" : ""});
+  program.function(
+      "ivec4 sk_node(int sk_l, int sk_n)",
+      {"ivec2 sk_t = ivec2(sk_n & ((1 << sk_tree_shift) - 1), (sk_n >> sk_tree_shift) + sk_rows[sk_l]);",
+       fmt::format("return (sk_l & 1) == 1 ? texelFetch(sk_odd, {0}, 0) : texelFetch(sk_even, {0}, 0);",
+                   node)});
   for (const std::string_view line :
        {"sk_wanted = sk_entry;", "int sk_element = 0;", "for (int sk_l = sk_levels; sk_l > 0; --sk_l) {",
         "  ivec4 sk_p = sk_node(sk_l, sk_element);", "  if (sk_wanted >= sk_p.w) return;",

@@ -39,7 +39,7 @@ void defineIgnored(ProgramText& program, const program::Parameter& sink);
 
 /// Work::List: finds `sk_element`, the number of the element, and `sk_wanted`, which of its pushes is
 /// taken, for the entry under the fragment; in front of main().
-void findEntry(ProgramText& program, const program::Parameter& sink);
+void findEntry(ProgramText& program, DomainText& domain, const program::Parameter& sink, bool treeLayered);
 
 /// Work::List, of the sink itself: its outputs and what the body calls, and the stores.
 void defineListed(ProgramText& program, const program::Parameter& sink, const StreamAccess& access);

@@ -19,33 +19,24 @@ void BoundState::readFramebuffer(GLuint name) {
   }
 }
 
-void BoundState::sampler(int unit, GLuint name) {
-  activateUnit(unit);
-  keepUnit(static_cast<std::size_t>(unit));
+void BoundState::bindSampler(int unit, GLuint name) {
   glBindSampler(static_cast<GLuint>(unit), name);
+  samplers_[static_cast<std::size_t>(unit)] = name;
 }
 
 void BoundState::forget() {
   program_ = vertexArray_ = drawFramebuffer_ = readFramebuffer_ = unknown;
   viewport_ = {-1, -1, -1, -1};
   activeUnit_ = -1;
-  textures_ = arrayTextures_ = unknownUnits();
+  textures_ = arrayTextures_ = samplers_ = unknownUnits();
 }
 
-void BoundState::bindTexture(int unit, GLuint name) {
+void BoundState::bindTexture(int unit, GLuint name, bool isArray) {
   const auto slot = static_cast<std::size_t>(unit);
   activateUnit(unit);
   keepUnit(slot);
-  glBindTexture(GL_TEXTURE_2D, name);
-  textures_[slot] = name;
-}
-
-void BoundState::bindArrayTexture(int unit, GLuint name) {
-  const auto slot = static_cast<std::size_t>(unit);
-  activateUnit(unit);
-  keepUnit(slot);
-  glBindTexture(GL_TEXTURE_2D_ARRAY, name);
-  arrayTextures_[slot] = name;
+  glBindTexture(isArray ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, name);
+  (isArray ? arrayTextures_ : textures_)[slot] = name;
 }
 
 void BoundState::activateUnit(int unit) {
@@ -65,7 +56,6 @@ void BoundState::keepUnit(std::size_t unit) {
   glGetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &kept.arrayTexture);
   glGetIntegerv(GL_SAMPLER_BINDING, &kept.sampler);
   kept.kept = true;
-  glBindSampler(static_cast<GLuint>(unit), 0);
 }
 
 void BoundState::setViewport(const std::array<GLint, 4>& rectangle) const {

@@ -28,27 +28,22 @@ class BoundState {
       vertexArray_ = name;
     }
   }
-  void texture(int unit, GLuint name) {
-    if (textures_[static_cast<std::size_t>(unit)] != name) {
-      bindTexture(unit, name);
-    }
-  }
   /// Array textures have a binding of their own on each unit.
-  void arrayTexture(int unit, GLuint name) {
-    if (arrayTextures_[static_cast<std::size_t>(unit)] != name) {
-      bindArrayTexture(unit, name);
+  void texture(int unit, GLuint name, bool isArray) {
+    if ((isArray ? arrayTextures_ : textures_)[static_cast<std::size_t>(unit)] != name) {
+      bindTexture(unit, name, isArray);
     }
   }
-  /// Not kept track of: who binds a sampler takes it off again with 0.
-  void sampler(int unit, GLuint name);
-  /// Binds a texture where glTexImage2D and the like change it: to unit 0, which is then the active one.
-  void textureToChange(GLuint name) {
-    activateUnit(0);
-    texture(0, name);
+  /// 0: the settings of the unit's texture itself. The texture is bound first.
+  void sampler(int unit, GLuint name) {
+    if (samplers_[static_cast<std::size_t>(unit)] != name) {
+      bindSampler(unit, name);
+    }
   }
-  void arrayTextureToChange(GLuint name) {
+  /// Binds a texture where glTexImage2D and the like change it: to unit 0, which is then the active one.
+  void textureToChange(GLuint name, bool isArray) {
     activateUnit(0);
-    arrayTexture(0, name);
+    texture(0, name, isArray);
   }
   /// For drawing and for reading.
   void framebuffer(GLuint name) {
@@ -77,8 +72,8 @@ class BoundState {
   void leaveApplication(GLint activeUnit);
 
  private:
-  void bindTexture(int unit, GLuint name);
-  void bindArrayTexture(int unit, GLuint name);
+  void bindTexture(int unit, GLuint name, bool isArray);
+  void bindSampler(int unit, GLuint name);
   void activateUnit(int unit);
   void keepUnit(std::size_t unit);
   void setViewport(const std::array<GLint, 4>& rectangle) const;
@@ -105,6 +100,7 @@ class BoundState {
   int activeUnit_ = -1;
   std::array<GLuint, maxTextureUnits> textures_ = unknownUnits();
   std::array<GLuint, maxTextureUnits> arrayTextures_ = unknownUnits();
+  std::array<GLuint, maxTextureUnits> samplers_ = unknownUnits();
   bool isApplications_ = false;
   bool hasManyViewports_ = false;
   std::array<KeptUnit, maxTextureUnits> keptUnits_{};

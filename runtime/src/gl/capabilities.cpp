@@ -45,12 +45,12 @@ int largestTexture() {
 }
 
 bool isRenderable(const Format& format, BoundState& bound) {
-  const Texture texture(bound, format, 1, 1);
+  const Texture texture(bound, format, {1, 1});
   if (texture.name() == 0) {
     return false;
   }
   const GLuint names[] = {texture.name()};
-  const Framebuffer framebuffer(bound, names);
+  const Framebuffer framebuffer(bound, names, false);
   return Framebuffer::isComplete();
 }
 
@@ -81,6 +81,7 @@ Capabilities readCapabilities() {
     found.isCompatibility = (integerOf(GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_COMPATIBILITY_PROFILE_BIT) != 0;
   }
   found.textureSize = largestTexture();
+  found.textureLayers = integerOf(GL_MAX_ARRAY_TEXTURE_LAYERS);
   found.drawBuffers =
       std::min({integerOf(GL_MAX_DRAW_BUFFERS), integerOf(GL_MAX_COLOR_ATTACHMENTS), maxDrawBuffers});
   found.textureUnits = std::min(integerOf(GL_MAX_TEXTURE_IMAGE_UNITS), maxTextureUnits);
@@ -108,7 +109,7 @@ std::string whyUnfit(const Capabilities& capabilities, BoundState& bound) {
     }
   }
   bound.framebuffer(0);
-  bound.texture(0, 0);
+  bound.texture(0, 0, false);
   bound.forget();
   dropErrors();
   return missing.empty() ? "" : "it cannot draw to textures of format " + missing;

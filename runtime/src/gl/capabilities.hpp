@@ -23,6 +23,7 @@ struct Capabilities {
   std::string renderer;
   std::string driver;            ///< GL_VERSION, as the driver words it
   int textureSize = 0;           ///< also as a viewport
+  int textureLayers = 0;         ///< of an array texture
   int drawBuffers = 0;
   int textureUnits = 0;          ///< at most maxTextureUnits
   int uniformComponents = 0;     ///< of a fragment program

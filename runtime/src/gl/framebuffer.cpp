@@ -21,15 +21,33 @@ GLuint newFramebuffer() {
 
 void deleteFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
 
-Framebuffer::Framebuffer(BoundState& bound, std::span<const GLuint> textures) : name_(newFramebuffer()) {
+Framebuffer::Framebuffer(BoundState& bound, std::span<const GLuint> textures, bool isLayered)
+    : name_(newFramebuffer()) {
   bound.framebuffer(name());
   std::vector<GLenum> attachments;
   for (const GLuint texture : textures) {
     attachments.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(attachments.size()));
-    glFramebufferTexture2D(GL_FRAMEBUFFER, attachments.back(), GL_TEXTURE_2D, texture, 0);
+    if (isLayered) {
+      layered_.push_back(texture);
+      glFramebufferTextureLayer(GL_FRAMEBUFFER, attachments.back(), texture, 0, 0);
+    } else {
+      glFramebufferTexture2D(GL_FRAMEBUFFER, attachments.back(), GL_TEXTURE_2D, texture, 0);
+    }
   }
   glDrawBuffers(static_cast<GLsizei>(attachments.size()), attachments.data());
   glReadBuffer(GL_COLOR_ATTACHMENT0);
+}
+
+void Framebuffer::selectLayer(BoundState& bound, GLint layer) {
+  bound.framebuffer(name());
+  if (layer == layer_) {
+    return;
+  }
+  GLenum attachment = GL_COLOR_ATTACHMENT0;
+  for (const GLuint texture : layered_) {
+    glFramebufferTextureLayer(GL_FRAMEBUFFER, attachment++, texture, 0, layer);
+  }
+  layer_ = layer;
 }
 
 void Framebuffer::read(BoundState& bound, const Transfer& transfer, GLint x, GLint y, GLsizei width,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// A framebuffer over whole textures, one a colour attachment, all of them drawn to.
+// A framebuffer over whole textures, or one layer of each, one a colour attachment, all of them drawn to.
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "gl/format.hpp"
 #include "gl/object_name.hpp"
@@ -17,8 +18,11 @@ void deleteFramebuffer(GLuint name);
 class Framebuffer {
  public:
   Framebuffer() = default;
-  /// Attaches `textures` in order, 1 or more.
-  Framebuffer(BoundState& bound, std::span<const GLuint> textures);
+  /// Attaches `textures` in order, 1 or more: all of them 2-D ones, or the first layers of array textures.
+  Framebuffer(BoundState& bound, std::span<const GLuint> textures, bool isLayered);
+
+  /// Attaches another layer of all textures, which have layers.
+  void selectLayer(BoundState& bound, GLint layer);
 
   GLuint name() const { return name_.get(); }
   explicit operator bool() const { return static_cast<bool>(name_); }
@@ -33,6 +37,8 @@ class Framebuffer {
 
  private:
   ObjectName<deleteFramebuffer> name_;
+  std::vector<GLuint> layered_;   ///< textures whose layers are attached
+  GLint layer_ = 0;
 };
 
 }  // namespace sk::gl

@@ -24,26 +24,46 @@ void setNearest(GLenum target) {
   glTexParameteri(target, GL_TEXTURE_MAX_LEVEL, 0);
 }
 
-Texture::Texture(BoundState& bound, const Format& format, GLsizei width, GLsizei height)
-    : name_(newTexture()), format_(&format), width_(width), height_(height) {
-  bound.textureToChange(name());
-  setNearest(GL_TEXTURE_2D);
+Texture::Texture(BoundState& bound, const Format& format, const assemble::TextureShape& shape)
+    : name_(newTexture()), format_(&format), shape_(shape) {
+  bound.textureToChange(name(), isLayered());
+  const GLenum target = isLayered() ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  const auto internalFormat = static_cast<GLint>(format.internalFormat);
+  setNearest(target);
   dropErrors();
-  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internalFormat), width, height, 0,
-               format.tight.format, format.tight.type, nullptr);
+  if (isLayered()) {
+    glTexImage3D(target, 0, internalFormat, shape.width, shape.height, shape.layers, 0, format.tight.format,
+                 format.tight.type, nullptr);
+  } else {
+    glTexImage2D(target, 0, internalFormat, shape.width, shape.height, 0, format.tight.format,
+                 format.tight.type, nullptr);
+  }
   if (takeError() != GL_NO_ERROR) {
-    bound.texture(0, 0);
+    bound.textureToChange(0, isLayered());
     name_ = {};
   }
 }
 
-void Texture::write(BoundState& bound, GLint x, GLint y, GLsizei width, GLsizei height, const void* texels) {
-  bound.textureToChange(name());
-  glTexSubImage2D(GL_TEXTURE_2D, 0, x, y, width, height, format_->tight.format, format_->tight.type, texels);
+void Texture::write(BoundState& bound, const assemble::Rect& rect, GLint layer, const void* texels) {
+  bound.textureToChange(name(), isLayered());
+  const Transfer& tight = format_->tight;
+  if (isLayered()) {
+    glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, rect.x, rect.y, layer, rect.width, rect.height, 1, tight.format,
+                    tight.type, texels);
+  } else {
+    glTexSubImage2D(GL_TEXTURE_2D, 0, rect.x, rect.y, rect.width, rect.height, tight.format, tight.type,
+                    texels);
+  }
+}
+
+void Texture::copyLayer(BoundState& bound, GLuint framebuffer, GLint layer, GLsizei width, GLsizei height) {
+  bound.readFramebuffer(framebuffer);
+  bound.textureToChange(name(), true);
+  glCopyTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, 0, 0, width, height);
 }
 
 std::size_t Texture::bytes() const {
-  return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * format_->texelBytes();
+  return static_cast<std::size_t>(shape_.width) * static_cast<std::size_t>(rows()) * format_->texelBytes();
 }
 
 }  // namespace sk::gl

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// A 2-D texture of one of our formats, without filtering, without mipmaps.
+// A texture of one of our formats, without filtering, without mipmaps: a 2-D one, or an array of layers.
 #pragma once
 
+#include "assemble/placement.hpp"
 #include "gl/format.hpp"
 #include "gl/object_name.hpp"
 
@@ -19,23 +20,28 @@ class Texture {
  public:
   Texture() = default;
   /// Undefined texels. Afterwards name() is 0 where the driver had no memory.
-  Texture(BoundState& bound, const Format& format, GLsizei width, GLsizei height);
+  Texture(BoundState& bound, const Format& format, const assemble::TextureShape& shape);
 
-  /// Writes a rectangle of texels (format().tight), row by row without gaps.
-  void write(BoundState& bound, GLint x, GLint y, GLsizei width, GLsizei height, const void* texels);
+  /// Writes a rectangle of texels (format().tight) of a layer, row by row without gaps.
+  void write(BoundState& bound, const assemble::Rect& rect, GLint layer, const void* texels);
+
+  /// Copies the first width x height texels of a framebuffer, whose texture has the same format, to a
+  /// layer, bit for bit.
+  void copyLayer(BoundState& bound, GLuint framebuffer, GLint layer, GLsizei width, GLsizei height);
 
   GLuint name() const { return name_.get(); }
   const Format& format() const { return *format_; }
-  GLsizei width() const { return width_; }
-  GLsizei height() const { return height_; }
+  const assemble::TextureShape& shape() const { return shape_; }
+  bool isLayered() const { return shape_.layers > 0; }
+  /// Rows of all layers together.
+  GLsizei rows() const { return shape_.height * (isLayered() ? shape_.layers : 1); }
   std::size_t bytes() const;
   void forget() noexcept { name_.forget(); }
 
  private:
   ObjectName<deleteTexture> name_;
   const Format* format_ = nullptr;
-  GLsizei width_ = 0;
-  GLsizei height_ = 0;
+  assemble::TextureShape shape_;
 };
 
 }  // namespace sk::gl

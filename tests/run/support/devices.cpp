@@ -6,12 +6,12 @@
 
 namespace run_tests {
 
-sk::Device& device(std::string_view profile, bool isSmall) {
-  static std::map<std::pair<std::string, bool>, sk::Device> devices;
-  const std::pair key{std::string(profile), isSmall};
+sk::Device& device(std::string_view profile, int textureLimit) {
+  static std::map<std::pair<std::string, int>, sk::Device> devices;
+  const std::pair key{std::string(profile), textureLimit};
   auto found = devices.find(key);
   if (found == devices.end()) {
-    const sk::DeviceOptions options{.profile = key.first, .textureLimit = isSmall ? smallLimit : 0};
+    const sk::DeviceOptions options{.profile = key.first, .textureLimit = textureLimit};
     found = devices.emplace(key, sk::Device(options)).first;
   }
   return found->second;

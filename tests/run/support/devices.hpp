@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The devices that a test program runs on, each opened once: both profiles, and both again with a
-// small texture limit, under which most shapes are linearised.
+// The devices that a test program runs on, each opened once: both profiles, and both again with small
+// texture limits, under which most shapes are linearised, or lie in several layers.
 #pragma once
 
 #include <string>
@@ -13,11 +13,11 @@
 
 namespace run_tests {
 
-/// Extents above this are linearised on the small devices.
-inline constexpr int smallLimit = 64;
+/// Extents above the first are linearised, streams of more than 64 elements layered under the second.
+inline constexpr int smallLimits[] = {64, 8};
 
-/// The device of a profile ("glsl330", "essl300"), with the small texture limit or its own.
-sk::Device& device(std::string_view profile, bool isSmall = false);
+/// The device of a profile ("glsl330", "essl300"), with its own texture limit (0) or a smaller one.
+sk::Device& device(std::string_view profile, int textureLimit = 0);
 
 /// test(device) on both profiles: for what a kernel computes.
 template <class Test>
@@ -28,13 +28,13 @@ void onEveryProfile(const Test& test) {
   }
 }
 
-/// test(device) on both profiles and both texture limits: for where elements lie.
+/// test(device) on both profiles and every texture limit: for where elements lie.
 template <class Test>
 void onEveryLayout(const Test& test) {
   for (const std::string profile : {"glsl330", "essl300"}) {
-    for (const bool isSmall : {false, true}) {
-      INFO("profile " << profile << (isSmall ? ", linearised above 64" : ""));
-      test(device(profile, isSmall));
+    for (const int limit : {0, smallLimits[0], smallLimits[1]}) {
+      INFO("profile " << profile << ", texture limit " << limit);
+      test(device(profile, limit));
     }
   }
 }
