@@ -7,7 +7,8 @@
 namespace run_tests {
 
 sk::Device& device(std::string_view profile, int textureLimit) {
-  static std::map<std::pair<std::string, int>, sk::Device> devices;
+  // Never destroyed: some drivers end before our static objects do.
+  static auto& devices = *new std::map<std::pair<std::string, int>, sk::Device>;
   const std::pair key{std::string(profile), textureLimit};
   auto found = devices.find(key);
   if (found == devices.end()) {
