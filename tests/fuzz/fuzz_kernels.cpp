@@ -15,23 +15,22 @@
 
 #include <CLI/CLI.hpp>
 
+#include "command.hpp"
 #include "driver/big_stack.hpp"
 #include "driver/compile.hpp"
 #include "emit/program.hpp"
+#include "glsl.hpp"
 #include "isolation.hpp"
 #include "kernels/device_run.hpp"
-#include "shaders.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using skc::driver::Emit;
 
-struct Options {
-  std::uint64_t seed = 1, first = 0, count = 100;
-  unsigned seconds = 120;
-  std::string out = "fuzz-findings";
-  bool show = false, withoutDevice = false;
+struct Options : fuzz::Command {
+  Options() { count = 100, seconds = 120; }
+  bool withoutDevice = false;
 };
 
 /// The devices of a child; both profiles with their own limits and with those that are guaranteed.
@@ -57,7 +56,7 @@ std::string check(const Options& options, const fuzz::RandomKernel& kernel, Kept
     compiling.profile = profile;
     listings.push_back(emitText(compiling, *module));
   }
-  if (const std::string complaint = fuzz::complaints(listings); !complaint.empty()) return complaint;
+  if (const std::string complaint = fuzz::glslComplaint(listings); !complaint.empty()) return complaint;
   if (options.withoutDevice) return {};
   const skc::emit::Program& program = kept.programs.emplace_back(*module);
   if (!kept.devices) kept.devices.emplace();
@@ -101,8 +100,8 @@ int fuzzKernels(const Options& options) {
   }
   Kept kept;
   std::uint64_t driverDeaths = 0;
-  fuzz::Campaign campaign{
-      .first = options.first, .count = options.count, .batch = 25, .seconds = options.seconds};
+  fuzz::Campaign campaign = options.campaign();
+  campaign.batch = 25;
   campaign.begin = [] {
     for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, traceDeath);
   };
@@ -125,20 +124,15 @@ int fuzzKernels(const Options& options) {
   campaign.onFinding = [&](const fuzz::Finding& finding) {
     const bool isDrivers = isDriversDeath(finding);
     driverDeaths += isDrivers;
-    fs::create_directories(options.out);
-    const fs::path file = fs::path(options.out) / ("kernel-" + std::to_string(options.seed) + "-" +
-                                                   std::to_string(finding.number) + ".sk");
-    std::ofstream(file) << fuzz::RandomKernel(options.seed, finding.number).text();
-    std::cout << "kernel " << finding.number << (isDrivers ? " (the driver died): " : ": ") << finding.what
-              << "\n"
-              << finding.log << "again by: fuzz_kernels --seed " << options.seed << " --first "
-              << finding.number << " --count 1   (" << file.string() << ")\n"
-              << std::flush;
+    const fs::path file =
+        options.keep("kernel", finding, fuzz::RandomKernel(options.seed, finding.number).text());
+    fuzz::tell(isDrivers ? "the driver died of kernel" : "kernel", finding,
+               "fuzz_kernels --seed " + std::to_string(options.seed) + " --first " +
+                   std::to_string(finding.number) + " --count 1   (" + file.string() + ")");
   };
   const fuzz::Summary summary = fuzz::run(campaign);
-  std::cout << summary.inputs << " kernels, " << summary.findings - driverDeaths << " findings, "
-            << driverDeaths << " deaths of the driver; the largest process took "
-            << summary.largestProcess / 1024 << " MiB\n";
+  fuzz::conclude(summary);
+  if (driverDeaths != 0) std::cout << driverDeaths << " of the findings are deaths of the driver\n";
   return summary.findings == driverDeaths ? 0 : 1;
 }
 
@@ -147,19 +141,9 @@ int fuzzKernels(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app{"fuzz_kernels: compares random kernels with what they mean", "fuzz_kernels"};
-  app.add_option("--seed", options.seed, "Which kernels: each seed has its own");
-  app.add_option("--first", options.first, "Number of the first kernel");
-  app.add_option("--count", options.count, "How many");
-  app.add_option("--seconds", options.seconds, "A kernel that takes longer hangs");
-  app.add_option("--out", options.out, "Where kernels with findings are written to");
-  app.add_flag("--show", options.show, "Print the kernels instead");
+  options.addTo(app, "kernel");
   app.add_flag("--without-device", options.withoutDevice,
                "Compile them and show them to glslang, but do not run them");
   CLI11_PARSE(app, argc, argv);
-  try {
-    return fuzzKernels(options);
-  } catch (const std::exception& error) {
-    std::cerr << "fuzz_kernels: " << error.what() << "\n";
-    return 1;
-  }
+  return fuzz::guarded("fuzz_kernels", [&] { return fuzzKernels(options); });
 }

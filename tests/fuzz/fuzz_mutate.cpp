@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "command.hpp"
 #include "corpus.hpp"
 #include "isolation.hpp"
 #include "judge.hpp"
@@ -18,15 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
-  std::uint64_t seed = 1, first = 0, count = 1000;
-  unsigned seconds = 10;
+struct Options : fuzz::Command {
   std::vector<std::string> corpus = {SK_SOURCE_FOLDER "/tests", SK_SOURCE_FOLDER "/examples",
                                      SK_SOURCE_FOLDER "/docs"};
-  std::string out = "fuzz-findings";
   std::vector<std::string> files;  ///< judged instead of mutants
   std::string reduce;  ///< a file to make smaller
-  bool show = false;  ///< prints the mutants instead
   bool withGlslang = false;
 };
 
@@ -36,15 +33,9 @@ fuzz::Program programOf(const std::string& file) {
   return {file, {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}};
 }
 
-void tell(const fuzz::Finding& finding, const std::string& again) {
-  std::cout << "input " << finding.number << ": " << finding.what << "\n" << finding.log;
-  std::cout << "again by: " << again << "\n" << std::flush;
-}
-
-int conclude(const fuzz::Summary& summary) {
-  std::cout << summary.inputs << " inputs, " << summary.findings << " findings";
-  for (const auto& [name, count] : summary.tallies) std::cout << ", " << count << " " << name;
-  std::cout << "; the largest process took " << summary.largestProcess / 1024 << " MiB\n";
+int statusOf(const fuzz::Campaign& campaign) {
+  const fuzz::Summary summary = fuzz::run(campaign);
+  fuzz::conclude(summary);
   return summary.findings == 0 ? 0 : 1;
 }
 
@@ -58,18 +49,16 @@ int mutate(const Options& options, const char* program) {
     for (std::uint64_t i = 0; i < options.count; ++i) std::cout << make(options.first + i).text << "\n";
     return 0;
   }
-  fuzz::Campaign campaign{.first = options.first, .count = options.count, .seconds = options.seconds};
+  fuzz::Campaign campaign = options.campaign();
   campaign.check = [&](std::uint64_t number) { return fuzz::judge(make(number), options.withGlslang); };
   campaign.onFinding = [&](const fuzz::Finding& finding) {
     const fuzz::Program mutant = make(finding.number);
-    fs::create_directories(options.out);
-    const fs::path file = fs::path(options.out) / ("mutate-" + std::to_string(options.seed) + "-" +
-                                                   std::to_string(finding.number) + ".sk");
-    std::ofstream(file, std::ios::binary) << mutant.text;
-    tell(finding, std::string(program) + " " + file.string() + "   (from " + mutant.path + ")");
+    const fs::path file = options.keep("mutate", finding, mutant.text);
+    fuzz::tell("mutant", finding,
+               std::string(program) + " " + file.string() + "   (from " + mutant.path + ")");
   };
   std::cout << corpus.programs().size() << " programs to start from\n";
-  return conclude(fuzz::run(campaign));
+  return statusOf(campaign);
 }
 
 int judgeFiles(const Options& options, const char* program) {
@@ -78,9 +67,9 @@ int judgeFiles(const Options& options, const char* program) {
     return fuzz::judge(programOf(options.files[i]), options.withGlslang);
   };
   campaign.onFinding = [&](const fuzz::Finding& finding) {
-    tell(finding, std::string(program) + " " + options.files[finding.number]);
+    fuzz::tell("file", finding, std::string(program) + " " + options.files[finding.number]);
   };
-  return conclude(fuzz::run(campaign));
+  return statusOf(campaign);
 }
 
 /// Findings are the same where their first words are.
@@ -108,21 +97,13 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"fuzz_mutate: shows skc mutated programs; FILEs are judged as they are", "fuzz_mutate"};
   app.add_option("FILE", options.files, "Judge these programs instead of mutants");
-  app.add_option("--seed", options.seed, "Which mutants: each seed has its own");
-  app.add_option("--first", options.first, "Number of the first mutant");
-  app.add_option("--count", options.count, "How many");
-  app.add_option("--seconds", options.seconds, "A compilation that takes longer hangs");
+  options.addTo(app, "mutant");
   app.add_option("--corpus", options.corpus, "Folders with .sk and .md files to start from");
-  app.add_option("--out", options.out, "Where mutants with findings are written to");
   app.add_option("--reduce", options.reduce, "Make this program smaller as long as it fails, and print it");
   app.add_flag("--glslang", options.withGlslang, "Show what skc accepts to glslang, too");
-  app.add_flag("--show", options.show, "Print the mutants instead of compiling them");
   CLI11_PARSE(app, argc, argv);
-  try {
+  return fuzz::guarded("fuzz_mutate", [&] {
     if (!options.reduce.empty()) return reduce(options);
     return options.files.empty() ? mutate(options, argv[0]) : judgeFiles(options, argv[0]);
-  } catch (const std::exception& error) {
-    std::cerr << "fuzz_mutate: " << error.what() << "\n";
-    return 1;
-  }
+  });
 }

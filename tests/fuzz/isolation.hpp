@@ -26,7 +26,7 @@ struct Finding {
 struct Campaign {
   std::uint64_t first = 0, count = 0;
   std::uint64_t batch = 500;  ///< inputs to a process
-  unsigned seconds = 10;  ///< for one input; more is a hang
+  unsigned seconds = 10;  ///< of processor time for one input; more is a hang
   /// In the child, once before the first of a batch.
   std::function<void()> begin = [] {};
   /// In the child.

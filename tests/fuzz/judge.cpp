@@ -7,7 +7,7 @@
 
 #include "driver/big_stack.hpp"
 #include "driver/compile.hpp"
-#include "shaders.hpp"
+#include "glsl.hpp"
 
 namespace fuzz {
 namespace {
@@ -26,27 +26,41 @@ constexpr Form forms[] = {
 
 bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
+/// A file that declares nothing but streams has no GLSL and no plan.
+bool mayBeEmpty(Emit emit, const skc::ir::Module& module) {
+  return module.kernels.empty() && (emit == Emit::Glsl || emit == Emit::Plan);
+}
+
+/// What is wrong with what skc said, or "".
+std::string mistakeIn(const std::string& messages, bool isAccepted) {
+  if (contains(messages, "internal error")) return "speaks of an internal error: " + messages;
+  if (isAccepted && contains(messages, "error:")) return "accepted, with an error: " + messages;
+  if (!isAccepted && !contains(messages, "error:")) return "refused without an error: " + messages;
+  return {};
+}
+
 Verdict compile(const Program& program, bool withGlslang) {
   skc::driver::Options options;
+  options.emit = Emit::Ast;   // the frontend alone; it prints the tree of programs with mistakes, too
+  const skc::driver::Outcome parsed = skc::driver::compileText(options, program.path, program.text);
+  if (parsed.status != 0) return {mistakeIn(parsed.messages, false), "refused"};
+  options.emit = Emit::Glsl;
   const auto [module, messages] = skc::driver::translateText(options, program.path, program.text);
-  if (contains(messages, "internal error")) return {"speaks of an internal error: " + messages, "refused"};
-  if (!module) {
-    if (!contains(messages, "error:")) return {"refused without an error: " + messages, "refused"};
-    options.emit = Emit::Ast;   // which prints the tree of programs with mistakes, too
-    const int status = skc::driver::compileText(options, program.path, program.text).status;
-    if (status != 0 && status != 1) return {"--emit=ast has status " + std::to_string(status), "refused"};
-    return {"", "refused"};
+  const char* const tally = module ? "accepted" : "refused";
+  if (const std::string mistake = mistakeIn(messages, module.has_value()); !mistake.empty() || !module) {
+    return {mistake, tally};
   }
-  if (contains(messages, "error:")) return {"accepted, with an error: " + messages, "accepted"};
   std::vector<std::string> listings;
   for (const Form& form : forms) {
     options.emit = form.emit;
     options.profile = form.profile;
     const std::string text = emitText(options, *module);
-    if (text.empty()) return {std::string("accepted, but emits no ") + form.name, "accepted"};
+    if (text.empty() && !mayBeEmpty(form.emit, *module)) {
+      return {std::string("accepted, but emits no ") + form.name, tally};
+    }
     if (form.emit == Emit::Glsl) listings.push_back(text);
   }
-  return {withGlslang ? complaints(listings) : "", "accepted"};
+  return {withGlslang ? glslComplaint(listings) : "", tally};
 }
 
 }  // namespace

@@ -42,14 +42,14 @@ TEST_CASE("glslang takes every program of every .sk file") {
       INFO(outcome.errors);
       CHECK(outcome.errors == "");
       REQUIRE(outcome.status == 0);
-      const std::vector<std::string> found = programsOf(outcome.output);
+      const std::vector<std::string> found = glslang::programsOf(outcome.output);
       CHECK(!found.empty());
       programs.insert(programs.end(), found.begin(), found.end());
       origins.insert(origins.end(), found.size(), file.filename().string());
     }
-    const auto complaints = complaintsOf(programs);
+    const auto complaints = glslang::complaintsOf(programs);
     for (std::size_t i = 0; i < programs.size(); ++i) {
-      for (const Complaint& complaint : complaints[i]) {
+      for (const glslang::Complaint& complaint : complaints[i]) {
         INFO(profile << ", program " << i << " of " << origins[i] << ":\n" << programs[i]);
         FAIL_CHECK(complaint.source << ":" << complaint.line << ": " << complaint.text);
       }
@@ -58,8 +58,9 @@ TEST_CASE("glslang takes every program of every .sk file") {
 }
 
 TEST_CASE("glslang complains where there is reason to") {
-  const auto complaints = complaintsOf({"#version 330 core\nvoid main() {}\n",
-                                        "#version 330 core\n#line 7 3\nint i = 1.5;\nvoid main() {}\n"});
+  const auto complaints =
+      glslang::complaintsOf({"#version 330 core\nvoid main() {}\n",
+                             "#version 330 core\n#line 7 3\nint i = 1.5;\nvoid main() {}\n"});
   CHECK(complaints[0].empty());
   REQUIRE(!complaints[1].empty());
   CHECK(complaints[1][0].source == 3);

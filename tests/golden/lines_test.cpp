@@ -46,7 +46,7 @@ TEST_CASE("an error in GLSL is told at its line of the .sk file") {
   const fs::path files[] = {folder / "lines.sk", folder / "lines_included.sk"};  // sources 1 and 2 of #line
   for (const std::string profile : {"glsl330", "essl300"}) {
     const std::vector<std::string> programs =
-        programsOf(skc("--emit=glsl --profile=" + profile, files[0]).output);
+        glslang::programsOf(skc("--emit=glsl --profile=" + profile, files[0]).output);
     REQUIRE(!programs.empty());
     std::vector<std::string> broken;
     std::vector<Place> places;
@@ -65,7 +65,7 @@ TEST_CASE("an error in GLSL is told at its line of the .sk file") {
       }
     }
     REQUIRE(places.size() == 35);
-    const auto complaints = complaintsOf(broken);
+    const auto complaints = glslang::complaintsOf(broken);
     for (std::size_t i = 0; i < places.size(); ++i) {
       INFO(profile << ": " << places[i].number << " of line " << places[i].line << " of source "
                    << sources[i]);
