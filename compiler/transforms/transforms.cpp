@@ -10,6 +10,7 @@
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "split/split_kernels.hpp"
+#include "transforms/assign_rows.hpp"
 #include "transforms/bound_pushes.hpp"
 #include "transforms/derive_combine.hpp"
 #include "transforms/fold_constants.hpp"
@@ -39,6 +40,7 @@ void plain(ir::Module& module, Diagnostics& diagnostics, const TransformOptions&
 // Bounding the pushes after folding, which makes loops of a known number of rounds and takes out what
 // never runs.
 // Deriving before removing, because it makes functions that use structs.
+// Assigning rows at any time before splitting, which follows variables.
 // Removing after these, because all of them leave things without use; and before splitting, so that
 // nobody plans for what is not needed.
 constexpr Transform transforms[] = {
@@ -47,6 +49,7 @@ constexpr Transform transforms[] = {
     {"guard-streams", plain<guardStreams>},
     {"bound-pushes", plain<boundPushes>},
     {"derive-combine", plain<deriveCombine>},
+    {"assign-rows", plain<assignRows>},
     {"remove-unused", plain<removeUnused>},
     {"split-kernels", [](ir::Module& module, Diagnostics&,
                          const TransformOptions& options) { split::splitKernels(module, options.limits); }},

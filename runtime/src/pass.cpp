@@ -112,8 +112,8 @@ void bindOperands(DeviceState& device, KernelProgram& program, const program::Ke
   for (KernelProgram::Value& value : program.values) {
     value.uniform.set(operands[value.parameter].value);
   }
-  for (KernelProgram::Pair& pair : program.pairs) {
-    pair.uniform.set(operands[pair.parameter].value);
+  for (KernelProgram::Double& value : program.doubles) {
+    value.uniform.set(operands[value.parameter].value);
   }
   for (KernelProgram::Value& step : program.steps) {
     step.uniform.set(operands[step.parameter].step.data());

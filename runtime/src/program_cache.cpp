@@ -109,24 +109,32 @@ void ProgramCache::findParameters(KernelProgram& made, const program::Kernel& ke
   made.units = unit;
 }
 
-/// A pair of floats is a struct of two, and a vector of pairs a struct of these.
 void ProgramCache::findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter) {
   for (const auto parts : valuesOf(*parameter.element)) {
     const program::Field& first = parts.front();
     const bool isMember = !first.path.empty() && first.path.front() != '[';
     const std::string name = fmt::format("sk_arg_{}{}{}", parameter.symbol, isMember ? "." : "", first.path);
-    if (first.scalar != program::Scalar::Double || device_.profile.doubles == assemble::Doubles::Native) {
+    if (first.scalar == program::Scalar::Double) {
+      addDoubles(made, number, name, parts);
+    } else {
       made.values.push_back({number, gl::FieldUniform(made.program.location(name), parts)});
-      continue;
     }
-    std::size_t width = 0;
-    for (const program::Field& part : parts) width += part.width;
-    for (std::size_t c = 0; c < width; ++c) {
-      const std::string pair = width == 1 ? name : fmt::format("{}.{}", name, "xyzw"[c]);
-      const auto offset = static_cast<std::uint32_t>(first.offset + c * sizeof(double));
-      made.pairs.push_back({number, gl::PairUniform(made.program.location(pair + ".hi"),
-                                                    made.program.location(pair + ".lo"), offset)});
-    }
+  }
+}
+
+/// A double is a struct of its bits, or of two floats; a vector of doubles is a struct of these.
+void ProgramCache::addDoubles(KernelProgram& made, std::size_t number, const std::string& name,
+                              std::span<const program::Field> parts) const {
+  const auto location = [&](const std::string& member) { return made.program.location(member); };
+  std::size_t width = 0;
+  for (const program::Field& part : parts) width += part.width;
+  for (std::size_t c = 0; c < width; ++c) {
+    const std::string one = width == 1 ? name : fmt::format("{}.{}", name, "xyzw"[c]);
+    const auto offset = static_cast<std::uint32_t>(parts.front().offset + c * sizeof(double));
+    const bool isNative = device_.profile.doubles == assemble::Doubles::Native;
+    made.doubles.push_back(
+        {number, isNative ? gl::DoubleUniform::bits(location(one + ".bits"), offset)
+                          : gl::DoubleUniform::pair(location(one + ".hi"), location(one + ".lo"), offset)});
   }
 }
 

@@ -32,9 +32,9 @@ struct KernelProgram {
     std::size_t parameter;
     gl::FieldUniform uniform;
   };
-  struct Pair {
+  struct Double {
     std::size_t parameter;
-    gl::PairUniform uniform;
+    gl::DoubleUniform uniform;
   };
   struct Read {
     std::size_t parameter;
@@ -58,7 +58,7 @@ struct KernelProgram {
   Tree tree;                    ///< its textures lie on the units from `units` on
   int units = 0;                ///< what `reads` take
   std::vector<Value> values;
-  std::vector<Pair> pairs;      ///< doubles, where they are pairs of floats
+  std::vector<Double> doubles;
   std::vector<Value> steps;     ///< of iterators
   std::vector<Read> reads;      ///< their planes lie on consecutive texture units, from 0, in this order
   std::vector<std::size_t> bundles;   ///< of the plan, on the units after these
@@ -93,6 +93,8 @@ class ProgramCache {
                                                    const assemble::Variant& variant);
   void findParameters(KernelProgram& made, const program::Kernel& kernel, const assemble::SpecValues& specs);
   void findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter);
+  void addDoubles(KernelProgram& made, std::size_t number, const std::string& name,
+                  std::span<const program::Field> parts) const;
   void findListUniforms(KernelProgram& made, const program::Parameter& sink);
   gl::Program build(const program::Kernel& kernel, const std::string& fragmentSource);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);

@@ -3,6 +3,7 @@
 // Sending uniforms whose values have changed.
 #include "gl/uniform.hpp"
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -18,7 +19,6 @@ using program::Scalar;
 
 using Floats = std::array<GLfloat, 16>;
 using Ints = std::array<GLint, 4>;
-using Doubles = std::array<GLdouble, 4>;
 
 void sendInts(GLint location, int width, const GLint* v) {
   switch (width) {
@@ -47,16 +47,6 @@ void sendFloats(GLint location, int width, const GLfloat* v) {
   }
 }
 
-void sendDoubles(GLint location, std::size_t width, const GLdouble* v) {
-  switch (width) {
-    case 1: glUniform1dv(location, 1, v); return;
-    case 2: glUniform2dv(location, 1, v); return;
-    case 3: glUniform3dv(location, 1, v); return;
-    default: glUniform4dv(location, 1, v); return;
-  }
-}
-
-/// GLSL's columns are the rows of ours: the floats go in the order in which they lie.
 void sendMatrix(GLint location, int width, const GLfloat* v) {
   switch (width) {
     case 2: glUniformMatrix2fv(location, 1, GL_FALSE, v); return;
@@ -110,7 +100,7 @@ void sendField(GLint location, const Field& field, const std::byte* bytes) {
     case Scalar::Snorm8: return sendAsFloats<snorm8>(location, field, bytes);
     case Scalar::Unorm16: return sendAsFloats<unorm16>(location, field, bytes);
     case Scalar::Snorm16: return sendAsFloats<snorm16>(location, field, bytes);
-    case Scalar::Double: break;   // of which a value may have several fields
+    case Scalar::Double: break;   // a DoubleUniform's
   }
 }
 
@@ -140,10 +130,7 @@ void FieldUniform::set(const void* value) {
   }
   std::memcpy(last_.data(), bytes, size_);
   isKnown_ = true;
-  if (field_->scalar == Scalar::Double) {
-    const std::size_t width = size_ / sizeof(GLdouble);
-    sendDoubles(location_, width, componentsOf<GLdouble, Doubles>(last_.data(), width).data());
-  } else if (parts_ == 1) {
+  if (parts_ == 1) {
     sendField(location_, *field_, last_.data());
   } else {
     sendMatrix(location_, parts_,
@@ -151,7 +138,7 @@ void FieldUniform::set(const void* value) {
   }
 }
 
-void PairUniform::set(const void* value) {
+void DoubleUniform::set(const void* value) {
   double whole = 0;
   std::memcpy(&whole, static_cast<const std::byte*>(value) + offset_, sizeof whole);
   if (isKnown_ && std::memcmp(&last_, &whole, sizeof whole) == 0) {
@@ -159,6 +146,11 @@ void PairUniform::set(const void* value) {
   }
   last_ = whole;
   isKnown_ = true;
+  if (bits_ >= 0) {
+    const auto bits = std::bit_cast<std::uint64_t>(whole);
+    glUniform2ui(bits_, static_cast<GLuint>(bits), static_cast<GLuint>(bits >> 32));
+    return;
+  }
   const auto head = static_cast<float>(whole);
   const float tail = std::isfinite(head) ? static_cast<float>(whole - head) : 0;
   glUniform1f(head_, head);

@@ -39,25 +39,29 @@ class IntUniform {
   Int4 value_{};
 };
 
-/// A double in the value of a uniform parameter, as a pair of floats.
-class PairUniform {
+/// A double in the value of a uniform parameter: as its bits, or as a pair of floats.
+class DoubleUniform {
  public:
-  PairUniform(GLint head, GLint tail, std::uint32_t offset) : head_(head), tail_(tail), offset_(offset) {}
+  static DoubleUniform bits(GLint bits, std::uint32_t offset) { return {bits, -1, -1, offset}; }
+  static DoubleUniform pair(GLint head, GLint tail, std::uint32_t offset) { return {-1, head, tail, offset}; }
 
   /// `value`: of the whole parameter, in which the double lies `offset` bytes from the start.
   void set(const void* value);
 
  private:
-  GLint head_, tail_;
+  DoubleUniform(GLint bits, GLint head, GLint tail, std::uint32_t offset)
+      : bits_(bits), head_(head), tail_(tail), offset_(offset) {}
+
+  GLint bits_, head_, tail_;
   std::uint32_t offset_;
   bool isKnown_ = false;
   double last_ = 0;
 };
 
-/// A scalar, vector or matrix in the value of a uniform parameter.
+/// A scalar, vector or matrix in the value of a uniform parameter, of anything but doubles.
 class FieldUniform {
  public:
-  /// `parts`: its one field, or the rows of a matrix or the parts of a vector of doubles in order.
+  /// `parts`: its one field, or the rows of a matrix in order.
   FieldUniform(GLint location, std::span<const program::Field> parts);
 
   /// `value`: of the whole parameter, laid out as its Element says.

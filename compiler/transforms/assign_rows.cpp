@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/assign_rows.hpp"
+
+#include <utility>
+
+#include "ir/build.hpp"
+#include "ir/walk.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+/// What a place is a part of; null for a variable.
+ExprPtr* baseOf(Expr& place) {
+  if (auto* n = std::get_if<Swizzle>(&place.node)) return &n->base;
+  if (auto* n = std::get_if<Member>(&place.node)) return &n->base;
+  if (auto* n = std::get_if<Index>(&place.node)) return &n->base;
+  return nullptr;
+}
+
+bool isComputedRow(const Expr& place) {
+  const auto* n = std::get_if<Index>(&place.node);
+  return n != nullptr && n->base->type.isMatrix() && !std::holds_alternative<Literal>(n->index->node);
+}
+
+/// The computed row that a place is a part of, as the slot that holds it; null if there is none.
+ExprPtr* rowOf(Expr& place) {
+  ExprPtr* base = baseOf(place);
+  if (base == nullptr) return nullptr;
+  return isComputedRow(**base) ? base : rowOf(**base);
+}
+
+/// Rewrites one function.
+class RowWriter {
+ public:
+  RowWriter(const Module& module, Function& function) : module_(module), function_(function) {}
+
+  void rewrite(Block& block) {
+    Block made;
+    for (Stmt& stmt : block) {
+      forEachBlock(stmt, [&](Block& inner) { rewrite(inner); });
+      Block after;
+      if (auto* n = std::get_if<Assign>(&stmt.node)) through(*n->place, stmt.loc, made, after);
+      if (auto* n = std::get_if<CallStmt>(&stmt.node)) {
+        for (std::size_t i = 0; i < n->args.size(); ++i) {
+          const bool isPlace = module_.functions[n->callee].variables[i].role == VarRole::InOut;
+          if (isPlace) through(*n->args[i], stmt.loc, made, after);
+        }
+        if (n->result) through(*n->result, stmt.loc, made, after);
+      }
+      made.push_back(std::move(stmt));
+      for (Stmt& write : after) made.push_back(std::move(write));
+    }
+    block = std::move(made);
+  }
+
+ private:
+  /// Puts a variable in the place of the row that `place` is a part of. The index is kept, too: what the
+  /// statement does may change what it is computed from.
+  void through(Expr& place, Loc loc, Block& before, Block& after) {
+    ExprPtr* row = rowOf(place);
+    if (row == nullptr) return;
+    Index& n = std::get<Index>((*row)->node);
+    const std::string matrix = function_.variables[rootOf(**row)].name;
+    const VarId number = addVariable(function_, matrix + "_index", n.index->type);
+    before.push_back(declare(number, std::move(n.index), loc));
+    n.index = varRef(function_, number, loc);
+    const VarId copy = addVariable(function_, matrix + "_row", (*row)->type);
+    before.push_back(declare(copy, clone(*row), loc));
+    after.push_back(assign(std::move(*row), varRef(function_, copy, loc), loc));
+    *row = varRef(function_, copy, loc);
+  }
+
+  const Module& module_;
+  Function& function_;
+};
+
+}  // namespace
+
+void assignRows(Module& module, Diagnostics&) {
+  for (Function& function : module.functions) RowWriter(module, function).rewrite(function.body);
+}
+
+}  // namespace skc
