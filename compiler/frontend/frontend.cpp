@@ -19,6 +19,7 @@
 #include <llvm/Support/raw_os_ostream.h>
 
 #include "frontend/clang_diagnostics.hpp"
+#include "frontend/clang_loc.hpp"
 #include "frontend/diagnostic_printer.hpp"
 #include "frontend/float_literals.hpp"
 #include "frontend/lower_module.hpp"
@@ -38,13 +39,14 @@ namespace {
 
 /// Larger files are no kernels that somebody wrote; Clang would take minutes over them.
 constexpr std::uintmax_t largestFile = std::uintmax_t{4} << 20;
+/// A few lines of macros that use one another make more than any memory holds.
+constexpr std::size_t mostTokens = 1'000'000;
 
 std::vector<std::string> compilerArguments(const Options& options, const std::string& path) {
   std::vector<std::string> arguments = {
       "-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++", "-std=c++20", "-nostdsysteminc",
-      "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all",
-      "-fnative-half-arguments-and-returns", "-Wno-undefined-internal", "-Wno-undefined-inline",
-      narrowingArgument,
+      "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all", "-fnative-half-arguments-and-returns",
+      "-Wno-undefined-internal", "-Wno-undefined-inline", narrowingArgument,
       "-Wno-literal-range",   // lowering tells, which knows whether a literal is a double
       // a mistaken -W or a long cascade must not bury the first message
       "-ferror-limit", "20", "-fmessage-length=0"};
@@ -78,6 +80,7 @@ class Frontend::Unit {
     text_ = isInMemory ? llvm::MemoryBuffer::getMemBufferCopy(*text, path) : readFile(path);
     if (text_ == nullptr || !isProgram(text_->getBuffer()) || !setUp(isInMemory)) return std::nullopt;
     std::vector<clang::Token> tokens = lex();
+    if (tokens.empty()) return std::nullopt;
     suffixFloats(tokens, compiler_.getPreprocessor());
     EditedTokens edited = editTokens(tokens, compiler_.getPreprocessor(), *diagnostics_);
     if (diagnostics_->hasErrors()) return std::nullopt;
@@ -184,12 +187,18 @@ class Frontend::Unit {
     return files;
   }
 
+  /// Nothing, and told, where there are too many.
   std::vector<clang::Token> lex() {
     clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
     preprocessor.EnterMainSourceFile();
     std::vector<clang::Token> tokens;
     do {
       preprocessor.Lex(tokens.emplace_back());
+      if (tokens.size() > mostTokens) {
+        const auto place = compiler_.getSourceManager().getExpansionLoc(tokens.back().getLocation());
+        diagnostics_->report(Diag::TooManyTokens, locOf(place), {std::to_string(mostTokens)});
+        return {};
+      }
     } while (tokens.back().isNot(clang::tok::eof));
     return tokens;
   }
