@@ -466,7 +466,9 @@ ExprPtr FunctionLowering::argument(const clang::Expr* e, const ir::Variable& par
       return place(e);   // Clang binds references only to their own type
     }
     case ir::VarRole::Element:
-      if (const auto stream = streamVariable(e)) {
+      // another type's is a value: it is converted
+      if (const auto stream = streamVariable(e);
+          stream && function_.variables[*stream].type == parameter.type) {
         return ir::makeExpr(function_.variables[*stream].type, ir::VarRef{*stream},
                             module_.loc(e->getBeginLoc()));
       }

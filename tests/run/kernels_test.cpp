@@ -148,6 +148,14 @@ TEST_CASE("kernels call kernels and reduces, and know their streams within") {
   });
 }
 
+TEST_CASE("an element is converted to what the kernel that is called takes") {
+  onEveryProfile([](sk::Device& device) {
+    auto r = device.stream<float>({count});
+    calls::converted(streamOf<int>(device, n), r);
+    CHECK(difference(r.read(), [](std::size_t i) { return static_cast<float>(2 * n[i]); }) == "");
+  });
+}
+
 TEST_CASE("an output may be read once it is written") {
   onEveryProfile([](sk::Device& device) {
     auto a = device.stream<float>({count});
