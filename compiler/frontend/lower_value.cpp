@@ -174,7 +174,7 @@ ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
   const ir::Type to = module_.type(e->getType(), e->getBeginLoc());
   const bool isImplicit = llvm::isa<clang::ImplicitCastExpr>(e);
   const bool mixesSigns =
-      isImplicit && !from.isBool() && !to.isBool();   // int4 / uint4 would follow the left side
+      isImplicit && !from.isBool() && !to.isBool();  // int4 / uint4 would follow the left side
   const bool areIntegers =
       !from.carrier().isFloat() && !to.carrier().isFloat() && !from.isDouble() && !to.isDouble();
   if (!from.isVector() || !to.isVector() || from.width != to.width || !areIntegers || mixesSigns) {
@@ -221,12 +221,12 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
   }
   if (auto* construct = std::get_if<ir::Construct>(&e->node);
       construct && e->type.isVector() && construct->args.size() == 1 && construct->args[0]->type.isScalar()) {
-    return splat(convert(std::move(construct->args[0]), scalar), e->type.width);   // `2.0` beside a vector
+    return splat(convert(std::move(construct->args[0]), scalar), e->type.width);  // `2.0` beside a vector
   }
   if (auto* constant = std::get_if<ir::Literal>(&e->node)) {
     const ir::Scalar carrier = ir::carrierOf(scalar);
     if (scalar == ir::Scalar::Double) return widened(e->type.scalar, constant->bits, loc);
-    if (e->type.isNarrow()) {   // the bits are those of the carrier already
+    if (e->type.isNarrow()) {  // the bits are those of the carrier already
       e->type = e->type.carrier();
       return convert(std::move(e), scalar);
     }
@@ -327,7 +327,8 @@ ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* i
   }
   const bool isArray = outer.kind == ir::Type::Kind::Array;
   const ir::Type type = isArray ? module_.arrayAt(outer.index).element : outer.indexed();
-  parts[1] = convert(std::move(parts[1]), ir::carrierOf(parts[1]->type.scalar));
+  const ir::Scalar carrier = ir::carrierOf(parts[1]->type.scalar);
+  parts[1] = convert(std::move(parts[1]), carrier == ir::Scalar::Bool ? ir::Scalar::Int : carrier);
   return make(type, where, ir::Index{std::move(parts[0]), std::move(parts[1])});
 }
 

@@ -14,6 +14,7 @@
 #include "transforms/bound_pushes.hpp"
 #include "transforms/derive_combine.hpp"
 #include "transforms/fold_constants.hpp"
+#include "transforms/forward_continues.hpp"
 #include "transforms/guard_streams.hpp"
 #include "transforms/remove_unused.hpp"
 #include "transforms/specialize_gathers.hpp"
@@ -41,6 +42,7 @@ void plain(ir::Module& module, Diagnostics& diagnostics, const TransformOptions&
 // never runs.
 // Deriving before removing, because it makes functions that use structs.
 // Assigning rows at any time before splitting, which follows variables.
+// Forwarding after bounding and deriving, which know what the author wrote.
 // Removing after these, because all of them leave things without use; and before splitting, so that
 // nobody plans for what is not needed.
 constexpr Transform transforms[] = {
@@ -50,6 +52,7 @@ constexpr Transform transforms[] = {
     {"bound-pushes", plain<boundPushes>},
     {"derive-combine", plain<deriveCombine>},
     {"assign-rows", plain<assignRows>},
+    {"forward-continues", plain<forwardContinues>},
     {"remove-unused", plain<removeUnused>},
     {"split-kernels", [](ir::Module& module, Diagnostics&,
                          const TransformOptions& options) { split::splitKernels(module, options.limits); }},

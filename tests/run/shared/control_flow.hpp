@@ -18,7 +18,8 @@
   CASE(switchInLoopBreak) CASE(switchInLoopContinue) CASE(loopInSwitch) CASE(switchInSwitch)       \
   CASE(switchBreakInIf) CASE(shadowing) CASE(scopes) CASE(collatz) CASE(greatestDivisor)           \
   CASE(isPrime) CASE(bubbleSort) CASE(arrayShifted) CASE(arrayAveraged)                 \
-  CASE(unreachableTail)
+  CASE(unreachableTail) CASE(indexByBool) CASE(continueInNestedSwitches)                           \
+  CASE(continueForFromNestedSwitches)
 // clang-format on
 
 #include "switches.hpp"
@@ -394,6 +395,12 @@ inline int isPrime(int x, int y) {
   for (int d = 2; d * d <= n; ++d)
     if (n % d == 0) return 0;
   return n;
+}
+
+inline int indexByBool(int x, int y) {
+  int a[2] = {x, y};
+  a[x > 3] += 100;
+  return a[x < y] * 3 + a[true];
 }
 
 // Too long to be unrolled, so that the array is one in the device's program, too.

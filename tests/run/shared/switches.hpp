@@ -260,4 +260,64 @@ inline int switchBreakInIf(int x, int y) {
   return r;
 }
 
+inline int continueInNestedSwitches(int x, int y) {
+  int r = 0, i = 0;
+  do {
+    ++i;
+    switch (x & 3) {
+      case 0:
+        switch (y & 3) {
+          case 1:
+            if (i == 2) continue;
+            r += 1;
+            break;
+          default:
+            switch (i) {
+              case 1: r += 3; [[fallthrough]];
+              case 3:
+                if (x < y) continue;
+                [[fallthrough]];
+              default: r += 7;
+            }
+            r += 13;
+        }
+        r += 10;
+        break;
+      case 1: r += 100; break;
+    }
+    r += 1000;
+  } while (i < 3);
+  return r;
+}
+
+inline int continueForFromNestedSwitches(int x, int y) {
+  int r = 0;
+  for (int i = 0; i < 4; i += 1 + (y & 1)) {
+    switch (x & 1) {
+      case 0:
+        switch (y & 1) {
+          default:
+            if (x < 4) continue;
+            r += 1;
+        }
+        r += 10;
+    }
+    while (r % 7 != 0) {
+      ++r;
+      switch (x) {
+        case 2: continue;
+        case 3:
+          switch (y) {
+            case 1: break;
+            default: continue;
+          }
+          r += 2;
+      }
+      r += 3;
+    }
+    r += 1000;
+  }
+  return r;
+}
+
 }  // namespace control
