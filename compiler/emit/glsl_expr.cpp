@@ -86,7 +86,8 @@ bool isNonNegative(const Expr& expr) {
 /// The component of a vector that an index names, if that is known.
 std::optional<std::uint32_t> knownComponent(const Index& n) {
   const auto* literal = std::get_if<Literal>(&n.index->node);
-  return literal != nullptr && literal->bits < n.base->type.width ? std::optional(literal->bits) : std::nullopt;
+  return literal != nullptr && literal->bits < n.base->type.width ? std::optional(literal->bits)
+                                                                  : std::nullopt;
 }
 
 /// True if GLSL can assign to the text of a place. Components of a vector of doubles are members of a

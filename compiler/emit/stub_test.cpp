@@ -163,8 +163,8 @@ TEST_CASE("awkward names and nested structs") {
                  "                  const sk::Out<geometry::pairs::Pair>& value) const;\n"));
   CHECK(contains(stub.header,
                  "void operator()(sk::bool3 arguments, const sk::Out<sk::bool3>& value) const;\n"));
-  CHECK(contains(stub.source,
-                 "const sk::Argument arguments_[] = {{.value = &arguments}, value.argument()};"));
+  CHECK(
+      contains(stub.source, "const sk::Argument arguments_[] = {{.value = &arguments}, value.argument()};"));
   CHECK(contains(stub.source, "\"odd \\\"name\\\".sk\""));
 }
 

@@ -111,7 +111,8 @@ TEST_CASE("formulas of literals are double where they meet doubles", "[frontend]
   CHECK(inKernel("double d = x; d *= -(1.0 / 3) + 0.1; v = x * 0.1;") ==
         "double d = double(x);\nd *= -(1.0d / 3.0d) + 0.1d;\nv = x * 0.1;\n");
   CHECK(inKernel("double d = max(double(x), 0.1) + double2(0.1, x).x; v = d > 0.1f ? 0.1 : 1;") ==
-        "double d = max(double(x), 0.1d) + double2{0.1d, double(x)}.x;\nv = d > 0.10000000149011612d ? 0.1 : 1.0;\n");
+        "double d = max(double(x), 0.1d) + double2{0.1d, double(x)}.x;\nv = d > 0.10000000149011612d ? 0.1 : "
+        "1.0;\n");
   CHECK(inKernel("v = x * 1'0.0 + 0x1.8p1 + .5;") == "v = x * 10.0 + 3.0 + 0.5;\n");
   CHECK(inKernel("double d = x > 0 ? 0.1 : -0.2; v = d;") ==
         "double d = x > 0.0 ? 0.1d : -0.2d;\nv = float(d);\n");

@@ -158,7 +158,8 @@ class Sequence {
 
 TEST_CASE("whatever the order of writes, calls and reduces, streams hold what plain arrays hold") {
   // the steps that come first take most programs of their own, which cost more than they compute
-  Sequence glsl(device("glsl330"), 1), essl(device("essl300"), 2), small(device("glsl330", smallLimits[1]), 3);
+  Sequence glsl(device("glsl330"), 1), essl(device("essl300"), 2),
+      small(device("glsl330", smallLimits[1]), 3);
   for (int i = 0; i < 60; ++i) {
     INFO("step " << i);
     glsl.step();

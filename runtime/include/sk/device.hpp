@@ -39,11 +39,11 @@ struct DeviceOptions {
 };
 
 struct DeviceLimits {
-  std::int32_t textureSize = 0;    ///< largest width and height of a texture
+  std::int32_t textureSize = 0;  ///< largest width and height of a texture
   std::int32_t textureLayers = 0;  ///< most layers of one: a stream has as many times more elements
-  std::int32_t drawBuffers = 0;    ///< planes that one pass may write
-  std::int32_t textureUnits = 0;   ///< planes that one pass may read
-  std::int32_t uniformComponents = 0;   ///< components of the uniform arguments of a kernel
+  std::int32_t drawBuffers = 0;  ///< planes that one pass may write
+  std::int32_t textureUnits = 0;  ///< planes that one pass may read
+  std::int32_t uniformComponents = 0;  ///< components of the uniform arguments of a kernel
 };
 
 /// Move-only. Several may live in a process; one thread may use a device at a time. A call makes the

@@ -58,38 +58,38 @@ enum class Scalar : std::uint8_t {
 /// One plane of an element: a scalar, a vector, a row of a matrix or up to two components of a vector of
 /// doubles, which one texel of one texture holds.
 struct Field {
-  std::string_view path;     ///< member path in GLSL ("t", "a.b"); empty where the element is no struct
+  std::string_view path;  ///< member path in GLSL ("t", "a.b"); empty where the element is no struct
   Scalar scalar;
-  std::uint8_t width;        ///< components, 1 to 4
-  std::uint32_t offset;      ///< bytes from the element's start in host memory
+  std::uint8_t width;  ///< components, 1 to 4
+  std::uint32_t offset;  ///< bytes from the element's start in host memory
   std::int8_t part = -1;  ///< which row of `path` it is, or which two components; -1: all of it
 };
 
 /// An element type: its GLSL spelling and its planes, in declaration order.
 struct Element {
-  std::string_view name;         ///< spelling in the .sk file, for messages: "float2", "Hit"
-  std::string_view glsl;         ///< spelling in GLSL: "vec2", "Hit"
-  std::uint32_t size;            ///< sizeof on the host
-  std::span<const Field> fields; ///< 1 or more
+  std::string_view name;  ///< spelling in the .sk file, for messages: "float2", "Hit"
+  std::string_view glsl;  ///< spelling in GLSL: "vec2", "Hit"
+  std::uint32_t size;  ///< sizeof on the host
+  std::span<const Field> fields;  ///< 1 or more
 };
 
 enum class Role : std::uint8_t {
-  Uniform,      ///< `T c`
-  Input,        ///< `T x<>`
-  Output,       ///< `out T r<>`
-  Gather,       ///< `T a[]`, `T a[][]`
+  Uniform,  ///< `T c`
+  Input,  ///< `T x<>`
+  Output,  ///< `out T r<>`
+  Gather,  ///< `T a[]`, `T a[][]`
   Accumulator,  ///< `reduce T r<>`
   VariableOutput,  ///< `vout T r<>`
-  Scatter,      ///< `out T r[]`, `out T r[][]`
-  Iterator,     ///< `iter T i<>`
-  Spec,         ///< `spec T c`: a bool, int, uint or float whose value makes a variant
+  Scatter,  ///< `out T r[]`, `out T r[][]`
+  Iterator,  ///< `iter T i<>`
+  Spec,  ///< `spec T c`: a bool, int, uint or float whose value makes a variant
 };
 
 /// How an element input whose shape is not the domain's is read.
 enum class Fit : std::uint8_t {
-  Same,       ///< it has the domain's extents, or 1 where it repeats
+  Same,  ///< it has the domain's extents, or 1 where it repeats
   Stretched,  ///< its extents divide the domain's: each element serves several of these in a row
-  Strided,    ///< its extents are multiples of the domain's: the first of several elements is read
+  Strided,  ///< its extents are multiples of the domain's: the first of several elements is read
 };
 
 /// What a scatter output does with the element that it holds and the value that comes.
@@ -113,45 +113,45 @@ inline constexpr std::size_t deepestCondition = 32;
 struct ConditionStep {
   ConditionOp op;
   Scalar scalar;
-  std::uint32_t value = 0;   ///< Spec: number of the parameter among those; Literal: its bits
+  std::uint32_t value = 0;  ///< Spec: number of the parameter among those; Literal: its bits
 };
 
 /// When a kernel needs a stream: a condition of no steps is always true.
 struct Condition {
   std::span<const ConditionStep> steps = {};
-  std::string_view text = {};   ///< as the .sk file would write it, for messages
+  std::string_view text = {};  ///< as the .sk file would write it, for messages
 };
 
 /// Where a plane lies that shares a texture with others (Plan::bundles).
 struct Layer {
-  std::int8_t bundle = -1;     ///< -1: it has a texture of its own
+  std::int8_t bundle = -1;  ///< -1: it has a texture of its own
   std::uint8_t layer = 0;
-  std::uint8_t count = 1;      ///< planes in the bundle
+  std::uint8_t count = 1;  ///< planes in the bundle
 };
 
 struct Parameter {
-  std::string_view name;       ///< as declared, for messages
-  std::string_view symbol;     ///< suffix of the assembler's names for it (a GLSL-safe name that begins
-                               ///< with a letter: GLSL reserves names with two underscores)
+  std::string_view name;  ///< as declared, for messages
+  std::string_view symbol;  ///< suffix of the assembler's names for it (a GLSL-safe name that begins
+      ///< with a letter: GLSL reserves names with two underscores)
   Role role;
   const Element* element;
-  std::uint8_t rank = 0;               ///< gathers and scatter outputs: 1 to 4; else 0
-  Boundary boundary = Boundary::Clamp; ///< gathers
-  std::string_view border = {};        ///< gathers with Boundary::Border: a GLSL constant expression
-  std::string_view identity = {};      ///< accumulators: a GLSL constant expression; empty if none
+  std::uint8_t rank = 0;  ///< gathers and scatter outputs: 1 to 4; else 0
+  Boundary boundary = Boundary::Clamp;  ///< gathers
+  std::string_view border = {};  ///< gathers with Boundary::Border: a GLSL constant expression
+  std::string_view identity = {};  ///< accumulators: a GLSL constant expression; empty if none
   ScatterOp scatter = ScatterOp::Store;  ///< scatter outputs
-  std::int32_t pushes = -1;    ///< variable and scatter outputs: calls of sk_push_p() or sk_put_p() by one
-                               ///< element at most; -1 if unknown
-  bool usesIndex = false;      ///< the body calls sk_index_p()
-  bool usesExtent = false;     ///< the body calls sk_extent_p()
-  bool usesAt = false;         ///< the body calls sk_at_p()
-  bool usesNear = false;       ///< the body calls sk_near_p()
-  bool usesSample = false;     ///< the body calls sk_sample_p()
-  bool filter = false;         ///< gathers: sk_sample_p() may leave the interpolation to the device
-  std::int32_t reach = -1;     ///< largest |offset| of its sk_near_p() calls; -1 if not constant
-  Condition neededIf = {};     ///< inputs, outputs, gathers: where it is false, the stream may be left out
-  std::uint8_t firstPlane = 0; ///< outputs of a pass that writes only some planes: the first,
-  std::uint8_t planeCount = 0; ///< and how many; 0 is all of them
+  std::int32_t pushes = -1;  ///< variable and scatter outputs: calls of sk_push_p() or sk_put_p() by one
+      ///< element at most; -1 if unknown
+  bool usesIndex = false;  ///< the body calls sk_index_p()
+  bool usesExtent = false;  ///< the body calls sk_extent_p()
+  bool usesAt = false;  ///< the body calls sk_at_p()
+  bool usesNear = false;  ///< the body calls sk_near_p()
+  bool usesSample = false;  ///< the body calls sk_sample_p()
+  bool filter = false;  ///< gathers: sk_sample_p() may leave the interpolation to the device
+  std::int32_t reach = -1;  ///< largest |offset| of its sk_near_p() calls; -1 if not constant
+  Condition neededIf = {};  ///< inputs, outputs, gathers: where it is false, the stream may be left out
+  std::uint8_t firstPlane = 0;  ///< outputs of a pass that writes only some planes: the first,
+  std::uint8_t planeCount = 0;  ///< and how many; 0 is all of them
   std::span<const Layer> layers = {};  ///< one a plane; empty if none is in a bundle
 };
 
@@ -160,31 +160,31 @@ struct Plan;
 /// A kernel. Its GLSL entry function takes, in order, every Uniform, Iterator, Spec, Input (by value) and
 /// Output (as `out`) parameter; gathers, variable outputs and scatter outputs are no parameters of it.
 struct Kernel {
-  std::string_view name;       ///< qualified, for messages: "heat::diffuse"
-  std::string_view entry;      ///< name of the entry function in `body`
-  std::string_view declarations; ///< structs, and the constants that Parameter::border and identity
-                               ///< name, with #line directives; empty if none
-  std::string_view body;       ///< other constants, and functions, with #line directives
-  std::span<const Parameter> parameters;         ///< in the order of the declaration
-  std::span<const std::string_view> sources;     ///< file of source string number i + 1 in #line
-  bool usesIndex = false;      ///< the body calls sk_index()
-  bool usesExtent = false;     ///< the body calls sk_extent()
-  bool usesLoops = false;      ///< the body has a loop: main() then leaves the helper invocations that
-                               ///< GPUs run beside the domain, where what they read might never end it
+  std::string_view name;  ///< qualified, for messages: "heat::diffuse"
+  std::string_view entry;  ///< name of the entry function in `body`
+  std::string_view declarations;  ///< structs, and the constants that Parameter::border and identity
+      ///< name, with #line directives; empty if none
+  std::string_view body;  ///< other constants, and functions, with #line directives
+  std::span<const Parameter> parameters;  ///< in the order of the declaration
+  std::span<const std::string_view> sources;  ///< file of source string number i + 1 in #line
+  bool usesIndex = false;  ///< the body calls sk_index()
+  bool usesExtent = false;  ///< the body calls sk_extent()
+  bool usesLoops = false;  ///< the body has a loop: main() then leaves the helper invocations that
+      ///< GPUs run beside the domain, where what they read might never end it
   bool usesDoubles = false;  ///< declarations or body speak of sk_double
-  const Plan* plans = nullptr; ///< for devices that cannot run it in one pass, most generous first
+  const Plan* plans = nullptr;  ///< for devices that cannot run it in one pass, most generous first
   std::uint8_t planCount = 0;
 };
 
 /// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.
 struct PassOperand {
   bool isTemporary;
-  std::uint8_t index;          ///< into the whole kernel's parameters, or into Plan::temporaries
+  std::uint8_t index;  ///< into the whole kernel's parameters, or into Plan::temporaries
 };
 
 struct Pass {
   Kernel kernel;
-  std::span<const PassOperand> operands;   ///< one a parameter
+  std::span<const PassOperand> operands;  ///< one a parameter
 };
 
 /// A plane of an argument of the whole kernel.
@@ -218,8 +218,8 @@ struct Reduction {
   Kernel fold;
   Kernel combine;
   std::span<const std::uint8_t> combineOperands;  ///< one a parameter of `combine`: that of `fold` whose
-                               ///< argument it gets; nobody looks at those of Inputs and Accumulators
-  bool seeded;                 ///< a run may start from its first elements, taken as the accumulators
+      ///< argument it gets; nobody looks at those of Inputs and Accumulators
+  bool seeded;  ///< a run may start from its first elements, taken as the accumulators
       ///< (they have the same types); else it starts from the identities, which
       ///< then all exist
 };
