@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "frontend/diagnostic_printer.hpp"
 
+#include <clang/AST/DeclarationName.h>
 #include <clang/AST/Type.h>
 #include <clang/Basic/DiagnosticSema.h>
+
+#include "frontend/foreign_names.hpp"
+#include "support/diagnostics.hpp"
 
 namespace skc::frontend {
 namespace {
@@ -24,6 +28,14 @@ bool isBoolOfVector(const clang::Diagnostic& diagnostic) {
          to->getKind() == clang::BuiltinType::Bool;
 }
 
+/// The name that nobody declared; "" in any other message.
+std::string unknownName(const clang::Diagnostic& diagnostic) {
+  if (diagnostic.getID() != clang::diag::err_undeclared_var_use) return {};
+  if (diagnostic.getArgKind(0) == DiagnosticsEngine::ak_identifierinfo)
+    return diagnostic.getArgIdentifier(0)->getName().str();
+  return clang::DeclarationName::getFromOpaqueInteger(diagnostic.getRawArg(0)).getAsString();
+}
+
 }  // namespace
 
 void DiagnosticPrinter::HandleDiagnostic(DiagnosticsEngine::Level level,
@@ -31,6 +43,11 @@ void DiagnosticPrinter::HandleDiagnostic(DiagnosticsEngine::Level level,
   if (level != DiagnosticsEngine::Note) isDropping_ = isBoolOfVector(diagnostic);
   if (isDropping_) return;
   if (level == DiagnosticsEngine::Warning && isNarrowing(diagnostic)) level = DiagnosticsEngine::Error;
+  const std::string name = unknownName(diagnostic);
+  if (const std::string_view advice = insteadOf(name); !advice.empty()) {
+    const std::string text = format(Diag::ForeignName, {name, advice});
+    return TextDiagnosticPrinter::HandleDiagnostic(level, clang::Diagnostic(diagnostic.getDiags(), text));
+  }
   TextDiagnosticPrinter::HandleDiagnostic(level, diagnostic);
 }
 

@@ -2,6 +2,7 @@
 //
 // Clang's printer, with one message less: a component of a bool vector, which Clang takes for a char32_t, is a bool
 // and loses nothing where a list in braces makes one of it. Every other narrowing stays the error that it is in C++.
+// And where a name is unknown that people bring from elsewhere, it says what stands in for it.
 #pragma once
 
 #include <clang/Frontend/TextDiagnosticPrinter.h>

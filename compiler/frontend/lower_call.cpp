@@ -97,8 +97,6 @@ ExprPtr FunctionLowering::classAssignment(ir::BinaryOp op, const clang::CXXOpera
 
 ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
   const llvm::StringRef name = callee->getName();
-  if (const std::string_view advice = insteadOf(std::string_view(name)); !advice.empty())
-    module_.fail(Diag::BrookFunction, e->getBeginLoc(), {std::string_view(name), advice});
   if (name.starts_with("__sk_make_"))
     return vectorConstructor(e, module_.type(e->getType(), e->getBeginLoc()));
   if (name == "indexof") return indexOrExtent(e, true);

@@ -38,24 +38,6 @@ struct ParameterEditor::Parts {
 
 namespace {
 
-/// The place of the `>` that closes a list of values or types behind a name; 0 where `<` is none.
-std::size_t endOfList(const std::vector<Token>& tokens, std::size_t less) {
-  if (tokens[less - 1].isNot(tok::identifier)) return 0;
-  constexpr std::size_t longest = 256;   // tokens, so that many that end nowhere take no time
-  int depth = 0;
-  int parentheses = 0;
-  for (std::size_t i = less; i < std::min(tokens.size(), less + longest); ++i) {
-    const Token& token = tokens[i];
-    if (token.isOneOf(tok::equal, tok::l_brace, tok::semi, tok::greaterequal)) return 0;
-    if (token.is(tok::l_paren)) ++parentheses;
-    if (token.is(tok::r_paren) && --parentheses < 0) return 0;
-    if (parentheses > 0) continue;
-    if (token.is(tok::less)) ++depth;
-    if (token.is(tok::greater) && --depth == 0) return i;
-  }
-  return 0;
-}
-
 /// Splits the tokens between the parentheses at commas outside any bracket.
 std::vector<std::vector<Token>> splitAtCommas(const std::vector<Token>& declared) {
   std::vector<std::vector<Token>> parts(1);
@@ -112,6 +94,7 @@ bool isNamedWord(const Token& token, std::initializer_list<llvm::StringRef> word
 
 std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind kind) {
   inputs_.clear();
+  indexed_.clear();
   Tokens out{declared.front()};
   const std::vector<Tokens> parameters = splitAtCommas(declared);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -323,6 +306,12 @@ std::vector<Mend> ParameterEditor::removedBrackets(const Parts& parts) {
   return {Mend::remove(locOf(parts.open), locOf(parts.close))};
 }
 
+/// `reduce` in place of `out`, of a parameter that is an accumulator but for that.
+std::vector<Mend> ParameterEditor::asAccumulator(const Parts& parts) {
+  if (!parts.isElement || parts.rank > 0) return {};
+  return {Mend::replace(locOf(parts.qualifier), "reduce")};
+}
+
 /// The table of DESIGN's parameters: qualifier, `<>` and brackets decide together.
 bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
@@ -371,11 +360,9 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
                         : qualifier.empty() ? ir::ParamRole::Uniform
                                             : ir::ParamRole::Output;
   } else if (qualifier == "out" || qualifier == "inout") {
-    if (!parts.isElement || qualifier == "inout") {
-      return fail(Diag::OutputBrackets, {name},
-                  qualifier == "out" ? addedBrackets(parts) : std::vector<Mend>());
-    }
-    if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name});
+    if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name}, asAccumulator(parts));
+    if (qualifier == "inout") return fail(Diag::InoutStream, {name});
+    if (!parts.isElement) return fail(Diag::OutputBrackets, {name}, addedBrackets(parts));
     parts.syntax.role = ir::ParamRole::Output;
   } else if (qualifier == "reduce") {
     if (!parts.isElement) return fail(Diag::AccumulatorBrackets, {name}, addedBrackets(parts));
@@ -420,6 +407,7 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
   ParamSyntax syntax = parts.syntax;
   if (!parts.border.empty()) syntax.border = generateConstant(parts.type, borderValue(parts.border), place);
   if (!parts.value.empty()) syntax.identity = generateConstant(parts.type, parts.value, place);
+  if (syntax.rank > 0) indexed_.push_back({parts.name, syntax.rank});
   const clang::SourceLocation start = parts.type.front().getLocation();
   switch (syntax.role) {
     case ir::ParamRole::Gather:

@@ -9,6 +9,7 @@
 
 #include <clang/Lex/Token.h>
 
+#include "frontend/comma_indices.hpp"
 #include "frontend/syntax.hpp"
 #include "frontend/token_maker.hpp"
 #include "support/diagnostics.hpp"
@@ -39,6 +40,7 @@ class ParameterEditor {
   };
   /// Those of the list that was edited last.
   const std::vector<Input>& inputs() const { return inputs_; }
+  const std::vector<IndexedParameter>& indexed() const { return indexed_; }
 
   /// `declared` and the result include the parentheses.
   std::vector<clang::Token> edit(const std::vector<clang::Token>& declared, FunctionKind kind);
@@ -56,6 +58,7 @@ class ParameterEditor {
   bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
   static std::vector<Mend> addedBrackets(const Parts& parts);
   static std::vector<Mend> removedBrackets(const Parts& parts);
+  static std::vector<Mend> asAccumulator(const Parts& parts);
   bool resolveRole(Parts& parts, FunctionKind kind);
   bool resolveSink(Parts& parts, FunctionKind kind);
   std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place);
@@ -68,6 +71,7 @@ class ParameterEditor {
   int& constants_;
   std::vector<clang::Token>& before_;
   std::vector<Input> inputs_;
+  std::vector<IndexedParameter> indexed_;
 };
 
 }  // namespace skc::frontend

@@ -26,14 +26,14 @@ struct VectorFamily {
 // else uses and that has the size of the masks that vector comparisons give.
 constexpr std::array<VectorFamily, 10> families = {{{"float", "float", "float"},
                                                     {"double", "double", "double"},
-                                                   {"int", "int", "int"},
-                                                   {"uint", "unsigned", "uint"},
-                                                   {"bool", "char32_t", "bool"},
-                                                   {"half", "__fp16", "float"},
-                                                   {"char", "char", "int"},
-                                                   {"uchar", "unsigned char", "int"},
-                                                   {"short", "short", "int"},
-                                                   {"ushort", "unsigned short", "int"}}};
+                                                    {"int", "int", "int"},
+                                                    {"uint", "unsigned", "uint"},
+                                                    {"bool", "char32_t", "bool"},
+                                                    {"half", "__fp16", "float"},
+                                                    {"char", "char", "int"},
+                                                    {"uchar", "unsigned char", "int"},
+                                                    {"short", "short", "int"},
+                                                    {"ushort", "unsigned short", "int"}}};
 
 // Clang has no such numbers: they are classes that convert to and from float.
 constexpr std::array<std::string_view, 4> normalized = {"unorm8", "snorm8", "unorm16", "snorm16"};
@@ -253,15 +253,6 @@ template <class T> T modf(T x, T& whole);
 template <class T> T frexp(T x, __sk_I<T>& exponent);
 )";
 
-/// Functions that every kernel may call as it likes, to be told what to do instead.
-std::string brookFunctions() {
-  std::string text = "struct __sk_anything { template <class T> operator T() const; };\n";
-#define SKC_BROOK(spelling, advice) text += "template <class... A> __sk_anything " spelling "(A...);\n";
-#include "frontend/brook.def"
-#undef SKC_BROOK
-  return text;
-}
-
 std::string intrinsics() {
   // One declaration for each name and number of arguments, over the signatures of all their rows.
   std::map<std::pair<std::string_view, std::size_t>, std::vector<std::string_view>> overloads;
@@ -288,17 +279,8 @@ std::string intrinsics() {
 }  // namespace
 
 std::string preludeText() {
-  return fmt::format("# 1 \"sk-prelude\" 1 3\n{}{}{}{}{}{}{}# 1 \"<command line>\" 2\n", vectorTypes(),
-                     normalizedTypes(), matrixTypes(), typeTraits(), gathersAndStreams, brookFunctions(),
-                     intrinsics());
-}
-
-std::string_view insteadOf(std::string_view brooks) {
-#define SKC_BROOK(spelling, advice) \
-  if (brooks == spelling) return advice;
-#include "frontend/brook.def"
-#undef SKC_BROOK
-  return {};
+  return fmt::format("# 1 \"sk-prelude\" 1 3\n{}{}{}{}{}{}# 1 \"<command line>\" 2\n", vectorTypes(),
+                     normalizedTypes(), matrixTypes(), typeTraits(), gathersAndStreams, intrinsics());
 }
 
 bool isVectorTypeName(std::string_view name) {

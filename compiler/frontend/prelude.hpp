@@ -27,9 +27,6 @@ std::optional<ir::Type> classType(std::string_view name);
 /// The function that stands for `name(...)` in the edited token stream.
 std::string vectorConstructorName(std::string_view name);
 
-/// What to do in place of a function of Brook's (brook.def); "" for any other name.
-std::string_view insteadOf(std::string_view brooks);
-
 /// The class template of a gather of this rank, 1 to 4: "gather_2d".
 std::string gatherTemplateName(int rank);
 

@@ -22,6 +22,9 @@ inline bool isWord(const clang::Token& token, llvm::StringRef word) {
   return token.is(clang::tok::identifier) && token.getIdentifierInfo()->getName() == word;
 }
 
+/// The place of the `>` that closes a list of values or types behind a name; 0 where `<` is none.
+std::size_t endOfList(const std::vector<clang::Token>& tokens, std::size_t less);
+
 class TokenCursor {
  public:
   explicit TokenCursor(const std::vector<clang::Token>& tokens) : tokens_(tokens) {}
@@ -39,6 +42,8 @@ class TokenCursor {
     if (position_ + 1 < tokens_.size()) ++position_;
     return token;
   }
+  /// `{ ... }`, which follows, to its brace or to the end.
+  std::vector<clang::Token> peekBraced() const;
   /// Takes `( ... )` with its parentheses; empty where no `)` closes it before a brace or the end.
   std::vector<clang::Token> takeParenthesized();
 

@@ -7,6 +7,7 @@
 #include <clang/Lex/Preprocessor.h>
 
 #include "frontend/clang_loc.hpp"
+#include "frontend/comma_indices.hpp"
 #include "frontend/constructor_editor.hpp"
 #include "frontend/parameter_editor.hpp"
 #include "frontend/stream_editor.hpp"
@@ -188,6 +189,7 @@ class Editor {
     out_.insert(out_.end(), edited.begin(), edited.end());
     if (cursor_.at(tok::l_brace)) {
       for (const ParameterEditor::Input& input : parameters.inputs()) refuseIfOnlyAssigned(input);
+      refuseCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
       return copyBody(constants);
     }
     if (cursor_.at(tok::semi)) return copyToken();
@@ -252,6 +254,8 @@ class Editor {
         ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, out_);
         const std::vector<Token> edited = parameters.edit(declared, FunctionKind::Helper);
         out_.insert(out_.end(), edited.begin(), edited.end());
+        if (cursor_.at(tok::l_brace))
+          refuseCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
         continue;
       }
       copyToken();
