@@ -235,7 +235,7 @@ class Editor {
       const Token& token = cursor_.peek();
       if (token.is(tok::semi)) return copyToken();
       if (token.is(tok::r_brace)) return copyToken();
-      if (token.is(tok::equal)) initializer = true;
+      initializer = initializer || token.is(tok::equal) || isValueAhead();
       if (token.isOneOf(tok::kw_struct, tok::kw_class, tok::kw_union, tok::kw_enum)) record = true;
       if (token.is(tok::l_brace)) {
         copyBraces();
@@ -261,6 +261,9 @@ class Editor {
       copyToken();
     }
   }
+
+  /// Behind `const float2 a`, whose parentheses the constructors made a value.
+  bool isValueAhead() const { return out_.size() > 1 && out_[out_.size() - 2].is(tok::equal); }
 
   /// The constants that the parameters gave stand first in the body, where a template's own types are known.
   void copyBody(const std::vector<Token>& constants) {

@@ -338,6 +338,21 @@ TEST_CASE("vectors of integers and bools are compared and selected") {
   });
 }
 
+TEST_CASE("vectors are made with parentheses by qualified names, and for constants") {
+  const auto v = values<float2>(50);
+  onEveryProfile([&](sk::Device& device) {
+    auto a = device.stream<float4>({50});
+    auto b = device.stream<float2>({50});
+    vectors::qualified(streamOf<float2>(device, v), a, b);
+    CHECK(difference(a.read(), [&](std::size_t i) {
+            return float4{v[i].x + 1 + v[i].x * 0.5f, v[i].y + 2 + 0.25f, 3 + 3 + 0.125f, 4 + 4 + 1};
+          }) == "");
+    CHECK(difference(b.read(), [&](std::size_t i) {
+            return float2{(v[i].x + 3) * 2 + 4 + 12, (v[i].y + 4) * 0.5f + 3 + 14};
+          }) == "");
+  });
+}
+
 TEST_CASE("variables and aliases of vectors are made with parentheses") {
   const auto v = values<float2>(50);
   const auto n = values<int>(50, 1);
