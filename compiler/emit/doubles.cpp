@@ -55,23 +55,23 @@ void defineByComponent(Polyfills& polyfills, std::string_view function, Type res
 }
 
 /// Defines the function of a row on the components of these arguments.
-void defineScalar(Polyfills& polyfills, std::string_view function, std::string_view value, Type result,
+void defineScalar(Polyfills& polyfills, std::string_view function, std::string_view body, Type result,
                   const std::vector<Type>& types) {
-  if (value.empty()) return;
+  if (body.empty()) return;
   std::vector<Type> components;
   for (const Type type : types) components.push_back(type.component());
-  polyfills.add(wrapLine(fmt::format("{} {}({}) {{ return {}; }}", nameOf(result.component()), function,
-                                     parameterList(components), value)) +
+  polyfills.add(wrapLine(fmt::format("{} {}({}) {{ {} }}", nameOf(result.component()), function,
+                                     parameterList(components), body)) +
                 "\n");
 }
 
 struct Row {
   Intrinsic intrinsic;
-  std::string_view function, value;
+  std::string_view function, body;
 };
 
 constexpr Row rows[] = {
-#define SKC_DOUBLE_FUNCTION(Name, function, value) {Intrinsic::Name, function, value},
+#define SKC_DOUBLE_FUNCTION(Name, function, body) {Intrinsic::Name, function, body},
 #include "emit/double_functions.def"
 #undef SKC_DOUBLE_FUNCTION
 };
@@ -135,7 +135,7 @@ std::string byComponent(Polyfills& polyfills, Intrinsic intrinsic, const std::ve
   const bool isVector = std::ranges::any_of(types, [](Type type) { return type.isVector(); });
   // comparisons have no overload of one component among the intrinsics, but are bool like the others
   const Type result = resultType(intrinsic, types).value_or(Type::of(Scalar::Bool));
-  defineScalar(polyfills, found->function, found->value, result, types);
+  defineScalar(polyfills, found->function, found->body, result, types);
   if (isVector) defineByComponent(polyfills, found->function, result, types);
   return call(found->function, texts);
 }

@@ -367,3 +367,56 @@ TEST_CASE("simple functions of doubles") {
     }
   });
 }
+
+TEST_CASE("remainders, smooth steps and powers of two of doubles") {
+  const std::vector<double> x = randomDoubles(1000, 61, 2), y = randomDoubles(1000, 62, 2);
+  std::vector<int> e(1000);
+  for (int i = 0; i < 1000; ++i) e[static_cast<std::size_t>(i)] = i % 121 - 60;
+  const auto mod = [](double a, double b) { return a - b * std::floor(a / b); };
+  const auto smooth = [](double low, double high, double v) {
+    const double t = std::clamp((v - low) / (high - low), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+  };
+  onEveryForm([&](sk::Device& device, const Form& form) {
+    auto r0 = device.stream<double>({1000}), r1 = device.stream<double>({1000}),
+         r2 = device.stream<double>({1000});
+    auto r3 = device.stream<sk::double2>({1000});
+    modular(streamOf<double>(device, x), streamOf<double>(device, y), streamOf<int>(device, e), r0, r1, r2,
+            r3);
+    const auto mods = r0.read(), fmods = r1.read(), powers = r2.read();
+    const auto steps = r3.read();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double a = x[i], b = y[i];
+      INFO(a << ", " << b << ", " << e[i]);
+      // the quotient's error counts as many times as the divisor is taken, which is about |a|
+      const double error = static_cast<double>(precisionOf(form)) * 8 * (1 + std::fabs(a) + std::fabs(b));
+      CHECK(std::fabs(mods[i] - (mod(a, b) + mod(b, 0.75))) <= error);
+      CHECK(std::fabs(fmods[i] - std::fmod(a, b)) <= error);
+      CHECK(std::fabs(powers[i] - std::ldexp(a, e[i])) <=
+            static_cast<double>(precisionOf(form)) * std::ldexp(std::fabs(a), e[i]));
+      // the slope of a smooth step is 1.5 at most
+      CHECK(std::fabs(steps[i].x - (smooth(-1, 2, a) + smooth(b, b + 1, a))) <= 4 * error);
+      CHECK(std::fabs(steps[i].y - (smooth(-1, 2, b) + smooth(0, 3, a))) <= 4 * error);
+    }
+  });
+}
+
+TEST_CASE("powers of two beyond the range of doubles") {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const std::vector<double> x = {1.5, -3.25, 0x1p-120, 0x1p120, 0.0, inf, -inf, std::nan(""), 7, 7};
+  const std::vector<int> e = {100, -100, 240, -240, 5000, -5000, 3, 4, 5000, -5000};
+  onEveryForm([&](sk::Device& device, const Form&) {
+    const auto n = static_cast<std::int64_t>(x.size());
+    auto r0 = device.stream<double>({n}), r1 = device.stream<double>({n}), r2 = device.stream<double>({n});
+    auto r3 = device.stream<sk::double2>({n});
+    modular(streamOf<double>(device, x), streamOf<double>(device, std::vector<double>(x.size(), inf)),
+            streamOf<int>(device, e), r0, r1, r2, r3);
+    const auto fmods = r1.read(), powers = r2.read();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      INFO(x[i] << ", " << e[i]);
+      const double wanted = std::ldexp(x[i], e[i]);
+      CHECK((std::isnan(wanted) ? std::isnan(powers[i]) : powers[i] == wanted));
+      CHECK((std::isfinite(x[i]) ? fmods[i] == x[i] : std::isnan(fmods[i])));
+    }
+  });
+}

@@ -40,6 +40,7 @@ bool sk_less_equal(sk_double a, sk_double b) { return sk_value(a) <= sk_value(b)
 bool sk_equal(sk_double a, sk_double b) { return sk_value(a) == sk_value(b); }
 sk_double sk_abs(sk_double a) { return sk_double(a.bits & uvec2(0xffffffffu, 0x7fffffffu)); }
 sk_double sk_floor(sk_double a) { return sk_of(floor(sk_value(a))); }
+sk_double sk_trunc(sk_double a) { return sk_of(trunc(sk_value(a))); }
 sk_double sk_round(sk_double a) { return sk_of(roundEven(sk_value(a))); }
 sk_double sk_sqrt(sk_double a) { return sk_of(sqrt(sk_value(a))); }
 bool sk_isnan(sk_double a) {
@@ -162,6 +163,8 @@ sk_double sk_floor(sk_double a) {
   return f == a.hi ? sk_join(f, floor(a.lo)) : sk_double(f, 0.0);
 }
 
+sk_double sk_trunc(sk_double a) { return a.hi < 0.0 ? sk_neg(sk_floor(sk_neg(a))) : sk_floor(a); }
+
 // To the nearest integer; of two, to the even one.
 sk_double sk_round(sk_double a) {
   float r = roundEven(a.hi);
@@ -237,12 +240,25 @@ int sk_to_int(sk_double a) {
 }
 )";
 
-constexpr std::string_view vectorText = R"(
+constexpr std::string_view commonText = R"(
 struct sk_double2 { sk_double x, y; };
 struct sk_double3 { sk_double x, y, z; };
 struct sk_double4 { sk_double x, y, z, w; };
 sk_double2 sk_unpack(uvec4 b) { return sk_double2(sk_unpack(b.xy), sk_unpack(b.zw)); }
 uvec4 sk_pack(sk_double2 a) { return uvec4(sk_pack(a.x), sk_pack(a.y)); }
+
+// Of the bits, since a device may reorder products of which some are too large. What is below the smallest normal
+// double is 0.
+sk_double sk_ldexp(sk_double a, int e) {
+  uvec2 b = sk_pack(a);
+  uint sign = b.y & 0x80000000u;
+  int old = int((b.y >> 20) & 0x7ffu);
+  int scaled = old + clamp(e, -4096, 4096);
+  if (old == 2047) return a;
+  if (old == 0 || scaled <= 0) return sk_unpack(uvec2(0u, sign));
+  if (scaled >= 2047) return sk_unpack(uvec2(0u, sign | 0x7ff00000u));
+  return sk_unpack(uvec2(b.x, (b.y & 0x800fffffu) | (uint(scaled) << 20)));
+}
 )";
 
 }  // namespace
@@ -258,11 +274,11 @@ std::string_view doubleExtensions(Doubles form) {
 
 std::string doubleDefinitions(Doubles form) {
   switch (form) {
-    case Doubles::Native: return std::string(nativeText).append(vectorText);
-    case Doubles::PrecisePairs: return std::string(preciseText).append(pairText).append(vectorText);
+    case Doubles::Native: return std::string(nativeText).append(commonText);
+    case Doubles::PrecisePairs: return std::string(preciseText).append(pairText).append(commonText);
     case Doubles::Pairs: break;
   }
-  return std::string(barrierText).append(pairText).append(vectorText);
+  return std::string(barrierText).append(pairText).append(commonText);
 }
 
 }  // namespace sk::assemble
