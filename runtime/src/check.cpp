@@ -87,20 +87,6 @@ void checkPlanes(const Kernel& kernel, const DeviceState& device, std::size_t wr
   }
 }
 
-/// A driver may need more than the components that are counted here, and says so in its own words then.
-void checkUniforms(const Kernel& kernel, const DeviceState& device) {
-  std::size_t components = 0;
-  for (const Parameter& parameter : kernel.parameters) {
-    if (parameter.role != Role::Uniform) continue;
-    for (const program::Field& field : parameter.element->fields) components += field.width;
-  }
-  if (components > static_cast<std::size_t>(device.limits.uniformComponents)) {
-    fail(kernel,
-         "its uniforms have {} components, but this device has room for {}; read large arrays as gathers",
-         components, device.limits.uniformComponents);
-  }
-}
-
 /// Planes of the passes that a sink adds: of its list, and, where it is counted, one of counts to the pass that
 /// writes the other outputs, and two of the tree to what its list's pass reads.
 struct SinkPlanes {

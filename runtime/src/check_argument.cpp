@@ -161,4 +161,20 @@ void checkGiven(const Kernel& kernel, const Parameter& parameter, const Argument
   }
 }
 
+void checkUniforms(const Kernel& kernel, const DeviceState& device) {
+  std::size_t components = 0;
+  for (const Parameter& parameter : kernel.parameters) {
+    if (parameter.role != Role::Uniform) continue;
+    for (const program::Field& field : parameter.element->fields) {
+      const bool isDouble = field.scalar == program::Scalar::Double;  // two components of 32 bits
+      components += isDouble ? 2U * field.width : field.width;
+    }
+  }
+  if (components > static_cast<std::size_t>(device.limits.uniformComponents)) {
+    fail(kernel,
+         "its uniforms have {} components, but this device has room for {}; read large arrays as gathers",
+         components, device.limits.uniformComponents);
+  }
+}
+
 }  // namespace sk

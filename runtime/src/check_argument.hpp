@@ -15,6 +15,8 @@
 
 namespace sk {
 
+class DeviceState;
+
 template <class... Values>
 [[noreturn]] void fail(const program::Kernel& kernel, fmt::format_string<Values...> format,
                        Values&&... values) {
@@ -47,5 +49,9 @@ void checkValue(const program::Kernel& kernel, const program::Parameter& paramet
 
 /// That a stream which the kernel needs is not sk::none.
 void checkGiven(const program::Kernel& kernel, const program::Parameter& parameter, const Argument& argument);
+
+/// That the device has room for the kernel's uniforms. A driver may need more than the components that are counted
+/// here, and says so in its own words then.
+void checkUniforms(const program::Kernel& kernel, const DeviceState& device);
 
 }  // namespace sk

@@ -211,3 +211,37 @@ TEST_CASE("uniforms that a device has no room for") {
         "many: its uniforms have 900 components, but this device has room for 896; read large arrays as "
         "gathers");
 }
+
+TEST_CASE("doubles among uniforms take the room of two floats") {
+  std::vector<program::Parameter> parameters(113, uniform<double4>("k"));
+  parameters.push_back(output<float>("v"));
+  static const TestKernel kernel("many", "void many(out float v) { v = 0.0; }\n", parameters);
+  const double4 k{};
+  Device device({.profile = "essl300", .limits = "guaranteed"});
+  auto v = device.stream<float>({3});
+  std::vector<Argument> arguments(113, Argument{&k, {}});
+  arguments.push_back({nullptr, regionOf(v)});
+  CHECK(errorOf([&] { run(kernel.kernel(), arguments); }) ==
+        "many: its uniforms have 904 components, but this device has room for 896; read large arrays as "
+        "gathers");
+}
+
+TEST_CASE("uniforms of a reduce that a device has no room for") {
+  std::vector<program::Parameter> parameters(225, uniform<float4>("k"));
+  parameters.push_back(input<float>("x"));
+  parameters.push_back(accumulator<float>("total", "0.0"));
+  static const TestKernel fold("sum", "void sum(float x, inout float total) { total += x; }\n", parameters);
+  const program::Reduction reduction{
+      .fold = fold.kernel(), .combine = fold.kernel(), .combineOperands = {}, .seeded = false};
+  const float4 k{};
+  Device device({.profile = "essl300", .limits = "guaranteed"});
+  auto x = device.stream<float>({3});
+  std::vector<Argument> arguments(225, Argument{&k, {}});
+  arguments.push_back({nullptr, regionOf(x)});
+  arguments.push_back({});
+  float total = 0;
+  void* const results[] = {&total};
+  CHECK(errorOf([&] { reduce(reduction, arguments, results); }) ==
+        "sum: its uniforms have 900 components, but this device has room for 896; read large arrays as "
+        "gathers");
+}
