@@ -314,3 +314,72 @@ TEST_CASE("sample stands wherever a value may") {
           }) == "");
   });
 }
+
+TEST_CASE("reduces fold what lies between elements") {
+  const HostArray<float2> a({3, 4},
+                            [](std::size_t i) { return valueAt<float2>(static_cast<std::uint32_t>(i)); });
+  const HostArray<sk::half> b({9}, [](std::size_t i) { return sk::half(static_cast<float>(i * 5 % 9)); });
+  const HostArray<float> bf({9}, [](std::size_t i) { return static_cast<float>(i * 5 % 9); });
+  std::vector<float2> x;
+  std::vector<float> line;
+  for (std::uint32_t i = 0; i < 64; ++i) {   // of sums with 14 bits of fraction, below 2^9
+    x.push_back(
+        {static_cast<float>(hashed(i) % 50) / 8 - 1, static_cast<float>(hashed(i + 500) % 50) / 8 - 1});
+    line.push_back(x.back().x);
+  }
+  onEveryLayout([&](sk::Device& device) {
+    float2 sum{0, 0};
+    float most = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const float2 one = sampled(a, x[i], wrapIndex);
+      sum = {sum.x + one.x, sum.y + one.y};
+      most = std::max(most, sampled(bf, line[i], clampIndex));
+    }
+    CHECK(samples::along(a.on(device), streamOf<float2>(device, x)) == sum);
+    CHECK(samples::highest(b.on(device), streamOf<float>(device, line)) == most);
+    auto rows = device.stream<float>({8, 1});
+    samples::highest(b.on(device), streamOf<float>(device, {8, 8}, line), rows);
+    CHECK(difference(rows.read(), [&](std::size_t row) {
+            float best = 0;
+            for (std::size_t i = 0; i < 8; ++i)
+              best = std::max(best, sampled(bf, line[8 * row + i], clampIndex));
+            return best;
+          }) == "");
+  });
+}
+
+TEST_CASE("kernels of several passes interpolate in each of them") {
+  const HostArray<float2> a({3, 4},
+                            [](std::size_t i) { return valueAt<float2>(static_cast<std::uint32_t>(i)); });
+  const HostArray<float> b({5},
+                           [](std::size_t i) { return valueAt<float>(static_cast<std::uint32_t>(i + 100)); });
+  std::vector<float2> x;
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    x.push_back(
+        {static_cast<float>(hashed(i) % 50) / 8 - 1, static_cast<float>(hashed(i + 500) % 50) / 8 - 1});
+  }
+  for (const std::string profile : {"glsl330", "essl300"}) {
+    sk::Device device({.profile = profile, .limits = "guaranteed"});
+    auto r0 = device.stream<float4>({100});
+    auto r2 = device.stream<float2>({100});
+    std::vector<sk::Stream<float>> r;
+    for (int i = 0; i < 8; ++i) r.push_back(device.stream<float>({100}));
+    samples::divided(a.on(device), b.on(device), streamOf<float2>(device, x), r0, r[0], r2, r[1], r[2], r[3],
+                     r[4], r[5], r[6], r[7]);
+    const auto here = [&](std::size_t i) { return sampled(a, x[i], mirrorIndex); };
+    const auto line = [&](float at) { return sampled(b, at, clampIndex); };
+    CHECK(difference(r0.read(),
+                     [&](std::size_t i) { return float4{here(i).x, here(i).y, line(x[i].x), 1}; }) == "");
+    CHECK(difference(r2.read(), [&](std::size_t i) { return float2{2 * here(i).y, 2 * here(i).x}; }) == "");
+    const auto isOut = [&](std::size_t i) { return x[i].x < 1; };
+    const auto turned = [&](std::size_t i) { return sampled(a, float2{x[i].y, x[i].x}, mirrorIndex).x; };
+    CHECK(difference(r[0].read(), [&](std::size_t i) { return here(i).x; }) == "");
+    CHECK(difference(r[1].read(), [&](std::size_t i) { return line(x[i].y); }) == "");
+    CHECK(difference(r[2].read(), [&](std::size_t i) { return -here(i).y; }) == "");
+    CHECK(difference(r[3].read(), [&](std::size_t i) { return line(x[i].y) + 1; }) == "");
+    CHECK(difference(r[4].read(), [&](std::size_t i) { return isOut(i) ? 0 : line(1.5f); }) == "");
+    CHECK(difference(r[5].read(), [&](std::size_t i) { return isOut(i) ? 0 : x[i].x; }) == "");
+    CHECK(difference(r[6].read(), [&](std::size_t i) { return isOut(i) ? 0 : turned(i); }) == "");
+    CHECK(difference(r[7].read(), [&](std::size_t i) { return isOut(i) ? 0 : turned(i) + here(i).x; }) == "");
+  }
+}
