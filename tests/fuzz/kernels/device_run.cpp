@@ -108,7 +108,9 @@ class Run {
     const std::vector<HostStream> expected = kernel_.results();
     std::string text;
     for (std::size_t p = 0; p < expected.size(); ++p) {
-      if (kernel_.parameters()[p].role == Role::Output) text += compare(p, expected[p]);
+      const Role role = kernel_.parameters()[p].role;
+      const bool isWritten = role == Role::Output || role == Role::VariableOutput || role == Role::Scatter;
+      if (isWritten) text += compare(p, expected[p]);
     }
     return text;
   }
@@ -123,6 +125,7 @@ class Run {
       case Role::Spec: return {.value = packed(p, parameter.values)};
       case Role::Iterator: return {.value = ends(p)};
       case Role::Output: return {.region = stream(p, shapeOf(kernel_.domain())).region()};
+      case Role::VariableOutput: return {.region = stream(p, sk::Shape(0)).handle()};
       default: {
         const HostStream& host = kernel_.streams()[p];
         sk::Stream<Untyped>& made = stream(p, shapeOf(host.shape));
@@ -177,6 +180,11 @@ class Run {
 
   std::string compare(std::size_t p, const HostStream& expected) {
     const sk::program::Element& type = element(p);
+    const auto count = static_cast<std::int64_t>(expected.elements.size());
+    if (streams_[p]->size() != count) {
+      return fmt::format("output {} has {} elements, not {}\n", kernel_.parameters()[p].variable.name,
+                         streams_[p]->size(), count);
+    }
     Bytes bytes(expected.elements.size() * type.size);
     sk::detail::read(streams_[p]->region(), bytes.data(), expected.elements.size());
     const std::vector<Scalar> scalars = scalarsOf(kernel_.records(), expected.type);

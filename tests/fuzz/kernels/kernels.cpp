@@ -55,11 +55,17 @@ std::vector<HostStream> RandomKernel::results() const {
   std::vector<HostStream> results(parameters_.size());
   const std::int64_t count = sizeOf(domain_);
   for (std::size_t p = 0; p < parameters_.size(); ++p) {
-    if (parameters_[p].role != Role::Output) continue;
-    results[p] = {parameters_[p].variable.type, domain_, std::vector<Value>(static_cast<std::size_t>(count))};
+    const Role role = parameters_[p].role;
+    if (role == Role::Output) {
+      results[p] = {parameters_[p].variable.type, domain_,
+                    std::vector<Value>(static_cast<std::size_t>(count))};
+    } else if (role == Role::VariableOutput || role == Role::Scatter) {
+      results[p] = streams_[p];
+    }
   }
   Frame frame;
   frame.streams = &streams_;
+  frame.sinks = &results;
   for (std::size_t d = 0; d < domain_.size(); ++d) {
     frame.extent[domain_.size() - 1 - d] = static_cast<int>(domain_[d]);
   }

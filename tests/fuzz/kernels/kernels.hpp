@@ -35,7 +35,7 @@ class RandomKernel {
   const Records& records() const { return records_; }
   const std::vector<Parameter>& parameters() const { return parameters_; }
   const std::vector<std::int64_t>& domain() const { return domain_; }
-  /// One a parameter: what is in inputs and gathers, and nothing in others.
+  /// One a parameter: what is in inputs, gathers and scatter outputs, and nothing in others.
   const std::vector<HostStream>& streams() const { return streams_; }
 
   /// What each output must hold; one a parameter, and nothing for others.

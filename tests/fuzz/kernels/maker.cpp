@@ -117,7 +117,9 @@ class RandomKernel::Maker {
   // ---- parameters -------------------------------------------------------------------------------
 
   void makeParameters() {
-    const bool isLarge = random_.chance(1, 4);   // more than a pass can write or read
+    // Too large for a pass, or with sinks: kernels with sinks are never divided.
+    const bool hasSinks = random_.chance(1, 4), isLarge = !hasSinks && random_.chance(1, 3);
+    const auto streamType = [&] { return hasSinks ? randomVector(random_) : randomType(records(), random_); };
     std::vector<Role> roles;
     const auto add = [&](Role role, int least, int most) {
       roles.insert(roles.end(), static_cast<std::size_t>(random_.between(least, most)), role);
@@ -127,30 +129,33 @@ class RandomKernel::Maker {
     add(Role::Input, isLarge ? 3 : 1, isLarge ? 8 : 4);
     add(Role::Gather, 0, 3);
     add(Role::Iterator, 0, random_.between(0, 1));
-    add(Role::Output, isLarge ? 4 : 1, isLarge ? 9 : 4);
+    add(Role::Output, isLarge ? 4 : 1, isLarge ? 9 : hasSinks ? 2 : 4);
+    if (hasSinks) add(random_.chance(1, 2) ? Role::VariableOutput : Role::Scatter, 1, 2);
     std::string list;
     for (const Role role : roles) {
       const std::size_t before = kernel_.parameters_.size();
-      const std::string declared = makeParameter(role);
+      const std::string declared = makeParameter(role, streamType());
       if (kernel_.parameters_.size() > before) list += (list.empty() ? "" : ",\n              ") + declared;
     }
     text() += fmt::format("kernel void k({}) {{\n", list);
   }
 
-  /// Its declaration.
-  std::string makeParameter(Role role) {
+  /// Its declaration. `type` is that of its elements, if it has any.
+  std::string makeParameter(Role role, const Type& type) {
     kernel_.streams_.emplace_back();
     switch (role) {
       case Role::Spec: return makeSpec();
-      case Role::Input: return makeInput();
+      case Role::Input: return makeInput(type);
       case Role::Gather: return makeGather();
       case Role::Iterator: return makeIterator();
       case Role::Output: {
-        const Variable& variable = addParameter(role, "r", randomType(records(), random_), 0);
+        const Variable& variable = addParameter(role, "r", type, 0);
         scope_.variables.back().isWritable = true;
         scope_.indexed.push_back(variable.name);
         return fmt::format("out {} {}<>", spelling(records(), variable.type), variable.name);
       }
+      case Role::VariableOutput: return makeVariableOutput(type);
+      case Role::Scatter: return makeScatter(type);
       default: return makeUniform();
     }
   }
@@ -179,8 +184,8 @@ class RandomKernel::Maker {
     return fmt::format("spec {} {}", spelling({}, variable.type), variable.name);
   }
 
-  std::string makeInput() {
-    const Variable variable = addParameter(Role::Input, "x", randomType(records(), random_), 0);
+  std::string makeInput(const Type& type) {
+    const Variable variable = addParameter(Role::Input, "x", type, 0);
     std::vector<std::int64_t> shape = kernel_.domain_;
     bool isRepeated = false;
     for (std::int64_t& extent : shape) {
@@ -247,6 +252,25 @@ class RandomKernel::Maker {
     return fmt::format("iter {} {}<>", spelling({}, variable.type), variable.name);
   }
 
+  std::string makeVariableOutput(const Type& type) {
+    const Sink sink{names_.fresh("o"), type, static_cast<int>(kernel_.streams_.size()) - 1};
+    kernel_.parameters_.push_back({Role::VariableOutput, {sink.name, type, 0, 0, false}, {}});
+    kernel_.streams_.back() = {type, {0}, {}};
+    sinks_.push_back(sink);
+    return fmt::format("vout {} {}<>", spelling(records(), type), sink.name);
+  }
+
+  std::string makeScatter(const Type& type) {
+    const Sink sink{names_.fresh("o"), type, static_cast<int>(kernel_.streams_.size()) - 1,
+                    random_.between(1, 2), randomScatterOp(type, random_)};
+    kernel_.parameters_.push_back({Role::Scatter, {sink.name, type, 0, 0, false}, {}});
+    std::vector<std::int64_t> shape;
+    for (int d = 0; d < sink.rank; ++d) shape.push_back(random_.between(leastScattered, 40));
+    fill(type, shape);
+    sinks_.push_back(sink);
+    return fmt::format("out {} {}{}", spelling(records(), type), sink.name, sink.rank == 1 ? "[]" : "[][]");
+  }
+
   void fill(const Type& type, const std::vector<std::int64_t>& shape) {
     HostStream& stream = kernel_.streams_.back();
     stream = {type, shape, {}};
@@ -259,7 +283,7 @@ class RandomKernel::Maker {
 
   void makeBody() {
     // Every output is written first, by what can be read before; the rest then changes them.
-    Statements statements(scope_, names_, random_, true);
+    Statements statements(scope_, names_, random_, true, sinks_);
     std::vector<std::function<Flow(Frame&)>> parts;
     const std::vector<Variable> all = scope_.variables;
     std::erase_if(scope_.variables, [](const Variable& variable) { return variable.isWritable; });
@@ -295,6 +319,7 @@ class RandomKernel::Maker {
   Random& random_;
   Names names_;
   Scope scope_;
+  std::vector<Sink> sinks_;
 };
 
 RandomKernel::RandomKernel(std::uint64_t seed, std::uint64_t number) {

@@ -63,6 +63,7 @@ struct Frame {
   std::vector<Value> slots;
   std::array<int, 4> index{}, extent{1, 1, 1, 1};  ///< of the domain, x first
   const std::vector<HostStream>* streams = nullptr;  ///< one a parameter
+  std::vector<HostStream>* sinks = nullptr;  ///< likewise: what is pushed and scattered so far
 };
 
 struct Bound {

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernels/expressions.hpp"
 #include "kernels/model.hpp"
+#include "kernels/sinks.hpp"
 
 namespace fuzz {
 
@@ -22,9 +24,14 @@ struct Names {
 class Statements {
  public:
   /// The scope gets what is declared, and loses it where its block ends. `canReturn`: a plain `return;` may stand
-  /// anywhere.
-  Statements(Scope& scope, Names& names, Random& random, bool canReturn)
-      : scope_(scope), names_(names), random_(random), expressions_(scope, random), canReturn_(canReturn) {}
+  /// anywhere. Some statements write to the sinks, if there are any.
+  Statements(Scope& scope, Names& names, Random& random, bool canReturn, std::vector<Sink> sinks = {})
+      : scope_(scope),
+        names_(names),
+        random_(random),
+        expressions_(scope, random),
+        canReturn_(canReturn),
+        sinks_(std::move(sinks)) {}
 
   /// Up to `count` statements, each on lines of its own.
   Statement block(int count, int depth, const std::string& indent);
@@ -48,6 +55,7 @@ class Statements {
   Random& random_;
   Expressions expressions_;
   const bool canReturn_;
+  const std::vector<Sink> sinks_;
   int loops_ = 0;  ///< around the statement that is made
   int breakables_ = 0;  ///< loops and switches
 };
