@@ -95,6 +95,9 @@ function(sk_add_kernel_file target file options)
     COMMENT "skc ${file}"
     VERBATIM)
   target_sources(${target} PRIVATE "${output}/${name}.cpp" "${output}/${name}.hpp")
+  # Native code rounds each operation by itself, as the language says: no fused multiply-add.
+  set_property(SOURCE "${output}/${name}.cpp" APPEND PROPERTY
+               COMPILE_OPTIONS $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
   target_include_directories(${target} PRIVATE "${tree}")
 endfunction()
 

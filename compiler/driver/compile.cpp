@@ -14,6 +14,7 @@
 #include "assemble/assemble.hpp"
 #include "driver/glsl_listing.hpp"
 #include "driver/plan_listing.hpp"
+#include "emit/native_code.hpp"
 #include "emit/program.hpp"
 #include "emit/stub.hpp"
 #include "frontend/frontend.hpp"
@@ -110,13 +111,13 @@ std::string makeEscaped(const std::string& path) {
 
 std::string fileName(const ir::Module& module) { return fs::path(module.file).filename().string(); }
 
-emit::Stub stubOf(const ir::Module& module) {
-  return emit::emitStub(module, emit::Program(module), fileName(module));
+emit::Stub stubOf(const Options& options, const ir::Module& module) {
+  return emit::emitStub(module, emit::Program(module), fileName(module), options.nativeTarget);
 }
 
 bool writeStubs(const Job& job, const ir::Module& module, const frontend::Frontend& frontend) {
   const Options& options = job.options;
-  const emit::Stub stub = stubOf(module);
+  const emit::Stub stub = stubOf(options, module);
   std::error_code error;
   fs::create_directories(options.outputDirectory, error);   // a failure shows when the files are written
   const fs::path base = fs::path(options.outputDirectory) / fileName(module);
@@ -166,9 +167,10 @@ std::string emitText(const Options& options, const ir::Module& module) {
   switch (options.emit) {
     case Emit::Ir: return ir::print(module);
     case Emit::Glsl: return glslListing(emit::Program(module), options.profile);
+    case Emit::Cpp: return emit::nativeListing(module, emit::Program(module));
     case Emit::Plan: return planListing(module, options.profile);
     case Emit::Stubs: {
-      const emit::Stub stub = stubOf(module);
+      const emit::Stub stub = stubOf(options, module);
       return stub.header + stub.source;
     }
     case Emit::Ast: break;   // the tree is the frontend's

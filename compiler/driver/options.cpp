@@ -15,8 +15,8 @@
 namespace skc::driver {
 namespace {
 
-const std::map<std::string, Emit> emits = {
-    {"stubs", Emit::Stubs}, {"glsl", Emit::Glsl}, {"ir", Emit::Ir}, {"plan", Emit::Plan}, {"ast", Emit::Ast}};
+const std::map<std::string, Emit> emits = {{"stubs", Emit::Stubs}, {"glsl", Emit::Glsl}, {"cpp", Emit::Cpp},
+                                           {"ir", Emit::Ir},       {"plan", Emit::Plan}, {"ast", Emit::Ast}};
 
 std::string profileNames() {
   std::string names;
@@ -37,8 +37,7 @@ std::string transformList() {
 /// A message for a value that is not allowed, or "".
 std::string checkEmit(const std::string& value) {
   if (emits.contains(value)) return {};
-  if (value == "cpp") return fmt::format("'{}' is not part of this version", value);
-  return fmt::format("'{}' is none of stubs, glsl, ir, plan, ast", value);
+  return fmt::format("'{}' is none of stubs, glsl, cpp, ir, plan, ast", value);
 }
 
 std::string checkProfile(const std::string& value) {
@@ -47,10 +46,9 @@ std::string checkProfile(const std::string& value) {
 }
 
 std::string checkTarget(const std::string& value) {
-  if (value == "fragment") return {};
-  if (value == "compute" || value == "native")
-    return fmt::format("'{}' is not part of this version; use fragment", value);
-  return fmt::format("'{}' is no target; use fragment", value);
+  if (value == "fragment" || value == "native") return {};
+  if (value == "compute") return "'compute' is not part of this version; use fragment, native";
+  return fmt::format("'{}' is no target; use fragment, native", value);
 }
 
 std::string checkTransform(const std::string& value) {
@@ -88,10 +86,10 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   app.add_option("-o", options.outputDirectory,
                  "Write the stubs to this directory (default: the current one)")
       ->type_name("DIR");
-  app.add_option("--emit", emit, "What to emit: stubs, or glsl, ir, plan, ast on standard output")
+  app.add_option("--emit", emit, "What to emit: stubs, or glsl, cpp, ir, plan, ast on standard output")
       ->check(checkEmit, "")
       ->type_name("KIND");
-  app.add_option("--target", targets, "Targets to compile for: fragment")
+  app.add_option("--target", targets, "Targets that the stubs serve (default: fragment,native)")
       ->delimiter(',')
       ->check(checkTarget, "")
       ->type_name("LIST");
@@ -131,6 +129,7 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   }
   const std::string clash = options.emit == Emit::Stubs ? duplicateStem(options.files) : "";
   options.emit = emits.at(emit);
+  options.nativeTarget = targets.empty() || std::ranges::find(targets, "native") != targets.end();
   if (options.emit == Emit::Stubs && !clash.empty()) {
     fmt::print(stderr, "skc: {}\n", clash);
     return {std::nullopt, 1};

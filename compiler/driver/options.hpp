@@ -10,17 +10,18 @@
 
 namespace skc::driver {
 
-enum class Emit : std::uint8_t { Stubs, Glsl, Ir, Plan, Ast };
+enum class Emit : std::uint8_t { Stubs, Glsl, Cpp, Ir, Plan, Ast };
 
 struct Options {
   std::vector<std::string> files;
   std::string outputDirectory = ".";
   Emit emit = Emit::Stubs;
   std::string profile = "glsl330";          ///< of --emit=glsl and plan
-  std::string kernel;                       ///< of --emit=glsl, ir and plan; empty: all
+  std::string kernel;                       ///< of --emit=glsl, cpp, ir and plan; empty: all
   std::vector<std::string> includeDirectories, definitions, warnings;
   std::string depfile;                      ///< empty: none
   std::string printAfter;                   ///< a transform, "all", or empty
+  bool nativeTarget = true;                 ///< the stubs have native code
   bool color = false;
   bool fixIts = false;                      ///< print mends for tools, too
 };

@@ -18,6 +18,7 @@ struct Stub {
 };
 
 /// `fileName` is the .sk file's name without directories: the source includes "heat.sk.hpp" for "heat.sk".
-Stub emitStub(const ir::Module& module, const Program& program, std::string_view fileName);
+/// `withNative`: the source has native code, too.
+Stub emitStub(const ir::Module& module, const Program& program, std::string_view fileName, bool withNative);
 
 }  // namespace skc::emit

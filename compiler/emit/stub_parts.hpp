@@ -17,6 +17,7 @@ struct StubParts {
   std::vector<Callable> callables;
   std::vector<StreamStruct> streams;
   std::string_view fileName;
+  bool withNative;
 };
 
 std::string stubHeader(const ir::Module& module, const Program& program, const StubParts& parts);

@@ -43,11 +43,11 @@ void checkScatter(const Kernel& kernel, const Parameter& output, const Shape& sh
     fail(kernel, "'{}' is declared with {} dimension(s), but its stream has shape {}", output.name,
          output.rank, toString(shape));
   }
-  if (output.scatter != program::ScatterOp::Store && !device.capabilities.blendsFloats) {
+  if (output.scatter != program::ScatterOp::Store && !device.combinesScattered()) {
     fail(kernel,
          "'{}' combines what is scattered to it, but '{}' cannot blend 32-bit floats (GL_EXT_float_blend); "
          "push indices and values to variable outputs, and combine them in a kernel",
-         output.name, device.capabilities.renderer);
+         output.name, device.name());
   }
 }
 
@@ -192,6 +192,7 @@ DeviceState* checkCall(const Kernel& kernel, std::span<const Argument> arguments
       case Role::Accumulator: break;
     }
   }
+  device.checkProgram(kernel);
   if (planFor(kernel, device.limits) == nullptr) {
     checkUniforms(kernel, device);
     checkPlanes(kernel, device, std::max(written + sinks.counts, sinks.list), read + sinks.tree);

@@ -79,7 +79,7 @@ void checkSameDevice(const Kernel& kernel, const Parameter& a, const StreamState
   if (first.device != second.device) {
     fail(kernel,
          "'{}' and '{}' are streams of two devices ('{}' and '{}'); copy one of them through host memory",
-         a.name, b.name, first.device->capabilities.renderer, second.device->capabilities.renderer);
+         a.name, b.name, first.device->name(), second.device->name());
   }
 }
 

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include "assemble/assemble.hpp"
-#include "device_state.hpp"
-#include "gl/commands.hpp"
+#include "gl_device.hpp"
+#include "native/native_device.hpp"
 #include "sk/error.hpp"
 #include "stream_state.hpp"
 
@@ -80,11 +80,14 @@ DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, co
 }
 
 std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
-  const gl::OpenRequest request{chosen(options.device, "SK_DEVICE"),
-                                apiOf(chosen(options.profile, "SK_PROFILE"))};
+  const std::string device = chosen(options.device, "SK_DEVICE");
+  if (device == "native" || device == "reference") {
+    return std::make_unique<NativeDevice>(device == "native" ? RealType::Float : RealType::Double);
+  }
+  const gl::OpenRequest request{device, apiOf(chosen(options.profile, "SK_PROFILE"))};
   const DeviceChoices choices = choicesOf(options.textureLimit, chosen(options.limits, "SK_LIMITS"),
                                           chosen(options.doubles, "SK_DOUBLES"));
-  return std::make_unique<DeviceState>(gl::openContext(request), choices);
+  return std::make_unique<GlDevice>(gl::openContext(request), choices);
 }
 
 }  // namespace
@@ -99,8 +102,11 @@ Device& Device::operator=(Device&& other) noexcept = default;
 
 Device Device::adopt(const DeviceOptions& options) {
   const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles);
-  return Device(std::make_unique<DeviceState>(gl::adoptContext(apiOf(options.profile)), choices));
+  return Device(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices));
 }
+
+Device Device::native() { return Device(std::make_unique<NativeDevice>(RealType::Float)); }
+Device Device::reference() { return Device(std::make_unique<NativeDevice>(RealType::Double)); }
 
 DeviceState& Device::state() const {
   if (!state_) {
@@ -110,21 +116,14 @@ DeviceState& Device::state() const {
 }
 
 detail::StreamOwner Device::createStream(const program::Element& element, const Shape& shape) {
-  const DeviceScope scope(state());
-  return detail::StreamOwner(new StreamState(state(), element, shape));
+  return detail::StreamOwner(state().createStream(element, shape).release());
 }
 
-const std::string& Device::name() const { return state().capabilities.renderer; }
-std::string_view Device::profile() const { return state().profile.name; }
+const std::string& Device::name() const { return state().name(); }
+std::string_view Device::profile() const { return state().profileName(); }
 const DeviceLimits& Device::limits() const { return state().limits; }
-bool Device::isSoftware() const { return state().capabilities.isSoftware; }
-
-void Device::finish() {
-  const DeviceScope scope(state());
-  gl::finish();
-  state().throwPendingError();
-}
-
-void Device::release() { state().context.release(); }
+bool Device::isSoftware() const { return state().isSoftware(); }
+void Device::finish() { state().finish(); }
+void Device::release() { state().release(); }
 
 }  // namespace sk

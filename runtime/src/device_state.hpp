@@ -1,105 +1,62 @@
 // SPDX-License-Identifier: MIT
 //
-// What a device owns: its context, the tracked bindings, the pool of surfaces, the programs; and the
-// list of the streams that live on it. A DeviceScope is open wherever GL is called.
+// What every kind of device is to the public face: a place for streams that runs kernels on them, GL
+// (gl_device.hpp) or native code (native/native_device.hpp). Arguments have been checked before they get here.
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <memory>
+#include <span>
+#include <string>
 #include <string_view>
-#include <vector>
 
-#include "assemble/assemble.hpp"
-#include "framebuffer_cache.hpp"
-#include "gl/bound_state.hpp"
-#include "gl/linear_samplers.hpp"
-#include "gl/open_context.hpp"
-#include "gl/saved_state.hpp"
-#include "gl/vertex_array.hpp"
-#include "program_cache.hpp"
-#include "sink_programs.hpp"
+#include "sk/call.hpp"
 #include "sk/device.hpp"
-#include "surface.hpp"
-#include "variant.hpp"
+#include "sk/program.hpp"
+#include "stream_state.hpp"
 
 namespace sk {
 
-/// What a user may choose of a device that is found.
-struct DeviceChoices {
-  std::int32_t textureLimit = 0;    ///< 0: the device's own
-  bool guaranteedLimits = false;
-  bool pairs = false;               ///< doubles are pairs of floats even where GLSL has double
-};
-
 class DeviceState {
  public:
-  DeviceState(gl::OpenedContext&& opened, const DeviceChoices& choices);
-  ~DeviceState();
+  virtual ~DeviceState() = default;
   DeviceState(const DeviceState&) = delete;
   DeviceState& operator=(const DeviceState&) = delete;
 
-  /// Puts a stream on the list of those that must be told of the device's end, and takes it off.
-  void add(StreamState& stream) noexcept;
-  void remove(StreamState& stream) noexcept;
+  virtual const std::string& name() const = 0;
+  virtual std::string_view profileName() const = 0;
+  virtual bool isSoftware() const = 0;
+  /// Whether scatter outputs may combine what comes with what they hold.
+  virtual bool combinesScattered() const = 0;
+  /// Throws sk::Error where this device has no program for the kernel.
+  virtual void checkProgram(const program::Kernel& kernel) const = 0;
+  virtual void checkProgram(const program::Reduction& reduction) const = 0;
 
-  /// New planes of an element type, with undefined texels. Throws sk::Error saying what for, where
-  /// there is no memory.
-  std::vector<Surface> takePlanes(const program::Element& element, const assemble::TextureShape& shape,
-                                  std::string_view whatFor);
-  void givePlanes(std::vector<Surface>& planes) noexcept;
+  /// Throws sk::Error where there is no room.
+  virtual std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) = 0;
+  virtual void finish() = 0;
+  virtual void release() = 0;
 
-  assemble::TextureLimits textureLimits() const { return {limits.textureSize, limits.textureLayers}; }
+  /// Only variable outputs may lack elements: they become empty.
+  virtual void run(const program::Kernel& kernel, std::span<const Argument> arguments) = 0;
+  /// Of a domain without elements, the identities, which then exist.
+  virtual void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
+                      const Shape& domain, std::span<void* const> results) = 0;
+  /// `blocks`: how many there are in each dimension of the domain; one at least.
+  virtual void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
+                      const Shape& domain, const Shape& blocks) = 0;
 
-  /// Throws sk::Error where the driver has reported an error since it was last asked.
-  void throwPendingError();
-
-  gl::Context context;
-  const gl::Capabilities capabilities;
-  const assemble::Profile profile;       ///< of the table, but for what the device has of doubles
   DeviceLimits limits;
-  gl::BoundState bound;
-  FramebufferCache framebuffers;
-  SurfacePool pool;
-  ProgramCache programs;
-  SinkPrograms sinkPrograms;
-  gl::LinearSamplers samplers;
-  gl::VertexArray vertexArray;
-  std::vector<std::byte> staging;        ///< texels on their way; transfer.cpp's
-  std::vector<Operand> operands;         ///< of the call that runs; run.cpp's
+
+ protected:
+  DeviceState() = default;
+
+  StreamState* firstStream() const { return firstStream_; }
 
  private:
-  void forgetObjects() noexcept;
+  friend class StreamState;
 
-  StreamState* firstStream_ = nullptr;
-};
-
-/// Makes a device's context current and ready for passes, for as long as it lives.
-class DeviceScope {
- public:
-  explicit DeviceScope(DeviceState& device) : current_(device.context) {
-    if (device.context.isAdopted()) {
-      saved_.emplace(device.capabilities, device.bound);
-    }
-    device.pool.trim();
-  }
-
- private:
-  gl::CurrentScope current_;
-  std::optional<gl::SavedState> saved_;
-};
-
-/// Planes from the pool of a device for as long as this lives.
-class PlanesLease {
- public:
-  explicit PlanesLease(DeviceState& device) : device_(device) {}
-  ~PlanesLease() { device_.givePlanes(planes); }
-  PlanesLease(const PlanesLease&) = delete;
-  PlanesLease& operator=(const PlanesLease&) = delete;
-
-  std::vector<Surface> planes;
-
- private:
-  DeviceState& device_;
+  StreamState* firstStream_ = nullptr;  ///< list of those that must be told of the device's end
 };
 
 }  // namespace sk

@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "pass.hpp"
-#include "stream_state.hpp"
+#include "gl_stream.hpp"
 
 namespace sk {
 
 using assemble::Placement;
 using program::Role;
 
-OutputTargets::OutputTargets(DeviceState& device, const program::Kernel& kernel,
+OutputTargets::OutputTargets(GlDevice& device, const program::Kernel& kernel,
                              std::span<const Argument> arguments, const assemble::SpecValues& specs,
                              std::span<const Operand> operands, const Placement& domain, const Layout& layout)
     : device_(device),
@@ -55,7 +55,7 @@ OutputTargets::Way OutputTargets::wayOf(std::size_t output) const {
 
 /// New planes lie as the domain does, or are those that the stream is to have.
 void OutputTargets::addAside(std::size_t output, Way way) {
-  const StreamState& stream = *arguments_[output].region.stream;
+  const GlStream& stream = glStream(arguments_[output].region);
   const Layout& layout = way == Way::Swap ? stream.layout : layout_;
   aside_.resize(arguments_.size());
   aside_[output] = std::make_unique<PlanesLease>(device_);
@@ -82,7 +82,7 @@ void OutputTargets::putInPlace() {
     if (!aside_[i]) {
       continue;
     }
-    StreamState& stream = *arguments_[i].region.stream;
+    GlStream& stream = glStream(arguments_[i].region);
     if (wayOf(i) == Way::Swap) {
       std::swap(stream.planes, aside_[i]->planes);
     } else {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "assemble/condition.hpp"
-#include "device_state.hpp"
+#include "gl_device.hpp"
 #include "layout.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
@@ -20,7 +20,7 @@ namespace sk {
 class OutputTargets {
  public:
   /// `domain` and `layout`: what the pass is drawn over. The arguments have been checked.
-  OutputTargets(DeviceState& device, const program::Kernel& kernel, std::span<const Argument> arguments,
+  OutputTargets(GlDevice& device, const program::Kernel& kernel, std::span<const Argument> arguments,
                 const assemble::SpecValues& specs, std::span<const Operand> operands,
                 const assemble::Placement& domain, const Layout& layout);
 
@@ -55,7 +55,7 @@ class OutputTargets {
   Way wayOf(std::size_t output) const;
   void addAside(std::size_t output, Way way);
 
-  DeviceState& device_;
+  GlDevice& device_;
   const program::Kernel& kernel_;
   std::span<const Argument> arguments_;
   const assemble::SpecValues& specs_;

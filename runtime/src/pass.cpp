@@ -6,7 +6,7 @@
 #include <array>
 
 #include "copy_kernel.hpp"
-#include "device_state.hpp"
+#include "gl_device.hpp"
 #include "gl/commands.hpp"
 #include "texel_runs.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 using assemble::Placement;
 using assemble::Rect;
 
-void blit(DeviceState& device, Surface& from, const Placement& source, Surface& to, const Placement& target) {
+void blit(GlDevice& device, Surface& from, const Placement& source, Surface& to, const Placement& target) {
   const GLuint read = from.framebufferIn(device.bound).name();
   const GLuint draw = to.framebufferIn(device.bound).name();
   gl::blit(device.bound, read, {source.origin[0], source.origin[1]}, draw,
@@ -29,7 +29,7 @@ void blit(DeviceState& device, Surface& from, const Placement& source, Surface& 
 namespace {
 
 /// Those planes of a parameter that are not in a bundle.
-int bindOwnPlanes(DeviceState& device, const program::Parameter& parameter, std::span<Surface> planes,
+int bindOwnPlanes(GlDevice& device, const program::Parameter& parameter, std::span<Surface> planes,
                   int unit) {
   if (parameter.layers.empty()) {
     return bindPlanes(device, planes, unit);
@@ -44,7 +44,7 @@ int bindOwnPlanes(DeviceState& device, const program::Parameter& parameter, std:
 
 }  // namespace
 
-int bindPlanes(DeviceState& device, std::span<Surface> planes, int unit) {
+int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit) {
   for (const Surface& plane : planes) {
     device.bound.texture(unit, plane.texture.name(), plane.texture.isLayered());
     device.bound.sampler(unit++, 0);   // the texture's own settings
@@ -52,12 +52,12 @@ int bindPlanes(DeviceState& device, std::span<Surface> planes, int unit) {
   return unit;
 }
 
-Target targetOf(DeviceState& device, Surface& plane) {
+Target targetOf(GlDevice& device, Surface& plane) {
   const gl::Texture& texture = plane.texture;
   return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0};
 }
 
-Target targetOf(DeviceState& device, std::span<Surface* const> planes) {
+Target targetOf(GlDevice& device, std::span<Surface* const> planes) {
   Surface& first = *planes[0];
   if (planes.size() == 1) {
     return targetOf(device, first);
@@ -71,7 +71,7 @@ Target targetOf(DeviceState& device, std::span<Surface* const> planes) {
           isLayered ? first.texture.shape().height : 0};
 }
 
-void drawRects(DeviceState& device, const Target& target, std::span<const Rect> rects, gl::IntUniform& row) {
+void drawRects(GlDevice& device, const Target& target, std::span<const Rect> rects, gl::IntUniform& row) {
   device.bound.vertexArray(device.vertexArray.name());
   for (const Rect& rect : rects) {
     forEachLayer(rect, target.layerRows, [&](const Rect& part, std::int32_t layer, std::int32_t) {
@@ -82,7 +82,7 @@ void drawRects(DeviceState& device, const Target& target, std::span<const Rect> 
   }
 }
 
-void selectLayer(DeviceState& device, const Target& target, std::int32_t layer, gl::IntUniform& row) {
+void selectLayer(GlDevice& device, const Target& target, std::int32_t layer, gl::IntUniform& row) {
   if (target.layerRows == 0) {
     device.bound.framebuffer(target.framebuffer->name());
     row.set(0);
@@ -92,7 +92,7 @@ void selectLayer(DeviceState& device, const Target& target, std::int32_t layer, 
   row.set(layer * target.layerRows);
 }
 
-void bindOperands(DeviceState& device, KernelProgram& program, const program::Kernel& kernel,
+void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
                   std::span<const Operand> operands, std::span<const gl::Texture> bundles) {
   int unit = 0;
   for (KernelProgram::Read& read : program.reads) {
@@ -120,7 +120,7 @@ void bindOperands(DeviceState& device, KernelProgram& program, const program::Ke
   }
 }
 
-void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
+void drawKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
                 const Placement& domain, std::span<const Rect> rects, const Target& target,
                 std::span<const gl::Texture> bundles, const assemble::Task& task) {
   KernelProgram& program = device.programs.kernelProgram(kernel, operands, domain, task);
@@ -133,7 +133,7 @@ void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<co
   drawRects(device, target, rects, program.domainRow);
 }
 
-void copyRegion(DeviceState& device, const program::Element& element, std::span<Surface> from,
+void copyRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
                 const Placement& source, std::span<Surface> to, const Placement& target) {
   for (std::size_t plane = 0; plane < from.size(); ++plane) {
     if (!source.linear && !target.linear) {

@@ -16,11 +16,11 @@
 
 namespace sk {
 
-class DeviceState;
+class GlDevice;
 struct KernelProgram;
 
 /// Binds the planes of an operand to consecutive texture units from `unit` on; the unit after them.
-int bindPlanes(DeviceState& device, std::span<Surface> planes, int unit);
+int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit);
 
 /// What a pass draws to: planes of one shape.
 struct Target {
@@ -29,32 +29,32 @@ struct Target {
 };
 
 /// Draws to these planes, 1 to gl::maxDrawBuffers. Good until the next one is asked for.
-Target targetOf(DeviceState& device, std::span<Surface* const> planes);
-Target targetOf(DeviceState& device, Surface& plane);
+Target targetOf(GlDevice& device, std::span<Surface* const> planes);
+Target targetOf(GlDevice& device, Surface& plane);
 
 /// Binds the framebuffer with a layer of its planes, and tells the program that is bound.
-void selectLayer(DeviceState& device, const Target& target, std::int32_t layer, gl::IntUniform& row);
+void selectLayer(GlDevice& device, const Target& target, std::int32_t layer, gl::IntUniform& row);
 
 /// Draws each rectangle of a target with the program that is bound, whose `sk_domain_row` is `row`.
-void drawRects(DeviceState& device, const Target& target, std::span<const assemble::Rect> rects,
+void drawRects(GlDevice& device, const Target& target, std::span<const assemble::Rect> rects,
                gl::IntUniform& row);
 
 /// Binds the planes that a kernel's program reads, and sets the uniforms of its parameters; the program is
 /// bound. `operands` and `bundles`: as for drawKernel().
-void bindOperands(DeviceState& device, KernelProgram& program, const program::Kernel& kernel,
+void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
                   std::span<const Operand> operands, std::span<const gl::Texture> bundles = {});
 
 /// Draws `rects` of `target` with a kernel. `operands`: one a parameter; those of outputs are not
 /// looked at, since `target` has their planes. No operand is a texture of the target. `bundles`:
 /// the array textures of the plan that the kernel is a pass of. The tree of a list is bound by the caller.
-void drawKernel(DeviceState& device, const program::Kernel& kernel, std::span<const Operand> operands,
+void drawKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
                 const assemble::Placement& domain, std::span<const assemble::Rect> rects,
                 const Target& target, std::span<const gl::Texture> bundles = {},
                 const assemble::Task& task = {});
 
 /// Copies one region to another of the same shape, plane by plane, wherever each lies. They are not of
 /// the same surface.
-void copyRegion(DeviceState& device, const program::Element& element, std::span<Surface> from,
+void copyRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
                 const assemble::Placement& source, std::span<Surface> to, const assemble::Placement& target);
 
 }  // namespace sk

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "assemble/plans.hpp"
-#include "device_state.hpp"
+#include "gl_device.hpp"
 #include "gl/texture.hpp"
 #include "pass.hpp"
 #include "sk/error.hpp"
@@ -26,7 +26,7 @@ using program::Plan;
 using program::Role;
 
 /// Copies the layers of a plane, or its only one, to layers first, first + step, ...
-void copyLayers(DeviceState& device, Surface& plane, gl::Texture& to, std::int32_t first, std::int32_t step) {
+void copyLayers(GlDevice& device, Surface& plane, gl::Texture& to, std::int32_t first, std::int32_t step) {
   const assemble::TextureShape& shape = plane.texture.shape();
   gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound);
   for (std::int32_t layer = 0; layer < std::max(shape.layers, 1); ++layer) {
@@ -38,7 +38,7 @@ void copyLayers(DeviceState& device, Surface& plane, gl::Texture& to, std::int32
 }
 
 /// Copies the planes of a bundle to one array texture: the first layer of each, the second ones, and so on.
-gl::Texture copyBundle(DeviceState& device, const Bundle& bundle, std::span<const Operand> operands) {
+gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const Operand> operands) {
   std::vector<Surface*> planes;   // null where a stream is left out
   const auto count = static_cast<std::int32_t>(bundle.layers.size());
   assemble::TextureShape shape{1, 1, 1};
@@ -68,7 +68,7 @@ gl::Texture copyBundle(DeviceState& device, const Bundle& bundle, std::span<cons
 
 class PlanRun {
  public:
-  PlanRun(DeviceState& device, const Plan& plan, const PlannedCall& call) : device_(device), call_(call) {
+  PlanRun(GlDevice& device, const Plan& plan, const PlannedCall& call) : device_(device), call_(call) {
     for (const program::Element* element : plan.temporaries) {
       temporaries_.emplace_back(device).planes =
           device.takePlanes(*element, call.layout.texture, "a value saved between passes");
@@ -125,7 +125,7 @@ class PlanRun {
     }
   }
 
-  DeviceState& device_;
+  GlDevice& device_;
   const PlannedCall& call_;
   std::deque<PlanesLease> temporaries_;
   std::vector<gl::Texture> bundles_;
@@ -141,7 +141,7 @@ const Plan* planFor(const program::Kernel& kernel, const DeviceLimits& limits) {
   return isWhole ? nullptr : assemble::planWithin(kernel, pass);
 }
 
-void runPlan(DeviceState& device, const Plan& plan, const PlannedCall& call) {
+void runPlan(GlDevice& device, const Plan& plan, const PlannedCall& call) {
   PlanRun run(device, plan, call);
   for (const Pass& pass : plan.passes) {
     run.draw(pass);

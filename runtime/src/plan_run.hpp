@@ -15,7 +15,7 @@
 
 namespace sk {
 
-class DeviceState;
+class GlDevice;
 
 /// The plan by which a device runs a kernel; null where one pass will do, or no plan fits.
 const program::Plan* planFor(const program::Kernel& kernel, const DeviceLimits& limits);
@@ -31,6 +31,6 @@ struct PlannedCall {
 
 /// No output is drawn to planes that an operand reads. Throws sk::Error where there is no memory for the
 /// temporaries or bundles.
-void runPlan(DeviceState& device, const program::Plan& plan, const PlannedCall& call);
+void runPlan(GlDevice& device, const program::Plan& plan, const PlannedCall& call);
 
 }  // namespace sk

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "build_log.hpp"
-#include "device_state.hpp"
+#include "gl_device.hpp"
 #include "sk/error.hpp"
 
 namespace sk {
@@ -48,7 +48,7 @@ KernelProgram::Read readOf(const gl::Program& program, std::size_t i, const prog
 
 }  // namespace
 
-ProgramCache::ProgramCache(DeviceState& device) : device_(device) {}
+ProgramCache::ProgramCache(GlDevice& device) : device_(device) {}
 
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                            const assemble::Placement& domain, const assemble::Task& task) {

@@ -24,7 +24,7 @@
 
 namespace sk {
 
-class DeviceState;
+class GlDevice;
 
 /// One variant of a kernel. Parameters are named by their position.
 struct KernelProgram {
@@ -74,7 +74,7 @@ struct ReduceProgram {
 
 class ProgramCache {
  public:
-  explicit ProgramCache(DeviceState& device);
+  explicit ProgramCache(GlDevice& device);
   ProgramCache(const ProgramCache&) = delete;
   ProgramCache& operator=(const ProgramCache&) = delete;
 
@@ -99,7 +99,7 @@ class ProgramCache {
   gl::Program build(const program::Kernel& kernel, const std::string& fragmentSource);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);
 
-  DeviceState& device_;
+  GlDevice& device_;
   std::unordered_map<ProgramKey, std::unique_ptr<KernelProgram>, ProgramKeyHash> kernels_;
   std::map<ReduceKey, std::unique_ptr<ReduceProgram>> reductions_;
 };

@@ -8,11 +8,11 @@
 
 #include "assemble/reduce_plan.hpp"
 #include "check_reduction.hpp"
-#include "device_state.hpp"
+#include "gl_device.hpp"
+#include "gl_stream.hpp"
 #include "output_targets.hpp"
 #include "pass.hpp"
 #include "sk/call.hpp"
-#include "stream_state.hpp"
 #include "transfer.hpp"
 
 namespace sk {
@@ -43,7 +43,7 @@ void forEachAccumulator(const Kernel& fold, std::span<Plane> planes, Fn&& fn) {
 }
 
 /// New planes of all accumulators, in their order.
-void takeAccumulators(DeviceState& device, const Kernel& fold, const assemble::TextureShape& shape,
+void takeAccumulators(GlDevice& device, const Kernel& fold, const assemble::TextureShape& shape,
                       std::string_view whatFor, PlanesLease& lease) {
   for (const Parameter& parameter : fold.parameters) {
     if (parameter.role == Role::Accumulator) {
@@ -65,7 +65,7 @@ std::vector<Surface*> pointersTo(std::span<Surface> planes) {
 /// One call, its arguments checked.
 class ReduceCall {
  public:
-  ReduceCall(DeviceState& device, const Reduction& reduction, std::span<const Argument> arguments,
+  ReduceCall(GlDevice& device, const Reduction& reduction, std::span<const Argument> arguments,
              const Shape& domain)
       : device_(device), reduction_(reduction), specs_(specsOf(reduction.fold, arguments)) {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -207,7 +207,7 @@ class ReduceCall {
     variant.access = std::move(chosen.access);
   }
 
-  DeviceState& device_;
+  GlDevice& device_;
   const Reduction& reduction_;
   const assemble::SpecValues specs_;
   std::vector<Operand> operands_;   ///< of the fold
@@ -216,15 +216,14 @@ class ReduceCall {
 
 }  // namespace
 
-void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results) {
-  const CheckedReduction checked = checkReduction(reduction, arguments);
-  DeviceState& device = checked.device;
-  const DeviceScope scope(device);
+void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
+                      std::span<void* const> results) {
+  const DeviceScope scope(*this);
   const Placement placement = assemble::valuePlacement();
-  PlanesLease value(device);
-  takeAccumulators(device, reduction.fold, {1, 1}, "the result of a reduction", value);
-  ReduceCall call(device, reduction, arguments, checked.domain);
-  if (checked.domain.size() == 0) {
+  PlanesLease value(*this);
+  takeAccumulators(*this, reduction.fold, {1, 1}, "the result of a reduction", value);
+  ReduceCall call(*this, reduction, arguments, domain);
+  if (domain.size() == 0) {
     call.fill(placement, pointersTo(value.planes));
   } else {
     call.fold(placement.extent, placement, pointersTo(value.planes));
@@ -232,36 +231,44 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
   auto result = results.begin();
   forEachAccumulator(reduction.fold, std::span<Surface>(value.planes),
                      [&](const program::Element& element, std::span<Surface> planes) {
-                       download(device, element, planes, placement, static_cast<std::byte*>(*result++));
+                       download(*this, element, planes, placement, static_cast<std::byte*>(*result++));
                      });
 }
 
-void reduce(const Reduction& reduction, std::span<const Argument> arguments) {
-  const CheckedReduction checked = checkReductionToStreams(reduction, arguments);
-  if (checked.blocks.size() == 0) {
-    return;
-  }
-  DeviceState& device = checked.device;
-  const DeviceScope scope(device);
-  ReduceCall call(device, reduction, arguments, checked.domain);
+void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
+                      const Shape& blocks) {
+  const DeviceScope scope(*this);
+  ReduceCall call(*this, reduction, arguments, domain);
   const Kernel& fold = reduction.fold;
   const auto first = static_cast<std::size_t>(
       std::ranges::find(fold.parameters, Role::Accumulator, &Parameter::role) - fold.parameters.begin());
   const Placement& placement = call.operands()[first].placement;
-  OutputTargets targets(device, fold, arguments, specsOf(fold, arguments), call.operands(), placement,
-                        arguments[first].region.stream->layout);
+  OutputTargets targets(*this, fold, arguments, specsOf(fold, arguments), call.operands(), placement,
+                        glStream(arguments[first].region).layout);
   std::vector<Surface*> drawn;
   for (const std::span<Surface> planes : targets.planesOfOutputs()) {
     for (Surface& plane : planes) {
       drawn.push_back(&plane);
     }
   }
-  if (checked.domain.size() == 0) {
+  if (domain.size() == 0) {
     call.fill(placement, drawn);
   } else {
-    call.fold(xFirst(checked.blocks), placement, drawn);
+    call.fold(xFirst(blocks), placement, drawn);
   }
   targets.putInPlace();
+}
+
+void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results) {
+  const CheckedReduction checked = checkReduction(reduction, arguments);
+  checked.device.reduce(reduction, arguments, checked.domain, results);
+}
+
+void reduce(const Reduction& reduction, std::span<const Argument> arguments) {
+  const CheckedReduction checked = checkReductionToStreams(reduction, arguments);
+  if (checked.blocks.size() != 0) {
+    checked.device.reduce(reduction, arguments, checked.domain, checked.blocks);
+  }
 }
 
 }  // namespace sk

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "check.hpp"
-#include "device_state.hpp"
+#include "gl_device.hpp"
+#include "gl_stream.hpp"
 #include "iterator.hpp"
 #include "output_targets.hpp"
 #include "pass.hpp"
 #include "plan_run.hpp"
 #include "sink_call.hpp"
 #include "sk/call.hpp"
-#include "stream_state.hpp"
 
 namespace sk {
 
@@ -52,7 +52,7 @@ class DrawnRects {
 /// One call, its arguments checked and its domain not empty.
 class KernelCall {
  public:
-  KernelCall(DeviceState& device, const Kernel& kernel, std::span<const Argument> arguments)
+  KernelCall(GlDevice& device, const Kernel& kernel, std::span<const Argument> arguments)
       : device_(device),
         kernel_(kernel),
         arguments_(arguments),
@@ -68,7 +68,7 @@ class KernelCall {
   }
 
   void run() {
-    const Layout& layout = arguments_[first_].region.stream->layout;
+    const Layout& layout = glStream(arguments_[first_].region).layout;
     OutputTargets targets(device_, kernel_, arguments_, specs_, operands_, domain(), layout);
     const DrawnRects rects(domain(), layout);
     if (const program::Plan* plan = planFor(kernel_, device_.limits)) {
@@ -100,7 +100,7 @@ class KernelCall {
   bool isOutput(std::size_t i) const { return kernel_.parameters[i].role == Role::Output && isNeeded(i); }
   const Placement& domain() const { return operands_[first_].placement; }
 
-  DeviceState& device_;
+  GlDevice& device_;
   const Kernel& kernel_;
   std::span<const Argument> arguments_;
   const assemble::SpecValues specs_;
@@ -110,21 +110,23 @@ class KernelCall {
 
 }  // namespace
 
-void run(const Kernel& kernel, std::span<const Argument> arguments) {
-  DeviceState* device = checkCall(kernel, arguments);
-  if (device == nullptr) {
-    return;
-  }
-  const DeviceScope scope(*device);
+void GlDevice::run(const Kernel& kernel, std::span<const Argument> arguments) {
+  const DeviceScope scope(*this);
   if (!hasSinks(kernel)) {
-    KernelCall(*device, kernel, arguments).run();
+    KernelCall(*this, kernel, arguments).run();
     return;
   }
   const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
   if (domain.size() == 0) {
     runOverNothing(kernel, arguments);
   } else {
-    runWithSinks(*device, kernel, arguments, domain);
+    runWithSinks(*this, kernel, arguments, domain);
+  }
+}
+
+void run(const Kernel& kernel, std::span<const Argument> arguments) {
+  if (DeviceState* device = checkCall(kernel, arguments)) {
+    device->run(kernel, arguments);
   }
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "assemble/point_program.hpp"
-#include "device_state.hpp"
+#include "gl_device.hpp"
 #include "gl/points.hpp"
 #include "pass.hpp"
 #include "sk/types.hpp"
@@ -36,7 +36,7 @@ const program::Element& floatsOf(int width) {
 
 class Scatterer {
  public:
-  Scatterer(DeviceState& device, const program::Parameter& sink, std::span<Surface> list,
+  Scatterer(GlDevice& device, const program::Parameter& sink, std::span<Surface> list,
             const assemble::Placement& listPlacement, const assemble::Placement& placement,
             std::span<Surface> planes)
       : device_(device),
@@ -147,7 +147,7 @@ class Scatterer {
     drawRects(device_, drawn, rects_, program.row());
   }
 
-  DeviceState& device_;
+  GlDevice& device_;
   const program::Parameter& sink_;
   std::span<Surface> list_;
   const assemble::Placement& listPlacement_;
@@ -159,7 +159,7 @@ class Scatterer {
 
 }  // namespace
 
-void scatterPoints(DeviceState& device, const program::Parameter& sink, std::span<Surface> list,
+void scatterPoints(GlDevice& device, const program::Parameter& sink, std::span<Surface> list,
                    const assemble::Placement& listPlacement, const assemble::Placement& placement,
                    std::span<Surface> planes) {
   Scatterer(device, sink, list, listPlacement, placement, planes).run();

@@ -11,11 +11,11 @@
 
 namespace sk {
 
-class DeviceState;
+class GlDevice;
 
 /// Draws the entries of a list: its planes are the texels that they belong to, then their values. `placement` and
 /// `planes`: of the region that is written.
-void scatterPoints(DeviceState& device, const program::Parameter& sink, std::span<Surface> list,
+void scatterPoints(GlDevice& device, const program::Parameter& sink, std::span<Surface> list,
                    const assemble::Placement& listPlacement, const assemble::Placement& placement,
                    std::span<Surface> planes);
 

@@ -10,12 +10,12 @@
 
 #include "assemble/sinks.hpp"
 #include "check.hpp"
-#include "device_state.hpp"
+#include "gl_device.hpp"
 #include "output_targets.hpp"
 #include "pass.hpp"
 #include "scatter_points.hpp"
 #include "sink_list.hpp"
-#include "stream_state.hpp"
+#include "gl_stream.hpp"
 
 namespace sk {
 
@@ -33,7 +33,7 @@ constexpr std::int32_t mostRoom = 4;
 
 /// What was pushed to one sink.
 struct List {
-  explicit List(DeviceState& device) : planes(device), total(device) {}
+  explicit List(GlDevice& device) : planes(device), total(device) {}
 
   std::size_t sink = 0;
   Layout layout;         ///< of `planes`
@@ -43,7 +43,7 @@ struct List {
 
 class SinkCall {
  public:
-  SinkCall(DeviceState& device, const Kernel& kernel, std::span<const Argument> arguments, const Shape& shape)
+  SinkCall(GlDevice& device, const Kernel& kernel, std::span<const Argument> arguments, const Shape& shape)
       : device_(device),
         kernel_(kernel),
         arguments_(arguments),
@@ -182,7 +182,7 @@ class SinkCall {
     const Parameter& sink = kernel_.parameters[list.sink];
     if (sink.role == Role::VariableOutput) {
       const bool isKnown = list.total.planes.empty();
-      arguments_[list.sink].region.stream->become(list.planes.planes, list.layout,
+      glStream(arguments_[list.sink].region).become(list.planes.planes, list.layout,
                                                   isKnown ? nullptr : &list.total.planes.front());
       list.total.planes.clear();
       return;
@@ -190,12 +190,12 @@ class SinkCall {
     if (list.planes.planes.empty()) {
       return;
     }
-    StreamState& stream = *arguments_[list.sink].region.stream;
+    GlStream& stream = glStream(arguments_[list.sink].region);
     scatterPoints(device_, sink, list.planes.planes, list.layout.whole, operands_[list.sink].placement,
                   stream.planes);
   }
 
-  DeviceState& device_;
+  GlDevice& device_;
   const Kernel& kernel_;
   std::span<const Argument> arguments_;
   const assemble::SpecValues specs_;
@@ -210,7 +210,7 @@ bool hasSinks(const Kernel& kernel) {
   return std::any_of(kernel.parameters.begin(), kernel.parameters.end(), assemble::isSink);
 }
 
-void runWithSinks(DeviceState& device, const Kernel& kernel, std::span<const Argument> arguments,
+void runWithSinks(GlDevice& device, const Kernel& kernel, std::span<const Argument> arguments,
                   const Shape& domain) {
   SinkCall(device, kernel, arguments, domain).run();
 }
@@ -219,7 +219,7 @@ void runOverNothing(const Kernel& kernel, std::span<const Argument> arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (kernel.parameters[i].role == Role::VariableOutput) {
       std::vector<Surface> nothing;
-      arguments[i].region.stream->become(nothing, listLayout(0, {1, 1}), nullptr);
+      glStream(arguments[i].region).become(nothing, listLayout(0, {1, 1}), nullptr);
     }
   }
 }

@@ -12,13 +12,13 @@
 
 namespace sk {
 
-class DeviceState;
+class GlDevice;
 
 /// Whether a kernel has a variable or a scatter output.
 bool hasSinks(const program::Kernel& kernel);
 
 /// Runs a kernel over `domain`, which is not empty. The arguments have been checked.
-void runWithSinks(DeviceState& device, const program::Kernel& kernel, std::span<const Argument> arguments,
+void runWithSinks(GlDevice& device, const program::Kernel& kernel, std::span<const Argument> arguments,
                   const Shape& domain);
 
 /// What such a kernel leaves where there is no element: variable outputs of size 0.

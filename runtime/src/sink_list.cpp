@@ -23,7 +23,7 @@ const program::Element& sums() { return ElementTraits<int4>::element(); }
 
 }  // namespace
 
-CountTree::CountTree(DeviceState& device, Surface& counts, const Layout& layout)
+CountTree::CountTree(GlDevice& device, Surface& counts, const Layout& layout)
     : device_(device),
       plan_(assemble::planTree(static_cast<std::int32_t>(assemble::elements(layout.whole.extent)),
                                device.textureLimits())),
@@ -77,7 +77,7 @@ std::vector<Surface> CountTree::totalTexture() {
   return total;
 }
 
-std::int32_t readTotal(DeviceState& device, Surface& total) {
+std::int32_t readTotal(GlDevice& device, Surface& total) {
   std::array<std::int32_t, 4> sums{};
   total.framebufferIn(device.bound).read(device.bound, total.texture.format().tight, 0, 0, 1, 1, sums.data());
   device.throwPendingError();

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "assemble/count_tree.hpp"
-#include "device_state.hpp"
+#include "gl_device.hpp"
 #include "layout.hpp"
 #include "sk/program.hpp"
 
@@ -16,7 +16,7 @@ namespace sk {
 class CountTree {
  public:
   /// `counts` lie as `layout` says, in the order of elements.
-  CountTree(DeviceState& device, Surface& counts, const Layout& layout);
+  CountTree(GlDevice& device, Surface& counts, const Layout& layout);
 
   const assemble::TreePlan& plan() const { return plan_; }
   Surface& odd() { return odd_.planes.front(); }
@@ -31,12 +31,12 @@ class CountTree {
   void draw(const assemble::TreeLevel& level, Surface& below, bool ofCounts, std::int32_t belowRow);
   Surface& ofLevel(std::size_t level) { return level % 2 == 1 ? odd() : even(); }
 
-  DeviceState& device_;
+  GlDevice& device_;
   assemble::TreePlan plan_;
   PlanesLease odd_, even_;
 };
 
 /// The number in a texel of totalTexture().
-std::int32_t readTotal(DeviceState& device, Surface& total);
+std::int32_t readTotal(GlDevice& device, Surface& total);
 
 }  // namespace sk

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "assemble/assemble.hpp"
-#include "device_state.hpp"
+#include "gl_device.hpp"
 #include "sk/error.hpp"
 
 namespace sk {

@@ -20,7 +20,7 @@
 
 namespace sk {
 
-class DeviceState;
+class GlDevice;
 
 /// A program whose uniforms are integers, named as they are set. It must be bound then.
 class StepProgram {
@@ -43,7 +43,7 @@ class StepProgram {
 
 class SinkPrograms {
  public:
-  explicit SinkPrograms(DeviceState& device) : device_(device) {}
+  explicit SinkPrograms(GlDevice& device) : device_(device) {}
 
   /// Reads from texture unit 0.
   StepProgram& tree(const assemble::TreeTextures& textures);
@@ -61,7 +61,7 @@ class SinkPrograms {
   std::unique_ptr<StepProgram> build(const std::string& vertexSource, const std::string& fragmentSource,
                                      std::string_view what);
 
-  DeviceState& device_;
+  GlDevice& device_;
   std::map<assemble::TreeTextures, std::unique_ptr<StepProgram>> trees_;
   std::map<PointKey, std::unique_ptr<StepProgram>> points_;
 };

@@ -6,10 +6,8 @@
 #include <fmt/format.h>
 
 #include "device_state.hpp"
-#include "sink_list.hpp"
 #include "sk/error.hpp"
 #include "stream_state.hpp"
-#include "transfer.hpp"
 
 namespace sk {
 
@@ -29,53 +27,26 @@ StreamState* checkTransfer(const StreamRegion& region, std::size_t count, const 
 }  // namespace
 
 StreamState::StreamState(DeviceState& owner, const program::Element& type, const Shape& extents)
-    : device(&owner), element(&type), shape(extents), layout(layoutOf(extents, owner.textureLimits())) {
-  if (layout.texture.width > 0) {
-    planes = owner.takePlanes(type, layout.texture,
-                              fmt::format("a stream of {} of shape {}", type.name, toString(extents)));
+    : device(&owner), element(&type), shape(extents), next_(owner.firstStream_) {
+  if (next_ != nullptr) {
+    next_->previous_ = this;
   }
-  owner.add(*this);
+  owner.firstStream_ = this;
 }
 
 StreamState::~StreamState() {
   if (device != nullptr) {
-    if (total_) {
-      device->pool.give(std::move(total_));
-    }
-    device->givePlanes(planes);
-    device->remove(*this);
+    leave();
   }
 }
 
-void StreamState::become(std::vector<Surface>& elements, const Layout& list, Surface* total) {
-  std::swap(planes, elements);
-  layout = list;
-  if (total_) {
-    device->pool.give(std::move(total_));
-    total_ = {};
+void StreamState::leave() noexcept {
+  (previous_ == nullptr ? device->firstStream_ : previous_->next_) = next_;
+  if (next_ != nullptr) {
+    next_->previous_ = previous_;
   }
-  if (total != nullptr) {
-    total_ = std::move(*total);
-  } else {
-    takeSize(layout.whole.extent[0]);
-  }
-}
-
-void StreamState::settle() {
-  if (!total_) {
-    return;
-  }
-  const DeviceScope scope(*device);
-  takeSize(readTotal(*device, total_));
-  device->pool.give(std::move(total_));
-  total_ = {};
-}
-
-void StreamState::takeSize(std::int32_t count) {
-  shape = Shape(count);
-  layout.whole.extent = {count, 1, 1, 1};
-  layout.whole.stride = assemble::stridesOf(layout.whole.extent);
-  layout.draws = assemble::drawnTexels(layout.whole);
+  previous_ = next_ = nullptr;
+  device = nullptr;
 }
 
 bool isInside(const StreamRegion& region) {
@@ -144,34 +115,40 @@ StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, cons
 
 void detail::write(const StreamRegion& region, const void* elements, std::size_t count) {
   if (StreamState* stream = checkTransfer(region, count, "write")) {
-    const DeviceScope scope(*stream->device);
-    upload(*stream->device, *stream->element, stream->planes, placementOf(region, stream->layout),
-           static_cast<const std::byte*>(elements));
+    stream->write(region, static_cast<const std::byte*>(elements));
   }
 }
 
 void detail::read(const StreamRegion& region, void* elements, std::size_t count) {
   if (StreamState* stream = checkTransfer(region, count, "read")) {
-    const DeviceScope scope(*stream->device);
-    download(*stream->device, *stream->element, stream->planes, placementOf(region, stream->layout),
-             static_cast<std::byte*>(elements));
+    stream->read(region, static_cast<std::byte*>(elements));
   }
 }
 
+std::vector<double> detail::readReals(const StreamRegion& region) {
+  StreamState& stream = liveStream(region, "readReals");
+  std::size_t components = 0;
+  for (const program::Field& field : stream.element->fields) {
+    if (field.scalar != program::Scalar::Float) {
+      throw Error(fmt::format("readReals: {} is not made of floats alone; use read()", stream.element->name));
+    }
+    components += field.width;
+  }
+  std::vector<double> values(static_cast<std::size_t>(region.shape.size()) * components);
+  if (!values.empty()) {
+    stream.readReals(region, values.data());
+  }
+  return values;
+}
+
 StreamTexture detail::textureOf(StreamState* state, int plane) {
-  const StreamState& stream = liveStream({state, {}, {}}, "texture");
+  StreamState& stream = liveStream({state, {}, {}}, "texture");
   const auto count = static_cast<int>(stream.element->fields.size());
   if (plane < 0 || plane >= count) {
     throw Error(
         fmt::format("texture: there is no plane {}; {} has {}, from 0", plane, stream.element->name, count));
   }
-  if (stream.planes.empty()) {
-    return {};
-  }
-  const gl::Texture& texture = stream.planes[static_cast<std::size_t>(plane)].texture;
-  const assemble::TextureShape& shape = texture.shape();
-  return {texture.name(), texture.format().internalFormat, shape.width,
-          shape.height,   stream.layout.whole.linear,      shape.layers};
+  return stream.texture(plane);
 }
 
 }  // namespace sk

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// What is behind a Stream: its planes, where its elements lie in them, and the device that it is on,
-// as long as there is one.
+// What is behind a Stream on any device: its type and shape, and the device that it is on, as long as there
+// is one.
 #pragma once
 
+#include <cstddef>
 #include <string_view>
-#include <vector>
 
-#include "layout.hpp"
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
-#include "surface.hpp"
+#include "sk/stream.hpp"
 
 namespace sk {
 
@@ -18,31 +17,36 @@ class DeviceState;
 
 class StreamState {
  public:
-  /// A scope of the device must be open. Throws sk::Error where there is no room.
-  StreamState(DeviceState& device, const program::Element& element, const Shape& shape);
-  ~StreamState();
+  virtual ~StreamState();
   StreamState(const StreamState&) = delete;
   StreamState& operator=(const StreamState&) = delete;
 
-  DeviceState* device;                 ///< null once the device is gone
-  const program::Element* const element;
-  Shape shape;                         ///< both hold once the stream is settled
-  Layout layout;
-  std::vector<Surface> planes;         ///< one a field of the element; none where the stream is empty
-
-  /// Takes what a kernel has pushed for its elements, and gives its planes for it. `total`: where their number
-  /// is not known, CountTree::totalTexture(); `list` has then room for all that may be.
-  void become(std::vector<Surface>& elements, const Layout& list, Surface* total);
   /// Finds out how many elements there are, if that is not known, which waits for the device. No scope of the
   /// device is open.
-  void settle();
+  virtual void settle() = 0;
+  /// The region is inside, and has an element; `elements` are as many, laid out as the Element says.
+  virtual void write(const StreamRegion& region, const std::byte* elements) = 0;
+  virtual void read(const StreamRegion& region, std::byte* elements) = 0;
+  /// `values` has room for every component of every element; all are floats.
+  virtual void readReals(const StreamRegion& region, double* values) = 0;
+  /// Throws sk::Error where the device has no textures.
+  virtual StreamTexture texture(int plane) = 0;
+
+  /// In the device's list.
+  StreamState* next() const { return next_; }
+  /// Takes the stream off its device's list, and forgets the device.
+  void leave() noexcept;
+
+  DeviceState* device;  ///< null once the device is gone
+  const program::Element* const element;
+  Shape shape;  ///< holds once the stream is settled
+
+ protected:
+  /// Puts the stream on its device's list.
+  StreamState(DeviceState& owner, const program::Element& type, const Shape& extents);
 
  private:
-  friend class DeviceState;
-  void takeSize(std::int32_t count);
-
-  Surface total_;  ///< holds the number of elements until somebody asks
-  StreamState* previous_ = nullptr;  ///< in the device's list
+  StreamState* previous_ = nullptr;
   StreamState* next_ = nullptr;
 };
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "device_state.hpp"
+#include "gl_device.hpp"
 #include "element_packing.hpp"
 #include "texel_runs.hpp"
 
@@ -45,7 +45,7 @@ void forEachBand(const Rect& rect, std::size_t texelBytes, Visit&& visit) {
 /// One plane of a stream, and the ways of its texels.
 class PlaneTransfer {
  public:
-  PlaneTransfer(DeviceState& device, const Element& element, const Field& field, Surface& surface)
+  PlaneTransfer(GlDevice& device, const Element& element, const Field& field, Surface& surface)
       : device_(device),
         element_(element),
         field_(field),
@@ -156,7 +156,7 @@ class PlaneTransfer {
            surface_.framebuffer.readsOnEs(device_.bound, format_.tight);
   }
 
-  DeviceState& device_;
+  GlDevice& device_;
   const Element& element_;
   const Field& field_;
   Surface& surface_;
@@ -177,7 +177,7 @@ bool goesByRows(const Placement& region, std::size_t texelBytes, std::int64_t co
 
 }  // namespace
 
-void upload(DeviceState& device, const Element& element, std::span<Surface> planes, const Placement& region,
+void upload(GlDevice& device, const Element& element, std::span<Surface> planes, const Placement& region,
             const std::byte* elements) {
   for (std::size_t i = 0; i < planes.size(); ++i) {
     PlaneTransfer plane(device, element, element.fields[i], planes[i]);
@@ -191,7 +191,7 @@ void upload(DeviceState& device, const Element& element, std::span<Surface> plan
   }
 }
 
-void download(DeviceState& device, const Element& element, std::span<Surface> planes, const Placement& region,
+void download(GlDevice& device, const Element& element, std::span<Surface> planes, const Placement& region,
               std::byte* elements) {
   for (std::size_t i = 0; i < planes.size(); ++i) {
     PlaneTransfer plane(device, element, element.fields[i], planes[i]);

@@ -12,15 +12,15 @@
 
 namespace sk {
 
-class DeviceState;
+class GlDevice;
 
 /// Copies all elements of a region, row-major in host memory, to its planes.
-void upload(DeviceState& device, const program::Element& element, std::span<Surface> planes,
+void upload(GlDevice& device, const program::Element& element, std::span<Surface> planes,
             const assemble::Placement& region, const std::byte* elements);
 
 /// The other way. Waits for the device. Throws sk::Error where the driver has reported an error since
 /// it was last asked.
-void download(DeviceState& device, const program::Element& element, std::span<Surface> planes,
+void download(GlDevice& device, const program::Element& element, std::span<Surface> planes,
               const assemble::Placement& region, std::byte* elements);
 
 }  // namespace sk

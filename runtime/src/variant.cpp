@@ -9,7 +9,7 @@
 
 #include "iterator.hpp"
 #include "layout.hpp"
-#include "stream_state.hpp"
+#include "gl_stream.hpp"
 
 namespace sk {
 
@@ -150,7 +150,7 @@ Addressing addressingOf(const Placement& placement) {
 }
 
 Operand regionOperand(const Argument& argument, const Shape& domain) {
-  StreamState& stream = *argument.region.stream;
+  GlStream& stream = glStream(argument.region);
   Operand operand{.placement = placementOf(argument.region, stream.layout), .planes = stream.planes};
   const assemble::Index4 whole = xFirst(domain);
   for (std::size_t d = 0; d < whole.size(); ++d) {

@@ -65,6 +65,11 @@ cmp -s heat.sk.hpp "a folder/heat.sk.hpp" || broken "the stub depends on where i
 grep -qF 'a\ folder/heat.sk.hpp' heat.d || broken "the depfile lacks the stub: $(<heat.d)"
 grep -qF 'include/weights.sk' heat.d || broken "the depfile lacks the included file: $(<heat.d)"
 
+# Native code is in the stub unless other targets are named.
+grep -qF 'diffuseNative' heat.sk.cpp || broken "the stub has no native code"
+run 0 -Iinclude -o fragment --target=fragment heat.sk
+grep -qF 'native' fragment/heat.sk.cpp && broken "--target=fragment writes native code"
+
 # What is printed.
 run 0 -Iinclude --emit=glsl heat.sk
 prints '#version 330'
@@ -72,6 +77,8 @@ run 0 -Iinclude --emit=glsl --profile=essl300 --kernel=diffuse heat.sk
 prints '#version 300 es'
 prints 'diffuse'
 [[ $out != *sum* ]] || broken "--kernel=diffuse prints more"
+run 0 -Iinclude --emit=cpp heat.sk
+prints 'struct sk_diffuse'
 run 0 -Iinclude --emit=ir heat.sk
 prints 'diffuse'
 run 0 -Iinclude --emit=ast heat.sk
@@ -94,6 +101,7 @@ refuses '--nosuch' --nosuch heat.sk
 refuses 'glsll' --emit=glsll heat.sk
 refuses 'glsl990' --emit=glsl --profile=glsl990 heat.sk
 refuses 'quantum' --target=quantum heat.sk
+refuses 'compute' --target=compute heat.sk
 refuses 'nosuch' --print-after=nosuch heat.sk
 refuses 'nosuch' -Iinclude --emit=glsl --kernel=nosuch heat.sk
 mkdir other

@@ -18,7 +18,8 @@ namespace sk {
 class DeviceState;  // the runtime's own
 
 struct DeviceOptions {
-  /// Which device: "gpu" or "gpu:N" (the N-th hardware device, from 0), "software", or a part of the
+  /// Which device: "native" (the kernels' own C++ on the CPU, no GL), "reference" (the same, computing in double
+  /// wherever a kernel says float), "gpu" or "gpu:N" (the N-th hardware device, from 0), "software", or a part of the
   /// renderer's name in any case ("llvmpipe", "nvidia"). Empty: environment variable SK_DEVICE, and
   /// without it the best one, which is the first GPU, or a software renderer where there is none.
   std::string device = {};
@@ -65,6 +66,12 @@ class Device {
   /// long as the device. GL state that a call changes is put back before it returns. Neither a query nor
   /// conditional rendering may be in progress during a call: it would count, or drop, what is drawn.
   static Device adopt(const DeviceOptions& options = {});
+
+  /// The device that needs no GL: kernels run as the C++ that skc wrote of them, streams lie in host memory.
+  /// Arithmetic is IEEE 754's, and defined for every operand (docs/language.md).
+  static Device native();
+  /// The same with doubles for floats, in streams and in kernels: what results are measured against.
+  static Device reference();
 
   /// A new stream; its elements are undefined. Throws sk::Error where the shape has no dimension, or
   /// the device has no room.

@@ -33,6 +33,11 @@
 #include <span>
 #include <string_view>
 
+namespace sk::native {
+struct Call;
+struct ReduceCall;
+}  // namespace sk::native
+
 namespace sk::program {
 
 /// Component type of a field, in host memory: Bool is a byte of 0 or 1, Half and the normalized ones
@@ -157,6 +162,21 @@ struct Parameter {
 
 struct Plan;
 
+/// A kernel as native code (sk/native): computing in float, and in double wherever the kernel says float.
+struct NativeKernel {
+  void (*single)(const native::Call& call);
+  void (*reference)(const native::Call& call);
+};
+
+/// A reduction likewise; it has at least one element in each block.
+struct NativeReduction {
+  void (*single)(const native::ReduceCall& call);
+  void (*reference)(const native::ReduceCall& call);
+  /// The identities, to the one element of the results; null where there are none.
+  void (*singleIdentity)(const native::ReduceCall& call) = nullptr;
+  void (*referenceIdentity)(const native::ReduceCall& call) = nullptr;
+};
+
 /// A kernel. Its GLSL entry function takes, in order, every Uniform, Iterator, Spec, Input (by value) and
 /// Output (as `out`) parameter; gathers, variable outputs and scatter outputs are no parameters of it.
 struct Kernel {
@@ -174,6 +194,7 @@ struct Kernel {
   bool usesDoubles = false;  ///< declarations or body speak of sk_double
   const Plan* plans = nullptr;  ///< for devices that cannot run it in one pass, most generous first
   std::uint8_t planCount = 0;
+  const NativeKernel* native = nullptr;   ///< null where skc was not asked for native code
 };
 
 /// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.
@@ -222,6 +243,7 @@ struct Reduction {
   bool seeded;  ///< a run may start from its first elements, taken as the accumulators
       ///< (they have the same types); else it starts from the identities, which
       ///< then all exist
+  const NativeReduction* native = nullptr;
 };
 
 }  // namespace sk::program

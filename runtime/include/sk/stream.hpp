@@ -65,6 +65,7 @@ StreamRegion wholeRegion(StreamState* state);
 StreamRegion partOf(const StreamRegion& region, const Index& begin, const Index& end);
 void write(const StreamRegion& region, const void* elements, std::size_t count);
 void read(const StreamRegion& region, void* elements, std::size_t count);
+std::vector<double> readReals(const StreamRegion& region);
 StreamTexture textureOf(StreamState* state, int plane);
 
 }  // namespace detail
@@ -118,6 +119,10 @@ class View {
     detail::read(region_, elements.data(), elements.size());
   }
 
+  /// The components of the elements, which are floats, in the precision that the device holds them in: a
+  /// reference device has doubles. One element after the other. Throws sk::Error where a component is no float.
+  std::vector<double> readReals() const { return detail::readReals(region_); }
+
   /// The box from `begin` (inclusive) to `end` (exclusive) of this one, rows first. Throws sk::Error
   /// where it is not inside.
   View domain(const Index& begin, const Index& end) const {
@@ -163,6 +168,10 @@ class Stream {
   {
     all().read(elements);
   }
+
+  /// The components of the elements, which are floats, in the precision that the device holds them in: a
+  /// reference device has doubles. One element after the other. Throws sk::Error where a component is no float.
+  std::vector<double> readReals() const { return all().readReals(); }
 
   /// The box from `begin` (inclusive) to `end` (exclusive), rows first. Throws sk::Error where it is
   /// not inside the stream.

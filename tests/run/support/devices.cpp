@@ -13,7 +13,7 @@ sk::Device& device(std::string_view profile, int textureLimit) {
   auto found = devices.find(key);
   if (found == devices.end()) {
     const sk::DeviceOptions options{.profile = key.first, .textureLimit = textureLimit};
-    found = devices.emplace(key, sk::Device(options)).first;
+    found = devices.emplace(key, profile == "native" ? sk::Device::native() : sk::Device(options)).first;
   }
   return found->second;
 }

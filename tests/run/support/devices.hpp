@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The devices that a test program runs on, each opened once: both profiles, and both again with small
-// texture limits, under which most shapes are linearised, or lie in several layers.
+// texture limits, under which most shapes are linearised, or lie in several layers; and native code.
 #pragma once
 
 #include <string>
@@ -16,19 +16,19 @@ namespace run_tests {
 /// Extents above the first are linearised, streams of more than 64 elements layered under the second.
 inline constexpr int smallLimits[] = {64, 8};
 
-/// The device of a profile ("glsl330", "essl300"), with its own texture limit (0) or a smaller one.
+/// The device of a profile ("glsl330", "essl300", "native"), with its own texture limit (0) or a smaller one.
 sk::Device& device(std::string_view profile, int textureLimit = 0);
 
-/// test(device) on both profiles: for what a kernel computes.
+/// test(device) on every profile: for what a kernel computes.
 template <class Test>
 void onEveryProfile(const Test& test) {
-  for (const std::string profile : {"glsl330", "essl300"}) {
+  for (const std::string profile : {"glsl330", "essl300", "native"}) {
     INFO("profile " << profile);
     test(device(profile));
   }
 }
 
-/// test(device) on both profiles and every texture limit: for where elements lie.
+/// test(device) on every profile and every texture limit: for where elements lie.
 template <class Test>
 void onEveryLayout(const Test& test) {
   for (const std::string profile : {"glsl330", "essl300"}) {
@@ -37,6 +37,8 @@ void onEveryLayout(const Test& test) {
       test(device(profile, limit));
     }
   }
+  INFO("native");
+  test(device("native"));
 }
 
 }  // namespace run_tests

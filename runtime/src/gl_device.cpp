@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
 // A device's beginning and end.
-#include "device_state.hpp"
+#include "gl_device.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "gl/commands.hpp"
 #include "gl/errors.hpp"
+#include "gl_stream.hpp"
 #include "sk/error.hpp"
-#include "stream_state.hpp"
 
 namespace sk {
 
@@ -26,7 +27,7 @@ assemble::Profile profileOf(const gl::Capabilities& capabilities, bool pairs) {
 
 }  // namespace
 
-DeviceState::DeviceState(gl::OpenedContext&& opened, const DeviceChoices& choices)
+GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     : context(std::move(opened.context)),
       capabilities(std::move(opened.capabilities)),
       profile(profileOf(capabilities, choices.pairs)),
@@ -56,17 +57,16 @@ DeviceState::DeviceState(gl::OpenedContext&& opened, const DeviceChoices& choice
 
 // GL objects are deleted only with their context current. Where it cannot be made current, because
 // another thread has it or the application has ended it, they are left to die with it.
-DeviceState::~DeviceState() {
+GlDevice::~GlDevice() {
   std::optional<gl::CurrentScope> current;
   try {
     current.emplace(context);
   } catch (const Error&) {
     forgetObjects();
   }
-  while (firstStream_ != nullptr) {
-    StreamState& stream = *firstStream_;
-    remove(stream);
-    stream.device = nullptr;
+  while (firstStream() != nullptr) {
+    auto& stream = static_cast<GlStream&>(*firstStream());
+    stream.leave();
     stream.planes.clear();
     stream.total_ = {};
   }
@@ -80,12 +80,13 @@ DeviceState::~DeviceState() {
   }
 }
 
-void DeviceState::forgetObjects() noexcept {
-  for (StreamState* stream = firstStream_; stream != nullptr; stream = stream->next_) {
-    for (Surface& plane : stream->planes) {
+void GlDevice::forgetObjects() noexcept {
+  for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
+    auto& stream = static_cast<GlStream&>(*state);
+    for (Surface& plane : stream.planes) {
       plane.forget();
     }
-    stream->total_.forget();
+    stream.total_.forget();
   }
   pool.forget();
   framebuffers.forget();
@@ -95,24 +96,19 @@ void DeviceState::forgetObjects() noexcept {
   vertexArray.forget();
 }
 
-void DeviceState::add(StreamState& stream) noexcept {
-  stream.next_ = firstStream_;
-  if (firstStream_ != nullptr) {
-    firstStream_->previous_ = &stream;
-  }
-  firstStream_ = &stream;
+std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& element, const Shape& shape) {
+  const DeviceScope scope(*this);
+  return std::make_unique<GlStream>(*this, element, shape);
 }
 
-void DeviceState::remove(StreamState& stream) noexcept {
-  (stream.previous_ == nullptr ? firstStream_ : stream.previous_->next_) = stream.next_;
-  if (stream.next_ != nullptr) {
-    stream.next_->previous_ = stream.previous_;
-  }
-  stream.previous_ = stream.next_ = nullptr;
+void GlDevice::finish() {
+  const DeviceScope scope(*this);
+  gl::finish();
+  throwPendingError();
 }
 
-std::vector<Surface> DeviceState::takePlanes(const program::Element& element,
-                                             const assemble::TextureShape& shape, std::string_view whatFor) {
+std::vector<Surface> GlDevice::takePlanes(const program::Element& element,
+                                          const assemble::TextureShape& shape, std::string_view whatFor) {
   std::vector<Surface> planes;
   planes.reserve(element.fields.size());
   for (const program::Field& field : element.fields) {
@@ -132,7 +128,7 @@ std::vector<Surface> DeviceState::takePlanes(const program::Element& element,
   return planes;
 }
 
-void DeviceState::givePlanes(std::vector<Surface>& planes) noexcept {
+void GlDevice::givePlanes(std::vector<Surface>& planes) noexcept {
   for (Surface& plane : planes) {
     pool.give(std::move(plane));
   }
@@ -140,7 +136,7 @@ void DeviceState::givePlanes(std::vector<Surface>& planes) noexcept {
 }
 
 // An application's own mistakes in an adopted context are not ours to report.
-void DeviceState::throwPendingError() {
+void GlDevice::throwPendingError() {
   const GLenum error = gl::takeError();
   const bool isOurs = !context.isAdopted() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
   if (error != GL_NO_ERROR && isOurs) {

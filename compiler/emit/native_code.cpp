@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: MIT
+#include "emit/native_code.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "emit/cpp_names.hpp"
+#include "emit/native_stmt.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+#include "support/text.hpp"
+
+namespace skc::emit {
+namespace {
+
+using namespace ir;
+
+/// The constants that a kernel names, and those that these name, earlier ones first.
+std::set<ConstantId> constantsOf(const Module& module, const Kernel& kernel) {
+  std::set<ConstantId> found;
+  const auto look = [&](const Expr& expr, const auto& again) -> void {
+    walkExprs(expr, [&](const Expr& inner) {
+      const auto* n = std::get_if<ConstantRef>(&inner.node);
+      if (n != nullptr && found.insert(n->constant).second)
+        again(*module.constants[n->constant].value, again);
+    });
+  };
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    walkExprs(module.functions[id].body, [&](const Expr& expr) {
+      if (std::holds_alternative<ConstantRef>(expr.node)) look(expr, look);
+    });
+  }
+  for (const KernelParam& param : kernel.params) {
+    for (const ExprPtr* expr : {&param.border, &param.identity}) {
+      if (*expr) look(**expr, look);
+    }
+  }
+  return found;
+}
+
+/// Overloads after the first get numbers.
+std::map<FunctionId, std::string> functionNames(const Module& module, const Kernel& kernel,
+                                                const KernelNames& names) {
+  std::map<std::string, int> counts;
+  std::map<FunctionId, std::string> result;
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    const std::string& name = names.function(id);
+    const int number = ++counts[name];
+    result[id] = number == 1 ? name : fmt::format("sk_overload{}_{}", number, name);
+  }
+  return result;
+}
+
+class KernelWriter {
+ public:
+  KernelWriter(const Module& module, const Kernel& kernel, std::string_view name)
+      : module_(module),
+        kernel_(kernel),
+        types_(module),
+        names_(module, kernel, types_),
+        functions_(functionNames(module, kernel, names_)),
+        context_{module, types_, names_, kernel, functions_},
+        name_(fmt::format("sk_{}", name)) {}
+
+  std::string write() {
+    text_ = fmt::format("template <class sk_real>\nstruct {} {{\n", name_);
+    members();
+    for (const ConstantId id : constantsOf(module_, kernel_)) constant(id);
+    for (const FunctionId id : functionsOf(module_, kernel_)) text_ += nativeFunction(context_, id) + "\n";
+    if (kernel_.reduction) {
+      reduction();
+    } else {
+      element();
+    }
+    return std::move(text_) + "};\n\n";
+  }
+
+ private:
+  // ---- parameters -------------------------------------------------------------------------------
+
+  void members() {
+    std::vector<std::string> inits;
+    for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
+      const KernelParam& param = kernel_.params[i];
+      const std::string border = param.border ? ", " + nativeExpr(context_, std::nullopt, *param.border) : "";
+      line(1, fmt::format("{} {};", memberType(param), member(i)));
+      inits.push_back(fmt::format("{}(sk_call, {}{})", member(i), i, border));
+    }
+    line(1, "native::Index sk_index{}, sk_extent{};\n");
+    line(1, fmt::format("explicit {}(const native::Call& sk_call) : {} {{}}\n", name_, join(inits, ", ")));
+  }
+
+  std::string memberType(const KernelParam& param) const {
+    static constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
+    const std::string element = type(param.type);
+    switch (param.role) {
+      case ParamRole::Uniform:
+      case ParamRole::Spec: return fmt::format("native::Uniform<{}>", element);
+      case ParamRole::Input: return fmt::format("native::Input<{}>", element);
+      case ParamRole::Output:
+      case ParamRole::Accumulator: return fmt::format("native::Output<{}>", element);
+      case ParamRole::Gather:
+        return fmt::format("native::Gather<{}, {}, native::Boundary::{}>", element, param.rank,
+                           boundaries[static_cast<std::size_t>(param.boundary)]);
+      case ParamRole::VariableOutput: return fmt::format("native::VariableOutput<{}>", element);
+      case ParamRole::Scatter: return fmt::format("native::Scatter<{}, {}>", element, param.rank);
+      case ParamRole::Iterator: return fmt::format("native::Iterator<{}>", element);
+    }
+    return {};
+  }
+
+  void constant(ConstantId id) {
+    const Constant& constant = module_.constants[id];
+    line(1, fmt::format("static {} {}() {{ return {}; }}\n", type(constant.type),
+                        nativeConstant(context_, id), nativeExpr(context_, std::nullopt, *constant.value)));
+  }
+
+  // ---- kernels ----------------------------------------------------------------------------------
+
+  void element() {
+    line(1, "void sk_element() {");
+    for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
+      if (kernel_.params[i].role == ParamRole::Output) {
+        line(2, fmt::format("{} sk_value_{}{{}};", type(kernel_.params[i].type), names_.symbol(i)));
+      }
+    }
+    entryCall([&](std::uint32_t i) { return elementArgument(i); });
+    for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
+      if (kernel_.params[i].role == ParamRole::Output) {
+        line(2, fmt::format("{}.store(sk_index, sk_value_{});", member(i), names_.symbol(i)));
+      }
+    }
+    line(1, "}");
+  }
+
+  std::string elementArgument(std::uint32_t i) const {
+    switch (kernel_.params[i].role) {
+      case ParamRole::Uniform:
+      case ParamRole::Spec: return member(i) + ".get()";
+      case ParamRole::Input:
+      case ParamRole::Iterator: return member(i) + ".at(sk_index)";
+      case ParamRole::Output: return "sk_value_" + names_.symbol(i);
+      case ParamRole::Gather:
+      case ParamRole::VariableOutput:
+      case ParamRole::Scatter:
+      case ParamRole::Accumulator: break;   // no arguments, or not of a kernel
+    }
+    return {};
+  }
+
+  /// argument(i) of every parameter that the entry takes.
+  template <class Argument>
+  void entryCall(Argument&& argument) {
+    std::vector<std::string> args;
+    for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
+      const VarRole role = module_.functions[kernel_.entry].variables[i].role;
+      if (role != VarRole::Gather && role != VarRole::Sink) args.push_back(argument(i));
+    }
+    line(2, fmt::format("{}({});", functions_.at(kernel_.entry), join(args, ", ")));
+  }
+
+  // ---- reduces ----------------------------------------------------------------------------------
+
+  void reduction() {
+    const std::vector<std::uint32_t> accumulators = paramsOf(ParamRole::Accumulator);
+    const std::vector<std::uint32_t> inputs = paramsOf(ParamRole::Input);
+    const bool hasIdentity = std::ranges::all_of(
+        accumulators, [&](std::uint32_t i) { return kernel_.params[i].identity != nullptr; });
+    line(1, fmt::format("using sk_State = std::tuple<{}>;",
+                        list(accumulators, [&](std::uint32_t i) { return type(kernel_.params[i].type); })));
+    line(1, fmt::format("static constexpr bool sk_isSeeded = {}, sk_hasIdentity = {};\n",
+                        kernel_.reduction->seeded, hasIdentity));
+    if (kernel_.reduction->seeded) {
+      line(1, fmt::format("sk_State sk_seed() const {{ return sk_State({}); }}",
+                          list(inputs, [&](std::uint32_t i) { return member(i) + ".at(sk_index)"; })));
+    }
+    if (hasIdentity) {
+      line(1, fmt::format("sk_State sk_identity() const {{ return sk_State({}); }}",
+                          list(accumulators, [&](std::uint32_t i) {
+                            return nativeExpr(context_, std::nullopt, *kernel_.params[i].identity);
+                          })));
+    }
+    line(1, "void sk_fold([[maybe_unused]] sk_State& sk_state) {");
+    entryCall([&](std::uint32_t i) {
+      const bool isAccumulator = kernel_.params[i].role == ParamRole::Accumulator;
+      return isAccumulator ? ofState("sk_state", accumulators, i) : elementArgument(i);
+    });
+    line(1, "}");
+    if (combines(inputs, accumulators)) {
+      line(1, "void sk_combine(sk_State& sk_state, const sk_State& sk_later) {");
+      entryCall([&](std::uint32_t i) {
+        const ParamRole role = kernel_.params[i].role;
+        if (role == ParamRole::Accumulator) return ofState("sk_state", accumulators, i);
+        return role == ParamRole::Input ? ofState("sk_later", inputs, i) : elementArgument(i);
+      });
+      line(1, "}");
+    }
+    line(1, "void sk_store(const native::Index& sk_at, const sk_State& sk_state) const {");
+    for (const std::uint32_t i : accumulators) {
+      line(2, fmt::format("{}.store(sk_at, {});", member(i), ofState("sk_state", accumulators, i)));
+    }
+    line(1, "}");
+  }
+
+  /// Whether the inputs are of the accumulators' types.
+  bool combines(const std::vector<std::uint32_t>& inputs,
+                const std::vector<std::uint32_t>& accumulators) const {
+    return std::ranges::equal(inputs, accumulators, [&](std::uint32_t a, std::uint32_t b) {
+      return kernel_.params[a].type == kernel_.params[b].type;
+    });
+  }
+
+  static std::string ofState(std::string_view state, const std::vector<std::uint32_t>& params,
+                             std::uint32_t param) {
+    return fmt::format("std::get<{}>({})", std::ranges::find(params, param) - params.begin(), state);
+  }
+
+  std::vector<std::uint32_t> paramsOf(ParamRole role) const {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
+      if (kernel_.params[i].role == role) found.push_back(i);
+    }
+    return found;
+  }
+
+  template <class Text>
+  static std::string list(const std::vector<std::uint32_t>& params, Text&& text) {
+    std::vector<std::string> items;
+    for (const std::uint32_t i : params) items.push_back(text(i));
+    return join(items, ", ");
+  }
+
+  void line(int depth, const std::string& text) {
+    const std::size_t indent = static_cast<std::size_t>(depth) * 2;
+    text_ += wrapLine(std::string(indent, ' ') + text, 110, indent + 4) + "\n";
+  }
+
+  std::string member(std::uint32_t param) const { return nativeParameter(context_, param); }
+  std::string type(Type t) const { return nativeType(module_, types_, t); }
+
+  const Module& module_;
+  const Kernel& kernel_;
+  TypeNames types_;
+  KernelNames names_;
+  std::map<FunctionId, std::string> functions_;
+  NativeContext context_;
+  std::string name_;
+  std::string text_;
+};
+
+/// A struct, after those that are members of it.
+void addStruct(const Module& module, const TypeNames& types, std::uint32_t index, std::vector<bool>& isDone,
+               std::string& text) {
+  if (isDone[index]) return;
+  isDone[index] = true;
+  const std::vector<StructField>& fields = module.structs[index].fields;
+  const std::string& name = types.structName(index);
+  std::string declarations;
+  std::vector<std::string> members;
+  for (std::uint32_t i = 0; i < fields.size(); ++i) {
+    Type inner = fields[i].type;
+    if (inner.kind == Type::Kind::Array) inner = module.arrays[inner.index].element;
+    if (inner.kind == Type::Kind::Struct) addStruct(module, types, inner.index, isDone, text);
+    declarations +=
+        fmt::format("  {} {};\n", nativeType(module, types, fields[i].type), types.fieldName(index, i));
+    members.push_back(fmt::format("&{}::{}", name, types.fieldName(index, i)));
+  }
+  text += fmt::format("template <class sk_real>\nstruct {} {{\n{}", name, declarations);
+  text += wrapLine(fmt::format("  static constexpr auto sk_members() {{ return std::tuple({}); }}\n}};\n\n",
+                               join(members, ", ")),
+                   110, 6);
+}
+
+std::string structs(const Module& module) {
+  const TypeNames types(module);
+  std::string text;
+  std::vector<bool> isDone(module.structs.size(), false);
+  for (std::uint32_t i = 0; i < isDone.size(); ++i) addStruct(module, types, i, isDone, text);
+  return text;
+}
+
+}  // namespace
+
+std::string nativeListing(const Module& module, const Program& program) {
+  const std::vector<std::string> names = descriptorNames(module, program);
+  const auto isUnit = [&](KernelId id) {
+    return std::ranges::any_of(program.units(), [&](const Unit& unit) { return unit.id == id; });
+  };
+  std::string text =
+      "#include <limits>\n\n#include <sk/native/native.hpp>\n\nnamespace sk::generated {\nnamespace {\n\n"
+      "using namespace native::literals;\n\n" +
+      structs(module);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Kernel& kernel = module.kernels[program.units()[i].id];
+    text += KernelWriter(module, kernel, names[i]).write();
+    if (kernel.reduction && !isUnit(*kernel.reduction->combine)) {
+      text += KernelWriter(module, module.kernels[*kernel.reduction->combine], names[i] + "Combine").write();
+    }
+  }
+  return text + "}  // namespace\n}  // namespace sk::generated\n";
+}
+
+std::string nativeKernelDescriptor(const std::string& name) {
+  return fmt::format(
+      "constexpr NativeKernel {0}Native = {{&native::runKernel<generated::sk_{0}<float>>,\n"
+      "    &native::runKernel<generated::sk_{0}<double>>}};\n\n",
+      name);
+}
+
+std::string nativeReductionDescriptor(const std::string& name, const std::string& combine,
+                                      const Kernel& reduce) {
+  const bool hasIdentity = std::ranges::none_of(reduce.params, [](const KernelParam& param) {
+    return param.role == ParamRole::Accumulator && param.identity == nullptr;
+  });
+  std::vector<std::string> forms;
+  for (const std::string_view real : {"float", "double"}) {
+    forms.push_back(fmt::format("&native::runReduction<generated::sk_{0}<{2}>, generated::sk_{1}<{2}>>", name,
+                                combine, real));
+  }
+  for (const std::string_view real : {"float", "double"}) {
+    if (hasIdentity) forms.push_back(fmt::format("&native::storeIdentity<generated::sk_{}<{}>>", name, real));
+  }
+  return fmt::format("constexpr NativeReduction {}Native = {{\n    {}}};\n\n", name, join(forms, ",\n    "));
+}
+
+}  // namespace skc::emit

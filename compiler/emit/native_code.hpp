@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// The native form of a kernel: a struct template over its real type, as sk/native/run.hpp wants it, with the
+// kernel's parameters as members and its functions as they are.
+//
+//   template <class sk_real>
+//   struct sk_scale {
+//     native::Uniform<sk_real> sk_arg_k;
+//     native::Input<sk_real> sk_arg_x;
+//     native::Output<sk_real> sk_arg_r;
+//     native::Index sk_index, sk_extent;
+//     explicit sk_scale(const native::Call& call) : ...
+//     void scale(sk_real k, sk_real x, sk_real& r) { r = k * x; }
+//     void sk_element() { ... }
+//   };
+#pragma once
+
+#include <string>
+
+#include "emit/program.hpp"
+#include "ir/ir.hpp"
+
+namespace skc::emit {
+
+/// The definitions of a whole module, in a namespace of their own. Kernels bear the names of their
+/// descriptors (descriptorNames); what combines the partial results of a reduce and is no kernel of the module, the
+/// reduce's with "Combine".
+std::string nativeListing(const ir::Module& module, const Program& program);
+
+/// The constants NAMENative of type sk::program::NativeKernel and NativeReduction. `combine` is the name of
+/// what combines.
+std::string nativeKernelDescriptor(const std::string& name);
+std::string nativeReductionDescriptor(const std::string& name, const std::string& combine,
+                                      const ir::Kernel& reduce);
+
+}  // namespace skc::emit

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+//
+// All that the native code in a generated .sk.cpp stands on. Applications have no use for it.
+#pragma once
+
+#include <tuple>
+
+#include "sk/native/intrinsics.hpp"
+#include "sk/native/run.hpp"
+#include "sk/native/streams.hpp"

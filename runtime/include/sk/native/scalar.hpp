@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+//
+// Scalars of the language in native code, and conversions between all of them. Kernels are templates over
+// their real type, so that one text computes in float or, as its own reference, in double.
+#pragma once
+
+#include <cstdint>
+
+#include "sk/narrow.hpp"
+#include "sk/native/integer.hpp"
+#include "sk/native/vector.hpp"
+
+namespace sk::native {
+
+/// What `double` is where `float` is Real: as exact, at least.
+template <class Real>
+struct WideOf {
+  using Type = double;
+};
+template <class Real>
+using Wide = typename WideOf<Real>::Type;
+
+/// A scalar that only keeps values: a Host in memory, computed with as a Carrier.
+template <class Host, class Carrier>
+class Narrow {
+ public:
+  using HostType = Host;
+  using CarrierType = Carrier;
+
+  Narrow() = default;
+  explicit constexpr Narrow(Carrier value) : host_(stored(value)) {}
+  explicit constexpr operator Carrier() const {
+    if constexpr (isInteger<Carrier>) {
+      return Carrier(host_);
+    } else {
+      return static_cast<Carrier>(static_cast<float>(host_));
+    }
+  }
+
+ private:
+  static constexpr Host stored(Carrier value) {
+    if constexpr (isInteger<Carrier>) {
+      return static_cast<Host>(value.word());
+    } else {
+      return Host(static_cast<float>(value));
+    }
+  }
+
+  Host host_;
+};
+
+template <class Real>
+using Half = Narrow<half, Real>;
+template <class Real>
+using Unorm8 = Narrow<unorm8, Real>;
+template <class Real>
+using Snorm8 = Narrow<snorm8, Real>;
+template <class Real>
+using Unorm16 = Narrow<unorm16, Real>;
+template <class Real>
+using Snorm16 = Narrow<snorm16, Real>;
+using Char = Narrow<std::int8_t, Int>;
+using Uchar = Narrow<std::uint8_t, Int>;
+using Short = Narrow<std::int16_t, Int>;
+using Ushort = Narrow<std::uint16_t, Int>;
+
+template <class T>
+inline constexpr bool isNarrow = false;
+template <class Host, class Carrier>
+inline constexpr bool isNarrow<Narrow<Host, Carrier>> = true;
+
+/// The language's conversion of a scalar, or of the components of a vector.
+template <class To, class From>
+constexpr To convert(const From& from) {
+  if constexpr (Vector<To>) {
+    To result;
+    for (std::size_t i = 0; i < widthOf<To>; ++i) {
+      result.components[i] = convert<Component<To>>(componentAt(from, i));
+    }
+    return result;
+  } else if constexpr (std::is_same_v<To, From>) {
+    return from;
+  } else if constexpr (isNarrow<From>) {
+    return convert<To>(static_cast<typename From::CarrierType>(from));
+  } else if constexpr (isNarrow<To>) {
+    return To(convert<typename To::CarrierType>(from));
+  } else if constexpr (std::is_same_v<To, bool>) {
+    return from != From(0);
+  } else if constexpr (isInteger<To>) {
+    if constexpr (isInteger<From> || std::is_same_v<From, bool>) {
+      return To(from);
+    } else {
+      return truncated<decltype(To().word())>(from);
+    }
+  } else if constexpr (isInteger<From>) {
+    return static_cast<To>(from.word());
+  } else {
+    return static_cast<To>(from);
+  }
+}
+
+}  // namespace sk::native

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+//
+// A GL device: its context, the tracked bindings, the pool of surfaces, the programs; and the
+// list of the streams that live on it. A DeviceScope is open wherever GL is called.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "assemble/assemble.hpp"
+#include "device_state.hpp"
+#include "framebuffer_cache.hpp"
+#include "gl/bound_state.hpp"
+#include "gl/linear_samplers.hpp"
+#include "gl/open_context.hpp"
+#include "gl/saved_state.hpp"
+#include "gl/vertex_array.hpp"
+#include "program_cache.hpp"
+#include "sink_programs.hpp"
+#include "surface.hpp"
+#include "variant.hpp"
+
+namespace sk {
+
+/// What a user may choose of a device that is found.
+struct DeviceChoices {
+  std::int32_t textureLimit = 0;    ///< 0: the device's own
+  bool guaranteedLimits = false;
+  bool pairs = false;               ///< doubles are pairs of floats even where GLSL has double
+};
+
+class GlDevice final : public DeviceState {
+ public:
+  GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices);
+  ~GlDevice() override;
+
+  const std::string& name() const override { return capabilities.renderer; }
+  std::string_view profileName() const override { return profile.name; }
+  bool isSoftware() const override { return capabilities.isSoftware; }
+  bool combinesScattered() const override { return capabilities.blendsFloats; }
+  void checkProgram(const program::Kernel&) const override {}
+  void checkProgram(const program::Reduction&) const override {}
+  std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;
+  void finish() override;
+  void release() override { context.release(); }
+  void run(const program::Kernel& kernel, std::span<const Argument> arguments) override;
+  void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
+              std::span<void* const> results) override;
+  void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
+              const Shape& blocks) override;
+
+  /// New planes of an element type, with undefined texels. Throws sk::Error saying what for, where
+  /// there is no memory.
+  std::vector<Surface> takePlanes(const program::Element& element, const assemble::TextureShape& shape,
+                                  std::string_view whatFor);
+  void givePlanes(std::vector<Surface>& planes) noexcept;
+
+  assemble::TextureLimits textureLimits() const { return {limits.textureSize, limits.textureLayers}; }
+
+  /// Throws sk::Error where the driver has reported an error since it was last asked.
+  void throwPendingError();
+
+  gl::Context context;
+  const gl::Capabilities capabilities;
+  const assemble::Profile profile;       ///< of the table, but for what the device has of doubles
+  gl::BoundState bound;
+  FramebufferCache framebuffers;
+  SurfacePool pool;
+  ProgramCache programs;
+  SinkPrograms sinkPrograms;
+  gl::LinearSamplers samplers;
+  gl::VertexArray vertexArray;
+  std::vector<std::byte> staging;        ///< texels on their way; transfer.cpp's
+  std::vector<Operand> operands;         ///< of the call that runs; run.cpp's
+
+ private:
+  void forgetObjects() noexcept;
+};
+
+/// Makes a device's context current and ready for passes, for as long as it lives.
+class DeviceScope {
+ public:
+  explicit DeviceScope(GlDevice& device) : current_(device.context) {
+    if (device.context.isAdopted()) {
+      saved_.emplace(device.capabilities, device.bound);
+    }
+    device.pool.trim();
+  }
+
+ private:
+  gl::CurrentScope current_;
+  std::optional<gl::SavedState> saved_;
+};
+
+/// Planes from the pool of a device for as long as this lives.
+class PlanesLease {
+ public:
+  explicit PlanesLease(GlDevice& device) : device_(device) {}
+  ~PlanesLease() { device_.givePlanes(planes); }
+  PlanesLease(const PlanesLease&) = delete;
+  PlanesLease& operator=(const PlanesLease&) = delete;
+
+  std::vector<Surface> planes;
+
+ private:
+  GlDevice& device_;
+};
+
+}  // namespace sk

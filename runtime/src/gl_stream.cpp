@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "gl_stream.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "gl_device.hpp"
+#include "sink_list.hpp"
+#include "sk/error.hpp"
+#include "transfer.hpp"
+
+namespace sk {
+
+GlStream::GlStream(GlDevice& on, const program::Element& type, const Shape& extents)
+    : StreamState(on, type, extents), layout(layoutOf(extents, on.textureLimits())) {
+  if (layout.texture.width > 0) {
+    planes = on.takePlanes(type, layout.texture,
+                           fmt::format("a stream of {} of shape {}", type.name, toString(extents)));
+  }
+}
+
+GlStream::~GlStream() {
+  if (device == nullptr) {
+    return;
+  }
+  if (total_) {
+    owner().pool.give(std::move(total_));
+  }
+  owner().givePlanes(planes);
+}
+
+GlDevice& GlStream::owner() const { return static_cast<GlDevice&>(*device); }
+
+void GlStream::become(std::vector<Surface>& elements, const Layout& list, Surface* total) {
+  std::swap(planes, elements);
+  layout = list;
+  if (total_) {
+    owner().pool.give(std::move(total_));
+    total_ = {};
+  }
+  if (total != nullptr) {
+    total_ = std::move(*total);
+  } else {
+    takeSize(layout.whole.extent[0]);
+  }
+}
+
+void GlStream::settle() {
+  if (!total_) {
+    return;
+  }
+  const DeviceScope scope(owner());
+  takeSize(readTotal(owner(), total_));
+  owner().pool.give(std::move(total_));
+  total_ = {};
+}
+
+void GlStream::takeSize(std::int32_t count) {
+  shape = Shape(count);
+  layout.whole.extent = {count, 1, 1, 1};
+  layout.whole.stride = assemble::stridesOf(layout.whole.extent);
+  layout.draws = assemble::drawnTexels(layout.whole);
+}
+
+void GlStream::write(const StreamRegion& region, const std::byte* elements) {
+  const DeviceScope scope(owner());
+  upload(owner(), *element, planes, placementOf(region, layout), elements);
+}
+
+void GlStream::read(const StreamRegion& region, std::byte* elements) {
+  const DeviceScope scope(owner());
+  download(owner(), *element, planes, placementOf(region, layout), elements);
+}
+
+/// Elements of floats alone have no gaps between them.
+void GlStream::readReals(const StreamRegion& region, double* values) {
+  std::vector<float> floats(static_cast<std::size_t>(region.shape.size()) * element->size / sizeof(float));
+  read(region, reinterpret_cast<std::byte*>(floats.data()));
+  std::copy(floats.begin(), floats.end(), values);
+}
+
+StreamTexture GlStream::texture(int plane) {
+  if (planes.empty()) {
+    return {};
+  }
+  const gl::Texture& texture = planes[static_cast<std::size_t>(plane)].texture;
+  const assemble::TextureShape& extents = texture.shape();
+  return {texture.name(), texture.format().internalFormat, extents.width, extents.height, layout.whole.linear,
+          extents.layers};
+}
+
+}  // namespace sk

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+//
+// Elements as native code wants them: an array for each scalar component. Floats are held in the device's real
+// type, all else as in host memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sk/program.hpp"
+
+namespace sk {
+
+/// What native code computes with where a kernel says float.
+enum class RealType : std::uint8_t { Float, Double };
+
+/// A scalar component of an element.
+struct ComponentType {
+  std::size_t offset;  ///< in the element, in host memory
+  std::size_t hostBytes;
+  std::size_t storedBytes;
+  bool isReal;  ///< a float, which may be held as a double
+};
+std::vector<ComponentType> componentsOf(const program::Element& element, RealType real);
+
+/// Arrays of `count` elements, uninitialised. Throws std::bad_alloc.
+class Components {
+ public:
+  Components() = default;
+  Components(const program::Element& element, RealType real, std::int64_t count);
+  /// Takes the bytes of each array.
+  Components(const program::Element& element, RealType real, std::span<const std::vector<std::byte>> arrays);
+
+  Components clone(std::int64_t count) const;
+  std::span<void* const> arrays() const { return pointers_; }
+
+  /// `count` elements from `first` on, from and to host memory.
+  void write(std::int64_t first, std::int64_t count, const std::byte* elements, std::size_t elementBytes);
+  void read(std::int64_t first, std::int64_t count, std::byte* elements, std::size_t elementBytes) const;
+  /// Of floats: one element after the other.
+  void readReals(std::int64_t first, std::int64_t count, double* values) const;
+
+ private:
+  void allocate(std::int64_t count);
+
+  std::vector<ComponentType> types_;
+  std::vector<std::unique_ptr<std::byte[]>> arrays_;
+  std::vector<void*> pointers_;
+};
+
+}  // namespace sk

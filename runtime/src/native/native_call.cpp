@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+//
+// Kernels and reductions on a native device: arguments become the operands of native code. A stream that is
+// read and written is read as it was: what reads it gets a copy, unless each element reads only itself.
+#include <algorithm>
+#include <deque>
+
+#include "assemble/condition.hpp"
+#include "check.hpp"
+#include "iterator.hpp"
+#include "native/native_device.hpp"
+#include "native/native_stream.hpp"
+
+namespace sk {
+
+namespace {
+
+using native::Extents;
+using native::Operand;
+using program::Fit;
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+/// x fastest; missing dimensions have extent 1.
+Extents fastestFirst(const Shape& shape) {
+  Extents extents{1, 1, 1, 1};
+  for (int d = 0; d < shape.rank(); ++d) {
+    extents[static_cast<std::size_t>(shape.rank() - 1 - d)] = shape[d];
+  }
+  return extents;
+}
+
+/// How the index in an element input follows from that in the domain.
+void fit(Operand& operand, Fit way, const Extents& domain) {
+  for (std::size_t d = 0; d < domain.size(); ++d) {
+    const std::int64_t extent = operand.extent[d];
+    switch (way) {
+      case Fit::Same: operand.multiply[d] = extent == 1 ? 0 : 1; break;
+      case Fit::Stretched: operand.divide[d] = std::max<std::int64_t>(domain[d] / extent, 1); break;
+      case Fit::Strided: operand.multiply[d] = extent / domain[d]; break;
+    }
+  }
+}
+
+bool isWritten(Role role) {
+  return role == Role::Output || role == Role::Scatter || role == Role::VariableOutput ||
+         role == Role::Accumulator;
+}
+
+bool isSameRegion(const StreamRegion& a, const StreamRegion& b) {
+  bool same = a.shape == b.shape;
+  for (int d = 0; same && d < a.shape.rank(); ++d) same = a.begin[d] == b.begin[d];
+  return same;
+}
+
+/// The operands of one call, with what they point to.
+class Operands {
+ public:
+  Operands(RealType real, const Kernel& kernel, std::span<const Argument> arguments, const Shape& domain)
+      : real_(real),
+        kernel_(kernel),
+        arguments_(arguments),
+        specs_(specsOf(kernel, arguments)),
+        domain_(domain),
+        list_(arguments.size()) {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      if (kernel.parameters[i].role != Role::Accumulator) list_[i] = operandAt(i);
+    }
+  }
+
+  std::span<Operand> list() { return list_; }
+  native::Call call() const { return {list_, fastestFirst(domain_)}; }
+
+  /// Memory for a value of this element.
+  Components& value(const program::Element& element, std::int64_t count = 1) {
+    return kept_.emplace_back(element, real_, count);
+  }
+
+  /// Streams get what was pushed to them.
+  void settlePushed() {
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      if (list_[i].pushed != nullptr) nativeStream(arguments_[i].region).become(*list_[i].pushed);
+    }
+  }
+
+ private:
+  Operand operandAt(std::size_t i) {
+    const Parameter& parameter = kernel_.parameters[i];
+    const Argument& argument = arguments_[i];
+    switch (parameter.role) {
+      case Role::Uniform:
+      case Role::Spec: return valueOperand(parameter, argument.value, 1);
+      case Role::Iterator: {
+        Operand operand = valueOperand(parameter, argument.value, 2);
+        operand.countsElements = countsElements(parameter, domain_.rank());
+        return operand;
+      }
+      case Role::VariableOutput: {
+        Operand operand;
+        operand.pushed = &pushed_.emplace_back(componentsOf(*parameter.element, real_).size());
+        return operand;
+      }
+      case Role::Input:
+      case Role::Gather:
+      case Role::Output:
+      case Role::Scatter:
+      case Role::Accumulator: break;
+    }
+    if (argument.region.stream == nullptr || !assemble::isNeeded(parameter, specs_)) return {};
+    Operand operand = operandOf(argument.region);
+    const NativeStream& stream = nativeStream(argument.region);
+    operand.components = isReadWhileWritten(i) ? copyOf(stream).arrays() : stream.components.arrays();
+    if (parameter.role == Role::Input) fit(operand, argument.fit, fastestFirst(domain_));
+    return operand;
+  }
+
+  Operand valueOperand(const Parameter& parameter, const void* value, std::int64_t count) {
+    Components& components = this->value(*parameter.element, count);
+    components.write(0, count, static_cast<const std::byte*>(value), parameter.element->size);
+    return {.components = components.arrays()};
+  }
+
+  bool isReadWhileWritten(std::size_t input) const {
+    const Role role = kernel_.parameters[input].role;
+    if (isWritten(role)) return false;
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      if (!isWritten(kernel_.parameters[i].role) ||
+          arguments_[i].region.stream != arguments_[input].region.stream) {
+        continue;
+      }
+      const bool readsItself = role == Role::Input && kernel_.parameters[i].role == Role::Output &&
+                               isSameRegion(arguments_[i].region, arguments_[input].region);
+      if (!readsItself) return true;
+    }
+    return false;
+  }
+
+  /// A stream that several parameters read is copied once.
+  const Components& copyOf(const NativeStream& stream) {
+    for (const auto& [source, copy] : copies_) {
+      if (source == &stream) return copy;
+    }
+    return copies_.emplace_back(&stream, stream.components.clone(stream.shape.size())).second;
+  }
+
+  RealType real_;
+  const Kernel& kernel_;
+  std::span<const Argument> arguments_;
+  const assemble::SpecValues specs_;
+  Shape domain_;
+  std::vector<Operand> list_;
+  std::deque<Components> kept_;
+  std::deque<native::Pushed> pushed_;
+  std::deque<std::pair<const NativeStream*, Components>> copies_;
+};
+
+/// A reduction's call, but for its results.
+class Folding {
+ public:
+  Operands fold;
+
+  Folding(RealType real, const program::Reduction& reduction, std::span<const Argument> arguments,
+          const Shape& domain)
+      : fold(real, reduction.fold, arguments, domain),
+        isSingle_(real == RealType::Float),
+        native_(*reduction.native) {
+    for (const std::uint8_t operand : reduction.combineOperands) {
+      combine_.push_back(fold.list()[operand]);
+    }
+    combine_.resize(reduction.combine.parameters.size());
+  }
+
+  void run(const Extents& block) {
+    const native::ReduceCall call{fold.call(), {combine_, {1, 1, 1, 1}}, block};
+    (isSingle_ ? native_.single : native_.reference)(call);
+  }
+  void storeIdentity() {
+    const native::ReduceCall call{fold.call(), {combine_, {1, 1, 1, 1}}, {1, 1, 1, 1}};
+    (isSingle_ ? native_.singleIdentity : native_.referenceIdentity)(call);
+  }
+
+ private:
+  bool isSingle_;
+  const program::NativeReduction& native_;
+  std::vector<Operand> combine_;
+};
+
+/// Results may have fewer dimensions than blocks: those of extent 1 are left out. The others keep their order.
+Operand resultOperand(const StreamRegion& region, const Extents& blocks) {
+  Operand operand = operandOf(region);
+  const Operand own = operand;
+  std::size_t next = 0;
+  for (std::size_t d = 0; d < blocks.size(); ++d) {
+    if (blocks[d] == 1) continue;
+    while (own.extent[next] == 1) ++next;
+    operand.extent[d] = own.extent[next];
+    operand.stride[d] = own.stride[next++];
+  }
+  operand.components = nativeStream(region).components.arrays();
+  return operand;
+}
+
+}  // namespace
+
+void NativeDevice::run(const Kernel& kernel, std::span<const Argument> arguments) {
+  const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
+  Operands operands(real_, kernel, arguments, domain);
+  (real_ == RealType::Float ? kernel.native->single : kernel.native->reference)(operands.call());
+  operands.settlePushed();
+}
+
+void NativeDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
+                          const Shape& domain, std::span<void* const> results) {
+  Folding folding(real_, reduction, arguments, domain);
+  std::vector<std::pair<const program::Element*, const Components*>> values;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const Parameter& parameter = reduction.fold.parameters[i];
+    if (parameter.role != Role::Accumulator) continue;
+    const Components& value = folding.fold.value(*parameter.element);
+    folding.fold.list()[i] = {.components = value.arrays(), .stride = {1, 1, 1, 1}};
+    values.emplace_back(parameter.element, &value);
+  }
+  if (domain.size() == 0) {
+    folding.storeIdentity();
+  } else {
+    folding.run(fastestFirst(domain));
+  }
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    values[k].second->read(0, 1, static_cast<std::byte*>(results[k]), values[k].first->size);
+  }
+}
+
+void NativeDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
+                          const Shape& domain, const Shape& blocks) {
+  Folding folding(real_, reduction, arguments, domain);
+  const Extents counts = fastestFirst(blocks);
+  std::vector<std::size_t> results;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (reduction.fold.parameters[i].role != Role::Accumulator) continue;
+    folding.fold.list()[i] = resultOperand(arguments[i].region, counts);
+    results.push_back(i);
+  }
+  if (domain.size() != 0) {
+    Extents block = fastestFirst(domain);
+    for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
+    folding.run(block);
+    return;
+  }
+  // no element at all: the identity in each of the results
+  std::vector<Operand> wholes;
+  for (const std::size_t i : results) wholes.push_back(folding.fold.list()[i]);
+  for (std::int64_t n = 0; n < blocks.size(); ++n) {
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      Operand one = wholes[k];
+      std::int64_t rest = n;
+      for (std::size_t d = 0; d < counts.size(); ++d) {
+        one.first += rest % counts[d] * one.stride[d];
+        rest /= counts[d];
+      }
+      folding.fold.list()[results[k]] = one;
+    }
+    folding.storeIdentity();
+  }
+}
+
+}  // namespace sk

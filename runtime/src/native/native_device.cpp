@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "native/native_device.hpp"
+
+#include <limits>
+
+#include "check_argument.hpp"
+#include "native/native_stream.hpp"
+
+namespace sk {
+
+namespace {
+
+[[noreturn]] void failWithoutCode(const program::Kernel& kernel) {
+  fail(kernel, "it has no native code; compile its .sk file with skc --target=fragment,native");
+}
+
+}  // namespace
+
+NativeDevice::NativeDevice(RealType real)
+    : real_(real), name_(real == RealType::Float ? "native" : "reference (native, double)") {
+  constexpr std::int32_t unlimited = std::numeric_limits<std::int32_t>::max();
+  limits = {.textureSize = unlimited,
+            .textureLayers = 1,
+            .drawBuffers = unlimited,
+            .textureUnits = unlimited,
+            .uniformComponents = unlimited};
+}
+
+NativeDevice::~NativeDevice() {
+  while (firstStream() != nullptr) {
+    auto& stream = static_cast<NativeStream&>(*firstStream());
+    stream.leave();
+    stream.components = {};
+  }
+}
+
+void NativeDevice::checkProgram(const program::Kernel& kernel) const {
+  if (kernel.native == nullptr) {
+    failWithoutCode(kernel);
+  }
+}
+
+void NativeDevice::checkProgram(const program::Reduction& reduction) const {
+  if (reduction.native == nullptr) {
+    failWithoutCode(reduction.fold);
+  }
+}
+
+std::unique_ptr<StreamState> NativeDevice::createStream(const program::Element& element, const Shape& shape) {
+  return std::make_unique<NativeStream>(*this, element, shape);
+}
+
+}  // namespace sk

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+//
+// A device without GL: streams in host memory, kernels as the C++ that skc wrote into the application. With
+// doubles for floats, it is the reference that other devices are measured against.
+#pragma once
+
+#include "device_state.hpp"
+#include "native/components.hpp"
+
+namespace sk {
+
+class NativeDevice final : public DeviceState {
+ public:
+  explicit NativeDevice(RealType real);
+  ~NativeDevice() override;
+
+  RealType real() const { return real_; }
+
+  const std::string& name() const override { return name_; }
+  std::string_view profileName() const override { return "native"; }
+  bool isSoftware() const override { return true; }
+  bool combinesScattered() const override { return true; }
+  void checkProgram(const program::Kernel& kernel) const override;
+  void checkProgram(const program::Reduction& reduction) const override;
+  std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;
+  void finish() override {}
+  void release() override {}
+  void run(const program::Kernel& kernel, std::span<const Argument> arguments) override;
+  void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
+              std::span<void* const> results) override;
+  void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
+              const Shape& blocks) override;
+
+ private:
+  RealType real_;
+  std::string name_;
+};
+
+}  // namespace sk

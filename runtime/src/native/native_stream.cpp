@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "native/native_stream.hpp"
+
+#include <algorithm>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "native/native_device.hpp"
+#include "sk/error.hpp"
+
+namespace sk {
+
+namespace {
+
+/// visit(first element in the stream, number in the region, length) for every run of neighbours.
+template <class Visit>
+void forEachRun(const StreamRegion& region, Visit&& visit) {
+  const native::Operand place = operandOf(region);
+  const native::Extents& extent = place.extent;
+  std::int64_t number = 0;
+  for (std::int64_t w = 0; w < extent[3]; ++w) {
+    for (std::int64_t z = 0; z < extent[2]; ++z) {
+      for (std::int64_t y = 0; y < extent[1]; ++y, number += extent[0]) {
+        visit(place.first + y * place.stride[1] + z * place.stride[2] + w * place.stride[3], number,
+              extent[0]);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+native::Operand operandOf(const StreamRegion& region) {
+  native::Operand operand;
+  const Shape& whole = region.stream->shape;
+  std::int64_t stride = 1;
+  for (int d = whole.rank() - 1; d >= 0; --d) {
+    const auto fromFastest = static_cast<std::size_t>(whole.rank() - 1 - d);
+    operand.extent[fromFastest] = region.shape[d];
+    operand.stride[fromFastest] = stride;
+    operand.first += region.begin[d] * stride;
+    stride *= whole[d];
+  }
+  return operand;
+}
+
+NativeStream::NativeStream(NativeDevice& on, const program::Element& type, const Shape& extents)
+    : StreamState(on, type, extents) {
+  try {
+    components = Components(type, on.real(), extents.size());
+  } catch (const std::bad_alloc&) {
+    throw Error(fmt::format("'{}' has no memory for a stream of {} of shape {}", on.name(), type.name,
+                            toString(extents)));
+  }
+}
+
+NativeDevice& NativeStream::owner() const { return static_cast<NativeDevice&>(*device); }
+
+void NativeStream::write(const StreamRegion& region, const std::byte* elements) {
+  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
+    components.write(first, count, elements + static_cast<std::size_t>(number) * element->size,
+                     element->size);
+  });
+}
+
+void NativeStream::read(const StreamRegion& region, std::byte* elements) {
+  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
+    components.read(first, count, elements + static_cast<std::size_t>(number) * element->size, element->size);
+  });
+}
+
+void NativeStream::readReals(const StreamRegion& region, double* values) {
+  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
+    components.readReals(first, count,
+                         values + static_cast<std::size_t>(number) * components.arrays().size());
+  });
+}
+
+StreamTexture NativeStream::texture(int) {
+  throw Error(
+      fmt::format("texture: '{}' has no textures; read() the stream, or use a GL device", owner().name()));
+}
+
+void NativeStream::become(const native::Pushed& pushed) {
+  components = Components(*element, owner().real(), pushed);
+  const std::size_t bytes = componentsOf(*element, owner().real())[0].storedBytes;
+  shape = Shape(static_cast<std::int64_t>(pushed[0].size() / bytes));
+}
+
+}  // namespace sk

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// A stream in host memory.
+#pragma once
+
+#include "native/components.hpp"
+#include "sk/native/call.hpp"
+#include "stream_state.hpp"
+
+namespace sk {
+
+class NativeDevice;
+
+class NativeStream final : public StreamState {
+ public:
+  /// Throws sk::Error where there is no room.
+  NativeStream(NativeDevice& device, const program::Element& element, const Shape& shape);
+
+  void settle() override {}
+  void write(const StreamRegion& region, const std::byte* elements) override;
+  void read(const StreamRegion& region, std::byte* elements) override;
+  void readReals(const StreamRegion& region, double* values) override;
+  StreamTexture texture(int plane) override;
+
+  /// Takes what a kernel has pushed for its elements.
+  void become(const native::Pushed& pushed);
+
+  Components components;
+
+ private:
+  NativeDevice& owner() const;
+};
+
+/// The stream of an argument of a call on a native device.
+inline NativeStream& nativeStream(const StreamRegion& region) {
+  return static_cast<NativeStream&>(*region.stream);
+}
+
+/// An operand's extent, stride and first element, from those of a region. Missing dimensions have extent 1.
+native::Operand operandOf(const StreamRegion& region);
+
+}  // namespace sk
