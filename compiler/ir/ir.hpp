@@ -26,7 +26,8 @@
 //     statements (Push, Scatter), or handed to another function; an Element may be read by VarRef too.
 //   * Each kernel has an entry function, with one variable per kernel parameter, in order. After
 //     `specialize-gathers`, no function but an entry has Gather or Sink parameters, and every StreamRef
-//     names a kernel parameter; the functions that a kernel reaches are then its own.
+//     names a kernel parameter; the functions that a kernel reaches are then its own, and
+//     what is in those that no kernel reaches any more does not count.
 //   * A reduce has inputs and accumulators. Partial results are combined by a reduce whose inputs have the
 //     types of its accumulators, and which does not ask where an element is.
 //   * A kernel that some target cannot run in one pass has plans after `split-kernels`. The kernels

@@ -358,6 +358,8 @@ std::string validate(const Module& module, Stage stage) {
     if (stage == Stage::Specialized) owner = owners(module);
     for (std::size_t i = 0; i < module.functions.size(); ++i) {
       const Function& function = module.functions[i];
+      // what folding has cut off may name streams, and nobody knows of which kernel
+      if (stage == Stage::Specialized && owner[i] == nullptr) continue;
       within(fmt::format("function @{} '{}'", i, function.name),
              [&] { FunctionChecker(module, stage, function, owner[i]).check(); });
     }

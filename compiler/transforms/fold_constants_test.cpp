@@ -129,5 +129,21 @@ TEST_CASE("a loop that never runs goes; one that runs once by `do` stays") {
         }).find("do {") != std::string::npos);
 }
 
+TEST_CASE("a function that only a branch calls which is gone may stay, with its streams") {
+  Module module = testModule();
+  Function push;
+  push.name = "push_b";
+  const VarId value = addVariable(push, "x", floatType, VarRole::In);
+  KernelMaker k(module, "f");
+  const VarId x = k.input("x", floatType), b = k.variableOutput("b", floatType);
+  Block pushes = block(ir::push({StreamRef::Space::KernelParameter, b}, varRef(push, value)));
+  const FunctionId helper = addFunction(module, std::move(push), std::move(pushes));
+  k.finish(block(ifStmt(literal(false), block(callStmt(helper, exprs(k.ref(x)))))));
+  DiagnosticLog log;
+  REQUIRE(validate(module, Stage::Specialized) == "");
+  foldConstants(module, log);
+  CHECK(validate(module, Stage::Specialized) == "");
+}
+
 }  // namespace
 }  // namespace skc
