@@ -135,8 +135,8 @@ std::vector<sk::assemble::ReduceVariant> drawnVariants(const Profile& profile,
   return parts;
 }
 
-/// Every program that folds a 1024 x 1024 stream to a value, once.
-std::string reductionListing(const Profile& profile, const sk::program::Reduction& reduction) {
+/// Every program that folds a 1024 x 1024 stream to a value, once; of one form.
+std::string formListing(const Profile& profile, const sk::program::Reduction& reduction) {
   sk::assemble::Placement input;
   input.extent = {1024, 1024, 1, 1};
   std::string text;
@@ -153,6 +153,14 @@ std::string reductionListing(const Profile& profile, const sk::program::Reductio
     }
   }
   return text;
+}
+
+/// The plain form, and the one that calls take for sums of floats.
+std::string reductionListing(const Profile& profile, const sk::program::Reduction& reduction) {
+  const std::string plain = formListing(profile, reduction);
+  return reduction.compensated == nullptr
+             ? plain
+             : plain + "\n" + formListing(profile, reduction.compensated->reduction);
 }
 
 /// The programs of the passes that a kernel takes within the profile's limits.

@@ -300,6 +300,14 @@ std::string nativeListing(const Module& module, const Program& program) {
     if (kernel.reduction && !isUnit(*kernel.reduction->combine)) {
       text += KernelWriter(module, module.kernels[*kernel.reduction->combine], names[i] + "Combine").write();
     }
+    if (kernel.reduction && kernel.reduction->compensated) {
+      const Compensated& second = *kernel.reduction->compensated;
+      const Kernel& fold = module.kernels[second.fold];
+      const CompensatedNames made(names[i]);
+      text += KernelWriter(module, fold, made.fold).write();
+      text += KernelWriter(module, module.kernels[*fold.reduction->combine], made.combine).write();
+      text += KernelWriter(module, module.kernels[second.finish], made.finish).write();
+    }
   }
   return text + "}  // namespace\n}  // namespace sk::generated\n";
 }

@@ -22,6 +22,13 @@
 
 namespace skc::emit {
 
+/// What the descriptors and the native code of the kernels of a reduce's second form are called.
+struct CompensatedNames {
+  explicit CompensatedNames(const std::string& reduce)
+      : fold(reduce + "CompensatedFold"), combine(reduce + "CompensatedCombine"), finish(reduce + "Finish") {}
+  std::string fold, combine, finish;
+};
+
 /// The definitions of a whole module, in a namespace of their own. Kernels bear the names of their
 /// descriptors (descriptorNames); what combines the partial results of a reduce and is no kernel of the module, the
 /// reduce's with "Combine".

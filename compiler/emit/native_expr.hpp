@@ -23,7 +23,7 @@ struct NativeContext {
   const ir::Kernel& kernel;
   const std::map<ir::FunctionId, std::string>&
       functions;  ///< their names, each used once: overloads for float
-      ///< and double are alike in the reference
+  ///< and double are alike in the reference
 };
 
 /// "sk_real", "native::Vec<native::Int, 2>", "Hit<sk_real>".

@@ -32,6 +32,8 @@ float uintBitsToFloat(uint u) { return std::bit_cast<float>(u); }
 int floatBitsToInt(float f) { return std::bit_cast<int>(f); }
 uint floatBitsToUint(float f) { return std::bit_cast<uint>(f); }
 float mix(float a, float b, bool c) { return c ? b : a; }
+#define sk_precise
+#define sk_keep(x) (x)
 )";
 
 constexpr std::string_view after = R"(
@@ -51,8 +53,16 @@ void check(float x, int e) {
   float whole = 0;
   same("modf", x, 0, sk_modf_fraction(x), std::modf(x, &whole));
 }
+void checkSum(float x, float y) {   // a double holds the sum of floats whose exponents are near
+  const float sum = sk_rounded_sum(x, y);
+  same("sum", x, y, sum, x + y);
+  same("error of a sum", x, y, sk_sum_error(x, y), std::isfinite(sum) ? float((double(x) + y) - sum) : NAN);
+}
 int main() {
   std::mt19937 random(7);
+  std::uniform_real_distribution<float> number(-100000, 100000);
+  for (int i = 0; i < 100000; ++i) checkSum(number(random), number(random));
+  for (float x : {0.0f, 3e38f, INFINITY, -INFINITY, NAN}) checkSum(x, 3e38f);
   for (int i = 0; i < 2000000; ++i) check(uintBitsToFloat(random()), int(random() % 700) - 350);
   const float special[] = {0.0f, -0.0f, INFINITY, -INFINITY, NAN, 1.0f, -1.0f, 0.5f, 1e-45f, 1.17549421e-38f, 3.4028235e38f};
   for (float x : special) {
@@ -75,7 +85,7 @@ int main() {
 TEST_CASE("polyfills compute what C++ computes") {
   Polyfills polyfills;
   for (const IntrinsicRow& entry : intrinsicRows()) polyfills.intrinsic(entry.id, floatType);
-  REQUIRE(polyfills.functions().size() == 6);
+  REQUIRE(polyfills.functions().size() == 8);
   std::string text(before);
   for (const std::string& function : polyfills.functions()) text += function + "\n";
   const ToolFolder folder("polyfills");

@@ -28,6 +28,7 @@ struct Program::Storage {
   std::deque<std::vector<sk::program::Parameter>> parameters;
   std::vector<std::string_view> sources;
   std::deque<sk::program::Reduction> reductions;
+  std::deque<sk::program::CompensatedReduction> compensated;
   std::deque<std::vector<std::uint8_t>> combineOperands;
   std::deque<std::vector<sk::program::Layer>> layers;
   std::deque<std::vector<const sk::program::Element*>> temporaries;
@@ -103,7 +104,8 @@ class Builder {
             .usesIndex = uses.domainIndex,
             .usesExtent = uses.domainExtent,
             .usesLoops = uses.loops,
-            .usesDoubles = usesDoubles(module_, kernel)};
+            .usesDoubles = usesDoubles(module_, kernel),
+            .usesExactSums = usesExactSums(module_, kernel)};
   }
 
   sk::program::Reduction reduction(const Kernel& kernel, const sk::program::Kernel& fold) {
@@ -115,7 +117,18 @@ class Builder {
     return {.fold = fold,
             .combine = &combine == &kernel ? fold : describe(combine),
             .combineOperands = operands,
-            .seeded = kernel.reduction->seeded};
+            .seeded = kernel.reduction->seeded,
+            .compensated = compensated(*kernel.reduction)};
+  }
+
+  /// Null where there is no second form.
+  const sk::program::CompensatedReduction* compensated(const Reduction& plain) {
+    if (!plain.compensated) return nullptr;
+    const Kernel& fold = module_.kernels[plain.compensated->fold];
+    std::vector<std::uint8_t>& sums = storage_.combineOperands.emplace_back();
+    for (const VarId sum : plain.compensated->sums) sums.push_back(static_cast<std::uint8_t>(sum));
+    return &storage_.compensated.emplace_back(sk::program::CompensatedReduction{
+        reduction(fold, describe(fold)), describe(module_.kernels[plain.compensated->finish]), sums});
   }
 
   // ---- plans ------------------------------------------------------------------------------------

@@ -85,35 +85,67 @@ class SourceWriter {
   void descriptors(std::size_t unit) {
     if (isWritten_[unit]) return;
     isWritten_[unit] = true;
-    const sk::program::Kernel& kernel = program_.units()[unit].kernel;
-    const std::string& name = names_[unit];
     const Kernel& declared = kernelOf(unit);
-    kernelParts(kernel, declared, name);
-    if (!declared.plans.empty()) plans(kernel, declared, name);
-    const sk::program::Reduction* reduction = program_.units()[unit].reduction;
-    const std::string native = reduction == nullptr && withNative_ ? name + "Native" : "";
-    if (!native.empty()) text_ += nativeKernelDescriptor(name);
-    text_ += fmt::format("constexpr Kernel {}Kernel = {};\n\n", name, kernelText(kernel, name, 4, native));
-    if (reduction == nullptr) return;
-    const std::string combine = combination(unit, *reduction);
+    kernel(program_.units()[unit].kernel, declared, names_[unit]);
+    if (const sk::program::Reduction* made = program_.units()[unit].reduction) {
+      const std::string combine = combination(unit, *made);
+      if (made->compensated != nullptr) compensated(*made->compensated, declared, names_[unit]);
+      reduction(*made, declared, names_[unit], combine);
+    }
+  }
+
+  /// The constant NAMEKernel, and what it refers to.
+  void kernel(const sk::program::Kernel& made, const Kernel& declared, const std::string& name) {
+    kernelParts(made, declared, name);
+    if (!declared.plans.empty()) plans(made, declared, name);
+    const bool hasNative = withNative_ && !declared.reduction;
+    if (hasNative) text_ += nativeKernelDescriptor(name);
+    text_ += fmt::format("constexpr Kernel {}Kernel = {};\n\n", name,
+                         kernelText(made, name, 4, hasNative ? name + "Native" : ""));
+  }
+
+  /// The constant NAMEReduction. `combine` is the name of what combines.
+  void reduction(const sk::program::Reduction& made, const Kernel& declared, const std::string& name,
+                 const std::string& combine) {
     const Kernel& combining = module_.kernels[*declared.reduction->combine];
     const bool hasOperands =
         std::any_of(combining.params.begin(), combining.params.end(), [](const KernelParam& param) {
           return param.role != ParamRole::Input && param.role != ParamRole::Accumulator;
         });
     std::vector<std::string> operands;
-    for (std::uint8_t operand : reduction->combineOperands) operands.push_back(std::to_string(operand));
+    for (std::uint8_t operand : made.combineOperands) operands.push_back(std::to_string(operand));
     if (hasOperands) list("std::uint8_t", name + "Operands", operands);
     if (withNative_) text_ += nativeReductionDescriptor(name, combine, declared);
-    text_ += fmt::format(
-        "constexpr Reduction {0}Reduction = {{\n    .fold = {0}Kernel,\n    .combine = {1}Kernel,\n"
-        "    .combineOperands = {2},\n    .seeded = {3}{4}}};\n\n",
-        name, combine, hasOperands ? name + "Operands" : "{}", reduction->seeded,
-        withNative_ ? fmt::format(",\n    .native = &{}Native", name) : "");
+    std::vector<std::string> members = {
+        fmt::format(".fold = {}Kernel", name), fmt::format(".combine = {}Kernel", combine),
+        fmt::format(".combineOperands = {}", hasOperands ? name + "Operands" : "{}"),
+        fmt::format(".seeded = {}", made.seeded)};
+    if (withNative_) members.push_back(fmt::format(".native = &{}Native", name));
+    if (made.compensated != nullptr) members.push_back(fmt::format(".compensated = &{}Compensated", name));
+    text_ +=
+        fmt::format("constexpr Reduction {}Reduction = {{\n    {}}};\n\n", name, join(members, ",\n    "));
+  }
+
+  /// The constant NAMECompensated.
+  void compensated(const sk::program::CompensatedReduction& made, const Kernel& declared,
+                   const std::string& name) {
+    const Compensated& second = *declared.reduction->compensated;
+    const Kernel& fold = module_.kernels[second.fold];
+    const CompensatedNames names(name);
+    kernel(made.reduction.combine, module_.kernels[*fold.reduction->combine], names.combine);
+    kernel(made.reduction.fold, fold, names.fold);
+    reduction(made.reduction, fold, names.fold, names.combine);
+    kernel(made.finish, module_.kernels[second.finish], names.finish);
+    std::vector<std::string> sums;
+    for (const std::uint8_t sum : made.sums) sums.push_back(std::to_string(sum));
+    list("std::uint8_t", name + "Sums", sums);
+    text_ +=
+        fmt::format("constexpr CompensatedReduction {}Compensated = {{{}Reduction, {}Kernel, {}Sums}};\n\n",
+                    name, names.fold, names.finish, name);
   }
 
   /// The descriptor of what combines, which this writes unless it is there: "sum", "squaresCombine".
-  std::string combination(std::size_t unit, const sk::program::Reduction& reduction) {
+  std::string combination(std::size_t unit, const sk::program::Reduction& made) {
     const KernelId id = *kernelOf(unit).reduction->combine;
     for (std::size_t other = 0; other < names_.size(); ++other) {
       if (program_.units()[other].id != id) continue;
@@ -121,8 +153,7 @@ class SourceWriter {
       return names_[other];
     }
     const std::string name = names_[unit] + "Combine";
-    kernelParts(reduction.combine, module_.kernels[id], name);
-    text_ += fmt::format("constexpr Kernel {}Kernel = {};\n\n", name, kernelText(reduction.combine, name, 4));
+    kernel(made.combine, module_.kernels[id], name);
     return name;
   }
 
@@ -225,6 +256,7 @@ class SourceWriter {
     if (kernel.usesExtent) members.emplace_back(".usesExtent = true");
     if (kernel.usesLoops) members.emplace_back(".usesLoops = true");
     if (kernel.usesDoubles) members.emplace_back(".usesDoubles = true");
+    if (kernel.usesExactSums) members.emplace_back(".usesExactSums = true");
     if (kernel.planCount > 0) {
       members.push_back(fmt::format(".plans = {}Plans", name));
       members.push_back(fmt::format(".planCount = {}", kernel.planCount));
@@ -332,7 +364,7 @@ class SourceWriter {
       case Form::Run: run(kernel, unit); break;
       case Form::ReduceToValue: reduceToValue(kernel, unit); break;
       case Form::ReduceToStream:
-        text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {});\n", names_[unit],
+        text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {}, this->options);\n", names_[unit],
                              arguments(kernel, form));
     }
     text_ += "}\n";
@@ -379,8 +411,8 @@ class SourceWriter {
     const std::string results = localName(kernel, "results");
     const std::string head = fmt::format("  void* const {}[] = {{", results);
     text_ += wrapLine(head + join(places, ", ") + "};", 100, head.size()) + "\n";
-    text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {}, {});\n  return {};\n", names_[unit],
-                         list, results, value);
+    text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {}, {}, this->options);\n  return {};\n",
+                         names_[unit], list, results, value);
   }
 
   /// A local beside the parameters.

@@ -54,7 +54,7 @@ inline constexpr DiffuseKernel diffuse{};
 }  // namespace heat
 
 /// reduce void sum(float x<>, reduce float total<> = 0)
-struct SumReduce {
+struct SumReduce : sk::WithOptions<SumReduce> {
   /// Folds all of x to one value.
   float operator()(const sk::ElementIn<float>& x) const;
   /// Folds each block of x to one element of total, whose extents divide those of x.
@@ -114,7 +114,7 @@ Hit NearestReduce::operator()(const sk::ElementIn<Hit>& h) const {
   Hit value;
   const sk::Argument arguments[] = {h.argument(), {}};
   void* const results[] = {&value};
-  sk::reduce(sk::program::nearestReduction, arguments, results);
+  sk::reduce(sk::program::nearestReduction, arguments, results, this->options);
   return value;
 }
 )"));

@@ -217,20 +217,29 @@ struct KernelParam {
   ExprPtr neededIf = nullptr;
 };
 
+/// A second form of a reduce that sums floats, set by compensate-sums: the reduce `fold` has one more accumulator for
+/// each of `sums`, after all others and in that order, for what its sum has lost. `finish` is a kernel that
+/// takes each sum and what it has lost, one pair after the other, and gives the results.
+struct Compensated {
+  KernelId fold, finish;
+  std::vector<VarId> sums;
+};
+
 /// How partial results of a reduce combine; set by derive-combine (frontend: where the user wrote
 /// an overload that folds accumulators).
 struct Reduction {
-  std::optional<KernelId> combine = {};      ///< a reduce of accumulators; may be the very kernel
+  std::optional<KernelId> combine = {};  ///< a reduce of accumulators; may be the very kernel
   std::vector<std::uint32_t> operands = {};  ///< one a parameter of it: see sk::program::Reduction
-  bool seeded = false;                       ///< likewise
+  bool seeded = false;  ///< likewise
+  std::optional<Compensated> compensated = {};
 };
 
 // ---- plans ------------------------------------------------------------------------------------
 
 /// What a target can read and write in one pass.
 struct Limits {
-  std::uint32_t drawBuffers = 0;    ///< planes written
-  std::uint32_t textureUnits = 0;   ///< planes read
+  std::uint32_t drawBuffers = 0;  ///< planes written
+  std::uint32_t textureUnits = 0;  ///< planes read
   bool operator==(const Limits&) const = default;
 };
 
@@ -238,8 +247,8 @@ struct Limits {
 struct Temporary {
   std::string name;
   Type type;
-  double computeCost;    ///< of computing it once, see split/cost.hpp
-  std::uint32_t readers; ///< passes that read it
+  double computeCost;  ///< of computing it once, see split/cost.hpp
+  std::uint32_t readers;  ///< passes that read it
 };
 
 /// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.
@@ -248,8 +257,8 @@ struct PassOperand {
   std::uint32_t index;
 };
 struct Pass {
-  KernelId kernel;                     ///< Kernel::pass is set there
-  std::vector<PassOperand> operands;   ///< one a parameter
+  KernelId kernel;  ///< Kernel::pass is set there
+  std::vector<PassOperand> operands;  ///< one a parameter
   double cost;
 };
 
@@ -266,32 +275,32 @@ struct Bundle {
 
 /// How a kernel runs that needs more than a target has: in these passes, one after the other.
 struct Plan {
-  Limits limits;                       ///< what its passes need
+  Limits limits;  ///< what its passes need
   std::vector<Temporary> temporaries;
   std::vector<Bundle> bundles;
   std::vector<Pass> passes;
   double cost = 0;
-  double costWithoutTemporaries = 0;   ///< were every value computed wherever it is needed
+  double costWithoutTemporaries = 0;  ///< were every value computed wherever it is needed
 };
 
 /// The kernel is a pass of another's plan.
 struct PassOf {
   KernelId whole;
-  std::uint32_t number, count;         ///< from 1
+  std::uint32_t number, count;  ///< from 1
 };
 
 struct Kernel {
-  std::string name;                    ///< without namespaces
-  std::vector<std::string> scope;      ///< enclosing namespaces, outermost first
-  std::string signature;               ///< the declaration as written, on one line
-  FunctionId entry;                    ///< void; variables 0..n-1 are the parameters:
-                                       ///< Uniform, Iterator and Spec In, Input Element,
-                                       ///< Output and Accumulator InOut, Gather Gather,
-                                       ///< VariableOutput and Scatter Sink
+  std::string name;  ///< without namespaces
+  std::vector<std::string> scope;  ///< enclosing namespaces, outermost first
+  std::string signature;  ///< the declaration as written, on one line
+  FunctionId entry;  ///< void; variables 0..n-1 are the parameters:
+      ///< Uniform, Iterator and Spec In, Input Element,
+      ///< Output and Accumulator InOut, Gather Gather,
+      ///< VariableOutput and Scatter Sink
   std::vector<KernelParam> params;
   std::optional<Reduction> reduction;  ///< set for `reduce`
-  bool isCombination = false;          ///< made to combine partial results: C++ cannot call it
-  std::vector<Plan> plans;             ///< for targets that it is too large for, the most generous first
+  bool isCombination = false;  ///< made to combine partial results: C++ cannot call it
+  std::vector<Plan> plans;  ///< for targets that it is too large for, the most generous first
   std::optional<PassOf> pass;
   Loc loc;
 };
@@ -306,15 +315,15 @@ struct DeclaredExtent {
 /// `stream T name<extents>`: no kernel knows it.
 struct DeclaredStream {
   std::string name;
-  std::vector<std::string> scope;      ///< enclosing namespaces, outermost first
-  Type type;                           ///< of one element
-  std::vector<DeclaredExtent> extents; ///< slowest first
+  std::vector<std::string> scope;  ///< enclosing namespaces, outermost first
+  Type type;  ///< of one element
+  std::vector<DeclaredExtent> extents;  ///< slowest first
   Loc loc;
 };
 
 struct Module {
-  std::string file;                    ///< path of the main file as given
-  std::vector<std::string> sources;    ///< Loc::file indexes this
+  std::string file;  ///< path of the main file as given
+  std::vector<std::string> sources;  ///< Loc::file indexes this
   std::vector<Struct> structs;
   std::vector<Array> arrays;
   std::vector<Constant> constants;

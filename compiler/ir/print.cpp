@@ -147,6 +147,11 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
     if (combine.name == kernel.name && &combine != &kernel) text += fmt::format(" @{}", combine.entry);
   }
   if (kernel.reduction && kernel.reduction->seeded) text += ", seeded";
+  if (kernel.reduction && kernel.reduction->compensated) {
+    const Compensated& second = *kernel.reduction->compensated;
+    text += fmt::format(", compensated by @{}, @{}", module.kernels[second.fold].entry,
+                        module.kernels[second.finish].entry);
+  }
   if (kernel.pass) text += fmt::format(", pass {} of {}", kernel.pass->number, kernel.pass->count);
   text += "\n";
   for (std::size_t i = 0; i < kernel.params.size(); ++i) {

@@ -94,4 +94,17 @@ bool usesDoubles(const Module& module, const Kernel& kernel) {
   return false;
 }
 
+bool usesExactSums(const Module& module, const Kernel& kernel) {
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    bool uses = false;
+    walkExprs(module.functions[id].body, [&](const Expr& expr) {
+      const auto* n = std::get_if<IntrinsicCall>(&expr.node);
+      uses = uses ||
+             (n != nullptr && (n->intrinsic == Intrinsic::RoundedSum || n->intrinsic == Intrinsic::SumError));
+    });
+    if (uses) return true;
+  }
+  return false;
+}
+
 }  // namespace skc::ir

@@ -22,6 +22,9 @@ bool holdsDouble(const Module& module, Type type);
 /// Whether a kernel's parameters or functions have anything to do with doubles.
 bool usesDoubles(const Module& module, const Kernel& kernel);
 
+/// Whether a kernel computes what additions of floats lose.
+bool usesExactSums(const Module& module, const Kernel& kernel);
+
 /// Whether a kernel asks where an element is, or for the shape of an input, which a partial result has not:
 /// the place of the first such expression or iterator. After specialize-gathers.
 std::optional<Loc> usesPlace(const Module& module, const Kernel& kernel);

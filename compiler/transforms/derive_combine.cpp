@@ -9,6 +9,7 @@
 #include "ir/build.hpp"
 #include "ir/print.hpp"
 #include "ir/reach.hpp"
+#include "transforms/combine_part.hpp"
 #include "transforms/fold_pattern.hpp"
 
 namespace skc {
@@ -113,42 +114,7 @@ ExprPtr identityOf(const Module& module, const FoldPattern& pattern, MemberPath 
   return construct(type, std::move(fields));
 }
 
-// ---- combining functions ----------------------------------------------------------------------
-
-/// The part's member or components of a variable.
-ExprPtr access(const Module& module, const Function& function, VarId var, const FoldPart& part) {
-  ExprPtr expr = varRef(function, var, part.loc);
-  for (std::uint32_t field : part.members) expr = member(module, std::move(expr), field, part.loc);
-  if (part.isWhole()) return expr;
-  std::string components;
-  for (unsigned i = 0; i < part.type.width; ++i) {
-    if ((part.components >> i & 1U) != 0) components += "xyzw"[i];
-  }
-  return swizzle(std::move(expr), components, part.loc);
-}
-
-/// `partial` and `total`: variables of the combining function.
-Stmt combinePart(const Module& module, const Function& function, const FoldPart& part, VarId partial,
-                 VarId total) {
-  const auto as = [&](Scalar scalar, ExprPtr value) {
-    return value->type.isMatrix() ? std::move(value) : convert(scalar, std::move(value), part.loc);
-  };
-  const auto read = [&](VarId var) {   // operators know only carriers
-    return as(carrierOf(part.type.scalar), access(module, function, var, part));
-  };
-  ExprPtr place = access(module, function, total, part);
-  if (const auto* n = std::get_if<Intrinsic>(&part.op)) {
-    ExprPtr value = intrinsic(*n, exprs(read(total), read(partial)), part.loc);
-    return assign(std::move(place), as(part.type.scalar, std::move(value)), part.loc);
-  }
-  const BinaryOp op = std::get<BinaryOp>(part.op);
-  const bool isLogical = op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr;
-  if (!isLogical && !part.type.isNarrow() && !part.type.isMatrix()) {
-    return assign(std::move(place), op, access(module, function, partial, part), part.loc);
-  }
-  ExprPtr value = binary(op, read(total), read(partial), part.loc);
-  return assign(std::move(place), as(part.type.scalar, std::move(value)), part.loc);
-}
+// ---- combining kernels ------------------------------------------------------------------------
 
 /// Adds a parameter to a kernel and to its entry function.
 void addParam(Kernel& kernel, Function& entry, std::string name, const KernelParam& like, ParamRole role) {

@@ -12,6 +12,7 @@
 #include "split/split_kernels.hpp"
 #include "transforms/assign_rows.hpp"
 #include "transforms/bound_pushes.hpp"
+#include "transforms/compensate_sums.hpp"
 #include "transforms/derive_combine.hpp"
 #include "transforms/fold_constants.hpp"
 #include "transforms/forward_continues.hpp"
@@ -41,6 +42,7 @@ void plain(ir::Module& module, Diagnostics& diagnostics, const TransformOptions&
 // Bounding the pushes after folding, which makes loops of a known number of rounds and takes out what
 // never runs.
 // Deriving before removing, because it makes functions that use structs.
+// Compensating after deriving, which finds identities and how the rest combines.
 // Assigning rows at any time before splitting, which follows variables.
 // Forwarding after bounding and deriving, which know what the author wrote.
 // Removing after these, because all of them leave things without use; and before splitting, so that
@@ -51,6 +53,7 @@ constexpr Transform transforms[] = {
     {"guard-streams", plain<guardStreams>},
     {"bound-pushes", plain<boundPushes>},
     {"derive-combine", plain<deriveCombine>},
+    {"compensate-sums", plain<compensateSums>},
     {"assign-rows", plain<assignRows>},
     {"forward-continues", plain<forwardContinues>},
     {"remove-unused", plain<removeUnused>},

@@ -19,8 +19,9 @@ namespace {
 
 assemble::Profile profileOf(const gl::Capabilities& capabilities, bool pairs) {
   assemble::Profile profile = *assemble::findProfile(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300");
+  profile.precise = capabilities.hasPrecise;
   if (!capabilities.hasDoubles || pairs) {
-    profile.doubles = capabilities.hasPrecise ? assemble::Doubles::PrecisePairs : assemble::Doubles::Pairs;
+    profile.doubles = assemble::Doubles::Pairs;
   }
   return profile;
 }

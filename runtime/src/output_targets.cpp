@@ -5,8 +5,8 @@
 
 #include <utility>
 
-#include "pass.hpp"
 #include "gl_stream.hpp"
+#include "pass.hpp"
 
 namespace sk {
 

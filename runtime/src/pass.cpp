@@ -6,8 +6,8 @@
 #include <array>
 
 #include "copy_kernel.hpp"
-#include "gl_device.hpp"
 #include "gl/commands.hpp"
+#include "gl_device.hpp"
 #include "texel_runs.hpp"
 
 namespace sk {

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "assemble/plans.hpp"
-#include "gl_device.hpp"
 #include "gl/texture.hpp"
+#include "gl_device.hpp"
 #include "pass.hpp"
 #include "sk/error.hpp"
 

@@ -259,16 +259,4 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   targets.putInPlace();
 }
 
-void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results) {
-  const CheckedReduction checked = checkReduction(reduction, arguments);
-  checked.device.reduce(reduction, arguments, checked.domain, results);
-}
-
-void reduce(const Reduction& reduction, std::span<const Argument> arguments) {
-  const CheckedReduction checked = checkReductionToStreams(reduction, arguments);
-  if (checked.blocks.size() != 0) {
-    checked.device.reduce(reduction, arguments, checked.domain, checked.blocks);
-  }
-}
-
 }  // namespace sk

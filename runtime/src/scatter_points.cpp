@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "assemble/point_program.hpp"
-#include "gl_device.hpp"
 #include "gl/points.hpp"
+#include "gl_device.hpp"
 #include "pass.hpp"
 #include "sk/types.hpp"
 #include "texel_runs.hpp"

@@ -11,11 +11,11 @@
 #include "assemble/sinks.hpp"
 #include "check.hpp"
 #include "gl_device.hpp"
+#include "gl_stream.hpp"
 #include "output_targets.hpp"
 #include "pass.hpp"
 #include "scatter_points.hpp"
 #include "sink_list.hpp"
-#include "gl_stream.hpp"
 
 namespace sk {
 
@@ -182,8 +182,8 @@ class SinkCall {
     const Parameter& sink = kernel_.parameters[list.sink];
     if (sink.role == Role::VariableOutput) {
       const bool isKnown = list.total.planes.empty();
-      glStream(arguments_[list.sink].region).become(list.planes.planes, list.layout,
-                                                  isKnown ? nullptr : &list.total.planes.front());
+      glStream(arguments_[list.sink].region)
+          .become(list.planes.planes, list.layout, isKnown ? nullptr : &list.total.planes.front());
       list.total.planes.clear();
       return;
     }

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "gl_device.hpp"
 #include "element_packing.hpp"
+#include "gl_device.hpp"
 #include "texel_runs.hpp"
 
 namespace sk {

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <utility>
 
+#include "gl_stream.hpp"
 #include "iterator.hpp"
 #include "layout.hpp"
-#include "gl_stream.hpp"
 
 namespace sk {
 

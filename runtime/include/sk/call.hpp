@@ -6,6 +6,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -127,6 +128,30 @@ class VariableOut {
   StreamRegion region_;
 };
 
+/// How a reduce adds floats, of which n are summed and S is the sum of their magnitudes; u = 2^-24.
+enum class Accumulate : std::uint8_t {
+  Default,  ///< Compensated, where the reduce has a sum of floats and the device room for it
+  Tree,  ///< plain additions in a tree: the error is some u S log n
+  Compensated,  ///< with what each addition loses summed beside it: u times the result and (log n)^2 u^2 S
+};
+
+/// What a call may choose, by `sum.with({.accumulate = ...})(x)`.
+struct CallOptions {
+  Accumulate accumulate = Accumulate::Default;
+};
+
+/// The callable objects of reduces: with(options) is the same with these.
+template <class Derived>
+struct WithOptions {
+  CallOptions options = {};
+
+  constexpr Derived with(const CallOptions& chosen) const {
+    Derived made;
+    made.options = chosen;
+    return made;
+  }
+};
+
 /// Runs a kernel over the domain that its outputs fix, or, where all of them are variable or scatter outputs,
 /// its inputs. Throws sk::Error naming the kernel and the
 /// parameter where the arguments do not fit.
@@ -137,12 +162,13 @@ void run(const program::Kernel& kernel, std::span<const Argument> arguments);
 /// fold; nobody looks at those of the accumulators. Where there is no element, a result is the identity;
 /// throws sk::Error where there is none, and where the arguments do not fit.
 void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
-            std::span<void* const> results);
+            std::span<void* const> results, const CallOptions& options = {});
 
 /// Folds the inputs to smaller streams, the arguments of the accumulators, all of one shape. Its extents
 /// divide those of the inputs, and each of its elements folds one block of them in row-major order. Of
 /// fewer dimensions, it is what remains of such a shape without some extents of 1; where that does not
 /// tell which, the call throws sk::Error.
-void reduce(const program::Reduction& reduction, std::span<const Argument> arguments);
+void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
+            const CallOptions& options = {});
 
 }  // namespace sk

@@ -192,9 +192,10 @@ struct Kernel {
   bool usesLoops = false;  ///< the body has a loop: main() then leaves the helper invocations that
       ///< GPUs run beside the domain, where what they read might never end it
   bool usesDoubles = false;  ///< declarations or body speak of sk_double
+  bool usesExactSums = false;  ///< the body has floats that no driver may simplify: sk_precise, sk_keep()
   const Plan* plans = nullptr;  ///< for devices that cannot run it in one pass, most generous first
   std::uint8_t planCount = 0;
-  const NativeKernel* native = nullptr;   ///< null where skc was not asked for native code
+  const NativeKernel* native = nullptr;  ///< null where skc was not asked for native code
 };
 
 /// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.
@@ -231,6 +232,8 @@ struct Plan {
   std::span<const Pass> passes;
 };
 
+struct CompensatedReduction;
+
 /// A reduction. `fold` is a kernel whose entry takes every Input by value and every Accumulator as `inout`,
 /// among its other parameters, and folds an element into the accumulators. `combine` is one of the same
 /// kind: its Inputs, as many as `fold` has Accumulators and of their types, are the accumulators of a later
@@ -244,6 +247,16 @@ struct Reduction {
       ///< (they have the same types); else it starts from the identities, which
       ///< then all exist
   const NativeReduction* native = nullptr;
+  const CompensatedReduction* compensated = nullptr;  ///< null where it sums no floats
+};
+
+/// A reduction that also sums what its sums of floats lose by rounding: it has one more accumulator for each of `sums`
+/// (parameters of the plain fold), after all parameters of that, in this order. `finish` takes, for each of them,
+/// the sum and what it has lost as Inputs, and then has the results as Outputs: it adds the two.
+struct CompensatedReduction {
+  Reduction reduction;
+  Kernel finish;
+  std::span<const std::uint8_t> sums;
 };
 
 }  // namespace sk::program

@@ -20,9 +20,8 @@ namespace sk::assemble {
 
 /// What doubles are in a program (doubles.hpp).
 enum class Doubles : std::uint8_t {
-  Native,        ///< GLSL's own, by GL_ARB_gpu_shader_fp64
-  PrecisePairs,  ///< pairs of floats, kept from being reordered by `precise` (GL_ARB_gpu_shader5)
-  Pairs,         ///< pairs of floats, kept from it by a uniform
+  Native,  ///< GLSL's own, by GL_ARB_gpu_shader_fp64
+  Pairs,   ///< pairs of floats
 };
 
 /// Limits and spellings of one version of a target. The rows are in profiles.cpp.
@@ -34,6 +33,7 @@ struct Profile {
   int textureUnits;             ///< guaranteed minimum for a fragment program
   int uniformComponents;        ///< likewise; ES counts vectors of four
   Doubles doubles;              ///< the best form that devices of the profile have
+  bool precise = false;         ///< GLSL has `precise`, by GL_ARB_gpu_shader5
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();

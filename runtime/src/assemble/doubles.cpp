@@ -2,8 +2,7 @@
 //
 // A pair is the sum of two floats, of which the second is at most half a unit in the last place of the
 // first: 48 bits of precision in the range of float. Its arithmetic is made of error-free steps, each of which
-// has to stay as it is written. Compilers reorder floats as they like, so each value is `precise` where GLSL has
-// that, and elsewhere goes through bits that a uniform, which is 0, changes as far as anyone can tell.
+// has to stay as it is written (exact_sums.hpp).
 //
 //   sum, product    Joldes, Muller, Popescu, ACM TOMS 44 (2017): algorithms 6 and 10
 //   product's error Dekker, Numerische Mathematik 18 (1971), with halves of 12 bits cut by a mask: no fma,
@@ -48,17 +47,6 @@ bool sk_isnan(sk_double a) {
   return b.y > 0x7ff00000u || (b.y == 0x7ff00000u && b.x != 0u);
 }
 bool sk_isinf(sk_double a) { return sk_abs(a).bits == uvec2(0u, 0x7ff00000u); }
-)";
-
-constexpr std::string_view preciseText = R"(
-#define sk_precise precise
-#define sk_keep(x) (x)
-)";
-
-constexpr std::string_view barrierText = R"(
-#define sk_precise
-uniform uint sk_zero;   // never set, hence 0
-float sk_keep(float x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
 )";
 
 constexpr std::string_view pairText = R"(
@@ -264,21 +252,11 @@ sk_double sk_ldexp(sk_double a, int e) {
 }  // namespace
 
 std::string_view doubleExtensions(Doubles form) {
-  switch (form) {
-    case Doubles::Native: return "#extension GL_ARB_gpu_shader_fp64 : require\n";
-    case Doubles::PrecisePairs: return "#extension GL_ARB_gpu_shader5 : require\n";
-    case Doubles::Pairs: break;
-  }
-  return "";
+  return form == Doubles::Native ? "#extension GL_ARB_gpu_shader_fp64 : require\n" : "";
 }
 
 std::string doubleDefinitions(Doubles form) {
-  switch (form) {
-    case Doubles::Native: return std::string(nativeText).append(commonText);
-    case Doubles::PrecisePairs: return std::string(preciseText).append(pairText).append(commonText);
-    case Doubles::Pairs: break;
-  }
-  return std::string(barrierText).append(pairText).append(commonText);
+  return std::string(form == Doubles::Native ? nativeText : pairText).append(commonText);
 }
 
 }  // namespace sk::assemble

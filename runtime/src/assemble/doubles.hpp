@@ -21,7 +21,7 @@ namespace sk::assemble {
 
 /// The #extension lines that stand first in a program that uses doubles; each ends its line.
 std::string_view doubleExtensions(Doubles form);
-/// The definitions, which stand before all others.
+/// The definitions, which stand before all others but, for pairs, those of exact_sums.hpp.
 std::string doubleDefinitions(Doubles form);
 
 }  // namespace sk::assemble

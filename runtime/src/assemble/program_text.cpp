@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "assemble/doubles.hpp"
+#include "assemble/exact_sums.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -95,8 +96,12 @@ void ProgramText::prologue(std::string_view line) {
 std::string ProgramText::finish(const Profile& profile, std::string_view comment,
                                 const program::Kernel& kernel) const {
   std::string program = fmt::format("{}\n// {}\n", profile.version, comment);
+  const bool hasExactFloats =
+      kernel.usesExactSums || (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
+  if (hasExactFloats) program += exactExtensions(profile.precise);
   if (profile.es) program += esPrecision;
+  if (hasExactFloats) program += exactDefinitions(profile.precise);
   if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles);
   addForeign(program, kernel.declarations);
   program += '\n';

@@ -127,6 +127,15 @@ SK_NATIVE_1(frexpMantissa, mantissaOf(x))
 SK_NATIVE_1(modfFraction, std::copysign(std::isinf(x) ? decltype(x)(0) : x - std::trunc(x), x))
 template <class A> auto nearest(const A& a) { return byComponent([](auto x) { return wholeIndex(std::floor(x + decltype(x)(0.5))); }, a); }
 
+// what a rounding loses: IEEE 754's arithmetic leaves it a float (Knuth, TAOCP 2, 4.2.2)
+template <class T> T sumErrorOf(T a, T b) {
+  const T s = a + b;
+  const T c = s - a;
+  return (a - (s - c)) + (b - c);
+}
+SK_NATIVE_2(roundedSum, x + y)
+SK_NATIVE_2(sumError, sumErrorOf(x, y))
+
 // geometry
 template <class A> auto dot(const A& a, const A& b) {
   auto sum = componentAt(a, 0) * componentAt(b, 0);

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/compensate_sums.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ir/build.hpp"
+#include "ir/walk.hpp"
+#include "transforms/combine_part.hpp"
+#include "transforms/drop_streams.hpp"
+#include "transforms/fold_pattern.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+bool isAccumulator(const KernelParam& param) { return param.role == ParamRole::Accumulator; }
+
+/// Whether everything that a fold does to an accumulator is to add to the whole of it.
+bool isSum(const FoldPattern& pattern, VarId accumulator) {
+  return std::ranges::all_of(pattern.parts, [&](const FoldPart& part) {
+    return part.accumulator != accumulator || (part.isWhole() && part.op == FoldOp(BinaryOp::Add));
+  });
+}
+
+/// The accumulators that are sums of floats; none where the reduce has no second form.
+std::vector<VarId> sumsOf(const Module& module, KernelId id, const FoldPattern& pattern) {
+  const Kernel& kernel = module.kernels[id];
+  const KernelId combine = *kernel.reduction->combine;
+  if (combine != id && !module.kernels[combine].isCombination) return {};   // the author's
+  std::vector<VarId> sums;
+  for (VarId i = 0; i < kernel.params.size(); ++i) {
+    const KernelParam& param = kernel.params[i];
+    if (!isAccumulator(param)) continue;
+    if (!param.identity) return {};   // runs start from it, since their first element is no pair of sums
+    if (param.type.isFloat() && isSum(pattern, i)) sums.push_back(i);
+  }
+  return sums;
+}
+
+ExprPtr everywhere(Type type, float value) {
+  return type.isScalar() ? literal(value) : construct(type, exprs(literal(value)));
+}
+
+/// total_lost += sumError(total, term); total = roundedSum(total, term)
+void addTo(Block& body, const Function& function, VarId total, VarId lost, VarId term) {
+  const auto both = [&] { return exprs(varRef(function, total), varRef(function, term)); };
+  body.push_back(assign(varRef(function, lost), BinaryOp::Add, intrinsic(Intrinsic::SumError, both())));
+  body.push_back(assign(varRef(function, total), intrinsic(Intrinsic::RoundedSum, both())));
+}
+
+KernelParam like(const KernelParam& param, std::string name, ParamRole role) {
+  KernelParam made;
+  made.name = std::move(name);
+  made.role = role;
+  made.type = param.type;
+  made.loc = param.loc;
+  return made;
+}
+
+/// A kernel in the making, with an entry that has a variable for each parameter.
+struct Made {
+  Kernel kernel;
+  Function entry;
+
+  Made(const Kernel& of, const std::string& suffix) {
+    kernel.name = of.name;   // what messages call it
+    kernel.scope = of.scope;
+    kernel.loc = entry.loc = of.loc;
+    kernel.isCombination = true;
+    entry.name = of.name + suffix;
+  }
+
+  VarId add(KernelParam param) {
+    const VarRole role = param.role == ParamRole::Input ? VarRole::Element : VarRole::InOut;
+    const VarId var = addVariable(entry, param.name, param.type, role, param.loc);
+    kernel.params.push_back(std::move(param));
+    return var;
+  }
+
+  KernelId finish(Module& module) {
+    kernel.entry = static_cast<FunctionId>(module.functions.size());
+    module.functions.push_back(std::move(entry));
+    module.kernels.push_back(std::move(kernel));
+    return static_cast<KernelId>(module.kernels.size() - 1);
+  }
+};
+
+class Maker {
+ public:
+  Maker(Module& module, KernelId id, const FoldPattern& pattern, std::vector<VarId> sums)
+      : module_(module), id_(id), pattern_(pattern), sums_(std::move(sums)) {}
+
+  void make() {
+    const KernelId fold = makeFold();
+    const KernelId combine = makeCombination();
+    module_.kernels[combine].reduction =
+        Reduction{combine, std::vector<std::uint32_t>(module_.kernels[combine].params.size()), true, {}};
+    module_.kernels[fold].reduction =
+        Reduction{combine, std::vector<std::uint32_t>(module_.kernels[combine].params.size()), false, {}};
+    const KernelId finish = makeFinish();
+    module_.kernels[id_].reduction->compensated = Compensated{fold, finish, sums_};
+  }
+
+ private:
+  const Kernel& kernel() const { return module_.kernels[id_]; }
+  bool isSum(VarId param) const { return std::ranges::find(sums_, param) != sums_.end(); }
+
+  /// The entry as a function that is called: without the parameters that GLSL has none for.
+  FunctionId makeTerm() {
+    Function term = clone(module_.functions[kernel().entry]);
+    term.name += "_term";
+    dropStreams(term);
+    module_.functions.push_back(std::move(term));
+    return static_cast<FunctionId>(module_.functions.size() - 1);
+  }
+
+  KernelId makeFold() {
+    const FunctionId term = makeTerm();
+    Made made(kernel(), "_compensated");
+    for (VarId i = 0; i < kernel().params.size(); ++i) {
+      const KernelParam& param = kernel().params[i];
+      const Variable& var = module_.functions[kernel().entry].variables[i];
+      KernelParam copy = like(param, param.name, param.role);
+      copy.rank = param.rank;
+      copy.boundary = param.boundary;
+      copy.border = clone(param.border);
+      copy.filter = param.filter;
+      // where the plain form starts with its first element, so does -0 + element
+      const bool startsWithElement = isSum(i) && kernel().reduction->seeded;
+      copy.identity = startsWithElement ? everywhere(param.type, -0.0F) : clone(param.identity);
+      copy.neededIf = clone(param.neededIf);
+      made.kernel.params.push_back(std::move(copy));
+      made.entry.variables.push_back(var);
+    }
+    made.entry.parameterCount = static_cast<std::uint32_t>(made.entry.variables.size());
+    std::vector<VarId> lost;
+    for (const VarId i : sums_) {
+      KernelParam param = like(kernel().params[i], kernel().params[i].name + "_lost", ParamRole::Accumulator);
+      param.identity = everywhere(param.type, 0.0F);
+      lost.push_back(made.add(std::move(param)));
+    }
+    std::vector<VarId> terms;
+    for (const VarId i : sums_) {
+      const Type type = kernel().params[i].type;
+      terms.push_back(addVariable(made.entry, kernel().params[i].name + "_term", type));
+      made.entry.body.push_back(
+          declare(terms.back(), everywhere(type, -0.0F)));   // to which anything adds exactly
+    }
+    std::vector<ExprPtr> args;
+    for (VarId i = 0; i < kernel().params.size(); ++i) {
+      const VarRole role = made.entry.variables[i].role;
+      if (role == VarRole::Gather || role == VarRole::Sink) continue;
+      const auto sum = std::ranges::find(sums_, i) - sums_.begin();
+      args.push_back(varRef(made.entry, isSum(i) ? terms[static_cast<std::size_t>(sum)] : i));
+    }
+    made.entry.body.push_back(callStmt(term, std::move(args)));
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      addTo(made.entry.body, made.entry, sums_[k], lost[k], terms[k]);
+    }
+    return made.finish(module_);
+  }
+
+  /// Inputs and accumulators of the fold's types and order.
+  KernelId makeCombination() {
+    Made made(kernel(), "_combine");
+    std::vector<VarId> parts;
+    std::vector<VarId> totals;
+    for (const ParamRole role : {ParamRole::Input, ParamRole::Accumulator}) {
+      const std::string suffix = role == ParamRole::Input ? "_part" : "";
+      std::vector<VarId>& list = role == ParamRole::Input ? parts : totals;
+      for (const KernelParam& param : kernel().params) {
+        if (isAccumulator(param)) list.push_back(made.add(like(param, param.name + suffix, role)));
+      }
+      for (const VarId i : sums_) {
+        const KernelParam& param = kernel().params[i];
+        list.push_back(made.add(like(param, param.name + "_lost" + suffix, role)));
+      }
+    }
+    std::vector<VarId> accumulators;   // of the plain form, which come first in each list
+    for (VarId i = 0; i < kernel().params.size(); ++i) {
+      if (isAccumulator(kernel().params[i])) accumulators.push_back(i);
+    }
+    const auto placeOf = [&](VarId accumulator) {
+      return static_cast<std::size_t>(std::ranges::find(accumulators, accumulator) - accumulators.begin());
+    };
+    for (const FoldPart& part : pattern_.parts) {
+      if (isSum(part.accumulator)) continue;
+      const std::size_t k = placeOf(part.accumulator);
+      made.entry.body.push_back(combinePart(module_, made.entry, part, parts[k], totals[k]));
+    }
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      const std::size_t sum = placeOf(sums_[k]);
+      const std::size_t lost = accumulators.size() + k;
+      made.entry.body.push_back(
+          assign(varRef(made.entry, totals[lost]), BinaryOp::Add, varRef(made.entry, parts[lost])));
+      addTo(made.entry.body, made.entry, totals[sum], totals[lost], parts[sum]);
+    }
+    return made.finish(module_);
+  }
+
+  KernelId makeFinish() {
+    Made made(kernel(), "_finish");
+    std::vector<VarId> inputs;
+    for (const VarId i : sums_) {
+      const KernelParam& param = kernel().params[i];
+      inputs.push_back(made.add(like(param, param.name, ParamRole::Input)));
+      inputs.push_back(made.add(like(param, param.name + "_lost", ParamRole::Input)));
+    }
+    for (std::size_t k = 0; k < sums_.size(); ++k) {
+      const KernelParam& param = kernel().params[sums_[k]];
+      const VarId result = made.add(like(param, "r_" + param.name, ParamRole::Output));
+      const auto total = [&] { return varRef(made.entry, inputs[2 * k]); };
+      const auto lost = [&] { return varRef(made.entry, inputs[2 * k + 1]); };
+      // a sum that is not finite has lost NaN; and where nothing is lost, -0 stays
+      ExprPtr isNothing = binary(BinaryOp::Equal, lost(), everywhere(param.type, 0.0F));
+      ExprPtr sum = select(std::move(isNothing), total(), binary(BinaryOp::Add, total(), lost()));
+      made.entry.body.push_back(
+          assign(varRef(made.entry, result),
+                 select(intrinsic(Intrinsic::Isfinite, exprs(lost())), std::move(sum), total())));
+    }
+    return made.finish(module_);
+  }
+
+  Module& module_;
+  KernelId id_;
+  const FoldPattern& pattern_;
+  std::vector<VarId> sums_;
+};
+
+}  // namespace
+
+void compensateSums(Module& module, Diagnostics&) {
+  const std::size_t declared = module.kernels.size();  // before those that this adds
+  for (KernelId id = 0; id < declared; ++id) {
+    const Kernel& kernel = module.kernels[id];
+    if (!kernel.reduction || kernel.isCombination) continue;
+    const std::optional<FoldPattern> pattern = recogniseFold(kernel, module.functions[kernel.entry]);
+    if (!pattern) continue;
+    std::vector<VarId> sums = sumsOf(module, id, *pattern);
+    if (!sums.empty()) Maker(module, id, *pattern, std::move(sums)).make();
+  }
+}
+
+}  // namespace skc

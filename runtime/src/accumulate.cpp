@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+//
+// sk::reduce: which form of a reduction a call takes, and how the compensated one's two accumulators become one
+// result. It knows no device.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <vector>
+
+#include "check_argument.hpp"
+#include "check_reduction.hpp"
+#include "device_state.hpp"
+#include "sk/call.hpp"
+
+namespace sk {
+
+namespace {
+
+using program::CompensatedReduction;
+using program::Kernel;
+using program::Parameter;
+using program::Reduction;
+using program::Role;
+
+/// Planes that the passes which combine partial results read.
+std::size_t planesCombined(const Reduction& reduction) {
+  std::size_t planes = 0;
+  for (const Parameter& parameter : reduction.combine.parameters) {
+    if (parameter.role == Role::Input) planes += parameter.element->fields.size();
+  }
+  return planes;
+}
+
+/// The compensated form, where the call takes it; else null. Of no element, the plain form's identity is the result.
+const CompensatedReduction* compensated(const Reduction& reduction, const CheckedReduction& checked,
+                                        const CallOptions& options) {
+  const CompensatedReduction* second = reduction.compensated;
+  if (options.accumulate == Accumulate::Compensated && second == nullptr) {
+    fail(reduction.fold, "it has no sum of floats to compensate; call it without Accumulate::Compensated");
+  }
+  if (options.accumulate == Accumulate::Tree || second == nullptr || checked.domain.size() == 0) {
+    return nullptr;
+  }
+  const auto room = static_cast<std::size_t>(checked.device.limits.textureUnits);
+  const bool fits = planesCombined(second->reduction) <= room;
+  return fits || options.accumulate == Accumulate::Compensated ? second : nullptr;
+}
+
+/// Adds floats to floats in memory.
+void addFloats(void* to, const void* from, std::size_t bytes) {
+  for (std::size_t at = 0; at < bytes; at += sizeof(float)) {
+    float a;
+    float b;
+    std::memcpy(&a, static_cast<std::byte*>(to) + at, sizeof a);
+    std::memcpy(&b, static_cast<const std::byte*>(from) + at, sizeof b);
+    // a sum that is not finite has lost NaN; and where nothing is lost, -0 stays
+    a = b == 0 || !std::isfinite(b) ? a : a + b;
+    std::memcpy(static_cast<std::byte*>(to) + at, &a, sizeof a);
+  }
+}
+
+/// Where the result of parameter `accumulator` stands among all results.
+std::size_t resultOf(const Kernel& fold, std::size_t accumulator) {
+  return static_cast<std::size_t>(std::count_if(
+      fold.parameters.begin(), fold.parameters.begin() + static_cast<std::ptrdiff_t>(accumulator),
+      [](const Parameter& parameter) { return parameter.role == Role::Accumulator; }));
+}
+
+}  // namespace
+
+void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
+            const CallOptions& options) {
+  const CheckedReduction checked = checkReduction(reduction, arguments);
+  const CompensatedReduction* second = compensated(reduction, checked, options);
+  if (second == nullptr) {
+    checked.device.reduce(reduction, arguments, checked.domain, results);
+    return;
+  }
+  std::vector<Argument> all(arguments.begin(), arguments.end());
+  std::vector<void*> places(results.begin(), results.end());
+  std::deque<std::vector<std::byte>> lost;
+  for (const std::uint8_t sum : second->sums) {
+    all.emplace_back();
+    places.push_back(lost.emplace_back(reduction.fold.parameters[sum].element->size).data());
+  }
+  checkReduction(second->reduction, all);
+  checked.device.reduce(second->reduction, all, checked.domain, places);
+  for (std::size_t k = 0; k < lost.size(); ++k) {
+    addFloats(results[resultOf(reduction.fold, second->sums[k])], lost[k].data(), lost[k].size());
+  }
+}
+
+void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
+  const CheckedReduction checked = checkReductionToStreams(reduction, arguments);
+  if (checked.blocks.size() == 0) {
+    return;
+  }
+  const CompensatedReduction* second = compensated(reduction, checked, options);
+  if (second == nullptr) {
+    checked.device.reduce(reduction, arguments, checked.domain, checked.blocks);
+    return;
+  }
+  // the sums go where the results will be, what they lose to streams beside them
+  std::vector<Argument> all(arguments.begin(), arguments.end());
+  std::vector<Argument> pairs;
+  std::vector<detail::StreamOwner> lost;
+  for (const std::uint8_t sum : second->sums) {
+    const Shape& shape = arguments[sum].region.shape;
+    const program::Element& element = *reduction.fold.parameters[sum].element;
+    lost.emplace_back(checked.device.createStream(element, shape).release());
+    all.push_back({.region = detail::wholeRegion(lost.back().get())});
+    pairs.push_back({.region = arguments[sum].region});
+    pairs.push_back(all.back());
+  }
+  checkReductionToStreams(second->reduction, all);
+  checked.device.reduce(second->reduction, all, checked.domain, checked.blocks);
+  for (const std::uint8_t sum : second->sums) {
+    pairs.push_back({.region = arguments[sum].region});
+  }
+  run(second->finish, pairs);
+}
+
+}  // namespace sk
