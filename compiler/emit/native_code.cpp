@@ -172,8 +172,7 @@ class KernelWriter {
         accumulators, [&](std::uint32_t i) { return kernel_.params[i].identity != nullptr; });
     line(1, fmt::format("using sk_State = std::tuple<{}>;",
                         list(accumulators, [&](std::uint32_t i) { return type(kernel_.params[i].type); })));
-    line(1, fmt::format("static constexpr bool sk_isSeeded = {}, sk_hasIdentity = {};\n",
-                        kernel_.reduction->seeded, hasIdentity));
+    line(1, fmt::format("static constexpr bool sk_isSeeded = {};\n", kernel_.reduction->seeded));
     if (kernel_.reduction->seeded) {
       line(1, fmt::format("sk_State sk_seed() const {{ return sk_State({}); }}",
                           list(inputs, [&](std::uint32_t i) { return member(i) + ".at(sk_index)"; })));

@@ -148,5 +148,6 @@ TEST_CASE("random folds") {
   for (std::uint32_t seed = 0; seed < 120; ++seed) {
     const int limits[] = {0, smallLimits[0], smallLimits[1]};
     checkOne(run_tests::device(seed % 2 == 0 ? "glsl330" : "essl300", limits[seed / 2 % 3]), seed);
+    checkOne(run_tests::device("native"), seed);
   }
 }

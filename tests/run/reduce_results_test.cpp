@@ -45,7 +45,8 @@ bool sameBest(const std::vector<results::Best>& a, const std::vector<results::Be
 
 /// Devices that write four planes in a pass.
 sk::Device& narrowDevice(const std::string& profile) {
-  static std::map<std::string, sk::Device> devices;
+  // Never destroyed: some drivers end before our static objects do.
+  static auto& devices = *new std::map<std::string, sk::Device>;
   auto found = devices.find(profile);
   if (found == devices.end()) {
     found = devices.emplace(profile, sk::Device({.profile = profile, .limits = "guaranteed"})).first;

@@ -21,12 +21,13 @@ struct Form {
 };
 
 inline sk::Device& deviceOf(const Form& form) {
-  static std::map<std::string, sk::Device> devices;
+  // Never destroyed: some drivers end before our static objects do.
+  static auto& devices = *new std::map<std::string, sk::Device>;
   const std::string key = form.profile + form.doubles;
   auto found = devices.find(key);
   if (found == devices.end()) {
     const sk::DeviceOptions options{.profile = form.profile, .doubles = form.doubles};
-    found = devices.emplace(key, sk::Device(options)).first;
+    found = devices.emplace(key, form.profile == "native" ? sk::Device::native() : sk::Device(options)).first;
   }
   return found->second;
 }
@@ -34,7 +35,8 @@ inline sk::Device& deviceOf(const Form& form) {
 /// test(device, form) on every form that there is.
 template <class Test>
 void onEveryForm(const Test& test) {
-  for (const Form& form : {Form{"glsl330", "native"}, Form{"glsl330", "pairs"}, Form{"essl300", "pairs"}}) {
+  for (const Form& form : {Form{"glsl330", "native"}, Form{"glsl330", "pairs"}, Form{"essl300", "pairs"},
+                           Form{"native", "native"}}) {
     INFO(form.profile << " with " << form.doubles << " doubles");
     test(deviceOf(form), form);
   }

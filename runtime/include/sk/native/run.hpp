@@ -135,7 +135,7 @@ void runReduction(const ReduceCall& call) {
 template <class Fold>
 void storeIdentity(const ReduceCall& call) {
   Fold fold(call.fold);
-  if constexpr (!Fold::sk_isSeeded || Fold::sk_hasIdentity) fold.sk_store(Index(Int(0)), fold.sk_identity());
+  fold.sk_store(Index(Int(0)), fold.sk_identity());
 }
 
 }  // namespace sk::native
