@@ -2,6 +2,7 @@
 #include "transforms/compensate_sums.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -111,11 +112,25 @@ class Maker {
 
   /// The entry as a function that is called: without the parameters that GLSL has none for.
   FunctionId makeTerm() {
-    Function term = clone(module_.functions[kernel().entry]);
-    term.name += "_term";
-    dropStreams(term);
-    module_.functions.push_back(std::move(term));
-    return static_cast<FunctionId>(module_.functions.size() - 1);
+    std::map<FunctionId, FunctionId> copies;
+    const FunctionId term = copy(kernel().entry, copies);
+    module_.functions[term].name += "_term";
+    dropStreams(module_.functions[term]);
+    return term;
+  }
+
+  /// A function, after those that it calls: each belongs to one kernel.
+  FunctionId copy(FunctionId id, std::map<FunctionId, FunctionId>& copies) {
+    if (const auto known = copies.find(id); known != copies.end()) return known->second;
+    Function made = clone(module_.functions[id]);
+    walkStmts(made.body, [&](Stmt& stmt) {
+      if (auto* n = std::get_if<CallStmt>(&stmt.node)) n->callee = copy(n->callee, copies);
+    });
+    walkExprs(made.body, [&](Expr& expr) {
+      if (auto* n = std::get_if<Call>(&expr.node)) n->callee = copy(n->callee, copies);
+    });
+    module_.functions.push_back(std::move(made));
+    return copies[id] = static_cast<FunctionId>(module_.functions.size() - 1);
   }
 
   KernelId makeFold() {

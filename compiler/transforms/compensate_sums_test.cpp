@@ -63,6 +63,22 @@ TEST_CASE("a sum of floats gets an accumulator for what it loses") {
   }
 }
 
+TEST_CASE("functions that the fold calls are copied for the second form") {
+  Module module = testModule();
+  Function twice;
+  twice.name = "twice";
+  twice.result = floatType;
+  const VarId v = addVariable(twice, "v", floatType, VarRole::In);
+  Block body = block(returnStmt(binary(BinaryOp::Mul, varRef(twice, v), literal(2.0F))));
+  const FunctionId helper = addFunction(module, std::move(twice), std::move(body));
+  KernelMaker maker(module, "r");
+  const VarId x = maker.input("x", floatType);
+  const VarId total = maker.accumulator("total", floatType);
+  maker.finish(block(assign(maker.ref(total), BinaryOp::Add, call(module, helper, exprs(maker.ref(x))))));
+  transform(module);   // validates: a function belongs to one kernel
+  CHECK(second(module) != nullptr);
+}
+
 TEST_CASE("vectors of floats are summed so, too") {
   Module module = reduceModule(Type::of(Scalar::Float, 3), BinaryOp::Add);
   transform(module);
