@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "sk/scalar_bytes.hpp"
+
 namespace skc::emit {
 namespace {
 
@@ -14,23 +16,7 @@ std::uint32_t alignUp(std::uint32_t offset, std::uint32_t alignment) {
 }
 
 std::uint32_t bytesOf(Scalar scalar) {
-  switch (scalar) {
-    case Scalar::Bool:
-    case Scalar::Char:
-    case Scalar::Uchar:
-    case Scalar::Unorm8:
-    case Scalar::Snorm8: return 1;
-    case Scalar::Half:
-    case Scalar::Short:
-    case Scalar::Ushort:
-    case Scalar::Unorm16:
-    case Scalar::Snorm16: return 2;
-    case Scalar::Int:
-    case Scalar::Uint:
-    case Scalar::Float: return 4;
-    case Scalar::Double: break;
-  }
-  return 8;
+  return static_cast<std::uint32_t>(sk::program::hostBytes(static_cast<sk::program::Scalar>(scalar)));
 }
 
 ElementLayout matrixLayout(Type type) {

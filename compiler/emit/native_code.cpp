@@ -55,6 +55,12 @@ std::map<FunctionId, std::string> functionNames(const Module& module, const Kern
   return result;
 }
 
+bool hasIdentities(const Kernel& reduce) {
+  return std::ranges::none_of(reduce.params, [](const KernelParam& param) {
+    return param.role == ParamRole::Accumulator && param.identity == nullptr;
+  });
+}
+
 class KernelWriter {
  public:
   KernelWriter(const Module& module, const Kernel& kernel, std::string_view name)
@@ -168,8 +174,6 @@ class KernelWriter {
   void reduction() {
     const std::vector<std::uint32_t> accumulators = paramsOf(ParamRole::Accumulator);
     const std::vector<std::uint32_t> inputs = paramsOf(ParamRole::Input);
-    const bool hasIdentity = std::ranges::all_of(
-        accumulators, [&](std::uint32_t i) { return kernel_.params[i].identity != nullptr; });
     line(1, fmt::format("using sk_State = std::tuple<{}>;",
                         list(accumulators, [&](std::uint32_t i) { return type(kernel_.params[i].type); })));
     line(1, fmt::format("static constexpr bool sk_isSeeded = {};\n", kernel_.reduction->seeded));
@@ -177,7 +181,7 @@ class KernelWriter {
       line(1, fmt::format("sk_State sk_seed() const {{ return sk_State({}); }}",
                           list(inputs, [&](std::uint32_t i) { return member(i) + ".at(sk_index)"; })));
     }
-    if (hasIdentity) {
+    if (hasIdentities(kernel_)) {
       line(1, fmt::format("sk_State sk_identity() const {{ return sk_State({}); }}",
                           list(accumulators, [&](std::uint32_t i) {
                             return nativeExpr(context_, std::nullopt, *kernel_.params[i].identity);
@@ -320,16 +324,14 @@ std::string nativeKernelDescriptor(const std::string& name) {
 
 std::string nativeReductionDescriptor(const std::string& name, const std::string& combine,
                                       const Kernel& reduce) {
-  const bool hasIdentity = std::ranges::none_of(reduce.params, [](const KernelParam& param) {
-    return param.role == ParamRole::Accumulator && param.identity == nullptr;
-  });
   std::vector<std::string> forms;
   for (const std::string_view real : {"float", "double"}) {
     forms.push_back(fmt::format("&native::runReduction<generated::sk_{0}<{2}>, generated::sk_{1}<{2}>>", name,
                                 combine, real));
   }
   for (const std::string_view real : {"float", "double"}) {
-    if (hasIdentity) forms.push_back(fmt::format("&native::storeIdentity<generated::sk_{}<{}>>", name, real));
+    if (hasIdentities(reduce))
+      forms.push_back(fmt::format("&native::storeIdentity<generated::sk_{}<{}>>", name, real));
   }
   return fmt::format("constexpr NativeReduction {}Native = {{\n    {}}};\n\n", name, join(forms, ",\n    "));
 }

@@ -41,7 +41,7 @@ void ClangDiagnostics::report(Diag diag, Loc loc, std::initializer_list<std::str
   const DiagRow& entry = row(diag);
   const clang::DiagnosticIDs::Level level = levelOf(entry.severity, engine_);
   if (level == clang::DiagnosticIDs::Ignored) return;
-  // The text is put together here and handed over as an argument: a user's `%` is no placeholder then.
+  // The text is put together here and handed over as an argument, since Clang gives `%` a meaning in formats.
   const unsigned id = engine_.getDiagnosticIDs()->getCustomDiagID(level, "%0");
   const clang::DiagnosticBuilder message = engine_.Report(clangLocation(loc), id);
   message << format(diag, arguments);

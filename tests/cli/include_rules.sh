@@ -13,7 +13,7 @@ compiler/support      support
 compiler/ir           support ir
 compiler/split        support ir split
 compiler/transforms   support ir transforms split
-compiler/emit         support ir transforms emit assemble sk/program.hpp
+compiler/emit         support ir transforms emit assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/frontend     support ir frontend clang llvm
 compiler/driver       support ir split transforms emit frontend driver assemble sk/program.hpp
 runtime/include/sk    sk

@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "sk/scalar_bytes.hpp"
+
 namespace sk::gl {
 
 namespace {
@@ -78,10 +80,7 @@ const Format& formatOf(program::Scalar scalar, int width) {
 
 const Format& formatOf(const program::Field& field) { return formatOf(field.scalar, field.width); }
 
-std::size_t hostBytes(const program::Field& field) {
-  const Format& format = formatOf(field);
-  return field.width == 3 ? 3 * static_cast<std::size_t>(format.tight.channelBytes) : format.texelBytes();
-}
+std::size_t hostBytes(const program::Field& field) { return field.width * program::hostBytes(field.scalar); }
 
 std::span<const Format> formats() { return table; }
 

@@ -3,31 +3,13 @@
 
 #include <cstring>
 
+#include "sk/scalar_bytes.hpp"
+
 namespace sk {
 
 namespace {
 
 using program::Scalar;
-
-std::size_t hostBytesOf(Scalar scalar) {
-  switch (scalar) {
-    case Scalar::Bool:
-    case Scalar::Char:
-    case Scalar::Uchar:
-    case Scalar::Unorm8:
-    case Scalar::Snorm8: return 1;
-    case Scalar::Half:
-    case Scalar::Short:
-    case Scalar::Ushort:
-    case Scalar::Unorm16:
-    case Scalar::Snorm16: return 2;
-    case Scalar::Int:
-    case Scalar::Uint:
-    case Scalar::Float: return 4;
-    case Scalar::Double: break;
-  }
-  return 8;
-}
 
 /// Copies `count` values of Bytes bytes from one stride to another.
 template <std::size_t Bytes>
@@ -64,7 +46,7 @@ void copySame(std::size_t bytes, const std::byte* from, std::size_t fromStride, 
 std::vector<ComponentType> componentsOf(const program::Element& element, RealType real) {
   std::vector<ComponentType> components;
   for (const program::Field& field : element.fields) {
-    const std::size_t bytes = hostBytesOf(field.scalar);
+    const std::size_t bytes = program::hostBytes(field.scalar);
     const bool isReal = field.scalar == Scalar::Float;
     const std::size_t stored = isReal && real == RealType::Double ? sizeof(double) : bytes;
     for (std::size_t c = 0; c < field.width; ++c) {

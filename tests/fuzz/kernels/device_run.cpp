@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "sk/call.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace {
 
@@ -30,25 +31,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-std::size_t sizeOf(Scalar scalar) {
-  switch (scalar) {
-    case Scalar::Bool:
-    case Scalar::Char:
-    case Scalar::Uchar:
-    case Scalar::Unorm8:
-    case Scalar::Snorm8: return 1;
-    case Scalar::Half:
-    case Scalar::Short:
-    case Scalar::Ushort:
-    case Scalar::Unorm16:
-    case Scalar::Snorm16: return 2;
-    case Scalar::Int:
-    case Scalar::Uint:
-    case Scalar::Float: return 4;
-    case Scalar::Double: return 8;
-  }
-  return 0;
-}
+std::size_t sizeOf(Scalar scalar) { return sk::program::hostBytes(static_cast<sk::program::Scalar>(scalar)); }
 
 /// What the host keeps for a component whose carrier has these bits.
 std::uint32_t stored(Scalar scalar, std::uint32_t bits) {
