@@ -145,9 +145,7 @@ class HeaderWriter {
     if (callable.object != first.name) {
       text_ += fmt::format("/// Called {} here, since C++ has another {}.\n", callable.object, first.name);
     }
-    const bool hasOptions = first.reduction.has_value();
-    text_ += fmt::format("struct {0}{1} {{\n", callable.type,
-                         hasOptions ? fmt::format(" : sk::WithOptions<{}>", callable.type) : "");
+    text_ += fmt::format("struct {0} : sk::WithOptions<{0}> {{\n", callable.type);
     for (std::size_t unit : callable.units) {
       const Kernel& kernel = kernelOf(unit);
       if (isOverloaded) text_ += comment(kernel.signature, 2);

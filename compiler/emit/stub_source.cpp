@@ -371,8 +371,8 @@ class SourceWriter {
   }
 
   void run(const Kernel& kernel, std::size_t unit) {
-    text_ +=
-        fmt::format("  sk::run(sk::program::{}Kernel, {});\n", names_[unit], arguments(kernel, Form::Run));
+    text_ += fmt::format("  sk::run(sk::program::{}Kernel, {}, this->options);\n", names_[unit],
+                         arguments(kernel, Form::Run));
   }
 
   /// Writes the array of arguments, and gives its name.

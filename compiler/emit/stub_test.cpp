@@ -46,7 +46,7 @@ struct sk::ElementTraits<Hit> {
 namespace heat {
 
 /// kernel void diffuse(float k, [[wrap]] float u[][], out float v<>)
-struct DiffuseKernel {
+struct DiffuseKernel : sk::WithOptions<DiffuseKernel> {
   void operator()(float k, const sk::In<float>& u, const sk::Out<float>& v) const;
 };
 inline constexpr DiffuseKernel diffuse{};
@@ -106,7 +106,7 @@ constexpr Reduction nearestReduction = {
 void heat::DiffuseKernel::operator()(float k, const sk::In<float>& u,
                                      const sk::Out<float>& v) const {
   const sk::Argument arguments[] = {{.value = &k}, u.argument(), v.argument()};
-  sk::run(sk::program::diffuseKernel, arguments);
+  sk::run(sk::program::diffuseKernel, arguments, this->options);
 }
 )"));
   CHECK(contains(source, R"(
@@ -157,7 +157,9 @@ TEST_CASE("awkward names and nested structs") {
   CHECK(contains(
       stub.header,
       "{\"first.origin\", sk::program::Scalar::Float, 3, offsetof(geometry::pairs::Pair, first.origin)}"));
-  CHECK(contains(stub.header, "/// Called exp_ here, since C++ has another exp.\nstruct ExpKernel {\n"));
+  CHECK(contains(
+      stub.header,
+      "/// Called exp_ here, since C++ has another exp.\nstruct ExpKernel : sk::WithOptions<ExpKernel> {\n"));
   CHECK(contains(stub.header,
                  "  void operator()(const geometry::pairs::Pair& arguments,\n"
                  "                  const sk::Out<geometry::pairs::Pair>& value) const;\n"));

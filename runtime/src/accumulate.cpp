@@ -36,6 +36,10 @@ std::size_t planesCombined(const Reduction& reduction) {
 const CompensatedReduction* compensated(const Reduction& reduction, const CheckedReduction& checked,
                                         const CallOptions& options) {
   const CompensatedReduction* second = reduction.compensated;
+  if ((options.precision != Precision::Default && options.precision != Precision::Single) ||
+      options.accumulate > Accumulate::Compensated) {
+    fail(reduction.fold, "it has no form in this precision; call it in Precision::Single");
+  }
   if (options.accumulate == Accumulate::Compensated && second == nullptr) {
     fail(reduction.fold, "it has no sum of floats to compensate; call it without Accumulate::Compensated");
   }
@@ -74,7 +78,7 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
   const CheckedReduction checked = checkReduction(reduction, arguments);
   const CompensatedReduction* second = compensated(reduction, checked, options);
   if (second == nullptr) {
-    checked.device.reduce(reduction, arguments, checked.domain, results);
+    checked.device.reduce(reduction, arguments, checked.domain, results, options);
     return;
   }
   std::vector<Argument> all(arguments.begin(), arguments.end());
@@ -85,7 +89,7 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
     places.push_back(lost.emplace_back(reduction.fold.parameters[sum].element->size).data());
   }
   checkReduction(second->reduction, all);
-  checked.device.reduce(second->reduction, all, checked.domain, places);
+  checked.device.reduce(second->reduction, all, checked.domain, places, options);
   for (std::size_t k = 0; k < lost.size(); ++k) {
     addFloats(results[resultOf(reduction.fold, second->sums[k])], lost[k].data(), lost[k].size());
   }
@@ -98,7 +102,7 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
   }
   const CompensatedReduction* second = compensated(reduction, checked, options);
   if (second == nullptr) {
-    checked.device.reduce(reduction, arguments, checked.domain, checked.blocks);
+    checked.device.reduce(reduction, arguments, checked.domain, checked.blocks, options);
     return;
   }
   // the sums go where the results will be, what they lose to streams beside them
@@ -114,11 +118,11 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
     pairs.push_back(all.back());
   }
   checkReductionToStreams(second->reduction, all);
-  checked.device.reduce(second->reduction, all, checked.domain, checked.blocks);
+  checked.device.reduce(second->reduction, all, checked.domain, checked.blocks, options);
   for (const std::uint8_t sum : second->sums) {
     pairs.push_back({.region = arguments[sum].region});
   }
-  run(second->finish, pairs);
+  run(second->finish, pairs, {.intrinsics = options.intrinsics});
 }
 
 }  // namespace sk

@@ -38,13 +38,14 @@ class DeviceState {
   virtual void release() = 0;
 
   /// Only variable outputs may lack elements: they become empty.
-  virtual void run(const program::Kernel& kernel, std::span<const Argument> arguments) = 0;
+  virtual void run(const program::Kernel& kernel, std::span<const Argument> arguments,
+                   const CallOptions& options) = 0;
   /// Of a domain without elements, the identities, which then exist.
   virtual void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
-                      const Shape& domain, std::span<void* const> results) = 0;
+                      const Shape& domain, std::span<void* const> results, const CallOptions& options) = 0;
   /// `blocks`: how many there are in each dimension of the domain; one at least.
   virtual void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
-                      const Shape& domain, const Shape& blocks) = 0;
+                      const Shape& domain, const Shape& blocks, const CallOptions& options) = 0;
 
   DeviceLimits limits;
 

@@ -34,8 +34,8 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       profile(profileOf(capabilities, choices.pairs)),
       framebuffers(bound),
       pool(bound, framebuffers),
-      programs(*this),
       sinkPrograms(*this) {
+  choose({});
   limits.textureSize = capabilities.textureSize;
   limits.textureLayers = capabilities.textureLayers;
   if (choices.textureLimit > 0 && choices.textureLimit < limits.textureSize) {
@@ -74,7 +74,7 @@ GlDevice::~GlDevice() {
   if (current) {
     pool.clear();
     framebuffers.clear();
-    programs.clear();
+    for (auto& [choice, programs] : caches_) programs.clear();
     sinkPrograms.clear();
     samplers.clear();
     vertexArray = {};
@@ -91,7 +91,7 @@ void GlDevice::forgetObjects() noexcept {
   }
   pool.forget();
   framebuffers.forget();
-  programs.forget();
+  for (auto& [choice, programs] : caches_) programs.forget();
   sinkPrograms.forget();
   samplers.forget();
   vertexArray.forget();
@@ -100,6 +100,21 @@ void GlDevice::forgetObjects() noexcept {
 std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& element, const Shape& shape) {
   const DeviceScope scope(*this);
   return std::make_unique<GlStream>(*this, element, shape);
+}
+
+void GlDevice::choose(const CallOptions& options) {
+  const bool isExtended =
+      options.precision == Precision::Extended || options.accumulate == Accumulate::Extended;
+  const ProgramChoice choice{.accurate = options.intrinsics != Intrinsics::Fast,
+                             .doubles = isExtended ? assemble::Doubles::Pairs : profile.doubles};
+  auto found = caches_.find(choice);
+  if (found == caches_.end()) {
+    assemble::Profile chosen = profile;
+    chosen.accurate = choice.accurate;
+    chosen.doubles = choice.doubles;
+    found = caches_.try_emplace(choice, *this, chosen).first;
+  }
+  programs_ = &found->second;
 }
 
 void GlDevice::finish() {

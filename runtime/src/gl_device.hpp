@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,13 @@ struct DeviceChoices {
   bool pairs = false;               ///< doubles are pairs of floats even where GLSL has double
 };
 
+/// What of a call's options is in all of its programs.
+struct ProgramChoice {
+  bool accurate = true;
+  assemble::Doubles doubles = assemble::Doubles::Native;
+  auto operator<=>(const ProgramChoice&) const = default;
+};
+
 class GlDevice final : public DeviceState {
  public:
   GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices);
@@ -45,11 +53,12 @@ class GlDevice final : public DeviceState {
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;
   void finish() override;
   void release() override { context.release(); }
-  void run(const program::Kernel& kernel, std::span<const Argument> arguments) override;
+  void run(const program::Kernel& kernel, std::span<const Argument> arguments,
+           const CallOptions& options) override;
   void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
-              std::span<void* const> results) override;
+              std::span<void* const> results, const CallOptions& options) override;
   void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
-              const Shape& blocks) override;
+              const Shape& blocks, const CallOptions& options) override;
 
   /// New planes of an element type, with undefined texels. Throws sk::Error saying what for, where
   /// there is no memory.
@@ -59,16 +68,19 @@ class GlDevice final : public DeviceState {
 
   assemble::TextureLimits textureLimits() const { return {limits.textureSize, limits.textureLayers}; }
 
+  /// From here on, the programs are those for a call with these options.
+  void choose(const CallOptions& options);
+  ProgramCache& programs() { return *programs_; }
+
   /// Throws sk::Error where the driver has reported an error since it was last asked.
   void throwPendingError();
 
   gl::Context context;
   const gl::Capabilities capabilities;
-  const assemble::Profile profile;       ///< of the table, but for what the device has of doubles
+  const assemble::Profile profile;       ///< of the table, but for what the device has
   gl::BoundState bound;
   FramebufferCache framebuffers;
   SurfacePool pool;
-  ProgramCache programs;
   SinkPrograms sinkPrograms;
   gl::LinearSamplers samplers;
   gl::VertexArray vertexArray;
@@ -77,6 +89,9 @@ class GlDevice final : public DeviceState {
 
  private:
   void forgetObjects() noexcept;
+
+  std::map<ProgramChoice, ProgramCache> caches_;
+  ProgramCache* programs_;               ///< one of them
 };
 
 /// Makes a device's context current and ready for passes, for as long as it lives.

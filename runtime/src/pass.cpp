@@ -123,7 +123,7 @@ void bindOperands(GlDevice& device, KernelProgram& program, const program::Kerne
 void drawKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
                 const Placement& domain, std::span<const Rect> rects, const Target& target,
                 std::span<const gl::Texture> bundles, const assemble::Task& task) {
-  KernelProgram& program = device.programs.kernelProgram(kernel, operands, domain, task);
+  KernelProgram& program = device.programs().kernelProgram(kernel, operands, domain, task);
   device.bound.program(program.program.name());
   bindOperands(device, program, kernel, operands, bundles);
   program.domain.set(domain);

@@ -48,7 +48,8 @@ KernelProgram::Read readOf(const gl::Program& program, std::size_t i, const prog
 
 }  // namespace
 
-ProgramCache::ProgramCache(GlDevice& device) : device_(device) {}
+ProgramCache::ProgramCache(GlDevice& device, const assemble::Profile& profile)
+    : device_(device), profile_(profile) {}
 
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                            const assemble::Placement& domain, const assemble::Task& task) {
@@ -64,7 +65,7 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::s
 std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Kernel& kernel,
                                                                const assemble::Variant& variant) {
   auto made = std::make_unique<KernelProgram>();
-  made->program = build(kernel, assemble::fragmentProgram(device_.profile, kernel, variant));
+  made->program = build(kernel, assemble::fragmentProgram(profile_, kernel, variant));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
   made->domainRow = {made->program.location("sk_domain_row"), false};
   findParameters(*made, kernel, variant.specs);
@@ -131,7 +132,7 @@ void ProgramCache::addDoubles(KernelProgram& made, std::size_t number, const std
   for (std::size_t c = 0; c < width; ++c) {
     const std::string one = width == 1 ? name : fmt::format("{}.{}", name, "xyzw"[c]);
     const auto offset = static_cast<std::uint32_t>(parts.front().offset + c * sizeof(double));
-    const bool isNative = device_.profile.doubles == assemble::Doubles::Native;
+    const bool isNative = profile_.doubles == assemble::Doubles::Native;
     made.doubles.push_back(
         {number, isNative ? gl::DoubleUniform::bits(location(one + ".bits"), offset)
                           : gl::DoubleUniform::pair(location(one + ".hi"), location(one + ".lo"), offset)});
@@ -169,14 +170,14 @@ void ProgramCache::bindSamplers(const gl::Program& program, const program::Param
 }
 
 gl::Program ProgramCache::build(const program::Kernel& kernel, const std::string& fragmentSource) {
-  const std::string vertexSource = assemble::vertexProgram(device_.profile);
+  const std::string vertexSource = assemble::vertexProgram(profile_);
   std::string log;
   gl::Program program = gl::Program::build(vertexSource, fragmentSource, log);
   if (!program) {
     log.clear();
     gl::Program::build(vertexSource, withTellingLines(fragmentSource), log);
     throw Error(fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
-                            device_.capabilities.renderer, device_.profile.name,
+                            device_.capabilities.renderer, profile_.name,
                             withSourceNames(log, kernel.sources)));
   }
   return program;
@@ -189,7 +190,7 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     auto made = std::make_unique<ReduceProgram>();
     const bool isPartial = variant.walk == assemble::Walk::Partials;
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
-    made->kernel.program = build(kernel, assemble::reduceProgram(device_.profile, reduction, variant));
+    made->kernel.program = build(kernel, assemble::reduceProgram(profile_, reduction, variant));
     made->kernel.domainRow = {made->kernel.program.location("sk_domain_row"), false};
     if (variant.walk != assemble::Walk::Nothing) {
       findParameters(made->kernel, kernel, variant.specs);

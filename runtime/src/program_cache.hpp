@@ -74,7 +74,8 @@ struct ReduceProgram {
 
 class ProgramCache {
  public:
-  explicit ProgramCache(GlDevice& device);
+  /// Of programs for this profile.
+  ProgramCache(GlDevice& device, const assemble::Profile& profile);
   ProgramCache(const ProgramCache&) = delete;
   ProgramCache& operator=(const ProgramCache&) = delete;
 
@@ -100,6 +101,7 @@ class ProgramCache {
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);
 
   GlDevice& device_;
+  const assemble::Profile profile_;
   std::unordered_map<ProgramKey, std::unique_ptr<KernelProgram>, ProgramKeyHash> kernels_;
   std::map<ReduceKey, std::unique_ptr<ReduceProgram>> reductions_;
 };

@@ -179,7 +179,7 @@ class ReduceCall {
         variant.firstPlane = static_cast<std::uint8_t>(first);
         variant.planeCount = static_cast<std::uint8_t>(count);
       }
-      ReduceProgram& program = device_.programs.reduceProgram(reduction_, variant);
+      ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
       device_.bound.program(program.kernel.program.name());
       bindOperands(device_, program.kernel, kernel, operands);
       for (const assemble::UniformValue& value : pass.uniforms) {
@@ -217,8 +217,9 @@ class ReduceCall {
 }  // namespace
 
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
-                      std::span<void* const> results) {
+                      std::span<void* const> results, const CallOptions& options) {
   const DeviceScope scope(*this);
+  choose(options);
   const Placement placement = assemble::valuePlacement();
   PlanesLease value(*this);
   takeAccumulators(*this, reduction.fold, {1, 1}, "the result of a reduction", value);
@@ -236,8 +237,9 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
 }
 
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
-                      const Shape& blocks) {
+                      const Shape& blocks, const CallOptions& options) {
   const DeviceScope scope(*this);
+  choose(options);
   ReduceCall call(*this, reduction, arguments, domain);
   const Kernel& fold = reduction.fold;
   const auto first = static_cast<std::size_t>(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "check.hpp"
+#include "check_argument.hpp"
 #include "gl_device.hpp"
 #include "gl_stream.hpp"
 #include "iterator.hpp"
@@ -110,8 +111,9 @@ class KernelCall {
 
 }  // namespace
 
-void GlDevice::run(const Kernel& kernel, std::span<const Argument> arguments) {
+void GlDevice::run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
   const DeviceScope scope(*this);
+  choose(options);
   if (!hasSinks(kernel)) {
     KernelCall(*this, kernel, arguments).run();
     return;
@@ -124,9 +126,15 @@ void GlDevice::run(const Kernel& kernel, std::span<const Argument> arguments) {
   }
 }
 
-void run(const Kernel& kernel, std::span<const Argument> arguments) {
+void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
+  if (options.accumulate != Accumulate::Default) {
+    fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
+  }
+  if (options.precision != Precision::Default && options.precision != Precision::Single) {
+    fail(kernel, "it has no form in this precision; call it in Precision::Single");
+  }
   if (DeviceState* device = checkCall(kernel, arguments)) {
-    device->run(kernel, arguments);
+    device->run(kernel, arguments, options);
   }
 }
 

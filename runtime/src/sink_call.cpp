@@ -171,7 +171,7 @@ class SinkCall {
   }
 
   void bindTree(const Task& task, const assemble::Placement& domain, CountTree& tree) {
-    KernelProgram& program = device_.programs.kernelProgram(kernel_, operands_, domain, task);
+    KernelProgram& program = device_.programs().kernelProgram(kernel_, operands_, domain, task);
     device_.bound.program(program.program.name());
     bindPlanes(device_, {&tree.odd(), 1}, program.units);
     bindPlanes(device_, {&tree.even(), 1}, program.units + 1);

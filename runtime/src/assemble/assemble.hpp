@@ -34,6 +34,7 @@ struct Profile {
   int uniformComponents;        ///< likewise; ES counts vectors of four
   Doubles doubles;              ///< the best form that devices of the profile have
   bool precise = false;         ///< GLSL has `precise`, by GL_ARB_gpu_shader5
+  bool accurate = true;         ///< functions of ours for the intrinsics that devices get wrong
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();

@@ -203,7 +203,7 @@ Operand resultOperand(const StreamRegion& region, const Extents& blocks) {
 
 }  // namespace
 
-void NativeDevice::run(const Kernel& kernel, std::span<const Argument> arguments) {
+void NativeDevice::run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions&) {
   const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
   Operands operands(real_, kernel, arguments, domain);
   (real_ == RealType::Float ? kernel.native->single : kernel.native->reference)(operands.call());
@@ -211,7 +211,7 @@ void NativeDevice::run(const Kernel& kernel, std::span<const Argument> arguments
 }
 
 void NativeDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
-                          const Shape& domain, std::span<void* const> results) {
+                          const Shape& domain, std::span<void* const> results, const CallOptions&) {
   Folding folding(real_, reduction, arguments, domain);
   std::vector<std::pair<const program::Element*, const Components*>> values;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -232,7 +232,7 @@ void NativeDevice::reduce(const program::Reduction& reduction, std::span<const A
 }
 
 void NativeDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
-                          const Shape& domain, const Shape& blocks) {
+                          const Shape& domain, const Shape& blocks, const CallOptions&) {
   Folding folding(real_, reduction, arguments, domain);
   const Extents counts = fastestFirst(blocks);
   std::vector<std::size_t> results;

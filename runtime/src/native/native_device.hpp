@@ -25,11 +25,12 @@ class NativeDevice final : public DeviceState {
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;
   void finish() override {}
   void release() override {}
-  void run(const program::Kernel& kernel, std::span<const Argument> arguments) override;
+  void run(const program::Kernel& kernel, std::span<const Argument> arguments,
+           const CallOptions& options) override;
   void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
-              std::span<void* const> results) override;
+              std::span<void* const> results, const CallOptions& options) override;
   void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
-              const Shape& blocks) override;
+              const Shape& blocks, const CallOptions& options) override;
 
  private:
   RealType real_;
