@@ -46,6 +46,16 @@ const CompensatedReduction* compensated(const Reduction& reduction, const Checke
   if (options.accumulate == Accumulate::Tree || second == nullptr || checked.domain.size() == 0) {
     return nullptr;
   }
+  if (!checked.device.arithmetic().exactSums) {
+    if (options.accumulate == Accumulate::Compensated) {
+      fail(reduction.fold,
+           "its sums cannot be compensated on '{}', whose compiler simplifies their rounding errors away; "
+           "call it "
+           "without Accumulate::Compensated, or on another device (SK_DEVICE=native)",
+           checked.device.name());
+    }
+    return nullptr;
+  }
   const auto room = static_cast<std::size_t>(checked.device.limits.textureUnits);
   const bool fits = planesCombined(second->reduction) <= room;
   return fits || options.accumulate == Accumulate::Compensated ? second : nullptr;

@@ -13,6 +13,7 @@
 #include "assemble/assemble.hpp"
 #include "gl_device.hpp"
 #include "native/native_device.hpp"
+#include "probe.hpp"
 #include "sk/error.hpp"
 #include "stream_state.hpp"
 
@@ -74,9 +75,25 @@ bool wantsPairs(const std::string& doubles, bool guaranteedLimits) {
   return doubles.empty() ? guaranteedLimits : doubles == "pairs";
 }
 
-DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles) {
+/// The barrier that is asked for, if any.
+std::optional<Barrier> barrierOf(const std::string& name) {
+  if (name.empty()) {
+    return std::nullopt;
+  }
+  for (const auto& [barrier, known] : barrierNames) {
+    if (name == known) {
+      return barrier;
+    }
+  }
+  throw Error(
+      fmt::format("there is no barrier '{}'; choose precise, xor or none (option or SK_BARRIER)", name));
+}
+
+DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles,
+                        const std::string& barrier) {
   const bool guaranteedLimits = wantsGuaranteed(limits);
-  return {textureLimitOf(textureLimit), guaranteedLimits, wantsPairs(doubles, guaranteedLimits)};
+  return {textureLimitOf(textureLimit), guaranteedLimits, wantsPairs(doubles, guaranteedLimits),
+          barrierOf(barrier)};
 }
 
 std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
@@ -85,8 +102,9 @@ std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
     return std::make_unique<NativeDevice>(device == "native" ? RealType::Float : RealType::Double);
   }
   const gl::OpenRequest request{device, apiOf(chosen(options.profile, "SK_PROFILE"))};
-  const DeviceChoices choices = choicesOf(options.textureLimit, chosen(options.limits, "SK_LIMITS"),
-                                          chosen(options.doubles, "SK_DOUBLES"));
+  const DeviceChoices choices =
+      choicesOf(options.textureLimit, chosen(options.limits, "SK_LIMITS"),
+                chosen(options.doubles, "SK_DOUBLES"), chosen(options.barrier, "SK_BARRIER"));
   return std::make_unique<GlDevice>(gl::openContext(request), choices);
 }
 
@@ -101,7 +119,8 @@ Device::Device(Device&& other) noexcept = default;
 Device& Device::operator=(Device&& other) noexcept = default;
 
 Device Device::adopt(const DeviceOptions& options) {
-  const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles);
+  const DeviceChoices choices =
+      choicesOf(options.textureLimit, options.limits, options.doubles, options.barrier);
   return Device(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices));
 }
 
@@ -120,9 +139,12 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
 }
 
 const std::string& Device::name() const { return state().name(); }
+const std::string& Device::driver() const { return state().driver(); }
+const std::string& Device::shadingLanguage() const { return state().shadingLanguage(); }
 std::string_view Device::profile() const { return state().profileName(); }
 const DeviceLimits& Device::limits() const { return state().limits; }
 bool Device::isSoftware() const { return state().isSoftware(); }
+const Arithmetic& Device::arithmetic() { return state().arithmetic(); }
 void Device::finish() { state().finish(); }
 void Device::release() { state().release(); }
 

@@ -24,13 +24,17 @@ class DeviceState {
   DeviceState& operator=(const DeviceState&) = delete;
 
   virtual const std::string& name() const = 0;
+  virtual const std::string& driver() const = 0;
+  virtual const std::string& shadingLanguage() const = 0;
   virtual std::string_view profileName() const = 0;
   virtual bool isSoftware() const = 0;
+  /// Tries the device out, unless that is known.
+  virtual const Arithmetic& arithmetic() = 0;
   /// Whether scatter outputs may combine what comes with what they hold.
   virtual bool combinesScattered() const = 0;
   /// Throws sk::Error where this device has no program for the kernel.
-  virtual void checkProgram(const program::Kernel& kernel) const = 0;
-  virtual void checkProgram(const program::Reduction& reduction) const = 0;
+  virtual void checkProgram(const program::Kernel& kernel) = 0;
+  virtual void checkProgram(const program::Reduction& reduction) = 0;
 
   /// Throws sk::Error where there is no room.
   virtual std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) = 0;

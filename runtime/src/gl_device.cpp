@@ -8,9 +8,11 @@
 
 #include <fmt/format.h>
 
+#include "check_argument.hpp"
 #include "gl/commands.hpp"
 #include "gl/errors.hpp"
 #include "gl_stream.hpp"
+#include "probe.hpp"
 #include "sk/error.hpp"
 
 namespace sk {
@@ -19,11 +21,24 @@ namespace {
 
 assemble::Profile profileOf(const gl::Capabilities& capabilities, bool pairs) {
   assemble::Profile profile = *assemble::findProfile(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300");
-  profile.precise = capabilities.hasPrecise;
   if (!capabilities.hasDoubles || pairs) {
     profile.doubles = assemble::Doubles::Pairs;
   }
   return profile;
+}
+
+/// The one that is asked for, else the strongest that the language has.
+Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& choices) {
+  if (choices.barrier == Barrier::Precise && !capabilities.hasPrecise) {
+    throw Error(fmt::format("'{}' has no `precise` in its {}; choose xor or none (option or SK_BARRIER)",
+                            capabilities.renderer,
+                            capabilities.api == gl::Api::Gl ? "GLSL 3.30" : "ESSL 3.00"));
+  }
+  return choices.barrier.value_or(capabilities.hasPrecise ? Barrier::Precise : Barrier::Xor);
+}
+
+bool isExtended(const CallOptions& options) {
+  return options.precision == Precision::Extended || options.accumulate == Accumulate::Extended;
 }
 
 }  // namespace
@@ -32,6 +47,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     : context(std::move(opened.context)),
       capabilities(std::move(opened.capabilities)),
       profile(profileOf(capabilities, choices.pairs)),
+      barrier(barrierOf(capabilities, choices)),
       framebuffers(bound),
       pool(bound, framebuffers),
       sinkPrograms(*this) {
@@ -48,6 +64,9 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     limits.drawBuffers = profile.drawBuffers;
     limits.textureUnits = profile.textureUnits;
     limits.uniformComponents = profile.uniformComponents;
+  }
+  if (choices.barrier) {
+    arithmetic_ = {.exactSums = *choices.barrier != Barrier::None, .barrier = *choices.barrier};
   }
   const gl::CurrentScope current(context);
   vertexArray = gl::VertexArray::create();
@@ -103,15 +122,15 @@ std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& elem
 }
 
 void GlDevice::choose(const CallOptions& options) {
-  const bool isExtended =
-      options.precision == Precision::Extended || options.accumulate == Accumulate::Extended;
   const ProgramChoice choice{.accurate = options.intrinsics != Intrinsics::Fast,
-                             .doubles = isExtended ? assemble::Doubles::Pairs : profile.doubles};
+                             .doubles = isExtended(options) ? assemble::Doubles::Pairs : profile.doubles,
+                             .barrier = barrier};
   auto found = caches_.find(choice);
   if (found == caches_.end()) {
     assemble::Profile chosen = profile;
     chosen.accurate = choice.accurate;
     chosen.doubles = choice.doubles;
+    chosen.barrier = choice.barrier;
     found = caches_.try_emplace(choice, *this, chosen).first;
   }
   programs_ = &found->second;
@@ -121,6 +140,44 @@ void GlDevice::finish() {
   const DeviceScope scope(*this);
   gl::finish();
   throwPendingError();
+}
+
+// The trial is a program with exact sums, too, and goes the way of all others.
+const Arithmetic& GlDevice::arithmetic() {
+  if (!arithmetic_) {
+    arithmetic_.emplace();
+    arithmetic_ = probeArithmetic(*this);
+  }
+  return *arithmetic_;
+}
+
+void GlDevice::needExactSums(const program::Kernel& kernel) {
+  if (!arithmetic().exactSums) {
+    fail(kernel,
+         "it computes with pairs of floats, and the compiler of '{}' simplifies their rounding errors away; "
+         "use float, "
+         "or a device that has doubles (SK_DEVICE=native)",
+         name());
+  }
+}
+
+void GlDevice::checkProgram(const program::Kernel& kernel) {
+  if (kernel.usesDoubles && profile.doubles == assemble::Doubles::Pairs) {
+    needExactSums(kernel);
+  } else if (kernel.usesExactSums) {
+    arithmetic();
+  }
+}
+
+void GlDevice::checkProgram(const program::Reduction& reduction) {
+  checkProgram(reduction.fold);
+  checkProgram(reduction.combine);
+}
+
+void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& options) {
+  if (isExtended(options)) {
+    needExactSums(kernel);
+  }
 }
 
 std::vector<Surface> GlDevice::takePlanes(const program::Element& element,

@@ -30,12 +30,14 @@ struct DeviceChoices {
   std::int32_t textureLimit = 0;    ///< 0: the device's own
   bool guaranteedLimits = false;
   bool pairs = false;               ///< doubles are pairs of floats even where GLSL has double
+  std::optional<Barrier> barrier;   ///< none: the one that proves itself
 };
 
 /// What of a call's options is in all of its programs.
 struct ProgramChoice {
   bool accurate = true;
   assemble::Doubles doubles = assemble::Doubles::Native;
+  Barrier barrier = Barrier::Xor;
   auto operator<=>(const ProgramChoice&) const = default;
 };
 
@@ -45,11 +47,14 @@ class GlDevice final : public DeviceState {
   ~GlDevice() override;
 
   const std::string& name() const override { return capabilities.renderer; }
+  const std::string& driver() const override { return capabilities.driver; }
+  const std::string& shadingLanguage() const override { return capabilities.shadingLanguage; }
   std::string_view profileName() const override { return profile.name; }
   bool isSoftware() const override { return capabilities.isSoftware; }
+  const Arithmetic& arithmetic() override;
   bool combinesScattered() const override { return capabilities.blendsFloats; }
-  void checkProgram(const program::Kernel&) const override {}
-  void checkProgram(const program::Reduction&) const override {}
+  void checkProgram(const program::Kernel& kernel) override;
+  void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;
   void finish() override;
   void release() override { context.release(); }
@@ -68,6 +73,8 @@ class GlDevice final : public DeviceState {
 
   assemble::TextureLimits textureLimits() const { return {limits.textureSize, limits.textureLayers}; }
 
+  /// Throws sk::Error where the device computes nothing as the options say. No DeviceScope is open.
+  void checkOptions(const program::Kernel& kernel, const CallOptions& options);
   /// From here on, the programs are those for a call with these options.
   void choose(const CallOptions& options);
   ProgramCache& programs() { return *programs_; }
@@ -78,6 +85,7 @@ class GlDevice final : public DeviceState {
   gl::Context context;
   const gl::Capabilities capabilities;
   const assemble::Profile profile;       ///< of the table, but for what the device has
+  Barrier barrier;                       ///< of programs; only arithmetic() tells whether it holds
   gl::BoundState bound;
   FramebufferCache framebuffers;
   SurfacePool pool;
@@ -89,9 +97,11 @@ class GlDevice final : public DeviceState {
 
  private:
   void forgetObjects() noexcept;
+  void needExactSums(const program::Kernel& kernel);
 
   std::map<ProgramChoice, ProgramCache> caches_;
   ProgramCache* programs_;               ///< one of them
+  std::optional<Arithmetic> arithmetic_;
 };
 
 /// Makes a device's context current and ready for passes, for as long as it lives.

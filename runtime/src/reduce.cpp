@@ -218,6 +218,7 @@ class ReduceCall {
 
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
                       std::span<void* const> results, const CallOptions& options) {
+  checkOptions(reduction.fold, options);
   const DeviceScope scope(*this);
   choose(options);
   const Placement placement = assemble::valuePlacement();
@@ -238,6 +239,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
 
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
                       const Shape& blocks, const CallOptions& options) {
+  checkOptions(reduction.fold, options);
   const DeviceScope scope(*this);
   choose(options);
   ReduceCall call(*this, reduction, arguments, domain);

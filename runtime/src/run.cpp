@@ -112,6 +112,7 @@ class KernelCall {
 }  // namespace
 
 void GlDevice::run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
+  checkOptions(kernel, options);
   const DeviceScope scope(*this);
   choose(options);
   if (!hasSinks(kernel)) {

@@ -19,7 +19,7 @@ compiler/driver       support ir split transforms emit frontend driver assemble 
 runtime/include/sk    sk
 runtime/src           sk assemble gl
 runtime/tests         sk assemble gl epoxy
-runtime/src/assemble  sk/program.hpp assemble
+runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
 examples              sk
 tests                 sk

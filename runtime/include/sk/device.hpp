@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "sk/arithmetic.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
 #include "sk/types.hpp"
@@ -37,6 +38,9 @@ struct DeviceOptions {
   /// "native": doubles are the device's own, where it has them. "pairs": they are pairs of floats. Empty:
   /// environment variable SK_DOUBLES, and without it "native", or "pairs" where limits are "guaranteed".
   std::string doubles = {};
+  /// "precise", "xor" or "none": the Barrier of the device's programs, taken without a trial. Empty: environment
+  /// variable SK_BARRIER, and without it the first of precise and xor that proves itself (Device::arithmetic).
+  std::string barrier = {};
 };
 
 struct DeviceLimits {
@@ -82,11 +86,18 @@ class Device {
 
   /// The renderer's name as the driver gives it.
   const std::string& name() const;
+  /// The version of GL and of the driver, and that of the shading language, as the driver words them; empty where
+  /// there is no GL.
+  const std::string& driver() const;
+  const std::string& shadingLanguage() const;
   /// "glsl330" or "essl300".
   std::string_view profile() const;
   const DeviceLimits& limits() const;
   /// Whether the renderer is a program on the CPU.
   bool isSoftware() const;
+  /// What the device's float arithmetic is good for. The first time that anybody asks, a program tries it with a
+  /// thousand pairs of floats, in some ms; what comes of it is kept for the driver, on disk, too (docs/runtime.md).
+  const Arithmetic& arithmetic();
 
   /// Waits until everything that was asked of the device is done.
   void finish();

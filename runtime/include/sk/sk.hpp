@@ -4,6 +4,7 @@
 // headers that `skc` writes.
 #pragma once
 
+#include "sk/arithmetic.hpp"
 #include "sk/device.hpp"
 #include "sk/error.hpp"
 #include "sk/iter.hpp"

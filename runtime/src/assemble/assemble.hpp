@@ -14,6 +14,7 @@
 
 #include "assemble/condition.hpp"
 #include "assemble/placement.hpp"
+#include "sk/arithmetic.hpp"
 #include "sk/program.hpp"
 
 namespace sk::assemble {
@@ -33,8 +34,9 @@ struct Profile {
   int textureUnits;             ///< guaranteed minimum for a fragment program
   int uniformComponents;        ///< likewise; ES counts vectors of four
   Doubles doubles;              ///< the best form that devices of the profile have
-  bool precise = false;         ///< GLSL has `precise`, by GL_ARB_gpu_shader5
   bool accurate = true;         ///< functions of ours for the intrinsics that devices get wrong
+  Barrier barrier =
+      Barrier::Xor;   ///< Precise needs GL_ARB_gpu_shader5, which devices of the profile may have
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();

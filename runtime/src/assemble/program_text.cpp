@@ -99,9 +99,9 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   const bool hasExactFloats =
       kernel.usesExactSums || (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
-  if (hasExactFloats) program += exactExtensions(profile.precise);
+  if (hasExactFloats) program += exactExtensions(profile.barrier);
   if (profile.es) program += esPrecision;
-  if (hasExactFloats) program += exactDefinitions(profile.precise);
+  if (hasExactFloats) program += exactDefinitions(profile.barrier);
   if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles);
   addForeign(program, kernel.declarations);
   program += '\n';

@@ -69,6 +69,7 @@ Capabilities readCapabilities() {
   found.version = epoxy_gl_version();
   found.renderer = stringOf(GL_RENDERER);
   found.driver = stringOf(GL_VERSION);
+  found.shadingLanguage = stringOf(GL_SHADING_LANGUAGE_VERSION);
   found.isSoftware = isSoftwareRenderer(found.renderer);
   if (found.version < 30) {
     return found;

@@ -22,6 +22,7 @@ struct Capabilities {
   bool filtersFloats = false;    ///< of 32 bits, linearly
   std::string renderer;
   std::string driver;            ///< GL_VERSION, as the driver words it
+  std::string shadingLanguage;   ///< GL_SHADING_LANGUAGE_VERSION, likewise
   int textureSize = 0;           ///< also as a viewport
   int textureLayers = 0;         ///< of an array texture
   int drawBuffers = 0;

@@ -34,13 +34,13 @@ NativeDevice::~NativeDevice() {
   }
 }
 
-void NativeDevice::checkProgram(const program::Kernel& kernel) const {
+void NativeDevice::checkProgram(const program::Kernel& kernel) {
   if (kernel.native == nullptr) {
     failWithoutCode(kernel);
   }
 }
 
-void NativeDevice::checkProgram(const program::Reduction& reduction) const {
+void NativeDevice::checkProgram(const program::Reduction& reduction) {
   if (reduction.native == nullptr) {
     failWithoutCode(reduction.fold);
   }

@@ -17,11 +17,14 @@ class NativeDevice final : public DeviceState {
   RealType real() const { return real_; }
 
   const std::string& name() const override { return name_; }
+  const std::string& driver() const override { return none_; }
+  const std::string& shadingLanguage() const override { return none_; }
   std::string_view profileName() const override { return "native"; }
   bool isSoftware() const override { return true; }
+  const Arithmetic& arithmetic() override { return arithmetic_; }
   bool combinesScattered() const override { return true; }
-  void checkProgram(const program::Kernel& kernel) const override;
-  void checkProgram(const program::Reduction& reduction) const override;
+  void checkProgram(const program::Kernel& kernel) override;
+  void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;
   void finish() override {}
   void release() override {}
@@ -35,6 +38,8 @@ class NativeDevice final : public DeviceState {
  private:
   RealType real_;
   std::string name_;
+  std::string none_;
+  Arithmetic arithmetic_;   ///< IEEE 754's, which compilers keep to
 };
 
 }  // namespace sk

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: a device finds out by itself what keeps rounding errors from its compiler, and remembers it; where nothing
+// does, what is built on them is refused, and what is not works.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+
+#include "barriers.sk.hpp"
+#include "sk/sk.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Contains;
+
+/// 1, a million times 2^-25, -1: a plain sum of floats, however grouped, loses some of the small ones.
+constexpr std::size_t many = 1 << 20;
+std::vector<float> cancelling() {
+  std::vector<float> x(many + 2, 0x1p-25F);
+  x.front() = 1;
+  x.back() = -1;
+  return x;
+}
+
+float compensatedSum(sk::Device& device) {
+  auto x = device.stream<float>({static_cast<std::int64_t>(many + 2)});
+  x.write(cancelling());
+  return barriers::sum.with({.accumulate = sk::Accumulate::Compensated})(x);
+}
+
+sk::Device deviceOf(const std::string& profile, const std::string& barrier) {
+  return sk::Device({.profile = profile, .doubles = "pairs", .barrier = barrier});
+}
+
+/// SK_CACHE is an empty folder for as long as this lives.
+class Cache {
+ public:
+  Cache() : folder_(fs::temp_directory_path() / ("sk_barriers_" + std::to_string(::getpid()))) {
+    if (const char* old = std::getenv("SK_CACHE")) old_ = old;
+    ::setenv("SK_CACHE", folder_.c_str(), 1);
+  }
+  ~Cache() {
+    fs::remove_all(folder_);
+    old_.empty() ? ::unsetenv("SK_CACHE") : ::setenv("SK_CACHE", old_.c_str(), 1);
+  }
+  Cache(const Cache&) = delete;
+  Cache& operator=(const Cache&) = delete;
+
+  /// The one file in it.
+  fs::path file() const {
+    REQUIRE(std::distance(fs::directory_iterator(folder_), {}) == 1);
+    return fs::directory_iterator(folder_)->path();
+  }
+  std::string lastLine() const {
+    std::ifstream in(file());
+    std::string line;
+    while (in.peek() != EOF) std::getline(in, line);
+    return line;
+  }
+  void replaceLastLine(const std::string& old, const std::string& text) const {
+    std::ifstream in(file());
+    std::string all(std::istreambuf_iterator<char>(in), {});
+    all.replace(all.rfind(old), old.size(), text);
+    std::ofstream(file()) << all;
+  }
+
+ private:
+  fs::path folder_;
+  std::string old_;
+};
+
+TEST_CASE("every barrier that a device takes for good keeps sums exact") {
+  for (const std::string profile : {"glsl330", "essl300"}) {
+    for (const std::string barrier : {"", "xor"}) {
+      INFO(profile << " '" << barrier << "'");
+      sk::Device device = deviceOf(profile, barrier);
+      REQUIRE(device.arithmetic().exactSums);
+      CHECK(device.arithmetic().barrier != sk::Barrier::None);
+      CHECK(compensatedSum(device) == many * 0x1p-25F);
+    }
+  }
+}
+
+TEST_CASE("native code needs no barrier") {
+  sk::Device device = sk::Device::native();
+  CHECK(device.arithmetic().exactSums);
+  CHECK(device.arithmetic().barrier == sk::Barrier::None);
+  CHECK(device.driver().empty());
+}
+
+TEST_CASE("where no barrier holds, sums are plain, and compensated ones are refused") {
+  for (const std::string profile : {"glsl330", "essl300"}) {
+    sk::Device device = deviceOf(profile, "none");
+    CHECK_FALSE(device.arithmetic().exactSums);
+    auto x = device.stream<float>({static_cast<std::int64_t>(many + 2)});
+    x.write(cancelling());
+    CHECK_THROWS_WITH(compensatedSum(device),
+                      Contains("barriers::sum: its sums cannot be compensated on '") &&
+                          Contains("call it without Accumulate::Compensated"));
+    const float plain = barriers::sum.with({.accumulate = sk::Accumulate::Tree})(x);
+    CHECK(barriers::sum(x) == plain);
+    auto total = device.stream<float>({1});
+    barriers::sum(x, total);
+    CHECK(total.read().front() == plain);
+  }
+}
+
+TEST_CASE("where no barrier holds, doubles in pairs are refused, and nothing else is") {
+  sk::Device device = deviceOf("essl300", "none");
+  auto x = device.stream<double>({3});
+  x.write(std::vector<double>{1, 2, 1e-300});
+  CHECK(x.read() == std::vector<double>{1, 2, 1e-300});
+  const auto refused = Contains("doubles") && Contains("pairs of floats") && Contains("SK_DEVICE=native");
+  CHECK_THROWS_WITH(barriers::add(x, x, x), refused && Contains("barriers::add: "));
+  CHECK_THROWS_WITH(barriers::sumDoubles(x), refused && Contains("barriers::sumDoubles: "));
+  auto y = device.stream<float>({2});
+  y.write(std::vector<float>{1, 2});
+  barriers::twice(y, y);
+  CHECK(y.read() == std::vector<float>{2, 4});
+}
+
+TEST_CASE("a barrier that there is not") {
+  CHECK_THROWS_WITH(deviceOf("essl300", "precise"), Contains("has no `precise` in profile essl300"));
+  CHECK_THROWS_WITH(deviceOf("glsl330", "fence"),
+                    "there is no barrier 'fence'; choose precise, xor or none (option or SK_BARRIER)");
+}
+
+TEST_CASE("what was found out is remembered, and rubbish is not believed") {
+  const Cache cache;
+  const auto found = [] { return sk::Device({.profile = "essl300"}).arithmetic().barrier; };
+  REQUIRE(found() == sk::Barrier::Xor);
+  CHECK(cache.lastLine() == "xor");
+  cache.replaceLastLine("xor", "none");
+  CHECK(found() == sk::Barrier::None);  // it was believed, hence not tried again
+  cache.replaceLastLine("none", "precise");
+  CHECK(found() == sk::Barrier::Xor);  // which this language does not have
+  CHECK(cache.lastLine() == "xor");
+  std::ofstream(cache.file()) << std::string(1000, '\xff');
+  CHECK(found() == sk::Barrier::Xor);
+  CHECK(cache.lastLine() == "xor");
+}
+
+TEST_CASE("the trial is cheap, and only for those who need it") {
+  const Cache cache;
+  sk::Device device({.profile = "glsl330"});
+  auto y = device.stream<float>({2});
+  y.write(std::vector<float>{1, 2});
+  barriers::twice(y, y);
+  CHECK_FALSE(fs::exists(std::getenv("SK_CACHE")));
+  CHECK(barriers::sum(y) == 6.0F);
+  CHECK(fs::exists(cache.file()));
+}
+
+}  // namespace
