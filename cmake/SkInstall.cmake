@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# What `cmake --install` puts where: skc, the runtime's libraries and headers, and the CMake package
+# What `cmake --install` puts where: skc, sk, the runtime's libraries and headers, and the CMake package
 # that finds them wherever the folder is moved to. Nothing else: prelude and intrinsics are in skc.
 include(CMakePackageConfigHelpers)
 
@@ -18,6 +18,10 @@ if(SK_BUILD_COMPILER)
   # An LLVM outside of the linker's own folders is found by the installed skc too.
   set_target_properties(skc PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
   install(TARGETS skc)
+endif()
+
+if(SK_BUILD_TOOLS)
+  install(TARGETS sk)
 endif()
 
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/StreamKernelConfig.cmake.in"

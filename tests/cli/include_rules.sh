@@ -18,6 +18,7 @@ compiler/frontend     support ir frontend clang llvm
 compiler/driver       support ir split transforms emit frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
 runtime/src           sk assemble gl
+runtime/tools         sk
 runtime/tests         sk assemble gl epoxy
 runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3

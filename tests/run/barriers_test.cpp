@@ -117,9 +117,9 @@ TEST_CASE("where no barrier holds, doubles in pairs are refused, and nothing els
   auto x = device.stream<double>({3});
   x.write(std::vector<double>{1, 2, 1e-300});
   CHECK(x.read() == std::vector<double>{1, 2, 1e-300});
-  const auto refused = Contains("doubles") && Contains("pairs of floats") && Contains("SK_DEVICE=native");
-  CHECK_THROWS_WITH(barriers::add(x, x, x), refused && Contains("barriers::add: "));
-  CHECK_THROWS_WITH(barriers::sumDoubles(x), refused && Contains("barriers::sumDoubles: "));
+  CHECK_THROWS_WITH(barriers::add(x, x, x), Contains("barriers::add: it computes with pairs of floats") &&
+                                                Contains("SK_DEVICE=native"));
+  CHECK_THROWS_WITH(barriers::sumDoubles(x), Contains("barriers::sumDoubles: it computes with pairs"));
   auto y = device.stream<float>({2});
   y.write(std::vector<float>{1, 2});
   barriers::twice(y, y);
@@ -127,7 +127,7 @@ TEST_CASE("where no barrier holds, doubles in pairs are refused, and nothing els
 }
 
 TEST_CASE("a barrier that there is not") {
-  CHECK_THROWS_WITH(deviceOf("essl300", "precise"), Contains("has no `precise` in profile essl300"));
+  CHECK_THROWS_WITH(deviceOf("essl300", "precise"), Contains("has no `precise` in its ESSL 3.00"));
   CHECK_THROWS_WITH(deviceOf("glsl330", "fence"),
                     "there is no barrier 'fence'; choose precise, xor or none (option or SK_BARRIER)");
 }

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+//
+// The order of the entries, which is that of the report.
+#include "info/device_info.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+
+#include "cache_folder.hpp"
+#include "info/probes.hpp"
+
+namespace sk_tool {
+
+bool isNative(const sk::Device& device) { return device.profile() == "native"; }
+
+sk::DeviceOptions plainOptions(const std::string& device, const std::string& profile) {
+  return {.device = device,
+          .profile = profile,
+          .textureLimit = INT32_MAX,
+          .limits = "device",
+          .doubles = "native"};
+}
+
+Json describe(const sk::Device& device) {
+  Json info;
+  info["name"] = device.name();
+  info["profile"] = device.profile();
+  if (isNative(device)) {
+    info["processor"] = probeProcessor();
+    return info;
+  }
+  info["driver"] = device.driver();
+  info["shading_language"] = device.shadingLanguage();
+  info["software"] = device.isSoftware();
+  const sk::DeviceLimits& limits = device.limits();
+  info["limits"] = {{"texture_side", limits.textureSize},
+                    {"texture_layers", limits.textureLayers},
+                    {"draw_buffers", limits.drawBuffers},
+                    {"texture_units", limits.textureUnits},
+                    {"uniform_components", limits.uniformComponents}};
+  return info;
+}
+
+void measure(sk::Device& device, Json& info) {
+  const auto start = std::chrono::steady_clock::now();
+  const bool hasGl = !isNative(device);
+  if (hasGl) info["allocates"] = probeAllocations(device);
+  info["operations"] = probeOperations(device);
+  info["contraction"] = probeContraction(device);
+  info["functions"] = probeFunctions(device);
+  info["special_values"] = probeSpecialValues(device);
+  if (hasGl) {
+    info["exact_sums"] = probeExactSums(device);
+    info["half_stores"] = probeHalfStores(device);
+    info["filter"] = probeFilter(device);
+  }
+  info["indices"] = probeIndices(device);
+  info["doubles"] = probeDoubles(device);
+  info["costs"] = probeCosts(device);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  info["measured_in_seconds"] = std::round(10 * taken.count()) / 10;
+}
+
+std::string keyOf(const sk::Device& device) {
+  const std::string driver = isNative(device) ? probeProcessor().dump() : device.driver();
+  return sk::driverKey(device.name(), driver, device.profile());
+}
+
+}  // namespace sk_tool

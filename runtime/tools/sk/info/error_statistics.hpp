@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// Errors in units in the last place, as the GPU floating-point paranoia tells them (Hillesland and Lastra, 2004): the
+// signed interval, beside the largest and the mean magnitude.
+#pragma once
+
+#include <cstddef>
+
+#include "info/device_info.hpp"
+
+namespace sk_tool {
+
+/// The distance between floats around a number: 2^-149 below the normal ones.
+double ulpOf(double number);
+
+/// `value` with three significant digits, so that figures of the same run read the same.
+double rounded(double value);
+
+class ErrorStatistics {
+ public:
+  /// `reference` is a number that floats reach.
+  void add(float got, double reference, double argument);
+
+  /// "max", "mean", "min_signed" and "max_signed" in ulp, "max_absolute", "worst_at" (the argument) and "not_finite" (how
+  /// many results were no numbers; they are in none of the others).
+  Json json() const;
+  double max() const { return max_; }
+  std::size_t notFinite() const { return notFinite_; }
+
+ private:
+  std::size_t count_ = 0;
+  std::size_t notFinite_ = 0;
+  double sum_ = 0, max_ = 0, least_ = 0, most_ = 0, maxAbsolute_ = 0, worstAt_ = 0;
+};
+
+}  // namespace sk_tool

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+//
+// Functions by range. What a float argument is, the device and the host agree on; the host computes in double, whose own
+// error (1 ulp of double) does not count.
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "info/error_statistics.hpp"
+#include "info/functions.sk.hpp"
+#include "info/numbers.hpp"
+#include "info/probes.hpp"
+
+namespace sk_tool {
+
+namespace {
+
+constexpr std::size_t count = 1 << 15;
+
+enum class Spread { Linear, Logarithmic };
+
+struct Range {
+  Spread spread = Spread::Linear;
+  double low = 1, high = 1;
+
+  float draw(Numbers& numbers) const {
+    return spread == Spread::Linear ? numbers.linear(low, high) : numbers.logarithmic(low, high);
+  }
+  std::string text() const { return fmt::format("[{:.6g}, {:.6g}]", low, high); }
+};
+
+/// As functions.sk numbers them.
+enum Function : unsigned {
+#define SK_FUNCTION(name) f_##name,
+#define SK_RANGE(name, spread, low, high)
+#define SK_FUNCTION2(name) f_##name,
+#define SK_RANGE2(name, spread, low, high, spread2, low2, high2)
+#include "info/functions.def"
+};
+
+namespace reference {
+double sin(double x) { return std::sin(x); }
+double cos(double x) { return std::cos(x); }
+double tan(double x) { return std::tan(x); }
+double asin(double x) { return std::asin(x); }
+double acos(double x) { return std::acos(x); }
+double atan(double x) { return std::atan(x); }
+double sinh(double x) { return std::sinh(x); }
+double cosh(double x) { return std::cosh(x); }
+double tanh(double x) { return std::tanh(x); }
+double asinh(double x) { return std::asinh(x); }
+double acosh(double x) { return std::acosh(x); }
+double atanh(double x) { return std::atanh(x); }
+double exp(double x) { return std::exp(x); }
+double exp2(double x) { return std::exp2(x); }
+double log(double x) { return std::log(x); }
+double log2(double x) { return std::log2(x); }
+double log10(double x) { return std::log10(x); }
+double sqrt(double x) { return std::sqrt(x); }
+double inversesqrt(double x) { return 1 / std::sqrt(x); }
+double fract(double x) { return x - std::floor(x); }
+double pow(double x, double y) { return std::pow(x, y); }
+double atan2(double y, double x) { return std::atan2(y, x); }
+double mod(double x, double y) { return x - y * std::floor(x / y); }
+}  // namespace reference
+
+struct Row {
+  const char* name;
+  Function function;
+  double (*one)(double);  ///< null: it has two arguments
+  double (*two)(double, double);
+  Range x, y;
+};
+
+const std::vector<Row>& rows() {
+  static const std::vector<Row> table{
+#define SK_FUNCTION(name)
+#define SK_RANGE(name, spread, low, high) \
+  {#name, f_##name, reference::name, nullptr, {Spread::spread, low, high}, {}},
+#define SK_FUNCTION2(name)
+#define SK_RANGE2(name, spread, low, high, spread2, low2, high2) \
+  {#name, f_##name, nullptr, reference::name, {Spread::spread, low, high}, {Spread::spread2, low2, high2}},
+#include "info/functions.def"
+  };
+  return table;
+}
+
+Json errorsOf(sk::Device& device, const Row& row) {
+  Numbers numbers(static_cast<unsigned>(&row - rows().data()));
+  std::vector<float> x(count);
+  std::vector<float> y(count, 1.0F);
+  for (std::size_t i = 0; i < count; ++i) {
+    x[i] = row.x.draw(numbers);
+    if (row.two != nullptr) y[i] = row.y.draw(numbers);
+  }
+  auto a = streamOf(device, x);
+  auto b = streamOf(device, y);
+  auto r = device.stream<float>(a.shape());
+  probes::function.with({.intrinsics = sk::Intrinsics::Fast})(row.function, a, b, r);
+  const std::vector<float> got = r.read();
+  ErrorStatistics errors;
+  for (std::size_t i = 0; i < count; ++i) {
+    errors.add(got[i], row.one != nullptr ? row.one(x[i]) : row.two(x[i], y[i]), x[i]);
+  }
+  Json json = {{"name", row.name}, {"range", row.x.text()}};
+  if (row.two != nullptr) json["range2"] = row.y.text();
+  json.update(errors.json());
+  return json;
+}
+
+}  // namespace
+
+Json probeFunctions(sk::Device& device) {
+  Json list = Json::array();
+  for (const Row& row : rows()) list.push_back(errorsOf(device, row));
+  return list;
+}
+
+}  // namespace sk_tool

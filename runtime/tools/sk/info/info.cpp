@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+//
+// Options, which devices, and what is kept of them.
+#include "info/info.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cache_folder.hpp"
+#include "info/device_info.hpp"
+#include "info/report.hpp"
+#include "sk/error.hpp"
+
+namespace sk_tool {
+
+namespace {
+
+/// Of the entries; another one makes what was kept worthless.
+constexpr int schema = 1;
+
+struct Options {
+  std::string device;
+  std::string profile;
+  std::string jsonFile;
+  bool json = false;
+  bool refresh = false;
+};
+
+/// What was kept of the device, unless it cannot be read as a report.
+Json kept(const std::string& key) {
+  const std::optional<std::string> text = sk::readCached("info", key);
+  Json info = text ? Json::parse(*text, nullptr, false) : Json();
+  try {
+    if (info.is_object() && info.at("schema") == schema && !report(info).empty()) return info;
+  } catch (const Json::exception&) {
+    // somebody else wrote it
+  }
+  return {};
+}
+
+Json infoOf(sk::Device& device, bool refresh) {
+  const std::string key = keyOf(device);
+  Json info = refresh ? Json() : kept(key);
+  if (info.is_null()) {
+    info = {{"schema", schema}, {"streamkernel", SK_VERSION}};
+    info.update(describe(device));
+    std::fprintf(stderr, "sk info: measuring %s ...\n", device.name().c_str());
+    measure(device, info);
+    sk::writeCached("info", key, info.dump(2) + '\n');
+  }
+  return info;
+}
+
+/// The device that is asked for; else the best one with GL, if any, and native code.
+Json infoOfAll(const Options& options) {
+  Json all;
+  all["devices"] = Json::array();
+  const char* chosen = std::getenv("SK_DEVICE");
+  const std::string name = options.device.empty() && chosen != nullptr ? chosen : options.device;
+  try {
+    sk::Device device(plainOptions(name, options.profile));
+    all["devices"].push_back(infoOf(device, options.refresh));
+  } catch (const sk::Error& error) {
+    if (!name.empty() || !options.profile.empty()) throw;
+    all["no_gl"] = error.what();
+  }
+  if (name.empty()) {
+    sk::Device native = sk::Device::native();
+    all["devices"].push_back(infoOf(native, options.refresh));
+  }
+  return all;
+}
+
+void writeJson(const std::string& file, const std::string& text) {
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(fmt::format("cannot write '{}'", file));
+}
+
+void runInfo(const Options& options) {
+  const Json all = infoOfAll(options);
+  const std::string json = all.dump(2) + '\n';
+  if (options.json && options.jsonFile.empty()) {
+    std::fputs(json.c_str(), stdout);
+    return;
+  }
+  if (options.json) writeJson(options.jsonFile, json);
+  if (all.contains("no_gl")) fmt::print("no OpenGL: {}\n\n", all["no_gl"].get<std::string>());
+  for (const Json& device : all["devices"]) fmt::print("{}\n", report(device));
+}
+
+}  // namespace
+
+void addInfo(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("info", "Devices: what they are, hold, compute and cost");
+  auto options = std::make_shared<Options>();
+  command
+      ->add_option("--device", options->device,
+                   "Only this one: native, reference, gpu, gpu:N, software, or a part of a renderer's name")
+      ->type_name("NAME");
+  command->add_option("--profile", options->profile, "glsl330 or essl300 (default: the device's best)")
+      ->type_name("NAME");
+  CLI::Option* json = command->add_option("--json", options->jsonFile, "JSON, to a file or standard output")
+                          ->type_name("[FILE]")
+                          ->expected(0, 1);
+  command->add_flag("--refresh", options->refresh, "Measure again what was kept of an earlier run");
+  command->footer(
+      "What is measured is kept for each driver in $SK_CACHE (off: nowhere), else in "
+      "$XDG_CACHE_HOME/streamkernel, else in ~/.cache/streamkernel.");
+  command->callback([options, json] {
+    options->json = json->count() > 0;
+    runInfo(*options);
+  });
+}
+
+}  // namespace sk_tool

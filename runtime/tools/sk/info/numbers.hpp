@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+//
+// Inputs of probes, the same in every process, and streams of them.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "sk/device.hpp"
+
+namespace sk_tool {
+
+/// Numbers from a fixed seed. (The distributions of the C++ library differ between libraries.)
+class Numbers {
+ public:
+  explicit Numbers(unsigned seed) : random_(seed) {}
+
+  /// In [0, 1).
+  double unit() { return random_() * 0x1p-32; }
+  /// In [low, high].
+  float linear(double low, double high) { return static_cast<float>(low + (high - low) * unit()); }
+  /// In [low, high], both above 0: as many between 1 and 2 as between 100 and 200.
+  float logarithmic(double low, double high) {
+    return static_cast<float>(low * std::exp2(unit() * std::log2(high / low)));
+  }
+  /// Of either sign.
+  float anySign(float number) { return (random_() & 1U) != 0 ? -number : number; }
+
+ private:
+  std::mt19937 random_;
+};
+
+/// A square that holds as many numbers as there are; the rest of it is 1.
+inline sk::Shape squareOf(std::size_t count) {
+  const auto side = static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  return {side, side};
+}
+
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, std::vector<T> values) {
+  const sk::Shape shape = squareOf(values.size());
+  values.resize(static_cast<std::size_t>(shape.size()), T(1));
+  auto stream = device.stream<T>(shape);
+  stream.write(values);
+  return stream;
+}
+
+}  // namespace sk_tool

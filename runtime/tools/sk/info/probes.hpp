@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+//
+// What is measured, one function an entry of the JSON object. Each runs kernels on the device and compares with what
+// the host computes in double. All use fixed seeds, and take medians of times, so that figures agree between runs.
+#pragma once
+
+#include "info/device_info.hpp"
+
+namespace sk_tool {
+
+/// Whether the device has no GL: some questions make sense for GL alone.
+bool isNative(const sk::Device& device);
+
+Json probeProcessor();  ///< "processor": of native devices
+Json probeAllocations(sk::Device& device);  ///< "allocates"
+Json probeOperations(sk::Device& device);  ///< "operations": + - * / sqrt
+Json probeContraction(sk::Device& device);  ///< "contraction": of a * b + c, and what fma is
+Json probeFunctions(sk::Device& device);  ///< "functions"
+Json probeSpecialValues(sk::Device& device);  ///< "special_values"
+Json probeExactSums(sk::Device& device);  ///< "exact_sums"
+Json probeHalfStores(sk::Device& device);  ///< "half_stores"
+Json probeFilter(sk::Device& device);  ///< "filter"
+Json probeIndices(sk::Device& device);  ///< "indices"
+Json probeDoubles(sk::Device& device);  ///< "doubles"
+Json probeCosts(sk::Device& device);  ///< "costs"
+
+}  // namespace sk_tool

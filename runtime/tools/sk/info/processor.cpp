@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+//
+// What native code runs on.
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "info/probes.hpp"
+
+namespace sk_tool {
+
+namespace {
+
+/// As Linux calls the processor; empty elsewhere.
+std::string processorName() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return {};
+}
+
+/// The widest instructions for several floats at once that the processor has.
+std::string simd() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f")) return "AVX-512";
+  if (__builtin_cpu_supports("avx2")) return "AVX2";
+  if (__builtin_cpu_supports("avx")) return "AVX";
+  return "SSE2";
+#elif defined(__aarch64__)
+  return "NEON";
+#else
+  return "unknown";
+#endif
+}
+
+}  // namespace
+
+Json probeProcessor() {
+  return {{"name", processorName()}, {"threads", std::thread::hardware_concurrency()}, {"simd", simd()}};
+}
+
+}  // namespace sk_tool

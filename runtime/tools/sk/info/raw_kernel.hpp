@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+//
+// A kernel of one input and one output whose GLSL is written by hand, for what skc does not say: it rounds before it
+// stores halves, and takes no `fma` for granted. GL devices only.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "sk/call.hpp"
+
+namespace sk_tool {
+
+class RawKernel {
+ public:
+  /// `body` defines void f(In x, out Out r), in GLSL. It may speak of sk_precise and sk_keep().
+  template <class In, class Out>
+  static RawKernel of(std::string_view name, std::string_view body) {
+    return {name, body, sk::ElementTraits<In>::element(), sk::ElementTraits<Out>::element()};
+  }
+  RawKernel(const RawKernel&) = delete;
+  RawKernel& operator=(const RawKernel&) = delete;
+
+  template <class In, class Out>
+  void operator()(const sk::Stream<In>& x, sk::Stream<Out>& r) const {
+    const std::array<sk::Argument, 2> arguments{{{.region = x.region()}, {.region = r.region()}}};
+    sk::run(kernel_, arguments, {.intrinsics = sk::Intrinsics::Fast});
+  }
+
+ private:
+  RawKernel(std::string_view name, std::string_view body, const sk::program::Element& in,
+            const sk::program::Element& out);
+
+  std::array<sk::program::Parameter, 2> parameters_;
+  sk::program::Kernel kernel_;
+};
+
+}  // namespace sk_tool
