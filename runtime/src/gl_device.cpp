@@ -142,10 +142,8 @@ void GlDevice::finish() {
   throwPendingError();
 }
 
-// The trial is a program with exact sums, too, and goes the way of all others.
 const Arithmetic& GlDevice::arithmetic() {
   if (!arithmetic_) {
-    arithmetic_.emplace();
     arithmetic_ = probeArithmetic(*this);
   }
   return *arithmetic_;

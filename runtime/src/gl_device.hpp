@@ -75,6 +75,9 @@ class GlDevice final : public DeviceState {
 
   /// Throws sk::Error where the device computes nothing as the options say. No DeviceScope is open.
   void checkOptions(const program::Kernel& kernel, const CallOptions& options);
+  /// run() without that check: what the check itself runs.
+  void runUnchecked(const program::Kernel& kernel, std::span<const Argument> arguments,
+                    const CallOptions& options);
   /// From here on, the programs are those for a call with these options.
   void choose(const CallOptions& options);
   ProgramCache& programs() { return *programs_; }

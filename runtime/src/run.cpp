@@ -113,6 +113,11 @@ class KernelCall {
 
 void GlDevice::run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
   checkOptions(kernel, options);
+  runUnchecked(kernel, arguments, options);
+}
+
+void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> arguments,
+                            const CallOptions& options) {
   const DeviceScope scope(*this);
   choose(options);
   if (!hasSinks(kernel)) {

@@ -231,6 +231,7 @@ void useAll(Device& device) {
   CHECK(h.read()[5] == Hit{6.0f, 9});
   CHECK(a.read()[9] == -27.5f);
   CHECK(sum().value<float>(r) == -27.5f * count);
+  CHECK(device.arithmetic().exactSums);
 }
 
 }  // namespace

@@ -27,6 +27,8 @@ broken() { printf 'broken: %s\n%s\nstandard output:\n%s\nstandard error:\n%s\n' 
 prints() { [[ $out == *"$1"* ]] || broken "standard output lacks: $1"; }
 matches() { grep -qE -- "$1" out.txt || broken "no line of standard output matches: $1"; }
 says() { [[ $err == *"$1"* ]] || broken "standard error lacks: $1"; }
+# arithmetic: of a table, what no other load of the machine changes.
+arithmetic() { sed '/^  bandwidth/,$d'; }
 measures() { [[ $err == *measuring* ]] || broken "nothing is measured"; }
 remembers() { [[ -z $err ]] || broken "standard error is not empty"; }
 
@@ -74,6 +76,7 @@ for rubbish in "$(head -c 500 "$file")" "$(head -n 1 "$file")"$'\n{"schema": 1}'
 done
 run 0 info --device native --refresh
 measures
+[[ $(arithmetic <<<"$out") == "$(arithmetic <<<"$first")" ]] || broken "another arithmetic than the first time"
 SK_CACHE=/proc/no/such/folder run 0 info --device native
 measures
 
@@ -100,8 +103,8 @@ if [[ $out == 'no OpenGL: '* ]]; then
   prints '"no_gl": "no device was found'
 fi
 
-# With GL: both devices, and what is known of llvmpipe.
-run 0 info
+# With GL: both devices, what is known of llvmpipe, and nothing of what this process wishes of it.
+SK_BARRIER=none SK_DOUBLES=pairs SK_LIMITS=guaranteed run 0 info
 measures
 run 0 info
 remembers

@@ -147,7 +147,7 @@ TEST_CASE("what was found out is remembered, and rubbish is not believed") {
   CHECK(cache.lastLine() == "xor");
 }
 
-TEST_CASE("the trial is cheap, and only for those who need it") {
+TEST_CASE("the trial is for those alone who need it") {
   const Cache cache;
   sk::Device device({.profile = "glsl330"});
   auto y = device.stream<float>({2});

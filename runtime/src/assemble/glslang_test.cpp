@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
@@ -195,6 +196,23 @@ TEST_CASE("glslang accepts the points of a scatter output, in layers or not") {
       }
     }
   }
+  checkAccepted(programs);
+}
+
+// `precise` is left to the device tests: glslang does not take it from GL_ARB_gpu_shader5.
+TEST_CASE("glslang accepts pairs of floats behind other barriers than `precise`") {
+  Programs programs("barriers");
+  Kernel kernel = samples::saxpy;
+  kernel.usesDoubles = true;
+  for (Profile profile : profiles()) {
+    profile.doubles = Doubles::Pairs;
+    for (const sk::Barrier barrier : {sk::Barrier::None, sk::Barrier::Xor}) {
+      profile.barrier = barrier;
+      programs.add(
+          fragmentProgram(profile, kernel, {.access = std::vector<StreamAccess>(kernel.parameters.size())}));
+    }
+  }
+  REQUIRE(programs.count() == 4);
   checkAccepted(programs);
 }
 

@@ -45,7 +45,7 @@ std::int64_t largest(std::int64_t most, const Fits& thatFits) {
 }  // namespace
 
 Json probeAllocations(sk::Device& device) {
-  const sk::DeviceOptions options = plainOptions(device.name(), std::string(device.profile()));
+  const sk::DeviceOptions options = optionsOf(device);
   const std::int64_t side = device.limits().textureSize;
   const std::int64_t wide = largest(
       side, [&](std::int64_t n) { return fits(options, {1, n}, 42.0F) && fits(options, {n, 1}, 42.0F); });

@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 
 #include "cache_folder.hpp"
 #include "info/probes.hpp"
@@ -14,12 +13,8 @@ namespace sk_tool {
 
 bool isNative(const sk::Device& device) { return device.profile() == "native"; }
 
-sk::DeviceOptions plainOptions(const std::string& device, const std::string& profile) {
-  return {.device = device,
-          .profile = profile,
-          .textureLimit = INT32_MAX,
-          .limits = "device",
-          .doubles = "native"};
+sk::DeviceOptions optionsOf(const sk::Device& device) {
+  return {.device = device.name(), .profile = std::string(device.profile())};
 }
 
 Json describe(const sk::Device& device) {

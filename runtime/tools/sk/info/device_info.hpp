@@ -21,7 +21,7 @@ void measure(sk::Device& device, Json& info);
 /// What measurements depend on, in words.
 std::string keyOf(const sk::Device& device);
 
-/// A device as drivers have it, whatever the environment says of limits and doubles.
-sk::DeviceOptions plainOptions(const std::string& device, const std::string& profile = {});
+/// The same device once more, for what leaves traces in one.
+sk::DeviceOptions optionsOf(const sk::Device& device);
 
 }  // namespace sk_tool

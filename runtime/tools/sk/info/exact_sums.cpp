@@ -49,7 +49,7 @@ const RawKernel& twoSumAndProduct() {
 
 /// The shares of wrong sums and products; "not in the language" where the device does not know the barrier.
 Json trial(const sk::Device& like, const std::string& barrier) {
-  sk::DeviceOptions options = plainOptions(like.name(), std::string(like.profile()));
+  sk::DeviceOptions options = optionsOf(like);
   options.barrier = barrier;
   try {
     sk::Device device(options);

@@ -64,7 +64,7 @@ Json infoOfAll(const Options& options) {
   const char* chosen = std::getenv("SK_DEVICE");
   const std::string name = options.device.empty() && chosen != nullptr ? chosen : options.device;
   try {
-    sk::Device device(plainOptions(name, options.profile));
+    sk::Device device(sk::DeviceOptions{.device = name, .profile = options.profile});
     all["devices"].push_back(infoOf(device, options.refresh));
   } catch (const sk::Error& error) {
     if (!name.empty() || !options.profile.empty()) throw;
@@ -77,6 +77,11 @@ Json infoOfAll(const Options& options) {
   return all;
 }
 
+/// What is measured is kept for the driver: no wish of this process may bend it.
+void dropWishes() {
+  for (const char* wish : {"SK_BARRIER", "SK_DOUBLES", "SK_LIMITS", "SK_TEXTURE_LIMIT"}) ::unsetenv(wish);
+}
+
 void writeJson(const std::string& file, const std::string& text) {
   std::ofstream out(file);
   out << text;
@@ -85,6 +90,7 @@ void writeJson(const std::string& file, const std::string& text) {
 }
 
 void runInfo(const Options& options) {
+  dropWishes();
   const Json all = infoOfAll(options);
   const std::string json = all.dump(2) + '\n';
   if (options.json && options.jsonFile.empty()) {

@@ -140,8 +140,8 @@ class Report {
     line("half stores", "{}; 65520 becomes {}, 1e6 {}, denormals {}", textOf(half.at("rounding")),
          textOf(half.at("65520 becomes")), textOf(half.at("1e6 becomes")), textOf(half.at("denormals")));
     const Json& filter = info_.at("filter");
-    line("filter", "{} bits of weight or more, off by {:.3g} at most", textOf(filter.at("weight_bits")),
-         number(filter, "max_absolute"));
+    line("filter", "{} bits of weight{}, off by {:.3g} at most", textOf(filter.at("weight_bits")),
+         filter.at("weight_bits") == 16 ? " or more" : "", number(filter, "max_absolute"));
   }
 
   void indices() {

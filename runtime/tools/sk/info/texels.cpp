@@ -85,7 +85,7 @@ Json probeFilter(sk::Device& device) {
     worst = std::max(worst, std::fabs(double{got[i]} - at[i].x));
   }
   return {{"weights_of_65536", weights.size()},
-          {"weight_bits", static_cast<int>(std::ceil(std::log2(static_cast<double>(weights.size()))))},
+          {"weight_bits", static_cast<int>(std::lround(std::log2(static_cast<double>(weights.size()))))},
           {"max_absolute", worst}};
 }
 
