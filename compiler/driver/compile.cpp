@@ -53,6 +53,7 @@ TransformOptions transformOptions(const Options& options, std::ostream& output) 
     result.limits.push_back(
         {static_cast<std::uint32_t>(profile.drawBuffers), static_cast<std::uint32_t>(profile.textureUnits)});
   }
+  result.precisions = options.precision.empty() ? options.emit == Emit::Stubs : options.precision != "single";
   if (!options.printAfter.empty()) {
     result.after = [&output, wanted = options.printAfter](std::string_view name, const ir::Module& module) {
       if (wanted == "all" || wanted == name)
@@ -166,7 +167,7 @@ int compile(const Options& options, const std::string& file) { return compile(Jo
 std::string emitText(const Options& options, const ir::Module& module) {
   switch (options.emit) {
     case Emit::Ir: return ir::print(module);
-    case Emit::Glsl: return glslListing(emit::Program(module), options.profile);
+    case Emit::Glsl: return glslListing(emit::Program(module), options.profile, options.precision);
     case Emit::Cpp: return emit::nativeListing(module, emit::Program(module));
     case Emit::Plan: return planListing(module, options.profile);
     case Emit::Stubs: {

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "assemble/assemble.hpp"
 #include "assemble/count_tree.hpp"
 #include "assemble/plans.hpp"
@@ -178,18 +180,46 @@ std::string kernelListing(const Profile& profile, const sk::program::Kernel& ker
   return text;
 }
 
+std::string wholeListing(const Profile& profile, const sk::program::Kernel& kernel) {
+  const bool hasSinks = std::any_of(kernel.parameters.begin(), kernel.parameters.end(), sk::assemble::isSink);
+  return hasSinks ? sinksListing(profile, kernel) : kernelListing(profile, kernel);
+}
+
+std::string withoutForm(const emit::Unit& unit, std::string_view precision, std::string_view why) {
+  return fmt::format("// {} has no form for {} precision: {}\n", unit.kernel.name, precision,
+                     why.empty() ? "it computes no floats" : why);
+}
+
+/// A kernel or reduce in one precision.
+std::string unitListing(const Profile& profile, const emit::Unit& unit, std::string_view precision) {
+  const sk::program::Kernel& kernel = unit.kernel;
+  const sk::program::Reduction* reduction = unit.reduction;
+  if (precision.empty() || precision == "single") {
+    return reduction != nullptr ? reductionListing(profile, *reduction) : wholeListing(profile, kernel);
+  }
+  if (precision == "half") {
+    if (reduction != nullptr && reduction->half != nullptr) return formListing(profile, *reduction->half);
+    return kernel.half != nullptr ? wholeListing(profile, *kernel.half)
+                                  : withoutForm(unit, precision, kernel.whyNotHalf);
+  }
+  if (reduction != nullptr && reduction->wide != nullptr) {
+    return formListing(profile, reduction->wide->reduction) + "\n" +
+           wholeListing(profile, reduction->wide->finish);
+  }
+  return kernel.wide != nullptr ? wholeListing(profile, *kernel.wide)
+                                : withoutForm(unit, precision, kernel.whyNotWide);
+}
+
 }  // namespace
 
-std::string glslListing(const emit::Program& program, std::string_view profileName) {
-  const Profile& profile = *sk::assemble::findProfile(profileName);
+std::string glslListing(const emit::Program& program, std::string_view profileName,
+                        std::string_view precision) {
+  Profile profile = *sk::assemble::findProfile(profileName);
+  if (precision == "extended") profile.doubles = sk::assemble::Doubles::Pairs;
   std::string text;
   for (const emit::Unit& unit : program.units()) {
     if (!text.empty()) text += "\n";
-    const bool hasSinks =
-        std::any_of(unit.kernel.parameters.begin(), unit.kernel.parameters.end(), sk::assemble::isSink);
-    text += unit.reduction ? reductionListing(profile, *unit.reduction)
-            : hasSinks     ? sinksListing(profile, unit.kernel)
-                           : kernelListing(profile, unit.kernel);
+    text += unitListing(profile, unit, precision);
   }
   return text;
 }

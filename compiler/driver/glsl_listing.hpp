@@ -11,6 +11,7 @@
 
 namespace skc::driver {
 
-std::string glslListing(const emit::Program& program, std::string_view profile);
+/// `precision`: "half", "extended" or "double" for these forms of the kernels; else those that compute in floats.
+std::string glslListing(const emit::Program& program, std::string_view profile, std::string_view precision);
 
 }  // namespace skc::driver

@@ -93,6 +93,11 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
       ->delimiter(',')
       ->check(checkTarget, "")
       ->type_name("LIST");
+  app.add_option("--precision", options.precision,
+                 "What floats are computed in, for --emit=glsl, ir and plan: single (default), half, "
+                 "extended or double; "
+                 "stubs have all forms, but for 'single'")
+      ->check(CLI::IsMember({"single", "half", "extended", "double"}));
   app.add_option("--profile", options.profile,
                  "Version of GLSL that --emit=glsl and plan are about: " + profileNames())
       ->check(checkProfile, "")

@@ -21,9 +21,10 @@ struct Options {
   std::vector<std::string> includeDirectories, definitions, warnings;
   std::string depfile;                      ///< empty: none
   std::string printAfter;                   ///< a transform, "all", or empty
-  bool nativeTarget = true;                 ///< the stubs have native code
+  std::string precision;  ///< of --emit=glsl; of stubs: "single" leaves out all other forms
+  bool nativeTarget = true;  ///< the stubs have native code
   bool color = false;
-  bool fixIts = false;                      ///< print mends for tools, too
+  bool fixIts = false;  ///< print mends for tools, too
 };
 
 /// The options, or the exit status where there is nothing to compile: 0 after --help and --version,

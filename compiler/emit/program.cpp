@@ -29,6 +29,8 @@ struct Program::Storage {
   std::vector<std::string_view> sources;
   std::deque<sk::program::Reduction> reductions;
   std::deque<sk::program::CompensatedReduction> compensated;
+  std::deque<sk::program::WideReduction> wide;
+  std::deque<sk::program::Kernel> forms;
   std::deque<std::vector<std::uint8_t>> combineOperands;
   std::deque<std::vector<sk::program::Layer>> layers;
   std::deque<std::vector<const sk::program::Element*>> temporaries;
@@ -70,13 +72,40 @@ class Builder {
  private:
   void add(KernelId id) {
     const Kernel& kernel = module_.kernels[id];
-    if (kernel.pass || kernel.isCombination) return;
-    Unit unit{.id = id, .kernel = describe(kernel)};
-    addPlans(kernel, unit.kernel);
+    if (kernel.pass || kernel.isMade) return;
+    Unit unit{.id = id, .kernel = whole(kernel)};
+    unit.kernel.whyNotHalf = storage_.keep(kernel.forms.whyNotHalf);
+    unit.kernel.whyNotWide = storage_.keep(kernel.forms.whyNotWide);
     if (kernel.reduction) {
       unit.reduction = &storage_.reductions.emplace_back(reduction(kernel, unit.kernel));
+      addForms(kernel, storage_.reductions.back());
+    } else {
+      if (kernel.forms.half) unit.kernel.half = &form(*kernel.forms.half);
+      if (kernel.forms.wide) unit.kernel.wide = &form(*kernel.forms.wide);
     }
     storage_.units.push_back(unit);
+  }
+
+  sk::program::Kernel whole(const Kernel& kernel) {
+    sk::program::Kernel made = describe(kernel);
+    addPlans(kernel, made);
+    return made;
+  }
+
+  const sk::program::Kernel& form(KernelId id) {
+    return storage_.forms.emplace_back(whole(module_.kernels[id]));
+  }
+
+  void addForms(const Kernel& kernel, sk::program::Reduction& made) {
+    if (kernel.forms.half) {
+      const Kernel& half = module_.kernels[*kernel.forms.half];
+      made.half = &storage_.reductions.emplace_back(reduction(half, describe(half)));
+    }
+    if (kernel.forms.wide) {
+      const Kernel& wide = module_.kernels[*kernel.forms.wide];
+      made.wide = &storage_.wide.emplace_back(sk::program::WideReduction{
+          reduction(wide, describe(wide)), describe(module_.kernels[*wide.reduction->finish])});
+    }
   }
 
   /// A whole kernel, or that of a plan's pass.
@@ -171,7 +200,7 @@ class Builder {
   std::span<const sk::program::Layer> layersOf(const Plan& plan, std::uint32_t argument,
                                                const sk::program::Parameter& parameter) {
     if (parameter.role == sk::program::Role::Output) return {};
-    std::vector<sk::program::Layer> layers(parameter.element->fields.size());
+    std::vector<sk::program::Layer> layers(heldBy(parameter).fields.size());
     bool isBundled = false;
     for (std::size_t b = 0; b < plan.bundles.size(); ++b) {
       const std::vector<ArgumentPlane>& places = plan.bundles[b].layers;
@@ -195,6 +224,7 @@ class Builder {
             .symbol = storage_.keep(context.names.symbol(index)),
             .role = static_cast<sk::program::Role>(param.role),
             .element = &element(param.type),
+            .held = param.held ? &element(*param.held) : nullptr,
             .rank = param.rank,
             .boundary = static_cast<sk::program::Boundary>(param.boundary),
             .border = constant(param.border),

@@ -21,6 +21,7 @@ class Structs {
  public:
   explicit Structs(const Module& module) : module_(module) {
     for (const Kernel& kernel : module.kernels) {
+      if (kernel.isMade) continue;
       for (const KernelParam& param : kernel.params) add(param.type);
     }
     for (const DeclaredStream& stream : module.streams) add(stream.type);
@@ -193,9 +194,8 @@ class HeaderWriter {
 
   /// Whether a reduce gives several values at once.
   bool usesTuples() const {
-    return std::any_of(module_.kernels.begin(), module_.kernels.end(), [](const Kernel& kernel) {
-      return !kernel.isCombination && accumulatorsOf(kernel) > 1;
-    });
+    return std::any_of(module_.kernels.begin(), module_.kernels.end(),
+                       [](const Kernel& kernel) { return !kernel.isMade && accumulatorsOf(kernel) > 1; });
   }
 
   /// The declaration in the .sk file, as a comment of lines that start alike.

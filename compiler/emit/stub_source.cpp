@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "emit/elements.hpp"
 #include "emit/native_code.hpp"
 #include "emit/stub_parts.hpp"
 #include "ir/print.hpp"
@@ -58,6 +59,9 @@ class SourceWriter {
       if (parts.withNative) text_ += "\n" + nativeListing(module_, program_);
       text_ += "\nnamespace sk::program {\nnamespace {\n\n";
       sources();
+      for (std::uint32_t i = 0; i < module_.structs.size(); ++i) {
+        if (module_.structs[i].isMade) madeElement(i);
+      }
       isWritten_.assign(names_.size(), false);
       for (std::size_t i = 0; i < names_.size(); ++i) descriptors(i);
       text_ += "}  // namespace\n}  // namespace sk::program\n";
@@ -86,12 +90,40 @@ class SourceWriter {
     if (isWritten_[unit]) return;
     isWritten_[unit] = true;
     const Kernel& declared = kernelOf(unit);
-    kernel(program_.units()[unit].kernel, declared, names_[unit]);
+    const sk::program::Kernel& whole = program_.units()[unit].kernel;
+    if (whole.half != nullptr) form(*whole.half, *declared.forms.half, names_[unit] + "Half");
+    if (whole.wide != nullptr) form(*whole.wide, *declared.forms.wide, names_[unit] + "Wide");
+    kernel(whole, declared, names_[unit]);
     if (const sk::program::Reduction* made = program_.units()[unit].reduction) {
       const std::string combine = combination(unit, *made);
       if (made->compensated != nullptr) compensated(*made->compensated, declared, names_[unit]);
+      forms(*made, declared, names_[unit]);
       reduction(*made, declared, names_[unit], combine);
     }
+  }
+
+  /// A kernel's form for another precision: GLSL alone, since native code computes in any real type.
+  void form(const sk::program::Kernel& made, KernelId id, const std::string& name) {
+    kernelParts(made, module_.kernels[id], name);
+    if (made.planCount > 0) plans(made, module_.kernels[id], name);
+    text_ += fmt::format("constexpr Kernel {}Kernel = {};\n\n", name, kernelText(made, name, 4));
+  }
+
+  /// Those of a reduction: NAMEHalfReduction and NAMEWide.
+  void forms(const sk::program::Reduction& made, const Kernel& declared, const std::string& name) {
+    if (made.half != nullptr) reductionForm(*made.half, *declared.forms.half, name + "Half");
+    if (made.wide == nullptr) return;
+    reductionForm(made.wide->reduction, *declared.forms.wide, name + "Wide");
+    form(made.wide->finish, *module_.kernels[*declared.forms.wide].reduction->finish, name + "WideFinish");
+    text_ +=
+        fmt::format("constexpr WideReduction {0}Wide = {{{0}WideReduction, {0}WideFinishKernel}};\n\n", name);
+  }
+
+  void reductionForm(const sk::program::Reduction& made, KernelId id, const std::string& name) {
+    const KernelId combine = *module_.kernels[id].reduction->combine;
+    form(made.fold, id, name);
+    if (combine != id) form(made.combine, combine, name + "Combine");
+    reduction(made, module_.kernels[id], name, combine == id ? name : name + "Combine", false);
   }
 
   /// The constant NAMEKernel, and what it refers to.
@@ -106,7 +138,8 @@ class SourceWriter {
 
   /// The constant NAMEReduction. `combine` is the name of what combines.
   void reduction(const sk::program::Reduction& made, const Kernel& declared, const std::string& name,
-                 const std::string& combine) {
+                 const std::string& combine, bool mayHaveNative = true) {
+    const bool hasNative = mayHaveNative && withNative_;
     const Kernel& combining = module_.kernels[*declared.reduction->combine];
     const bool hasOperands =
         std::any_of(combining.params.begin(), combining.params.end(), [](const KernelParam& param) {
@@ -115,13 +148,15 @@ class SourceWriter {
     std::vector<std::string> operands;
     for (std::uint8_t operand : made.combineOperands) operands.push_back(std::to_string(operand));
     if (hasOperands) list("std::uint8_t", name + "Operands", operands);
-    if (withNative_) text_ += nativeReductionDescriptor(name, combine, declared);
+    if (hasNative) text_ += nativeReductionDescriptor(name, combine, declared);
     std::vector<std::string> members = {
         fmt::format(".fold = {}Kernel", name), fmt::format(".combine = {}Kernel", combine),
         fmt::format(".combineOperands = {}", hasOperands ? name + "Operands" : "{}"),
         fmt::format(".seeded = {}", made.seeded)};
-    if (withNative_) members.push_back(fmt::format(".native = &{}Native", name));
+    if (hasNative) members.push_back(fmt::format(".native = &{}Native", name));
     if (made.compensated != nullptr) members.push_back(fmt::format(".compensated = &{}Compensated", name));
+    if (made.half != nullptr) members.push_back(fmt::format(".half = &{}HalfReduction", name));
+    if (made.wide != nullptr) members.push_back(fmt::format(".wide = &{}Wide", name));
     text_ +=
         fmt::format("constexpr Reduction {}Reduction = {{\n    {}}};\n\n", name, join(members, ",\n    "));
   }
@@ -171,7 +206,7 @@ class SourceWriter {
     }
     text_ += fmt::format("constexpr Parameter {}Parameters[] = {{\n", name);
     for (std::size_t i = 0; i < declared.params.size(); ++i) {
-      std::string row = parameter(name, kernel.parameters[i], declared.params[i].type);
+      std::string row = parameter(name, kernel.parameters[i], declared.params[i]);
       if (!kernel.parameters[i].layers.empty()) row += fmt::format(", .layers = {}Layers{}", name, i);
       text_ += wrapLine("    " + row + "},", 100, 5) + "\n";
     }
@@ -262,6 +297,10 @@ class SourceWriter {
       members.push_back(fmt::format(".planCount = {}", kernel.planCount));
     }
     if (!native.empty()) members.push_back(".native = &" + native);
+    if (kernel.half != nullptr) members.push_back(fmt::format(".half = &{}HalfKernel", name));
+    if (kernel.wide != nullptr) members.push_back(fmt::format(".wide = &{}WideKernel", name));
+    if (!kernel.whyNotHalf.empty()) members.push_back(".whyNotHalf = " + quoted(kernel.whyNotHalf));
+    if (!kernel.whyNotWide.empty()) members.push_back(".whyNotWide = " + quoted(kernel.whyNotWide));
     const std::string newLine = "\n" + std::string(column, ' ');
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
   }
@@ -306,21 +345,41 @@ class SourceWriter {
                          param.element->name, param.element->glsl, param.element->size);
   }
 
+  /// Of a struct that C++ does not have.
+  void madeElement(std::uint32_t index) {
+    const TypeNames types(module_);
+    const ElementLayout layout = elementLayout(module_, types, Type::structType(index));
+    std::vector<std::string> fields;
+    for (const Plane& plane : layout.planes) {
+      const std::string part = plane.part < 0 ? "" : fmt::format(", {}", plane.part);
+      fields.push_back(fmt::format("{{\"{}\", Scalar::{}, {}, {}{}}}", plane.path,
+                                   scalarNames[static_cast<std::size_t>(plane.type.scalar)], plane.type.width,
+                                   plane.offset, part));
+    }
+    const std::string& name = types.structName(index);
+    const std::string head = fmt::format("constexpr Field {}Fields[] = {{", name);
+    text_ += wrapLine(head + join(fields, ", ") + "};", 100, head.size()) + "\n";
+    text_ += fmt::format("constexpr Element {0}Element{{\"{1}\", \"{0}\", {2}, {0}Fields}};\n\n", name,
+                         print(module_, Type::structType(index)), layout.size);
+  }
+
   std::string elementText(const std::string& unit, const sk::program::Parameter& param, Type type) const {
     if (type.kind == Type::Kind::Array) return "&" + elementName(unit, param);
     return elementOf(type);
   }
 
   /// Without the closing bracket.
-  std::string parameter(const std::string& unit, const sk::program::Parameter& param, Type type) const {
+  std::string parameter(const std::string& unit, const sk::program::Parameter& param,
+                        const KernelParam& declared) const {
     constexpr std::string_view roles[] = {"Uniform",        "Input",   "Output",   "Gather", "Accumulator",
                                           "VariableOutput", "Scatter", "Iterator", "Spec"};
     constexpr std::string_view scatterOps[] = {"Store", "Add", "Min", "Max"};
     constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
-    const std::string element = elementText(unit, param, type);
+    const std::string element = elementText(unit, param, declared.type);
     std::string text =
         fmt::format("{{.name = \"{}\", .symbol = \"{}\", .role = Role::{}, .element = {}", param.name,
                     param.symbol, roles[static_cast<std::size_t>(param.role)], element);
+    if (declared.held) text += ", .held = " + elementOf(*declared.held);
     if (param.rank > 0) text += fmt::format(", .rank = {}", param.rank);
     if (param.role == sk::program::Role::Gather) {
       text += fmt::format(", .boundary = Boundary::{}", boundaries[static_cast<std::size_t>(param.boundary)]);
@@ -348,6 +407,9 @@ class SourceWriter {
   }
 
   std::string elementOf(Type type) const {
+    if (type.kind == Type::Kind::Struct && module_.structs[type.index].isMade) {
+      return fmt::format("&{}Element", TypeNames(module_).structName(type.index));
+    }
     const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";
     const std::string name = type.isVector() ? spelling(type.scalar, type.width) : cppType(module_, type);
     return fmt::format("&ElementTraits<{}{}>::element()", scope, name);

@@ -287,6 +287,26 @@ Type arrayOf(Module& module, Type element, std::uint32_t length) {
   return Type::arrayType(id);
 }
 
+KernelParam clone(const KernelParam& param) {
+  KernelParam made;
+  made.name = param.name;
+  made.role = param.role;
+  made.type = param.type;
+  made.held = param.held;
+  made.rank = param.rank;
+  made.boundary = param.boundary;
+  made.border = clone(param.border);
+  made.filter = param.filter;
+  made.identity = clone(param.identity);
+  made.firstPlane = param.firstPlane;
+  made.planeCount = param.planeCount;
+  made.loc = param.loc;
+  made.scatter = param.scatter;
+  made.pushes = param.pushes;
+  made.neededIf = clone(param.neededIf);
+  return made;
+}
+
 Function clone(const Function& function) {
   return {.name = function.name,
           .result = function.result,

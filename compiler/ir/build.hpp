@@ -106,5 +106,6 @@ VarId addVariable(Function& function, std::string name, Type type, VarRole role 
 Type arrayOf(Module& module, Type element, std::uint32_t length);
 
 Function clone(const Function& function);
+KernelParam clone(const KernelParam& param);
 
 }  // namespace skc::ir

@@ -201,21 +201,25 @@ struct KernelParam {
   std::string name;
   ParamRole role;
   Type type;                           ///< of one element
-  std::uint8_t rank = 0;               ///< Gather, Scatter
-  Boundary boundary = Boundary::Clamp; ///< Gather
-  ExprPtr border;                      ///< Gather with Border: constant expression
-  bool filter = false;                 ///< Gather: sampled by the device's own filter where it can
-  ExprPtr identity;                    ///< Accumulator: constant expression, or null
-  std::uint32_t firstPlane = 0;        ///< Output of a pass that writes only some planes of the element:
-  std::uint32_t planeCount = 0;        ///< the first, and how many; 0 is all of them
+  std::optional<Type> held = {};  ///< what the stream holds where that is another type: floats for doubles
+  std::uint8_t rank = 0;  ///< Gather, Scatter
+  Boundary boundary = Boundary::Clamp;  ///< Gather
+  ExprPtr border;  ///< Gather with Border: constant expression
+  bool filter = false;  ///< Gather: sampled by the device's own filter where it can
+  ExprPtr identity;  ///< Accumulator: constant expression, or null
+  std::uint32_t firstPlane = 0;  ///< Output of a pass that writes only some planes of the element:
+  std::uint32_t planeCount = 0;  ///< the first, and how many; 0 is all of them
   Loc loc;
-  ScatterOp scatter = ScatterOp::Store; ///< Scatter: what all its statements do
-  std::int32_t pushes = -1;            ///< VariableOutput, Scatter: statements that one element executes
-                                       ///< at most; -1 if unknown
+  ScatterOp scatter = ScatterOp::Store;  ///< Scatter: what all its statements do
+  std::int32_t pushes = -1;  ///< VariableOutput, Scatter: statements that one element executes
+      ///< at most; -1 if unknown
   /// Streams, set by guard-streams: an expression of the entry's Spec variables that is false where the
   /// kernel does without; or null.
   ExprPtr neededIf = nullptr;
 };
+
+/// The type of the elements that the parameter's stream holds.
+inline Type heldType(const KernelParam& param) { return param.held.value_or(param.type); }
 
 /// A second form of a reduce that sums floats, set by compensate-sums: the reduce `fold` has one more accumulator for
 /// each of `sums`, after all others and in that order, for what its sum has lost. `finish` is a kernel that
@@ -232,6 +236,15 @@ struct Reduction {
   std::vector<std::uint32_t> operands = {};  ///< one a parameter of it: see sk::program::Reduction
   bool seeded = false;  ///< likewise
   std::optional<Compensated> compensated = {};
+  /// Of a wide form: a kernel that takes the accumulators, which are doubles, and gives them as floats.
+  std::optional<KernelId> finish = {};
+};
+
+/// A kernel's forms for other precisions, whose parameters are the same: set by widen-floats and round-halves.
+struct Forms {
+  std::optional<KernelId> wide;  ///< computing in doubles wherever the kernel says float
+  std::optional<KernelId> half;  ///< rounding every float that it computes to half
+  std::string whyNotWide, whyNotHalf;  ///< where it computes floats, yet has no such form
 };
 
 // ---- plans ------------------------------------------------------------------------------------
@@ -299,9 +312,10 @@ struct Kernel {
       ///< VariableOutput and Scatter Sink
   std::vector<KernelParam> params;
   std::optional<Reduction> reduction;  ///< set for `reduce`
-  bool isCombination = false;  ///< made to combine partial results: C++ cannot call it
+  bool isMade = false;  ///< made by a transform, for another one: C++ cannot call it
   std::vector<Plan> plans;  ///< for targets that it is too large for, the most generous first
   std::optional<PassOf> pass;
+  Forms forms;
   Loc loc;
 };
 

@@ -123,6 +123,7 @@ std::string printParam(const Module& module, const Function& entry, const Kernel
   const auto constant = [&](const ExprPtr& e) { return print(module, Function{}, *e); };
   std::string text =
       fmt::format("  ${} {}: {} {}", number, param.name, spelling(param.role), print(module, param.type));
+  if (param.held) text += " held as " + print(module, *param.held);
   if (param.role == ParamRole::Gather) {
     text += fmt::format(" rank {} {}", param.rank, spelling(param.boundary));
   }
@@ -152,6 +153,11 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
     text += fmt::format(", compensated by @{}, @{}", module.kernels[second.fold].entry,
                         module.kernels[second.finish].entry);
   }
+  if (kernel.reduction && kernel.reduction->finish) {
+    text += fmt::format(", finished by @{}", module.kernels[*kernel.reduction->finish].entry);
+  }
+  if (kernel.forms.wide) text += fmt::format(", wide @{}", module.kernels[*kernel.forms.wide].entry);
+  if (kernel.forms.half) text += fmt::format(", half @{}", module.kernels[*kernel.forms.half].entry);
   if (kernel.pass) text += fmt::format(", pass {} of {}", kernel.pass->number, kernel.pass->count);
   text += "\n";
   for (std::size_t i = 0; i < kernel.params.size(); ++i) {

@@ -107,6 +107,7 @@ struct Struct {
   std::vector<std::string> scope;    ///< enclosing namespaces, outermost first
   std::vector<StructField> fields;
   Loc loc;
+  bool isMade = false;               ///< by a transform: C++ has none
 };
 struct Array {
   Type element;

@@ -200,6 +200,9 @@ void checkParam(const Module& module, Stage stage, const KernelParam& param, con
   require((param.role == ParamRole::Scatter || param.role == ParamRole::Gather) == (param.rank > 0),
           "gathers and scatter outputs have a rank, others none");
   require(wantsBorder == (param.border != nullptr), "a border value and the border mode go together");
+  require(!param.held || param.role == ParamRole::Input || param.role == ParamRole::Output ||
+              param.role == ParamRole::Gather,
+          "a parameter that is no stream holds another type");
   require(param.role == ParamRole::Accumulator || !param.identity, "only an accumulator has an identity");
   if (param.border) checkConstant(module, stage, *param.border, param.type);
   if (param.identity) checkConstant(module, stage, *param.identity, param.type);

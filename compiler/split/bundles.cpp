@@ -37,7 +37,7 @@ class Chooser {
     std::vector<ReadPlane> planes;
     for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
       if (!pass.params[i] || !isRead(kernel_.params[i])) continue;
-      const std::vector<Type> types = planesOf(module_, kernel_.params[i].type);
+      const std::vector<Type> types = planesOf(module_, heldType(kernel_.params[i]));
       for (std::uint32_t plane = 0; plane < types.size(); ++plane) {
         planes.push_back({{i, plane}, texelType(types[plane])});
       }

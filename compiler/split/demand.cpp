@@ -70,7 +70,7 @@ bool isRead(const KernelParam& param) {
 Limits demandOf(const Module& module, const Kernel& kernel) {
   Limits demand;
   for (const KernelParam& param : kernel.params) {
-    const auto planes = static_cast<std::uint32_t>(planesOf(module, param.type).size());
+    const auto planes = static_cast<std::uint32_t>(planesOf(module, heldType(param)).size());
     if (param.role == ParamRole::Output) demand.drawBuffers += planes;
     if (isRead(param)) demand.textureUnits += planes;
   }

@@ -65,7 +65,7 @@ class Maker {
     for (std::uint32_t i = 0; i < whole.params.size(); ++i) {
       if (!params[i]) continue;
       newParams_[i] = static_cast<std::uint32_t>(kernel_.params.size());
-      addParam(cloneParam(whole.params[i]), i, source().variables[i].role);
+      addParam(clone(whole.params[i]), i, source().variables[i].role);
       operands_.push_back({false, i});
     }
     for (VarId var = 0; var < pass_.slice.loaded.size(); ++var) {
@@ -78,8 +78,8 @@ class Maker {
   void addWrites() {
     for (const Target& target : pass_.targets) {
       if (target.isOutput) {
-        KernelParam param = cloneParam(module_.kernels[whole_].params[target.var]);
-        const bool isWhole = target.planeCount == planesOf(module_, param.type).size();
+        KernelParam param = clone(module_.kernels[whole_].params[target.var]);
+        const bool isWhole = target.planeCount == planesOf(module_, heldType(param)).size();
         param.firstPlane = target.firstPlane;
         param.planeCount = isWhole ? 0 : target.planeCount;
         addParam(std::move(param), target.var, VarRole::InOut);
@@ -98,19 +98,6 @@ class Maker {
     newVars_[from] = static_cast<VarId>(entry_.variables.size());
     entry_.variables.push_back(std::move(variable));
     kernel_.params.push_back(std::move(param));
-  }
-
-  static KernelParam cloneParam(const KernelParam& param) {
-    KernelParam made;
-    made.name = param.name;
-    made.role = param.role;
-    made.type = param.type;
-    made.rank = param.rank;
-    made.boundary = param.boundary;
-    made.border = clone(param.border);
-    made.neededIf = clone(param.neededIf);
-    made.loc = param.loc;
-    return made;
   }
 
   KernelParam temporaryParam(VarId var, ParamRole role) const {

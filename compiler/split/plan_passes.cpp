@@ -54,7 +54,7 @@ class Planner {
   void addOutputs() {
     for (VarId var = 0; var < kernel_.params.size(); ++var) {
       if (kernel_.params[var].role != ParamRole::Output) continue;
-      const auto planes = static_cast<std::uint32_t>(planesOf(module_, kernel_.params[var].type).size());
+      const auto planes = static_cast<std::uint32_t>(planesOf(module_, heldType(kernel_.params[var])).size());
       for (std::uint32_t first = 0; first < planes; first += limits_.drawBuffers) {
         outputs_.push_back(targets_.size());
         targets_.push_back({var, true, first, std::min(planes - first, limits_.drawBuffers)});
@@ -210,7 +210,9 @@ class Planner {
   double targetCost(const std::vector<Target>& targets) const {
     double cost = 0;
     for (const Target& target : targets) {
-      const std::vector<Type> planes = planesOf(module_, entry_.variables[target.var].type);
+      const std::vector<Type> planes =
+          planesOf(module_, target.isOutput ? heldType(kernel_.params[target.var])
+                                            : entry_.variables[target.var].type);
       for (std::uint32_t i = 0; i < target.planeCount; ++i) {
         cost += planeCost(planes[target.firstPlane + i]);
       }
@@ -226,7 +228,7 @@ class Planner {
     std::uint32_t planes = temporaries;
     for (std::size_t i = 0; i < params.size(); ++i) {
       if (!params[i] || !isRead(kernel_.params[i])) continue;
-      planes += static_cast<std::uint32_t>(planesOf(module_, kernel_.params[i].type).size());
+      planes += static_cast<std::uint32_t>(planesOf(module_, heldType(kernel_.params[i])).size());
     }
     if (planes <= limits_.textureUnits) return 0;
     if (temporaries > limits_.textureUnits / 2) return std::numeric_limits<double>::infinity();

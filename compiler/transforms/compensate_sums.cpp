@@ -2,14 +2,13 @@
 #include "transforms/compensate_sums.hpp"
 
 #include <algorithm>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "ir/build.hpp"
-#include "ir/walk.hpp"
 #include "transforms/combine_part.hpp"
+#include "transforms/copy_functions.hpp"
 #include "transforms/drop_streams.hpp"
 #include "transforms/fold_pattern.hpp"
 
@@ -31,7 +30,7 @@ bool isSum(const FoldPattern& pattern, VarId accumulator) {
 std::vector<VarId> sumsOf(const Module& module, KernelId id, const FoldPattern& pattern) {
   const Kernel& kernel = module.kernels[id];
   const KernelId combine = *kernel.reduction->combine;
-  if (combine != id && !module.kernels[combine].isCombination) return {};   // the author's
+  if (combine != id && !module.kernels[combine].isMade) return {};   // the author's
   std::vector<VarId> sums;
   for (VarId i = 0; i < kernel.params.size(); ++i) {
     const KernelParam& param = kernel.params[i];
@@ -71,7 +70,7 @@ struct Made {
     kernel.name = of.name;   // what messages call it
     kernel.scope = of.scope;
     kernel.loc = entry.loc = of.loc;
-    kernel.isCombination = true;
+    kernel.isMade = true;
     entry.name = of.name + suffix;
   }
 
@@ -112,25 +111,11 @@ class Maker {
 
   /// The entry as a function that is called: without the parameters that GLSL has none for.
   FunctionId makeTerm() {
-    std::map<FunctionId, FunctionId> copies;
-    const FunctionId term = copy(kernel().entry, copies);
+    FunctionCopies copies;
+    const FunctionId term = copyFunction(module_, kernel().entry, copies);
     module_.functions[term].name += "_term";
     dropStreams(module_.functions[term]);
     return term;
-  }
-
-  /// A function, after those that it calls: each belongs to one kernel.
-  FunctionId copy(FunctionId id, std::map<FunctionId, FunctionId>& copies) {
-    if (const auto known = copies.find(id); known != copies.end()) return known->second;
-    Function made = clone(module_.functions[id]);
-    walkStmts(made.body, [&](Stmt& stmt) {
-      if (auto* n = std::get_if<CallStmt>(&stmt.node)) n->callee = copy(n->callee, copies);
-    });
-    walkExprs(made.body, [&](Expr& expr) {
-      if (auto* n = std::get_if<Call>(&expr.node)) n->callee = copy(n->callee, copies);
-    });
-    module_.functions.push_back(std::move(made));
-    return copies[id] = static_cast<FunctionId>(module_.functions.size() - 1);
   }
 
   KernelId makeFold() {
@@ -252,7 +237,7 @@ void compensateSums(Module& module, Diagnostics&) {
   const std::size_t declared = module.kernels.size();  // before those that this adds
   for (KernelId id = 0; id < declared; ++id) {
     const Kernel& kernel = module.kernels[id];
-    if (!kernel.reduction || kernel.isCombination) continue;
+    if (!kernel.reduction || kernel.isMade) continue;
     const std::optional<FoldPattern> pattern = recogniseFold(kernel, module.functions[kernel.entry]);
     if (!pattern) continue;
     std::vector<VarId> sums = sumsOf(module, id, *pattern);

@@ -136,7 +136,7 @@ KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern
   made.name = kernel.name + "_combine";
   made.scope = kernel.scope;
   made.loc = loc;
-  made.isCombination = true;
+  made.isMade = true;
   Function entry{.name = made.name, .result = {}, .variables = {}, .body = {}, .loc = loc};
   std::vector<VarId> accumulators;
   for (VarId i = 0; i < kernel.params.size(); ++i) {

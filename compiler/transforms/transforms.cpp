@@ -18,7 +18,9 @@
 #include "transforms/forward_continues.hpp"
 #include "transforms/guard_streams.hpp"
 #include "transforms/remove_unused.hpp"
+#include "transforms/round_halves.hpp"
 #include "transforms/specialize_gathers.hpp"
+#include "transforms/widen_floats.hpp"
 
 namespace skc {
 namespace {
@@ -34,6 +36,15 @@ void plain(ir::Module& module, Diagnostics& diagnostics, const TransformOptions&
   transform(module, diagnostics);
 }
 
+/// One that makes forms of kernels for other precisions.
+template <void (*transform)(ir::Module&, Diagnostics&)>
+void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options) {
+  if (options.precisions) return transform(module, diagnostics);
+  for (ir::Kernel& kernel : module.kernels) {
+    if (!kernel.isMade) kernel.forms.whyNotWide = kernel.forms.whyNotHalf = "skc was told to leave it out";
+  }
+}
+
 // First the gathers: from then on a function belongs to one kernel, and every later transform may
 // change it without looking at other callers.
 // Folding before deriving, so that what a branch on a literal switches off does not hide the pattern
@@ -42,6 +53,8 @@ void plain(ir::Module& module, Diagnostics& diagnostics, const TransformOptions&
 // Bounding the pushes after folding, which makes loops of a known number of rounds and takes out what
 // never runs.
 // Deriving before removing, because it makes functions that use structs.
+// Forms for other precisions after deriving, so that they combine likewise; and before compensating, which
+// is not for them.
 // Compensating after deriving, which finds identities and how the rest combines.
 // Assigning rows at any time before splitting, which follows variables.
 // Forwarding after bounding and deriving, which know what the author wrote.
@@ -53,6 +66,8 @@ constexpr Transform transforms[] = {
     {"guard-streams", plain<guardStreams>},
     {"bound-pushes", plain<boundPushes>},
     {"derive-combine", plain<deriveCombine>},
+    {"widen-floats", ofPrecisions<widenFloats>},
+    {"round-halves", ofPrecisions<roundHalves>},
     {"compensate-sums", plain<compensateSums>},
     {"assign-rows", plain<assignRows>},
     {"forward-continues", plain<forwardContinues>},

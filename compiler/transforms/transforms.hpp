@@ -17,6 +17,8 @@ namespace skc {
 struct TransformOptions {
   /// What the targets can read and write in a pass: kernels that need more get plans.
   std::vector<ir::Limits> limits = {};
+  /// Whether kernels get forms for other precisions.
+  bool precisions = false;
   /// Told the name and the module after each transform; may be empty.
   std::function<void(std::string_view name, const ir::Module& module)> after = {};
 };

@@ -11,6 +11,7 @@
 #include "check_argument.hpp"
 #include "check_reduction.hpp"
 #include "device_state.hpp"
+#include "precision.hpp"
 #include "sk/call.hpp"
 
 namespace sk {
@@ -36,10 +37,6 @@ std::size_t planesCombined(const Reduction& reduction) {
 const CompensatedReduction* compensated(const Reduction& reduction, const CheckedReduction& checked,
                                         const CallOptions& options) {
   const CompensatedReduction* second = reduction.compensated;
-  if ((options.precision != Precision::Default && options.precision != Precision::Single) ||
-      options.accumulate > Accumulate::Compensated) {
-    fail(reduction.fold, "it has no form in this precision; call it in Precision::Single");
-  }
   if (options.accumulate == Accumulate::Compensated && second == nullptr) {
     fail(reduction.fold, "it has no sum of floats to compensate; call it without Accumulate::Compensated");
   }
@@ -86,6 +83,10 @@ std::size_t resultOf(const Kernel& fold, std::size_t accumulator) {
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
             const CallOptions& options) {
   const CheckedReduction checked = checkReduction(reduction, arguments);
+  if (takesForm(options)) {
+    reduceInForm(checked, reduction, arguments, results, options);
+    return;
+  }
   const CompensatedReduction* second = compensated(reduction, checked, options);
   if (second == nullptr) {
     checked.device.reduce(reduction, arguments, checked.domain, results, options);
@@ -108,6 +109,10 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
   const CheckedReduction checked = checkReductionToStreams(reduction, arguments);
   if (checked.blocks.size() == 0) {
+    return;
+  }
+  if (takesForm(options)) {
+    reduceInForm(checked, reduction, arguments, options);
     return;
   }
   const CompensatedReduction* second = compensated(reduction, checked, options);

@@ -32,6 +32,8 @@ class DeviceState {
   virtual const Arithmetic& arithmetic() = 0;
   /// Whether scatter outputs may combine what comes with what they hold.
   virtual bool combinesScattered() const = 0;
+  /// Whether precisions other than float's are forms of a kernel: native code computes in any real type.
+  virtual bool takesForms() const = 0;
   /// Throws sk::Error where this device has no program for the kernel.
   virtual void checkProgram(const program::Kernel& kernel) = 0;
   virtual void checkProgram(const program::Reduction& reduction) = 0;

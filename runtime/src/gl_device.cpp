@@ -12,6 +12,7 @@
 #include "gl/commands.hpp"
 #include "gl/errors.hpp"
 #include "gl_stream.hpp"
+#include "precision.hpp"
 #include "probe.hpp"
 #include "sk/error.hpp"
 
@@ -35,10 +36,6 @@ Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& cho
                             capabilities.api == gl::Api::Gl ? "GLSL 3.30" : "ESSL 3.00"));
   }
   return choices.barrier.value_or(capabilities.hasPrecise ? Barrier::Precise : Barrier::Xor);
-}
-
-bool isExtended(const CallOptions& options) {
-  return options.precision == Precision::Extended || options.accumulate == Accumulate::Extended;
 }
 
 }  // namespace
@@ -175,6 +172,9 @@ void GlDevice::checkProgram(const program::Reduction& reduction) {
 void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& options) {
   if (isExtended(options)) {
     needExactSums(kernel);
+  }
+  if (options.precision == Precision::Double && profile.doubles != assemble::Doubles::Native) {
+    fail(kernel, "'{}' has no doubles of its own; call it in Precision::Extended", name());
   }
 }
 

@@ -53,6 +53,7 @@ class GlDevice final : public DeviceState {
   bool isSoftware() const override { return capabilities.isSoftware; }
   const Arithmetic& arithmetic() override;
   bool combinesScattered() const override { return capabilities.blendsFloats; }
+  bool takesForms() const override { return true; }
   void checkProgram(const program::Kernel& kernel) override;
   void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;

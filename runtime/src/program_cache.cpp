@@ -161,7 +161,7 @@ void KernelProgram::Tree::set(const assemble::TreePlan& plan) {
 
 void ProgramCache::bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit) {
   device_.bound.program(program.name());
-  for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
+  for (std::size_t plane = 0; plane < heldBy(parameter).fields.size(); ++plane) {
     if (!parameter.layers.empty() && parameter.layers[plane].bundle >= 0) {
       continue;
     }

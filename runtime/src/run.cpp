@@ -13,6 +13,7 @@
 #include "output_targets.hpp"
 #include "pass.hpp"
 #include "plan_run.hpp"
+#include "precision.hpp"
 #include "sink_call.hpp"
 #include "sk/call.hpp"
 
@@ -120,24 +121,22 @@ void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> argu
                             const CallOptions& options) {
   const DeviceScope scope(*this);
   choose(options);
-  if (!hasSinks(kernel)) {
-    KernelCall(*this, kernel, arguments).run();
+  const Kernel& form = formOf(kernel, options);
+  if (!hasSinks(form)) {
+    KernelCall(*this, form, arguments).run();
     return;
   }
-  const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
+  const Shape domain = domainOf(form, arguments, specsOf(form, arguments));
   if (domain.size() == 0) {
-    runOverNothing(kernel, arguments);
+    runOverNothing(form, arguments);
   } else {
-    runWithSinks(*this, kernel, arguments, domain);
+    runWithSinks(*this, form, arguments, domain);
   }
 }
 
 void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
   if (options.accumulate != Accumulate::Default) {
     fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
-  }
-  if (options.precision != Precision::Default && options.precision != Precision::Single) {
-    fail(kernel, "it has no form in this precision; call it in Precision::Single");
   }
   if (DeviceState* device = checkCall(kernel, arguments)) {
     device->run(kernel, arguments, options);

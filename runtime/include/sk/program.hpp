@@ -139,7 +139,10 @@ struct Parameter {
   std::string_view symbol;  ///< suffix of the assembler's names for it (a GLSL-safe name that begins
       ///< with a letter: GLSL reserves names with two underscores)
   Role role;
-  const Element* element;
+  const Element* element;  ///< as the body has it
+  const Element* held =
+      nullptr;  ///< inputs, outputs and gathers: what the stream holds, where that is floats
+  ///< in the place of the element's doubles
   std::uint8_t rank = 0;  ///< gathers and scatter outputs: 1 to 4; else 0
   Boundary boundary = Boundary::Clamp;  ///< gathers
   std::string_view border = {};  ///< gathers with Boundary::Border: a GLSL constant expression
@@ -159,6 +162,11 @@ struct Parameter {
   std::uint8_t planeCount = 0;  ///< and how many; 0 is all of them
   std::span<const Layer> layers = {};  ///< one a plane; empty if none is in a bundle
 };
+
+/// What the stream of a parameter holds.
+constexpr const Element& heldBy(const Parameter& parameter) {
+  return parameter.held != nullptr ? *parameter.held : *parameter.element;
+}
 
 struct Plan;
 
@@ -196,6 +204,9 @@ struct Kernel {
   const Plan* plans = nullptr;  ///< for devices that cannot run it in one pass, most generous first
   std::uint8_t planCount = 0;
   const NativeKernel* native = nullptr;  ///< null where skc was not asked for native code
+  const Kernel* half = nullptr;  ///< the form that rounds every float to half; null where there is none
+  const Kernel* wide = nullptr;  ///< the form that computes in doubles what this one does in floats; likewise
+  std::string_view whyNotHalf = {}, whyNotWide = {};  ///< where it computes floats, yet has no such form
 };
 
 /// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.
@@ -233,6 +244,7 @@ struct Plan {
 };
 
 struct CompensatedReduction;
+struct WideReduction;
 
 /// A reduction. `fold` is a kernel whose entry takes every Input by value and every Accumulator as `inout`,
 /// among its other parameters, and folds an element into the accumulators. `combine` is one of the same
@@ -248,6 +260,15 @@ struct Reduction {
       ///< then all exist
   const NativeReduction* native = nullptr;
   const CompensatedReduction* compensated = nullptr;  ///< null where it sums no floats
+  const Reduction* half = nullptr;  ///< its forms for other precisions, as those of Kernel
+  const WideReduction* wide = nullptr;
+};
+
+/// A reduction whose accumulators are doubles. `finish` takes them as Inputs and has the results as Outputs, which
+/// hold floats.
+struct WideReduction {
+  Reduction reduction;
+  Kernel finish;
 };
 
 /// A reduction that also sums what its sums of floats lose by rounding: it has one more accumulator for each of `sums`

@@ -63,7 +63,7 @@ const program::Layer& layerOf(const Parameter& parameter, std::size_t plane) {
 
 /// The first plane that a parameter writes, and the one after the last.
 std::pair<std::size_t, std::size_t> writtenPlanes(const Parameter& parameter) {
-  if (parameter.planeCount == 0) return {0, parameter.element->fields.size()};
+  if (parameter.planeCount == 0) return {0, heldBy(parameter).fields.size()};
   return {parameter.firstPlane, std::size_t{parameter.firstPlane} + parameter.planeCount};
 }
 
@@ -128,7 +128,7 @@ void assignField(std::vector<std::string>& statements, std::string_view variable
 int outputWidth(const Field& field) { return field.width == 3 ? 4 : texelWidth(field); }
 
 std::string planeName(std::string_view prefix, const Parameter& parameter, std::size_t plane) {
-  if (parameter.element->fields.size() == 1) return fmt::format("{}_{}", prefix, parameter.symbol);
+  if (heldBy(parameter).fields.size() == 1) return fmt::format("{}_{}", prefix, parameter.symbol);
   return fmt::format("{}{}_{}", prefix, plane, parameter.symbol);
 }
 
@@ -146,16 +146,47 @@ std::string placeOfPlane(ProgramText& program, const Parameter& parameter, std::
                      layer.layer);
 }
 
+/// Whether the planes of a field hold floats of which the program makes doubles.
+bool isWidened(const Parameter& parameter, const Field& field) {
+  return parameter.held != nullptr && field.scalar == Scalar::Float;
+}
+
+/// A float or a vector of them as doubles.
+std::string widened(ProgramText& program, const Field& field, const std::string& value) {
+  if (field.width == 1) return fmt::format("sk_to_double({})", value);
+  const std::string signature = fmt::format("sk_double{0} sk_widen{0}(vec{0} sk_v)", field.width);
+  if (!program.isDefined(signature)) {
+    std::vector<std::string> parts;
+    for (int c = 0; c < field.width; ++c) parts.push_back(fmt::format("sk_to_double(sk_v.{})", "xyzw"[c]));
+    program.function(signature,
+                     {fmt::format("return sk_double{}({});", field.width, fmt::join(parts, ", "))});
+  }
+  return fmt::format("sk_widen{}({})", field.width, value);
+}
+
+/// And back.
+std::string narrowed(ProgramText& program, const Field& field, const std::string& value) {
+  if (field.width == 1) return fmt::format("sk_to_float({})", value);
+  const std::string signature = fmt::format("vec{0} sk_narrow{0}(sk_double{0} sk_v)", field.width);
+  if (!program.isDefined(signature)) {
+    std::vector<std::string> parts;
+    for (int c = 0; c < field.width; ++c) parts.push_back(fmt::format("sk_to_float(sk_v.{})", "xyzw"[c]));
+    program.function(signature, {fmt::format("return vec{}({});", field.width, fmt::join(parts, ", "))});
+  }
+  return fmt::format("sk_narrow{}({})", field.width, value);
+}
+
 std::string fetchPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
                        const Texel& texel) {
   static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
-  const Field& field = parameter.element->fields[plane];
+  const Field& field = heldBy(parameter).fields[plane];
   std::string value = fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane),
                                   placeOfPlane(program, parameter, plane, texel),
                                   swizzles[static_cast<std::size_t>(texelWidth(field) - 1)]);
   if (field.scalar == Scalar::Bool) {
     return field.width == 1 ? value + " != 0u" : fmt::format("notEqual({}, uvec{}(0u))", value, field.width);
   }
+  if (isWidened(parameter, field)) return widened(program, field, value);
   return converted(spelling(field).load, std::move(value), valueType(field));
 }
 
@@ -166,9 +197,10 @@ std::string toOutput(const Field& field, std::string value) {
   return value;
 }
 
-bool outputHasType(const Element& element) {
+bool outputHasType(const Parameter& parameter) {
+  const Element& element = *parameter.element;
   const Field& field = element.fields.front();
-  return !isStruct(element) && spelling(field).store.empty() && field.width != 3;
+  return parameter.held == nullptr && !isStruct(element) && spelling(field).store.empty() && field.width != 3;
 }
 
 }  // namespace
@@ -197,8 +229,8 @@ std::string samplerType(std::string_view sampler, bool isArray) {
 }
 
 void declareSamplers(ProgramText& program, const Parameter& parameter, bool layered) {
-  for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
-    const std::string_view sampler = spelling(parameter.element->fields[plane]).sampler;
+  for (std::size_t plane = 0; plane < heldBy(parameter).fields.size(); ++plane) {
+    const std::string_view sampler = spelling(heldBy(parameter).fields[plane]).sampler;
     const bool isArray = layered || layerOf(parameter, plane).bundle >= 0;
     program.uniform(samplerType(sampler, isArray), samplerName(parameter, plane));
   }
@@ -207,26 +239,27 @@ void declareSamplers(ProgramText& program, const Parameter& parameter, bool laye
 void declareOutputs(ProgramText& program, const Parameter& parameter) {
   const auto [first, end] = writtenPlanes(parameter);
   for (std::size_t plane = first; plane < end; ++plane) {
-    const Field& field = parameter.element->fields[plane];
+    const Field& field = heldBy(parameter).fields[plane];
     program.output(texelType(field, outputWidth(field)), outputName(parameter, plane));
   }
 }
 
 std::string fetch(ProgramText& program, const Parameter& parameter, const Texel& texel) {
-  const Element& element = *parameter.element;
+  const Element& element = heldBy(parameter);
   if (!isStruct(element)) return fetchPlane(program, parameter, 0, texel);
-  std::vector<std::string> statements = {fmt::format("{} sk_e;", element.glsl)};
+  const std::string_view type = parameter.element->glsl;
+  std::vector<std::string> statements = {fmt::format("{} sk_e;", type)};
   for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
     assignField(statements, "sk_e", element.fields[plane],
                 fetchPlane(program, parameter, plane, {"sk_t", texel.shift}));
   }
   statements.emplace_back("return sk_e;");
-  program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", element.glsl, parameter.symbol), statements);
+  program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", type, parameter.symbol), statements);
   return fmt::format("sk_fetch_{}({})", parameter.symbol, texel.at);
 }
 
 std::string resultVariable(ProgramText& program, const Parameter& parameter) {
-  if (outputHasType(*parameter.element)) return outputName(parameter, 0);
+  if (outputHasType(parameter)) return outputName(parameter, 0);
   const std::string name = fmt::format("sk_value_{}", parameter.symbol);
   program.statement(fmt::format("{} {};", parameter.element->glsl, name));
   return name;
@@ -236,22 +269,24 @@ void copyPlanes(ProgramText& program, const Parameter& parameter, const Texel& t
   static constexpr std::array<std::string_view, 5> swizzles = {"", ".x", ".xy", "", ""};
   declareSamplers(program, parameter, !texel.shift.empty());
   declareOutputs(program, parameter);
-  for (std::size_t plane = 0; plane < parameter.element->fields.size(); ++plane) {
+  for (std::size_t plane = 0; plane < heldBy(parameter).fields.size(); ++plane) {
     program.statement(
         fmt::format("{} = texelFetch({}, {}, 0){};", outputName(parameter, plane),
                     samplerName(parameter, plane), place(program, texel),
-                    swizzles[static_cast<std::size_t>(texelWidth(parameter.element->fields[plane]))]));
+                    swizzles[static_cast<std::size_t>(texelWidth(heldBy(parameter).fields[plane]))]));
   }
 }
 
 void store(ProgramText& program, const Parameter& parameter, std::string_view variable) {
-  const Element& element = *parameter.element;
+  const Element& element = heldBy(parameter);
   const auto [first, end] = writtenPlanes(parameter);
   for (std::size_t plane = first; plane < end; ++plane) {
     const Field& field = element.fields[plane];
     const std::string output = outputName(parameter, plane);
     if (output == variable) continue;
-    program.statement(fmt::format("{} = {};", output, toOutput(field, valueOf(variable, field))));
+    std::string value = valueOf(variable, field);
+    if (isWidened(parameter, field)) value = narrowed(program, field, value);
+    program.statement(fmt::format("{} = {};", output, toOutput(field, std::move(value))));
   }
 }
 

@@ -13,8 +13,8 @@ bool fitsOnePass(const program::Kernel& kernel, const PassLimits& limits) {
   std::size_t read = 0;
   for (const program::Parameter& parameter : kernel.parameters) {
     const bool isRead = parameter.role == Role::Input || parameter.role == Role::Gather;
-    if (isRead) read += parameter.element->fields.size();
-    if (parameter.role == Role::Output) written += parameter.element->fields.size();
+    if (isRead) read += heldBy(parameter).fields.size();
+    if (parameter.role == Role::Output) written += heldBy(parameter).fields.size();
   }
   return written <= static_cast<std::size_t>(limits.drawBuffers) &&
          read <= static_cast<std::size_t>(limits.textureUnits);

@@ -57,13 +57,13 @@ std::vector<ComponentType> componentsOf(const program::Element& element, RealTyp
 }
 
 Components::Components(const program::Element& element, RealType real, std::int64_t count)
-    : types_(componentsOf(element, real)) {
+    : real_(real), types_(componentsOf(element, real)) {
   allocate(count);
 }
 
 Components::Components(const program::Element& element, RealType real,
                        std::span<const std::vector<std::byte>> arrays)
-    : types_(componentsOf(element, real)) {
+    : real_(real), types_(componentsOf(element, real)) {
   allocate(static_cast<std::int64_t>(arrays[0].size() / types_[0].storedBytes));
   for (std::size_t c = 0; c < types_.size(); ++c) {
     if (!arrays[c].empty()) std::memcpy(arrays_[c].get(), arrays[c].data(), arrays[c].size());
@@ -78,14 +78,32 @@ void Components::allocate(std::int64_t count) {
   }
 }
 
-Components Components::clone(std::int64_t count) const {
+Components Components::clone(std::int64_t count, RealType real) const {
   Components copy;
+  copy.real_ = real;
   copy.types_ = types_;
-  copy.allocate(count);
-  for (std::size_t c = 0; c < types_.size(); ++c) {
-    std::memcpy(copy.pointers_[c], pointers_[c], static_cast<std::size_t>(count) * types_[c].storedBytes);
+  for (ComponentType& type : copy.types_) {
+    if (type.isReal) type.storedBytes = real == RealType::Double ? sizeof(double) : sizeof(float);
   }
+  copy.allocate(count);
+  copy.assign(*this, count);
   return copy;
+}
+
+void Components::assign(const Components& from, std::int64_t count) {
+  for (std::size_t c = 0; c < types_.size(); ++c) {
+    const std::byte* source = from.arrays_[c].get();
+    std::byte* target = arrays_[c].get();
+    const std::size_t given = from.types_[c].storedBytes;
+    const std::size_t taken = types_[c].storedBytes;
+    if (given == taken) {
+      if (count > 0) std::memcpy(target, source, static_cast<std::size_t>(count) * taken);
+    } else if (given < taken) {
+      convertStrided<float, double>(source, given, target, taken, count);
+    } else {
+      convertStrided<double, float>(source, given, target, taken, count);
+    }
+  }
 }
 
 void Components::write(std::int64_t first, std::int64_t count, const std::byte* elements,

@@ -34,7 +34,12 @@ class Components {
   /// Takes the bytes of each array.
   Components(const program::Element& element, RealType real, std::span<const std::vector<std::byte>> arrays);
 
-  Components clone(std::int64_t count) const;
+  RealType real() const { return real_; }
+
+  /// A copy that holds floats as `real`.
+  Components clone(std::int64_t count, RealType real) const;
+  /// Takes the elements of others, which are of as many components.
+  void assign(const Components& from, std::int64_t count);
   std::span<void* const> arrays() const { return pointers_; }
 
   /// `count` elements from `first` on, from and to host memory.
@@ -46,6 +51,7 @@ class Components {
  private:
   void allocate(std::int64_t count);
 
+  RealType real_ = RealType::Float;
   std::vector<ComponentType> types_;
   std::vector<std::unique_ptr<std::byte[]>> arrays_;
   std::vector<void*> pointers_;

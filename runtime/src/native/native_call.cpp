@@ -7,9 +7,11 @@
 
 #include "assemble/condition.hpp"
 #include "check.hpp"
+#include "check_argument.hpp"
 #include "iterator.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
+#include "precision.hpp"
 
 namespace sk {
 
@@ -77,11 +79,22 @@ class Operands {
     return kept_.emplace_back(element, real_, count);
   }
 
-  /// Streams get what was pushed to them.
-  void settlePushed() {
+  /// Streams get what was pushed to them, and what was written to a copy in another real type.
+  void settle() {
     for (std::size_t i = 0; i < list_.size(); ++i) {
-      if (list_[i].pushed != nullptr) nativeStream(arguments_[i].region).become(*list_[i].pushed);
+      if (list_[i].pushed != nullptr) nativeStream(arguments_[i].region).become(*list_[i].pushed, real_);
     }
+    for (const auto& [stream, copy] : written_) stream->components.assign(copy, stream->shape.size());
+  }
+
+  /// The arrays of a stream that is written, or of the copy in the real type of the call that stands for it.
+  std::span<void* const> arraysToWrite(NativeStream& stream) {
+    if (stream.components.real() == real_) return stream.components.arrays();
+    for (const auto& [written, copy] : written_) {
+      if (written == &stream) return copy.arrays();
+    }
+    return written_.emplace_back(&stream, stream.components.clone(stream.shape.size(), real_))
+        .second.arrays();
   }
 
  private:
@@ -109,8 +122,13 @@ class Operands {
     }
     if (argument.region.stream == nullptr || !assemble::isNeeded(parameter, specs_)) return {};
     Operand operand = operandOf(argument.region);
-    const NativeStream& stream = nativeStream(argument.region);
-    operand.components = isReadWhileWritten(i) ? copyOf(stream).arrays() : stream.components.arrays();
+    NativeStream& stream = nativeStream(argument.region);
+    if (isWritten(parameter.role)) {
+      operand.components = arraysToWrite(stream);
+    } else {
+      const bool isCopied = stream.components.real() != real_ || isReadWhileWritten(i);
+      operand.components = isCopied ? copyOf(stream).arrays() : stream.components.arrays();
+    }
     if (parameter.role == Role::Input) fit(operand, argument.fit, fastestFirst(domain_));
     return operand;
   }
@@ -141,7 +159,7 @@ class Operands {
     for (const auto& [source, copy] : copies_) {
       if (source == &stream) return copy;
     }
-    return copies_.emplace_back(&stream, stream.components.clone(stream.shape.size())).second;
+    return copies_.emplace_back(&stream, stream.components.clone(stream.shape.size(), real_)).second;
   }
 
   RealType real_;
@@ -152,7 +170,8 @@ class Operands {
   std::vector<Operand> list_;
   std::deque<Components> kept_;
   std::deque<native::Pushed> pushed_;
-  std::deque<std::pair<const NativeStream*, Components>> copies_;
+  std::deque<std::pair<const NativeStream*, Components>> copies_;  ///< that are read
+  std::deque<std::pair<NativeStream*, Components>> written_;
 };
 
 /// A reduction's call, but for its results.
@@ -187,7 +206,7 @@ class Folding {
 };
 
 /// Results may have fewer dimensions than blocks: those of extent 1 are left out. The others keep their order.
-Operand resultOperand(const StreamRegion& region, const Extents& blocks) {
+Operand resultOperand(Operands& fold, const StreamRegion& region, const Extents& blocks) {
   Operand operand = operandOf(region);
   const Operand own = operand;
   std::size_t next = 0;
@@ -197,22 +216,33 @@ Operand resultOperand(const StreamRegion& region, const Extents& blocks) {
     operand.extent[d] = own.extent[next];
     operand.stride[d] = own.stride[next++];
   }
-  operand.components = nativeStream(region).components.arrays();
+  operand.components = fold.arraysToWrite(nativeStream(region));
   return operand;
 }
 
 }  // namespace
 
-void NativeDevice::run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions&) {
+/// Pairs of floats are doubles here, where these are cheaper.
+RealType NativeDevice::realOf(const Kernel& kernel, const CallOptions& options) const {
+  if (options.precision == Precision::Half) {
+    fail(kernel,
+         "native code has no form in half precision; call it in another one, or on a device with OpenGL");
+  }
+  return isWide(options) ? RealType::Double : real_;
+}
+
+void NativeDevice::run(const Kernel& kernel, std::span<const Argument> arguments,
+                       const CallOptions& options) {
   const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
-  Operands operands(real_, kernel, arguments, domain);
-  (real_ == RealType::Float ? kernel.native->single : kernel.native->reference)(operands.call());
-  operands.settlePushed();
+  const RealType real = realOf(kernel, options);
+  Operands operands(real, kernel, arguments, domain);
+  (real == RealType::Float ? kernel.native->single : kernel.native->reference)(operands.call());
+  operands.settle();
 }
 
 void NativeDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
-                          const Shape& domain, std::span<void* const> results, const CallOptions&) {
-  Folding folding(real_, reduction, arguments, domain);
+                          const Shape& domain, std::span<void* const> results, const CallOptions& options) {
+  Folding folding(realOf(reduction.fold, options), reduction, arguments, domain);
   std::vector<std::pair<const program::Element*, const Components*>> values;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const Parameter& parameter = reduction.fold.parameters[i];
@@ -232,19 +262,20 @@ void NativeDevice::reduce(const program::Reduction& reduction, std::span<const A
 }
 
 void NativeDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
-                          const Shape& domain, const Shape& blocks, const CallOptions&) {
-  Folding folding(real_, reduction, arguments, domain);
+                          const Shape& domain, const Shape& blocks, const CallOptions& options) {
+  Folding folding(realOf(reduction.fold, options), reduction, arguments, domain);
   const Extents counts = fastestFirst(blocks);
   std::vector<std::size_t> results;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (reduction.fold.parameters[i].role != Role::Accumulator) continue;
-    folding.fold.list()[i] = resultOperand(arguments[i].region, counts);
+    folding.fold.list()[i] = resultOperand(folding.fold, arguments[i].region, counts);
     results.push_back(i);
   }
   if (domain.size() != 0) {
     Extents block = fastestFirst(domain);
     for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
     folding.run(block);
+    folding.fold.settle();
     return;
   }
   // no element at all: the identity in each of the results
@@ -262,6 +293,7 @@ void NativeDevice::reduce(const program::Reduction& reduction, std::span<const A
     }
     folding.storeIdentity();
   }
+  folding.fold.settle();
 }
 
 }  // namespace sk

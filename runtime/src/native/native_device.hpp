@@ -23,6 +23,7 @@ class NativeDevice final : public DeviceState {
   bool isSoftware() const override { return true; }
   const Arithmetic& arithmetic() override { return arithmetic_; }
   bool combinesScattered() const override { return true; }
+  bool takesForms() const override { return false; }
   void checkProgram(const program::Kernel& kernel) override;
   void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;
@@ -36,6 +37,8 @@ class NativeDevice final : public DeviceState {
               const Shape& blocks, const CallOptions& options) override;
 
  private:
+  RealType realOf(const program::Kernel& kernel, const CallOptions& options) const;
+
   RealType real_;
   std::string name_;
   std::string none_;

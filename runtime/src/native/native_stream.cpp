@@ -82,10 +82,12 @@ StreamTexture NativeStream::texture(int) {
       fmt::format("texture: '{}' has no textures; read() the stream, or use a GL device", owner().name()));
 }
 
-void NativeStream::become(const native::Pushed& pushed) {
-  components = Components(*element, owner().real(), pushed);
-  const std::size_t bytes = componentsOf(*element, owner().real())[0].storedBytes;
-  shape = Shape(static_cast<std::int64_t>(pushed[0].size() / bytes));
+void NativeStream::become(const native::Pushed& pushed, RealType real) {
+  const std::size_t bytes = componentsOf(*element, real)[0].storedBytes;
+  const auto count = static_cast<std::int64_t>(pushed[0].size() / bytes);
+  Components given(*element, real, pushed);
+  components = real == owner().real() ? std::move(given) : given.clone(count, owner().real());
+  shape = Shape(count);
 }
 
 }  // namespace sk

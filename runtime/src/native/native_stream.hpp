@@ -22,8 +22,8 @@ class NativeStream final : public StreamState {
   void readReals(const StreamRegion& region, double* values) override;
   StreamTexture texture(int plane) override;
 
-  /// Takes what a kernel has pushed for its elements.
-  void become(const native::Pushed& pushed);
+  /// Takes what a kernel has pushed for its elements, which has floats as `real`.
+  void become(const native::Pushed& pushed, RealType real);
 
   Components components;
 

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/copy_functions.hpp"
+
+#include <utility>
+
+#include "ir/build.hpp"
+#include "ir/walk.hpp"
+
+namespace skc {
+
+using namespace ir;
+
+FunctionId copyFunction(Module& module, FunctionId id, FunctionCopies& copies) {
+  if (const auto known = copies.find(id); known != copies.end()) return known->second;
+  Function made = clone(module.functions[id]);
+  walkStmts(made.body, [&](Stmt& stmt) {
+    if (auto* n = std::get_if<CallStmt>(&stmt.node)) n->callee = copyFunction(module, n->callee, copies);
+  });
+  walkExprs(made.body, [&](Expr& expr) {
+    if (auto* n = std::get_if<Call>(&expr.node)) n->callee = copyFunction(module, n->callee, copies);
+  });
+  module.functions.push_back(std::move(made));
+  return copies[id] = static_cast<FunctionId>(module.functions.size() - 1);
+}
+
+}  // namespace skc

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/round_halves.hpp"
+
+#include <bit>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "ir/build.hpp"
+#include "ir/quantize.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+#include "transforms/copy_functions.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+ExprPtr rounded(ExprPtr value) {
+  const Loc loc = value->loc;
+  if (const auto* n = std::get_if<Literal>(&value->node)) {
+    return literal(std::bit_cast<float>(quantize(Scalar::Half, n->bits)), loc);
+  }
+  return convert(Scalar::Float, convert(Scalar::Half, std::move(value), loc), loc);
+}
+
+/// The expression whose parts a place or a read takes.
+const Expr& rootOfRead(const Expr& expr) {
+  if (const auto* n = std::get_if<Member>(&expr.node)) return rootOfRead(*n->base);
+  if (const auto* n = std::get_if<Index>(&expr.node)) return rootOfRead(*n->base);
+  if (const auto* n = std::get_if<Swizzle>(&expr.node)) return rootOfRead(*n->base);
+  return expr;
+}
+
+bool isReadOfStream(const Expr& expr) {
+  return std::holds_alternative<GatherRead>(expr.node) || std::holds_alternative<NeighborRead>(expr.node) ||
+         std::holds_alternative<Sample>(expr.node);
+}
+
+/// One function of a half form.
+class Rounder {
+ public:
+  /// `kernel`: that of an entry, whose arguments are rounded where they are read; else null.
+  Rounder(Module& module, const Kernel* kernel) : module_(module), kernel_(kernel) {}
+
+  void run(FunctionId id) {
+    walkStmts(module_.functions[id].body, [&](Stmt& stmt) { statement(stmt); });
+  }
+
+ private:
+  void statement(Stmt& stmt) {
+    match(
+        stmt.node,
+        [&](Declare& n) {
+          if (n.init) value(n.init);
+        },
+        [&](Assign& n) {
+          place(*n.place);
+          value(n.value);
+          if (n.op && n.place->type.isFloat()) {
+            n.value = rounded(binary(*n.op, clone(n.place), std::move(n.value), stmt.loc));
+            n.op.reset();
+          }
+        },
+        [&](CallStmt& n) {
+          const Function& callee = module_.functions[n.callee];
+          for (std::size_t i = 0; i < n.args.size(); ++i) {
+            callee.variables[i].role == VarRole::InOut ? place(*n.args[i]) : value(n.args[i]);
+          }
+          if (n.result) place(*n.result);
+        },
+        [&](If& n) { value(n.cond); },
+        [&](Loop& n) {
+          if (n.cond) value(n.cond);
+        },
+        [&](Switch& n) { value(n.value); }, [](Break&) {}, [](Continue&) {},
+        [&](Return& n) {
+          if (n.value) value(n.value);
+        },
+        [](Scope&) {}, [&](Push& n) { value(n.value); }, [&](Scatter& n) { value(n.index), value(n.value); });
+  }
+
+  /// Only the indices of a place are computed.
+  void place(Expr& expr) {
+    if (auto* n = std::get_if<Index>(&expr.node)) {
+      value(n->index);
+      place(*n->base);
+    } else if (auto* m = std::get_if<Member>(&expr.node)) {
+      place(*m->base);
+    } else if (auto* s = std::get_if<Swizzle>(&expr.node)) {
+      place(*s->base);
+    }
+  }
+
+  void value(ExprPtr& slot) {
+    Expr& expr = *slot;
+    const bool isPart = &rootOfRead(expr) != &expr;
+    if (isPart) {
+      partOf(expr);
+    } else {
+      forEachOperand(expr, [&](ExprPtr& operand) { value(operand); });
+    }
+    if (expr.type.isFloat() && isRounded(expr)) slot = rounded(std::move(slot));
+  }
+
+  /// What is taken of a read is rounded, not the read itself, which may be a struct; indices are values.
+  void partOf(Expr& expr) {
+    forEachOperand(expr, [&](ExprPtr& operand) {
+      const bool isBase =
+          !std::holds_alternative<Index>(expr.node) || operand.get() == std::get<Index>(expr.node).base.get();
+      if (!isBase || !isUnrounded(*operand)) return value(operand);
+      if (&rootOfRead(*operand) != operand.get()) return partOf(*operand);
+      forEachOperand(*operand, [&](ExprPtr& inner) { value(inner); });
+    });
+  }
+
+  /// What reaches an expression from outside of the form.
+  bool isUnrounded(const Expr& expr) const {
+    const Expr& root = rootOfRead(expr);
+    if (const auto* n = std::get_if<VarRef>(&root.node)) return isArgument(n->var);
+    return isReadOfStream(root) || std::holds_alternative<ConstantRef>(root.node);
+  }
+
+  bool isArgument(VarId var) const {
+    if (kernel_ == nullptr || var >= kernel_->params.size()) return false;
+    const ParamRole role = kernel_->params[var].role;
+    return role != ParamRole::Output;
+  }
+
+  bool isRounded(const Expr& expr) const {
+    if (&rootOfRead(expr) != &expr) return isUnrounded(expr);
+    return match(
+        expr.node, [](const Literal&) { return true; }, [&](const VarRef& n) { return isArgument(n.var); },
+        [](const ConstantRef&) { return true; }, [](const Unary&) { return false; },
+        [](const Binary&) { return true; }, [](const Select&) { return false; },
+        [](const Convert& n) { return n.operand->type.scalar != Scalar::Half; },
+        [](const Construct&) { return false; }, [](const Swizzle&) { return false; },
+        [](const Member&) { return false; }, [](const Index&) { return false; },
+        [](const Call&) { return false; }, [](const IntrinsicCall&) { return true; },
+        [](const GatherRead&) { return true; }, [](const NeighborRead&) { return true; },
+        [](const Sample&) { return true; }, [](const IndexOf&) { return false; },
+        [](const ExtentOf&) { return false; });
+  }
+
+  Module& module_;
+  const Kernel* kernel_;
+};
+
+KernelId roundKernel(Module& module, KernelId id) {
+  FunctionCopies copies;
+  const FunctionId entry = copyFunction(module, module.kernels[id].entry, copies);
+  const Kernel& kernel = module.kernels[id];
+  Kernel made;
+  made.name = kernel.name;
+  made.scope = kernel.scope;
+  made.signature = kernel.signature;
+  made.entry = entry;
+  made.isMade = true;
+  made.loc = kernel.loc;
+  for (const KernelParam& param : kernel.params) made.params.push_back(clone(param));
+  if (kernel.reduction) made.reduction = Reduction{{}, kernel.reduction->operands, kernel.reduction->seeded};
+  for (const auto& [from, to] : copies) Rounder(module, to == entry ? &made : nullptr).run(to);
+  module.kernels.push_back(std::move(made));
+  return static_cast<KernelId>(module.kernels.size() - 1);
+}
+
+bool computesFloats(const Module& module, const Kernel& kernel) {
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    bool found = false;
+    walkExprs(module.functions[id].body, [&](const Expr& expr) { found = found || expr.type.isFloat(); });
+    if (found) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void roundHalves(Module& module, Diagnostics&) {
+  const std::size_t declared = module.kernels.size();   // before those that this adds
+  for (KernelId id = 0; id < declared; ++id) {
+    if (module.kernels[id].isMade || !computesFloats(module, module.kernels[id])) continue;
+    const std::optional<KernelId> combine =
+        module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
+    const KernelId half = roundKernel(module, id);
+    module.kernels[id].forms.half = half;
+    if (!combine) continue;
+    const KernelId halfCombine = *combine == id ? half : roundKernel(module, *combine);
+    module.kernels[half].reduction->combine = halfCombine;
+    module.kernels[halfCombine].reduction->combine = halfCombine;
+  }
+}
+
+}  // namespace skc

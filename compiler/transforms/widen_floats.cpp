@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/widen_floats.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ir/build.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+#include "transforms/copy_functions.hpp"
+#include "transforms/wide_types.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+bool isStreamOfValues(ParamRole role) {
+  return role == ParamRole::Input || role == ParamRole::Output || role == ParamRole::Gather ||
+         role == ParamRole::Accumulator;
+}
+
+bool isSink(ParamRole role) { return role == ParamRole::VariableOutput || role == ParamRole::Scatter; }
+
+/// Those of a float's bits: they get a float, or give one.
+bool isOfBits(Intrinsic intrinsic) {
+  switch (intrinsic) {
+    case Intrinsic::FloatBitsToInt:
+    case Intrinsic::FloatBitsToUint:
+    case Intrinsic::IntBitsToFloat:
+    case Intrinsic::UintBitsToFloat:
+    case Intrinsic::AsInt:
+    case Intrinsic::AsUint:
+    case Intrinsic::AsFloatInt:
+    case Intrinsic::AsFloatUint:
+    case Intrinsic::Nearest: return true;
+    default: return false;
+  }
+}
+
+// ---- what has no wide form --------------------------------------------------------------------
+
+/// Looks for what doubles cannot do.
+class Obstacles {
+ public:
+  Obstacles(const Module& module, WideTypes& types) : module_(module), types_(types) {}
+
+  /// Empty if there is none.
+  std::string of(const Kernel& kernel) {
+    found_.clear();
+    for (const FunctionId id : functionsOf(module_, kernel)) {
+      const Function& function = module_.functions[id];
+      for (const Variable& variable : function.variables) check(variable.type, variable.loc);
+      walkExprs(function.body, [&](const Expr& expr) { check(expr); });
+    }
+    return found_;
+  }
+
+ private:
+  void check(const Expr& expr) {
+    check(expr.type, expr.loc);
+    if (std::holds_alternative<Sample>(expr.node)) note("sample() interpolates in floats", expr.loc);
+    const auto* call = std::get_if<IntrinsicCall>(&expr.node);
+    if (call == nullptr || isOfBits(call->intrinsic)) return;
+    std::vector<Type> arguments;
+    for (const ExprPtr& argument : call->args) arguments.push_back(types_.of(argument->type));
+    if (!resultType(call->intrinsic, arguments)) {
+      note(fmt::format("{}() is one of floats alone", nameOf(call->intrinsic)), expr.loc);
+    }
+  }
+
+  void check(Type type, Loc loc) {
+    if (type.isMatrix()) note("matrices are of floats", loc);
+    if (type.kind == Type::Kind::Array) check(module_.arrays[type.index].element, loc);
+    if (type.kind == Type::Kind::Struct) {
+      for (const StructField& field : module_.structs[type.index].fields) check(field.type, loc);
+    }
+  }
+
+  /// frexp and modf are several intrinsics without a spelling.
+  static std::string_view nameOf(Intrinsic intrinsic) {
+    const IntrinsicRow& row = ir::row(intrinsic);
+    if (!row.spelling.empty()) return row.spelling;
+    return intrinsic == Intrinsic::ModfFraction ? "modf" : "frexp";
+  }
+
+  void note(const std::string& what, Loc loc) {
+    if (!found_.empty()) return;
+    found_ = loc.line == 0 ? what : fmt::format("{} ({}:{})", what, module_.sources[loc.file], loc.line);
+  }
+
+  const Module& module_;
+  WideTypes& types_;
+  std::string found_;
+};
+
+// ---- the form ---------------------------------------------------------------------------------
+
+/// One kernel's wide form; the kernel has no obstacle.
+class Widener {
+ public:
+  Widener(Module& module, WideTypes& types, std::map<ConstantId, ConstantId>& constants)
+      : module_(module), types_(types), constants_(constants) {}
+
+  /// `holdsFloats`: whether its inputs and outputs are streams of floats; those of a combination are partial results.
+  KernelId widen(KernelId id, bool holdsFloats) {
+    Kernel made;
+    FunctionCopies copies;
+    const FunctionId entry = copyFunction(module_, module_.kernels[id].entry, copies);
+    {
+      const Kernel& kernel = module_.kernels[id];
+      made.name = kernel.name;
+      made.scope = kernel.scope;
+      made.signature = kernel.signature;
+      made.entry = entry;
+      made.isMade = true;
+      made.loc = kernel.loc;
+      if (kernel.reduction)
+        made.reduction = Reduction{{}, kernel.reduction->operands, kernel.reduction->seeded};
+    }
+    for (std::size_t i = 0; i < module_.kernels[id].params.size(); ++i) {
+      made.params.push_back(param(module_.kernels[id].params[i], holdsFloats));
+    }
+    for (const auto& [from, to] : copies) function(to, made);
+    module_.kernels.push_back(std::move(made));
+    return static_cast<KernelId>(module_.kernels.size() - 1);
+  }
+
+  /// Takes doubles and gives them as floats: a reduce's accumulators, in their order.
+  KernelId finish(KernelId id) {
+    Kernel made;
+    Function entry;
+    std::vector<VarId> inputs;
+    for (const bool isResult : {false, true}) {
+      for (const KernelParam& accumulator : module_.kernels[id].params) {
+        if (accumulator.role != ParamRole::Accumulator) continue;
+        KernelParam param;
+        param.name = isResult ? "r_" + accumulator.name : accumulator.name;
+        param.role = isResult ? ParamRole::Output : ParamRole::Input;
+        param.type = types_.of(accumulator.type);
+        if (isResult && param.type != accumulator.type) param.held = accumulator.type;
+        param.loc = accumulator.loc;
+        const VarId var = addVariable(entry, param.name, param.type,
+                                      isResult ? VarRole::InOut : VarRole::Element, param.loc);
+        made.params.push_back(std::move(param));
+        if (isResult) {
+          entry.body.push_back(assign(varRef(entry, var), varRef(entry, inputs[var - inputs.size()])));
+        } else {
+          inputs.push_back(var);
+        }
+      }
+    }
+    const Kernel& kernel = module_.kernels[id];
+    made.name = kernel.name;  // what messages call it
+    made.scope = kernel.scope;
+    made.isMade = true;
+    made.loc = entry.loc = kernel.loc;
+    entry.name = kernel.name + "_finish";
+    made.entry = static_cast<FunctionId>(module_.functions.size());
+    module_.functions.push_back(std::move(entry));
+    module_.kernels.push_back(std::move(made));
+    return static_cast<KernelId>(module_.kernels.size() - 1);
+  }
+
+ private:
+  KernelParam param(const KernelParam& plain, bool holdsFloats) {
+    KernelParam made = clone(plain);
+    made.type = isStreamOfValues(plain.role) ? types_.of(plain.type) : plain.type;
+    const bool isPartial = plain.role == ParamRole::Accumulator || !holdsFloats;
+    if (made.type != plain.type && (!isPartial || plain.role == ParamRole::Gather)) made.held = plain.type;
+    made.filter = false;
+    made.border = wideConstant(plain.border);
+    made.identity = wideConstant(plain.identity);
+    return made;
+  }
+
+  ExprPtr wideConstant(const ExprPtr& plain) {
+    ExprPtr made = clone(plain);
+    if (made) rewrite(made, {});
+    return made;
+  }
+
+  /// A function of `kernel`. The entry's values that are no streams are converted where it begins.
+  void function(FunctionId id, const Kernel& kernel) {
+    std::map<VarId, VarId> wideOf;
+    Block start;
+    std::vector<VarId> kept;
+    for (VarId i = 0; id == kernel.entry && i < kernel.params.size(); ++i) {
+      if (isStreamOfValues(kernel.params[i].role)) continue;
+      kept.push_back(i);
+      Function& entry = module_.functions[id];
+      const Variable plain = entry.variables[i];
+      if (isSink(kernel.params[i].role) || !types_.holdsFloat(plain.type)) continue;
+      const Type wide = types_.of(plain.type);
+      const VarId local = addVariable(entry, plain.name + "_wide", wide, VarRole::Local, plain.loc);
+      kept.push_back(local);
+      wideOf[i] = local;
+      start.push_back(declare(local, types_.widened(varRef(entry, i)), plain.loc));
+    }
+    for (VarId i = 0; i < module_.functions[id].variables.size(); ++i) {
+      if (std::ranges::find(kept, i) != kept.end()) continue;
+      const Type wide = types_.of(module_.functions[id].variables[i].type);
+      module_.functions[id].variables[i].type = wide;
+    }
+    module_.functions[id].result = types_.of(module_.functions[id].result);
+    Block body = std::move(module_.functions[id].body);
+    const Function& made = module_.functions[id];
+    walkStmts(body, [&](Stmt& stmt) {
+      forEachOperand(stmt, [&](ExprPtr& slot) { rewrite(slot, {&made, &wideOf}); });
+      // sinks hold what they held
+      if (auto* n = std::get_if<Push>(&stmt.node))
+        n->value = toSink(made, n->stream, std::move(n->value), kernel);
+      if (auto* n = std::get_if<Scatter>(&stmt.node))
+        n->value = toSink(made, n->stream, std::move(n->value), kernel);
+    });
+    body.insert(body.begin(), std::make_move_iterator(start.begin()), std::make_move_iterator(start.end()));
+    module_.functions[id].body = std::move(body);
+  }
+
+  ExprPtr toSink(const Function& function, StreamRef stream, ExprPtr value, const Kernel& kernel) {
+    const Type type = stream.space == StreamRef::Space::Variable ? function.variables[stream.id].type
+                                                                 : kernel.params[stream.id].type;
+    return types_.narrowed(std::move(value), type);
+  }
+
+  struct Within {
+    const Function* function = nullptr;
+    const std::map<VarId, VarId>* wideOf = nullptr;
+  };
+
+  /// Operands first: a node's type follows from theirs.
+  void rewrite(ExprPtr& slot, const Within& within) {
+    forEachOperand(*slot, [&](ExprPtr& operand) { rewrite(operand, within); });
+    Expr& expr = *slot;
+    if (auto* n = std::get_if<VarRef>(&expr.node)) {
+      if (const auto wide = within.wideOf->find(n->var); wide != within.wideOf->end()) n->var = wide->second;
+      expr.type = within.function->variables[n->var].type;
+    } else if (std::holds_alternative<Literal>(expr.node) && expr.type.isFloat()) {
+      slot = literal(double{std::bit_cast<float>(std::get<Literal>(expr.node).bits)}, expr.loc);
+    } else if (auto* constant = std::get_if<ConstantRef>(&expr.node)) {
+      constant->constant = wideOf(constant->constant);
+      expr.type = types_.of(expr.type);
+    } else if (std::holds_alternative<Convert>(expr.node)) {
+      conversion(slot);
+    } else if (auto* call = std::get_if<IntrinsicCall>(&expr.node);
+               call != nullptr && isOfBits(call->intrinsic)) {
+      ofBits(slot);
+    } else {
+      expr.type = types_.of(expr.type);
+    }
+  }
+
+  /// To and from narrow types by way of float, which they are a part of.
+  static void conversion(ExprPtr& slot) {
+    ExprPtr& operand = std::get<Convert>(slot->node).operand;
+    const Type to = slot->type.isFloat() ? slot->type.withScalar(Scalar::Double) : slot->type;
+    if (operand->type.isNarrow() && to.isDouble()) {
+      const Scalar carrier = operand->type.carrier().scalar;
+      operand = convert(carrier, std::move(operand), slot->loc);
+    } else if (operand->type.isDouble() && to.isNarrow()) {
+      operand = convert(to.carrier().scalar, std::move(operand), slot->loc);
+    }
+    if (operand->type == to) {
+      ExprPtr value = std::move(operand);
+      slot = std::move(value);
+    } else {
+      slot->type = to;
+    }
+  }
+
+  static void ofBits(ExprPtr& slot) {
+    for (ExprPtr& argument : std::get<IntrinsicCall>(slot->node).args) {
+      if (argument->type.isDouble()) argument = convert(Scalar::Float, std::move(argument), slot->loc);
+    }
+    const Loc loc = slot->loc;
+    if (slot->type.isFloat()) slot = convert(Scalar::Double, std::move(slot), loc);
+  }
+
+  ConstantId wideOf(ConstantId plain) {
+    if (!types_.holdsFloat(module_.constants[plain].type)) return plain;
+    if (const auto known = constants_.find(plain); known != constants_.end()) return known->second;
+    Constant made;
+    made.name = module_.constants[plain].name + "_wide";
+    made.type = types_.of(module_.constants[plain].type);
+    made.loc = module_.constants[plain].loc;
+    made.value = wideConstant(module_.constants[plain].value);
+    module_.constants.push_back(std::move(made));
+    return constants_[plain] = static_cast<ConstantId>(module_.constants.size() - 1);
+  }
+
+  Module& module_;
+  WideTypes& types_;
+  std::map<ConstantId, ConstantId>& constants_;  ///< made of which, and which
+};
+
+/// Whether anything that a kernel computes is a float.
+bool computesFloats(const Module& module, const WideTypes& types, const Kernel& kernel) {
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    bool found = std::ranges::any_of(module.functions[id].variables, [&](const Variable& variable) {
+      return types.holdsFloat(variable.type);
+    });
+    walkExprs(module.functions[id].body,
+              [&](const Expr& expr) { found = found || types.holdsFloat(expr.type); });
+    if (found) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void widenFloats(Module& module, Diagnostics&) {
+  WideTypes types(module);
+  std::map<ConstantId, ConstantId> constants;
+  Widener widener(module, types, constants);
+  const std::size_t declared = module.kernels.size();  // before those that this adds
+  for (KernelId id = 0; id < declared; ++id) {
+    if (module.kernels[id].isMade || !computesFloats(module, types, module.kernels[id])) continue;
+    Obstacles obstacles(module, types);
+    std::string obstacle = obstacles.of(module.kernels[id]);
+    const std::optional<KernelId> combine =
+        module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
+    if (combine && obstacle.empty()) obstacle = obstacles.of(module.kernels[*combine]);
+    if (!obstacle.empty()) {
+      module.kernels[id].forms.whyNotWide = std::move(obstacle);
+      continue;
+    }
+    const KernelId wide = widener.widen(id, true);
+    module.kernels[id].forms.wide = wide;
+    if (!combine) continue;
+    // partial results are doubles: even a fold that combines its own has another form for them
+    const KernelId wideCombine = widener.widen(*combine, false);
+    module.kernels[wide].reduction->combine = wideCombine;
+    module.kernels[wideCombine].reduction->combine = wideCombine;
+    const KernelId finish = widener.finish(id);
+    module.kernels[wide].reduction->finish = finish;
+  }
+}
+
+}  // namespace skc

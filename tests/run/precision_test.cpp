@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: .with({.precision = ...}) computes a kernel's floats as pairs of floats, as doubles or as halves, on every
+// profile and natively, and gives floats; what has no such form is refused.
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "precision.sk.hpp"
+#include "sk/sk.hpp"
+#include "support/devices.hpp"
+
+namespace run_tests {
+namespace {
+
+using sk::Precision;
+
+// a result is the exact one, computed with an error far below, rounded to float: half a unit and a little
+constexpr double halfUlp = 0x1.001p-24;
+
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
+  auto stream = device.stream<T>({static_cast<std::int64_t>(values.size())});
+  stream.write(values);
+  return stream;
+}
+
+std::vector<float> numbers(std::size_t n, unsigned seed, float low, float high) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> value(low, high);
+  std::vector<float> x;
+  while (x.size() < n) x.push_back(value(random));
+  return x;
+}
+
+/// Those in which a device computes more than floats.
+std::vector<Precision> widePrecisions(const sk::Device& device) {
+  if (device.name() == "native" || device.profile() == "glsl330")
+    return {Precision::Extended, Precision::Double};
+  return {Precision::Extended};
+}
+
+void checkRounded(const std::vector<float>& got, const std::vector<double>& exact) {
+  REQUIRE(got.size() == exact.size());
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    INFO(i << ": " << got[i] << ", not " << exact[i]);
+    CHECK(std::fabs(got[i] - exact[i]) <= halfUlp * std::fabs(exact[i]));
+  }
+}
+
+TEST_CASE("what floats lose, wider ones keep") {
+  onEveryLayout([](sk::Device& device) {
+    const std::vector<float> a = numbers(1000, 1, 1e4F, 1e6F);
+    const std::vector<float> b = numbers(1000, 2, -1, 1);
+    const auto as = streamOf(device, a);
+    const auto bs = streamOf(device, b);
+    auto r = device.stream<float>({1000});
+    for (const Precision precision : widePrecisions(device)) {
+      precision::cancel.with({.precision = precision})(as, bs, r);
+      checkRounded(r.read(), {b.begin(), b.end()});
+    }
+  });
+}
+
+TEST_CASE("functions, arrays, gathers and constants") {
+  sk::Device reference = sk::Device::reference();
+  onEveryProfile([&](sk::Device& device) {
+    const std::vector<float> x = numbers(777, 3, -2, 2);
+    const std::array<float, 4> c = {0.3F, -1.7F, 2.1F, 0.9F};
+    const auto run = [&](sk::Device& on, Precision precision) {
+      const auto xs = streamOf(on, x);
+      auto r = on.stream<float>({777}), s = on.stream<float>({777});
+      precision::polynomial.with({.precision = precision})(xs, c, r);
+      precision::smooth.with({.precision = precision})(xs, 3.3F, xs, s);
+      return std::pair(std::move(r), std::move(s));
+    };
+    auto [exactR, exactS] = run(reference, Precision::Default);
+    for (const Precision precision : widePrecisions(device)) {
+      auto [r, s] = run(device, precision);
+      const std::vector<double> polynomial = exactR.readReals();
+      const std::vector<float> got = r.read();
+      // near a root, pairs of floats have an error of their own: 8 operations of 2^-44, of terms up to 20
+      for (std::size_t i = 0; i < got.size(); ++i) {
+        CHECK(std::fabs(got[i] - polynomial[i]) <= halfUlp * std::fabs(polynomial[i]) + 160 * 0x1p-44);
+      }
+      checkRounded(s.read(), exactS.readReals());
+    }
+  });
+}
+
+TEST_CASE("structs and vectors") {
+  sk::Device reference = sk::Device::reference();
+  onEveryProfile([&](sk::Device& device) {
+    std::vector<precision::Body> bodies;
+    std::vector<sk::float3> forces;
+    for (int i = 0; i < 50; ++i) {
+      const float f = static_cast<float>(i);
+      bodies.push_back({{f + 0.1F, 1.5F, -f}, 0.3F + f, i});
+      forces.push_back({0.7F, -f, 9.1F});
+    }
+    const auto run = [&](sk::Device& on, Precision precision) {
+      auto moved = on.stream<precision::Body>({50});
+      auto there = on.stream<sk::float3>({50});
+      precision::move.with({.precision = precision})(streamOf(on, bodies), streamOf(on, forces), 0.01F, moved,
+                                                     there);
+      return std::pair(moved.read(), there.read());
+    };
+    const auto [exactMoved, exactThere] = run(reference, Precision::Default);
+    for (const Precision precision : widePrecisions(device)) {
+      const auto [moved, there] = run(device, precision);
+      for (std::size_t i = 0; i < moved.size(); ++i) {
+        CHECK(moved[i].id == static_cast<int>(i) + 1);
+        CHECK(moved[i].place == exactMoved[i].place);  // both rounded from a much better value
+        CHECK(moved[i].mass == bodies[i].mass);
+        CHECK(there[i] == exactThere[i]);
+      }
+    }
+  });
+}
+
+TEST_CASE("sinks, bits and narrow types") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> a = numbers(300, 5, 0, 9);
+    for (const Precision precision : widePrecisions(device)) {
+      auto pushed = device.stream<float>({300});
+      auto scattered = device.stream<float>({300});
+      precision::choose.with({.precision = precision})(streamOf(device, a), 1.5F, pushed, scattered);
+      std::vector<float> expected, squares;
+      for (const float x : a) {
+        if (x / 3.0 > 1.5) expected.push_back(static_cast<float>(x / 3.0));
+        squares.push_back(static_cast<float>((x / 3.0) * (x / 3.0)));
+      }
+      CHECK(pushed.read() == expected);
+      CHECK(scattered.read() == squares);
+      auto exponent = device.stream<std::int32_t>({300});
+      auto h = device.stream<sk::half>({300});
+      auto back = device.stream<float>({300});
+      precision::bits.with({.precision = precision})(streamOf(device, a), exponent, h, back);
+      const auto exponents = exponent.read();
+      const auto backs = back.read();
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        std::int32_t bits;
+        std::memcpy(&bits, &a[i], sizeof bits);
+        CHECK(exponents[i] == ((bits >> 23) & 255));
+        CHECK(backs[i] == a[i] * 0.5F);
+      }
+    }
+  });
+}
+
+TEST_CASE("reduces") {
+  onEveryLayout([](sk::Device& device) {
+    const std::vector<float> x = numbers(5000, 7, -1, 1);
+    double exact = 0, product = 1;
+    for (const float v : x) exact += v;
+    std::vector<float> factors = numbers(100, 8, 0.5F, 2);
+    for (const float v : factors) product *= v;
+    const auto xs = streamOf(device, x);
+    for (const Precision precision : widePrecisions(device)) {
+      CHECK(precision::sum.with({.precision = precision})(xs) == static_cast<float>(exact));
+      CHECK(precision::product.with({.precision = precision})(streamOf(device, factors)) ==
+            static_cast<float>(product));
+      const precision::Moments m = precision::moments.with({.precision = precision})(xs, 0.1F);
+      double s = 0, ss = 0;
+      for (const float v : x) {
+        s += v - double{0.1F};
+        ss += (v - double{0.1F}) * (v - double{0.1F});
+      }
+      CHECK(m.n == 5000);
+      CHECK(m.s == static_cast<float>(s));
+      CHECK(m.ss == static_cast<float>(ss));
+    }
+    CHECK(precision::sum.with({.accumulate = sk::Accumulate::Extended})(xs) == static_cast<float>(exact));
+    CHECK(precision::sum.with({.precision = Precision::Extended})(streamOf<float>(device, {})) == 0);
+  });
+}
+
+TEST_CASE("reduces to streams, and of vectors") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = numbers(3000, 9, -1, 1);
+    auto xs = device.stream<float>({3, 1000});
+    xs.write(x);
+    auto rows = device.stream<float>({5, 2});
+    rows.write(std::vector<float>(10, 7));
+    precision::sum.with({.accumulate = sk::Accumulate::Extended})(xs, rows.domain({1, 1}, {4, 2}));
+    const std::vector<float> got = rows.read();
+    for (std::size_t r = 0; r < 3; ++r) {
+      double exact = 0;
+      for (std::size_t i = 0; i < 1000; ++i) exact += x[r * 1000 + i];
+      CHECK(got[2 * (r + 1) + 1] == static_cast<float>(exact));
+      CHECK(got[2 * r] == 7);
+    }
+    std::vector<sk::float2> pairs;
+    double a = 0, b = 0;
+    for (std::size_t i = 0; i + 1 < x.size(); i += 2) {
+      pairs.push_back({x[i], x[i + 1]});
+      a += double{x[i]} * x[i];
+      b += double{x[i + 1]} * x[i + 1];
+    }
+    const sk::float2 total =
+        precision::squares.with({.precision = Precision::Extended})(streamOf(device, pairs));
+    CHECK(total.x == static_cast<float>(a));
+    CHECK(total.y == static_cast<float>(b));
+  });
+}
+
+/// The nearest half.
+float toHalf(double x) { return static_cast<float>(sk::half(static_cast<float>(x))); }
+
+TEST_CASE("halves round every operation") {
+  onEveryProfile([](sk::Device& device) {
+    if (device.name() == "native") return;  // native code has no form in halves
+    const std::vector<float> a = numbers(500, 11, -30, 30);
+    const std::vector<float> b = numbers(500, 12, -30, 30);
+    auto r = device.stream<float>({500});
+    precision::cancel.with({.precision = Precision::Half})(streamOf(device, a), streamOf(device, b), r);
+    const std::vector<float> got = r.read();
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const float x = toHalf(a[i]);
+      CHECK(got[i] == toHalf(double{toHalf(double{x} + toHalf(b[i]))} - x));
+    }
+    // a sum of 1 that stops at 2048
+    const std::vector<float> ones(1 << 14, 1.0F);
+    CHECK(precision::sum.with({.precision = Precision::Half})(streamOf(device, ones)) == 16384);  // a tree
+    CHECK(precision::product.with({.precision = Precision::Half})(streamOf<float>(device, {300, 300})) ==
+          std::numeric_limits<float>::infinity());
+  });
+}
+
+TEST_CASE("what computes no floats is the same in every precision") {
+  onEveryProfile([](sk::Device& device) {
+    auto r = device.stream<std::int32_t>({3});
+    precision::integers.with({.precision = Precision::Extended})(streamOf<std::int32_t>(device, {1, 2, 3}),
+                                                                 r);
+    CHECK(r.read() == std::vector<std::int32_t>{2, 3, 4});
+    CHECK(precision::count.with({.precision = Precision::Extended})(r) == 9);
+  });
+}
+
+std::string errorOf(const auto& call) {
+  try {
+    call();
+  } catch (const sk::Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_CASE("what has no form is refused") {
+  sk::Device& device = run_tests::device("glsl330");
+  auto a = streamOf<float>(device, {1, 2});
+  auto r = device.stream<float>({2});
+  const std::string waves = errorOf([&] { precision::waves.with({.precision = Precision::Extended})(a, r); });
+  CHECK(waves.find("precision::waves: it has no form in doubles: sin() is one of floats alone") == 0);
+  CHECK(waves.find("precision.sk:") != std::string::npos);
+  auto v = device.stream<sk::float2>({2});
+  CHECK(errorOf([&] {
+          precision::turned.with({.precision = Precision::Double})({}, v, v);
+        }).find("matrices are of floats") != std::string::npos);
+  sk::Device& es = run_tests::device("essl300");
+  auto b = streamOf<float>(es, {1, 2});
+  auto s = es.stream<float>({2});
+  CHECK(errorOf([&] {
+          precision::cancel.with({.precision = Precision::Double})(b, b, s);
+        }).find("has no doubles of its own; call it in Precision::Extended") != std::string::npos);
+  CHECK(errorOf([&] {
+          precision::cancel.with({.accumulate = sk::Accumulate::Tree})(a, a, r);
+        }).find("it is no reduce") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace run_tests
