@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/widen_floats.hpp"
+
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "ir/kernel_maker.hpp"
+#include "ir/print.hpp"
+#include "ir/validate.hpp"
+#include "support/diagnostic_log.hpp"
+#include "transforms/round_halves.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+/// r = a + t * g[0]
+KernelId addBlend(Module& module) {
+  KernelMaker maker(module, "blend");
+  const VarId t = maker.uniform("t", floatType);
+  const VarId a = maker.input("a", floatType);
+  const VarId g = maker.gather("g", floatType, 1, Boundary::Border, literal(0.5F));
+  const VarId r = maker.output("r", floatType);
+  ExprPtr read = gatherRead(floatType, {StreamRef::Space::KernelParameter, g}, literal(0));
+  ExprPtr sum = binary(BinaryOp::Add, maker.ref(a), binary(BinaryOp::Mul, maker.ref(t), std::move(read)));
+  return maker.finish(block(assign(maker.ref(r), std::move(sum))));
+}
+
+std::string entryOf(const Module& module, KernelId id) {
+  const std::string text = print(module);
+  const std::string head = "function @" + std::to_string(module.kernels[id].entry) + " ";
+  return text.substr(text.find(head));
+}
+
+TEST_CASE("a wide form computes in doubles and holds floats") {
+  Module module = testModule();
+  const KernelId id = addBlend(module);
+  DiagnosticLog log;
+  widenFloats(module, log);
+  REQUIRE(module.kernels[id].forms.wide);
+  const Kernel& wide = module.kernels[*module.kernels[id].forms.wide];
+  CHECK(wide.params[0].type == floatType);
+  CHECK(wide.params[1].type == Type::of(Scalar::Double));
+  CHECK(wide.params[1].held == floatType);
+  CHECK(wide.params[2].border->type == Type::of(Scalar::Double));
+  CHECK(validate(module, Stage::Specialized).empty());
+  const std::string text = entryOf(module, *module.kernels[id].forms.wide);
+  INFO(text);
+  CHECK(text.find("t_wide") != std::string::npos);
+}
+
+TEST_CASE("what doubles cannot do has no wide form, and says why") {
+  Module module = testModule();
+  KernelMaker maker(module, "waves", 7);
+  const VarId a = maker.input("a", floatType);
+  const VarId r = maker.output("r", floatType);
+  ExprPtr sine = intrinsic(Intrinsic::Sin, exprs(maker.ref(a)), atLine(8));
+  const KernelId id = maker.finish(block(assign(maker.ref(r), std::move(sine))));
+  DiagnosticLog log;
+  widenFloats(module, log);
+  CHECK_FALSE(module.kernels[id].forms.wide);
+  CHECK(module.kernels[id].forms.whyNotWide == "sin() is one of floats alone (test.sk:8)");
+}
+
+TEST_CASE("a half form rounds what is read and what is computed, once") {
+  Module module = testModule();
+  const KernelId id = addBlend(module);
+  DiagnosticLog log;
+  roundHalves(module, log);
+  REQUIRE(module.kernels[id].forms.half);
+  CHECK(validate(module, Stage::Specialized).empty());
+  const std::string text = entryOf(module, *module.kernels[id].forms.half);
+  INFO(text);
+  std::size_t roundings = 0;
+  for (std::size_t at = text.find("half("); at != std::string::npos; at = text.find("half(", at + 1))
+    ++roundings;
+  CHECK(roundings == 5);   // t, a, g[0], the product, the sum
+}
+
+}  // namespace
+}  // namespace skc
