@@ -132,11 +132,8 @@ std::string_view nameOf(Barrier barrier) {
 /// What an earlier process has found out; none where that is unknown, or cannot be.
 std::optional<Barrier> kept(const GlDevice& device, std::string_view key) {
   const std::optional<std::string> text = readCached("barrier", key);
-  for (const auto& [barrier, name] : barrierNames) {
-    const bool has = barrier != Barrier::Precise || device.capabilities.hasPrecise;
-    if (has && text == std::string(name) + '\n') return barrier;
-  }
-  return std::nullopt;
+  if (text == "precise\n" && device.capabilities.hasPrecise) return Barrier::Precise;
+  return text == "xor\n" ? std::optional(Barrier::Xor) : std::nullopt;
 }
 
 }  // namespace
@@ -146,11 +143,12 @@ Arithmetic probeArithmetic(GlDevice& device) {
   const Barrier strongest = device.barrier;
   std::optional<Barrier> found = kept(device, key);
   if (!found) {
-    found = firstThatHolds(device).value_or(Barrier::None);
-    writeCached("barrier", key, std::string(nameOf(*found)) + '\n');
+    found = firstThatHolds(device);
+    // failures are not kept: they may be for want of memory
+    if (found) writeCached("barrier", key, std::string(nameOf(*found)) + '\n');
   }
-  device.barrier = *found != Barrier::None ? *found : strongest;
-  return {.exactSums = *found != Barrier::None, .barrier = *found};
+  device.barrier = found.value_or(strongest);
+  return {.exactSums = found.has_value(), .barrier = found.value_or(Barrier::None)};
 }
 
 }  // namespace sk
