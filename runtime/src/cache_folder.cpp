@@ -88,7 +88,7 @@ void writeCached(std::string_view name, std::string_view key, std::string_view t
       write(fileOf(folder, name, key), headOf(key), text);
     }
   } catch (const std::exception&) {
-    // it is measured again, then
+    return;  // it is measured again, then
   }
 }
 

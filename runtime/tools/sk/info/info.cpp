@@ -39,7 +39,7 @@ Json kept(const std::string& key) {
   try {
     if (info.is_object() && info.at("schema") == schema && !report(info).empty()) return info;
   } catch (const Json::exception&) {
-    // somebody else wrote it
+    return {};  // somebody else wrote it
   }
   return {};
 }
