@@ -228,7 +228,7 @@ TEST_CASE("long statements are wrapped") {
       sum = binary(Add, std::move(sum), intrinsic(Intrinsic::Sin, exprs(k.ref(x))));
     return block(assign(k.ref(r), std::move(sum), atLine(2)), set(k, 1, 3));
   });
-  CHECK(text.find("+\n      sin(x)") != std::string::npos);
+  CHECK(text.find("+\n      sk_sin(x)") != std::string::npos);
   CHECK(text.find("#line 3 1\n  r = 1.0;") != std::string::npos);
 }
 

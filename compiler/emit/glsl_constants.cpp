@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "emit/partial_operations.hpp"
 #include "ir/walk.hpp"
 #include "support/text.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 using namespace ir;
 
 /// True if the node itself is printed as a call of a function.
-bool isCall(const Expr& expr, const std::vector<bool>& isFunction) {
+bool isCall(const Module& module, const Expr& expr, const std::vector<bool>& isFunction) {
   if (expr.type.isDouble()) return true;
   if (const auto* n = std::get_if<Literal>(&expr.node)) {
     return expr.type.carrier().isFloat() && !std::isfinite(std::bit_cast<float>(n->bits));
@@ -23,9 +24,12 @@ bool isCall(const Expr& expr, const std::vector<bool>& isFunction) {
   if (const auto* n = std::get_if<ConstantRef>(&expr.node)) return isFunction[n->constant];
   if (const auto* n = std::get_if<Binary>(&expr.node)) {
     const bool isSignedRemainder = n->op == BinaryOp::Rem && n->lhs->type.scalar == Scalar::Int;
-    return isSignedRemainder || (n->lhs->type.isVector() && expr.type.isBool());
+    return isSignedRemainder || mayDivideBadly(module, n->op, *n->lhs, *n->rhs) ||
+           (n->lhs->type.isVector() && expr.type.isBool());
   }
-  if (std::holds_alternative<Convert>(expr.node)) return expr.type.isNarrow();
+  if (const auto* n = std::get_if<Convert>(&expr.node)) {
+    return expr.type.isNarrow() || mayNotHold(module, expr.type, *n->operand);
+  }
   if (const auto* n = std::get_if<Unary>(&expr.node))
     return n->op == UnaryOp::LogicalNot && expr.type.isVector();
   if (const auto* n = std::get_if<Select>(&expr.node)) return n->cond->type.isVector();
@@ -38,7 +42,7 @@ std::vector<bool> functionConstants(const Module& module) {
   std::vector<bool> isFunction(module.constants.size(), false);
   for (ConstantId id = 0; id < isFunction.size(); ++id) {   // a constant names only earlier ones
     walkExprs(static_cast<const Expr&>(*module.constants[id].value), [&](const Expr& expr) {
-      if (isCall(expr, isFunction)) isFunction[id] = true;
+      if (isCall(module, expr, isFunction)) isFunction[id] = true;
     });
   }
   return isFunction;

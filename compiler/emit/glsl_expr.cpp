@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "emit/glsl_expr.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "emit/doubles.hpp"
+#include "emit/float_intrinsics.hpp"
+#include "emit/partial_operations.hpp"
 #include "emit/stream_uses.hpp"
 #include "ir/print.hpp"
 #include "support/overloaded.hpp"
@@ -125,6 +128,15 @@ class GlslExpr {
                                                  intText(*n.index), value));
   }
 
+  /// "place += value", where GLSL has that for these operands.
+  std::string combined(BinaryOp op, const Expr& place, const Expr& value) const {
+    const bool isCall = place.type.isDouble() || takesQuotient(op, place, value);
+    if (!isCall && !mayShiftTooFar(context_.module, op, value)) {
+      return fmt::format("{} {}= {}", text(place), spelling(op), text(value));
+    }
+    return assigned(place, binary(place.type, op, place, value).text);
+  }
+
  private:
   Parts parts(const Expr& expr) const {
     return match(expr.node, [&](const auto& node) { return print(expr.type, node); });
@@ -140,30 +152,7 @@ class GlslExpr {
     if (n.op == UnaryOp::LogicalNot && type.isVector()) return {"not(" + text(*n.operand) + ")"};
     return {std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary), Precedence::Unary};
   }
-  Parts print(Type type, const Binary& n) const {
-    if (n.lhs->type.isDouble()) {
-      return {doubleBinary(context_.polyfills, n.op, n.lhs->type, n.rhs->type, text(*n.lhs), text(*n.rhs))};
-    }
-    const bool isVector = n.lhs->type.isVector();
-    if (isVector && !comparison(n.op).empty())
-      return {fmt::format("{}{}", comparison(n.op), pair(*n.lhs, *n.rhs))};
-    if (isVector && (n.op == BinaryOp::LogicalAnd || n.op == BinaryOp::LogicalOr)) {
-      return {context_.polyfills.logical(n.op, type.width) + pair(*n.lhs, *n.rhs)};
-    }
-    if (n.op == BinaryOp::Rem && n.lhs->type.scalar == Scalar::Int &&
-        !(isNonNegative(*n.lhs) && isNonNegative(*n.rhs))) {
-      return {context_.polyfills.remainder(n.lhs->type, n.rhs->type) + pair(*n.lhs, *n.rhs)};
-    }
-    const bool isMatrixProduct = n.op == BinaryOp::Mul && n.lhs->type.isMatrix() && !n.rhs->type.isScalar();
-    // GLSL's columns hold our rows: its matrices are the transposes of ours, and so are its products
-    const Expr& lhs = isMatrixProduct ? *n.rhs : *n.lhs;
-    const Expr& rhs = isMatrixProduct ? *n.lhs : *n.rhs;
-    const Precedence precedence = precedenceOf(n.op);
-    const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
-    return {
-        fmt::format("{} {} {}", operand(n.op, lhs, precedence), spelling(n.op), operand(n.op, rhs, tighter)),
-        precedence};
-  }
+  Parts print(Type type, const Binary& n) const { return binary(type, n.op, *n.lhs, *n.rhs); }
   Parts print(Type type, const Select& n) const {
     if (n.cond->type.isVector()) {
       if (type.carrier().isFloat())
@@ -182,7 +171,10 @@ class GlslExpr {
     const bool isCarried = carrierOf(n.operand->type.scalar) == carrierOf(type.scalar);
     if (isCarried && !type.isNarrow()) return parts(*n.operand);
     const std::string value = text(*n.operand);
-    const std::string carried = isCarried ? value : context_.types.glsl(type) + "(" + value + ")";
+    const std::string conversion = mayNotHold(context_.module, type, *n.operand)
+                                       ? context_.polyfills.truncated(type)
+                                       : context_.types.glsl(type);
+    const std::string carried = isCarried ? value : conversion + "(" + value + ")";
     return {type.isNarrow() ? context_.polyfills.quantize(type) + "(" + carried + ")" : carried};
   }
   Parts print(Type type, const Construct& n) const {
@@ -211,6 +203,7 @@ class GlslExpr {
     if (argument.isDouble()) {
       return {doubleIntrinsic(context_.polyfills, n.intrinsic, typesOf(n.args), texts(n.args))};
     }
+    if (const auto defined = definedIntrinsic(n)) return definedCall(*defined, n.args);
     context_.polyfills.intrinsic(n.intrinsic, argument);
     const bool usesVectorColumn = argument.isVector() && !entry.glslVector.empty();
     const std::string_view pattern = usesVectorColumn ? entry.glslVector : entry.glsl;
@@ -233,6 +226,54 @@ class GlslExpr {
     return {(isInput ? call("sk_index", n.stream) : "sk_index") + "()"};
   }
   Parts print(Type, const ExtentOf& n) const { return {call("sk_extent", n.stream) + "()"}; }
+
+  Parts binary(Type type, BinaryOp op, const Expr& lhs, const Expr& rhs) const {
+    if (lhs.type.isDouble()) {
+      return {doubleBinary(context_.polyfills, op, lhs.type, rhs.type, text(lhs), text(rhs))};
+    }
+    const bool isVector = lhs.type.isVector();
+    if (isVector && !comparison(op).empty()) return {fmt::format("{}{}", comparison(op), pair(lhs, rhs))};
+    if (isVector && (op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr)) {
+      return {context_.polyfills.logical(op, type.width) + pair(lhs, rhs)};
+    }
+    if (takesQuotient(op, lhs, rhs)) {
+      return {context_.polyfills.quotient(op, lhs.type, rhs.type) + pair(lhs, rhs)};
+    }
+    const bool isMatrixProduct = op == BinaryOp::Mul && lhs.type.isMatrix() && !rhs.type.isScalar();
+    // GLSL's columns hold our rows: its matrices are the transposes of ours, and so are its products
+    const Expr& left = isMatrixProduct ? rhs : lhs;
+    const Expr& right = isMatrixProduct ? lhs : rhs;
+    const Precedence precedence = precedenceOf(op);
+    const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
+    const std::string second =
+        mayShiftTooFar(context_.module, op, rhs) ? "(" + shiftCount(rhs) + ")" : operand(op, right, tighter);
+    return {fmt::format("{} {} {}", operand(op, left, precedence), spelling(op), second), precedence};
+  }
+
+  /// Whether a quotient or remainder is a call. C++'s % of ints is no operator of GLSL's for negative ones.
+  bool takesQuotient(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
+    const bool isSigned = op == BinaryOp::Rem && lhs.type.scalar == Scalar::Int;
+    return mayDivideBadly(context_.module, op, lhs, rhs) ||
+           (isSigned && !(isNonNegative(lhs) && isNonNegative(rhs)));
+  }
+
+  /// The count modulo 32.
+  std::string shiftCount(const Expr& count) const {
+    const bool isUint = carrierOf(count.type.scalar) == Scalar::Uint;
+    return operand(BinaryOp::BitAnd, count, Precedence::BitAnd) + (isUint ? " & 31u" : " & 31");
+  }
+
+  /// A function of the assembler's, which takes arguments of one width.
+  Parts definedCall(sk::program::Intrinsic intrinsic, const std::vector<ExprPtr>& args) const {
+    std::uint8_t width = 1;
+    for (const ExprPtr& arg : args) width = std::max(width, arg->type.width);
+    std::vector<std::string> list;
+    for (const ExprPtr& arg : args) {
+      const bool isNarrower = arg->type.width < width;
+      list.push_back(isNarrower ? fmt::format("vec{}({})", width, text(*arg)) : text(*arg));
+    }
+    return {fmt::format("{}({})", context_.polyfills.defined(intrinsic, width), join(list, ", "))};
+  }
 
   /// "sk_at_u"; the domain has the shape of the first output, where there is one.
   std::string call(std::string_view function, StreamRef stream) const {
@@ -257,7 +298,6 @@ class GlslExpr {
       const bool isBelow = !isUint && static_cast<std::int32_t>(literal->bits) < 0;
       return fmt::format("{}{}", isBelow ? 0 : last, isUint ? "u" : "");
     }
-    if (base.isVector()) return index;
     if (isUint) return fmt::format("min({}, {}u)", index, last);
     return fmt::format("clamp({}, 0, {})", index, last);
   }
@@ -328,13 +368,7 @@ std::string glslExpr(const GlslContext& context, std::optional<FunctionId> funct
 std::string glslAssignment(const GlslContext& context, FunctionId function, const Expr& place,
                            std::optional<BinaryOp> op, const Expr& value) {
   const GlslExpr printer(context, function);
-  if (!place.type.isDouble()) {
-    return fmt::format("{} {}= {}", printer.text(place), op ? spelling(*op) : "", printer.text(value));
-  }
-  const std::string right = printer.text(value);
-  if (!op) return printer.assigned(place, right);
-  return printer.assigned(
-      place, doubleBinary(context.polyfills, *op, place.type, value.type, printer.text(place), right));
+  return op ? printer.combined(*op, place, value) : printer.assigned(place, printer.text(value));
 }
 
 std::string glslAssignment(const GlslContext& context, FunctionId function, const Expr& place,

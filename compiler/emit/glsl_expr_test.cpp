@@ -7,6 +7,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "emit/float_intrinsics.hpp"
+#include "ir/intrinsics.hpp"
 #include "ir/kernel_maker.hpp"
 
 namespace skc::emit {
@@ -89,7 +91,7 @@ TEST_CASE("conversions, constructors, swizzles, elements") {
   CHECK(t.text(convert(Scalar::Bool, t.ref(t.f))) == "bool(f)");
   CHECK(t.text(construct(Type::of(Scalar::Float, 3), exprs(t.ref(t.v), literal(1.0F)))) == "vec3(v, 1.0)");
   CHECK(t.text(swizzle(binary(Add, t.ref(t.v), t.ref(t.v)), "yx")) == "(v + v).yx");
-  CHECK(t.text(index(t.module, t.ref(t.v), t.ref(t.i))) == "v[i]");
+  CHECK(t.text(index(t.module, t.ref(t.v), t.ref(t.i))) == "v[clamp(i, 0, 1)]");
   const Type array = arrayOf(t.module, floatType, 2);
   const auto pair = [&] { return construct(array, exprs(literal(1.0F), literal(2.0F))); };
   CHECK(t.text(pair()) == "float[2](1.0, 2.0)");
@@ -124,7 +126,7 @@ TEST_CASE("intrinsics: names, patterns with no more brackets than needed, polyfi
   CHECK(t.text(binary(Mul, literal(2.0F), intrinsic(Intrinsic::Fma, exprs(f(), f(), f())))) ==
         "2.0 * (f * f + f)");
   CHECK(t.text(intrinsic(Intrinsic::Fma, exprs(binary(Add, f(), f()), f(), f()))) == "(f + f) * f + f");
-  CHECK(t.text(intrinsic(Intrinsic::Saturate, exprs(binary(Add, f(), f())))) == "clamp(f + f, 0.0, 1.0)");
+  CHECK(t.text(intrinsic(Intrinsic::Saturate, exprs(binary(Add, f(), f())))) == "sk_saturate(f + f)");
   CHECK(t.text(intrinsic(Intrinsic::Isfinite, exprs(t.ref(t.v)))) ==
         "lessThan(floatBitsToUint(v) & 0x7f800000u, uvec2(0x7f800000u))");
   CHECK(t.text(intrinsic(Intrinsic::Any, exprs(t.ref(t.b)))) == "any(b)");
@@ -132,9 +134,79 @@ TEST_CASE("intrinsics: names, patterns with no more brackets than needed, polyfi
   CHECK(t.text(binary(Equal, intrinsic(Intrinsic::Any, exprs(scalars())), literal(true))) ==
         "f < 1.0 == true");
   CHECK(t.polyfills.functions().empty());
-  CHECK(t.text(intrinsic(Intrinsic::Fmod, exprs(t.ref(t.v), t.ref(t.v)))) == "sk_fmod(v, v)");
+  CHECK(t.text(intrinsic(Intrinsic::FrexpExponent, exprs(t.ref(t.v)))) == "sk_frexp_exponent(v)");
   REQUIRE(t.polyfills.functions().size() == 1);
-  CHECK(t.polyfills.functions()[0].find("vec2 sk_fmod(vec2 x, vec2 y)") == 0);
+  CHECK(t.polyfills.functions()[0].find("ivec2 sk_frexp_exponent(vec2 x)") == 0);
+}
+
+TEST_CASE("intrinsics that the assembler defines take arguments of one width, and are told of") {
+  using Defined = sk::program::Intrinsic;
+  Fixture t;
+  CHECK(t.text(intrinsic(Intrinsic::Sin, exprs(t.ref(t.f)))) == "sk_sin(f)");
+  CHECK(t.text(intrinsic(Intrinsic::Sin, exprs(t.ref(t.v)))) == "sk_sin(v)");
+  CHECK(t.text(intrinsic(Intrinsic::Fmax, exprs(t.ref(t.v), literal(0.0F)))) == "sk_max(v, vec2(0.0))");
+  CHECK(t.text(intrinsic(Intrinsic::Max, exprs(t.ref(t.i), literal(0)))) == "max(i, 0)");
+  CHECK(t.text(intrinsic(Intrinsic::Clamp, exprs(t.ref(t.i), literal(0), literal(1)))) ==
+        "min(max(i, 0), 1)");
+  REQUIRE(t.polyfills.intrinsics().size() == 2);
+  CHECK(t.polyfills.intrinsics()[0].intrinsic == Defined::Sin);
+  CHECK(t.polyfills.intrinsics()[0].widths == 0b11);
+  CHECK(t.polyfills.intrinsics()[1].intrinsic == Defined::Max);
+  CHECK(t.polyfills.intrinsics()[1].widths == 0b10);
+}
+
+TEST_CASE("an intrinsic without GLSL of its own is defined by the assembler") {
+  Module module;
+  for (const IntrinsicRow& entry : intrinsicRows()) {
+    for (const IntrinsicOverload& one : overloads(entry.id)) {
+      if (!entry.glsl.empty() || one.arguments[0].isDouble()) continue;
+      INFO(entry.name);
+      IntrinsicCall call{entry.id, {}};
+      for (const Type type : one.arguments) call.args.push_back(literalOf(type, 0));
+      CHECK(definedIntrinsic(call));
+    }
+  }
+}
+
+TEST_CASE("operations that GLSL leaves undefined for some operands") {
+  Fixture t;
+  const auto i = [&] { return t.ref(t.i); };
+  const auto u = [&] { return convert(Scalar::Uint, t.ref(t.i)); };
+  CHECK(t.text(binary(Div, i(), i())) == "sk_div(i, i)");
+  CHECK(t.text(binary(Div, i(), literal(3))) == "i / 3");
+  CHECK(t.text(binary(Div, i(), literal(-3))) == "i / -3");
+  CHECK(t.text(binary(Div, i(), literal(0))) == "sk_div(i, 0)");
+  CHECK(t.text(binary(Div, i(), literal(-1))) == "sk_div(i, -1)");
+  CHECK(t.text(binary(Div, u(), literal(0xffffffffU))) == "uint(i) / 0xffffffffu");
+  CHECK(t.text(binary(Rem, i(), literal(3))) == "sk_rem(i, 3)");
+  CHECK(t.text(binary(Rem, u(), literal(3U))) == "uint(i) % 3u");
+  CHECK(t.text(binary(Rem, u(), u())) == "sk_rem(uint(i), uint(i))");
+  CHECK(t.text(binary(Div, t.ref(t.w), i())) == "sk_div(w, i)");
+  CHECK(t.text(binary(ShiftLeft, i(), literal(31))) == "i << 31");
+  CHECK(t.text(binary(ShiftLeft, i(), literal(32))) == "i << (32 & 31)");
+  CHECK(t.text(binary(ShiftRight, i(), binary(Add, i(), literal(1)))) == "i >> ((i + 1) & 31)");
+  CHECK(t.text(binary(ShiftRight, i(), binary(BitAnd, i(), literal(7)))) == "i >> (i & 7)");
+  CHECK(t.text(binary(ShiftRight, t.ref(t.w), u())) == "w >> (uint(i) & 31u)");
+  CHECK(t.text(convert(Scalar::Int, t.ref(t.f))) == "sk_int(f)");
+  CHECK(t.text(convert(Scalar::Uint, t.ref(t.v))) == "sk_uint(v)");
+  CHECK(t.text(convert(Scalar::Int, literal(2.5F))) == "int(2.5)");
+  CHECK(t.text(convert(Scalar::Uint, literal(-1.0F))) == "sk_uint(-1.0)");
+}
+
+TEST_CASE("compound assignments of such operations") {
+  Fixture t;
+  const TypeNames types(t.module);
+  const KernelNames names(t.module, t.module.kernels[0], types);
+  const GlslContext context{t.module, types, names, t.module.kernels[0], t.polyfills};
+  const auto assigned = [&](BinaryOp op, ExprPtr value) {
+    return glslAssignment(context, 0, *t.ref(t.i), op, *value);
+  };
+  CHECK(assigned(Add, t.ref(t.i)) == "i += i");
+  CHECK(assigned(Div, literal(2)) == "i /= 2");
+  CHECK(assigned(Div, t.ref(t.i)) == "i = sk_div(i, i)");
+  CHECK(assigned(Rem, literal(2)) == "i = sk_rem(i, 2)");
+  CHECK(assigned(ShiftLeft, literal(2)) == "i <<= 2");
+  CHECK(assigned(ShiftLeft, t.ref(t.i)) == "i = i << (i & 31)");
 }
 
 }  // namespace

@@ -22,18 +22,23 @@ namespace {
 using namespace ir;
 using enum BinaryOp;
 
-/// The module's kernels and reduces as whole programs, in a folder that glslang looks at.
+/// The module's kernels and reduces as whole programs, with accurate intrinsics and with the device's own, in a folder that
+/// glslang looks at.
 std::string glslangOn(const Module& module, std::string_view folderName) {
   const ToolFolder folder(folderName);
   const Program program(module);
-  for (const sk::assemble::Profile& profile : sk::assemble::profiles()) {
+  for (sk::assemble::Profile profile : sk::assemble::profiles()) {
     for (const Unit& unit : program.units()) {
-      sk::assemble::Variant variant;
-      variant.access.resize(unit.kernel.parameters.size(), {.addressing = sk::assemble::Addressing::Plane});
-      const std::string text = unit.reduction != nullptr
-                                   ? sk::assemble::reduceProgram(profile, *unit.reduction, {})
-                                   : sk::assemble::fragmentProgram(profile, unit.kernel, variant);
-      folder.write(fmt::format("{}-{}.frag", unit.kernel.entry, profile.name), text);
+      for (const bool accurate : {true, false}) {
+        profile.accurate = accurate;
+        sk::assemble::Variant variant;
+        variant.access.resize(unit.kernel.parameters.size(), {.addressing = sk::assemble::Addressing::Plane});
+        const std::string text = unit.reduction != nullptr
+                                     ? sk::assemble::reduceProgram(profile, *unit.reduction, {})
+                                     : sk::assemble::fragmentProgram(profile, unit.kernel, variant);
+        folder.write(fmt::format("{}-{}{}.frag", unit.kernel.entry, profile.name, accurate ? "" : "-fast"),
+                     text);
+      }
     }
   }
   return folder.glslang();

@@ -33,6 +33,7 @@ Names builtinsOf(const Function& function) {
   Names names = {"equal", "greaterThan", "greaterThanEqual", "lessThan",       "lessThanEqual",
                  "mix",   "not",         "notEqual",         "uintBitsToFloat"};
   walkExprs(function.body, [&](const Expr& expr) {
+    if (std::holds_alternative<Index>(expr.node)) names.insert({"clamp", "min"});
     const auto* n = std::get_if<IntrinsicCall>(&expr.node);
     if (n == nullptr) return;
     addIdentifiers(row(n->intrinsic).glsl, names);

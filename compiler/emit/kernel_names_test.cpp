@@ -97,13 +97,18 @@ TEST_CASE("nested variables of one name are told apart, siblings are not") {
 
 TEST_CASE("a variable does not hide what its function calls") {
   Sample s;
-  const VarId length = s.k.local("length", floatType);
+  const VarId root = s.k.local("sqrt", floatType);
   const VarId step = s.k.local("step", floatType);
-  s.k.finish(block(declare(step, literal(1.0F)),
-                   declare(length, intrinsic(Intrinsic::Length, exprs(s.k.ref(step))))));
+  const VarId clamp = s.k.local("clamp", Type::of(Scalar::Float, 2));
+  s.k.finish(
+      block(declare(step, literal(1.0F)), declare(root, intrinsic(Intrinsic::Sqrt, exprs(s.k.ref(step)))),
+            declare(clamp),
+            assign(index(s.module, s.k.ref(clamp), swizzle(indexOf({StreamRef::Space::Domain, 0}), "x")),
+                   s.k.ref(root))));
   const KernelNames names = s.names();
-  CHECK(names.variable(0, length) == "length_2");
+  CHECK(names.variable(0, root) == "sqrt_2");
   CHECK(names.variable(0, step) == "step");
+  CHECK(names.variable(0, clamp) == "clamp_2");   // as the index is clamped
 }
 
 FunctionId addFunctionOf(Module& module, const std::string& name, Type type) {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "emit/float_intrinsics.hpp"
 #include "emit/type_names.hpp"
 #include "ir/print.hpp"
 #include "ir/quantize.hpp"
@@ -105,12 +106,49 @@ std::string Polyfills::logical(BinaryOp op, int width) {
   return name;
 }
 
-std::string Polyfills::remainder(Type lhs, Type rhs) {
-  const Type result = lhs.isVector() ? lhs : rhs;
-  add(fmt::format("{} sk_rem({} a, {} b) {{ return a - a / b * b; }}\n",
-                  glslSpelling(Scalar::Int, result.width), glslSpelling(Scalar::Int, lhs.width),
-                  glslSpelling(Scalar::Int, rhs.width)));
-  return "sk_rem";
+std::string Polyfills::quotient(BinaryOp op, Type lhs, Type rhs) {
+  const bool isRemainder = op == BinaryOp::Rem;
+  const std::string name = isRemainder ? "sk_rem" : "sk_div";
+  if (lhs.scalar == Scalar::Int) {
+    add(
+        fmt::format("int {}(int a, int b) {{\n"
+                    "  int d = b == 0 || (b == -1 && a == -2147483647 - 1) ? 1 : b;\n"
+                    "  return {};\n}}\n",
+                    name, isRemainder ? "a - a / d * d" : "a / d"));
+  } else {
+    add(fmt::format("uint {}(uint a, uint b) {{ return a {} (b == 0u ? 1u : b); }}\n", name,
+                    isRemainder ? "%" : "/"));
+  }
+  const int width = std::max(lhs.width, rhs.width);
+  if (width == 1) return name;
+  add(fmt::format(
+      "{0} {1}({2} a, {3} b) {{ return {0}({4}); }}\n", glslSpelling(lhs.scalar, width), name,
+      glslSpelling(lhs.scalar, lhs.width), glslSpelling(rhs.scalar, rhs.width),
+      byComponent(fmt::format("{}({}, {})", name, lhs.isVector() ? "a.@" : "a", rhs.isVector() ? "b.@" : "b"),
+                  width)));
+  return name;
+}
+
+std::string Polyfills::truncated(Type to) {
+  const bool isInt = carrierOf(to.scalar) == Scalar::Int;
+  const std::string name = isInt ? "sk_int" : "sk_uint";
+  add(isInt ? "int sk_int(float x) {\n"
+              "  if (x >= 2147483648.0) return 2147483647;\n"
+              "  return x > -2147483648.0 ? int(x) : x <= -2147483648.0 ? -2147483647 - 1 : 0;\n"
+              "}\n"
+            : "uint sk_uint(float x) { return x >= 4294967296.0 ? 0xffffffffu : x > 0.0 ? uint(x) : 0u; }\n");
+  if (to.isVector()) {
+    add(fmt::format("{0} {1}({2} x) {{ return {0}({3}); }}\n", glslSpelling(carrierOf(to.scalar), to.width),
+                    name, glslSpelling(Scalar::Float, to.width), byComponent(name + "(x.@)", to.width)));
+  }
+  return name;
+}
+
+std::string Polyfills::defined(sk::program::Intrinsic intrinsic, int width) {
+  auto use = std::ranges::find(intrinsics_, intrinsic, &sk::program::IntrinsicUse::intrinsic);
+  if (use == intrinsics_.end()) use = intrinsics_.insert(use, {intrinsic, 0});
+  use->widths = static_cast<std::uint8_t>(use->widths | 1U << (width - 1));
+  return functionName(intrinsic);
 }
 
 std::string Polyfills::quantize(Type type) {

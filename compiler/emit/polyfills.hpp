@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ir/ir.hpp"
+#include "sk/program.hpp"
 
 namespace skc::emit {
 
@@ -19,8 +20,13 @@ class Polyfills {
   std::string logical(ir::BinaryOp op, int width);
   /// A choice by component between two vectors of int, uint or bool; returns the function's name.
   std::string select(ir::Type type);
-  /// C++'s % of ints; returns the function's name. GLSL's is undefined where an operand is negative.
-  std::string remainder(ir::Type lhs, ir::Type rhs);
+  /// / or % of integers that is defined for all of them; returns the function's name. GLSL's are not where the divisor
+  /// is 0, the quotient too large, or, for %, an operand negative.
+  std::string quotient(ir::BinaryOp op, ir::Type lhs, ir::Type rhs);
+  /// A conversion of reals to the nearest integer toward 0 that the type has, of NaN to 0; returns the function's name.
+  std::string truncated(ir::Type to);
+  /// An intrinsic that the assembler defines, on arguments of this width; returns the function's name.
+  std::string defined(sk::program::Intrinsic intrinsic, int width);
 
   /// A Convert of the carrier's value to a narrow type; returns the function's name.
   std::string quantize(ir::Type type);
@@ -30,9 +36,12 @@ class Polyfills {
 
   /// Their definitions.
   const std::vector<std::string>& functions() const { return functions_; }
+  /// What is left to the assembler.
+  const std::vector<sk::program::IntrinsicUse>& intrinsics() const { return intrinsics_; }
 
  private:
   std::vector<std::string> functions_;
+  std::vector<sk::program::IntrinsicUse> intrinsics_;
 };
 
 /// A pattern of intrinsics.def with $T $I $U $B replaced by the types of the argument's width.

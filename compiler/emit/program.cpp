@@ -33,6 +33,7 @@ struct Program::Storage {
   std::deque<sk::program::Kernel> forms;
   std::deque<std::vector<std::uint8_t>> combineOperands;
   std::deque<std::vector<sk::program::Layer>> layers;
+  std::deque<std::vector<sk::program::IntrinsicUse>> intrinsics;
   std::deque<std::vector<const sk::program::Element*>> temporaries;
   std::deque<std::vector<sk::program::ArgumentPlane>> bundleLayers;
   std::deque<std::vector<sk::program::Bundle>> bundles;
@@ -134,7 +135,8 @@ class Builder {
             .usesExtent = uses.domainExtent,
             .usesLoops = uses.loops,
             .usesDoubles = usesDoubles(module_, kernel),
-            .usesExactSums = usesExactSums(module_, kernel)};
+            .usesExactSums = usesExactSums(module_, kernel),
+            .intrinsics = storage_.intrinsics.emplace_back(polyfills.intrinsics())};
   }
 
   sk::program::Reduction reduction(const Kernel& kernel, const sk::program::Kernel& fold) {

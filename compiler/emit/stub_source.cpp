@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "emit/elements.hpp"
+#include "emit/float_intrinsics.hpp"
 #include "emit/native_code.hpp"
 #include "emit/stub_parts.hpp"
 #include "ir/print.hpp"
@@ -211,6 +212,16 @@ class SourceWriter {
       text_ += wrapLine("    " + row + "},", 100, 5) + "\n";
     }
     text_ += "};\n\n";
+    intrinsics(kernel, name);
+  }
+
+  void intrinsics(const sk::program::Kernel& kernel, const std::string& name) {
+    std::vector<std::string> uses;
+    for (const sk::program::IntrinsicUse& use : kernel.intrinsics) {
+      uses.push_back(fmt::format("{{Intrinsic::{}, {}}}", enumerator(use.intrinsic), use.widths));
+    }
+    list("IntrinsicUse", name + "Intrinsics", uses);
+    if (!uses.empty()) text_ += "\n";
   }
 
   void layers(const sk::program::Parameter& parameter, const std::string& name, std::size_t number) {
@@ -292,6 +303,7 @@ class SourceWriter {
     if (kernel.usesLoops) members.emplace_back(".usesLoops = true");
     if (kernel.usesDoubles) members.emplace_back(".usesDoubles = true");
     if (kernel.usesExactSums) members.emplace_back(".usesExactSums = true");
+    if (!kernel.intrinsics.empty()) members.push_back(fmt::format(".intrinsics = {}Intrinsics", name));
     if (kernel.planCount > 0) {
       members.push_back(fmt::format(".plans = {}Plans", name));
       members.push_back(fmt::format(".planCount = {}", kernel.planCount));

@@ -18,6 +18,7 @@
 
 #include "bench.sk.hpp"
 #include "compile_time.hpp"
+#include "functions.hpp"
 #include "hand_written.hpp"
 #include "report.hpp"
 #include "rounds.hpp"
@@ -89,6 +90,7 @@ int measureAll(const Settings& settings) {
   sideBySide.control(2048);
   for (const int size : {1024, 2048}) sideBySide.saxpy(size);
   for (const int size : {1024, 2048}) sideBySide.binomial(size);
+  bench::functions(device, settings.rounds, settings.sampleMilliseconds, report);
   hostCost(device, settings, report);
   sumTime(device, settings, report);
   compileTimes(settings, report);
@@ -105,8 +107,11 @@ int measureAll(const Settings& settings) {
 
 int main(int argc, char** argv) {
   Settings s;
-  CLI::App cli("Measures generated kernels against hand-written GLSL, the cost of a call, and skc's speed.",
-               "sk_bench");
+  CLI::App cli(
+      "Measures generated kernels against hand-written GLSL, accurate intrinsics against the device's own, "
+      "the cost "
+      "of a call, and skc's speed.",
+      "sk_bench");
   cli.add_option("--device", s.device, "where to run (default: the best)");
   cli.add_option("--rounds", s.rounds, "rounds in which contenders take turns (default: 21)")
       ->check(CLI::Range(1, 10'000));

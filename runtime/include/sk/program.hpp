@@ -168,6 +168,21 @@ constexpr const Element& heldBy(const Parameter& parameter) {
   return parameter.held != nullptr ? *parameter.held : *parameter.element;
 }
 
+/// A function of floats that devices get wrong, or each in its own way. Bodies call it by its name in small letters
+/// with `sk_` in front, and the assembler defines it (assemble/intrinsics.hpp).
+// clang-format off
+enum class Intrinsic : std::uint8_t {
+  Sin, Cos, Tan, Asin, Acos, Atan, Atan2, Sinh, Cosh, Tanh, Asinh, Acosh, Atanh,
+  Exp, Exp2, Log, Log2, Log10, Pow,
+  Min, Max, Clamp, Saturate, Fract, Mod, Fmod, Mix, Step, Smoothstep, Sign, Isnan, Isinf,
+  Length, Distance, Normalize,
+};
+// clang-format on
+struct IntrinsicUse {
+  Intrinsic intrinsic;
+  std::uint8_t widths;  ///< bit n - 1 is set where it is called with arguments of n components
+};
+
 struct Plan;
 
 /// A kernel as native code (sk/native): computing in float, and in double wherever the kernel says float.
@@ -201,6 +216,7 @@ struct Kernel {
       ///< GPUs run beside the domain, where what they read might never end it
   bool usesDoubles = false;  ///< declarations or body speak of sk_double
   bool usesExactSums = false;  ///< the body has floats that no driver may simplify: sk_precise, sk_keep()
+  std::span<const IntrinsicUse> intrinsics = {};  ///< those that declarations or body call
   const Plan* plans = nullptr;  ///< for devices that cannot run it in one pass, most generous first
   std::uint8_t planCount = 0;
   const NativeKernel* native = nullptr;  ///< null where skc was not asked for native code

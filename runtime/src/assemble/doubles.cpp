@@ -27,8 +27,15 @@ sk_double sk_to_double(float a) { return sk_of(double(a)); }
 sk_double sk_to_double(int a) { return sk_of(double(a)); }
 sk_double sk_to_double(uint a) { return sk_of(double(a)); }
 float sk_to_float(sk_double a) { return float(sk_value(a)); }
-int sk_to_int(sk_double a) { return int(sk_value(a)); }
-uint sk_to_uint(sk_double a) { return uint(sk_value(a)); }
+int sk_to_int(sk_double a) {
+  double x = sk_value(a);
+  if (x >= 2147483648.0lf) return 2147483647;
+  return x > -2147483648.0lf ? int(x) : x <= -2147483648.0lf ? -2147483647 - 1 : 0;
+}
+uint sk_to_uint(sk_double a) {
+  double x = sk_value(a);
+  return x >= 4294967296.0lf ? 0xffffffffu : x > 0.0lf ? uint(x) : 0u;
+}
 sk_double sk_neg(sk_double a) { return sk_double(a.bits ^ uvec2(0u, 0x80000000u)); }
 sk_double sk_add(sk_double a, sk_double b) { return sk_of(sk_value(a) + sk_value(b)); }
 sk_double sk_sub(sk_double a, sk_double b) { return sk_of(sk_value(a) - sk_value(b)); }
@@ -214,6 +221,7 @@ sk_double sk_to_double(uint a) { return sk_join(float(a >> 16) * 65536.0, float(
 float sk_to_float(sk_double a) { return a.hi; }
 
 uint sk_to_uint(sk_double a) {
+  if (!(a.hi > 0.0)) return 0u;
   uvec2 b = sk_pack(a);
   uint m = (b.y & 0xfffffu) | 0x100000u;
   int e = int((b.y >> 20) & 0x7ffu) - 1023;
@@ -223,8 +231,9 @@ uint sk_to_uint(sk_double a) {
 }
 
 int sk_to_int(sk_double a) {
-  int n = int(sk_to_uint(sk_abs(a)));
-  return a.hi < 0.0 ? -n : n;
+  uint n = sk_to_uint(sk_abs(a));
+  if (a.hi < 0.0) return n >= 0x80000000u ? -2147483647 - 1 : -int(n);
+  return int(min(n, 0x7fffffffu));
 }
 )";
 

@@ -9,6 +9,7 @@
 
 #include "assemble/doubles.hpp"
 #include "assemble/exact_sums.hpp"
+#include "assemble/intrinsics.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -96,13 +97,15 @@ void ProgramText::prologue(std::string_view line) {
 std::string ProgramText::finish(const Profile& profile, std::string_view comment,
                                 const program::Kernel& kernel) const {
   std::string program = fmt::format("{}\n// {}\n", profile.version, comment);
-  const bool hasExactFloats =
-      kernel.usesExactSums || (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
+  const IntrinsicTexts intrinsics = intrinsicTexts(kernel.intrinsics, profile.accurate);
+  const bool hasExactFloats = kernel.usesExactSums || intrinsics.useExactFloats ||
+                              (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
   if (hasExactFloats) program += exactExtensions(profile.barrier);
   if (profile.es) program += esPrecision;
   if (hasExactFloats) program += exactDefinitions(profile.barrier);
   if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles);
+  program += intrinsics.definitions;
   addForeign(program, kernel.declarations);
   program += '\n';
   addLines(program, uniforms_);

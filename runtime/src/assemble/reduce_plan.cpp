@@ -89,7 +89,7 @@ class Planner {
     pass.toResult = runs == 1;
     pass.variant.runs = blocks_ == 1 ? Runs::OneBlock : pass.toResult ? Runs::WholeBlocks : Runs::Split;
     pass.uniforms = {{"sk_fan", false, {fan}},
-                     {"sk_length", false, {left_}},
+                     {"sk_block_length", false, {left_}},
                      {"sk_blocks", false, {blocks_}},
                      {"sk_item_shape", true, input_.extent}};
     setSource(pass, walk);

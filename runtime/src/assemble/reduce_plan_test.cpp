@@ -125,7 +125,7 @@ class Fragment {
   }
 
   void findRun() {
-    count_ = integer("sk_length");
+    count_ = integer("sk_block_length");
     switch (pass_.variant.runs) {
       case Runs::OneBlock: first_ = number_ * integer("sk_fan"); break;
       case Runs::WholeBlocks: block_ = number_; return;
@@ -136,13 +136,13 @@ class Fragment {
         break;
       }
     }
-    count_ = std::min(integer("sk_fan"), integer("sk_length") - first_);
+    count_ = std::min(integer("sk_fan"), integer("sk_block_length") - first_);
   }
 
   void startWalk() {
     const bool many = pass_.variant.runs != Runs::OneBlock;
     switch (pass_.variant.walk) {
-      case Walk::Line: at_ = integer("sk_start") + block_ * integer("sk_length") + first_; return;
+      case Walk::Line: at_ = integer("sk_start") + block_ * integer("sk_block_length") + first_; return;
       case Walk::Partials: at_ = first_ * integer("sk_blocks") + block_; return;
       case Walk::Plane: {
         Index4 block{};

@@ -184,22 +184,22 @@ class ReductionText {
     const std::string number = isByBlock && !variant_.reshaped ? std::string() : domain_.number();
     switch (variant_.runs) {
       case Runs::OneBlock:
-        integers({"sk_fan", "sk_length"});
+        integers({"sk_fan", "sk_block_length"});
         statement("int sk_first = (" + number + ") * sk_fan;");
-        statement("int sk_count = min(sk_fan, sk_length - sk_first);");
+        statement("int sk_count = min(sk_fan, sk_block_length - sk_first);");
         return;
       case Runs::WholeBlocks:
-        integers({"sk_length"});
+        integers({"sk_block_length"});
         if (!number.empty()) statement("int sk_block = " + number + ";");
-        statement("int sk_count = sk_length;");
+        statement("int sk_count = sk_block_length;");
         return;
       case Runs::Split:
-        integers({"sk_blocks", "sk_fan", "sk_length"});
+        integers({"sk_blocks", "sk_fan", "sk_block_length"});
         statement("int sk_number = " + number + ";");
         statement("int sk_run = sk_number / sk_blocks;");
         statement("int sk_block = sk_number - sk_run * sk_blocks;");
         statement("int sk_first = sk_run * sk_fan;");
-        statement("int sk_count = min(sk_fan, sk_length - sk_first);");
+        statement("int sk_count = min(sk_fan, sk_block_length - sk_first);");
         return;
     }
   }
@@ -220,7 +220,7 @@ class ReductionText {
 
   void startLine() {
     integers({"sk_start"});
-    const std::string_view block = manyBlocks() ? " + sk_block * sk_length" : "";
+    const std::string_view block = manyBlocks() ? " + sk_block * sk_block_length" : "";
     const std::string_view first = startsInside() ? " + sk_first" : "";
     statement(fmt::format("int sk_at = sk_start{}{};", block, first));
     walkNumbers("sk_at", "sk_k");

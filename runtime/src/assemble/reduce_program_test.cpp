@@ -27,7 +27,7 @@ TEST_CASE("the first pass of a reduction to a value") {
 uniform sampler2D sk_tex_x;
 uniform int sk_domain_shift;
 uniform int sk_fan;
-uniform int sk_length;
+uniform int sk_block_length;
 uniform int sk_start;
 uniform int sk_shift;
 layout(location = 0) out float sk_out_total;
@@ -45,7 +45,7 @@ void sum(float x, inout float total) {
 
 void main() {
   int sk_first = (int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x)) * sk_fan;
-  int sk_count = min(sk_fan, sk_length - sk_first);
+  int sk_count = min(sk_fan, sk_block_length - sk_first);
   int sk_at = sk_start + sk_first;
   float sk_total = texelFetch(sk_tex_x, sk_texel(sk_at, sk_shift), 0).x;
   for (int sk_k = 1; sk_k < sk_count; ++sk_k) {
@@ -59,7 +59,7 @@ void main() {
 TEST_CASE("a plane is walked row by row") {
   CHECK(mainOf(samples::sum, {.walk = Walk::Plane}) == R"(void main() {
   int sk_first = (int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x)) * sk_fan;
-  int sk_count = min(sk_fan, sk_length - sk_first);
+  int sk_count = min(sk_fan, sk_block_length - sk_first);
   ivec2 sk_corner = sk_origin.xy;
   int sk_y = sk_first / sk_block_shape.x;
   ivec2 sk_p = sk_corner + ivec2(sk_first - sk_y * sk_block_shape.x, sk_y);
@@ -79,7 +79,7 @@ TEST_CASE("small blocks take no division, and a run without a seed starts from t
   CHECK(
       mainOf(samples::countTrue, {.walk = Walk::Plane, .runs = Runs::WholeBlocks, .domain = Domain::Plane}) ==
       R"(void main() {
-  int sk_count = sk_length;
+  int sk_count = sk_block_length;
   ivec2 sk_corner = sk_origin.xy + sk_result().xy * sk_block_shape.xy;
   ivec2 sk_p = sk_corner;
   int sk_end = sk_corner.x + sk_block_shape.x;
@@ -100,7 +100,7 @@ TEST_CASE("later passes combine partial results") {
   int sk_run = sk_number / sk_blocks;
   int sk_block = sk_number - sk_run * sk_blocks;
   int sk_first = sk_run * sk_fan;
-  int sk_count = min(sk_fan, sk_length - sk_first);
+  int sk_count = min(sk_fan, sk_block_length - sk_first);
   int sk_at = sk_first * sk_blocks + sk_block;
   ivec3 sk_total = texelFetch(sk_tex_count_part, sk_texel(sk_at, sk_shift), 0).xyz;
   for (int sk_k = 1; sk_k < sk_count; ++sk_k) {
@@ -117,7 +117,7 @@ TEST_CASE("structs are folded plane by plane") {
   const std::string text = mainOf(samples::firstHit, {.walk = Walk::Partials, .runs = Runs::WholeBlocks});
   CHECK(text == R"(void main() {
   int sk_block = int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x);
-  int sk_count = sk_length;
+  int sk_count = sk_block_length;
   Hit sk_total = sk_fetch_h(sk_texel(sk_block, sk_shift));
   for (int sk_k = 1; sk_k < sk_count; ++sk_k) {
     firstHit(sk_fetch_h(sk_texel(sk_block + sk_k * sk_blocks, sk_shift)), sk_total);
@@ -136,7 +136,7 @@ TEST_CASE("a box is walked axis by axis") {
   int sk_run = sk_number / sk_blocks;
   int sk_block = sk_number - sk_run * sk_blocks;
   int sk_first = sk_run * sk_fan;
-  int sk_count = min(sk_fan, sk_length - sk_first);
+  int sk_count = min(sk_fan, sk_block_length - sk_first);
   int sk_at = sk_start + sk_ravel(sk_unravel(sk_block, sk_blocks_step) * sk_block_shape, sk_stride);
   ivec4 sk_p = sk_unravel(sk_first, sk_block_step);
   float sk_total = texelFetch(sk_tex_x, sk_texel(sk_at + sk_ravel(sk_p, sk_stride), sk_shift), 0).x;
@@ -165,7 +165,7 @@ TEST_CASE("elements that lie apart, or are asked for their place, are found by t
   int sk_run = sk_number / sk_blocks;
   int sk_block = sk_number - sk_run * sk_blocks;
   int sk_first = sk_run * sk_fan;
-  int sk_count = min(sk_fan, sk_length - sk_first);
+  int sk_count = min(sk_fan, sk_block_length - sk_first);
   ivec4 sk_corner = sk_unravel(sk_block, sk_blocks_step) * sk_block_shape;
   ivec4 sk_p = sk_unravel(sk_first, sk_block_step);
   sk_item = sk_corner + sk_p;

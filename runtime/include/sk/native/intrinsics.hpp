@@ -66,7 +66,12 @@ template <class T> T maxOf(T x, T y) {
 template <class T> T fractOf(T x) {
   if (std::isinf(x)) return std::numeric_limits<T>::quiet_NaN();
   const T fraction = x - std::floor(x);
-  return fraction < T(1) ? fraction : std::nextafter(T(1), T(0));
+  return fraction >= T(1) ? std::nextafter(T(1), T(0)) : fraction;
+}
+/// What is left of x by y, exact but for the sum that gives it the sign of y.
+template <class T> T modOf(T x, T y) {
+  const T left = std::fmod(x, y);
+  return left != T(0) && (left < T(0)) != (y < T(0)) ? left + y : left;
 }
 template <class T> T mixOf(T x, T y, T t) { return x * (T(1) - t) + y * t; }
 template <class T> T smoothstepOf(T low, T high, T x) {
@@ -83,7 +88,7 @@ SK_NATIVE_1(roundEven, std::nearbyint(x))
 SK_NATIVE_1(ceil, std::ceil(x))
 SK_NATIVE_1(fract, fractOf(x))
 SK_NATIVE_1(frac, fractOf(x))
-SK_NATIVE_2(mod, x - y * std::floor(x / y))
+SK_NATIVE_2(mod, modOf(x, y))
 SK_NATIVE_2(fmod, std::fmod(x, y))
 SK_NATIVE_2(min, minOf(x, y))
 SK_NATIVE_2(max, maxOf(x, y))
@@ -142,16 +147,22 @@ template <class A> auto dot(const A& a, const A& b) {
   for (std::size_t i = 1; i < widthOf<A>; ++i) sum = sum + componentAt(a, i) * componentAt(b, i);
   return sum;
 }
-/// Scaled by the largest component, so that no square overflows or vanishes.
+/// A power of 2 by which vectors with this largest component are multiplied, so that no square overflows or vanishes. All
+/// of its values are in the range of float, whose powers of 2 they are.
+template <class T> T lengthScale(T most) {
+  return most >= T(0x1p62F) ? T(0x1p-66F) : most < T(0x1p-40F) ? T(0x1p86F) : T(1);
+}
+template <class A> auto largest(const A& a) {
+  auto most = absOf(componentAt(a, 0));
+  for (std::size_t i = 1; i < widthOf<A>; ++i) most = maxOf(most, absOf(componentAt(a, i)));
+  return most;
+}
 template <class A> auto length(const A& a) {
-  using Real = Component<A>;
-  Real most(0);
-  for (std::size_t i = 0; i < widthOf<A>; ++i) most = maxOf(most, absOf(componentAt(a, i)));
-  if (!(most > Real(0)) || std::isinf(most)) {
-    return isnan(dot(a, a)) && !std::isinf(most) ? dot(a, a) : most;
-  }
-  const A scaled = a / most;
-  return most * std::sqrt(dot(scaled, scaled));
+  const auto most = largest(a);
+  if (std::isinf(most)) return most;
+  const auto scale = lengthScale(most);
+  const A scaled = a * scale;
+  return std::sqrt(dot(scaled, scaled)) / scale;
 }
 template <class A> auto distance(const A& a, const A& b) { return length(a - b); }
 template <class T> auto cross(const Vec<T, 3>& a, const Vec<T, 3>& b) {
@@ -159,12 +170,9 @@ template <class T> auto cross(const Vec<T, 3>& a, const Vec<T, 3>& b) {
 }
 /// Of zero, zero.
 template <class A> A normalize(const A& a) {
-  using Real = Component<A>;
-  Real most(0);
-  for (std::size_t i = 0; i < widthOf<A>; ++i) most = maxOf(most, absOf(componentAt(a, i)));
-  if (most == Real(0)) return a;
-  const A scaled = a / most;
-  return scaled / std::sqrt(dot(scaled, scaled));
+  const A scaled = a * lengthScale(largest(a));
+  const auto square = dot(scaled, scaled);
+  return square == decltype(square)(0) ? a : A(scaled / std::sqrt(square));
 }
 template <class A> A faceforward(const A& n, const A& i, const A& reference) { return dot(reference, i) < Component<A>(0) ? n : A(-n); }
 template <class A> A reflect(const A& i, const A& n) { return i - n * (Component<A>(2) * dot(n, i)); }
