@@ -126,6 +126,21 @@ TEST_CASE("where no barrier holds, doubles in pairs are refused, and nothing els
   CHECK(y.read() == std::vector<float>{2, 4});
 }
 
+TEST_CASE("where no barrier holds, extended precision is refused") {
+  for (const std::string profile : {"glsl330", "essl300"}) {
+    sk::Device device({.profile = profile, .barrier = "none"});
+    auto x = device.stream<float>({2});
+    x.write(std::vector<float>{1, 2});
+    const auto twice = barriers::twice.with({.precision = sk::Precision::Extended});
+    CHECK_THROWS_WITH(twice(x, x), Contains("barriers::twice: it computes with pairs of floats"));
+    const auto sum = barriers::sum.with({.accumulate = sk::Accumulate::Extended});
+    CHECK_THROWS_WITH(sum(x), Contains("barriers::sum: it computes with pairs of floats"));
+    auto total = device.stream<float>({1});
+    CHECK_THROWS_WITH(sum(x, total), Contains("barriers::sum: it computes with pairs of floats"));
+    CHECK(barriers::sum(x) == 3.0F);
+  }
+}
+
 TEST_CASE("a barrier that there is not") {
   CHECK_THROWS_WITH(deviceOf("essl300", "precise"), Contains("has no `precise` in its ESSL 3.00"));
   CHECK_THROWS_WITH(deviceOf("glsl330", "fence"),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The five operations that IEEE 754 rounds correctly, as the device does them; and what it makes of a * b + c.
+// The operations that IEEE 754 rounds correctly, as the device does them; and what it makes of a * b + c.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -27,16 +27,16 @@ std::vector<float> operands(unsigned seed) {
   return made;
 }
 
-/// How results of an operation differ from those of the host, which computes them in double.
-template <class Operation>
-Json errorsOf(const char* name, const std::vector<float>& got, const std::vector<float>& a,
-              const std::vector<float>& b, const Operation& operation) {
+/// How results of an operation differ from `reference(i)`, which the host computes in double.
+template <class Reference>
+Json errorsOf(const char* name, const std::vector<float>& got, const std::vector<float>& first,
+              const Reference& reference) {
   ErrorStatistics errors;
   std::size_t right = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double reference = operation(double{a[i]}, double{b[i]});
-    errors.add(got[i], reference, a[i]);
-    right += got[i] == static_cast<float>(reference);
+    const double exact = reference(i);
+    errors.add(got[i], exact, first[i]);
+    right += got[i] == static_cast<float>(exact);
   }
   Json json = {{"name", name}};
   json.update(errors.json());
@@ -95,23 +95,27 @@ std::string judgeOwnFma(sk::Device& device, const Products& given) {
 Json probeOperations(sk::Device& device) {
   const std::vector<float> a = operands(1);
   const std::vector<float> b = operands(2);
-  std::vector<float> magnitudes = a;
-  for (float& x : magnitudes) x = std::fabs(x);
+  std::vector<float> p = a;  // without a sign, hence without cancellation
+  std::vector<float> q = b;
+  for (float& x : p) x = std::fabs(x);
+  for (float& x : q) x = std::fabs(x);
   auto x = streamOf(device, a);
   auto y = streamOf(device, b);
-  auto m = streamOf(device, magnitudes);
-  std::vector<sk::Stream<float>> results;
-  for (int i = 0; i < 5; ++i) results.push_back(device.stream<float>(x.shape()));
+  auto u = streamOf(device, p);
+  auto v = streamOf(device, q);
+  std::vector<sk::Stream<float>> r;
+  for (int i = 0; i < 5; ++i) r.push_back(device.stream<float>(x.shape()));
   const auto run = probes::arithmetic.with(fast);
   Json list = Json::array();
-  run(x, y, results[0], results[1], results[2], results[3], results[4]);
-  list.push_back(errorsOf("+", results[0].read(), a, b, [](double p, double q) { return p + q; }));
-  list.push_back(errorsOf("-", results[1].read(), a, b, [](double p, double q) { return p - q; }));
-  list.push_back(errorsOf("*", results[2].read(), a, b, [](double p, double q) { return p * q; }));
-  list.push_back(errorsOf("/", results[3].read(), a, b, [](double p, double q) { return p / q; }));
-  run(m, y, results[0], results[1], results[2], results[3], results[4]);
-  list.push_back(
-      errorsOf("sqrt", results[4].read(), magnitudes, b, [](double p, double) { return std::sqrt(p); }));
+  run(x, y, r[0], r[1], r[2], r[3], r[4]);
+  list.push_back(errorsOf("+", r[0].read(), a, [&](std::size_t i) { return double{a[i]} + b[i]; }));
+  list.push_back(errorsOf("-", r[1].read(), a, [&](std::size_t i) { return double{a[i]} - b[i]; }));
+  list.push_back(errorsOf("*", r[2].read(), a, [&](std::size_t i) { return double{a[i]} * b[i]; }));
+  list.push_back(errorsOf("/", r[3].read(), a, [&](std::size_t i) { return double{a[i]} / b[i]; }));
+  run(u, v, r[0], r[1], r[2], r[3], r[4]);
+  list.push_back(errorsOf("sqrt", r[4].read(), p, [&](std::size_t i) { return std::sqrt(double{p[i]}); }));
+  probes::fusedMultiplyAdd.with(fast)(u, v, u, r[0]);
+  list.push_back(errorsOf("fma", r[0].read(), p, [&](std::size_t i) { return double{p[i]} * q[i] + p[i]; }));
   return list;
 }
 

@@ -13,7 +13,7 @@ bool isNative(const sk::Device& device);
 
 Json probeProcessor();  ///< "processor": of native devices
 Json probeAllocations(sk::Device& device);  ///< "allocates"
-Json probeOperations(sk::Device& device);  ///< "operations": + - * / sqrt
+Json probeOperations(sk::Device& device);  ///< "operations": + - * / sqrt fma
 Json probeContraction(sk::Device& device);  ///< "contraction": of a * b + c, and what fma is
 Json probeFunctions(sk::Device& device);  ///< "functions"
 Json probeSpecialValues(sk::Device& device);  ///< "special_values"
