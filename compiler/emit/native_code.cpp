@@ -286,6 +286,24 @@ std::string structs(const Module& module) {
   return text;
 }
 
+/// The kernels of a reduce's exact sums, and what combines them, unless that is among `combinations` already.
+std::string exactSums(const Module& module, const Reduction& reduction, const std::string& name,
+                      std::set<KernelId>& combinations) {
+  std::string text;
+  for (std::size_t k = 0; k < reduction.exact.size(); ++k) {
+    const Kernel& fold = module.kernels[reduction.exact[k].fold];
+    const KernelId combine = *fold.reduction->combine;
+    const ExactNames made(name, k);
+    if (combinations.insert(combine).second) {
+      const Kernel& kernel = module.kernels[combine];
+      text += KernelWriter(module, kernel, exactCombinationName(kernel)).write();
+    }
+    text += KernelWriter(module, fold, made.fold).write();
+    text += KernelWriter(module, module.kernels[reduction.exact[k].finish], made.finish).write();
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string nativeListing(const Module& module, const Program& program) {
@@ -297,6 +315,7 @@ std::string nativeListing(const Module& module, const Program& program) {
       "#include <limits>\n\n#include <sk/native/native.hpp>\n\nnamespace sk::generated {\nnamespace {\n\n"
       "using namespace native::literals;\n\n" +
       structs(module);
+  std::set<KernelId> combinations;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Kernel& kernel = module.kernels[program.units()[i].id];
     text += KernelWriter(module, kernel, names[i]).write();
@@ -311,6 +330,7 @@ std::string nativeListing(const Module& module, const Program& program) {
       text += KernelWriter(module, module.kernels[*fold.reduction->combine], made.combine).write();
       text += KernelWriter(module, module.kernels[second.finish], made.finish).write();
     }
+    if (kernel.reduction) text += exactSums(module, *kernel.reduction, names[i], combinations);
   }
   return text + "}  // namespace\n}  // namespace sk::generated\n";
 }

@@ -15,6 +15,7 @@
 //   };
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "emit/program.hpp"
@@ -28,6 +29,15 @@ struct CompensatedNames {
       : fold(reduce + "CompensatedFold"), combine(reduce + "CompensatedCombine"), finish(reduce + "Finish") {}
   std::string fold, combine, finish;
 };
+
+/// The same of its exact sum number `sum`; and of the reduce that combines digits, one for all sums of a file.
+struct ExactNames {
+  ExactNames(const std::string& reduce, std::size_t sum)
+      : fold(reduce + "ExactFold" + std::to_string(sum)),
+        finish(reduce + "ExactFinish" + std::to_string(sum)) {}
+  std::string fold, finish;
+};
+inline std::string exactCombinationName(const ir::Kernel& combine) { return "sk_" + combine.name; }
 
 /// The definitions of a whole module, in a namespace of their own. Kernels bear the names of their
 /// descriptors (descriptorNames); what combines the partial results of a reduce and is no kernel of the module, the

@@ -31,6 +31,7 @@ struct Program::Storage {
   std::deque<sk::program::CompensatedReduction> compensated;
   std::deque<sk::program::WideReduction> wide;
   std::deque<sk::program::Kernel> forms;
+  std::deque<std::vector<sk::program::ExactSum>> exact;
   std::deque<std::vector<std::uint8_t>> combineOperands;
   std::deque<std::vector<sk::program::Layer>> layers;
   std::deque<std::vector<sk::program::IntrinsicUse>> intrinsics;
@@ -149,7 +150,19 @@ class Builder {
             .combine = &combine == &kernel ? fold : describe(combine),
             .combineOperands = operands,
             .seeded = kernel.reduction->seeded,
-            .compensated = compensated(*kernel.reduction)};
+            .compensated = compensated(*kernel.reduction),
+            .exact = exactSums(*kernel.reduction)};
+  }
+
+  std::span<const sk::program::ExactSum> exactSums(const Reduction& plain) {
+    if (plain.exact.empty()) return {};
+    std::vector<sk::program::ExactSum> sums;
+    for (const ExactSum& sum : plain.exact) {
+      const Kernel& fold = module_.kernels[sum.fold];
+      sums.push_back({reduction(fold, describe(fold)), describe(module_.kernels[sum.finish]),
+                      static_cast<std::uint8_t>(sum.accumulator)});
+    }
+    return storage_.exact.emplace_back(std::move(sums));
   }
 
   /// Null where there is no second form.

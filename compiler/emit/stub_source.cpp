@@ -3,6 +3,8 @@
 // FILE.sk.cpp: the descriptors as constants, and the callables' functions, which hand their arguments
 // to the runtime.
 #include <algorithm>
+#include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -99,6 +101,7 @@ class SourceWriter {
       const std::string combine = combination(unit, *made);
       if (made->compensated != nullptr) compensated(*made->compensated, declared, names_[unit]);
       forms(*made, declared, names_[unit]);
+      exactSums(made->exact, declared, names_[unit]);
       reduction(*made, declared, names_[unit], combine);
     }
   }
@@ -158,6 +161,7 @@ class SourceWriter {
     if (made.compensated != nullptr) members.push_back(fmt::format(".compensated = &{}Compensated", name));
     if (made.half != nullptr) members.push_back(fmt::format(".half = &{}HalfReduction", name));
     if (made.wide != nullptr) members.push_back(fmt::format(".wide = &{}Wide", name));
+    if (!made.exact.empty()) members.push_back(fmt::format(".exact = {}Exact", name));
     text_ +=
         fmt::format("constexpr Reduction {}Reduction = {{\n    {}}};\n\n", name, join(members, ",\n    "));
   }
@@ -178,6 +182,29 @@ class SourceWriter {
     text_ +=
         fmt::format("constexpr CompensatedReduction {}Compensated = {{{}Reduction, {}Kernel, {}Sums}};\n\n",
                     name, names.fold, names.finish, name);
+  }
+
+  /// The constant NAMEExact.
+  void exactSums(std::span<const sk::program::ExactSum> made, const Kernel& declared,
+                 const std::string& name) {
+    std::vector<std::string> items;
+    for (std::size_t k = 0; k < made.size(); ++k) {
+      const ExactSum& sum = declared.reduction->exact[k];
+      const Kernel& fold = module_.kernels[sum.fold];
+      const KernelId combine = *fold.reduction->combine;
+      const ExactNames names(name, k);
+      const std::string combineName = exactCombinationName(module_.kernels[combine]);
+      if (combinations_.insert(combine).second) {
+        kernel(made[k].reduction.combine, module_.kernels[combine], combineName);
+      }
+      kernel(made[k].reduction.fold, fold, names.fold);
+      reduction(made[k].reduction, fold, names.fold, combineName);
+      kernel(made[k].finish, module_.kernels[sum.finish], names.finish);
+      items.push_back(
+          fmt::format("{{{}Reduction, {}Kernel, {}}}", names.fold, names.finish, sum.accumulator));
+    }
+    list("ExactSum", name + "Exact", items);
+    if (!items.empty()) text_ += "\n";
   }
 
   /// The descriptor of what combines, which this writes unless it is there: "sum", "squaresCombine".
@@ -505,6 +532,7 @@ class SourceWriter {
   const Program& program_;
   std::vector<std::string> names_;
   std::vector<bool> isWritten_;   ///< descriptors, by unit
+  std::set<KernelId> combinations_;   ///< of exact sums, whose descriptors are written
   bool withNative_ = true;
   std::string text_;
 };

@@ -34,6 +34,8 @@ std::optional<Type> typeOf(char letter, Choice choice) {
     case 'B':
     case 'M': return Type::of(Bool, choice.width);
     case 'f': return Type::of(Float);
+    case 'i': return Type::of(Int);
+    case 'J': return Type::of(Int, 4);
     case 'b': return Type::of(Bool);
     case 'w': return only(choice.width == 3, Float, 3);
     case 'D': return Type::of(Double, choice.width);

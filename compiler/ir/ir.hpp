@@ -229,6 +229,14 @@ struct Compensated {
   std::vector<VarId> sums;
 };
 
+/// A scalar sum of floats of a reduce, set by sum-exactly: the reduce `fold` has, after all parameters but accumulators, those
+/// that hold the sum as digits of an integer. `finish` is a kernel that takes the accumulator as it is and these, and
+/// gives the accumulator with the rounded sum in its place.
+struct ExactSum {
+  KernelId fold, finish;
+  VarId accumulator;
+};
+
 /// How partial results of a reduce combine; set by derive-combine (frontend: where the user wrote
 /// an overload that folds accumulators).
 struct Reduction {
@@ -236,6 +244,7 @@ struct Reduction {
   std::vector<std::uint32_t> operands = {};  ///< one a parameter of it: see sk::program::Reduction
   bool seeded = false;  ///< likewise
   std::optional<Compensated> compensated = {};
+  std::vector<ExactSum> exact = {};
   /// Of a wide form: a kernel that takes the accumulators, which are doubles, and gives them as floats.
   std::optional<KernelId> finish = {};
 };

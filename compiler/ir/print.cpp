@@ -158,6 +158,12 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
   }
   if (kernel.forms.wide) text += fmt::format(", wide @{}", module.kernels[*kernel.forms.wide].entry);
   if (kernel.forms.half) text += fmt::format(", half @{}", module.kernels[*kernel.forms.half].entry);
+  if (kernel.reduction) {
+    for (const ExactSum& sum : kernel.reduction->exact) {
+      text += fmt::format(", exactly by @{}, @{}", module.kernels[sum.fold].entry,
+                          module.kernels[sum.finish].entry);
+    }
+  }
   if (kernel.pass) text += fmt::format(", pass {} of {}", kernel.pass->number, kernel.pass->count);
   text += "\n";
   for (std::size_t i = 0; i < kernel.params.size(); ++i) {

@@ -95,12 +95,13 @@ bool usesDoubles(const Module& module, const Kernel& kernel) {
 }
 
 bool usesExactSums(const Module& module, const Kernel& kernel) {
+  constexpr Intrinsic exact[] = {Intrinsic::RoundedSum, Intrinsic::SumError, Intrinsic::RoundedProduct,
+                                 Intrinsic::ProductError};
   for (const FunctionId id : functionsOf(module, kernel)) {
     bool uses = false;
     walkExprs(module.functions[id].body, [&](const Expr& expr) {
       const auto* n = std::get_if<IntrinsicCall>(&expr.node);
-      uses = uses ||
-             (n != nullptr && (n->intrinsic == Intrinsic::RoundedSum || n->intrinsic == Intrinsic::SumError));
+      uses = uses || (n != nullptr && std::ranges::find(exact, n->intrinsic) != std::end(exact));
     });
     if (uses) return true;
   }

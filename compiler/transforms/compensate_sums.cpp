@@ -2,15 +2,17 @@
 #include "transforms/compensate_sums.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "ir/build.hpp"
+#include "ir/walk.hpp"
 #include "transforms/combine_part.hpp"
-#include "transforms/copy_functions.hpp"
-#include "transforms/drop_streams.hpp"
+#include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
+#include "transforms/sum_terms.hpp"
 
 namespace skc {
 namespace {
@@ -31,6 +33,7 @@ std::vector<VarId> sumsOf(const Module& module, KernelId id, const FoldPattern& 
   const Kernel& kernel = module.kernels[id];
   const KernelId combine = *kernel.reduction->combine;
   if (combine != id && !module.kernels[combine].isMade) return {};   // the author's
+  if (foldsInLoopHead(kernel, module.functions[kernel.entry])) return {};
   std::vector<VarId> sums;
   for (VarId i = 0; i < kernel.params.size(); ++i) {
     const KernelParam& param = kernel.params[i];
@@ -52,13 +55,45 @@ void addTo(Block& body, const Function& function, VarId total, VarId lost, VarId
   body.push_back(assign(varRef(function, total), intrinsic(Intrinsic::RoundedSum, both())));
 }
 
+/// The same place of another variable.
+ExprPtr inVariable(const Expr& place, VarId var) {
+  ExprPtr copy = clone(place);
+  walkExprs(*copy, [&](Expr& expr) {
+    if (auto* n = std::get_if<VarRef>(&expr.node)) n->var = var;
+  });
+  return copy;
+}
+
+/// A scalar that is added to a vector is so to each component.
+ExprPtr ofType(Type type, ExprPtr value) {
+  return value->type == type ? std::move(value) : construct(type, exprs(std::move(value)));
+}
+
+/// place_lost += sumError(place, value) + productError(value, factor); place = roundedSum(place, value * factor)
+void addTerm(Block& body, Function& function, const Expr& place, VarId lost, Term term) {
+  const Type type = place.type;
+  ExprPtr value = ofType(type, std::move(term.value));
+  ExprPtr error;
+  if (term.factor) {
+    ExprPtr factor = ofType(type, std::move(term.factor));
+    error = intrinsic(Intrinsic::ProductError, exprs(clone(value), clone(factor)));
+    value = intrinsic(Intrinsic::RoundedProduct, exprs(std::move(value), std::move(factor)));
+  }
+  if (!std::holds_alternative<VarRef>(value->node)) {
+    const std::string name = "term_" + std::to_string(function.variables.size());
+    const VarId local = addVariable(function, name, type);
+    body.push_back(declare(local, std::move(value)));
+    value = varRef(function, local);
+  }
+  ExprPtr sumError = intrinsic(Intrinsic::SumError, exprs(clone(place), clone(value)));
+  if (error) sumError = binary(BinaryOp::Add, std::move(sumError), std::move(error));
+  body.push_back(assign(inVariable(place, lost), BinaryOp::Add, std::move(sumError)));
+  body.push_back(
+      assign(clone(place), intrinsic(Intrinsic::RoundedSum, exprs(clone(place), std::move(value)))));
+}
+
 KernelParam like(const KernelParam& param, std::string name, ParamRole role) {
-  KernelParam made;
-  made.name = std::move(name);
-  made.role = role;
-  made.type = param.type;
-  made.loc = param.loc;
-  return made;
+  return makeParam(std::move(name), role, param.type, param.loc);
 }
 
 /// A kernel in the making, with an entry that has a variable for each parameter.
@@ -67,7 +102,7 @@ struct Made {
   Function entry;
 
   Made(const Kernel& of, const std::string& suffix) {
-    kernel.name = of.name;   // what messages call it
+    kernel.name = of.name;  // what messages call it
     kernel.scope = of.scope;
     kernel.loc = entry.loc = of.loc;
     kernel.isMade = true;
@@ -95,12 +130,10 @@ class Maker {
       : module_(module), id_(id), pattern_(pattern), sums_(std::move(sums)) {}
 
   void make() {
-    const KernelId fold = makeFold();
     const KernelId combine = makeCombination();
     module_.kernels[combine].reduction =
         Reduction{combine, std::vector<std::uint32_t>(module_.kernels[combine].params.size()), true, {}};
-    module_.kernels[fold].reduction =
-        Reduction{combine, std::vector<std::uint32_t>(module_.kernels[combine].params.size()), false, {}};
+    const KernelId fold = makeFold(combine);
     const KernelId finish = makeFinish();
     module_.kernels[id_].reduction->compensated = Compensated{fold, finish, sums_};
   }
@@ -109,59 +142,34 @@ class Maker {
   const Kernel& kernel() const { return module_.kernels[id_]; }
   bool isSum(VarId param) const { return std::ranges::find(sums_, param) != sums_.end(); }
 
-  /// The entry as a function that is called: without the parameters that GLSL has none for.
-  FunctionId makeTerm() {
-    FunctionCopies copies;
-    const FunctionId term = copyFunction(module_, kernel().entry, copies);
-    module_.functions[term].name += "_term";
-    dropStreams(module_.functions[term]);
-    return term;
-  }
-
-  KernelId makeFold() {
-    const FunctionId term = makeTerm();
-    Made made(kernel(), "_compensated");
-    for (VarId i = 0; i < kernel().params.size(); ++i) {
-      const KernelParam& param = kernel().params[i];
-      const Variable& var = module_.functions[kernel().entry].variables[i];
-      KernelParam copy = like(param, param.name, param.role);
-      copy.rank = param.rank;
-      copy.boundary = param.boundary;
-      copy.border = clone(param.border);
-      copy.filter = param.filter;
-      // where the plain form starts with its first element, so does -0 + element
-      const bool startsWithElement = isSum(i) && kernel().reduction->seeded;
-      copy.identity = startsWithElement ? everywhere(param.type, -0.0F) : clone(param.identity);
-      copy.neededIf = clone(param.neededIf);
-      made.kernel.params.push_back(std::move(copy));
-      made.entry.variables.push_back(var);
-    }
-    made.entry.parameterCount = static_cast<std::uint32_t>(made.entry.variables.size());
+  KernelId makeFold(KernelId combine) {
+    FoldCopy copy(module_, id_, "_compensated");
     std::vector<VarId> lost;
     for (const VarId i : sums_) {
-      KernelParam param = like(kernel().params[i], kernel().params[i].name + "_lost", ParamRole::Accumulator);
-      param.identity = everywhere(param.type, 0.0F);
-      lost.push_back(made.add(std::move(param)));
+      KernelParam& param = copy.param(i);
+      // where the plain form starts with its first element, so does -0 + element
+      if (kernel().reduction->seeded) param.identity = everywhere(param.type, -0.0F);
+      lost.push_back(copy.addAccumulator(param.name + "_lost", param.type, everywhere(param.type, 0.0F)));
     }
-    std::vector<VarId> terms;
-    for (const VarId i : sums_) {
-      const Type type = kernel().params[i].type;
-      terms.push_back(addVariable(made.entry, kernel().params[i].name + "_term", type));
-      made.entry.body.push_back(
-          declare(terms.back(), everywhere(type, -0.0F)));   // to which anything adds exactly
+    rewrite(copy.entry(), copy.entry().body, lost);
+    return copy.finish(combine);
+  }
+
+  /// Sums what is lost beside what is added.
+  void rewrite(Function& entry, Block& block, const std::vector<VarId>& lost) const {
+    Block made;
+    for (Stmt& stmt : block) {
+      forEachBlock(stmt, [&](Block& inner) { rewrite(entry, inner, lost); });
+      const std::optional<FoldPart> part = foldedBy(kernel(), stmt);
+      if (!part || !isSum(part->accumulator)) {
+        made.push_back(std::move(stmt));
+        continue;
+      }
+      const auto& fold = std::get<Assign>(stmt.node);
+      const auto k = static_cast<std::size_t>(std::ranges::find(sums_, part->accumulator) - sums_.begin());
+      for (Term& term : termsOf(fold)) addTerm(made, entry, *fold.place, lost[k], std::move(term));
     }
-    std::vector<ExprPtr> args;
-    for (VarId i = 0; i < kernel().params.size(); ++i) {
-      const VarRole role = made.entry.variables[i].role;
-      if (role == VarRole::Gather || role == VarRole::Sink) continue;
-      const auto sum = std::ranges::find(sums_, i) - sums_.begin();
-      args.push_back(varRef(made.entry, isSum(i) ? terms[static_cast<std::size_t>(sum)] : i));
-    }
-    made.entry.body.push_back(callStmt(term, std::move(args)));
-    for (std::size_t k = 0; k < sums_.size(); ++k) {
-      addTo(made.entry.body, made.entry, sums_[k], lost[k], terms[k]);
-    }
-    return made.finish(module_);
+    block = std::move(made);
   }
 
   /// Inputs and accumulators of the fold's types and order.
@@ -180,7 +188,7 @@ class Maker {
         list.push_back(made.add(like(param, param.name + "_lost" + suffix, role)));
       }
     }
-    std::vector<VarId> accumulators;   // of the plain form, which come first in each list
+    std::vector<VarId> accumulators;  // of the plain form, which come first in each list
     for (VarId i = 0; i < kernel().params.size(); ++i) {
       if (isAccumulator(kernel().params[i])) accumulators.push_back(i);
     }

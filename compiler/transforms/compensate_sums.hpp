@@ -6,21 +6,20 @@
 //   before   reduce void squares(float x<>, reduce float total<> = 0) { total += x * x; }
 //   after    the same, compensated by
 //            reduce void squares(float x<>, reduce float total<> = 0, reduce float total_lost<> = 0) {
-//              float total_term = -0.0;
-//              squares_term(x, total_term);                        // the body of before
-//              total_lost += sumError(total, total_term);
-//              total = roundedSum(total, total_term);
+//              float term = roundedProduct(x, x);
+//              total_lost += sumError(total, term) + productError(x, x);
+//              total = roundedSum(total, term);
 //            }
 //            reduce void squares_combine(float total_part<>, float total_lost_part<>, reduce ... )
 //            kernel void squares_finish(float total<>, float total_lost<>, out float r_total<>) {
 //              r_total = isfinite(total_lost) ? total + total_lost : total;
 //            }
 //
-// sumError is the error of a float addition, itself a float (Knuth, TAOCP 2, 4.2.2, theorem B), so that a sum of n
-// elements has one rounding of its own and some (log n)^2 u^2 of the sum of magnitudes: Sum2 of Ogita, Rump and Oishi
-// (SIAM J. Sci. Comput. 26, 2005) over a tree. A product, as x * x here, is rounded as before. Accumulators that are no sums of
-// whole floats or vectors of them are folded as before; a reduce whose author wrote how partial results combine has no
-// second form.
+// sumError is the error of a float addition, itself a float (Knuth, TAOCP 2, 4.2.2, theorem B), and productError that of
+// a multiplication (Dekker, Numer. Math. 18, 1971), so that a sum of n terms (sum_terms.hpp) has one rounding of its own and
+// some (log n)^2 u^2 of the sum of magnitudes: Sum2 and Dot2 of Ogita, Rump and Oishi (SIAM J. Sci. Comput. 26,
+// 2005) over a tree. Accumulators that are no sums of whole floats or vectors of them are folded as before; a
+// reduce whose author wrote how partial results combine has no second form.
 #pragma once
 
 #include "ir/ir.hpp"

@@ -96,6 +96,19 @@ class Recogniser {
  public:
   explicit Recogniser(const Kernel& kernel) : kernel_(kernel) {}
 
+  /// A statement that folds into an accumulator.
+  std::optional<FoldPart> foldOf(const Stmt& stmt) const {
+    const auto* n = std::get_if<Assign>(&stmt.node);
+    if (n == nullptr) return std::nullopt;
+    const std::optional<StaticPlace> place = placeOf(*n->place);
+    if (!place) return std::nullopt;
+    const std::optional<FoldOp> op = n->op ? FoldOp(*n->op) : selfFold(withoutCarrier(*n->value), *place);
+    if (!op) return std::nullopt;
+    if (place->type.isMatrix() && op != FoldOp(BinaryOp::Add)) return std::nullopt;
+    if (reads(*n->value) != (n->op ? 0 : 1)) return std::nullopt;
+    return FoldPart{place->root, place->members, place->type, place->components, *op, stmt.loc};
+  }
+
   std::optional<FoldPattern> run(const Block& body) const {
     FoldPattern pattern{{}, false};
     bool matches = true;
@@ -134,19 +147,6 @@ class Recogniser {
     return place && isAccumulator(place->root) ? place : std::nullopt;
   }
 
-  /// A statement that folds into an accumulator.
-  std::optional<FoldPart> foldOf(const Stmt& stmt) const {
-    const auto* n = std::get_if<Assign>(&stmt.node);
-    if (n == nullptr) return std::nullopt;
-    const std::optional<StaticPlace> place = placeOf(*n->place);
-    if (!place) return std::nullopt;
-    const std::optional<FoldOp> op = n->op ? FoldOp(*n->op) : selfFold(withoutCarrier(*n->value), *place);
-    if (!op) return std::nullopt;
-    if (place->type.isMatrix() && op != FoldOp(BinaryOp::Add)) return std::nullopt;
-    if (reads(*n->value) != (n->op ? 0 : 1)) return std::nullopt;
-    return FoldPart{place->root, place->members, place->type, place->components, *op, stmt.loc};
-  }
-
   /// The input that stands where an accumulator does among them.
   VarId elementOf(VarId accumulator) const {
     const auto isOf = [](ParamRole role) {
@@ -180,6 +180,48 @@ class Recogniser {
 };
 
 }  // namespace
+
+namespace {
+
+/// Those of `place + f + g`, where the place itself is none.
+void addSummands(const Expr& value, const StaticPlace& place, std::vector<const Expr*>& all) {
+  const auto* n = std::get_if<Binary>(&value.node);
+  if (isSame(value, place)) return;
+  if (n != nullptr && (isSame(*n->lhs, place) || isSame(*n->rhs, place) || selfFold(*n->lhs, place))) {
+    addSummands(*n->lhs, place, all);
+    addSummands(*n->rhs, place, all);
+  } else {
+    all.push_back(&value);
+  }
+}
+
+}  // namespace
+
+std::optional<FoldPart> foldedBy(const Kernel& kernel, const Stmt& stmt) {
+  return Recogniser(kernel).foldOf(stmt);
+}
+
+std::vector<const Expr*> summandsOf(const Assign& fold) {
+  std::vector<const Expr*> all;
+  if (fold.op) {
+    all.push_back(fold.value.get());
+  } else {
+    addSummands(*fold.value, *staticPlace(*fold.place), all);
+  }
+  return all;
+}
+
+bool foldsInLoopHead(const Kernel& kernel, const Function& entry) {
+  const auto folds = [&](const Block& head) {
+    return std::ranges::any_of(head, [&](const Stmt& stmt) { return foldedBy(kernel, stmt).has_value(); });
+  };
+  bool found = false;
+  walkStmts(entry.body, [&](const Stmt& stmt) {
+    const auto* n = std::get_if<Loop>(&stmt.node);
+    found = found || (n != nullptr && (folds(n->init) || folds(n->step)));
+  });
+  return found;
+}
 
 bool foldsAccumulators(const Kernel& kernel) {
   std::vector<Type> inputs, accumulators;

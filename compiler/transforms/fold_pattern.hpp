@@ -37,6 +37,15 @@ struct FoldPattern {
 /// The pattern of a reduce with this entry function.
 std::optional<FoldPattern> recogniseFold(const ir::Kernel& kernel, const ir::Function& entry);
 
+/// What a statement of a reduce folds into an accumulator, if that is all it does with them.
+std::optional<FoldPart> foldedBy(const ir::Kernel& kernel, const ir::Stmt& stmt);
+
+/// What such a statement adds: f and g of `place += f`, `place = place + f + g`. It folds by +.
+std::vector<const ir::Expr*> summandsOf(const ir::Assign& fold);
+
+/// Whether it folds in the head of a loop, where there is no room for more than the statement.
+bool foldsInLoopHead(const ir::Kernel& kernel, const ir::Function& entry);
+
 /// Whether its inputs have the types of its accumulators, one by one, so that each accumulator has an element.
 bool foldsAccumulators(const ir::Kernel& kernel);
 

@@ -20,6 +20,7 @@
 #include "transforms/remove_unused.hpp"
 #include "transforms/round_halves.hpp"
 #include "transforms/specialize_gathers.hpp"
+#include "transforms/sum_exactly.hpp"
 #include "transforms/widen_floats.hpp"
 
 namespace skc {
@@ -55,7 +56,7 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // Deriving before removing, because it makes functions that use structs.
 // Forms for other precisions after deriving, so that they combine likewise; and before compensating, which
 // is not for them.
-// Compensating after deriving, which finds identities and how the rest combines.
+// Compensating and summing exactly after deriving, which finds identities and how the rest combines.
 // Assigning rows at any time before splitting, which follows variables.
 // Forwarding after bounding and deriving, which know what the author wrote.
 // Removing after these, because all of them leave things without use; and before splitting, so that
@@ -69,6 +70,7 @@ constexpr Transform transforms[] = {
     {"widen-floats", ofPrecisions<widenFloats>},
     {"round-halves", ofPrecisions<roundHalves>},
     {"compensate-sums", plain<compensateSums>},
+    {"sum-exactly", plain<sumExactly>},
     {"assign-rows", plain<assignRows>},
     {"forward-continues", plain<forwardContinues>},
     {"remove-unused", plain<removeUnused>},

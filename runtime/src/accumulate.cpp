@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // sk::reduce: which form of a reduction a call takes, and how the compensated one's two accumulators become one
-// result. It knows no device.
+// result (exact_reduction.hpp has the exact one). It knows no device.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,6 +11,7 @@
 #include "check_argument.hpp"
 #include "check_reduction.hpp"
 #include "device_state.hpp"
+#include "exact_reduction.hpp"
 #include "precision.hpp"
 #include "sk/call.hpp"
 
@@ -37,6 +38,9 @@ std::size_t planesCombined(const Reduction& reduction) {
 const CompensatedReduction* compensated(const Reduction& reduction, const CheckedReduction& checked,
                                         const CallOptions& options) {
   const CompensatedReduction* second = reduction.compensated;
+  if (options.accumulate == Accumulate::Exact && reduction.exact.empty()) {
+    fail(reduction.fold, "it has no sum of floats to add exactly; call it without Accumulate::Exact");
+  }
   if (options.accumulate == Accumulate::Compensated && second == nullptr) {
     fail(reduction.fold, "it has no sum of floats to compensate; call it without Accumulate::Compensated");
   }
@@ -78,6 +82,12 @@ std::size_t resultOf(const Kernel& fold, std::size_t accumulator) {
       [](const Parameter& parameter) { return parameter.role == Role::Accumulator; }));
 }
 
+/// Whether the call takes the exact form, which is one of floats: doubles are compensated where they stand for floats.
+bool isExact(const CheckedReduction& checked, const CallOptions& options) {
+  return options.accumulate == Accumulate::Exact && !checked.device.isReference() &&
+         checked.domain.size() != 0;
+}
+
 }  // namespace
 
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
@@ -88,6 +98,10 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
     return;
   }
   const CompensatedReduction* second = compensated(reduction, checked, options);
+  if (isExact(checked, options)) {
+    reduceExactly(reduction, arguments, checked, results, options);
+    return;
+  }
   if (second == nullptr) {
     checked.device.reduce(reduction, arguments, checked.domain, results, options);
     return;
@@ -116,6 +130,10 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
     return;
   }
   const CompensatedReduction* second = compensated(reduction, checked, options);
+  if (isExact(checked, options)) {
+    reduceExactly(reduction, arguments, checked, options);
+    return;
+  }
   if (second == nullptr) {
     checked.device.reduce(reduction, arguments, checked.domain, checked.blocks, options);
     return;

@@ -34,6 +34,8 @@ class DeviceState {
   virtual bool combinesScattered() const = 0;
   /// Whether precisions other than float's are forms of a kernel: native code computes in any real type.
   virtual bool takesForms() const = 0;
+  /// Whether it computes in double where kernels say float.
+  virtual bool isReference() const { return false; }
   /// Throws sk::Error where this device has no program for the kernel.
   virtual void checkProgram(const program::Kernel& kernel) = 0;
   virtual void checkProgram(const program::Reduction& reduction) = 0;

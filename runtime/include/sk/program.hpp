@@ -261,6 +261,10 @@ struct Plan {
 
 struct CompensatedReduction;
 struct WideReduction;
+struct ExactSum;
+
+/// Elements, or partial results, that a run folds one after the other, at most: as many as exact sums have room for.
+inline constexpr int longestRun = 32;
 
 /// A reduction. `fold` is a kernel whose entry takes every Input by value and every Accumulator as `inout`,
 /// among its other parameters, and folds an element into the accumulators. `combine` is one of the same
@@ -278,6 +282,7 @@ struct Reduction {
   const CompensatedReduction* compensated = nullptr;  ///< null where it sums no floats
   const Reduction* half = nullptr;  ///< its forms for other precisions, as those of Kernel
   const WideReduction* wide = nullptr;
+  std::span<const ExactSum> exact = {};  ///< one for each scalar of the accumulators that is a sum of floats
 };
 
 /// A reduction whose accumulators are doubles. `finish` takes them as Inputs and has the results as Outputs, which
@@ -294,6 +299,15 @@ struct CompensatedReduction {
   Reduction reduction;
   Kernel finish;
   std::span<const std::uint8_t> sums;
+};
+
+/// A form of a reduction that adds without rounding what one scalar of an accumulator sums. The fold of `reduction` has all
+/// parameters of the plain one but accumulators, then accumulators of its own. `finish` takes the accumulator as
+/// it is and these, and gives it with the rounded sum in that scalar's place.
+struct ExactSum {
+  Reduction reduction;
+  Kernel finish;
+  std::uint8_t accumulator;  ///< a parameter of the plain fold
 };
 
 }  // namespace sk::program

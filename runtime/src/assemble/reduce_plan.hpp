@@ -43,7 +43,7 @@ struct ReducePass {
 
 struct ReduceLimits {
   TextureLimits texture;
-  std::int32_t fanIn = 32;  ///< elements a run, 2 or more
+  std::int32_t fanIn = program::longestRun;  ///< elements a run, 2 or more
 };
 
 /// Whether a fold asks where its elements are, so that it has to find them by their index.

@@ -24,6 +24,7 @@ class NativeDevice final : public DeviceState {
   const Arithmetic& arithmetic() override { return arithmetic_; }
   bool combinesScattered() const override { return true; }
   bool takesForms() const override { return false; }
+  bool isReference() const override { return real_ == RealType::Double; }
   void checkProgram(const program::Kernel& kernel) override;
   void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "sk/native/scalar.hpp"
 #include "sk/native/vector.hpp"
@@ -132,12 +133,25 @@ SK_NATIVE_1(frexpMantissa, mantissaOf(x))
 SK_NATIVE_1(modfFraction, std::copysign(std::isinf(x) ? decltype(x)(0) : x - std::trunc(x), x))
 template <class A> auto nearest(const A& a) { return byComponent([](auto x) { return wholeIndex(std::floor(x + decltype(x)(0.5))); }, a); }
 
-// what a rounding loses: IEEE 754's arithmetic leaves it a float (Knuth, TAOCP 2, 4.2.2)
+// what a rounding loses: IEEE 754's arithmetic leaves it a float (Knuth, TAOCP 2, 4.2.2; Dekker,
+// Numer. Math. 18, 1971)
 template <class T> T sumErrorOf(T a, T b) {
   const T s = a + b;
   const T c = s - a;
   return (a - (s - c)) + (b - c);
 }
+/// Of a product that is not finite, 0.
+template <class T> T productErrorOf(T a, T b) {
+  const T p = a * b;
+  if (!std::isfinite(p)) return T(0);
+  if constexpr (std::is_same_v<T, float>) {
+    return static_cast<float>(double{a} * double{b} - double{p});
+  } else {
+    return std::fma(a, b, -p);
+  }
+}
+SK_NATIVE_2(roundedProduct, x * y)
+SK_NATIVE_2(productError, productErrorOf(x, y))
 SK_NATIVE_2(roundedSum, x + y)
 SK_NATIVE_2(sumError, sumErrorOf(x, y))
 

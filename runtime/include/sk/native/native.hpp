@@ -5,6 +5,7 @@
 
 #include <tuple>
 
+#include "sk/native/exact.hpp"
 #include "sk/native/intrinsics.hpp"
 #include "sk/native/run.hpp"
 #include "sk/native/streams.hpp"

@@ -86,7 +86,7 @@ class Runs {
 template <class Fold, class Combine>
 auto foldBlock(Fold& fold, Combine& combine, const Extents& begin, const Extents& end) {
   using State = typename Fold::sk_State;
-  constexpr int leaf = 16;  // elements that are folded one after the other
+  constexpr int leaf = 16;  // elements that are folded one after the other; program::longestRun at most
   Runs<Combine, State> runs(combine);
   State state{};
   int count = 0;

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/fold_copy.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "ir/build.hpp"
+#include "ir/walk.hpp"
+
+namespace skc {
+
+using namespace ir;
+
+namespace {
+
+constexpr std::uint32_t gone = std::numeric_limits<std::uint32_t>::max();
+
+KernelParam copyOf(const KernelParam& param) {
+  KernelParam copy = makeParam(param.name, param.role, param.type, param.loc);
+  copy.rank = param.rank;
+  copy.boundary = param.boundary;
+  copy.border = clone(param.border);
+  copy.filter = param.filter;
+  copy.identity = clone(param.identity);
+  copy.neededIf = clone(param.neededIf);
+  return copy;
+}
+
+/// The stream that an expression asks, or null.
+StreamRef* streamOf(Expr& expr) {
+  if (auto* n = std::get_if<GatherRead>(&expr.node)) return &n->stream;
+  if (auto* n = std::get_if<NeighborRead>(&expr.node)) return &n->stream;
+  if (auto* n = std::get_if<Sample>(&expr.node)) return &n->stream;
+  if (auto* n = std::get_if<IndexOf>(&expr.node)) return &n->stream;
+  if (auto* n = std::get_if<ExtentOf>(&expr.node)) return &n->stream;
+  return nullptr;
+}
+
+}  // namespace
+
+KernelParam makeParam(std::string name, ParamRole role, Type type, Loc loc) {
+  KernelParam made;
+  made.name = std::move(name);
+  made.role = role;
+  made.type = type;
+  made.loc = loc;
+  return made;
+}
+
+FoldCopy::FoldCopy(Module& module, KernelId of, std::string_view suffix)
+    : module_(module), before_(module.kernels[of].params.size()) {
+  const Kernel& original = module.kernels[of];
+  kernel_.name = original.name;   // what messages call it
+  kernel_.scope = original.scope;
+  kernel_.loc = original.loc;
+  kernel_.isMade = true;
+  for (const KernelParam& param : original.params) kernel_.params.push_back(copyOf(param));
+  kernel_.entry = copyFunction(module, original.entry, copies_);
+  entry_ = std::move(module.functions[kernel_.entry]);
+  entry_.name += suffix;
+  module.functions[kernel_.entry].body.clear();
+}
+
+VarId FoldCopy::addAccumulator(std::string name, Type type, ExprPtr identity) {
+  KernelParam param = makeParam(name, ParamRole::Accumulator, type, kernel_.loc);
+  param.identity = std::move(identity);
+  kernel_.params.push_back(std::move(param));
+  added_.push_back(addVariable(entry_, std::move(name), type));
+  return added_.back();
+}
+
+void FoldCopy::dropAccumulators() { isDropped_ = true; }
+
+/// Parameters come first among the variables, and streams go by their numbers among the parameters.
+void FoldCopy::renumber() {
+  std::vector<VarId> order;   // old numbers
+  for (VarId i = 0; i < before_; ++i) {
+    if (!isDropped_ || kernel_.params[i].role != ParamRole::Accumulator) order.push_back(i);
+  }
+  order.insert(order.end(), added_.begin(), added_.end());
+  const std::size_t parameters = order.size();
+  for (VarId i = static_cast<VarId>(before_); i < entry_.variables.size(); ++i) {
+    if (std::ranges::find(added_, i) == added_.end()) order.push_back(i);
+  }
+  std::vector<std::uint32_t> numbers(entry_.variables.size(), gone);
+  std::vector<Variable> variables;
+  for (const VarId old : order) {
+    numbers[old] = static_cast<VarId>(variables.size());
+    variables.push_back(std::move(entry_.variables[old]));
+  }
+  for (const VarId var : added_) variables[numbers[var]].role = VarRole::InOut;
+  entry_.variables = std::move(variables);
+  entry_.parameterCount = static_cast<std::uint32_t>(parameters);
+  std::vector<KernelParam> params;
+  for (std::size_t i = 0; i < kernel_.params.size(); ++i) {
+    if (i >= before_ || numbers[i] != gone) params.push_back(std::move(kernel_.params[i]));
+  }
+  kernel_.params = std::move(params);
+
+  const auto variable = [&](Expr& expr) {
+    if (auto* n = std::get_if<VarRef>(&expr.node)) n->var = numbers[n->var];
+  };
+  const auto stream = [&](Expr& expr) {
+    StreamRef* ref = streamOf(expr);
+    if (ref != nullptr && ref->space == StreamRef::Space::KernelParameter) ref->id = numbers[ref->id];
+  };
+  walkExprs(entry_.body, variable);
+  walkExprs(entry_.body, stream);
+  walkStmts(entry_.body, [&](Stmt& stmt) {
+    if (auto* n = std::get_if<Declare>(&stmt.node)) n->var = numbers[n->var];
+  });
+  for (KernelParam& param : kernel_.params) {
+    if (param.neededIf) walkExprs(*param.neededIf, variable);
+  }
+  for (const auto& [old, made] : copies_) walkExprs(module_.functions[made].body, stream);
+}
+
+KernelId FoldCopy::finish(KernelId combine) {
+  renumber();
+  module_.functions[kernel_.entry] = std::move(entry_);
+  kernel_.reduction =
+      Reduction{combine, std::vector<std::uint32_t>(module_.kernels[combine].params.size()), false, {}};
+  module_.kernels.push_back(std::move(kernel_));
+  return static_cast<KernelId>(module_.kernels.size() - 1);
+}
+
+}  // namespace skc

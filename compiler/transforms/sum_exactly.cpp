@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/sum_exactly.hpp"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ir/build.hpp"
+#include "ir/walk.hpp"
+#include "transforms/fold_copy.hpp"
+#include "transforms/fold_pattern.hpp"
+#include "transforms/sum_terms.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+constexpr Type digitsType = Type::of(Scalar::Int, 4);
+constexpr Type intType = Type::of(Scalar::Int);
+
+/// Groups of digits, and the bit of them that stands for 2^-149, the last of a float.
+struct Format {
+  std::uint32_t groups;
+  std::int32_t base;
+};
+constexpr Format ofFloats = {3, 0};
+constexpr Format ofProducts = {6, 149};
+constexpr std::uint32_t mostGroups = 6;
+
+/// A scalar of an accumulator, which is a sum.
+struct ScalarSum {
+  FoldPart part;
+  unsigned component;
+};
+
+/// The variables that hold a sum.
+struct Digits {
+  std::vector<VarId> groups;
+  VarId flags = 0;
+};
+
+/// Statements that make the digits small, but keep their sum.
+void settle(Block& block, Function& function, const Digits& digits) {
+  ExprPtr carry = literal(0);
+  for (std::size_t i = 0; i < digits.groups.size(); ++i) {
+    const bool isLast = i + 1 == digits.groups.size();
+    const auto group = [&] { return varRef(function, digits.groups[i]); };
+    ExprPtr next;
+    if (!isLast) {
+      const VarId var = addVariable(function, fmt::format("carry_{}", function.variables.size()), intType);
+      block.push_back(declare(var, intrinsic(Intrinsic::ExactCarry, exprs(group(), clone(carry)))));
+      next = varRef(function, var);
+    }
+    block.push_back(assign(
+        group(), intrinsic(Intrinsic::ExactSettled, exprs(group(), std::move(carry), literal(isLast)))));
+    carry = std::move(next);
+  }
+}
+
+/// Statements that add a term.
+void add(Block& block, const Function& function, const Digits& digits, const Format& format,
+         const Expr& value, const Expr* factor) {
+  const bool areProducts = format.groups == ofProducts.groups;
+  const auto operands = [&] {
+    if (!areProducts) return exprs(clone(value));
+    return exprs(clone(value), factor != nullptr ? clone(*factor) : literal(1.0F));
+  };
+  for (std::uint32_t i = 0; i < format.groups; ++i) {
+    std::vector<ExprPtr> args = operands();
+    args.push_back(literal(static_cast<std::int32_t>(i)));
+    const Intrinsic which = areProducts ? Intrinsic::ExactProductDigits : Intrinsic::ExactDigits;
+    block.push_back(
+        assign(varRef(function, digits.groups[i]), BinaryOp::Add, intrinsic(which, std::move(args))));
+  }
+  const Intrinsic which = areProducts ? Intrinsic::ExactProductFlags : Intrinsic::ExactFlags;
+  block.push_back(assign(varRef(function, digits.flags), BinaryOp::BitOr, intrinsic(which, operands())));
+}
+
+/// A kernel in the making, with an entry that has a variable for each parameter.
+struct Made {
+  Kernel kernel;
+  Function entry;
+
+  Made(std::string name, std::string entryName, Loc loc) {
+    kernel.name = std::move(name);
+    kernel.loc = entry.loc = loc;
+    kernel.isMade = true;
+    entry.name = std::move(entryName);
+  }
+
+  VarId add(std::string name, ParamRole role, Type type) {
+    const VarRole varRole = role == ParamRole::Input ? VarRole::Element : VarRole::InOut;
+    const VarId var = addVariable(entry, name, type, varRole, kernel.loc);
+    kernel.params.push_back(makeParam(std::move(name), role, type, kernel.loc));
+    return var;
+  }
+
+  Digits addDigits(const Format& format, ParamRole role, const std::string& suffix = {}) {
+    Digits digits;
+    for (std::uint32_t i = 0; i < format.groups; ++i) {
+      digits.groups.push_back(add(fmt::format("digits_{}{}", i, suffix), role, digitsType));
+    }
+    digits.flags = add("flags" + suffix, role, intType);
+    return digits;
+  }
+
+  KernelId finish(Module& module) {
+    kernel.entry = static_cast<FunctionId>(module.functions.size());
+    module.functions.push_back(std::move(entry));
+    module.kernels.push_back(std::move(kernel));
+    return static_cast<KernelId>(module.kernels.size() - 1);
+  }
+};
+
+class State {
+ public:
+  explicit State(Module& module) : module_(module) {}
+
+  void sum(KernelId id, const ScalarSum& scalar) {
+    const Format& format = hasProducts(id, scalar) ? ofProducts : ofFloats;
+    const KernelId fold = makeFold(id, scalar, format);
+    const KernelId finish = makeFinish(id, scalar, format);
+    module_.kernels[id].reduction->exact.push_back({fold, finish, scalar.part.accumulator});
+  }
+
+ private:
+  /// The statement's part in the sum: which component of what it adds; nothing if none.
+  static std::optional<unsigned> componentIn(const Kernel& kernel, const Stmt& stmt, const ScalarSum& sum) {
+    const std::optional<FoldPart> part = foldedBy(kernel, stmt);
+    if (!part || part->accumulator != sum.part.accumulator || part->members != sum.part.members ||
+        (part->components >> sum.component & 1U) == 0) {
+      return std::nullopt;
+    }
+    const auto* swizzled = std::get_if<Swizzle>(&std::get<Assign>(stmt.node).place->node);
+    if (swizzled == nullptr) return sum.component;
+    unsigned place = 0;
+    while (swizzled->components[place] != sum.component) ++place;
+    return place;
+  }
+
+  bool hasProducts(KernelId id, const ScalarSum& sum) const {
+    const Kernel& kernel = module_.kernels[id];
+    bool found = false;
+    walkStmts(module_.functions[kernel.entry].body, [&](const Stmt& stmt) {
+      if (!componentIn(kernel, stmt, sum)) return;
+      for (const Term& term : termsOf(std::get<Assign>(stmt.node))) found = found || term.factor != nullptr;
+    });
+    return found;
+  }
+
+  KernelId makeFold(KernelId id, const ScalarSum& sum, const Format& format) {
+    const KernelId combine = combination(format);
+    FoldCopy copy(module_, id, "_exact");
+    Digits digits;
+    for (std::uint32_t i = 0; i < format.groups; ++i) {
+      digits.groups.push_back(copy.addAccumulator(fmt::format("digits_{}", i), digitsType,
+                                                  construct(digitsType, exprs(literal(0)))));
+    }
+    digits.flags = copy.addAccumulator("flags", intType, literal(0));
+    const Rewriting rewriting{module_.kernels[id], sum, format, digits};
+    Block& body = copy.entry().body;
+    if (rewriting.rewrite(copy.entry(), body, false) > 1) {
+      Block start;
+      settle(start, copy.entry(), digits);
+      body.insert(body.begin(), std::make_move_iterator(start.begin()), std::make_move_iterator(start.end()));
+    }
+    copy.dropAccumulators();
+    return copy.finish(combine);
+  }
+
+  /// Puts digits in place of accumulators.
+  struct Rewriting {
+    const Kernel& kernel;
+    const ScalarSum& sum;
+    const Format& format;
+    const Digits& digits;
+
+    /// Returns how many terms an element adds without settling.
+    int rewrite(Function& entry, Block& block, bool inLoop) const {
+      int terms = 0;
+      Block made;
+      for (Stmt& stmt : block) {
+        const bool isLoop = std::holds_alternative<Loop>(stmt.node);
+        forEachBlock(stmt, [&](Block& inner) { terms += rewrite(entry, inner, inLoop || isLoop); });
+        if (!foldedBy(kernel, stmt)) {
+          made.push_back(std::move(stmt));
+          continue;
+        }
+        const std::optional<unsigned> component = componentIn(kernel, stmt, sum);
+        if (!component) continue;   // of an accumulator that this form has not
+        for (const Term& term : termsOf(std::get<Assign>(stmt.node))) {
+          if (inLoop) settle(made, entry, digits);
+          const ExprPtr factor = term.factor ? componentOf(*term.factor, *component) : nullptr;
+          add(made, entry, digits, format, *componentOf(*term.value, *component), factor.get());
+          terms += inLoop ? 0 : 1;
+        }
+      }
+      block = std::move(made);
+      return terms;
+    }
+  };
+
+  /// The reduce that adds digits, made when it is first asked for.
+  KernelId combination(const Format& format) {
+    std::optional<KernelId>& known = combinations_[format.groups];
+    if (known) return *known;
+    const std::string name = format.groups == ofProducts.groups ? "exact_products" : "exact_sums";
+    Made made(name, name, {});
+    const Digits parts = made.addDigits(format, ParamRole::Input, "_part");
+    const Digits totals = made.addDigits(format, ParamRole::Accumulator);
+    Block& body = made.entry.body;
+    Digits settled;   // inputs stay as they are
+    for (const VarId part : parts.groups) {
+      settled.groups.push_back(
+          addVariable(made.entry, fmt::format("part_{}", settled.groups.size()), digitsType));
+      body.push_back(declare(settled.groups.back(), varRef(made.entry, part)));
+    }
+    settle(body, made.entry, settled);
+    settle(body, made.entry, totals);
+    for (std::uint32_t i = 0; i < format.groups; ++i) {
+      body.push_back(
+          assign(varRef(made.entry, totals.groups[i]), BinaryOp::Add, varRef(made.entry, settled.groups[i])));
+    }
+    body.push_back(
+        assign(varRef(made.entry, totals.flags), BinaryOp::BitOr, varRef(made.entry, parts.flags)));
+    const KernelId id = made.finish(module_);
+    module_.kernels[id].reduction =
+        Reduction{id, std::vector<std::uint32_t>(module_.kernels[id].params.size()), true, {}};
+    known = id;
+    return id;
+  }
+
+  KernelId makeFinish(KernelId id, const ScalarSum& sum, const Format& format) {
+    const Kernel& kernel = module_.kernels[id];
+    const KernelParam& param = kernel.params[sum.part.accumulator];
+    Made made(kernel.name, kernel.name + "_finish", kernel.loc);
+    made.kernel.scope = kernel.scope;
+    const VarId plain = made.add(param.name, ParamRole::Input, param.type);
+    const Digits digits = made.addDigits(format, ParamRole::Input);
+    const VarId result = made.add("r_" + param.name, ParamRole::Output, param.type);
+    Function& entry = made.entry;
+    Digits total;
+    for (const VarId group : digits.groups) {
+      total.groups.push_back(addVariable(entry, fmt::format("sum_{}", total.groups.size()), digitsType));
+      entry.body.push_back(declare(total.groups.back(), varRef(entry, group)));
+    }
+    total.flags = addVariable(entry, "sum_flags", intType);
+    entry.body.push_back(declare(total.flags, varRef(entry, digits.flags)));
+    settle(entry.body, entry, total);
+    if (!kernel.reduction->seeded) {   // the identity is a summand
+      const ExprPtr identity = scalarOf(clone(param.identity), sum);
+      add(entry.body, entry, total, format, *identity, nullptr);
+      settle(entry.body, entry, total);
+    }
+    const VarId isNegative = makePositive(entry, total);
+    std::vector<ExprPtr> args;
+    for (const VarId group : total.groups) args.push_back(varRef(entry, group));
+    while (args.size() < mostGroups) args.push_back(construct(digitsType, exprs(literal(0))));
+    args.push_back(varRef(entry, total.flags));
+    args.push_back(varRef(entry, isNegative));
+    args.push_back(literal(format.base));
+    entry.body.push_back(assign(varRef(entry, result), varRef(entry, plain)));
+    entry.body.push_back(
+        assign(scalarOf(varRef(entry, result), sum), intrinsic(Intrinsic::ExactRounded, std::move(args))));
+    return made.finish(module_);
+  }
+
+  /// Makes settled digits those of the magnitude; gives the variable that says whether they were of a negative sum.
+  static VarId makePositive(Function& entry, const Digits& total) {
+    const VarId isNegative = addVariable(entry, "is_negative", Type::of(Scalar::Bool));
+    ExprPtr last = swizzle(varRef(entry, total.groups.back()), "w");
+    entry.body.push_back(declare(isNegative, binary(BinaryOp::Less, std::move(last), literal(0))));
+    Block negate;
+    for (const VarId group : total.groups) {
+      negate.push_back(assign(varRef(entry, group), unary(UnaryOp::Negate, varRef(entry, group))));
+    }
+    settle(negate, entry, total);
+    entry.body.push_back(ifStmt(varRef(entry, isNegative), std::move(negate)));
+    return isNegative;
+  }
+
+  /// The scalar of an accumulator's value.
+  ExprPtr scalarOf(ExprPtr value, const ScalarSum& sum) const {
+    for (const std::uint32_t field : sum.part.members) value = member(module_, std::move(value), field);
+    return componentOf(*value, sum.component);
+  }
+
+  Module& module_;
+  std::array<std::optional<KernelId>, mostGroups + 1> combinations_ = {};
+};
+
+/// The scalars of a reduce that are sums of floats; none where the author says how partial results combine.
+std::vector<ScalarSum> sumsOf(const Module& module, KernelId id, const FoldPattern& pattern) {
+  const Kernel& kernel = module.kernels[id];
+  const KernelId combine = *kernel.reduction->combine;
+  if (combine != id && !module.kernels[combine].isMade) return {};
+  if (foldsInLoopHead(kernel, module.functions[kernel.entry])) return {};
+  std::vector<ScalarSum> sums;
+  for (const FoldPart& part : pattern.parts) {
+    const bool isSum = part.op == FoldOp(BinaryOp::Add) && part.type.isFloat() && !part.type.isMatrix();
+    const bool hasIdentity = kernel.reduction->seeded || kernel.params[part.accumulator].identity;
+    if (!isSum || !hasIdentity) continue;
+    for (unsigned i = 0; i < part.type.width; ++i) {
+      if ((part.components >> i & 1U) != 0) sums.push_back({part, i});
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+void sumExactly(Module& module, Diagnostics&) {
+  State state(module);
+  const std::size_t declared = module.kernels.size();  // before those that this adds
+  for (KernelId id = 0; id < declared; ++id) {
+    const Kernel& kernel = module.kernels[id];
+    if (!kernel.reduction || kernel.isMade) continue;
+    const std::optional<FoldPattern> pattern = recogniseFold(kernel, module.functions[kernel.entry]);
+    if (!pattern) continue;
+    for (const ScalarSum& sum : sumsOf(module, id, *pattern)) state.sum(id, sum);
+  }
+}
+
+}  // namespace skc

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+//
+// What a sum of floats adds, taken apart: `total += a * b - c` adds the product of a and b, and -c. Forms of a sum that keep
+// more than its roundings leave ask for this, since they keep what the products lose, too.
+#pragma once
+
+#include <vector>
+
+#include "ir/ir.hpp"
+
+namespace skc {
+
+/// A value, or where `factor` is there, its product with it.
+struct Term {
+  ir::ExprPtr value, factor;
+};
+
+/// The terms of a statement that folds by +. A value that is no sum of products and others is one term, so that
+/// `total += x - mean` adds a float as it is rounded. A dot product of vectors has a term for each component.
+std::vector<Term> termsOf(const ir::Assign& fold);
+
+/// Component `component` of a vector; a scalar itself.
+ir::ExprPtr componentOf(const ir::Expr& value, unsigned component);
+
+}  // namespace skc
