@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: Accumulate::Exact adds products of floats as they are, also where they are no floats, and rounds once.
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "dots.sk.hpp"
+#include "sk/sk.hpp"
+#include "support/devices.hpp"
+#include "support/oracle.hpp"
+
+namespace numerics {
+namespace {
+
+using run_tests::onEveryProfile;
+
+constexpr float inf = std::numeric_limits<float>::infinity();
+constexpr sk::CallOptions exact{.accumulate = sk::Accumulate::Exact};
+
+std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
+
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
+  auto stream = device.stream<T>({static_cast<std::int64_t>(values.size())});
+  stream.write(values);
+  return stream;
+}
+
+float exactDot(sk::Device& device, const std::vector<float>& x, const std::vector<float>& y) {
+  return dots::dot.with(exact)(streamOf(device, x), streamOf(device, y));
+}
+
+void addAll(TrueSum& sum, const std::vector<float>& x, const std::vector<float>& y) {
+  for (std::size_t i = 0; i < x.size(); ++i) sum.addProduct(x[i], y[i]);
+}
+
+TEST_CASE("ill-conditioned dot products, exact to the bit") {  // R1
+  for (const double wanted : {1e6, 1e10, 1e14, 1e20, 1e24}) {
+    const Pairs pairs = illConditionedDot(4001, wanted, 7);
+    TrueSum sum;
+    addAll(sum, pairs.x, pairs.y);
+    INFO("condition " << sum.condition());
+    CHECK(sum.condition() > wanted / 100);
+    onEveryProfile(
+        [&](sk::Device& device) { CHECK(bits(exactDot(device, pairs.x, pairs.y)) == bits(sum.rounded())); });
+  }
+}
+
+TEST_CASE("any floats at all, whose products overflow and underflow") {  // R7, R8, R9
+  for (const std::size_t n : {1U, 2U, 32U, 33U, 1021U, 20011U}) {
+    const std::vector<float> x = anyFloats(n, static_cast<unsigned>(n));
+    const std::vector<float> y = anyFloats(n, static_cast<unsigned>(n) + 1);
+    TrueSum sum;
+    addAll(sum, x, y);
+    onEveryProfile([&](sk::Device& device) {
+      INFO(n << " elements");
+      CHECK(bits(exactDot(device, x, y)) == bits(sum.rounded()));
+    });
+  }
+  onEveryProfile([](sk::Device& device) {
+    CHECK(exactDot(device, {1e38F, 1e38F, 2}, {1e38F, -1e38F, 3}) == 6.0F);
+    const std::vector<float> tiny(1 << 12, 0x1p-75F);  // each square is 2^-150, half the smallest denormal
+    CHECK(dots::squares.with(exact)(streamOf(device, tiny)) == 0x1p-138F);
+  });
+}
+
+TEST_CASE("vectors' dot products, products by component, differences of products") {
+  const Pairs a = illConditionedDot(3001, 1e16, 8);
+  std::vector<sk::float3> x;
+  std::vector<sk::float3> y;
+  std::vector<sk::float2> v;
+  std::vector<sk::float4> m;
+  TrueSum dot;
+  TrueSum first;
+  TrueSum second;
+  TrueSum difference;
+  for (std::size_t i = 0; i < a.x.size(); ++i) {
+    x.push_back({a.x[i], 1.1F, a.y[i]});
+    y.push_back({a.y[i], 0.3F, 1e-7F});
+    v.push_back({a.x[i], -3.3F});
+    m.push_back({a.x[i], 1.7F, 2.3F, a.y[i]});
+    dot.addProduct(a.x[i], a.y[i]);
+    dot.addProduct(1.1F, 0.3F);
+    dot.addProduct(a.y[i], 1e-7F);
+    first.addProduct(a.x[i], a.y[i]);
+    second.addProduct(-3.3F, a.y[i]);
+    difference.addProduct(a.x[i], a.y[i]);
+    difference.addProduct(-1.7F, 2.3F);
+  }
+  run_tests::onEveryLayout([&](sk::Device& device) {
+    CHECK(bits(dots::dotVectors.with(exact)(streamOf(device, x), streamOf(device, y))) ==
+          bits(dot.rounded()));
+    const sk::float2 both = dots::componentwise.with(exact)(streamOf(device, v), streamOf(device, a.y));
+    CHECK(bits(both.x) == bits(first.rounded()));
+    CHECK(bits(both.y) == bits(second.rounded()));
+    CHECK(bits(dots::crossed.with(exact)(streamOf(device, m))) == bits(difference.rounded()));
+  });
+}
+
+TEST_CASE("products of infinities, zeros and NaN") {  // R5, R6
+  onEveryProfile([](sk::Device& device) {
+    CHECK(exactDot(device, {inf, 1}, {2, 3}) == inf);
+    CHECK(exactDot(device, {inf, 1}, {-2, 3}) == -inf);
+    CHECK(bits(exactDot(device, {inf, 1}, {0, 3})) == 0x7fc00000U);
+    CHECK(bits(exactDot(device, {inf, inf}, {1, -1})) == 0x7fc00000U);
+    CHECK(bits(exactDot(device, {std::numeric_limits<float>::quiet_NaN()}, {0})) == 0x7fc00000U);
+    CHECK(bits(exactDot(device, {-1}, {0})) == 0);  // folds from 0, as the plain form does
+    CHECK(bits(exactDot(device, {}, {})) == 0);
+  });
+}
+
+}  // namespace
+}  // namespace numerics

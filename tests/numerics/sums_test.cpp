@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: Accumulate::Exact gives the sum rounded once, the same bits in every order, shape and on every profile;
+// Accumulate::Compensated is within u + 400 u^2 cond of the sum, which is u + (log2 n)^2 u^2 cond for n up to 2^20
+// (Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26, 2005, for Sum2 over a tree).
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "sk/sk.hpp"
+#include "sums.sk.hpp"
+#include "support/devices.hpp"
+#include "support/oracle.hpp"
+
+namespace numerics {
+namespace {
+
+using run_tests::onEveryProfile;
+
+constexpr double u = 0x1p-24;
+constexpr float inf = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float denormal = std::numeric_limits<float>::denorm_min();
+constexpr sk::CallOptions exact{.accumulate = sk::Accumulate::Exact};
+constexpr sk::CallOptions compensated{.accumulate = sk::Accumulate::Compensated};
+constexpr sk::CallOptions tree{.accumulate = sk::Accumulate::Tree};
+
+std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
+
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values, const sk::Shape& shape) {
+  auto stream = device.stream<T>(shape);
+  stream.write(values);
+  return stream;
+}
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
+  return streamOf(device, values, sk::Shape(static_cast<std::int64_t>(values.size())));
+}
+
+float exactSum(sk::Device& device, const std::vector<float>& x) {
+  return sums::sum.with(exact)(streamOf(device, x));
+}
+
+float trueSum(const std::vector<float>& x) {
+  TrueSum sum;
+  for (const float v : x) sum.add(v);
+  return sum.rounded();
+}
+
+TEST_CASE("ill-conditioned sums: exact to the bit, compensated within its bound") {  // R1
+  for (const double wanted : {1e6, 1e10, 1e14, 1e20, 1e24}) {
+    const std::vector<float> x = illConditionedSum(4001, wanted, 7);
+    TrueSum sum;
+    for (const float v : x) sum.add(v);
+    INFO("condition " << sum.condition());
+    CHECK(sum.condition() > wanted / 100);
+    onEveryProfile([&](sk::Device& device) {
+      CHECK(bits(exactSum(device, x)) == bits(sum.rounded()));
+      const float second = sums::sum.with(compensated)(streamOf(device, x));
+      CHECK(sum.errorOf(second) <= (u + 400 * u * u * sum.condition()) * std::fabs(sum.value()));
+    });
+  }
+}
+
+TEST_CASE("any floats at all, of every exponent") {
+  for (const std::size_t n : {1U, 2U, 3U, 31U, 32U, 33U, 1021U, 4093U, 65537U}) {
+    const std::vector<float> x = anyFloats(n, static_cast<unsigned>(n));
+    onEveryProfile([&](sk::Device& device) {
+      INFO(n << " elements");
+      CHECK(bits(exactSum(device, x)) == bits(trueSum(x)));
+    });
+  }
+}
+
+TEST_CASE("small sums, where the denormals are, and ties") {  // R8
+  const std::vector<std::vector<float>> all = {{denormal},
+                                               {denormal, denormal},
+                                               {-denormal, denormal, -denormal},
+                                               {0x1p-126F, -denormal},
+                                               {0x1p-126F, denormal},
+                                               {0x1.fffffep-127F, denormal},
+                                               {0x1p24F, 1},
+                                               {0x1p24F, 1, denormal},
+                                               {0x1p24F, 3},
+                                               {0x1p24F, 1, -denormal},
+                                               {0x1.fffffep24F, 1},
+                                               {-0x1p24F, -1},
+                                               {-0x1p24F, -1, -denormal},
+                                               {-0x1p24F, -3},
+                                               {0x1p127F, 0x1p127F, -denormal},
+                                               {0x1.fffffep127F, 0x1p102F},
+                                               {0x1.fffffep127F, 0x1.fffffep102F},
+                                               {0x1.fffffep127F, 0x1p103F},
+                                               {-0x1.fffffep127F, -0x1p103F},
+                                               {0x1p127F, 0x1p127F, -0x1p104F}};
+  for (const std::vector<float>& x : all) {
+    onEveryProfile([&](sk::Device& device) {
+      INFO(x[0] << " and " << x.size() - 1 << " more");
+      CHECK(bits(exactSum(device, x)) == bits(trueSum(x)));
+    });
+  }
+  std::vector<float> many;
+  for (const float v : anyFloats(5000, 3)) many.push_back(std::bit_cast<float>(bits(v) & 0x807fffffU));
+  onEveryProfile([&](sk::Device& device) { CHECK(bits(exactSum(device, many)) == bits(trueSum(many))); });
+}
+
+TEST_CASE("order and shape change no bit") {  // R12, R13
+  std::vector<float> x = illConditionedSum(5040, 1e20, 5);
+  const std::uint32_t expected = bits(trueSum(x));
+  std::mt19937 random(1);
+  for (int round = 0; round < 4; ++round) {
+    std::shuffle(x.begin(), x.end(), random);
+    onEveryProfile([&](sk::Device& device) {
+      for (const sk::Shape& shape : {sk::Shape(5040), sk::Shape(1, 5040), sk::Shape(5040, 1),
+                                     sk::Shape(72, 70), sk::Shape(9, 8, 70), sk::Shape(2, 3, 7, 120)}) {
+        CHECK(bits(sums::sum.with(exact)(streamOf(device, x, shape))) == expected);
+      }
+    });
+  }
+  run_tests::onEveryLayout([&](sk::Device& device) { CHECK(bits(exactSum(device, x)) == expected); });
+}
+
+TEST_CASE("Kahan's killers, and what cancels in another order") {  // R2, R4
+  std::vector<float> x = {1e8F, 1, -1e8F};
+  std::sort(x.begin(), x.end());
+  onEveryProfile([&](sk::Device& device) {
+    do {
+      CHECK(exactSum(device, x) == 1.0F);
+      CHECK(sums::sum.with(compensated)(streamOf(device, x)) == 1.0F);
+    } while (std::next_permutation(x.begin(), x.end()));
+    const std::vector<float> killer = {1, 0x1p60F, 1, -0x1p60F};
+    CHECK(exactSum(device, killer) == 2.0F);
+    CHECK(sums::sum.with(compensated)(streamOf(device, killer)) == 2.0F);  // Neumaier's variant does it, too
+    CHECK(exactSum(device, {1, 0x1p120F, 0x1p-100F, -0x1p120F, -1}) == 0x1p-100F);
+  });
+}
+
+TEST_CASE("2^24 + 1 ones and tenths") {  // R3, and R11 for a long stream
+  const std::size_t n = (1U << 24U) + 1;
+  const auto tenths = static_cast<float>(static_cast<double>(0.1F) * static_cast<double>(n));
+  sk::Device& device = run_tests::device("glsl330");
+  auto x = streamOf(device, std::vector<float>(n, 1.0F));
+  CHECK(sums::sum.with(exact)(x) == 0x1p24F);  // a tie, to even
+  x.write(std::vector<float>(n, 0.1F));
+  CHECK(sums::sum.with(exact)(x) == tenths);
+  CHECK(sums::sum.with(compensated)(x) == tenths);
+}
+
+TEST_CASE("infinities and NaN, as IEEE 754 adds them") {  // R5, R6
+  onEveryProfile([](sk::Device& device) {
+    CHECK(exactSum(device, {1, inf, -3e38F}) == inf);
+    CHECK(exactSum(device, {1, -inf, 3e38F, -inf}) == -inf);
+    CHECK(bits(exactSum(device, {inf, 1, -inf})) == 0x7fc00000U);
+    CHECK(bits(exactSum(device, {1, nan, 2})) == 0x7fc00000U);
+    CHECK(bits(exactSum(device, {inf, nan})) == 0x7fc00000U);
+    CHECK(sums::sum.with(compensated)(streamOf<float>(device, {1, inf, 2})) == inf);
+    CHECK(std::isnan(sums::sum.with(compensated)(streamOf<float>(device, {inf, -inf}))));
+  });
+}
+
+TEST_CASE("partial sums overflow, and the sum does not") {  // R7
+  onEveryProfile([](sk::Device& device) {
+    CHECK(exactSum(device, {3e38F, 3e38F, -3e38F, -3e38F}) == 0.0F);
+    std::vector<float> x(4096, 3.4e38F);
+    std::fill(x.begin() + 2048, x.end(), -3.4e38F);
+    x.push_back(1.5F);
+    CHECK(exactSum(device, x) == 1.5F);
+    CHECK(exactSum(device, {3e38F, 3e38F}) == inf);
+    CHECK(exactSum(device, {-3e38F, -3e38F}) == -inf);
+  });
+}
+
+TEST_CASE("zeros, and no element") {  // R10, R11
+  onEveryProfile([](sk::Device& device) {
+    CHECK(bits(exactSum(device, {-0.0F, -0.0F})) == bits(-0.0F));
+    CHECK(bits(exactSum(device, {-0.0F, 0.0F})) == 0);
+    CHECK(bits(exactSum(device, {1.0F, -1.0F})) == 0);
+    CHECK(bits(exactSum(device, {})) == 0);
+    CHECK(sums::sumFrom.with(exact)(streamOf<float>(device, {})) == 0.5F);
+  });
+}
+
+TEST_CASE("an identity is a summand, once") {
+  onEveryProfile([](sk::Device& device) {
+    CHECK(sums::sumFrom.with(exact)(streamOf<float>(device, {0x1p30F, 1, -0x1p30F})) == 1.5F);
+    CHECK(sums::sumFrom.with(exact)(streamOf(device, std::vector<float>(1000, 0.25F))) == 250.5F);
+  });
+}
+
+TEST_CASE("vectors, a sum for each component") {
+  const std::vector<float> a = illConditionedSum(999, 1e18, 11);
+  std::vector<sk::float3> v;
+  std::vector<float> scaled;
+  for (const float x : a) {
+    v.push_back({x, -4 * x, 1});
+    scaled.push_back(-4 * x);
+  }
+  run_tests::onEveryLayout([&](sk::Device& device) {
+    const sk::float3 total = sums::sumVectors.with(exact)(streamOf(device, v));
+    CHECK(bits(total.x) == bits(trueSum(a)));
+    CHECK(bits(total.y) == bits(trueSum(scaled)));
+    CHECK(total.z == 999.0F);
+  });
+}
+
+TEST_CASE("sums beside other accumulators, with a uniform and an early return") {
+  std::vector<float> x = illConditionedSum(999, 1e12, 12);
+  TrueSum sum;
+  std::int32_t n = 0;
+  for (const float v : x) {
+    if (v != 0) sum.addProduct(3, v - 1), ++n;  // v - 1 is rounded, its product is not
+  }
+  onEveryProfile([&](sk::Device& device) {
+    const auto [total, most, count] = sums::sumBeside.with(exact)(streamOf(device, x), 3.0F);
+    CHECK(bits(total) == bits(sum.rounded()));
+    CHECK(most == *std::max_element(x.begin(), x.end()));
+    CHECK(count == n);
+  });
+}
+
+TEST_CASE("several summands an element, in a loop, from a gather") {
+  const std::vector<float> x = illConditionedSum(2003, 1e12, 13);
+  const std::vector<float> weights = {1.1F, -0x1p40F, 0x1p-90F};
+  TrueSum sum;
+  for (const float v : x) {
+    for (const float w : weights) sum.addProduct(v, w);
+  }
+  onEveryProfile([&](sk::Device& device) {
+    const auto w = streamOf(device, weights);
+    CHECK(bits(sums::sumGathered.with(exact)(streamOf(device, x), w)) == bits(sum.rounded()));
+  });
+}
+
+TEST_CASE("members of a struct, and components in another order") {
+  const std::vector<float> x = illConditionedSum(2003, 1e12, 14);
+  TrueSum squares;
+  for (const float v : x) squares.addProduct(v, v);
+  run_tests::onEveryLayout([&](sk::Device& device) {
+    const sums::Moments m = sums::moments.with(exact)(streamOf(device, x));
+    CHECK(m.n == 2003.0F);
+    CHECK(bits(m.sum.x) == bits(trueSum(x)));
+    CHECK(bits(m.sum.y) == bits(squares.rounded()));
+    CHECK(m.most == *std::max_element(x.begin(), x.end()));
+  });
+}
+
+TEST_CASE("sums of rows, into a view of a larger stream") {
+  constexpr std::int64_t rows = 3;
+  constexpr std::size_t columns = 1201;
+  std::vector<float> x;
+  std::vector<float> expected;
+  for (unsigned r = 0; r < rows; ++r) {
+    const std::vector<float> row = illConditionedSum(columns, 1e20, 20 + r);
+    expected.push_back(trueSum(row));
+    x.insert(x.end(), row.begin(), row.end());
+  }
+  run_tests::onEveryLayout([&](sk::Device& device) {
+    const auto a = streamOf(device, x, sk::Shape(rows, columns));
+    auto r = streamOf(device, std::vector<float>(2 * (rows + 2), 7.0F), sk::Shape(rows + 2, 2));
+    sums::sum.with(exact)(a, r.domain({1, 1}, {rows + 1, 2}));
+    const std::vector<float> result = r.read();
+    for (std::size_t i = 0; i < rows; ++i) {
+      CHECK(bits(result[2 * (i + 1) + 1]) == bits(expected[i]));
+      CHECK(result[2 * i] == 7.0F);
+    }
+  });
+}
+
+TEST_CASE("what sums no floats is refused") {
+  sk::Device& device = run_tests::device("glsl330");
+  CHECK_THROWS_WITH(sums::largest.with(exact)(streamOf<float>(device, {1, 2})),
+                    Catch::Contains("largest") && Catch::Contains("no sum of floats"));
+}
+
+TEST_CASE("the reference of doubles takes what is closest") {
+  sk::Device device = sk::Device::reference();
+  CHECK(exactSum(device, {1e8F, 1, -1e8F}) == 1.0F);
+  CHECK(sums::sum.with(tree)(streamOf<float>(device, {1, 2})) == 3.0F);
+}
+
+}  // namespace
+}  // namespace numerics
