@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: each scalar that is a sum of floats gets an exact form that is valid IR, of twice as many digits where it
+// sums products; what is no such sum does not. (What they compute: tests/numerics.)
+#include "transforms/sum_exactly.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "ir/kernel_maker.hpp"
+#include "ir/validate.hpp"
+#include "support/diagnostic_log.hpp"
+#include "transforms/compensate_sums.hpp"
+#include "transforms/derive_combine.hpp"
+#include "transforms/specialize_gathers.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+const std::vector<ExactSum>& transform(Module& module) {
+  DiagnosticLog log;
+  specializeGathers(module, log);
+  deriveCombine(module, log);
+  REQUIRE_FALSE(log.hasErrors());
+  compensateSums(module, log);
+  sumExactly(module, log);
+  CHECK(validate(module, Stage::Specialized) == "");
+  return module.kernels[0].reduction->exact;
+}
+
+/// reduce void r(reduce T total<>, T x<>, float weights[]) { total op= value; }, the value made of an element.
+template <class Value>
+Module reduceModule(Type type, BinaryOp op, Value&& value) {
+  Module module = testModule();
+  KernelMaker maker(module, "r");
+  const VarId total = maker.accumulator("total", type);
+  const VarId x = maker.input("x", type);
+  const VarId weights = maker.gather("weights", floatType, 1);
+  ExprPtr weight = gatherRead(floatType, KernelMaker::stream(weights), literal(0));
+  maker.finish(block(assign(maker.ref(total), op, value(maker.ref(x), std::move(weight)))));
+  return module;
+}
+
+ExprPtr element(ExprPtr x, ExprPtr) { return x; }
+ExprPtr weighted(ExprPtr x, ExprPtr weight) { return binary(BinaryOp::Mul, std::move(x), std::move(weight)); }
+
+std::size_t accumulators(const Module& module, const ExactSum& sum) {
+  std::size_t count = 0;
+  for (const KernelParam& param : module.kernels[sum.fold].params) {
+    count += param.role == ParamRole::Accumulator ? 1 : 0;
+  }
+  return count;
+}
+
+TEST_CASE("a sum of floats has three groups of digits and flags, of products six") {
+  Module plain = reduceModule(floatType, BinaryOp::Add, element);
+  const std::vector<ExactSum>& sums = transform(plain);
+  REQUIRE(sums.size() == 1);
+  CHECK(accumulators(plain, sums[0]) == 4);
+  CHECK(sums[0].accumulator == 0);
+  Module products = reduceModule(floatType, BinaryOp::Add, weighted);
+  CHECK(accumulators(products, transform(products).at(0)) == 7);
+}
+
+TEST_CASE("a vector has a form for each component, and one combination") {
+  Module module = reduceModule(Type::of(Scalar::Float, 3), BinaryOp::Add, weighted);
+  const std::vector<ExactSum>& sums = transform(module);
+  REQUIRE(sums.size() == 3);
+  CHECK(module.kernels[sums[0].fold].reduction->combine == module.kernels[sums[2].fold].reduction->combine);
+}
+
+TEST_CASE("products, integers and doubles have no exact form") {
+  Module product = reduceModule(floatType, BinaryOp::Mul, element);
+  Module integers = reduceModule(intType, BinaryOp::Add, element);
+  Module doubles = reduceModule(Type::of(Scalar::Double), BinaryOp::Add, element);
+  for (Module* module : {&product, &integers, &doubles}) CHECK(transform(*module).empty());
+}
+
+}  // namespace
+}  // namespace skc
