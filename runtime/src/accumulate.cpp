@@ -88,6 +88,41 @@ bool isExact(const CheckedReduction& checked, const CallOptions& options) {
          checked.domain.size() != 0;
 }
 
+/// Whether a result stream holds halves or doubles for floats.
+bool isHeldOtherwise(const Reduction& reduction, std::span<const Argument> arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (reduction.fold.parameters[i].role == Role::Accumulator &&
+        arguments[i].region.stream->storage != Storage::Single) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Reduces to streams of floats, and copies these.
+void reduceByFloats(const CheckedReduction& checked, const Reduction& reduction,
+                    std::span<const Argument> arguments, const CallOptions& options) {
+  std::vector<Argument> all(arguments.begin(), arguments.end());
+  std::vector<detail::StreamOwner> floats;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Parameter& parameter = reduction.fold.parameters[i];
+    if (parameter.role != Role::Accumulator) continue;
+    floats.emplace_back(
+        checked.device.createStream(*parameter.element, arguments[i].region.shape, Storage::Single)
+            .release());
+    all[i].region = detail::wholeRegion(floats.back().get());
+  }
+  reduce(reduction, all, options);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Parameter& parameter = reduction.fold.parameters[i];
+    if (parameter.role != Role::Accumulator) continue;
+    std::vector<std::byte> elements(static_cast<std::size_t>(all[i].region.shape.size()) *
+                                    parameter.element->size);
+    all[i].region.stream->read(all[i].region, elements.data());
+    arguments[i].region.stream->write(arguments[i].region, elements.data());
+  }
+}
+
 }  // namespace
 
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
@@ -125,6 +160,10 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
   if (checked.blocks.size() == 0) {
     return;
   }
+  if (isHeldOtherwise(reduction, arguments)) {
+    reduceByFloats(checked, reduction, arguments, options);
+    return;
+  }
   if (takesForm(options)) {
     reduceInForm(checked, reduction, arguments, options);
     return;
@@ -145,7 +184,7 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
   for (const std::uint8_t sum : second->sums) {
     const Shape& shape = arguments[sum].region.shape;
     const program::Element& element = *reduction.fold.parameters[sum].element;
-    lost.emplace_back(checked.device.createStream(element, shape).release());
+    lost.emplace_back(checked.device.createStream(element, shape, Storage::Single).release());
     all.push_back({.region = detail::wholeRegion(lost.back().get())});
     pairs.push_back({.region = arguments[sum].region});
     pairs.push_back(all.back());

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "assemble/assemble.hpp"
+#include "assemble/storage.hpp"
 #include "gl_device.hpp"
 #include "native/native_device.hpp"
 #include "probe.hpp"
@@ -134,8 +135,14 @@ DeviceState& Device::state() const {
   return *state_;
 }
 
-detail::StreamOwner Device::createStream(const program::Element& element, const Shape& shape) {
-  return detail::StreamOwner(state().createStream(element, shape).release());
+detail::StreamOwner Device::createStream(const program::Element& element, const Shape& shape,
+                                         Storage storage) {
+  if (storage != Storage::Single && !assemble::holdsFloats(element)) {
+    throw Error(fmt::format(
+        "a stream of {} has no float or vector of floats to hold otherwise; make it without a Storage",
+        element.name));
+  }
+  return detail::StreamOwner(state().createStream(element, shape, storage).release());
 }
 
 const std::string& Device::name() const { return state().name(); }

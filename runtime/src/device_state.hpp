@@ -40,8 +40,9 @@ class DeviceState {
   virtual void checkProgram(const program::Kernel& kernel) = 0;
   virtual void checkProgram(const program::Reduction& reduction) = 0;
 
-  /// Throws sk::Error where there is no room.
-  virtual std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) = 0;
+  /// Throws sk::Error where there is no room. A storage other than Single is for elements with floats.
+  virtual std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
+                                                    Storage storage) = 0;
   virtual void finish() = 0;
   virtual void release() = 0;
 

@@ -8,10 +8,12 @@
 
 #include <fmt/format.h>
 
+#include "assemble/sinks.hpp"
 #include "check_argument.hpp"
 #include "gl/commands.hpp"
 #include "gl/errors.hpp"
 #include "gl_stream.hpp"
+#include "plan_run.hpp"
 #include "precision.hpp"
 #include "probe.hpp"
 #include "sk/error.hpp"
@@ -113,9 +115,10 @@ void GlDevice::forgetObjects() noexcept {
   vertexArray.forget();
 }
 
-std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& element, const Shape& shape) {
+std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& element, const Shape& shape,
+                                                    Storage storage) {
   const DeviceScope scope(*this);
-  return std::make_unique<GlStream>(*this, element, shape);
+  return std::make_unique<GlStream>(*this, element, shape, storage);
 }
 
 void GlDevice::choose(const CallOptions& options) {
@@ -175,6 +178,46 @@ void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& op
   }
   if (options.precision == Precision::Double && profile.doubles != assemble::Doubles::Native) {
     fail(kernel, "'{}' has no doubles of its own; call it in Precision::Extended", name());
+  }
+}
+
+// Lists of sinks, and bundles of planes, are made of what the kernel declares; a vector of doubles has more planes than
+// one of floats.
+void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments) const {
+  const bool isPlanned = planFor(kernel, limits) != nullptr;
+  std::size_t written = 0;
+  std::size_t read = 0;
+  bool isOther = false;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const program::Parameter& parameter = kernel.parameters[i];
+    if (arguments[i].region.stream == nullptr) continue;
+    const GlStream& stream = glStream(arguments[i].region);
+    const std::size_t planes = stream.held().fields.size();
+    if (parameter.role == program::Role::Output) written += planes;
+    if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather) read += planes;
+    if (stream.storage == Storage::Single) continue;
+    isOther = true;
+    if (assemble::isSink(parameter)) {
+      fail(kernel,
+           "'{}' is a variable or scatter output, whose stream holds floats; make it with Storage::Single",
+           parameter.name);
+    }
+    if (isPlanned) {
+      fail(kernel,
+           "it takes several passes on this device, for which the stream of '{}' has to hold floats; make it "
+           "with "
+           "Storage::Single",
+           parameter.name);
+    }
+  }
+  if (!isOther) return;
+  if (written > static_cast<std::size_t>(limits.drawBuffers) ||
+      read > static_cast<std::size_t>(limits.textureUnits)) {
+    fail(kernel,
+         "its streams hold {} planes to write and {} to read, but this device has room for {} and {}; make "
+         "those of "
+         "vectors with Storage::Single",
+         written, read, limits.drawBuffers, limits.textureUnits);
   }
 }
 

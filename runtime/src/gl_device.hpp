@@ -56,7 +56,8 @@ class GlDevice final : public DeviceState {
   bool takesForms() const override { return true; }
   void checkProgram(const program::Kernel& kernel) override;
   void checkProgram(const program::Reduction& reduction) override;
-  std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;
+  std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
+                                            Storage storage) override;
   void finish() override;
   void release() override { context.release(); }
   void run(const program::Kernel& kernel, std::span<const Argument> arguments,
@@ -79,6 +80,8 @@ class GlDevice final : public DeviceState {
   /// run() without that check: what the check itself runs.
   void runUnchecked(const program::Kernel& kernel, std::span<const Argument> arguments,
                     const CallOptions& options);
+  /// Throws sk::Error where a kernel cannot use a stream that holds its floats as something else.
+  void checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments) const;
   /// From here on, the programs are those for a call with these options.
   void choose(const CallOptions& options);
   ProgramCache& programs() { return *programs_; }

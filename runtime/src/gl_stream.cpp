@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gl_stream.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "convert_elements.hpp"
 #include "gl_device.hpp"
 #include "sink_list.hpp"
 #include "sk/error.hpp"
@@ -13,10 +13,13 @@
 
 namespace sk {
 
-GlStream::GlStream(GlDevice& on, const program::Element& type, const Shape& extents)
-    : StreamState(on, type, extents), layout(layoutOf(extents, on.textureLimits())) {
+GlStream::GlStream(GlDevice& on, const program::Element& type, const Shape& extents, Storage as)
+    : StreamState(on, type, extents, as), layout(layoutOf(extents, on.textureLimits())) {
+  if (storage != Storage::Single) {
+    held_ = std::make_unique<assemble::HeldElement>(type, storage);
+  }
   if (layout.texture.width > 0) {
-    planes = on.takePlanes(type, layout.texture,
+    planes = on.takePlanes(held(), layout.texture,
                            fmt::format("a stream of {} of shape {}", type.name, toString(extents)));
   }
 }
@@ -66,19 +69,42 @@ void GlStream::takeSize(std::int32_t count) {
 
 void GlStream::write(const StreamRegion& region, const std::byte* elements) {
   const DeviceScope scope(owner());
-  upload(owner(), *element, planes, placementOf(region, layout), elements);
+  if (!held_) {
+    upload(owner(), *element, planes, placementOf(region, layout), elements);
+    return;
+  }
+  const auto count = static_cast<std::size_t>(region.shape.size());
+  std::vector<std::byte> converted(count * held().size);
+  convertElements(*element, elements, held(), converted.data(), count);
+  upload(owner(), held(), planes, placementOf(region, layout), converted.data());
 }
 
 void GlStream::read(const StreamRegion& region, std::byte* elements) {
   const DeviceScope scope(owner());
-  download(owner(), *element, planes, placementOf(region, layout), elements);
+  if (!held_) {
+    download(owner(), *element, planes, placementOf(region, layout), elements);
+    return;
+  }
+  const auto count = static_cast<std::size_t>(region.shape.size());
+  std::vector<std::byte> converted(count * held().size);
+  download(owner(), held(), planes, placementOf(region, layout), converted.data());
+  convertElements(held(), converted.data(), *element, elements, count);
 }
 
-/// Elements of floats alone have no gaps between them.
 void GlStream::readReals(const StreamRegion& region, double* values) {
-  std::vector<float> floats(static_cast<std::size_t>(region.shape.size()) * element->size / sizeof(float));
-  read(region, reinterpret_cast<std::byte*>(floats.data()));
-  std::copy(floats.begin(), floats.end(), values);
+  const DeviceScope scope(owner());
+  const auto count = static_cast<std::size_t>(region.shape.size());
+  std::vector<std::byte> converted(count * held().size);
+  download(owner(), held(), planes, placementOf(region, layout), converted.data());
+  readComponents(held(), converted.data(), count, values);
+}
+
+void GlStream::writeReals(const StreamRegion& region, const double* values) {
+  const DeviceScope scope(owner());
+  const auto count = static_cast<std::size_t>(region.shape.size());
+  std::vector<std::byte> converted(count * held().size);
+  writeComponents(held(), converted.data(), count, values);
+  upload(owner(), held(), planes, placementOf(region, layout), converted.data());
 }
 
 StreamTexture GlStream::texture(int plane) {

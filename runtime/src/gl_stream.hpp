@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "assemble/storage.hpp"
 #include "layout.hpp"
 #include "stream_state.hpp"
 #include "surface.hpp"
@@ -17,17 +19,21 @@ class GlDevice;
 class GlStream final : public StreamState {
  public:
   /// A scope of the device must be open. Throws sk::Error where there is no room.
-  GlStream(GlDevice& device, const program::Element& element, const Shape& shape);
+  GlStream(GlDevice& device, const program::Element& element, const Shape& shape, Storage storage);
   ~GlStream() override;
 
   void settle() override;
   void write(const StreamRegion& region, const std::byte* elements) override;
   void read(const StreamRegion& region, std::byte* elements) override;
   void readReals(const StreamRegion& region, double* values) override;
+  void writeReals(const StreamRegion& region, const double* values) override;
   StreamTexture texture(int plane) override;
 
+  /// What the planes hold: the element, or another for it.
+  const program::Element& held() const { return held_ ? held_->element : *element; }
+
   Layout layout;                       ///< holds once the stream is settled
-  std::vector<Surface> planes;         ///< one a field of the element; none where the stream is empty
+  std::vector<Surface> planes;         ///< one a field of what is held; none where the stream is empty
 
   /// Takes what a kernel has pushed for its elements, and gives its planes for it. `total`: where their number
   /// is not known, CountTree::totalTexture(); `list` has then room for all that may be.
@@ -38,6 +44,7 @@ class GlStream final : public StreamState {
   GlDevice& owner() const;
   void takeSize(std::int32_t count);
 
+  std::unique_ptr<assemble::HeldElement> held_;  ///< where the storage is not Single
   Surface total_;  ///< holds the number of elements until somebody asks
 };
 

@@ -60,7 +60,7 @@ void OutputTargets::addAside(std::size_t output, Way way) {
   aside_.resize(arguments_.size());
   aside_[output] = std::make_unique<PlanesLease>(device_);
   aside_[output]->planes =
-      device_.takePlanes(*stream.element, layout.texture, "an output that the kernel reads too");
+      device_.takePlanes(stream.held(), layout.texture, "an output that the kernel reads too");
   for (Surface& plane : aside_[output]->planes) {
     add(plane);
   }
@@ -86,7 +86,7 @@ void OutputTargets::putInPlace() {
     if (wayOf(i) == Way::Swap) {
       std::swap(stream.planes, aside_[i]->planes);
     } else {
-      copyRegion(device_, *stream.element, aside_[i]->planes, domain_, stream.planes, operands_[i].placement);
+      copyRegion(device_, stream.held(), aside_[i]->planes, domain_, stream.planes, operands_[i].placement);
     }
   }
 }

@@ -2,24 +2,21 @@
 #include "precision.hpp"
 
 #include <cstddef>
-#include <cstring>
 #include <deque>
 #include <vector>
 
 #include "check_argument.hpp"
+#include "convert_elements.hpp"
 #include "device_state.hpp"
-#include "sk/scalar_bytes.hpp"
 
 namespace sk {
 
 namespace {
 
-using program::Element;
 using program::Kernel;
 using program::Parameter;
 using program::Reduction;
 using program::Role;
-using program::Scalar;
 using program::WideReduction;
 
 [[noreturn]] void failWithoutForm(const Kernel& kernel, std::string_view form, std::string_view why) {
@@ -50,39 +47,6 @@ void checkPlanes(const Reduction& plain, const Reduction& wide, const DeviceLimi
          "its accumulators take {} textures as doubles, but the device has units for {}; call it in "
          "Precision::Single",
          planes, limits.textureUnits);
-  }
-}
-
-struct HostComponent {
-  std::size_t offset;
-  Scalar scalar;
-};
-
-std::vector<HostComponent> componentsOf(const Element& element) {
-  std::vector<HostComponent> components;
-  for (const program::Field& field : element.fields) {
-    for (std::size_t c = 0; c < field.width; ++c) {
-      components.push_back({field.offset + c * program::hostBytes(field.scalar), field.scalar});
-    }
-  }
-  return components;
-}
-
-/// An element of doubles as the one of floats that it stands for: they have the same components, in order.
-void narrow(const Element& wide, const std::byte* from, const Element& plain, std::byte* to) {
-  const std::vector<HostComponent> sources = componentsOf(wide);
-  const std::vector<HostComponent> targets = componentsOf(plain);
-  for (std::size_t c = 0; c < targets.size(); ++c) {
-    const std::byte* source = from + sources[c].offset;
-    std::byte* target = to + targets[c].offset;
-    if (sources[c].scalar == targets[c].scalar) {
-      std::memcpy(target, source, program::hostBytes(targets[c].scalar));
-    } else {
-      double value;
-      std::memcpy(&value, source, sizeof value);
-      const auto rounded = static_cast<float>(value);
-      std::memcpy(target, &rounded, sizeof rounded);
-    }
   }
 }
 
@@ -125,8 +89,8 @@ void reduceInForm(const CheckedReduction& checked, const Reduction& reduction,
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const Parameter& plain = reduction.fold.parameters[i];
     if (plain.role != Role::Accumulator) continue;
-    narrow(*wide->reduction.fold.parameters[i].element, values[next].data(), *plain.element,
-           static_cast<std::byte*>(results[next]));
+    convertElements(*wide->reduction.fold.parameters[i].element, values[next].data(), *plain.element,
+                    static_cast<std::byte*>(results[next]), 1);
     ++next;
   }
 }
@@ -148,7 +112,8 @@ void reduceInForm(const CheckedReduction& checked, const Reduction& reduction,
   for (std::size_t i = 0; i < folded.size(); ++i) {
     const Parameter& parameter = wide->reduction.fold.parameters[i];
     if (parameter.role != Role::Accumulator) continue;
-    doubles.emplace_back(device.createStream(*parameter.element, arguments[i].region.shape).release());
+    doubles.emplace_back(
+        device.createStream(*parameter.element, arguments[i].region.shape, Storage::Single).release());
     folded[i] = {.region = detail::wholeRegion(doubles.back().get())};
     finished.push_back(folded[i]);
   }

@@ -98,8 +98,8 @@ bool holds(GlDevice& device, Barrier barrier) {
   device.barrier = barrier;
   const std::vector<float2> given = trialPairs(pairCount);
   const Shape shape{32, static_cast<std::int64_t>(given.size()) / 32};
-  const auto x = device.createStream(ElementTraits<float2>::element(), shape);
-  const auto r = device.createStream(ElementTraits<float4>::element(), shape);
+  const auto x = device.createStream(ElementTraits<float2>::element(), shape, Storage::Single);
+  const auto r = device.createStream(ElementTraits<float4>::element(), shape, Storage::Single);
   const std::array<Argument, 2> arguments{
       {{.region = detail::wholeRegion(x.get())}, {.region = detail::wholeRegion(r.get())}}};
   std::vector<float4> found(given.size());

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/storage.hpp"
 #include "build_log.hpp"
 #include "gl_device.hpp"
 #include "sk/error.hpp"
@@ -68,7 +69,7 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
   made->program = build(kernel, assemble::fragmentProgram(profile_, kernel, variant));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
   made->domainRow = {made->program.location("sk_domain_row"), false};
-  findParameters(*made, kernel, variant.specs);
+  findParameters(*made, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
   for (KernelProgram::Read& read : made->reads) {
     const bool isFiltered = variant.access[read.parameter].filtered;
     read.sampler = isFiltered ? device_.samplers.name(kernel.parameters[read.parameter].boundary) : 0;
@@ -193,7 +194,7 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     made->kernel.program = build(kernel, assemble::reduceProgram(profile_, reduction, variant));
     made->kernel.domainRow = {made->kernel.program.location("sk_domain_row"), false};
     if (variant.walk != assemble::Walk::Nothing) {
-      findParameters(made->kernel, kernel, variant.specs);
+      findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
     }
     kept = std::move(made);
   }

@@ -219,6 +219,7 @@ class ReduceCall {
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
                       std::span<void* const> results, const CallOptions& options) {
   checkOptions(reduction.fold, options);
+  checkStorages(reduction.fold, arguments);
   const DeviceScope scope(*this);
   choose(options);
   const Placement placement = assemble::valuePlacement();
@@ -240,6 +241,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
                       const Shape& blocks, const CallOptions& options) {
   checkOptions(reduction.fold, options);
+  checkStorages(reduction.fold, arguments);
   const DeviceScope scope(*this);
   choose(options);
   ReduceCall call(*this, reduction, arguments, domain);

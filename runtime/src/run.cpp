@@ -122,6 +122,7 @@ void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> argu
   const DeviceScope scope(*this);
   choose(options);
   const Kernel& form = formOf(kernel, options);
+  checkStorages(form, arguments);
   if (!hasSinks(form)) {
     KernelCall(*this, form, arguments).run();
     return;

@@ -26,8 +26,8 @@ StreamState* checkTransfer(const StreamRegion& region, std::size_t count, const 
 
 }  // namespace
 
-StreamState::StreamState(DeviceState& owner, const program::Element& type, const Shape& extents)
-    : device(&owner), element(&type), shape(extents), next_(owner.firstStream_) {
+StreamState::StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as)
+    : device(&owner), element(&type), storage(as), shape(extents), next_(owner.firstStream_) {
   if (next_ != nullptr) {
     next_->previous_ = this;
   }
@@ -125,16 +125,38 @@ void detail::read(const StreamRegion& region, void* elements, std::size_t count)
   }
 }
 
-std::vector<double> detail::readReals(const StreamRegion& region) {
-  StreamState& stream = liveStream(region, "readReals");
+namespace {
+
+/// Floats in the elements of a region, which have nothing else.
+std::size_t realsIn(const StreamRegion& region, const program::Element& element, std::string_view what) {
   std::size_t components = 0;
-  for (const program::Field& field : stream.element->fields) {
+  for (const program::Field& field : element.fields) {
     if (field.scalar != program::Scalar::Float) {
-      throw Error(fmt::format("readReals: {} is not made of floats alone; use read()", stream.element->name));
+      throw Error(
+          fmt::format("{}: {} is not made of floats alone; use read() and write()", what, element.name));
     }
     components += field.width;
   }
-  std::vector<double> values(static_cast<std::size_t>(region.shape.size()) * components);
+  return static_cast<std::size_t>(region.shape.size()) * components;
+}
+
+}  // namespace
+
+void detail::writeReals(const StreamRegion& region, std::span<const double> values) {
+  StreamState& stream = liveStream(region, "writeReals");
+  const std::size_t components = realsIn(region, *stream.element, "writeReals");
+  if (values.size() != components) {
+    throw Error(fmt::format("writeReals: {} numbers are given for a stream of shape {} that has {}",
+                            values.size(), toString(region.shape), components));
+  }
+  if (!values.empty()) {
+    stream.writeReals(region, values.data());
+  }
+}
+
+std::vector<double> detail::readReals(const StreamRegion& region) {
+  StreamState& stream = liveStream(region, "readReals");
+  std::vector<double> values(realsIn(region, *stream.element, "readReals"));
   if (!values.empty()) {
     stream.readReals(region, values.data());
   }

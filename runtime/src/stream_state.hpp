@@ -29,6 +29,7 @@ class StreamState {
   virtual void read(const StreamRegion& region, std::byte* elements) = 0;
   /// `values` has room for every component of every element; all are floats.
   virtual void readReals(const StreamRegion& region, double* values) = 0;
+  virtual void writeReals(const StreamRegion& region, const double* values) = 0;
   /// Throws sk::Error where the device has no textures.
   virtual StreamTexture texture(int plane) = 0;
 
@@ -39,11 +40,12 @@ class StreamState {
 
   DeviceState* device;  ///< null once the device is gone
   const program::Element* const element;
+  const Storage storage;
   Shape shape;  ///< holds once the stream is settled
 
  protected:
   /// Puts the stream on its device's list.
-  StreamState(DeviceState& owner, const program::Element& type, const Shape& extents);
+  StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as);
 
  private:
   StreamState* previous_ = nullptr;

@@ -57,7 +57,7 @@ bool isFiltered(const Parameter& gather, const Placement& placement, bool filter
 
 StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, const Placement& domain,
                           const Task& task, bool filtersFloats) {
-  StreamAccess access;
+  StreamAccess access{.storage = operand.storage};
   const Placement& placement = operand.placement;
   const bool isAligned = task.work != Work::List && haveSameTexels(placement, domain);
   if (parameter.role == Role::Input && isAligned) {
@@ -67,7 +67,8 @@ StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, co
   access.fit = operand.fit;
   access.view = access.fit != Fit::Same || placement.origin != assemble::Index4{};
   access.nearby = parameter.role == Role::Gather && isNearby(parameter, placement, domain);
-  access.filtered = parameter.role == Role::Gather && isFiltered(parameter, placement, filtersFloats);
+  access.filtered = parameter.role == Role::Gather && operand.storage < Storage::Extended &&
+                    isFiltered(parameter, placement, filtersFloats);
   return access;
 }
 
@@ -152,6 +153,7 @@ Addressing addressingOf(const Placement& placement) {
 Operand regionOperand(const Argument& argument, const Shape& domain) {
   GlStream& stream = glStream(argument.region);
   Operand operand{.placement = placementOf(argument.region, stream.layout), .planes = stream.planes};
+  operand.storage = stream.storage;
   const assemble::Index4 whole = xFirst(domain);
   for (std::size_t d = 0; d < whole.size(); ++d) {
     switch (argument.fit) {
@@ -193,6 +195,8 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
       access = chooseIteration(parameter, operands[i], domain);
     } else if (hasAccess(kernel, i, task) && isNeeded(parameter, variant.specs)) {
       access = chooseAccess(parameter, operands[i], domain, task, filtersFloats);
+    } else if (parameter.role == Role::Output && isNeeded(parameter, variant.specs)) {
+      access.storage = operands[i].storage;
     }
     variant.access.push_back(access);
   }
@@ -210,7 +214,9 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
   bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{task.treeLayered} << 3, 4);
   bits.add(task.sink & 15u, 4);
   bits.add(task.sink >> 4, 4);
-  bits.add(assemble::decodedRank(domain), 4);
+  const bool hasStorages = std::ranges::any_of(
+      operands, [](const Operand& operand) { return operand.storage != Storage::Single; });
+  bits.add(static_cast<std::uint64_t>(assemble::decodedRank(domain)) | std::uint64_t{hasStorages} << 3, 4);
   bool hasIterator = false;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
@@ -223,6 +229,9 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
       // what is filtered lies in a plane and is no view; no gather is aligned
       const Addressing addressing = access.filtered ? Addressing::Aligned : access.addressing;
       bits.add(static_cast<std::uint64_t>(addressing) | choiceBits(access) << 2, 4);
+    }
+    if (hasStorages && parameter.role != Role::Uniform && parameter.role != Role::Spec) {
+      bits.add(static_cast<std::uint64_t>(operands[i].storage), 4);
     }
   }
   return key;

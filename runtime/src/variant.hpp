@@ -28,6 +28,7 @@ struct Operand {
   int rank = 0;                      ///< iterators: of the domain's shape
   program::Fit fit = program::Fit::Same;      ///< inputs
   assemble::Index4 ratio = {1, 1, 1, 1};        ///< fitted inputs: the stretch or stride
+  Storage storage = Storage::Single;
 };
 
 /// A program's identity: the address of its descriptor and the packed choices of its variant.

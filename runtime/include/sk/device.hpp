@@ -77,11 +77,11 @@ class Device {
   /// The same with doubles for floats, in streams and in kernels: what results are measured against.
   static Device reference();
 
-  /// A new stream; its elements are undefined. Throws sk::Error where the shape has no dimension, or
-  /// the device has no room.
+  /// A new stream; its elements are undefined. Throws sk::Error where the shape has no dimension, the device has no
+  /// room, or a storage other than Single is asked for elements without floats.
   template <ElementType T>
-  Stream<T> stream(const Shape& shape) {
-    return Stream<T>(createStream(ElementTraits<T>::element(), shape));
+  Stream<T> stream(const Shape& shape, Storage storage = Storage::Single) {
+    return Stream<T>(createStream(ElementTraits<T>::element(), shape, storage));
   }
 
   /// The renderer's name as the driver gives it.
@@ -106,7 +106,7 @@ class Device {
 
  private:
   explicit Device(std::unique_ptr<DeviceState> state);
-  detail::StreamOwner createStream(const program::Element& element, const Shape& shape);
+  detail::StreamOwner createStream(const program::Element& element, const Shape& shape, Storage storage);
   DeviceState& state() const;
 
   std::unique_ptr<DeviceState> state_;

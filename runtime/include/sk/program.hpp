@@ -38,6 +38,19 @@ struct Call;
 struct ReduceCall;
 }  // namespace sk::native
 
+namespace sk {
+
+/// What a stream holds the floats of its elements as. Kernels read and write floats all the same, rounded to nearest;
+/// those in extended or double precision get and give all bits of doubles.
+enum class Storage : std::uint8_t {
+  Single,  ///< floats
+  Half,  ///< halves: half the memory, 11 bits
+  Extended,  ///< doubles, of which pairs of floats use 48 bits
+  Double,  ///< doubles
+};
+
+}  // namespace sk
+
 namespace sk::program {
 
 /// Component type of a field, in host memory: Bool is a byte of 0 or 1, Half and the normalized ones

@@ -66,6 +66,7 @@ StreamRegion partOf(const StreamRegion& region, const Index& begin, const Index&
 void write(const StreamRegion& region, const void* elements, std::size_t count);
 void read(const StreamRegion& region, void* elements, std::size_t count);
 std::vector<double> readReals(const StreamRegion& region);
+void writeReals(const StreamRegion& region, std::span<const double> values);
 StreamTexture textureOf(StreamState* state, int plane);
 
 }  // namespace detail
@@ -122,6 +123,12 @@ class View {
   /// The components of the elements, which are floats, in the precision that the device holds them in: a
   /// reference device has doubles. One element after the other. Throws sk::Error where a component is no float.
   std::vector<double> readReals() const { return detail::readReals(region_); }
+  /// The other way: `components` are as many as readReals() gives, else sk::Error. What holds less rounds them to nearest.
+  void writeReals(std::span<const double> components) const
+    requires isWritable
+  {
+    detail::writeReals(region_, components);
+  }
 
   /// The box from `begin` (inclusive) to `end` (exclusive) of this one, rows first. Throws sk::Error
   /// where it is not inside.
@@ -172,6 +179,8 @@ class Stream {
   /// The components of the elements, which are floats, in the precision that the device holds them in: a
   /// reference device has doubles. One element after the other. Throws sk::Error where a component is no float.
   std::vector<double> readReals() const { return all().readReals(); }
+  /// The other way: `components` are as many as readReals() gives, else sk::Error. What holds less rounds them to nearest.
+  void writeReals(std::span<const double> components) { all().writeReals(components); }
 
   /// The box from `begin` (inclusive) to `end` (exclusive), rows first. Throws sk::Error where it is
   /// not inside the stream.

@@ -68,6 +68,7 @@ struct StreamAccess {
                          ///< a neighbour's index
   bool filtered = false; ///< gathers: sk_sample_p() is left to the sampler's linear filter (mayFilter())
   program::Fit fit = program::Fit::Same;  ///< inputs
+  Storage storage = Storage::Single;  ///< inputs, outputs and gathers: what the stream holds floats as
   auto operator<=>(const StreamAccess&) const = default;
 };
 

@@ -13,6 +13,7 @@
 #include "assemble/planes.hpp"
 #include "assemble/program_text.hpp"
 #include "assemble/sinks.hpp"
+#include "assemble/storage.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -42,6 +43,16 @@ std::string_view name(Addressing addressing) {
   return {};
 }
 
+std::string_view name(Storage storage) {
+  switch (storage) {
+    case Storage::Single: return "";
+    case Storage::Half: return " of halves";
+    case Storage::Extended:
+    case Storage::Double: return " of doubles";
+  }
+  return {};
+}
+
 std::string_view name(Fit fit) {
   switch (fit) {
     case Fit::Same: return "";
@@ -63,10 +74,15 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
       text += fmt::format("; no {}", parameter.name);
       continue;
     }
-    if (!isRead) continue;
     const StreamAccess& access = variant.access[i];
-    text += fmt::format("; {} {}{}{}{}", parameter.name, name(access.addressing), access.view ? " view" : "",
-                        access.nearby ? " nearby" : "", access.filtered ? " filtered" : name(access.fit));
+    if (!isRead) {
+      if (access.storage != Storage::Single)
+        text += fmt::format("; {}{}", parameter.name, name(access.storage));
+      continue;
+    }
+    text += fmt::format("; {} {}{}{}{}{}", parameter.name, name(access.addressing),
+                        access.view ? " view" : "", access.nearby ? " nearby" : "",
+                        access.filtered ? " filtered" : name(access.fit), name(access.storage));
   }
   return text;
 }
@@ -74,7 +90,8 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
 class KernelText {
  public:
   KernelText(const Kernel& kernel, const Variant& variant)
-      : kernel_(kernel),
+      : held_(kernel, variant.access),
+        kernel_(held_.kernel()),
         variant_(variant),
         domain_(program_, variant.domain, variant.domainView, variant.domainRank, variant.domainLayered) {}
 
@@ -184,6 +201,7 @@ class KernelText {
     }
   }
 
+  const HeldKernel held_;
   const Kernel& kernel_;
   const Variant& variant_;
   ProgramText program_;

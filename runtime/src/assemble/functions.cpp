@@ -97,6 +97,20 @@ int sk_mirror(int sk_p, int sk_n) {
   return sk_p < 0 ? -1 - sk_p : sk_p < sk_n ? sk_p : sk_n - 1 - (sk_p - sk_n);
 }
 )";
+    case Function::ToHalf:
+      return R"(
+// The half that is nearest to x, of two the even one; infinity from 65520 on.
+float sk_to_half(float sk_x) {
+  uint sk_b = floatBitsToUint(sk_x), sk_m = sk_b & 0x7fffffffu;
+  if (sk_m > 0x7f800000u) return sk_x;
+  uint sk_r = (sk_m + 0xfffu + ((sk_m >> 13) & 1u)) & 0xffffe000u;
+  if (sk_r > 0x477fe000u) sk_r = 0x7f800000u;
+  if (sk_m < 0x38800000u) {
+    sk_r = floatBitsToUint(roundEven(uintBitsToFloat(sk_m) * 16777216.0) * 5.9604645e-8);
+  }
+  return uintBitsToFloat((sk_b & 0x80000000u) | sk_r);
+}
+)";
   }
   return {};
 }

@@ -3,6 +3,7 @@
 // Spellings of planes.
 #include "assemble/planes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -146,9 +147,44 @@ std::string placeOfPlane(ProgramText& program, const Parameter& parameter, std::
                      layer.layer);
 }
 
-/// Whether the planes of a field hold floats of which the program makes doubles.
+/// The scalar that the program has where a field of what the stream holds is.
+Scalar valueScalar(const Parameter& parameter, const Field& field) {
+  if (parameter.held == nullptr) return field.scalar;
+  const auto same = std::ranges::find(parameter.element->fields, field.path, &Field::path);
+  return same->scalar;
+}
+
+bool isFloating(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Half; }
+
+/// Whether the planes of a field hold floats or halves of which the program makes doubles.
 bool isWidened(const Parameter& parameter, const Field& field) {
-  return parameter.held != nullptr && field.scalar == Scalar::Float;
+  return isFloating(field.scalar) && valueScalar(parameter, field) == Scalar::Double;
+}
+
+/// Whether they hold doubles of which it makes floats.
+bool isNarrowed(const Parameter& parameter, const Field& field) {
+  return field.scalar == Scalar::Double && valueScalar(parameter, field) == Scalar::Float;
+}
+
+/// The components of a vector of floats that a plane of doubles holds: the program keeps such vectors whole.
+std::string partOf(std::string_view variable, const Field& field) {
+  static constexpr std::array<std::array<std::string_view, 2>, 2> swizzles = {{{".x", ".xy"}, {".z", ".zw"}}};
+  std::string member = memberOf(variable, field);
+  if (field.part >= 0) member += swizzles[static_cast<std::size_t>(field.part)][field.width - 1u];
+  return member;
+}
+
+/// The nearest half, of two the even one: drivers round by rules of their own.
+std::string halved(ProgramText& program, const Field& field, const std::string& value) {
+  program.require(Function::ToHalf);
+  if (field.width == 1) return fmt::format("sk_to_half({})", value);
+  const std::string signature = fmt::format("vec{0} sk_to_half{0}(vec{0} sk_v)", field.width);
+  if (!program.isDefined(signature)) {
+    std::vector<std::string> parts;
+    for (int c = 0; c < field.width; ++c) parts.push_back(fmt::format("sk_to_half(sk_v.{})", "xyzw"[c]));
+    program.function(signature, {fmt::format("return vec{}({});", field.width, fmt::join(parts, ", "))});
+  }
+  return fmt::format("sk_to_half{}({})", field.width, value);
 }
 
 /// A float or a vector of them as doubles.
@@ -187,7 +223,8 @@ std::string fetchPlane(ProgramText& program, const Parameter& parameter, std::si
     return field.width == 1 ? value + " != 0u" : fmt::format("notEqual({}, uvec{}(0u))", value, field.width);
   }
   if (isWidened(parameter, field)) return widened(program, field, value);
-  return converted(spelling(field).load, std::move(value), valueType(field));
+  value = converted(spelling(field).load, std::move(value), valueType(field));
+  return isNarrowed(parameter, field) ? narrowed(program, field, value) : value;
 }
 
 /// `value`, of the field's type, as its output's type.
@@ -250,8 +287,13 @@ std::string fetch(ProgramText& program, const Parameter& parameter, const Texel&
   const std::string_view type = parameter.element->glsl;
   std::vector<std::string> statements = {fmt::format("{} sk_e;", type)};
   for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
-    assignField(statements, "sk_e", element.fields[plane],
-                fetchPlane(program, parameter, plane, {"sk_t", texel.shift}));
+    const Field& field = element.fields[plane];
+    const std::string value = fetchPlane(program, parameter, plane, {"sk_t", texel.shift});
+    if (isNarrowed(parameter, field)) {
+      statements.push_back(fmt::format("{} = {};", partOf("sk_e", field), value));
+    } else {
+      assignField(statements, "sk_e", field, value);
+    }
   }
   statements.emplace_back("return sk_e;");
   program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", type, parameter.symbol), statements);
@@ -284,8 +326,10 @@ void store(ProgramText& program, const Parameter& parameter, std::string_view va
     const Field& field = element.fields[plane];
     const std::string output = outputName(parameter, plane);
     if (output == variable) continue;
-    std::string value = valueOf(variable, field);
+    const bool isWhole = !isNarrowed(parameter, field);
+    std::string value = isWhole ? valueOf(variable, field) : widened(program, field, partOf(variable, field));
     if (isWidened(parameter, field)) value = narrowed(program, field, value);
+    if (field.scalar == Scalar::Half && parameter.held != nullptr) value = halved(program, field, value);
     program.statement(fmt::format("{} = {};", output, toOutput(field, std::move(value))));
   }
 }

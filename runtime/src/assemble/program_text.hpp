@@ -25,6 +25,7 @@ enum class Function : std::uint8_t {
   WrapOnce,    ///< wrapped index that is less than an extent away
   Mirror,
   MirrorOnce,
+  ToHalf,      ///< the nearest half of a float, as a float
 };
 std::string_view text(Function function);
 

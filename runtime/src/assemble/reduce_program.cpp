@@ -15,6 +15,7 @@
 #include "assemble/gather.hpp"
 #include "assemble/planes.hpp"
 #include "assemble/program_text.hpp"
+#include "assemble/storage.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -61,7 +62,8 @@ class ReductionText {
   ReductionText(const Reduction& reduction, const ReduceVariant& variant)
       : reduction_(reduction),
         variant_(variant),
-        kernel_(kernelOf(reduction, variant.walk)),
+        held_(kernelOf(reduction, variant.walk), variant.access),
+        kernel_(held_.kernel()),
         domain_(program_, variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
                 "sk_result") {
     for (const Parameter& parameter : kernel_.parameters) {
@@ -390,7 +392,8 @@ class ReductionText {
 
   const Reduction& reduction_;
   const ReduceVariant& variant_;
-  const Kernel kernel_;
+  const HeldKernel held_;
+  const Kernel& kernel_;
   std::vector<const Parameter*> inputs_;
   std::vector<const Parameter*> accumulators_;
   std::vector<std::string> arguments_;   ///< those that are the same for all elements, and iterators

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "native/components.hpp"
 
+#include <algorithm>
 #include <cstring>
 
+#include "sk/narrow.hpp"
 #include "sk/scalar_bytes.hpp"
 
 namespace sk {
@@ -145,6 +147,28 @@ void Components::readReals(std::int64_t first, std::int64_t count, double* value
     } else {
       convertStrided<float, double>(from, bytes, to, stride, count);
     }
+  }
+}
+
+void Components::writeReals(std::int64_t first, std::int64_t count, const double* values) {
+  const std::size_t stride = types_.size() * sizeof(double);
+  for (std::size_t c = 0; c < types_.size(); ++c) {
+    const std::size_t bytes = types_[c].storedBytes;
+    std::byte* to = arrays_[c].get() + static_cast<std::size_t>(first) * bytes;
+    const auto* from = reinterpret_cast<const std::byte*>(values + c);
+    if (bytes == sizeof(double)) {
+      copyStrided<sizeof(double)>(from, stride, to, bytes, count);
+    } else {
+      convertStrided<double, float>(from, stride, to, bytes, count);
+    }
+  }
+}
+
+void Components::roundToHalf(std::int64_t count) {
+  for (std::size_t c = 0; c < types_.size(); ++c) {
+    if (!types_[c].isReal) continue;
+    auto* floats = reinterpret_cast<float*>(arrays_[c].get());
+    std::transform(floats, floats + count, floats, [](float x) { return float{half(x)}; });
   }
 }
 

@@ -47,6 +47,9 @@ class Components {
   void read(std::int64_t first, std::int64_t count, std::byte* elements, std::size_t elementBytes) const;
   /// Of floats: one element after the other.
   void readReals(std::int64_t first, std::int64_t count, double* values) const;
+  void writeReals(std::int64_t first, std::int64_t count, const double* values);
+  /// Floats to the nearest halves.
+  void roundToHalf(std::int64_t count);
 
  private:
   void allocate(std::int64_t count);

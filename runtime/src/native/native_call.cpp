@@ -85,6 +85,11 @@ class Operands {
       if (list_[i].pushed != nullptr) nativeStream(arguments_[i].region).become(*list_[i].pushed, real_);
     }
     for (const auto& [stream, copy] : written_) stream->components.assign(copy, stream->shape.size());
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      if (isWritten(kernel_.parameters[i].role) && arguments_[i].region.stream != nullptr) {
+        nativeStream(arguments_[i].region).keepStorage();
+      }
+    }
   }
 
   /// The arrays of a stream that is written, or of the copy in the real type of the call that stands for it.

@@ -46,8 +46,9 @@ void NativeDevice::checkProgram(const program::Reduction& reduction) {
   }
 }
 
-std::unique_ptr<StreamState> NativeDevice::createStream(const program::Element& element, const Shape& shape) {
-  return std::make_unique<NativeStream>(*this, element, shape);
+std::unique_ptr<StreamState> NativeDevice::createStream(const program::Element& element, const Shape& shape,
+                                                        Storage storage) {
+  return std::make_unique<NativeStream>(*this, element, shape, storage);
 }
 
 }  // namespace sk

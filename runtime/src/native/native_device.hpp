@@ -27,7 +27,8 @@ class NativeDevice final : public DeviceState {
   bool isReference() const override { return real_ == RealType::Double; }
   void checkProgram(const program::Kernel& kernel) override;
   void checkProgram(const program::Reduction& reduction) override;
-  std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape) override;
+  std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
+                                            Storage storage) override;
   void finish() override {}
   void release() override {}
   void run(const program::Kernel& kernel, std::span<const Argument> arguments,

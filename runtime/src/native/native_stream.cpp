@@ -45,10 +45,11 @@ native::Operand operandOf(const StreamRegion& region) {
   return operand;
 }
 
-NativeStream::NativeStream(NativeDevice& on, const program::Element& type, const Shape& extents)
-    : StreamState(on, type, extents) {
+NativeStream::NativeStream(NativeDevice& on, const program::Element& type, const Shape& extents, Storage as)
+    : StreamState(on, type, extents, as) {
   try {
-    components = Components(type, on.real(), extents.size());
+    components =
+        Components(type, storage >= Storage::Extended ? RealType::Double : on.real(), extents.size());
   } catch (const std::bad_alloc&) {
     throw Error(fmt::format("'{}' has no memory for a stream of {} of shape {}", on.name(), type.name,
                             toString(extents)));
@@ -62,6 +63,7 @@ void NativeStream::write(const StreamRegion& region, const std::byte* elements) 
     components.write(first, count, elements + static_cast<std::size_t>(number) * element->size,
                      element->size);
   });
+  keepStorage();
 }
 
 void NativeStream::read(const StreamRegion& region, std::byte* elements) {
@@ -77,6 +79,21 @@ void NativeStream::readReals(const StreamRegion& region, double* values) {
   });
 }
 
+void NativeStream::writeReals(const StreamRegion& region, const double* values) {
+  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
+    components.writeReals(first, count,
+                          values + static_cast<std::size_t>(number) * components.arrays().size());
+  });
+  keepStorage();
+}
+
+// A reference is what storage is measured against, and rounds nothing.
+void NativeStream::keepStorage() {
+  if (storage == Storage::Half && components.real() == RealType::Float) {
+    components.roundToHalf(shape.size());
+  }
+}
+
 StreamTexture NativeStream::texture(int) {
   throw Error(
       fmt::format("texture: '{}' has no textures; read() the stream, or use a GL device", owner().name()));
@@ -86,7 +103,7 @@ void NativeStream::become(const native::Pushed& pushed, RealType real) {
   const std::size_t bytes = componentsOf(*element, real)[0].storedBytes;
   const auto count = static_cast<std::int64_t>(pushed[0].size() / bytes);
   Components given(*element, real, pushed);
-  components = real == owner().real() ? std::move(given) : given.clone(count, owner().real());
+  components = real == components.real() ? std::move(given) : given.clone(count, components.real());
   shape = Shape(count);
 }
 

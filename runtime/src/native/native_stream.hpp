@@ -14,16 +14,20 @@ class NativeDevice;
 class NativeStream final : public StreamState {
  public:
   /// Throws sk::Error where there is no room.
-  NativeStream(NativeDevice& device, const program::Element& element, const Shape& shape);
+  NativeStream(NativeDevice& device, const program::Element& element, const Shape& shape, Storage storage);
 
   void settle() override {}
   void write(const StreamRegion& region, const std::byte* elements) override;
   void read(const StreamRegion& region, std::byte* elements) override;
   void readReals(const StreamRegion& region, double* values) override;
+  void writeReals(const StreamRegion& region, const double* values) override;
   StreamTexture texture(int plane) override;
 
   /// Takes what a kernel has pushed for its elements, which has floats as `real`.
   void become(const native::Pushed& pushed, RealType real);
+
+  /// After kernels have written to it: floats that are held as halves are rounded to these.
+  void keepStorage();
 
   Components components;
 

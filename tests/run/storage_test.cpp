@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: a stream may hold halves or doubles for its floats; what kernels write is rounded to nearest, and what they
+// compute in doubles is kept in a stream of doubles.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "precision.sk.hpp"
+#include "sk/sk.hpp"
+#include "support/devices.hpp"
+
+namespace run_tests {
+namespace {
+
+using sk::Precision;
+using sk::Storage;
+
+const std::array<float, 4> identity = {0, 1, 0, 0};
+
+std::vector<float> numbers(std::size_t n, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> mantissa(-2, 2);
+  std::uniform_int_distribution<int> exponent(-26, 17);
+  std::vector<float> x;
+  while (x.size() < n) x.push_back(std::ldexp(mantissa(random), exponent(random)));
+  return x;
+}
+
+std::vector<float> halved(std::vector<float> x) {
+  for (float& value : x) value = sk::half(value);
+  return x;
+}
+
+TEST_CASE("halves are rounded to nearest, by the host and by kernels") {
+  onEveryLayout([](sk::Device& device) {
+    std::vector<float> x = numbers(600, 1);
+    x.insert(x.end(), {0.0F, 65519.9F, 65520.0F, -1e9F, 2049.0F, 2051.0F, 1e-8F,
+                       std::numeric_limits<float>::infinity()});
+    const auto count = static_cast<std::int64_t>(x.size());
+    auto h = device.stream<float>({count}, Storage::Half);
+    h.write(x);
+    CHECK(h.read() == halved(x));
+    auto f = device.stream<float>({count});
+    f.write(x);
+    auto r = device.stream<float>({count}, Storage::Half);
+    precision::polynomial(f, std::array<float, 4>{0, 1, 0, 0}, r);
+    const std::vector<float> got = r.read();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      INFO(x[i]);
+      if (std::isfinite(x[i])) CHECK(got[i] == static_cast<float>(sk::half(x[i])));
+    }
+    precision::polynomial(h, std::array<float, 4>{0, 0.5F, 0, 0}, f);
+    const std::vector<float> scaled = f.read();
+    const std::vector<float> held = halved(x);
+    for (std::size_t i = 0; i < 600; ++i) {
+      if (std::isfinite(held[i])) CHECK(scaled[i] == 0.5F * held[i]);  // 0 times infinity is NaN
+    }
+  });
+}
+
+TEST_CASE("doubles keep what is computed in doubles") {
+  sk::Device reference = sk::Device::reference();
+  onEveryLayout([&](sk::Device& device) {
+    const std::vector<float> x = numbers(300, 3);
+    const bool hasDoubles = device.profile() != "essl300";
+    const auto options = sk::CallOptions{.precision = hasDoubles ? Precision::Double : Precision::Extended};
+    const auto run = [&](sk::Device& on, Storage storage, const sk::CallOptions& chosen) {
+      auto xs = on.stream<float>({300});
+      xs.write(x);
+      auto s = on.stream<float>({300}, storage);
+      auto p = on.stream<float>({300}, storage);
+      precision::smooth.with(chosen)(xs, 3.3F, xs, s);
+      precision::polynomial.with(chosen)(s, std::array<float, 4>{0.3F, 1.7F, 0.1F, 0}, p);
+      return p.readReals();
+    };
+    const std::vector<double> exact = run(reference, Storage::Single, {});
+    const std::vector<double> got = run(device, Storage::Double, options);
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      CHECK(std::fabs(got[i] - exact[i]) <= 0x1p-40 * (0.3 + std::fabs(exact[i])) + 1e-25);
+    }
+    // and without doubles in the kernel, a stream of them holds floats
+    for (const double v : run(device, Storage::Extended, {}))
+      CHECK((v == static_cast<float>(v) || std::isnan(v)));
+  });
+}
+
+TEST_CASE("numbers beyond float get in and out") {
+  onEveryProfile([](sk::Device& device) {
+    auto s = device.stream<sk::float3>({2}, Storage::Double);
+    const std::vector<double> values = {0.1, 1.0 / 3, -2e-5, 1e10 / 7, 5, 6.25};
+    s.writeReals(values);
+    CHECK(s.readReals() == values);
+    CHECK(s.read()[0] == sk::float3{0.1F, static_cast<float>(1.0 / 3), -2e-5F});
+    CHECK_THROWS_WITH(s.writeReals(std::vector<double>{1, 2}), Catch::Contains("2 numbers are given"));
+  });
+}
+
+TEST_CASE("structs, vectors, gathers and reduces") {
+  onEveryProfile([](sk::Device& device) {
+    for (const Storage storage : {Storage::Half, Storage::Extended, Storage::Double}) {
+      std::vector<precision::Body> bodies = {{{1.5F, -2, 0.25F}, 2, 7}, {{8, 9, -10}, 0.5F, 8}};
+      auto b = device.stream<precision::Body>({2}, storage);
+      b.write(bodies);
+      auto moved = device.stream<precision::Body>({2}, storage);
+      auto force = device.stream<sk::float3>({2}, storage);
+      force.write(std::vector<sk::float3>{{4, 8, 16}, {1, 2, 3}});
+      auto there = device.stream<sk::float3>({2}, storage);
+      if (device.limits().drawBuffers < 6 && storage != Storage::Half) {
+        CHECK_THROWS_WITH(precision::move(b, force, 0.5F, moved, there),
+                          Catch::Contains("6 planes to write"));
+        continue;
+      }
+      precision::move(b, force, 0.5F, moved, there);
+      const auto result = moved.read();
+      CHECK(result[0].place == sk::float3{2, -1, 2.25F});
+      CHECK(result[1].place == sk::float3{8.5F, 10, -8.5F});
+      CHECK(result[1].id == 9);
+      CHECK(result[0].mass == 2);
+      CHECK(std::fabs(there.read()[1].x -
+                      8.5F / std::sqrt(8.5F * 8.5F + 100 + 8.5F * 8.5F) * std::sqrt(14.0F)) < 0.01F);
+      auto a = device.stream<float>({4}, storage);
+      a.write(std::vector<float>{1, 2, 3, 4});
+      auto r = device.stream<float>({4}, storage);
+      precision::smooth(a, 1.0F, a, r);
+      CHECK(std::fabs(r.read()[0] - (0.1F * 1 / 3 + 0.7F * 1 / 2 + 0.2F * 2 / 1.5F)) < 1e-3F);
+      CHECK(precision::sum(a) == 10);
+      CHECK(precision::sum.with({.precision = Precision::Extended})(a) == 10);
+      auto total = device.stream<float>({2}, storage);
+      precision::sum(a, total);
+      CHECK(total.read() == std::vector<float>{3, 7});
+    }
+  });
+}
+
+TEST_CASE("one stream for both, views") {
+  onEveryLayout([](sk::Device& device) {
+    auto a = device.stream<float>({6, 5}, Storage::Half);
+    std::vector<float> x(30);
+    for (std::size_t i = 0; i < 30; ++i) x[i] = static_cast<float>(i) + 0.1F;
+    a.write(x);
+    precision::polynomial(a, identity, a);
+    CHECK(a.read() == halved(x));
+    auto part = a.domain({1, 1}, {3, 4});
+    precision::polynomial(part, std::array<float, 4>{1, 0, 0, 0}, part);
+    CHECK(a.read()[5 + 1] == 1);
+    CHECK(a.read()[5] == halved(x)[5]);
+  });
+}
+
+std::string errorOf(const auto& call) {
+  try {
+    call();
+  } catch (const sk::Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_CASE("what holds no floats has no storage to choose") {
+  sk::Device& device = run_tests::device("glsl330");
+  CHECK(errorOf([&] {
+          (void)device.stream<std::int32_t>({3}, Storage::Half);
+        }).find("a stream of int has no float") == 0);
+  auto a = device.stream<float>({3});
+  auto pushed = device.stream<float>({3}, Storage::Half);
+  auto scattered = device.stream<float>({3});
+  CHECK(errorOf([&] {
+          precision::choose(a, 1.0F, pushed, scattered);
+        }).find("make it with Storage::Single") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace run_tests
