@@ -19,6 +19,7 @@ namespace skc::emit {
 namespace {
 
 using namespace ir;
+using sk::CallOptions;
 
 /// Compilers limit the length of one string literal; literals side by side are one string.
 constexpr std::size_t pieceSize = 15000;
@@ -335,6 +336,7 @@ class SourceWriter {
       members.push_back(fmt::format(".plans = {}Plans", name));
       members.push_back(fmt::format(".planCount = {}", kernel.planCount));
     }
+    addOptions(kernel.options, members);
     if (!native.empty()) members.push_back(".native = &" + native);
     if (kernel.half != nullptr) members.push_back(fmt::format(".half = &{}HalfKernel", name));
     if (kernel.wide != nullptr) members.push_back(fmt::format(".wide = &{}WideKernel", name));
@@ -342,6 +344,17 @@ class SourceWriter {
     if (!kernel.whyNotWide.empty()) members.push_back(".whyNotWide = " + quoted(kernel.whyNotWide));
     const std::string newLine = "\n" + std::string(column, ' ');
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
+  }
+
+  static void addOptions(const CallOptions& options, std::vector<std::string>& members) {
+    constexpr std::string_view accumulates[] = {"Default", "Tree", "Compensated", "Extended", "Exact"};
+    constexpr std::string_view precisions[] = {"Default", "Half", "Single", "Extended", "Double"};
+    constexpr std::string_view intrinsics[] = {"Default", "Fast", "Accurate"};
+    if (options == CallOptions{}) return;
+    members.push_back(fmt::format(".options = {{Accumulate::{}, Precision::{}, Intrinsics::{}}}",
+                                  accumulates[static_cast<std::size_t>(options.accumulate)],
+                                  precisions[static_cast<std::size_t>(options.precision)],
+                                  intrinsics[static_cast<std::size_t>(options.intrinsics)]));
   }
 
   /// The name of a parameter's condition.

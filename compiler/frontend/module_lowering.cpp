@@ -97,6 +97,7 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   kernel.name = declaration->getNameAsString();
   kernel.scope = scopeOf(declaration);
   kernel.signature = syntax.signature;
+  kernel.choices = syntax.choices;
   if (declaration->getPrimaryTemplate()) nameInstance(declaration, kernel);
   kernel.loc = loc(where);
   kernel.entry = function(declaration, where);

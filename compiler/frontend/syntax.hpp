@@ -24,6 +24,7 @@ namespace skc::frontend {
 
 struct KernelSyntax {
   bool isReduce = false;
+  ir::Choices choices;
   std::string signature;             ///< the declaration on one line, as written
 };
 

@@ -6,6 +6,7 @@
 #include <clang/Basic/SourceManager.h>
 #include <clang/Lex/Preprocessor.h>
 
+#include "frontend/choices.hpp"
 #include "frontend/clang_loc.hpp"
 #include "frontend/comma_indices.hpp"
 #include "frontend/constructor_editor.hpp"
@@ -52,6 +53,7 @@ class Editor {
   }
 
   void editDeclaration() {
+    if (const std::size_t behind = endOfChoices(cursor_); behind != 0) return editChoices(behind);
     if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) return editKernel();
     if (atDeclarationWord("stream")) return editStream();
     if (atWord("iter") && listedName() > 1) return refuseIterator();
@@ -162,9 +164,23 @@ class Editor {
     if (cursor_.at(tok::semi)) cursor_.take();
   }
 
-  void editKernel() {
+  /// `[[precision(extended)]] kernel void f...`; what stands before other declarations is C++'s.
+  void editChoices(std::size_t behind) {
+    const Token& declared = cursor_.peek(behind);
+    if (isWord(declared, "kernel") || isWord(declared, "reduce")) {
+      const ir::Choices choices = takeChoices(cursor_, behind, diagnostics_);
+      return atDeclarationWord("kernel") || atDeclarationWord("reduce") ? editKernel(choices)
+                                                                        : copyDeclaration();
+    }
+    if (namesChoice(cursor_))
+      diagnostics_.report(Diag::ChoicePlace, locOf(cursor_.peek(2)), {nameOf(cursor_.peek(2))});
+    copyDeclaration();
+  }
+
+  void editKernel(const ir::Choices& choices = {}) {
     const Token start = cursor_.take();
     KernelSyntax kernel;
+    kernel.choices = choices;
     kernel.isReduce = isWord(start, "reduce");
     std::vector<Token> head;       // result type and name
     while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());

@@ -311,6 +311,12 @@ struct PassOf {
   std::uint32_t number, count;  ///< from 1
 };
 
+/// What the author chooses by [[precision(extended)]] and the like, in front of a kernel: numbers of the enumerators of
+/// sk::Precision, sk::Accumulate and sk::Intrinsics; 0 where nothing is said.
+struct Choices {
+  std::uint8_t precision = 0, accumulate = 0, intrinsics = 0;
+};
+
 struct Kernel {
   std::string name;  ///< without namespaces
   std::vector<std::string> scope;  ///< enclosing namespaces, outermost first
@@ -325,6 +331,7 @@ struct Kernel {
   std::vector<Plan> plans;  ///< for targets that it is too large for, the most generous first
   std::optional<PassOf> pass;
   Forms forms;
+  Choices choices;
   Loc loc;
 };
 

@@ -88,6 +88,13 @@ bool isExact(const CheckedReduction& checked, const CallOptions& options) {
          checked.domain.size() != 0;
 }
 
+/// With what a file or the declaration chooses; a file's choice for all reduces is one for those that sum floats.
+CallOptions resolved(const CheckedReduction& checked, const Reduction& reduction, const CallOptions& call) {
+  CallOptions options = checked.device.configuration.resolve(reduction.fold, call);
+  if (reduction.compensated == nullptr && reduction.exact.empty()) options.accumulate = call.accumulate;
+  return options;
+}
+
 /// Whether a result stream holds halves or doubles for floats.
 bool isHeldOtherwise(const Reduction& reduction, std::span<const Argument> arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -126,8 +133,9 @@ void reduceByFloats(const CheckedReduction& checked, const Reduction& reduction,
 }  // namespace
 
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
-            const CallOptions& options) {
+            const CallOptions& call) {
   const CheckedReduction checked = checkReduction(reduction, arguments);
+  const CallOptions options = resolved(checked, reduction, call);
   if (takesForm(options)) {
     reduceInForm(checked, reduction, arguments, results, options);
     return;
@@ -155,8 +163,9 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
   }
 }
 
-void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
+void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& call) {
   const CheckedReduction checked = checkReductionToStreams(reduction, arguments);
+  const CallOptions options = resolved(checked, reduction, call);
   if (checked.blocks.size() == 0) {
     return;
   }

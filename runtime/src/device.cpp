@@ -97,16 +97,24 @@ DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, co
           barrierOf(barrier)};
 }
 
+/// A device with the choices of a file, if one is named.
+std::unique_ptr<DeviceState> configured(std::unique_ptr<DeviceState> state, const std::string& file) {
+  const std::string name = chosen(file, "SK_CONFIG");
+  if (!name.empty()) state->configuration = Configuration(name);
+  return state;
+}
+
 std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
   const std::string device = chosen(options.device, "SK_DEVICE");
   if (device == "native" || device == "reference") {
-    return std::make_unique<NativeDevice>(device == "native" ? RealType::Float : RealType::Double);
+    return configured(std::make_unique<NativeDevice>(device == "native" ? RealType::Float : RealType::Double),
+                      options.configuration);
   }
   const gl::OpenRequest request{device, apiOf(chosen(options.profile, "SK_PROFILE"))};
   const DeviceChoices choices =
       choicesOf(options.textureLimit, chosen(options.limits, "SK_LIMITS"),
                 chosen(options.doubles, "SK_DOUBLES"), chosen(options.barrier, "SK_BARRIER"));
-  return std::make_unique<GlDevice>(gl::openContext(request), choices);
+  return configured(std::make_unique<GlDevice>(gl::openContext(request), choices), options.configuration);
 }
 
 }  // namespace
@@ -122,11 +130,14 @@ Device& Device::operator=(Device&& other) noexcept = default;
 Device Device::adopt(const DeviceOptions& options) {
   const DeviceChoices choices =
       choicesOf(options.textureLimit, options.limits, options.doubles, options.barrier);
-  return Device(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices));
+  return Device(configured(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices),
+                           options.configuration));
 }
 
-Device Device::native() { return Device(std::make_unique<NativeDevice>(RealType::Float)); }
-Device Device::reference() { return Device(std::make_unique<NativeDevice>(RealType::Double)); }
+Device Device::native() { return Device(configured(std::make_unique<NativeDevice>(RealType::Float), {})); }
+Device Device::reference() {
+  return Device(configured(std::make_unique<NativeDevice>(RealType::Double), {}));
+}
 
 DeviceState& Device::state() const {
   if (!state_) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "configuration.hpp"
 #include "sk/call.hpp"
 #include "sk/device.hpp"
 #include "sk/program.hpp"
@@ -57,6 +58,7 @@ class DeviceState {
                       const Shape& domain, const Shape& blocks, const CallOptions& options) = 0;
 
   DeviceLimits limits;
+  Configuration configuration;
 
  protected:
   DeviceState() = default;

@@ -121,9 +121,16 @@ std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& elem
   return std::make_unique<GlStream>(*this, element, shape, storage);
 }
 
+// Accumulate::Extended asks for bits: a program on the CPU has more of them in doubles, and in less time.
+bool GlDevice::takesPairs(const CallOptions& options) const {
+  const bool asksForPairs = options.precision == Precision::Extended;
+  return isExtended(options) &&
+         (asksForPairs || !capabilities.isSoftware || profile.doubles == assemble::Doubles::Pairs);
+}
+
 void GlDevice::choose(const CallOptions& options) {
   const ProgramChoice choice{.accurate = options.intrinsics != Intrinsics::Fast,
-                             .doubles = isExtended(options) ? assemble::Doubles::Pairs : profile.doubles,
+                             .doubles = takesPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
                              .barrier = barrier};
   auto found = caches_.find(choice);
   if (found == caches_.end()) {
@@ -173,7 +180,7 @@ void GlDevice::checkProgram(const program::Reduction& reduction) {
 }
 
 void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& options) {
-  if (isExtended(options)) {
+  if (takesPairs(options)) {
     needExactSums(kernel);
   }
   if (options.precision == Precision::Double && profile.doubles != assemble::Doubles::Native) {

@@ -103,6 +103,7 @@ class GlDevice final : public DeviceState {
   std::vector<Operand> operands;         ///< of the call that runs; run.cpp's
 
  private:
+  bool takesPairs(const CallOptions& options) const;
   void forgetObjects() noexcept;
   void needExactSums(const program::Kernel& kernel);
 

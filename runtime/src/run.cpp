@@ -140,7 +140,7 @@ void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOp
     fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
   }
   if (DeviceState* device = checkCall(kernel, arguments)) {
-    device->run(kernel, arguments, options);
+    device->run(kernel, arguments, device->configuration.resolve(kernel, options));
   }
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <random>
 #include <vector>
@@ -240,15 +242,6 @@ TEST_CASE("what computes no floats is the same in every precision") {
     CHECK(r.read() == std::vector<std::int32_t>{2, 3, 4});
     CHECK(precision::count.with({.precision = Precision::Extended})(r) == 9);
   });
-}
-
-std::string errorOf(const auto& call) {
-  try {
-    call();
-  } catch (const sk::Error& error) {
-    return error.what();
-  }
-  return {};
 }
 
 TEST_CASE("what has no form is refused") {

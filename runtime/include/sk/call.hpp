@@ -128,38 +128,6 @@ class VariableOut {
   StreamRegion region_;
 };
 
-/// How a reduce adds floats, of which n are summed and S is the sum of their magnitudes; u = 2^-24.
-enum class Accumulate : std::uint8_t {
-  Default,  ///< Compensated, where the reduce has a sum of floats and the device room for it
-  Tree,  ///< plain additions in a tree: the error is some u S log n
-  Compensated,  ///< with what each addition loses summed beside it: u times the result and (log n)^2 u^2 S
-  Extended,  ///< all of the reduce in pairs of floats: u times the result and 2^-44 S log n
-  Exact,  ///< the sum itself, rounded once: the same bits in every order, on every device
-};
-
-/// What a kernel's floats are computed in; its arguments stay what they are.
-enum class Precision : std::uint8_t {
-  Default,  ///< what the kernel is declared with, which is Single where it says nothing
-  Half,  ///< every result rounded to 11 bits, in the range of half
-  Single,  ///< floats: 24 bits
-  Extended,  ///< pairs of floats: 44 to 48 bits, in the range of float
-  Double,  ///< the device's own doubles: 53 bits
-};
-
-/// Which functions compute exp, sin, pow and the like.
-enum class Intrinsics : std::uint8_t {
-  Default,  ///< Accurate
-  Fast,  ///< the device's own, with the errors and special cases that it has
-  Accurate,  ///< within 3 ulp and with the special cases of C, by code of ours where the device's own are not
-};
-
-/// What a call may choose, by `sum.with({.accumulate = ...})(x)`.
-struct CallOptions {
-  Accumulate accumulate = Accumulate::Default;
-  Precision precision = Precision::Default;
-  Intrinsics intrinsics = Intrinsics::Default;
-};
-
 /// The callable objects of kernels and reduces: with(options) is the same with these.
 template <class Derived>
 struct WithOptions {

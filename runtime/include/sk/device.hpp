@@ -38,6 +38,9 @@ struct DeviceOptions {
   /// "native": doubles are the device's own, where it has them. "pairs": they are pairs of floats. Empty:
   /// environment variable SK_DOUBLES, and without it "native", or "pairs" where limits are "guaranteed".
   std::string doubles = {};
+  /// A file of choices of accuracy for kernels by name (docs/accuracy.md). Empty: environment variable SK_CONFIG, and
+  /// without it none.
+  std::string configuration = {};
   /// "precise", "xor" or "none": the Barrier of the device's programs, taken without a trial. Empty: environment
   /// variable SK_BARRIER, and without it the first of precise and xor that proves itself (Device::arithmetic).
   std::string barrier = {};

@@ -33,23 +33,12 @@
 #include <span>
 #include <string_view>
 
+#include "sk/options.hpp"
+
 namespace sk::native {
 struct Call;
 struct ReduceCall;
 }  // namespace sk::native
-
-namespace sk {
-
-/// What a stream holds the floats of its elements as. Kernels read and write floats all the same, rounded to nearest;
-/// those in extended or double precision get and give all bits of doubles.
-enum class Storage : std::uint8_t {
-  Single,  ///< floats
-  Half,  ///< halves: half the memory, 11 bits
-  Extended,  ///< doubles, of which pairs of floats use 48 bits
-  Double,  ///< doubles
-};
-
-}  // namespace sk
 
 namespace sk::program {
 
@@ -232,6 +221,7 @@ struct Kernel {
   std::span<const IntrinsicUse> intrinsics = {};  ///< those that declarations or body call
   const Plan* plans = nullptr;  ///< for devices that cannot run it in one pass, most generous first
   std::uint8_t planCount = 0;
+  CallOptions options = {};  ///< what its declaration chooses, where a call does not
   const NativeKernel* native = nullptr;  ///< null where skc was not asked for native code
   const Kernel* half = nullptr;  ///< the form that rounds every float to half; null where there is none
   const Kernel* wide = nullptr;  ///< the form that computes in doubles what this one does in floats; likewise

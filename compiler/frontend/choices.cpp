@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/choices.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "frontend/clang_loc.hpp"
+
+namespace skc::frontend {
+namespace {
+
+namespace tok = clang::tok;
+
+/// One attribute: the values that it may have, in the order of the enumerators, of which the first is Default.
+struct Choice {
+  std::string_view name;
+  std::uint8_t ir::Choices::* member;
+  std::array<std::string_view, 6> values;
+  std::string_view list;  ///< for messages
+};
+constexpr std::array<Choice, 3> choices = {{
+    {"precision",
+     &ir::Choices::precision,
+     {"", "half", "single", "extended", "double"},
+     "half, single, extended, double"},
+    {"accumulate",
+     &ir::Choices::accumulate,
+     {"", "tree", "compensated", "extended", "exact"},
+     "tree, compensated, extended, exact"},
+    {"intrinsics", &ir::Choices::intrinsics, {"", "fast", "accurate"}, "fast, accurate"},
+}};
+
+bool startsAttributes(const TokenCursor& cursor, std::size_t at) {
+  return cursor.peek(at).is(tok::l_square) && cursor.peek(at + 1).is(tok::l_square);
+}
+
+/// The place behind the `]]` that closes what starts at `at`; 0 if nothing does.
+std::size_t behindBrackets(const TokenCursor& cursor, std::size_t at) {
+  int depth = 0;
+  for (; !cursor.peek(at).isOneOf(tok::eof, tok::semi, tok::l_brace, tok::r_brace); ++at) {
+    if (cursor.peek(at).is(tok::l_square)) ++depth;
+    if (cursor.peek(at).is(tok::r_square) && --depth == 0) return at + 1;
+  }
+  return 0;
+}
+
+/// NAME(VALUE), of which the cursor is left behind what it could take.
+void takeChoice(TokenCursor& cursor, Diagnostics& diagnostics, ir::Choices& chosen) {
+  const clang::Token name = cursor.take();
+  const auto choice = std::ranges::find(choices, nameOf(name), &Choice::name);
+  if (choice == choices.end()) return diagnostics.report(Diag::ChoiceName, locOf(name), {nameOf(name)});
+  const bool opens = cursor.at(tok::l_paren);
+  const clang::Token value = opens ? cursor.peek(1) : name;
+  const auto found = std::ranges::find(choice->values, nameOf(value));
+  if (!opens || nameOf(value).empty() || found == choice->values.end() ||
+      cursor.peek(2).isNot(tok::r_paren)) {
+    return diagnostics.report(Diag::ChoiceValue, locOf(value),
+                              {std::string(choice->name), std::string(choice->list)});
+  }
+  for (int token = 0; token < 3; ++token) cursor.take();
+  chosen.*choice->member = static_cast<std::uint8_t>(found - choice->values.begin());
+}
+
+}  // namespace
+
+std::size_t endOfChoices(const TokenCursor& cursor) {
+  std::size_t at = 0;
+  while (startsAttributes(cursor, at)) {
+    at = behindBrackets(cursor, at);
+    if (at == 0) return 0;
+  }
+  return at;
+}
+
+bool namesChoice(const TokenCursor& cursor) {
+  return std::ranges::find(choices, nameOf(cursor.peek(2)), &Choice::name) != choices.end();
+}
+
+ir::Choices takeChoices(TokenCursor& cursor, std::size_t tokens, Diagnostics& diagnostics) {
+  ir::Choices chosen;
+  const clang::Token* const end = &cursor.peek(tokens);
+  while (&cursor.peek() < end) {
+    cursor.take();
+    const bool starts =
+        cursor.peek().isNot(tok::l_square) && cursor.peek().isNot(tok::r_square) && &cursor.peek() < end;
+    if (starts) takeChoice(cursor, diagnostics, chosen);
+    while (&cursor.peek() < end && !cursor.peek().isOneOf(tok::comma, tok::l_square, tok::r_square))
+      cursor.take();
+  }
+  return chosen;
+}
+
+}  // namespace skc::frontend
