@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "accuracy/accuracy.hpp"
 #include "info/info.hpp"
 
 int main(int argc, char** argv) {
@@ -14,6 +15,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "sk " SK_VERSION);
   app.require_subcommand(1);
   sk_tool::addInfo(app);
+  sk_tool::addAccuracy(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& stop) {  // --help and --version among them

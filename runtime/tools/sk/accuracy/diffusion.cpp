@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+//
+// Diffusion on a torus, in which each step starts from what the one before has rounded: what the precision of
+// arithmetic and that of storage do to a simulation. What should stay as it is, the sum, is told as drift.
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "accuracy/accuracy.sk.hpp"
+#include "accuracy/compare_modes.hpp"
+#include "accuracy/programs.hpp"
+#include "info/numbers.hpp"
+
+namespace sk_tool {
+
+namespace {
+
+using sk::Precision;
+using sk::Storage;
+
+constexpr float rate = 0.2F;
+constexpr int steps = 200;
+constexpr int timedSteps = 4;  ///< both even: results are where the start was
+
+struct DiffusionMode {
+  const char* name;
+  Precision precision;
+  Storage storage;
+};
+
+constexpr DiffusionMode modes[] = {
+    {"single", Precision::Single, Storage::Single},
+    {"half storage", Precision::Single, Storage::Half},
+    {"half", Precision::Half, Storage::Half},
+    {"extended", Precision::Extended, Storage::Single},
+    {"extended storage", Precision::Extended, Storage::Extended},
+    {"double", Precision::Double, Storage::Single},
+    {"double storage", Precision::Double, Storage::Double},
+};
+
+/// A field in two streams that take turns.
+class Field {
+ public:
+  Field(sk::Device& device, const sk::Shape& shape, const DiffusionMode& mode,
+        const std::vector<float>& start)
+      : mode_(mode),
+        now_(device.stream<float>(shape, mode.storage)),
+        next_(device.stream<float>(shape, mode.storage)) {
+    now_.write(start);
+  }
+
+  void advance(int count) {
+    const auto step = accuracy::diffuse.with({.precision = mode_.precision});
+    for (int i = 0; i < count; i += 2) {
+      step(rate, now_, next_);
+      step(rate, next_, now_);
+    }
+  }
+
+  std::vector<double> values() const { return now_.readReals(); }
+
+ private:
+  DiffusionMode mode_;
+  sk::Stream<float> now_, next_;
+};
+
+double massOf(const std::vector<double>& field) { return std::accumulate(field.begin(), field.end(), 0.0); }
+
+Grade gradeField(const std::vector<double>& field, const std::vector<double>& reference, double mass) {
+  double difference = 0, norm = 0;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    difference += (field[i] - reference[i]) * (field[i] - reference[i]);
+    norm += reference[i] * reference[i];
+  }
+  const double relative = std::sqrt(difference / norm);
+  return {.metrics = {{"rel err", std::isfinite(relative) ? relative : HUGE_VAL},
+                      {"mass drift", (massOf(field) - mass) / mass}}};
+}
+
+/// Multiples of 1/1024, which halves hold: what is measured is what the steps do.
+std::vector<float> startField(std::size_t count) {
+  Numbers numbers(inputSeed);
+  std::vector<float> field(count);
+  for (float& value : field) value = static_cast<float>(std::floor(numbers.unit() * 1024) / 1024);
+  return field;
+}
+
+}  // namespace
+
+std::vector<Experiment> measureDiffusion(sk::Device& device, const Measurement& measurement) {
+  const auto side = static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(measurement.size))));
+  const sk::Shape shape{side, side};
+  const std::vector<float> start = startField(static_cast<std::size_t>(shape.size()));
+  const double mass = std::accumulate(start.begin(), start.end(), 0.0);
+
+  sk::Device exact = sk::Device::reference();
+  Field truth(exact, shape, {"reference", Precision::Default, Storage::Single}, start);
+  truth.advance(steps);
+  const std::vector<double> reference = truth.values();
+
+  std::vector<Mode> candidates;
+  for (const DiffusionMode& mode : modes) {
+    candidates.push_back({mode.name, [&] {
+                            auto field = std::make_shared<Field>(device, shape, mode, start);
+                            return Trial{[field] { field->advance(timedSteps); },
+                                         [field, &reference, mass] {
+                                           field->advance(steps - timedSteps);
+                                           return gradeField(field->values(), reference, mass);
+                                         }};
+                          }});
+  }
+  return {{.program = "diffusion",
+           .data = "random",
+           .about = fmt::format("{} steps of {} x {} cells", steps, side, side),
+           .bounded = "",
+           .rows = compareModes(device, candidates, measurement.rounds)}};
+}
+
+}  // namespace sk_tool

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// Numbers to add, from a fixed seed: easy ones, and ones whose sum is small beside them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace sk_tool {
+
+enum class SumData : std::uint8_t { Uniform, Signed, Wide, IllConditioned };
+
+struct SumDataName {
+  SumData data;
+  std::string_view name;
+  std::string_view about;
+};
+
+inline constexpr std::array<SumDataName, 4> sumDataNames{{
+    {SumData::Uniform, "uniform", "in [0, 1]"},
+    {SumData::Signed, "signed", "in [-1, 1]"},
+    {SumData::Wide, "wide", "of either sign, magnitudes from e^-10 to e^10"},
+    {SumData::IllConditioned, "illconditioned", "that cancel but for 10^-12 of them"},
+}};
+
+struct Pairs {
+  std::vector<float> x, y;
+};
+
+/// Numbers x and factors y, of which the products x * y are to be added; all factors are 1 unless `hasFactors`.
+Pairs drawPairs(SumData data, std::size_t count, bool hasFactors, unsigned seed);
+
+}  // namespace sk_tool

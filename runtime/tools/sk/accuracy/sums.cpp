@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+//
+// Reduces that add: what each Accumulate costs, and how far it is from the true sum. Errors are also told in units of
+// u S, S being the sum of magnitudes and u = 2^-24: 1 is what rounding each summand once would do.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "accuracy/accuracy.sk.hpp"
+#include "accuracy/compare_modes.hpp"
+#include "accuracy/exact_sum.hpp"
+#include "accuracy/programs.hpp"
+#include "info/numbers.hpp"
+
+namespace sk_tool {
+
+namespace {
+
+using sk::Accumulate;
+
+constexpr double u = 0x1p-24;
+
+/// A true sum and what the error of a computed one is measured by.
+struct Truth {
+  ExactSum sum;
+  double magnitude = 0;
+
+  void add(double x) {
+    sum.add(x);
+    magnitude += std::fabs(x);
+  }
+  double condition() const { return magnitude / std::fabs(sum.value()); }
+};
+
+/// Of each result, in the order of the reduce.
+using Truths = std::vector<Truth>;
+
+struct SumMode {
+  const char* name;
+  sk::CallOptions options;
+  /// Relative error at most, of a sum with a condition, in a tree in which a summand meets `depth` additions.
+  double (*bound)(double condition, double depth);
+};
+
+/// Bounds as sk/call.hpp has them (Higham, Accuracy and Stability of Numerical Algorithms, section 4.2; Ogita, Rump and
+/// Oishi 2005, for sums and products with what they lose). One rounding to float is in each.
+constexpr SumMode modes[] = {
+    {"tree",
+     {.accumulate = Accumulate::Tree},
+     [](double condition, double depth) { return (depth + 1) * u * condition; }},
+    {"compensated",
+     {.accumulate = Accumulate::Compensated},
+     [](double condition, double depth) { return u + (depth + 1) * (depth + 1) * u * u * condition; }},
+    {"extended",
+     {.accumulate = Accumulate::Extended},
+     [](double condition, double depth) { return u + (depth + 1) * 0x1p-44 * condition; }},
+    {"double",
+     {.precision = sk::Precision::Double},
+     [](double condition, double depth) { return u + (depth + 1) * 0x1p-53 * condition; }},
+    {"exact", {.accumulate = Accumulate::Exact}, [](double, double) { return u; }},
+    {"half", {.precision = sk::Precision::Half}, nullptr},
+};
+
+/// Additions that a summand meets at most: each pass of a reduction folds runs of 32, natively fewer.
+double depthOf(std::size_t count) {
+  double depth = 0;
+  for (std::size_t left = count; left > 1; left = (left + 31) / 32) {
+    depth += static_cast<double>(std::min<std::size_t>(left, 32) - 1);
+  }
+  return depth;
+}
+
+/// Of several results, the worst counts.
+Grade gradeOf(const SumMode& mode, const Truths& truths, const std::vector<float>& results, double depth) {
+  double relative = 0, scaled = 0, bound = 0;
+  bool isWithin = true;
+  for (std::size_t i = 0; i < truths.size(); ++i) {
+    const Truth& truth = truths[i];
+    const bool isNumber = std::isfinite(results[i]);
+    const double error = isNumber ? truth.sum.distance(results[i]) : HUGE_VAL;
+    const double itsRelative = error == 0 ? 0 : error / std::fabs(truth.sum.value());
+    relative = std::max(relative, itsRelative);
+    scaled = std::max(scaled, error == 0 ? 0 : error / (u * truth.magnitude));
+    if (mode.bound == nullptr) continue;
+    const double itsBound = mode.bound(truth.condition(), depth);
+    bound = std::max(bound, itsBound);
+    isWithin = isWithin && itsRelative <= itsBound;
+  }
+  Grade grade{.metrics = {{"rel err", relative}, {"scaled", scaled}}};
+  if (mode.bound != nullptr) grade.bound = bound;
+  grade.isWithinBound = isWithin;
+  return grade;
+}
+
+/// A sum as it is called: gives its results.
+using Call = std::function<std::vector<float>(const sk::CallOptions&)>;
+
+std::vector<Row> compareSums(sk::Device& device, const Measurement& measurement, const Truths& truths,
+                             const Call& call) {
+  std::vector<Mode> candidates;
+  for (const SumMode& mode : modes) {
+    candidates.push_back({mode.name, [&] {
+                            auto results = std::make_shared<std::vector<float>>();
+                            return Trial{[&mode, &call, results] { *results = call(mode.options); },
+                                         [&mode, &truths, &measurement, results] {
+                                           return gradeOf(mode, truths, *results, depthOf(measurement.size));
+                                         }};
+                          }});
+  }
+  return compareModes(device, candidates, measurement.rounds);
+}
+
+/// One experiment for each kind of data that is asked for; `measure` also fills in the truths.
+std::vector<Experiment> onAllData(const Measurement& measurement, const char* program, bool hasFactors,
+                                  const std::function<std::vector<Row>(const Pairs&, Truths&)>& measure) {
+  std::vector<Experiment> experiments;
+  for (const SumDataName& kind : sumDataNames) {
+    if (measurement.data.value_or(kind.data) != kind.data) continue;
+    Truths truths;
+    Experiment experiment{.program = program, .data = std::string(kind.name), .bounded = "rel err"};
+    experiment.rows = measure(drawPairs(kind.data, measurement.size, hasFactors, inputSeed), truths);
+    double condition = 0;
+    for (const Truth& truth : truths) condition = std::max(condition, truth.condition());
+    experiment.about =
+        fmt::format("{} numbers {}; condition {:.2g}", measurement.size, kind.about, condition);
+    experiments.push_back(std::move(experiment));
+  }
+  return experiments;
+}
+
+sk::Stream<float> upload(sk::Device& device, const std::vector<float>& numbers) {
+  auto stream = device.stream<float>({static_cast<std::int64_t>(numbers.size())});
+  stream.write(numbers);
+  return stream;
+}
+
+}  // namespace
+
+std::vector<Experiment> measureSum(sk::Device& device, const Measurement& measurement) {
+  return onAllData(measurement, "sum", false, [&](const Pairs& pairs, Truths& truths) {
+    truths.resize(1);
+    for (const float x : pairs.x) truths[0].add(x);
+    const auto x = upload(device, pairs.x);
+    return compareSums(device, measurement, truths, [&](const sk::CallOptions& options) {
+      return std::vector<float>{accuracy::sum.with(options)(x)};
+    });
+  });
+}
+
+std::vector<Experiment> measureDot(sk::Device& device, const Measurement& measurement) {
+  return onAllData(measurement, "dot", true, [&](const Pairs& pairs, Truths& truths) {
+    truths.resize(1);
+    for (std::size_t i = 0; i < pairs.x.size(); ++i) truths[0].add(double{pairs.x[i]} * pairs.y[i]);
+    const auto x = upload(device, pairs.x);
+    const auto y = upload(device, pairs.y);
+    return compareSums(device, measurement, truths, [&](const sk::CallOptions& options) {
+      return std::vector<float>{accuracy::dot.with(options)(x, y)};
+    });
+  });
+}
+
+std::vector<Experiment> measureMoments(sk::Device& device, const Measurement& measurement) {
+  return onAllData(measurement, "moments", false, [&](const Pairs& pairs, Truths& truths) {
+    truths.resize(2);
+    for (const float x : pairs.x) {
+      truths[0].add(x);
+      truths[1].add(double{x} * x);
+    }
+    const auto x = upload(device, pairs.x);
+    return compareSums(device, measurement, truths, [&](const sk::CallOptions& options) {
+      const auto [first, second] = accuracy::moments.with(options)(x);
+      return std::vector<float>{first, second};
+    });
+  });
+}
+
+}  // namespace sk_tool

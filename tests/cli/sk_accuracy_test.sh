@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# What `sk accuracy` measures, in small sizes: errors, never times.
+# Usage: sk_accuracy_test.sh SK
+set -euo pipefail
+sk=$(realpath "$1")
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+cd "$place"
+unset SK_DEVICE SK_PROFILE
+
+# run STATUS ARGUMENT...: its texts go to $out and $err.
+run() {
+  local expected=$1 status=0
+  shift
+  line="sk accuracy $*"
+  "$sk" accuracy "$@" >out.txt 2>err.txt </dev/null || status=$?
+  out=$(<out.txt)
+  err=$(<err.txt)
+  ((status == expected)) || broken "status $status, not $expected"
+}
+broken() { printf 'broken: %s\n%s\nstandard output:\n%s\nstandard error:\n%s\n' "$1" "$line" "$out" "$err"; exit 1; }
+prints() { [[ $out == *"$1"* ]] || broken "standard output lacks: $1"; }
+matches() { grep -qE -- "$1" out.txt || broken "no line of standard output matches: $1"; }
+says() { [[ $err == *"$1"* ]] || broken "standard error lacks: $1"; }
+
+# figures FILE: of a table, all but times and what follows from them.
+figures() { sed -E 's/ +[0-9.]+ \[[0-9.]+ [0-9.]+\]/ /; s/ +PARETO$//; /cheapest/d' "$1"; }
+
+# errorOf MODE: the relative error in the first row of that mode.
+errorOf() { sed -nE "s/^  $1 +[0-9.]+ \[[0-9.]+ [0-9.]+\] +([^ ]+) .*/\1/p" out.txt | head -n 1; }
+# below A B: numbers.
+below() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a < b) }' || broken "$1 is not below $2"; }
+
+# Command lines that make no sense.
+run 0 --help
+for option in --device --size --rounds --data --tolerance --json --chart; do prints "$option"; done
+run 1 nosuch
+says "there is no program 'nosuch': it is one of sum, dot, moments, diffusion, polynomial, transcendentals"
+run 1 sum --data lumpy
+says 'lumpy'
+run 1 sum --size 0
+says '--size'
+run 1 sum --rounds 0
+says '--rounds'
+run 1 sum --tolerance=-1
+says '--tolerance'
+run 1 sum --device abacus
+says "sk: no device 'abacus' was found"
+run 1 sum --chart picture.gif
+says "no chart can be 'picture.gif': its name must end in .svg or .png"
+run 1 sum --size 64 --json no/such/folder.json
+says "cannot write 'no/such/folder.json'"
+
+small=(--size 4096 --rounds 2)
+
+# Sums: what each mode keeps, natively and on the best device; each within its bound.
+for device in native ''; do
+  run 0 sum ${device:+--device "$device"} --data illconditioned "${small[@]}"
+  for mode in tree compensated extended; do [[ -n $(errorOf $mode) ]] || broken "no row of $mode"; done
+  below "$(errorOf compensated)" "$(errorOf tree)"
+  below 1 "$(errorOf tree)"
+  below "$(errorOf compensated)" 0.1
+  [[ $out != *' NO'* ]] || broken "a mode breaks its bound"
+done
+
+# Every program, on the best device.
+run 0 "${small[@]}" --json all.json --chart all.svg
+for program in sum dot moments diffusion polynomial transcendentals; do matches "^$program, [a-z 0-9]+: "; done
+for data in uniform signed wide illconditioned; do matches "^sum, $data: 4096 numbers"; done
+matches '^  mode +time \[quartiles\] +rel err +scaled +bound  ok$'
+matches '^  single +1\.00 \[1\.00 1\.00\]'
+matches 'PARETO$'
+for key in schema streamkernel device seed size rounds records program data mode baseline time ratio lower_quartile \
+  upper_quartile ratios metrics bound bounded within_bound pareto worst bits; do
+  grep -q "\"$key\":" all.json || broken "the JSON lacks $key"
+done
+grep -qE '"bits": "0x[0-9a-f]{8}"' all.json || broken "no bits of the worst input"
+
+# The same figures in another run.
+run 0 sum diffusion "${small[@]}"
+figures out.txt >first.txt
+run 0 sum diffusion "${small[@]}"
+figures out.txt >second.txt
+cmp -s first.txt second.txt || broken "other errors than the first time"
+
+# A tolerance: the cheapest mode that keeps it, or none.
+run 0 sum --data illconditioned "${small[@]}" --tolerance 0.1
+matches '^  the cheapest within 0\.1: (compensated|extended|double|exact)$'
+run 0 polynomial "${small[@]}" --tolerance 0
+matches '^  no mode is within 0$'
+
+# The chart is SVG with a point for each mode that can be drawn, and a PNG is one.
+grep -q '<svg ' all.svg && grep -q '</svg>' all.svg || broken "no SVG"
+for text in compensated 'sum, illconditioned' 'diffusion, random' 'half storage'; do
+  grep -q "$text" all.svg || broken "the chart lacks: $text"
+done
+run 0 sum --data wide "${small[@]}" --chart wide.png
+[[ $(head -c 8 wide.png | od -An -tx1 | tr -d ' ') == 89504e470d0a1a0a ]] || broken "no PNG"
+PATH=/nonexistent run 1 sum --data wide "${small[@]}" --chart wide.svg
+says 'there is no gnuplot to draw the chart; install it'
+
+echo "sk accuracy tells what it should"
