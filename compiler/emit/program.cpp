@@ -112,7 +112,7 @@ class Builder {
     if (kernel.forms.wide) {
       const Kernel& wide = module_.kernels[*kernel.forms.wide];
       made.wide = &storage_.wide.emplace_back(sk::program::WideReduction{
-          reduction(wide, describe(wide)), describe(module_.kernels[*wide.reduction->finish])});
+          reduction(wide, describe(wide)), whole(module_.kernels[*wide.reduction->finish])});
     }
   }
 
@@ -165,7 +165,7 @@ class Builder {
     std::vector<sk::program::ExactSum> sums;
     for (const ExactSum& sum : plain.exact) {
       const Kernel& fold = module_.kernels[sum.fold];
-      sums.push_back({reduction(fold, describe(fold)), describe(module_.kernels[sum.finish]),
+      sums.push_back({reduction(fold, describe(fold)), whole(module_.kernels[sum.finish]),
                       static_cast<std::uint8_t>(sum.accumulator)});
     }
     return storage_.exact.emplace_back(std::move(sums));
@@ -178,7 +178,7 @@ class Builder {
     std::vector<std::uint8_t>& sums = storage_.combineOperands.emplace_back();
     for (const VarId sum : plain.compensated->sums) sums.push_back(static_cast<std::uint8_t>(sum));
     return &storage_.compensated.emplace_back(sk::program::CompensatedReduction{
-        reduction(fold, describe(fold)), describe(module_.kernels[plain.compensated->finish]), sums});
+        reduction(fold, describe(fold)), whole(module_.kernels[plain.compensated->finish]), sums});
   }
 
   // ---- plans ------------------------------------------------------------------------------------

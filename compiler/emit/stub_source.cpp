@@ -134,7 +134,7 @@ class SourceWriter {
   /// The constant NAMEKernel, and what it refers to.
   void kernel(const sk::program::Kernel& made, const Kernel& declared, const std::string& name) {
     kernelParts(made, declared, name);
-    if (!declared.plans.empty()) plans(made, declared, name);
+    if (made.planCount > 0) plans(made, declared, name);
     const bool hasNative = withNative_ && !declared.reduction;
     if (hasNative) text_ += nativeKernelDescriptor(name);
     text_ += fmt::format("constexpr Kernel {}Kernel = {};\n\n", name,

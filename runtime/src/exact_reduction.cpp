@@ -32,7 +32,8 @@ Digits fold(const ExactSum& sum, std::span<const Argument> plain, const Reductio
   for (const Parameter& parameter : sum.reduction.fold.parameters) {
     if (parameter.role != Role::Accumulator) continue;
     const Shape& shape = plain[sum.accumulator].region.shape;
-    digits.streams.emplace_back(checked.device.createStream(*parameter.element, shape).release());
+    digits.streams.emplace_back(
+        checked.device.createStream(*parameter.element, shape, Storage::Single).release());
     digits.arguments.push_back({.region = detail::wholeRegion(digits.streams.back().get())});
   }
   all.insert(all.end(), digits.arguments.begin(), digits.arguments.end());
@@ -84,7 +85,7 @@ void reduceExactly(const Reduction& reduction, std::span<const Argument> argumen
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Parameter& parameter = reduction.fold.parameters[i];
     if (parameter.role != Role::Accumulator) continue;
-    values.emplace_back(checked.device.createStream(*parameter.element, {1}).release());
+    values.emplace_back(checked.device.createStream(*parameter.element, {1}, Storage::Single).release());
     all[i] = {.region = detail::wholeRegion(values.back().get())};
   }
   reduceExactly(reduction, all, {checked.device, checked.domain, oneBlock(checked.domain)}, options);

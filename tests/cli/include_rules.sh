@@ -20,7 +20,7 @@ runtime/include/sk    sk
 runtime/src           sk assemble gl
 runtime/tools         sk
 runtime/tests         sk assemble gl epoxy
-runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp assemble
+runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/scalar_bytes.hpp assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
 examples              sk
 tests                 sk

@@ -9,7 +9,10 @@
 #include <fstream>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
+
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 
@@ -242,6 +245,73 @@ TEST_CASE("what computes no floats is the same in every precision") {
     CHECK(r.read() == std::vector<std::int32_t>{2, 3, 4});
     CHECK(precision::count.with({.precision = Precision::Extended})(r) == 9);
   });
+}
+
+std::string errorOf(const auto& call) {
+  try {
+    call();
+  } catch (const sk::Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_CASE("a declaration chooses where a call does not") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> a = numbers(100, 1, 1e4F, 1e6F);
+    const std::vector<float> b = numbers(100, 2, -1, 1);
+    const auto as = streamOf(device, a);
+    const auto bs = streamOf(device, b);
+    auto r = device.stream<float>({100});
+    precision::cancelWell(as, bs, r);
+    CHECK(r.read() == b);
+    const auto x = streamOf(device, numbers(4000, 9, -1, 1));
+    CHECK(precision::sumPlainly(x) == precision::sum.with({.accumulate = sk::Accumulate::Tree})(x));
+    const auto well = precision::sumPlainly.with({.accumulate = sk::Accumulate::Compensated});
+    CHECK(well(x) == precision::sum(x));
+  });
+}
+
+/// A file for as long as this lives.
+struct ConfigurationFile {
+  explicit ConfigurationFile(const std::string& text)
+      : path((std::filesystem::temp_directory_path() / "sk_precision_test.toml").string() +
+             std::to_string(::getpid())) {
+    std::ofstream(path) << text;
+  }
+  ~ConfigurationFile() { std::filesystem::remove(path); }
+  std::string path;
+};
+
+TEST_CASE("a file chooses, too") {
+  const ConfigurationFile file(
+      "[kernels.\"precision::cancel\"]\nprecision = \"extended\"\n"
+      "[kernels.\"*\"]\naccumulate = \"tree\"\n");
+  sk::Device device({.profile = "glsl330", .configuration = file.path});
+  const std::vector<float> a = numbers(100, 1, 1e4F, 1e6F);
+  const std::vector<float> b = numbers(100, 2, -1, 1);
+  auto r = device.stream<float>({100});
+  precision::cancel(streamOf(device, a), streamOf(device, b), r);
+  CHECK(r.read() == b);
+  const auto x = streamOf(device, numbers(4000, 9, -1, 1));
+  CHECK(precision::sum(x) == precision::sumPlainly(x));
+  CHECK(precision::count(streamOf<std::int32_t>(device, {1, 2})) == 3);  // no sum of floats
+}
+
+TEST_CASE("mistakes in a file are told with their line") {
+  const auto errorIn = [](const std::string& text) {
+    const ConfigurationFile file(text);
+    return errorOf([&] { sk::Device({.profile = "glsl330", .configuration = file.path}); });
+  };
+  CHECK(errorIn("[kernels.a]\nprecision = \"quad\"\n")
+            .find(":2: precision is one of \"half\", \"single\", \"extended\", \"double\"") !=
+        std::string::npos);
+  CHECK(errorIn("[kernels.a]\n\nspeed = 1\n").find(":3: there is no choice 'speed'") != std::string::npos);
+  CHECK(errorIn("[kernel]\n").find(":1: expected tables like [kernels.") != std::string::npos);
+  CHECK(errorIn("precision\n").find(":1: ") != std::string::npos);
+  CHECK(errorOf([&] {
+          sk::Device({.profile = "glsl330", .configuration = "/nowhere.toml"});
+        }).find("/nowhere.toml (option or SK_CONFIG)") == 0);
 }
 
 TEST_CASE("what has no form is refused") {
