@@ -128,7 +128,7 @@ TEST_CASE("where no barrier holds, doubles in pairs are refused, and nothing els
 
 TEST_CASE("where no barrier holds, extended precision is refused") {
   for (const std::string profile : {"glsl330", "essl300"}) {
-    sk::Device device({.profile = profile, .barrier = "none"});
+    sk::Device device({.profile = profile, .doubles = "pairs", .barrier = "none"});
     auto x = device.stream<float>({2});
     x.write(std::vector<float>{1, 2});
     const auto twice = barriers::twice.with({.precision = sk::Precision::Extended});
