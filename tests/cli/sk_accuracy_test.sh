@@ -26,7 +26,7 @@ matches() { grep -qE -- "$1" out.txt || broken "no line of standard output match
 says() { [[ $err == *"$1"* ]] || broken "standard error lacks: $1"; }
 
 # figures FILE: of a table, all but times and what follows from them.
-figures() { sed -E 's/ +[0-9.]+ \[[0-9.]+ [0-9.]+\]/ /; s/ +PARETO$//; /cheapest/d' "$1"; }
+figures() { sed -E 's/ +[0-9.]+ \[[0-9.]+ [0-9.]+\]/ /; s/ +PARETO$//; s/ +/ /g; /cheapest/d' "$1"; }
 
 # errorOf MODE: the relative error in the first row of that mode.
 errorOf() { sed -nE "s/^  $1 +[0-9.]+ \[[0-9.]+ [0-9.]+\] +([^ ]+) .*/\1/p" out.txt | head -n 1; }
