@@ -58,6 +58,9 @@ float sk_asin(float x) {
   bool outer = a > 0.5;
   float z = outer ? 0.5 - 0.5 * a : a * a;
   float b = outer ? sqrt(z) : a;
+  // what a device's root lacks, by the part of it whose square is exact
+  float h = uintBitsToFloat(floatBitsToUint(b) & 0xfffff000u);
+  if (outer) b = h + (z - h * h) / (b + h + 1e-30);
   float part = sk_asin_part(b, z);
   float y = outer ? 1.57079637 - (2.0 * b + (2.0 * part + 4.371139e-8)) : b + part;
   return sk_toggle_sign(y, x);
@@ -165,6 +168,7 @@ float sk_acosh(float x) {
     Row{"sk_atanh", 1, "atanh(x)", parts(Part::WithSign, Part::Log), R"(
 float sk_atanh(float x) {
   float a = abs(x);
+  if (!(a <= 1.0)) return uintBitsToFloat(0x7fc00000u);   // quotients of numbers so large are not the same everywhere
   float z = a * a;
   float p = 1.81740078349e-1;
   p = p * z + 8.24370301058e-2;

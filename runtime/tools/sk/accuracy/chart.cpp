@@ -60,7 +60,7 @@ std::string panelOf(const Experiment& experiment, std::size_t number) {
     fmt::format_to(std::back_inserter(script), "${}{} << END\n{}END\n", name, number, points);
     fmt::format_to(
         std::back_inserter(plots),
-        "{0} ${1}{2} using 1:2 with points pt 7 ps 0.8 lc rgb '{3}', ${1}{2} using 1:2:3 with labels left "
+        "{0} ${1}{2} using 1:2 with points pt 7 ps 0.8 lc rgb '{3}', ${1}{2} using 1:2:3 with labels left rotate by 25 "
         "offset 0.8,0.4 tc rgb '{3}'",
         plots.empty() ? "" : ",", name, number, color);
   };
