@@ -27,12 +27,18 @@ sk_double sk_to_double(float a) { return sk_of(double(a)); }
 sk_double sk_to_double(int a) { return sk_of(double(a)); }
 sk_double sk_to_double(uint a) { return sk_of(double(a)); }
 float sk_to_float(sk_double a) { return float(sk_value(a)); }
+bool sk_isnan(sk_double a) {
+  uint high = a.bits.y & 0x7fffffffu;
+  return high > 0x7ff00000u || (high == 0x7ff00000u && a.bits.x != 0u);
+}
 int sk_to_int(sk_double a) {
+  if (sk_isnan(a)) return 0;   // comparisons of NaN are not the same everywhere
   double x = sk_value(a);
   if (x >= 2147483648.0lf) return 2147483647;
   return x > -2147483648.0lf ? int(x) : x <= -2147483648.0lf ? -2147483647 - 1 : 0;
 }
 uint sk_to_uint(sk_double a) {
+  if (sk_isnan(a)) return 0u;
   double x = sk_value(a);
   return x >= 4294967296.0lf ? 0xffffffffu : x > 0.0lf ? uint(x) : 0u;
 }
@@ -49,10 +55,6 @@ sk_double sk_floor(sk_double a) { return sk_of(floor(sk_value(a))); }
 sk_double sk_trunc(sk_double a) { return sk_of(trunc(sk_value(a))); }
 sk_double sk_round(sk_double a) { return sk_of(roundEven(sk_value(a))); }
 sk_double sk_sqrt(sk_double a) { return sk_of(sqrt(sk_value(a))); }
-bool sk_isnan(sk_double a) {
-  uvec2 b = sk_abs(a).bits;
-  return b.y > 0x7ff00000u || (b.y == 0x7ff00000u && b.x != 0u);
-}
 bool sk_isinf(sk_double a) { return sk_abs(a).bits == uvec2(0u, 0x7ff00000u); }
 )";
 
@@ -221,7 +223,7 @@ sk_double sk_to_double(uint a) { return sk_join(float(a >> 16) * 65536.0, float(
 float sk_to_float(sk_double a) { return a.hi; }
 
 uint sk_to_uint(sk_double a) {
-  if (!(a.hi > 0.0)) return 0u;
+  if (sk_isnan(a) || a.hi <= 0.0) return 0u;
   uvec2 b = sk_pack(a);
   uint m = (b.y & 0xfffffu) | 0x100000u;
   int e = int((b.y >> 20) & 0x7ffu) - 1023;

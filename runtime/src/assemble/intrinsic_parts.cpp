@@ -299,10 +299,10 @@ float sk_fmod(float x, float y) {
   float unit = 1.0;
   while (k >= 0) {
     float s = sk_scale(b, k);
-    if (s < 1e-19 && unit == 1.0) {   // products would be too small
-      unit = 18446744073709551616.0;
-      r *= unit;
-    }
+    // products would be too small, and no device need divide by numbers above 2^126
+    float wanted = s < 1e-19 ? 18446744073709551616.0 : s > 1e30 ? 5.421010862427522e-20 : 1.0;
+    if (wanted != unit) r *= wanted / unit;
+    unit = wanted;
     s *= unit;
     float cut = sk_cut(s);
     float q = roundEven(r / s);
