@@ -51,8 +51,7 @@ const CompensatedReduction* compensated(const Reduction& reduction, const Checke
     if (options.accumulate == Accumulate::Compensated) {
       fail(reduction.fold,
            "its sums cannot be compensated on '{}', whose compiler simplifies their rounding errors away; "
-           "call it "
-           "without Accumulate::Compensated, or on another device (SK_DEVICE=native)",
+           "call it without Accumulate::Compensated, or on another device (SK_DEVICE=native)",
            checked.device.name());
     }
     return nullptr;
@@ -92,6 +91,12 @@ bool isExact(const CheckedReduction& checked, const CallOptions& options) {
 CallOptions resolved(const CheckedReduction& checked, const Reduction& reduction, const CallOptions& call) {
   CallOptions options = checked.device.configuration.resolve(reduction.fold, call);
   if (reduction.compensated == nullptr && reduction.exact.empty()) options.accumulate = call.accumulate;
+  const bool isOfFloats =
+      options.accumulate == Accumulate::Exact || options.accumulate == Accumulate::Compensated;
+  if (isOfFloats && takesForm(options)) {
+    fail(reduction.fold,
+         "exact and compensated sums are of floats; call it in Precision::Single, or without Accumulate");
+  }
   return options;
 }
 
@@ -203,7 +208,7 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
   for (const std::uint8_t sum : second->sums) {
     pairs.push_back({.region = arguments[sum].region});
   }
-  run(second->finish, pairs, {.intrinsics = options.intrinsics});
+  run(second->finish, pairs, {.precision = Precision::Single, .intrinsics = options.intrinsics});
 }
 
 }  // namespace sk

@@ -73,7 +73,7 @@ void reduceExactly(const Reduction& reduction, std::span<const Argument> argumen
     std::vector<Argument> all = {result};
     all.insert(all.end(), sums[k].arguments.begin(), sums[k].arguments.end());
     all.push_back(result);
-    run(reduction.exact[k].finish, all);
+    run(reduction.exact[k].finish, all, {.precision = Precision::Single});
   }
 }
 

@@ -160,8 +160,7 @@ void GlDevice::needExactSums(const program::Kernel& kernel) {
   if (!arithmetic().exactSums) {
     fail(kernel,
          "it computes with pairs of floats, and the compiler of '{}' simplifies their rounding errors away; "
-         "use float, "
-         "or a device that has doubles (SK_DEVICE=native)",
+         "use float, or a device that has doubles (SK_DEVICE=native)",
          name());
   }
 }
@@ -212,8 +211,7 @@ void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argu
     if (isPlanned) {
       fail(kernel,
            "it takes several passes on this device, for which the stream of '{}' has to hold floats; make it "
-           "with "
-           "Storage::Single",
+           "with Storage::Single",
            parameter.name);
     }
   }
@@ -222,8 +220,7 @@ void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argu
       read > static_cast<std::size_t>(limits.textureUnits)) {
     fail(kernel,
          "its streams hold {} planes to write and {} to read, but this device has room for {} and {}; make "
-         "those of "
-         "vectors with Storage::Single",
+         "those of vectors with Storage::Single",
          written, read, limits.drawBuffers, limits.textureUnits);
   }
 }

@@ -314,6 +314,16 @@ TEST_CASE("mistakes in a file are told with their line") {
         }).find("/nowhere.toml (option or SK_CONFIG)") == 0);
 }
 
+TEST_CASE("exact and compensated sums are of floats") {
+  onEveryProfile([](sk::Device& device) {
+    const auto x = streamOf<float>(device, {1, 2});
+    for (const auto accumulate : {sk::Accumulate::Exact, sk::Accumulate::Compensated}) {
+      const auto both = precision::sum.with({.accumulate = accumulate, .precision = Precision::Extended});
+      CHECK(errorOf([&] { both(x); }).find("call it in Precision::Single") != std::string::npos);
+    }
+  });
+}
+
 TEST_CASE("what has no form is refused") {
   sk::Device& device = run_tests::device("glsl330");
   auto a = streamOf<float>(device, {1, 2});
