@@ -95,6 +95,16 @@ std::vector<std::string> descriptorNames(const Module& module, const Program& pr
   return names;
 }
 
+std::vector<std::string> tableNames(const Module& module) {
+  std::vector<std::string> names;
+  for (const Table& table : module.tables) {
+    names.push_back(uniqueName("sk_" + camelCase(table.name), [&](const std::string& name) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    }));
+  }
+  return names;
+}
+
 std::string cppType(const Module& module, Type type, const std::vector<std::string>& scope) {
   if (type.isVector() || type.isMatrix()) return "sk::" + print(module, type);
   if (type.isScalar()) return cppScalar(type.scalar);

@@ -27,6 +27,9 @@ std::vector<Callable> callables(const ir::Module& module, const Program& program
 /// A distinct beginning for the names of each unit's descriptors: "diffuse", "grayScott", "sum_2".
 std::vector<std::string> descriptorNames(const ir::Module& module, const Program& program);
 
+/// Likewise for each table of the module: "sk_response".
+std::vector<std::string> tableNames(const ir::Module& module);
+
 /// "gray_scott" gives "GrayScott": words begin after whatever is no letter or digit.
 std::string pascalCase(std::string_view name);
 

@@ -196,7 +196,10 @@ class GlslExpr {
     if (n.base->type.isDouble()) return doubleIndex(n);
     return {text(*n.base, Precedence::Primary) + "[" + indexText(n) + "]"};
   }
-  Parts print(Type, const Call& n) const { return {context_.names.function(n.callee) + list(n.args)}; }
+  Parts print(Type, const Call& n) const {
+    const std::string_view prefix = context_.module.functions[n.callee].table ? "sk_table_" : "";
+    return {fmt::format("{}{}{}", prefix, context_.names.function(n.callee), list(n.args))};
+  }
   Parts print(Type, const IntrinsicCall& n) const {
     const IntrinsicRow& entry = row(n.intrinsic);
     const Type argument = n.args[0]->type;

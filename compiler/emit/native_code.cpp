@@ -77,6 +77,7 @@ class KernelWriter {
     members();
     for (const ConstantId id : constantsOf(module_, kernel_)) constant(id);
     for (const FunctionId id : functionsOf(module_, kernel_)) text_ += nativeFunction(context_, id) + "\n";
+    for (const FunctionId id : tabulatedFunctionsOf(module_, kernel_)) lookUp(functions_.at(id));
     if (kernel_.reduction) {
       reduction();
     } else {
@@ -95,6 +96,12 @@ class KernelWriter {
       const std::string border = param.border ? ", " + nativeExpr(context_, std::nullopt, *param.border) : "";
       line(1, fmt::format("{} {};", memberType(param), member(i)));
       inits.push_back(fmt::format("{}(sk_call, {}{})", member(i), i, border));
+    }
+    std::size_t tables = 0;
+    for (const FunctionId id : tabulatedFunctionsOf(module_, kernel_)) {
+      const std::string& function = functions_.at(id);
+      line(1, fmt::format("native::TableOf<sk_real> sk_values_{};", function));
+      inits.push_back(fmt::format("sk_values_{}(sk_call.tables, {})", function, tables++));
     }
     line(1, "native::Index sk_index{}, sk_extent{};\n");
     line(1, fmt::format("explicit {}(const native::Call& sk_call) : {} {{}}\n", name_, join(inits, ", ")));
@@ -123,6 +130,13 @@ class KernelWriter {
     const Constant& constant = module_.constants[id];
     line(1, fmt::format("static {} {}() {{ return {}; }}\n", type(constant.type),
                         nativeConstant(context_, id), nativeExpr(context_, std::nullopt, *constant.value)));
+  }
+
+  /// A function's value, from its table where the call has one.
+  void lookUp(const std::string& function) {
+    line(1, fmt::format("sk_real sk_table_{}(sk_real sk_x) {{", function));
+    line(2, fmt::format("return sk_values_{0}.isGiven() ? sk_values_{0}.at(sk_x) : {0}(sk_x);", function));
+    line(1, "}\n");
   }
 
   // ---- kernels ----------------------------------------------------------------------------------
@@ -315,6 +329,12 @@ std::string nativeListing(const Module& module, const Program& program) {
       "#include <limits>\n\n#include <sk/native/native.hpp>\n\nnamespace sk::generated {\nnamespace {\n\n"
       "using namespace native::literals;\n\n" +
       structs(module);
+  const std::vector<std::string> tables = tableNames(module);
+  for (TableId id = 0; id < tables.size(); ++id) {
+    if (const std::optional<KernelId> values = module.tables[id].kernel) {
+      text += KernelWriter(module, module.kernels[*values], tables[id]).write();
+    }
+  }
   std::set<KernelId> combinations;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Kernel& kernel = module.kernels[program.units()[i].id];

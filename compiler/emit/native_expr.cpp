@@ -186,7 +186,8 @@ class NativeExpr {
     return {fmt::format("{}[{}]", text(*n.base, Precedence::Primary), index)};
   }
   Parts print(Type, const Call& n) const {
-    return {fmt::format("{}({})", context_.functions.at(n.callee), join(texts(n.args), ", "))};
+    const std::string_view prefix = context_.module.functions[n.callee].table ? "sk_table_" : "";
+    return {fmt::format("{}{}({})", prefix, context_.functions.at(n.callee), join(texts(n.args), ", "))};
   }
   Parts print(Type, const IntrinsicCall& n) const {
     return {fmt::format("native::{}{}({})", functionName(n.intrinsic),

@@ -35,6 +35,9 @@ struct Program::Storage {
   std::deque<std::vector<std::uint8_t>> combineOperands;
   std::deque<std::vector<sk::program::Layer>> layers;
   std::deque<std::vector<sk::program::IntrinsicUse>> intrinsics;
+  std::deque<sk::program::Table> tables;
+  std::vector<const sk::program::Table*> tableList;
+  std::deque<std::vector<sk::program::TableUse>> tableUses;
   std::deque<std::vector<const sk::program::Element*>> temporaries;
   std::deque<std::vector<sk::program::ArgumentPlane>> bundleLayers;
   std::deque<std::vector<sk::program::Bundle>> bundles;
@@ -59,7 +62,7 @@ static_assert(static_cast<int>(Scalar::Snorm16) == static_cast<int>(sk::program:
 static_assert(static_cast<int>(ParamRole::Spec) == static_cast<int>(sk::program::Role::Spec));
 static_assert(static_cast<int>(ScatterOp::Max) == static_cast<int>(sk::program::ScatterOp::Max));
 static_assert(static_cast<int>(sk::Precision::Double) == 4 && static_cast<int>(sk::Accumulate::Exact) == 4 &&
-                  static_cast<int>(sk::Intrinsics::Accurate) == 2,
+                  static_cast<int>(sk::Intrinsics::Accurate) == 2 && static_cast<int>(sk::Tables::On) == 2,
               "frontend/choices.cpp has the same order");
 static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program::Boundary::Border));
 
@@ -71,6 +74,7 @@ class Builder {
 
   void run() {
     for (const std::string& source : module_.sources) storage_.sources.push_back(storage_.keep(source));
+    for (const Table& table : module_.tables) storage_.tableList.push_back(describe(table));
     for (KernelId id = 0; id < module_.kernels.size(); ++id) add(id);
   }
 
@@ -81,7 +85,8 @@ class Builder {
     Unit unit{.id = id, .kernel = whole(kernel)};
     unit.kernel.options = {static_cast<sk::Accumulate>(kernel.choices.accumulate),
                            static_cast<sk::Precision>(kernel.choices.precision),
-                           static_cast<sk::Intrinsics>(kernel.choices.intrinsics)};
+                           static_cast<sk::Intrinsics>(kernel.choices.intrinsics),
+                           static_cast<sk::Tables>(kernel.choices.tables)};
     unit.kernel.whyNotHalf = storage_.keep(kernel.forms.whyNotHalf);
     unit.kernel.whyNotWide = storage_.keep(kernel.forms.whyNotWide);
     if (kernel.reduction) {
@@ -92,6 +97,15 @@ class Builder {
       if (kernel.forms.wide) unit.kernel.wide = &form(*kernel.forms.wide);
     }
     storage_.units.push_back(unit);
+  }
+
+  const sk::program::Table* describe(const Table& table) {
+    if (!table.kernel) return nullptr;
+    return &storage_.tables.emplace_back(sk::program::Table{
+        .function = storage_.keep(qualifier(table.scope) + table.name),
+        .range = {table.low, table.high, static_cast<std::int32_t>(table.intervals)},
+        .interpolation = table.isCubic ? sk::Interpolation::Cubic : sk::Interpolation::Linear,
+        .values = &form(*table.kernel)});
   }
 
   sk::program::Kernel whole(const Kernel& kernel) {
@@ -130,6 +144,10 @@ class Builder {
         parameters.back().layers = layersOf(*plan, pass->operands[i].index, parameters.back());
       }
     }
+    std::vector<sk::program::TableUse>& tables = storage_.tableUses.emplace_back();
+    for (const FunctionId id : tabulatedFunctionsOf(module_, kernel)) {
+      tables.push_back({storage_.tableList[*module_.functions[id].table], storage_.keep(names.function(id))});
+    }
     std::string name = qualifier(kernel.scope) + kernel.name;
     if (kernel.pass) name += fmt::format(" (pass {} of {})", kernel.pass->number, kernel.pass->count);
     return {.name = storage_.keep(std::move(name)),
@@ -143,7 +161,8 @@ class Builder {
             .usesLoops = uses.loops,
             .usesDoubles = usesDoubles(module_, kernel),
             .usesExactSums = usesExactSums(module_, kernel),
-            .intrinsics = storage_.intrinsics.emplace_back(polyfills.intrinsics())};
+            .intrinsics = storage_.intrinsics.emplace_back(polyfills.intrinsics()),
+            .tables = tables};
   }
 
   sk::program::Reduction reduction(const Kernel& kernel, const sk::program::Kernel& fold) {
@@ -304,5 +323,6 @@ Program& Program::operator=(Program&&) noexcept = default;
 Program::~Program() = default;
 
 std::span<const Unit> Program::units() const { return storage_->units; }
+std::span<const sk::program::Table* const> Program::tables() const { return storage_->tableList; }
 
 }  // namespace skc::emit

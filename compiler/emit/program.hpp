@@ -30,6 +30,8 @@ class Program {
 
   /// In the order of the module's kernels.
   std::span<const Unit> units() const;
+  /// In the order of the module's tables; null for those that no kernel uses.
+  std::span<const sk::program::Table* const> tables() const;
 
  private:
   struct Storage;

@@ -40,6 +40,9 @@ std::string rawString(std::string_view text) {
   return result;
 }
 
+/// A float of C++, with all its digits.
+std::string floatLiteral(float value) { return fmt::format("{:#}F", value); }
+
 /// A path as a string literal.
 std::string quoted(std::string_view text) {
   std::string result = "\"";
@@ -53,7 +56,10 @@ std::string quoted(std::string_view text) {
 class SourceWriter {
  public:
   SourceWriter(const Module& module, const Program& program)
-      : module_(module), program_(program), names_(descriptorNames(module, program)) {}
+      : module_(module),
+        program_(program),
+        names_(descriptorNames(module, program)),
+        tableNames_(tableNames(module)) {}
 
   std::string text(const StubParts& parts) {
     withNative_ = parts.withNative;
@@ -66,6 +72,7 @@ class SourceWriter {
       for (std::uint32_t i = 0; i < module_.structs.size(); ++i) {
         if (module_.structs[i].isMade) madeElement(i);
       }
+      for (TableId id = 0; id < tableNames_.size(); ++id) table(id);
       isWritten_.assign(names_.size(), false);
       for (std::size_t i = 0; i < names_.size(); ++i) descriptors(i);
       text_ += "}  // namespace\n}  // namespace sk::program\n";
@@ -88,6 +95,18 @@ class SourceWriter {
   }
 
   // ---- descriptors ------------------------------------------------------------------------------
+
+  /// The constant NAMETable of a table that some kernel uses.
+  void table(TableId id) {
+    const sk::program::Table* made = program_.tables()[id];
+    if (made == nullptr) return;
+    const std::string& name = tableNames_[id];
+    kernel(*made->values, module_.kernels[*module_.tables[id].kernel], name);
+    text_ += fmt::format(
+        "constexpr Table {0}Table = {{\"{1}\", {{{2}, {3}, {4}}}, Interpolation::{5}, &{0}Kernel}};\n\n",
+        name, made->function, floatLiteral(made->range.low), floatLiteral(made->range.high),
+        made->range.intervals, made->interpolation == sk::Interpolation::Cubic ? "Cubic" : "Linear");
+  }
 
   /// Those of an overload that combines come before those that name it.
   void descriptors(std::size_t unit) {
@@ -241,6 +260,7 @@ class SourceWriter {
     }
     text_ += "};\n\n";
     intrinsics(kernel, name);
+    tableUses(kernel, name);
   }
 
   void intrinsics(const sk::program::Kernel& kernel, const std::string& name) {
@@ -249,6 +269,17 @@ class SourceWriter {
       uses.push_back(fmt::format("{{Intrinsic::{}, {}}}", enumerator(use.intrinsic), use.widths));
     }
     list("IntrinsicUse", name + "Intrinsics", uses);
+    if (!uses.empty()) text_ += "\n";
+  }
+
+  void tableUses(const sk::program::Kernel& kernel, const std::string& name) {
+    std::vector<std::string> uses;
+    for (const sk::program::TableUse& use : kernel.tables) {
+      const auto id = std::ranges::find(program_.tables(), use.table) - program_.tables().begin();
+      uses.push_back(
+          fmt::format("{{&{}Table, \"{}\"}}", tableNames_[static_cast<std::size_t>(id)], use.name));
+    }
+    list("TableUse", name + "Tables", uses);
     if (!uses.empty()) text_ += "\n";
   }
 
@@ -342,6 +373,7 @@ class SourceWriter {
     if (kernel.wide != nullptr) members.push_back(fmt::format(".wide = &{}WideKernel", name));
     if (!kernel.whyNotHalf.empty()) members.push_back(".whyNotHalf = " + quoted(kernel.whyNotHalf));
     if (!kernel.whyNotWide.empty()) members.push_back(".whyNotWide = " + quoted(kernel.whyNotWide));
+    if (!kernel.tables.empty()) members.push_back(fmt::format(".tables = {}Tables", name));
     const std::string newLine = "\n" + std::string(column, ' ');
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
   }
@@ -350,11 +382,13 @@ class SourceWriter {
     constexpr std::string_view accumulates[] = {"Default", "Tree", "Compensated", "Extended", "Exact"};
     constexpr std::string_view precisions[] = {"Default", "Half", "Single", "Extended", "Double"};
     constexpr std::string_view intrinsics[] = {"Default", "Fast", "Accurate"};
+    constexpr std::string_view tables[] = {"Default", "Off", "On"};
     if (options == CallOptions{}) return;
-    members.push_back(fmt::format(".options = {{Accumulate::{}, Precision::{}, Intrinsics::{}}}",
+    members.push_back(fmt::format(".options = {{Accumulate::{}, Precision::{}, Intrinsics::{}, Tables::{}}}",
                                   accumulates[static_cast<std::size_t>(options.accumulate)],
                                   precisions[static_cast<std::size_t>(options.precision)],
-                                  intrinsics[static_cast<std::size_t>(options.intrinsics)]));
+                                  intrinsics[static_cast<std::size_t>(options.intrinsics)],
+                                  tables[static_cast<std::size_t>(options.tables)]));
   }
 
   /// The name of a parameter's condition.
@@ -544,6 +578,7 @@ class SourceWriter {
   const Module& module_;
   const Program& program_;
   std::vector<std::string> names_;
+  std::vector<std::string> tableNames_;
   std::vector<bool> isWritten_;   ///< descriptors, by unit
   std::set<KernelId> combinations_;   ///< of exact sums, whose descriptors are written
   bool withNative_ = true;

@@ -55,7 +55,7 @@ void ModuleLowering::stream(const clang::VarDecl* declaration, const StreamSynta
 
 ir::DeclaredExtent ModuleLowering::streamExtent(const ExtentSyntax& syntax, const clang::VarDecl* stream) {
   const clang::ValueDecl* constant =
-      syntax.name ? visibleValue(stream, syntax.name) : generatedExtents_.at(syntax.constant);
+      syntax.name ? visibleValue(stream, syntax.name) : generatedGlobals_.at(syntax.constant);
   if (!constant) return {syntax.name->getName().str(), 0};
   const bool isStream = syntax_.stream(constant->getLocation()) != nullptr;
   if (syntax.name && !isStream &&

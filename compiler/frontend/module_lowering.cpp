@@ -54,7 +54,7 @@ void ModuleLowering::declarations(const clang::DeclContext* scope) {
         declarations(linkage);
       } else if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declaration)) {
         if (isGenerated(variable)) {
-          generatedExtents_[variable->getName().str()] = variable;
+          generatedGlobals_[variable->getName().str()] = variable;
         } else if (const StreamSyntax* declared = syntax_.stream(variable->getLocation())) {
           stream(variable, *declared);
         } else {
@@ -400,6 +400,9 @@ ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, 
   try {
     FunctionLowering lowering(*this);
     ir::Function lowered = lowering.function(definition);
+    if (const TableSyntax* declared = syntax_.table(definition->getLocation())) {
+      lowered.table = table(definition, *declared);
+    }
     // callees were added meanwhile: the table is in an order in which everything is defined before use
     const auto id = static_cast<ir::FunctionId>(module_.functions.size());
     module_.functions.push_back(std::move(lowered));

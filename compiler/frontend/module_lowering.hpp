@@ -88,6 +88,8 @@ class ModuleLowering {
   void checkKernelShape(const ir::Kernel& kernel, clang::SourceLocation where);
   void pairReductions();
   void stream(const clang::VarDecl* declaration, const StreamSyntax& syntax);
+  ir::TableId table(const clang::FunctionDecl* declaration, const TableSyntax& syntax);
+  std::uint32_t generatedNumber(const std::string& name);
   ir::DeclaredExtent streamExtent(const ExtentSyntax& syntax, const clang::VarDecl* stream);
   const clang::ValueDecl* visibleValue(const clang::VarDecl* stream, const clang::IdentifierInfo* name);
   ir::ExprPtr generatedConstant(const std::string& name);
@@ -107,7 +109,7 @@ class ModuleLowering {
   std::unordered_map<const clang::Decl*, ir::ConstantId> constants_;
   std::unordered_map<const clang::Decl*, FunctionEntry> functions_;
   std::unordered_map<std::string, std::uint32_t> sourceIndex_;
-  std::unordered_map<std::string, const clang::VarDecl*> generated_, generatedExtents_;
+  std::unordered_map<std::string, const clang::VarDecl*> generated_, generatedGlobals_;
   std::unordered_set<const clang::Decl*> failedConstants_, constantsInProgress_;
   bool inlineConstants_ = false;
 };

@@ -48,6 +48,12 @@ struct StreamSyntax {
   std::vector<ExtentSyntax> extents;   ///< slowest first
 };
 
+/// [[table(lo, hi, n, linear)]] in front of a function: the generated constants that hold its numbers.
+struct TableSyntax {
+  std::string low, high, intervals;
+  bool isCubic = false;
+};
+
 class DeclarationSyntax {
  public:
   void add(clang::SourceLocation name, KernelSyntax kernel) {
@@ -61,6 +67,10 @@ class DeclarationSyntax {
     streams_[name.getRawEncoding()] = std::move(stream);
   }
 
+  void add(clang::SourceLocation name, TableSyntax table) {
+    tables_[name.getRawEncoding()] = std::move(table);
+  }
+
   /// `name`: a token before the parameters of `template kernel void f<float>(...);`.
   void addInstantiation(clang::SourceLocation name) { instantiations_.insert(name.getRawEncoding()); }
   bool isInstantiation(clang::SourceLocation name) const {
@@ -69,6 +79,7 @@ class DeclarationSyntax {
 
   const KernelSyntax* kernel(clang::SourceLocation name) const { return find(kernels_, name); }
   const StreamSyntax* stream(clang::SourceLocation name) const { return find(streams_, name); }
+  const TableSyntax* table(clang::SourceLocation name) const { return find(tables_, name); }
   const ParamSyntax* param(clang::SourceLocation name) const { return find(params_, name); }
 
  private:
@@ -81,6 +92,7 @@ class DeclarationSyntax {
   std::unordered_map<std::uint32_t, KernelSyntax> kernels_;
   std::unordered_map<std::uint32_t, ParamSyntax> params_;
   std::unordered_map<std::uint32_t, StreamSyntax> streams_;
+  std::unordered_map<std::uint32_t, TableSyntax> tables_;
   std::unordered_set<std::uint32_t> instantiations_;
 };
 

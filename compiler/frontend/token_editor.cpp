@@ -12,6 +12,7 @@
 #include "frontend/constructor_editor.hpp"
 #include "frontend/parameter_editor.hpp"
 #include "frontend/stream_editor.hpp"
+#include "frontend/table_editor.hpp"
 #include "frontend/token_cursor.hpp"
 
 namespace skc::frontend {
@@ -164,8 +165,24 @@ class Editor {
     if (cursor_.at(tok::semi)) cursor_.take();
   }
 
+  /// `[[table(lo, hi, n, linear)]] float f(float x) { ... }`
+  void editTable(std::size_t behind) {
+    const Token attribute = cursor_.peek(2);
+    const bool isTemplate = !out_.empty() && out_.back().is(tok::greater);
+    const std::optional<TableSyntax> table =
+        takeTable(cursor_, behind, TokenMaker(preprocessor_), diagnostics_, constants_, out_);
+    const bool isKernel = atDeclarationWord("kernel") || atDeclarationWord("reduce");
+    const std::optional<Token> name = isKernel || isTemplate ? std::nullopt : copyNamed();
+    if (!name) {
+      diagnostics_.report(Diag::TablePlace, locOf(attribute));
+    } else if (table) {
+      syntax_.add(name->getLocation(), *table);
+    }
+  }
+
   /// `[[precision(extended)]] kernel void f...`; what stands before other declarations is C++'s.
   void editChoices(std::size_t behind) {
+    if (namesTable(cursor_)) return editTable(behind);
     const Token& declared = cursor_.peek(behind);
     if (isWord(declared, "kernel") || isWord(declared, "reduce")) {
       const ir::Choices choices = takeChoices(cursor_, behind, diagnostics_);
@@ -242,30 +259,33 @@ class Editor {
     return cursor_.peek(at + 1).is(tok::equal);
   }
 
-  /// Any other declaration: copied, but for the parameter list of a function.
-  void copyDeclaration() {
+  void copyDeclaration() { copyNamed(); }
+
+  /// Any other declaration: copied, but for the parameter list of a function, whose name it gives.
+  std::optional<Token> copyNamed() {
     bool initializer = false;
     bool record = false;
-    bool function = false;
+    std::optional<Token> function;
     while (!cursor_.at(tok::eof)) {
       const Token& token = cursor_.peek();
-      if (token.is(tok::semi)) return copyToken();
-      if (token.is(tok::r_brace)) return copyToken();
+      if (token.isOneOf(tok::semi, tok::r_brace)) {
+        copyToken();
+        return function;
+      }
       initializer = initializer || token.is(tok::equal) || isValueAhead();
       if (token.isOneOf(tok::kw_struct, tok::kw_class, tok::kw_union, tok::kw_enum)) record = true;
       if (token.is(tok::l_brace)) {
         copyBraces();
-        if (!initializer && (function || !record)) return;
+        if (!initializer && (function || !record)) return function;
         continue;
       }
       if (token.is(tok::l_paren) && !initializer && !function && !out_.empty() &&
           out_.back().is(tok::identifier)) {
-        function = true;
-        const Token name = out_.back();
+        function = out_.back();
         const std::vector<Token> declared = cursor_.takeParenthesized();
         if (declared.empty()) {
-          diagnostics_.report(Diag::UnclosedParameters, locOf(name), {nameOf(name)});
-          return;
+          diagnostics_.report(Diag::UnclosedParameters, locOf(*function), {nameOf(*function)});
+          return function;
         }
         ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, out_);
         const std::vector<Token> edited = parameters.edit(declared, FunctionKind::Helper);
@@ -276,6 +296,7 @@ class Editor {
       }
       copyToken();
     }
+    return function;
   }
 
   /// Behind `const float2 a`, whose parentheses the constructors made a value.

@@ -313,7 +313,8 @@ Function clone(const Function& function) {
           .variables = function.variables,
           .parameterCount = function.parameterCount,
           .body = clone(function.body),
-          .loc = function.loc};
+          .loc = function.loc,
+          .table = function.table};
 }
 
 }  // namespace skc::ir

@@ -53,6 +53,7 @@ using VarId = std::uint32_t;
 using FunctionId = std::uint32_t;
 using ConstantId = std::uint32_t;
 using KernelId = std::uint32_t;
+using TableId = std::uint32_t;
 
 // clang-format off: one node a line
 
@@ -176,6 +177,18 @@ struct Function {
   std::uint32_t parameterCount = 0;
   Block body;
   Loc loc;
+  std::optional<TableId> table = {};   ///< that may stand for a Call of it
+};
+
+/// A table of the values of a function, which takes one float In and gives a float. `kernel`, set by tabulate where
+/// some kernel calls the function, has one Input and one Output, and computes it.
+struct Table {
+  std::string name;  ///< the function's, without namespaces
+  std::vector<std::string> scope;  ///< enclosing namespaces, outermost first
+  float low, high;
+  std::uint32_t intervals;
+  bool isCubic;  ///< else linear
+  std::optional<KernelId> kernel = {};
 };
 
 struct Constant {
@@ -200,7 +213,7 @@ enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };
 struct KernelParam {
   std::string name;
   ParamRole role;
-  Type type;                           ///< of one element
+  Type type;  ///< of one element
   std::optional<Type> held = {};  ///< what the stream holds where that is another type: floats for doubles
   std::uint8_t rank = 0;  ///< Gather, Scatter
   Boundary boundary = Boundary::Clamp;  ///< Gather
@@ -312,9 +325,9 @@ struct PassOf {
 };
 
 /// What the author chooses by [[precision(extended)]] and the like, in front of a kernel: numbers of the enumerators of
-/// sk::Precision, sk::Accumulate and sk::Intrinsics; 0 where nothing is said.
+/// sk::Precision, sk::Accumulate, sk::Intrinsics and sk::Tables; 0 where nothing is said.
 struct Choices {
-  std::uint8_t precision = 0, accumulate = 0, intrinsics = 0;
+  std::uint8_t precision = 0, accumulate = 0, intrinsics = 0, tables = 0;
 };
 
 struct Kernel {
@@ -358,6 +371,7 @@ struct Module {
   std::vector<Array> arrays;
   std::vector<Constant> constants;
   std::vector<Function> functions;
+  std::vector<Table> tables;
   std::vector<Kernel> kernels;
   std::vector<DeclaredStream> streams;
 };

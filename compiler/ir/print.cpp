@@ -181,6 +181,12 @@ std::string printStream(const Module& module, const DeclaredStream& stream) {
                      stream.name, join(extents, ", "));
 }
 
+/// " table -5 to 5 in 1024, linear".
+std::string printTable(const Table& table) {
+  return fmt::format(" table {} to {} in {}, {}", table.low, table.high, table.intervals,
+                     table.isCubic ? "cubic" : "linear");
+}
+
 std::string printStruct(const Module& module, const Struct& type) {
   std::string text = fmt::format("struct {}{} {{\n", qualifier(type.scope), type.name);
   for (const StructField& field : type.fields) {
@@ -208,7 +214,8 @@ std::string print(const Module& module) {
   for (const Kernel& kernel : module.kernels) text += printKernel(module, kernel);
   for (std::size_t i = 0; i < module.functions.size(); ++i) {
     const Function& function = module.functions[i];
-    text += fmt::format("function @{} {} -> {}\n{}\n", i, function.name, print(module, function.result),
+    text += fmt::format("function @{} {} -> {}{}\n{}\n", i, function.name, print(module, function.result),
+                        function.table ? printTable(module.tables[*function.table]) : "",
                         print(module, function));
   }
   return text;

@@ -75,6 +75,12 @@ std::optional<FunctionId> findRecursion(const Module& module) {
   return std::nullopt;
 }
 
+std::vector<FunctionId> tabulatedFunctionsOf(const Module& module, const Kernel& kernel) {
+  std::vector<FunctionId> found = functionsOf(module, kernel);
+  std::erase_if(found, [&](FunctionId id) { return !module.functions[id].table; });
+  return found;
+}
+
 bool holdsDouble(const Module& module, Type type) {
   if (type.kind == Type::Kind::Array) return holdsDouble(module, module.arrays[type.index].element);
   if (type.kind != Type::Kind::Struct) return type.isDouble();

@@ -17,6 +17,9 @@ std::vector<FunctionId> callees(const Function& function);
 /// reaches.
 std::vector<FunctionId> functionsOf(const Module& module, const Kernel& kernel);
 
+/// Those of them that a table may stand for.
+std::vector<FunctionId> tabulatedFunctionsOf(const Module& module, const Kernel& kernel);
+
 /// Whether a value of this type is a double or holds one.
 bool holdsDouble(const Module& module, Type type);
 /// Whether a kernel's parameters or functions have anything to do with doubles.

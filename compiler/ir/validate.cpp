@@ -348,6 +348,13 @@ void checkTables(const Module& module, Stage stage) {
   }
 }
 
+void checkTabulated(const Module& module, const Function& function) {
+  require(*function.table < module.tables.size(), "its table is not in the table");
+  require(function.result.isFloat() && function.result.isScalar() && function.parameterCount == 1 &&
+              function.variables[0].role == VarRole::In && function.variables[0].type == function.result,
+          "it has a table, but does not take one float and give one");
+}
+
 }  // namespace
 
 std::string validate(const Module& module, Stage stage) {
@@ -363,8 +370,10 @@ std::string validate(const Module& module, Stage stage) {
       const Function& function = module.functions[i];
       // what folding has cut off may name streams, and nobody knows of which kernel
       if (stage == Stage::Specialized && owner[i] == nullptr) continue;
-      within(fmt::format("function @{} '{}'", i, function.name),
-             [&] { FunctionChecker(module, stage, function, owner[i]).check(); });
+      within(fmt::format("function @{} '{}'", i, function.name), [&] {
+        FunctionChecker(module, stage, function, owner[i]).check();
+        if (function.table) checkTabulated(module, function);
+      });
     }
   } catch (const Violation& violation) {
     return violation.text;

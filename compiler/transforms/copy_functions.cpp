@@ -23,4 +23,8 @@ FunctionId copyFunction(Module& module, FunctionId id, FunctionCopies& copies) {
   return copies[id] = static_cast<FunctionId>(module.functions.size() - 1);
 }
 
+void dropTables(Module& module, const FunctionCopies& copies) {
+  for (const auto& [from, to] : copies) module.functions[to].table.reset();
+}
+
 }  // namespace skc

@@ -16,4 +16,7 @@ using FunctionCopies = std::map<ir::FunctionId, ir::FunctionId>;
 /// A copy of a function, made behind copies of those that it calls.
 ir::FunctionId copyFunction(ir::Module& module, ir::FunctionId id, FunctionCopies& copies);
 
+/// Copies compute what a table might stand for: those of forms in other precisions than the table's.
+void dropTables(ir::Module& module, const FunctionCopies& copies);
+
 }  // namespace skc

@@ -150,6 +150,7 @@ class Rounder {
 KernelId roundKernel(Module& module, KernelId id) {
   FunctionCopies copies;
   const FunctionId entry = copyFunction(module, module.kernels[id].entry, copies);
+  dropTables(module, copies);
   const Kernel& kernel = module.kernels[id];
   Kernel made;
   made.name = kernel.name;

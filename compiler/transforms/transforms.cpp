@@ -21,6 +21,7 @@
 #include "transforms/round_halves.hpp"
 #include "transforms/specialize_gathers.hpp"
 #include "transforms/sum_exactly.hpp"
+#include "transforms/tabulate.hpp"
 #include "transforms/widen_floats.hpp"
 
 namespace skc {
@@ -48,6 +49,7 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 
 // First the gathers: from then on a function belongs to one kernel, and every later transform may
 // change it without looking at other callers.
+// Tables at any time before forms for other precisions, which do without.
 // Folding before deriving, so that what a branch on a literal switches off does not hide the pattern
 // of a fold.
 // Folding before guarding, too: a branch that is gone needs no stream.
@@ -63,6 +65,7 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // nobody plans for what is not needed.
 constexpr Transform transforms[] = {
     {"specialize-gathers", plain<specializeGathers>},
+    {"tabulate", plain<tabulate>},
     {"fold-constants", plain<foldConstants>},
     {"guard-streams", plain<guardStreams>},
     {"bound-pushes", plain<boundPushes>},

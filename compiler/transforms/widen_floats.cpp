@@ -127,6 +127,7 @@ class Widener {
     for (std::size_t i = 0; i < module_.kernels[id].params.size(); ++i) {
       made.params.push_back(param(module_.kernels[id].params[i], holdsFloats));
     }
+    dropTables(module_, copies);
     for (const auto& [from, to] : copies) function(to, made);
     module_.kernels.push_back(std::move(made));
     return static_cast<KernelId>(module_.kernels.size() - 1);

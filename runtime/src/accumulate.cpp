@@ -91,6 +91,7 @@ bool isExact(const CheckedReduction& checked, const CallOptions& options) {
 CallOptions resolved(const CheckedReduction& checked, const Reduction& reduction, const CallOptions& call) {
   CallOptions options = checked.device.configuration.resolve(reduction.fold, call);
   if (reduction.compensated == nullptr && reduction.exact.empty()) options.accumulate = call.accumulate;
+  checkTables(reduction.fold, options);
   const bool isOfFloats =
       options.accumulate == Accumulate::Exact || options.accumulate == Accumulate::Compensated;
   if (isOfFloats && takesForm(options)) {
@@ -208,7 +209,8 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
   for (const std::uint8_t sum : second->sums) {
     pairs.push_back({.region = arguments[sum].region});
   }
-  run(second->finish, pairs, {.precision = Precision::Single, .intrinsics = options.intrinsics});
+  run(second->finish, pairs,
+      {.precision = Precision::Single, .intrinsics = options.intrinsics, .tables = options.tables});
 }
 
 }  // namespace sk

@@ -2,6 +2,7 @@
 #include "configuration.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include <fmt/format.h>
@@ -19,6 +20,7 @@ namespace {
 constexpr std::string_view precisions[] = {"half", "single", "extended", "double"};
 constexpr std::string_view accumulates[] = {"tree", "compensated", "extended", "exact"};
 constexpr std::string_view intrinsics[] = {"fast", "accurate"};
+constexpr std::string_view tableUses[] = {"off", "on"};
 
 /// The enumerator of a name: they follow Default in this order.
 template <class Choice>
@@ -42,13 +44,47 @@ CallOptions optionsOf(const std::string& file, const toml::table& table) {
       options.accumulate = choiceOf<Accumulate>(accumulates, file, "accumulate", node);
     } else if (key == "intrinsics") {
       options.intrinsics = choiceOf<Intrinsics>(intrinsics, file, "intrinsics", node);
+    } else if (key == "tables") {
+      options.tables = choiceOf<Tables>(tableUses, file, "tables", node);
     } else {
-      throw Error(
-          fmt::format("{}:{}: there is no choice '{}'; there are precision, accumulate and intrinsics", file,
-                      key.source().begin.line, key.str()));
+      throw Error(fmt::format(
+          "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics and tables", file,
+          key.source().begin.line, key.str()));
     }
   }
   return options;
+}
+
+/// A number of the file, which is finite.
+float numberOf(const std::string& file, const toml::key& key, const toml::node& node) {
+  const std::optional<double> value = node.value<double>();
+  if (!value || !std::isfinite(static_cast<float>(*value))) {
+    throw Error(
+        fmt::format("{}:{}: {} is a number of float's range", file, node.source().begin.line, key.str()));
+  }
+  return static_cast<float>(*value);
+}
+
+Configuration::RangeChoice rangeOf(const std::string& file, const toml::key& name, const toml::table& table) {
+  Configuration::RangeChoice choice{.place = fmt::format("{}:{}", file, name.source().begin.line)};
+  for (const auto& [key, node] : table) {
+    if (key == "low") {
+      choice.low = numberOf(file, key, node);
+    } else if (key == "high") {
+      choice.high = numberOf(file, key, node);
+    } else if (key == "intervals") {
+      const std::int64_t count = node.value_exact<std::int64_t>().value_or(0);
+      if (count < 1 || count > mostIntervals) {
+        throw Error(fmt::format("{}:{}: intervals is a whole number from 1 to {}", file,
+                                node.source().begin.line, mostIntervals));
+      }
+      choice.intervals = static_cast<std::int32_t>(count);
+    } else {
+      throw Error(fmt::format("{}:{}: a table has no '{}'; it has low, high and intervals", file,
+                              key.source().begin.line, key.str()));
+    }
+  }
+  return choice;
 }
 
 toml::table parsed(const std::string& file) {
@@ -66,6 +102,7 @@ CallOptions merged(CallOptions first, const CallOptions& second) {
   if (first.accumulate == Accumulate::Default) first.accumulate = second.accumulate;
   if (first.precision == Precision::Default) first.precision = second.precision;
   if (first.intrinsics == Intrinsics::Default) first.intrinsics = second.intrinsics;
+  if (first.tables == Tables::Default) first.tables = second.tables;
   return first;
 }
 
@@ -73,19 +110,40 @@ CallOptions merged(CallOptions first, const CallOptions& second) {
 
 Configuration::Configuration(const std::string& file) {
   for (const auto& [key, node] : parsed(file)) {
-    const toml::table* kernels = node.as_table();
-    if (key != "kernels" || kernels == nullptr) {
-      throw Error(fmt::format("{}:{}: expected tables like [kernels.\"heat::diffuse\"] or [kernels.\"*\"]",
-                              file, key.source().begin.line));
+    const toml::table* named = node.as_table();
+    if ((key != "kernels" && key != "tables") || named == nullptr) {
+      throw Error(
+          fmt::format("{}:{}: expected tables like [kernels.\"heat::diffuse\"], [kernels.\"*\"] or "
+                      "[tables.\"heat::response\"]",
+                      file, key.source().begin.line));
     }
-    for (const auto& [name, choices] : *kernels) {
+    for (const auto& [name, choices] : *named) {
       if (!choices.is_table()) {
-        throw Error(fmt::format("{}:{}: expected a table, [kernels.\"{}\"]", file, name.source().begin.line,
-                                name.str()));
+        throw Error(fmt::format("{}:{}: expected a table, [{}.\"{}\"]", file, name.source().begin.line,
+                                key.str(), name.str()));
       }
-      kernels_[std::string(name.str())] = optionsOf(file, *choices.as_table());
+      if (key == "kernels") {
+        kernels_[std::string(name.str())] = optionsOf(file, *choices.as_table());
+      } else {
+        tables_[std::string(name.str())] = sk::rangeOf(file, name, *choices.as_table());
+      }
     }
   }
+}
+
+TableRange Configuration::rangeOf(const program::Table& table) const {
+  TableRange range = table.range;
+  const auto found = tables_.find(table.function);
+  if (found == tables_.end()) return range;
+  const RangeChoice& choice = found->second;
+  range = {choice.low.value_or(range.low), choice.high.value_or(range.high),
+           choice.intervals.value_or(range.intervals)};
+  if (!(range.low < range.high)) {
+    throw Error(
+        fmt::format("{}: the table of '{}' begins at {} and ends at {}; say low and high so that low is less",
+                    choice.place, table.function, range.low, range.high));
+  }
+  return range;
 }
 
 CallOptions Configuration::resolve(const program::Kernel& kernel, const CallOptions& call) const {

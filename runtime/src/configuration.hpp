@@ -7,9 +7,16 @@
 //
 //   [kernels."*"]
 //   intrinsics = "fast"
+//
+//   [tables."heat::response"]
+//   low = -4.0
+//   high = 4.0
+//   intervals = 4096
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -27,9 +34,18 @@ class Configuration {
   /// What a call computes with: its own choices, then those of the file for the kernel, then for "*", then the
   /// declaration's.
   CallOptions resolve(const program::Kernel& kernel, const CallOptions& call) const;
+  /// The range of a table: the file's, or what the declaration says. Throws sk::Error where both together make none.
+  TableRange rangeOf(const program::Table& table) const;
+
+  struct RangeChoice {
+    std::optional<float> low = {}, high = {};
+    std::optional<std::int32_t> intervals = {};
+    std::string place = {};  ///< FILE:LINE
+  };
 
  private:
   std::map<std::string, CallOptions, std::less<>> kernels_;
+  std::map<std::string, RangeChoice, std::less<>> tables_;
 };
 
 }  // namespace sk

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "configuration.hpp"
+#include "function_table.hpp"
 #include "sk/call.hpp"
 #include "sk/device.hpp"
 #include "sk/program.hpp"
@@ -59,6 +60,7 @@ class DeviceState {
 
   DeviceLimits limits;
   Configuration configuration;
+  FunctionTables tables;
 
  protected:
   DeviceState() = default;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "assemble/sinks.hpp"
+#include "assemble/tables.hpp"
 #include "check_argument.hpp"
 #include "gl/commands.hpp"
 #include "gl/errors.hpp"
@@ -94,6 +95,7 @@ GlDevice::~GlDevice() {
     framebuffers.clear();
     for (auto& [choice, programs] : caches_) programs.clear();
     sinkPrograms.clear();
+    tableTextures_.clear();
     samplers.clear();
     vertexArray = {};
   }
@@ -111,6 +113,7 @@ void GlDevice::forgetObjects() noexcept {
   framebuffers.forget();
   for (auto& [choice, programs] : caches_) programs.forget();
   sinkPrograms.forget();
+  for (auto& [table, texture] : tableTextures_) texture.forget();
   samplers.forget();
   vertexArray.forget();
 }
@@ -131,16 +134,36 @@ bool GlDevice::takesPairs(const CallOptions& options) const {
 void GlDevice::choose(const CallOptions& options) {
   const ProgramChoice choice{.accurate = options.intrinsics != Intrinsics::Fast,
                              .doubles = takesPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
-                             .barrier = barrier};
+                             .barrier = barrier,
+                             .tables = options.tables != Tables::Off};
   auto found = caches_.find(choice);
   if (found == caches_.end()) {
     assemble::Profile chosen = profile;
     chosen.accurate = choice.accurate;
     chosen.doubles = choice.doubles;
     chosen.barrier = choice.barrier;
+    chosen.tables = choice.tables;
     found = caches_.try_emplace(choice, *this, chosen).first;
   }
   programs_ = &found->second;
+}
+
+GLuint GlDevice::textureOf(const FunctionTable& table) {
+  gl::Texture& texture = tableTextures_[&table];
+  if (texture.name() == 0) {
+    const int width = assemble::coefficientsOf(table.report.interpolation);
+    const std::int32_t rows =
+        (table.report.range.intervals + assemble::tableWidth - 1) / assemble::tableWidth;
+    std::vector<float> texels = table.coefficients;
+    texels.resize(static_cast<std::size_t>(rows) * assemble::tableWidth * static_cast<std::size_t>(width));
+    texture = gl::Texture(bound, gl::formatOf(program::Scalar::Float, width), {assemble::tableWidth, rows});
+    if (texture.name() == 0) {
+      throw Error(fmt::format("'{}' has no memory for the table of '{}': {} KiB", capabilities.renderer,
+                              table.report.function, texels.size() * sizeof(float) >> 10));
+    }
+    texture.write(bound, {0, 0, assemble::tableWidth, rows}, 0, texels.data());
+  }
+  return texture.name();
 }
 
 void GlDevice::finish() {

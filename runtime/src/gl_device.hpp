@@ -38,6 +38,7 @@ struct ProgramChoice {
   bool accurate = true;
   assemble::Doubles doubles = assemble::Doubles::Native;
   Barrier barrier = Barrier::Xor;
+  bool tables = true;
   auto operator<=>(const ProgramChoice&) const = default;
 };
 
@@ -85,6 +86,8 @@ class GlDevice final : public DeviceState {
   /// From here on, the programs are those for a call with these options.
   void choose(const CallOptions& options);
   ProgramCache& programs() { return *programs_; }
+  /// The texture of a table, made at first. Binds a texture.
+  GLuint textureOf(const FunctionTable& table);
 
   /// Throws sk::Error where the driver has reported an error since it was last asked.
   void throwPendingError();
@@ -108,6 +111,7 @@ class GlDevice final : public DeviceState {
   void needExactSums(const program::Kernel& kernel);
 
   std::map<ProgramChoice, ProgramCache> caches_;
+  std::map<const FunctionTable*, gl::Texture> tableTextures_;
   ProgramCache* programs_;               ///< one of them
   std::optional<Arithmetic> arithmetic_;
 };

@@ -109,6 +109,11 @@ void bindOperands(GlDevice& device, KernelProgram& program, const program::Kerne
     device.bound.texture(unit, bundles[bundle].name(), true);
     device.bound.sampler(unit++, 0);
   }
+  for (KernelProgram::Table& table : program.tables) {
+    device.bound.texture(unit, table.texture, false);
+    device.bound.sampler(unit++, 0);
+    table.range.set(table.values.data());
+  }
   for (KernelProgram::Value& value : program.values) {
     value.uniform.set(operands[value.parameter].value);
   }

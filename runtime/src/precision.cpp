@@ -65,6 +65,12 @@ const Kernel& formOf(const Kernel& kernel, const CallOptions& options) {
   return kernel.wide != nullptr ? *kernel.wide : kernel;
 }
 
+void checkTables(const Kernel& kernel, const CallOptions& options) {
+  if (options.tables == Tables::On && takesForm(options)) {
+    fail(kernel, "tables have the precision of floats; call it in Precision::Single, or without Tables::On");
+  }
+}
+
 void reduceInForm(const CheckedReduction& checked, const Reduction& reduction,
                   std::span<const Argument> arguments, std::span<void* const> results,
                   const CallOptions& options) {

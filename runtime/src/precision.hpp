@@ -31,6 +31,9 @@ constexpr bool takesForm(const CallOptions& options) {
 /// The kernel's form for a call; itself for floats, and where it computes none. Throws sk::Error where it has none.
 const program::Kernel& formOf(const program::Kernel& kernel, const CallOptions& options);
 
+/// Throws sk::Error where a call asks for tables in another precision than theirs, which is float's.
+void checkTables(const program::Kernel& kernel, const CallOptions& options);
+
 /// Reduces in the form that the options take; the arguments have been checked. Throws sk::Error where there is none.
 void reduceInForm(const CheckedReduction& checked, const program::Reduction& reduction,
                   std::span<const Argument> arguments, std::span<void* const> results,

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "assemble/storage.hpp"
+#include "assemble/tables.hpp"
 #include "build_log.hpp"
 #include "gl_device.hpp"
 #include "sk/error.hpp"
@@ -108,7 +109,31 @@ void ProgramCache::findParameters(KernelProgram& made, const program::Kernel& ke
   for (const std::size_t bundle : made.bundles) {
     made.program.setSampler(assemble::bundleName(bundle), unit++);
   }
+  if (profile_.tables) {
+    findTables(made, kernel, unit);
+  }
   made.units = unit;
+}
+
+void ProgramCache::findTables(KernelProgram& made, const program::Kernel& kernel, int& unit) {
+  static constexpr program::Field range{"", program::Scalar::Float, 3, 0};
+  const int units = unit + static_cast<int>(kernel.tables.size());
+  if (!kernel.tables.empty() && units > device_.limits.textureUnits) {
+    throw Error(
+        fmt::format("{}: its streams and the tables of its functions take {} texture units, but this device "
+                    "has {}; call it "
+                    "with Tables::Off",
+                    kernel.name, units, device_.limits.textureUnits));
+  }
+  for (const program::TableUse& use : kernel.tables) {
+    const FunctionTable& table = device_.tables.of(*use.table, device_.configuration);
+    made.tables.push_back(
+        {device_.textureOf(table),
+         gl::FieldUniform(made.program.location(assemble::rangeName(use.name)), {&range, 1}),
+         {table.report.range.low, table.perUnit, static_cast<float>(table.report.range.intervals)}});
+    device_.bound.program(made.program.name());
+    made.program.setSampler(assemble::tableName(use.name), unit++);
+  }
 }
 
 void ProgramCache::findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter) {

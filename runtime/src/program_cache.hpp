@@ -43,6 +43,12 @@ struct KernelProgram {
     GLuint sampler = 0;         ///< for its only plane; 0: the texture's own settings
   };
 
+  struct Table {
+    GLuint texture;
+    gl::FieldUniform range;
+    std::array<float, 3> values;   ///< of the uniform
+  };
+
   /// Where a list's program finds the tree over the counts (assemble/count_tree.hpp).
   struct Tree {
     gl::IntUniform shift, levels;
@@ -62,6 +68,7 @@ struct KernelProgram {
   std::vector<Value> steps;     ///< of iterators
   std::vector<Read> reads;      ///< their planes lie on consecutive texture units, from 0, in this order
   std::vector<std::size_t> bundles;   ///< of the plan, on the units after these
+  std::vector<Table> tables;          ///< of functions, on the units after those
 };
 
 /// One variant of a reduction's passes.
@@ -93,6 +100,7 @@ class ProgramCache {
   std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
                                                    const assemble::Variant& variant);
   void findParameters(KernelProgram& made, const program::Kernel& kernel, const assemble::SpecValues& specs);
+  void findTables(KernelProgram& made, const program::Kernel& kernel, int& unit);
   void findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter);
   void addDoubles(KernelProgram& made, std::size_t number, const std::string& name,
                   std::span<const program::Field> parts) const;

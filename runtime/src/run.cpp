@@ -140,7 +140,9 @@ void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOp
     fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
   }
   if (DeviceState* device = checkCall(kernel, arguments)) {
-    device->run(kernel, arguments, device->configuration.resolve(kernel, options));
+    const CallOptions chosen = device->configuration.resolve(kernel, options);
+    checkTables(kernel, chosen);
+    device->run(kernel, arguments, chosen);
   }
 }
 

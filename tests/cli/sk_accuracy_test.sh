@@ -37,7 +37,7 @@ below() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a < b) }
 run 0 --help
 for option in --device --size --rounds --data --tolerance --json --chart; do prints "$option"; done
 run 1 nosuch
-says "there is no program 'nosuch': it is one of sum, dot, moments, diffusion, polynomial, transcendentals"
+says "there is no program 'nosuch': it is one of sum, dot, moments, diffusion, polynomial, transcendentals, tables"
 run 1 sum --data lumpy
 says 'lumpy'
 run 1 sum --size 0
@@ -67,7 +67,7 @@ done
 
 # Every program, on the best device.
 run 0 "${small[@]}" --json all.json --chart all.svg
-for program in sum dot moments diffusion polynomial transcendentals; do matches "^$program, [a-z 0-9]+: "; done
+for program in sum dot moments diffusion polynomial transcendentals tables; do matches "^$program, [a-z 0-9]+: "; done
 for data in uniform signed wide illconditioned; do matches "^sum, $data: 4096 numbers"; done
 matches '^  mode +time \[quartiles\] +rel err +scaled +bound  ok$'
 matches '^  single +1\.00 \[1\.00 1\.00\]'

@@ -8,10 +8,12 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sk/arithmetic.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
+#include "sk/table.hpp"
 #include "sk/types.hpp"
 
 namespace sk {
@@ -101,6 +103,9 @@ class Device {
   /// What the device's float arithmetic is good for. The first time that anybody asks, a program tries it with a
   /// thousand pairs of floats, in some ms; what comes of it is kept for the driver, on disk, too (docs/runtime.md).
   const Arithmetic& arithmetic();
+
+  /// The tables that stand for functions of kernels which have run on the device, by the functions' names.
+  std::vector<TableReport> tables() const;
 
   /// Waits until everything that was asked of the device is done.
   void finish();

@@ -22,7 +22,7 @@ enum class Accumulate : std::uint8_t {
   Tree,  ///< plain additions in a tree: the error is some u S log n
   Compensated,  ///< with what each addition loses summed beside it: u times the result and (log n)^2 u^2 S
   Extended,  ///< all of the reduce in pairs of floats, or, on a software renderer, in doubles: u times the result
-             ///< and 2^-44 S log n
+  ///< and 2^-44 S log n
   Exact,  ///< the sum itself, rounded once: the same bits in every order, on every device
 };
 
@@ -42,11 +42,20 @@ enum class Intrinsics : std::uint8_t {
   Accurate,  ///< within 3 ulp and with the special cases of C, by code of ours where the device's own are not
 };
 
+/// Whether functions that are declared with a table of their values, [[table(lo, hi, n, linear)]], are looked up there.
+/// Other precisions than float's compute them, whatever is chosen.
+enum class Tables : std::uint8_t {
+  Default,  ///< On
+  Off,  ///< they are computed
+  On,  ///< with the error that Device::tables() tells
+};
+
 /// What a call may choose, by `sum.with({.accumulate = ...})(x)`.
 struct CallOptions {
   Accumulate accumulate = Accumulate::Default;
   Precision precision = Precision::Default;
   Intrinsics intrinsics = Intrinsics::Default;
+  Tables tables = Tables::Default;
 
   bool operator==(const CallOptions&) const = default;
 };

@@ -21,6 +21,8 @@
 //   void  sk_put_p(ivecN i, T v)   element of scatter output p at i becomes v, or what Parameter::scatter
 //                              makes of it and v; nothing where i is outside
 //
+//   float sk_table_f(float x)  function f of the body, or its value in a table         (Kernel::tables)
+//
 // Doubles are of types sk_double, sk_double2, sk_double3 and sk_double4, whose components are members x, y, z
 // and w. A body computes with them by functions of one sk_double, which the assembler defines for native doubles or
 // for pairs of floats: assemble/doubles.hpp lists them.
@@ -34,6 +36,7 @@
 #include <string_view>
 
 #include "sk/options.hpp"
+#include "sk/table.hpp"
 
 namespace sk::native {
 struct Call;
@@ -186,6 +189,20 @@ struct IntrinsicUse {
 };
 
 struct Plan;
+struct Kernel;
+
+/// A function of one float that a table of its values may stand for. Bodies call it `sk_table_NAME(x)`, which the
+/// assembler defines as either (assemble/tables.hpp).
+struct Table {
+  std::string_view function;  ///< qualified, for messages
+  TableRange range;
+  Interpolation interpolation;
+  const Kernel* values;  ///< computes it: the table is made of what its native code gives in double
+};
+struct TableUse {
+  const Table* table;
+  std::string_view name;  ///< of the function in the body
+};
 
 /// A kernel as native code (sk/native): computing in float, and in double wherever the kernel says float.
 struct NativeKernel {
@@ -226,6 +243,7 @@ struct Kernel {
   const Kernel* half = nullptr;  ///< the form that rounds every float to half; null where there is none
   const Kernel* wide = nullptr;  ///< the form that computes in doubles what this one does in floats; likewise
   std::string_view whyNotHalf = {}, whyNotWide = {};  ///< where it computes floats, yet has no such form
+  std::span<const TableUse> tables = {};  ///< whose functions the body calls
 };
 
 /// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.

@@ -10,4 +10,5 @@
 #include "sk/iter.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
+#include "sk/table.hpp"
 #include "sk/types.hpp"

@@ -37,6 +37,7 @@ struct Profile {
   bool accurate = true;         ///< functions of ours for the intrinsics that devices get wrong
   Barrier barrier =
       Barrier::Xor;   ///< Precise needs GL_ARB_gpu_shader5, which devices of the profile may have
+  bool tables = true;           ///< functions that a table may stand for are looked up there
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();
@@ -124,6 +125,7 @@ struct Variant {
 /// scatter output after one for its texel. A list of a counted sink reads a tree (count_tree.hpp):
 ///   sk_odd sk_even sk_tree_shift   its textures (samplers) and log2 of their width
 ///   sk_levels, sk_rows[l]          the number of levels, and the first row of level l in its texture
+/// Of a function with a table, those of tables.hpp.
 ///
 /// Indices and extents are below 2^30. Gathers are not empty: the runtime refuses such a call.
 std::string fragmentProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);

@@ -10,6 +10,7 @@
 #include "assemble/doubles.hpp"
 #include "assemble/exact_sums.hpp"
 #include "assemble/intrinsics.hpp"
+#include "assemble/tables.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -113,6 +114,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   addLines(program, variables_);
   addFunctions(program, used_);
   program += functions_;
+  program += tableDefinitions(kernel.tables, profile.tables);
   addForeign(program, kernel.body);
   program += "\nvoid main() {\n" + prologue_ + main_ + "}\n";
   return program;

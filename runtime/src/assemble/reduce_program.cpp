@@ -53,6 +53,7 @@ Kernel kernelOf(const Reduction& reduction, Walk walk) {
   if (walk == Walk::Nothing) {
     kernel.body = {};
     kernel.usesIndex = kernel.usesExtent = kernel.usesLoops = false;
+    kernel.tables = {};
   }
   return kernel;
 }

@@ -59,10 +59,12 @@ bool isSameRegion(const StreamRegion& a, const StreamRegion& b) {
 /// The operands of one call, with what they point to.
 class Operands {
  public:
-  Operands(RealType real, const Kernel& kernel, std::span<const Argument> arguments, const Shape& domain)
+  Operands(RealType real, const Kernel& kernel, std::span<const Argument> arguments, const Shape& domain,
+           std::vector<native::Table> tables)
       : real_(real),
         kernel_(kernel),
         arguments_(arguments),
+        tables_(std::move(tables)),
         specs_(specsOf(kernel, arguments)),
         domain_(domain),
         list_(arguments.size()) {
@@ -72,7 +74,7 @@ class Operands {
   }
 
   std::span<Operand> list() { return list_; }
-  native::Call call() const { return {list_, fastestFirst(domain_)}; }
+  native::Call call() const { return {list_, fastestFirst(domain_), tables_}; }
 
   /// Memory for a value of this element.
   Components& value(const program::Element& element, std::int64_t count = 1) {
@@ -170,6 +172,7 @@ class Operands {
   RealType real_;
   const Kernel& kernel_;
   std::span<const Argument> arguments_;
+  std::vector<native::Table> tables_;
   const assemble::SpecValues specs_;
   Shape domain_;
   std::vector<Operand> list_;
@@ -185,10 +188,12 @@ class Folding {
   Operands fold;
 
   Folding(RealType real, const program::Reduction& reduction, std::span<const Argument> arguments,
-          const Shape& domain)
-      : fold(real, reduction.fold, arguments, domain),
+          const Shape& domain, std::vector<native::Table> foldTables,
+          std::vector<native::Table> combineTables)
+      : fold(real, reduction.fold, arguments, domain, std::move(foldTables)),
         isSingle_(real == RealType::Float),
-        native_(*reduction.native) {
+        native_(*reduction.native),
+        combineTables_(std::move(combineTables)) {
     for (const std::uint8_t operand : reduction.combineOperands) {
       combine_.push_back(fold.list()[operand]);
     }
@@ -196,17 +201,18 @@ class Folding {
   }
 
   void run(const Extents& block) {
-    const native::ReduceCall call{fold.call(), {combine_, {1, 1, 1, 1}}, block};
+    const native::ReduceCall call{fold.call(), {combine_, {1, 1, 1, 1}, combineTables_}, block};
     (isSingle_ ? native_.single : native_.reference)(call);
   }
   void storeIdentity() {
-    const native::ReduceCall call{fold.call(), {combine_, {1, 1, 1, 1}}, {1, 1, 1, 1}};
+    const native::ReduceCall call{fold.call(), {combine_, {1, 1, 1, 1}, combineTables_}, {1, 1, 1, 1}};
     (isSingle_ ? native_.singleIdentity : native_.referenceIdentity)(call);
   }
 
  private:
   bool isSingle_;
   const program::NativeReduction& native_;
+  std::vector<native::Table> combineTables_;
   std::vector<Operand> combine_;
 };
 
@@ -236,18 +242,30 @@ RealType NativeDevice::realOf(const Kernel& kernel, const CallOptions& options) 
   return isWide(options) ? RealType::Double : real_;
 }
 
+std::vector<native::Table> NativeDevice::tablesOf(const Kernel& kernel, RealType real,
+                                                  const CallOptions& options) {
+  std::vector<native::Table> list;
+  if (real != RealType::Float || options.tables == Tables::Off) return list;
+  for (const program::TableUse& use : kernel.tables) {
+    list.push_back(tables.of(*use.table, configuration).native());
+  }
+  return list;
+}
+
 void NativeDevice::run(const Kernel& kernel, std::span<const Argument> arguments,
                        const CallOptions& options) {
   const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
   const RealType real = realOf(kernel, options);
-  Operands operands(real, kernel, arguments, domain);
+  Operands operands(real, kernel, arguments, domain, tablesOf(kernel, real, options));
   (real == RealType::Float ? kernel.native->single : kernel.native->reference)(operands.call());
   operands.settle();
 }
 
 void NativeDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
                           const Shape& domain, std::span<void* const> results, const CallOptions& options) {
-  Folding folding(realOf(reduction.fold, options), reduction, arguments, domain);
+  const RealType real = realOf(reduction.fold, options);
+  Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
+                  tablesOf(reduction.combine, real, options));
   std::vector<std::pair<const program::Element*, const Components*>> values;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const Parameter& parameter = reduction.fold.parameters[i];
@@ -268,7 +286,9 @@ void NativeDevice::reduce(const program::Reduction& reduction, std::span<const A
 
 void NativeDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
                           const Shape& domain, const Shape& blocks, const CallOptions& options) {
-  Folding folding(realOf(reduction.fold, options), reduction, arguments, domain);
+  const RealType real = realOf(reduction.fold, options);
+  Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
+                  tablesOf(reduction.combine, real, options));
   const Extents counts = fastestFirst(blocks);
   std::vector<std::size_t> results;
   for (std::size_t i = 0; i < arguments.size(); ++i) {

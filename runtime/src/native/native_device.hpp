@@ -40,6 +40,9 @@ class NativeDevice final : public DeviceState {
 
  private:
   RealType realOf(const program::Kernel& kernel, const CallOptions& options) const;
+  /// Those that a call looks its functions up in; none where it computes them.
+  std::vector<native::Table> tablesOf(const program::Kernel& kernel, RealType real,
+                                      const CallOptions& options);
 
   RealType real_;
   std::string name_;

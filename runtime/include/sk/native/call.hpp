@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "sk/native/table.hpp"
+
 namespace sk::native {
 
 using Extents = std::array<std::int64_t, 4>;
@@ -34,6 +36,7 @@ struct Operand {
 struct Call {
   std::span<const Operand> operands;
   Extents domain{1, 1, 1, 1};
+  std::span<const Table> tables = {};  ///< as the kernel's; none where their functions are computed
 };
 
 /// A reduction of a domain in equal blocks, each to one element of the accumulators, whose Operands describe

@@ -39,5 +39,6 @@ std::vector<Experiment> measureMoments(sk::Device& device, const Measurement& me
 std::vector<Experiment> measureDiffusion(sk::Device& device, const Measurement& measurement);
 std::vector<Experiment> measurePolynomial(sk::Device& device, const Measurement& measurement);
 std::vector<Experiment> measureTranscendentals(sk::Device& device, const Measurement& measurement);
+std::vector<Experiment> measureTables(sk::Device& device, const Measurement& measurement);
 
 }  // namespace sk_tool

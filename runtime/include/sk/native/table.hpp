@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+//
+// A table that stands for a function of one float (sk/table.hpp), and how it is looked up: the arithmetic of the GLSL
+// that the runtime's assembler writes (assemble/tables.hpp).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace sk::native {
+
+/// The polynomials of its intervals: two coefficients each, or four of a cubic one, lowest first.
+struct Table {
+  const float* coefficients = nullptr;
+  float low = 0;
+  float perUnit = 0;  ///< intervals for each unit of the argument
+  int intervals = 0;
+  bool isCubic = false;
+
+  /// Arguments outside the range count as its ends; NaN gives NaN.
+  float at(float x) const {
+    if (x != x) return x;
+    const float place = std::clamp((x - low) * perUnit, 0.0F, static_cast<float>(intervals));
+    const int interval = std::min(static_cast<int>(place), intervals - 1);
+    const float t = place - static_cast<float>(interval);
+    const float* const c = coefficients + static_cast<std::ptrdiff_t>(interval) * (isCubic ? 4 : 2);
+    return isCubic ? c[0] + t * (c[1] + t * (c[2] + t * c[3])) : c[0] + t * c[1];
+  }
+};
+
+/// One of a call's tables, if it has any: a call that computes its functions has none.
+template <class Real>
+class TableOf {
+ public:
+  TableOf(std::span<const Table> tables, std::size_t number)
+      : table_(tables.empty() ? nullptr : &tables[number]) {}
+  bool isGiven() const { return table_ != nullptr; }
+  Real at(Real x) const { return static_cast<Real>(table_->at(static_cast<float>(x))); }
+
+ private:
+  const Table* table_;
+};
+
+}  // namespace sk::native

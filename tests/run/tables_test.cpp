@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: a function with a table is looked up in it, within the error that the device tells, in every kind of kernel and
+// on every device; it is computed where a call, a kernel's declaration, a file or a precision says so.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+
+#include "sk/sk.hpp"
+#include "support/devices.hpp"
+#include "tables.sk.hpp"
+
+namespace run_tests {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+sk::Stream<float> streamOf(sk::Device& device, const std::vector<float>& values) {
+  auto stream = device.stream<float>({static_cast<std::int64_t>(values.size())});
+  stream.write(values);
+  return stream;
+}
+
+/// Numbers over a range, both ends among them.
+std::vector<float> ramp(float low, float high, std::size_t count) {
+  std::vector<float> values(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    values[i] = low + (high - low) * static_cast<float>(i) / static_cast<float>(count - 1);
+  }
+  return values;
+}
+
+double bell(double x) { return std::exp(-x * x); }
+
+template <class Kernel>
+std::vector<float> called(sk::Device& device, const Kernel& kernel, const std::vector<float>& x) {
+  auto r = device.stream<float>({static_cast<std::int64_t>(x.size())});
+  kernel(streamOf(device, x), r);
+  return r.read();
+}
+
+template <class Function>
+double largestError(const std::vector<float>& x, const std::vector<float>& got, const Function& right) {
+  double largest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) largest = std::max(largest, std::abs(got[i] - right(x[i])));
+  return largest;
+}
+
+sk::TableReport reportOf(const sk::Device& device, const std::string& function) {
+  const std::vector<sk::TableReport> reports = device.tables();
+  const auto found = std::ranges::find(reports, function, &sk::TableReport::function);
+  REQUIRE(found != reports.end());
+  return *found;
+}
+
+template <class Call>
+std::string errorOf(const Call& call) {
+  try {
+    call();
+  } catch (const sk::Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_CASE("a linear table's error is what theory says, and what the device tells") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = ramp(-4, 4, 30000);
+    const double error = largestError(x, called(device, table::bells, x), bell);
+    const sk::TableReport report = reportOf(device, "table::bell");
+    // h^2/8 max |f''|, which is 2 at 0
+    const double h = 8.0 / 1024;
+    CHECK(report.predicted == Approx(h * h / 4).epsilon(0.1));  // and some roundings
+    CHECK(report.measured <= report.predicted);
+    CHECK(report.measured > 0.9 * h * h / 4);
+    CHECK(std::abs(report.worst) < 4 * h);
+    CHECK(error <= 1.01 * report.predicted);
+    CHECK(error > 0.9 * h * h / 4);
+    CHECK(report.range == sk::TableRange{-4, 4, 1024});
+    CHECK(report.interpolation == sk::Interpolation::Linear);
+  });
+}
+
+TEST_CASE("a cubic one's is below what floats round") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = ramp(0, 6.2831853F, 30000);
+    auto r = device.stream<float>({30000});
+    auto s = device.stream<float>({30000});
+    table::waves(streamOf(device, x), r, s);
+    const double error = largestError(x, r.read(), [](double v) { return std::sin(v); });
+    const sk::TableReport report = reportOf(device, "table::wave");
+    CHECK(report.interpolation == sk::Interpolation::Cubic);
+    CHECK(report.measured <= report.predicted);
+    CHECK(error <= report.predicted);
+    CHECK(report.predicted < 2e-6);
+    CHECK(largestError(x, s.read(), [](double v) { return v > 4 ? bell(4) : bell(v); }) < 2e-5);
+  });
+}
+
+TEST_CASE("arguments outside the range count as its ends, and NaN stays NaN") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> got =
+        called(device, table::bells, {-4, -4.001F, -1e30F, -infinity, 4, 4.001F, 1e30F, infinity, nan});
+    for (std::size_t i = 0; i + 1 < got.size(); ++i) {
+      INFO(i);
+      CHECK(got[i] == Approx(bell(4)).epsilon(1e-5));
+    }
+    CHECK(std::isnan(got.back()));
+  });
+}
+
+TEST_CASE("tables are continuous where intervals meet") {
+  onEveryProfile([](sk::Device& device) {
+    std::vector<float> x;
+    for (int i = 1; i < 256; ++i) {
+      const float node = static_cast<float>(i) * (6.2831853F / 256);
+      x.push_back(std::nextafter(node, 0.0F));
+      x.push_back(std::nextafter(node, 9.0F));
+    }
+    auto r = device.stream<float>({static_cast<std::int64_t>(x.size())});
+    auto s = device.stream<float>({static_cast<std::int64_t>(x.size())});
+    table::waves(streamOf(device, x), r, s);
+    const std::vector<float> wave = r.read();
+    for (std::size_t i = 0; i < x.size(); i += 2) CHECK(std::abs(wave[i] - wave[i + 1]) < 1.5e-6F);
+  });
+}
+
+TEST_CASE("the largest table, of more texels than a texture is wide") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = ramp(0, 1, 50000);
+    CHECK(largestError(x, called(device, table::fines, x), [](double v) { return v * v; }) < 3e-7);
+    CHECK(reportOf(device, "table::fine").range.intervals == sk::mostIntervals);
+  });
+}
+
+TEST_CASE("a call, a declaration and a precision compute the function") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = ramp(-4, 4, 1000);
+    const std::vector<float> looked = called(device, table::bells, x);
+    const auto isComputed = [&](const auto& kernel) {
+      return largestError(x, called(device, kernel, x), bell) < 2e-7;
+    };
+    CHECK(largestError(x, looked, bell) > 5e-6);
+    CHECK(isComputed(table::bells.with({.tables = sk::Tables::Off})));
+    CHECK(isComputed(table::computed));
+    CHECK(called(device, table::computed.with({.tables = sk::Tables::On}), x) == looked);
+    CHECK(called(device, table::bells.with({.tables = sk::Tables::On}), x) == looked);
+    const auto both = table::bells.with({.precision = sk::Precision::Extended, .tables = sk::Tables::On});
+    CHECK(
+        errorOf([&] {
+          called(device, both, x);
+        }).find("tables have the precision of floats; call it in Precision::Single, or without Tables::On") !=
+        std::string::npos);
+  });
+}
+
+TEST_CASE("reductions, pushes and functions of functions look up, too") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = ramp(-0.5, 0.5, 5000);  // where every chord is below the curve
+    const auto stream = streamOf(device, x);
+    double looked = 0;
+    for (const float v : called(device, table::bells, x)) looked += v;
+    CHECK(table::total(stream) == Approx(looked).epsilon(1e-6));
+    double right = 0;
+    for (const float v : x) right += bell(v);
+    const auto off = table::total.with({.tables = sk::Tables::Off});
+    CHECK(off(stream) == Approx(right).epsilon(2e-7));
+    CHECK(table::total(stream) < off(stream));
+
+    auto pushed = device.stream<float>({1});
+    table::pushed(stream, pushed);
+    std::vector<float> expected = called(device, table::bells, x);
+    std::erase_if(expected, [](float v) { return !(v > 0.9F); });
+    CHECK(pushed.read() == expected);
+
+    const auto shared = [](double v) { return std::sin(v) + bell(v); };
+    const std::vector<float> between = ramp(1, 2, 1000);
+    CHECK(largestError(between, called(device, table::nested, between), shared) < 4e-5);
+    CHECK(reportOf(device, "table::shared").measured < 4e-5);
+  });
+}
+
+TEST_CASE("the reference computes every function") {
+  sk::Device device = sk::Device::reference();
+  const std::vector<float> x = ramp(-4, 4, 100);
+  CHECK(largestError(x, called(device, table::bells, x), bell) < 6e-8);
+  CHECK(device.tables().empty());
+}
+
+TEST_CASE("a function that is not finite in its range has no table") {
+  onEveryProfile([](sk::Device& device) {
+    const std::string error = errorOf([&] { called(device, table::poles, {1}); });
+    CHECK(error.find("the table of 'table::pole' over [-1, 1]: its value at 0 is") != std::string::npos);
+    CHECK(called(device, table::poles.with({.tables = sk::Tables::Off}), {2}) == std::vector<float>{0.5F});
+    CHECK_FALSE(errorOf([&] { called(device, table::poles, {1}); }).empty());  // again
+  });
+}
+
+/// A file for as long as this lives.
+struct ConfigurationFile {
+  explicit ConfigurationFile(const std::string& text)
+      : path((std::filesystem::temp_directory_path() / "sk_tables_test.toml").string() +
+             std::to_string(::getpid())) {
+    std::ofstream(path) << text;
+  }
+  ~ConfigurationFile() { std::filesystem::remove(path); }
+  std::string path;
+};
+
+TEST_CASE("a file gives a table another range, or none") {
+  const ConfigurationFile file(
+      "[tables.\"table::bell\"]\nlow = -2\nhigh = 2.0\nintervals = 4096\n"
+      "[kernels.\"table::fines\"]\ntables = \"off\"\n");
+  for (const std::string name : {"llvmpipe", "native"}) {
+    sk::Device device({.device = name, .configuration = file.path});
+    const std::vector<float> x = ramp(-2, 2, 10000);
+    CHECK(largestError(x, called(device, table::bells, x), bell) < 6e-7);
+    CHECK(reportOf(device, "table::bell").range == sk::TableRange{-2, 2, 4096});
+    CHECK(called(device, table::bells, {3}).front() == Approx(bell(2)).epsilon(1e-5));
+    called(device, table::fines, {1});
+    CHECK(device.tables().size() == 1);
+  }
+}
+
+TEST_CASE("mistakes in a file are told") {
+  const auto errorIn = [](const std::string& text) {
+    const ConfigurationFile file(text);
+    return errorOf([&] {
+      sk::Device device({.device = "native", .configuration = file.path});
+      called(device, table::bells, {1});
+    });
+  };
+  CHECK(errorIn("[tables.\"table::bell\"]\nlow = 5\n")
+            .find(":1: the table of 'table::bell' begins at 5 and ends at 4") != std::string::npos);
+  CHECK(errorIn("[tables.a]\nintervals = 0\n").find(":2: intervals is a whole number from 1 to 1048576") !=
+        std::string::npos);
+  CHECK(errorIn("[tables.a]\nlow = nan\n").find(":2: low is a number") != std::string::npos);
+  CHECK(errorIn("[tables.a]\nsize = 3\n").find(":2: a table has no 'size'") != std::string::npos);
+  CHECK(errorIn("tables = 3\n").find(":1: expected tables like") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace run_tests
