@@ -10,6 +10,8 @@ cmake_policy(VERSION 3.25)
 #                [INCLUDE_DIRECTORIES <folder>...]          searched by #include in .sk files
 #                [OPTIONS <option>...])                     further options of skc
 #
+# Of --quad, whose code is in __float128, the target links libquadmath, where that is another type than long double.
+#
 # Compiles each file at build time, again when it or a file that it includes has changed, and adds
 # the result to <target>. The target's own sources then include a kernel's header by the path of its
 # .sk file: "heat.sk.hpp", "solver/heat.sk.hpp"; files outside of the source folder by their name.
@@ -30,6 +32,10 @@ function(sk_add_kernels target)
     file(REAL_PATH "${folder}" folder BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
     list(APPEND options "-I${folder}")
   endforeach()
+
+  if("--quad" IN_LIST options AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|i.86|ppc64le")
+    target_link_libraries(${target} PRIVATE quadmath)
+  endif()
 
   foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
     sk_add_kernel_file("${target}" "${file}" "${options}")

@@ -113,7 +113,9 @@ std::string makeEscaped(const std::string& path) {
 std::string fileName(const ir::Module& module) { return fs::path(module.file).filename().string(); }
 
 emit::Stub stubOf(const Options& options, const ir::Module& module) {
-  return emit::emitStub(module, emit::Program(module), fileName(module), options.nativeTarget);
+  const emit::Reals reals = options.quad ? emit::Reals::Quad : emit::Reals::Double;
+  return emit::emitStub(module, emit::Program(module), fileName(module),
+                        options.nativeTarget ? std::optional(reals) : std::nullopt);
 }
 
 bool writeStubs(const Job& job, const ir::Module& module, const frontend::Frontend& frontend) {
@@ -168,7 +170,7 @@ std::string emitText(const Options& options, const ir::Module& module) {
   switch (options.emit) {
     case Emit::Ir: return ir::print(module);
     case Emit::Glsl: return glslListing(emit::Program(module), options.profile, options.precision);
-    case Emit::Cpp: return emit::nativeListing(module, emit::Program(module));
+    case Emit::Cpp: return emit::nativeListing(module, emit::Program(module), emit::Reals::Double);
     case Emit::Plan: return planListing(module, options.profile);
     case Emit::Stubs: {
       const emit::Stub stub = stubOf(options, module);

@@ -98,6 +98,8 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
                  "extended or double; "
                  "stubs have all forms, but for 'single'")
       ->check(CLI::IsMember({"single", "half", "extended", "double"}));
+  app.add_flag("--quad", options.quad,
+               "Native code for the reference in __float128, too; programs with it link quadmath");
   app.add_option("--profile", options.profile,
                  "Version of GLSL that --emit=glsl and plan are about: " + profileNames())
       ->check(checkProfile, "")

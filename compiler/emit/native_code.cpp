@@ -300,6 +300,22 @@ std::string structs(const Module& module) {
   return text;
 }
 
+std::span<const std::string_view> realTypes(Reals reals) {
+  static constexpr std::string_view all[] = {"float", "double", "native::Quad"};
+  return std::span(all).first(static_cast<std::size_t>(reals) + 1);
+}
+
+/// The form of a kernel in half precision, if it has one, and what combines it, where that is another.
+std::string halfForm(const Module& module, const Kernel& kernel, const std::string& name) {
+  if (!kernel.forms.half) return {};
+  const Kernel& half = module.kernels[*kernel.forms.half];
+  std::string text = KernelWriter(module, half, name + "Half").write();
+  if (half.reduction && *half.reduction->combine != *kernel.forms.half) {
+    text += KernelWriter(module, module.kernels[*half.reduction->combine], name + "HalfCombine").write();
+  }
+  return text;
+}
+
 /// The kernels of a reduce's exact sums, and what combines them, unless that is among `combinations` already.
 std::string exactSums(const Module& module, const Reduction& reduction, const std::string& name,
                       std::set<KernelId>& combinations) {
@@ -320,15 +336,15 @@ std::string exactSums(const Module& module, const Reduction& reduction, const st
 
 }  // namespace
 
-std::string nativeListing(const Module& module, const Program& program) {
+std::string nativeListing(const Module& module, const Program& program, Reals reals) {
   const std::vector<std::string> names = descriptorNames(module, program);
   const auto isUnit = [&](KernelId id) {
     return std::ranges::any_of(program.units(), [&](const Unit& unit) { return unit.id == id; });
   };
-  std::string text =
-      "#include <limits>\n\n#include <sk/native/native.hpp>\n\nnamespace sk::generated {\nnamespace {\n\n"
-      "using namespace native::literals;\n\n" +
-      structs(module);
+  std::string text = fmt::format(
+      "#include <limits>\n\n#include <sk/native/native.hpp>\n{}\nnamespace sk::generated {{\nnamespace {{\n\n"
+      "using namespace native::literals;\n\n{}",
+      reals == Reals::Quad ? "#include <sk/native/quad.hpp>\n" : "", structs(module));
   const std::vector<std::string> tables = tableNames(module);
   for (TableId id = 0; id < tables.size(); ++id) {
     if (const std::optional<KernelId> values = module.tables[id].kernel) {
@@ -350,30 +366,32 @@ std::string nativeListing(const Module& module, const Program& program) {
       text += KernelWriter(module, module.kernels[*fold.reduction->combine], made.combine).write();
       text += KernelWriter(module, module.kernels[second.finish], made.finish).write();
     }
+    text += halfForm(module, kernel, names[i]);
     if (kernel.reduction) text += exactSums(module, *kernel.reduction, names[i], combinations);
   }
   return text + "}  // namespace\n}  // namespace sk::generated\n";
 }
 
-std::string nativeKernelDescriptor(const std::string& name) {
-  return fmt::format(
-      "constexpr NativeKernel {0}Native = {{&native::runKernel<generated::sk_{0}<float>>,\n"
-      "    &native::runKernel<generated::sk_{0}<double>>}};\n\n",
-      name);
+std::string nativeKernelDescriptor(const std::string& name, Reals reals) {
+  std::vector<std::string> code;
+  for (const std::string_view real : realTypes(reals)) {
+    code.push_back(fmt::format("&native::runKernel<generated::sk_{}<{}>>", name, real));
+  }
+  if (reals == Reals::Single) code.emplace_back("nullptr");
+  return fmt::format("constexpr NativeKernel {}Native = {{{}}};\n\n", name, join(code, ",\n    "));
 }
 
 std::string nativeReductionDescriptor(const std::string& name, const std::string& combine,
-                                      const Kernel& reduce) {
-  std::vector<std::string> forms;
-  for (const std::string_view real : {"float", "double"}) {
-    forms.push_back(fmt::format("&native::runReduction<generated::sk_{0}<{2}>, generated::sk_{1}<{2}>>", name,
-                                combine, real));
+                                      const Kernel& reduce, Reals reals) {
+  std::vector<std::string> code;
+  for (const std::string_view real : realTypes(reals)) {
+    const std::string identity =
+        hasIdentities(reduce) ? fmt::format(", &native::storeIdentity<generated::sk_{}<{}>>", name, real)
+                              : "";
+    code.push_back(fmt::format("{{&native::runReduction<generated::sk_{0}<{2}>, generated::sk_{1}<{2}>>{3}}}",
+                               name, combine, real, identity));
   }
-  for (const std::string_view real : {"float", "double"}) {
-    if (hasIdentities(reduce))
-      forms.push_back(fmt::format("&native::storeIdentity<generated::sk_{}<{}>>", name, real));
-  }
-  return fmt::format("constexpr NativeReduction {}Native = {{\n    {}}};\n\n", name, join(forms, ",\n    "));
+  return fmt::format("constexpr NativeReduction {}Native = {{\n    {}}};\n\n", name, join(code, ",\n    "));
 }
 
 }  // namespace skc::emit

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "emit/program.hpp"
@@ -39,15 +40,22 @@ struct ExactNames {
 };
 inline std::string exactCombinationName(const ir::Kernel& combine) { return "sk_" + combine.name; }
 
+/// The real types that a kernel's native code is made for.
+enum class Reals : std::uint8_t {
+  Single,  ///< forms that have a meaning for floats alone
+  Double,  ///< the reference's, too
+  Quad,  ///< and that of the widest reference
+};
+
 /// The definitions of a whole module, in a namespace of their own. Kernels bear the names of their
 /// descriptors (descriptorNames); what combines the partial results of a reduce and is no kernel of the module, the
 /// reduce's with "Combine".
-std::string nativeListing(const ir::Module& module, const Program& program);
+std::string nativeListing(const ir::Module& module, const Program& program, Reals reals);
 
 /// The constants NAMENative of type sk::program::NativeKernel and NativeReduction. `combine` is the name of
 /// what combines.
-std::string nativeKernelDescriptor(const std::string& name);
+std::string nativeKernelDescriptor(const std::string& name, Reals reals);
 std::string nativeReductionDescriptor(const std::string& name, const std::string& combine,
-                                      const ir::Kernel& reduce);
+                                      const ir::Kernel& reduce, Reals reals);
 
 }  // namespace skc::emit

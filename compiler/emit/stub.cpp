@@ -66,8 +66,9 @@ std::string parameterList(const Module& module, const Kernel& kernel, Form form,
   return join(list, ", ") + ") const";
 }
 
-Stub emitStub(const Module& module, const Program& program, std::string_view fileName, bool withNative) {
-  StubParts parts{callables(module, program), {}, fileName, withNative};
+Stub emitStub(const Module& module, const Program& program, std::string_view fileName,
+              std::optional<Reals> native) {
+  StubParts parts{callables(module, program), {}, fileName, native};
   parts.streams = streamStructs(module, parts.callables, fileName);
   return {stubHeader(module, program, parts), stubSource(module, program, parts)};
 }

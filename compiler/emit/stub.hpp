@@ -4,9 +4,11 @@
 // FILE.sk.cpp with its descriptors. It must read as if a person had written it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "emit/native_code.hpp"
 #include "emit/program.hpp"
 #include "ir/ir.hpp"
 
@@ -18,7 +20,8 @@ struct Stub {
 };
 
 /// `fileName` is the .sk file's name without directories: the source includes "heat.sk.hpp" for "heat.sk".
-/// `withNative`: the source has native code, too.
-Stub emitStub(const ir::Module& module, const Program& program, std::string_view fileName, bool withNative);
+/// `native`: the real types of the source's native code; none if it has no such code.
+Stub emitStub(const ir::Module& module, const Program& program, std::string_view fileName,
+              std::optional<Reals> native);
 
 }  // namespace skc::emit

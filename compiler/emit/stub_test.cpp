@@ -17,7 +17,7 @@ using namespace ir;
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
-Stub stubOf(const Module& module) { return emitStub(module, Program(module), "heat.sk", false); }
+Stub stubOf(const Module& module) { return emitStub(module, Program(module), "heat.sk", std::nullopt); }
 
 TEST_CASE("the header") {
   const std::string header = stubOf(sampleModule()).header;

@@ -3,6 +3,7 @@
 // Devices: what the user and the environment ask for, and the public face of DeviceState.
 #include "sk/device.hpp"
 
+#include <array>
 #include <charconv>
 #include <cstdlib>
 #include <optional>
@@ -104,11 +105,13 @@ std::unique_ptr<DeviceState> configured(std::unique_ptr<DeviceState> state, cons
   return state;
 }
 
+constexpr std::array<std::pair<std::string_view, RealType>, 3> nativeDevices = {
+    {{"native", RealType::Float}, {"reference", RealType::Double}, {"reference:quad", RealType::Quad}}};
+
 std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
   const std::string device = chosen(options.device, "SK_DEVICE");
-  if (device == "native" || device == "reference") {
-    return configured(std::make_unique<NativeDevice>(device == "native" ? RealType::Float : RealType::Double),
-                      options.configuration);
+  for (const auto& [name, real] : nativeDevices) {
+    if (device == name) return configured(std::make_unique<NativeDevice>(real), options.configuration);
   }
   const gl::OpenRequest request{device, apiOf(chosen(options.profile, "SK_PROFILE"))};
   const DeviceChoices choices =
@@ -135,8 +138,9 @@ Device Device::adopt(const DeviceOptions& options) {
 }
 
 Device Device::native() { return Device(configured(std::make_unique<NativeDevice>(RealType::Float), {})); }
-Device Device::reference() {
-  return Device(configured(std::make_unique<NativeDevice>(RealType::Double), {}));
+Device Device::reference(Reference kind) {
+  const RealType real = kind == Reference::Double ? RealType::Double : RealType::Quad;
+  return Device(configured(std::make_unique<NativeDevice>(real), {}));
 }
 
 DeviceState& Device::state() const {

@@ -30,13 +30,6 @@ const WideReduction* wideForm(const Reduction& reduction) {
   return reduction.wide;
 }
 
-const Reduction& halfForm(const Reduction& reduction) {
-  if (reduction.half != nullptr) return *reduction.half;
-  if (!reduction.fold.whyNotHalf.empty())
-    failWithoutForm(reduction.fold, "half precision", reduction.fold.whyNotHalf);
-  return reduction;
-}
-
 void checkPlanes(const Reduction& plain, const Reduction& wide, const DeviceLimits& limits) {
   std::size_t planes = 0;
   for (const Parameter& parameter : wide.fold.parameters) {
@@ -51,6 +44,13 @@ void checkPlanes(const Reduction& plain, const Reduction& wide, const DeviceLimi
 }
 
 }  // namespace
+
+const Reduction& halfForm(const Reduction& reduction) {
+  if (reduction.half != nullptr) return *reduction.half;
+  if (!reduction.fold.whyNotHalf.empty())
+    failWithoutForm(reduction.fold, "half precision", reduction.fold.whyNotHalf);
+  return reduction;
+}
 
 const Kernel& formOf(const Kernel& kernel, const CallOptions& options) {
   if (options.precision == Precision::Half) {

@@ -31,6 +31,9 @@ constexpr bool takesForm(const CallOptions& options) {
 /// The kernel's form for a call; itself for floats, and where it computes none. Throws sk::Error where it has none.
 const program::Kernel& formOf(const program::Kernel& kernel, const CallOptions& options);
 
+/// The reduction's form in half precision; itself where it computes no floats. Throws sk::Error where it has none.
+const program::Reduction& halfForm(const program::Reduction& reduction);
+
 /// Throws sk::Error where a call asks for tables in another precision than theirs, which is float's.
 void checkTables(const program::Kernel& kernel, const CallOptions& options);
 

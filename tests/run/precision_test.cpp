@@ -2,6 +2,7 @@
 //
 // Promises: .with({.precision = ...}) computes a kernel's floats as pairs of floats, as doubles or as halves, on every
 // profile and natively, and gives floats; what has no such form is refused.
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -219,7 +220,6 @@ float toHalf(double x) { return static_cast<float>(sk::half(static_cast<float>(x
 
 TEST_CASE("halves round every operation") {
   onEveryProfile([](sk::Device& device) {
-    if (device.name() == "native") return;  // native code has no form in halves
     const std::vector<float> a = numbers(500, 11, -30, 30);
     const std::vector<float> b = numbers(500, 12, -30, 30);
     auto r = device.stream<float>({500});
@@ -235,6 +235,19 @@ TEST_CASE("halves round every operation") {
     CHECK(precision::product.with({.precision = Precision::Half})(streamOf<float>(device, {300, 300})) ==
           std::numeric_limits<float>::infinity());
   });
+}
+
+TEST_CASE("halves are the same natively") {
+  const std::vector<float> a = numbers(300, 21, -30, 30);
+  const std::vector<float> b = numbers(300, 22, 1, 30);
+  const auto computed = [&](sk::Device& device) {
+    auto r = device.stream<float>({300});
+    precision::smooth.with({.precision = Precision::Half})(streamOf(device, a), 0.3F, streamOf(device, b), r);
+    auto p = device.stream<float>({300});
+    precision::polynomial.with({.precision = Precision::Half})(r, std::array{0.1F, 0.2F, 0.3F, 0.4F}, p);
+    return p.read();
+  };
+  CHECK(computed(device("native")) == computed(device("glsl330")));
 }
 
 TEST_CASE("what computes no floats is the same in every precision") {

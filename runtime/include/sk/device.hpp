@@ -22,7 +22,7 @@ class DeviceState;  // the runtime's own
 
 struct DeviceOptions {
   /// Which device: "native" (the kernels' own C++ on the CPU, no GL), "reference" (the same, computing in double
-  /// wherever a kernel says float), "gpu" or "gpu:N" (the N-th hardware device, from 0), "software", or a part of the
+  /// wherever a kernel says float) or "reference:quad" (in __float128), "gpu" or "gpu:N" (the N-th hardware device, from 0), "software", or a part of the
   /// renderer's name in any case ("llvmpipe", "nvidia"). Empty: environment variable SK_DEVICE, and
   /// without it the best one, which is the first GPU, or a software renderer where there is none.
   std::string device = {};
@@ -56,6 +56,9 @@ struct DeviceLimits {
   std::int32_t uniformComponents = 0;  ///< components of the uniform arguments of a kernel
 };
 
+/// What the reference computes with: 53 bits, or 113, some fifty times slower.
+enum class Reference : std::uint8_t { Double, Quad };
+
 /// Move-only. Several may live in a process; one thread may use a device at a time. A call makes the
 /// device's context current on its thread; it puts back the one that was current before, and where
 /// there was none leaves its own.
@@ -79,8 +82,10 @@ class Device {
   /// The device that needs no GL: kernels run as the C++ that skc wrote of them, streams lie in host memory.
   /// Arithmetic is IEEE 754's, and defined for every operand (docs/language.md).
   static Device native();
-  /// The same with doubles for floats, in streams and in kernels: what results are measured against.
-  static Device reference();
+  /// The same with doubles for floats, in streams and in kernels, or with __float128 for floats and doubles: what results
+  /// are measured against. Kernels compute so whatever precision a call asks for. Those of __float128 need native code that
+  /// skc was asked for (--quad).
+  static Device reference(Reference kind = Reference::Double);
 
   /// A new stream; its elements are undefined. Throws sk::Error where the shape has no dimension, the device has no
   /// room, or a storage other than Single is asked for elements without floats.

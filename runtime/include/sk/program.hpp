@@ -204,19 +204,24 @@ struct TableUse {
   std::string_view name;  ///< of the function in the body
 };
 
-/// A kernel as native code (sk/native): computing in float, and in double wherever the kernel says float.
+/// A kernel as native code (sk/native): computing in float, and in double, or in __float128, wherever the kernel says
+/// float. Null is what it was not made for: forms are for floats alone, and `quad` is made where skc is asked for it.
 struct NativeKernel {
   void (*single)(const native::Call& call);
   void (*reference)(const native::Call& call);
+  void (*quad)(const native::Call& call) = nullptr;
 };
 
-/// A reduction likewise; it has at least one element in each block.
+/// A reduction likewise.
 struct NativeReduction {
-  void (*single)(const native::ReduceCall& call);
-  void (*reference)(const native::ReduceCall& call);
-  /// The identities, to the one element of the results; null where there are none.
-  void (*singleIdentity)(const native::ReduceCall& call) = nullptr;
-  void (*referenceIdentity)(const native::ReduceCall& call) = nullptr;
+  struct Code {
+    void (*run)(const native::ReduceCall& call) = nullptr;  ///< has at least one element in each block
+    /// The identities, to the one element of the results; null where there are none.
+    void (*identity)(const native::ReduceCall& call) = nullptr;
+  };
+  Code single;
+  Code reference = {};
+  Code quad = {};
 };
 
 /// A kernel. Its GLSL entry function takes, in order, every Uniform, Iterator, Spec, Input (by value) and

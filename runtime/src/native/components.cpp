@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "sk/narrow.hpp"
+#include "sk/native/quad_type.hpp"
 #include "sk/scalar_bytes.hpp"
 
 namespace sk {
@@ -33,14 +34,43 @@ void convertStrided(const std::byte* from, std::size_t fromStride, std::byte* to
   }
 }
 
-void copySame(std::size_t bytes, const std::byte* from, std::size_t fromStride, std::byte* to,
-              std::size_t toStride, std::int64_t count) {
-  switch (bytes) {
-    case 1: return copyStrided<1>(from, fromStride, to, toStride, count);
-    case 2: return copyStrided<2>(from, fromStride, to, toStride, count);
-    case 4: return copyStrided<4>(from, fromStride, to, toStride, count);
-    default: return copyStrided<8>(from, fromStride, to, toStride, count);
+template <class From>
+void convertFrom(const std::byte* from, std::size_t fromStride, std::byte* to, std::size_t toStride,
+                 std::size_t toBytes, std::int64_t count) {
+  switch (toBytes) {
+    case sizeof(float): return convertStrided<From, float>(from, fromStride, to, toStride, count);
+    case sizeof(double): return convertStrided<From, double>(from, fromStride, to, toStride, count);
+    default: return convertStrided<From, native::Quad>(from, fromStride, to, toStride, count);
   }
+}
+
+/// Copies values, or, where they differ in size, converts real ones.
+void move(const Values<const std::byte>& from, const Values<std::byte>& to, std::int64_t count) {
+  if (from.bytes == to.bytes) {
+    switch (from.bytes) {
+      case 1: return copyStrided<1>(from.first, from.stride, to.first, to.stride, count);
+      case 2: return copyStrided<2>(from.first, from.stride, to.first, to.stride, count);
+      case 4: return copyStrided<4>(from.first, from.stride, to.first, to.stride, count);
+      case 8: return copyStrided<8>(from.first, from.stride, to.first, to.stride, count);
+      default: return copyStrided<16>(from.first, from.stride, to.first, to.stride, count);
+    }
+  }
+  switch (from.bytes) {
+    case sizeof(float):
+      return convertFrom<float>(from.first, from.stride, to.first, to.stride, to.bytes, count);
+    case sizeof(double):
+      return convertFrom<double>(from.first, from.stride, to.first, to.stride, to.bytes, count);
+    default: return convertFrom<native::Quad>(from.first, from.stride, to.first, to.stride, to.bytes, count);
+  }
+}
+
+/// What a scalar takes in an array.
+std::size_t storedBytes(Scalar scalar, RealType real) {
+  const bool isReal = scalar == Scalar::Float || (scalar == Scalar::Double && real == RealType::Quad);
+  if (!isReal) return program::hostBytes(scalar);
+  return real == RealType::Float    ? sizeof(float)
+         : real == RealType::Double ? sizeof(double)
+                                    : sizeof(native::Quad);
 }
 
 }  // namespace
@@ -49,10 +79,8 @@ std::vector<ComponentType> componentsOf(const program::Element& element, RealTyp
   std::vector<ComponentType> components;
   for (const program::Field& field : element.fields) {
     const std::size_t bytes = program::hostBytes(field.scalar);
-    const bool isReal = field.scalar == Scalar::Float;
-    const std::size_t stored = isReal && real == RealType::Double ? sizeof(double) : bytes;
     for (std::size_t c = 0; c < field.width; ++c) {
-      components.push_back({field.offset + c * bytes, bytes, stored, isReal});
+      components.push_back({field.offset + c * bytes, bytes, storedBytes(field.scalar, real), field.scalar});
     }
   }
   return components;
@@ -84,89 +112,57 @@ Components Components::clone(std::int64_t count, RealType real) const {
   Components copy;
   copy.real_ = real;
   copy.types_ = types_;
-  for (ComponentType& type : copy.types_) {
-    if (type.isReal) type.storedBytes = real == RealType::Double ? sizeof(double) : sizeof(float);
-  }
+  for (ComponentType& type : copy.types_) type.storedBytes = storedBytes(type.scalar, real);
   copy.allocate(count);
   copy.assign(*this, count);
   return copy;
 }
 
 void Components::assign(const Components& from, std::int64_t count) {
-  for (std::size_t c = 0; c < types_.size(); ++c) {
-    const std::byte* source = from.arrays_[c].get();
-    std::byte* target = arrays_[c].get();
-    const std::size_t given = from.types_[c].storedBytes;
-    const std::size_t taken = types_[c].storedBytes;
-    if (given == taken) {
-      if (count > 0) std::memcpy(target, source, static_cast<std::size_t>(count) * taken);
-    } else if (given < taken) {
-      convertStrided<float, double>(source, given, target, taken, count);
-    } else {
-      convertStrided<double, float>(source, given, target, taken, count);
-    }
-  }
+  for (std::size_t c = 0; c < types_.size(); ++c) move(from.valuesFrom(c, 0), valuesFrom(c, 0), count);
+}
+
+Values<std::byte> Components::valuesFrom(std::size_t component, std::int64_t first) {
+  const std::size_t bytes = types_[component].storedBytes;
+  return {arrays_[component].get() + static_cast<std::size_t>(first) * bytes, bytes, bytes};
+}
+
+Values<const std::byte> Components::valuesFrom(std::size_t component, std::int64_t first) const {
+  const std::size_t bytes = types_[component].storedBytes;
+  return {arrays_[component].get() + static_cast<std::size_t>(first) * bytes, bytes, bytes};
 }
 
 void Components::write(std::int64_t first, std::int64_t count, const std::byte* elements,
                        std::size_t elementBytes) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    const ComponentType& type = types_[c];
-    std::byte* to = arrays_[c].get() + static_cast<std::size_t>(first) * type.storedBytes;
-    const std::byte* from = elements + type.offset;
-    if (type.storedBytes == type.hostBytes) {
-      copySame(type.hostBytes, from, elementBytes, to, type.storedBytes, count);
-    } else {
-      convertStrided<float, double>(from, elementBytes, to, type.storedBytes, count);
-    }
+    move({elements + types_[c].offset, elementBytes, types_[c].hostBytes}, valuesFrom(c, first), count);
   }
 }
 
 void Components::read(std::int64_t first, std::int64_t count, std::byte* elements,
                       std::size_t elementBytes) const {
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    const ComponentType& type = types_[c];
-    const std::byte* from = arrays_[c].get() + static_cast<std::size_t>(first) * type.storedBytes;
-    std::byte* to = elements + type.offset;
-    if (type.storedBytes == type.hostBytes) {
-      copySame(type.hostBytes, from, type.storedBytes, to, elementBytes, count);
-    } else {
-      convertStrided<double, float>(from, type.storedBytes, to, elementBytes, count);
-    }
+    move(valuesFrom(c, first), {elements + types_[c].offset, elementBytes, types_[c].hostBytes}, count);
   }
 }
 
 void Components::readReals(std::int64_t first, std::int64_t count, double* values) const {
-  const std::size_t stride = types_.size() * sizeof(double);
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    const std::size_t bytes = types_[c].storedBytes;
-    const std::byte* from = arrays_[c].get() + static_cast<std::size_t>(first) * bytes;
-    auto* to = reinterpret_cast<std::byte*>(values + c);
-    if (bytes == sizeof(double)) {
-      copyStrided<sizeof(double)>(from, bytes, to, stride, count);
-    } else {
-      convertStrided<float, double>(from, bytes, to, stride, count);
-    }
+    move(valuesFrom(c, first),
+         {reinterpret_cast<std::byte*>(values + c), types_.size() * sizeof(double), sizeof(double)}, count);
   }
 }
 
 void Components::writeReals(std::int64_t first, std::int64_t count, const double* values) {
-  const std::size_t stride = types_.size() * sizeof(double);
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    const std::size_t bytes = types_[c].storedBytes;
-    std::byte* to = arrays_[c].get() + static_cast<std::size_t>(first) * bytes;
-    const auto* from = reinterpret_cast<const std::byte*>(values + c);
-    if (bytes == sizeof(double)) {
-      copyStrided<sizeof(double)>(from, stride, to, bytes, count);
-    } else {
-      convertStrided<double, float>(from, stride, to, bytes, count);
-    }
+    move({reinterpret_cast<const std::byte*>(values + c), types_.size() * sizeof(double), sizeof(double)},
+         valuesFrom(c, first), count);
   }
 }
 
 void Components::roundToHalf(std::int64_t count) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    if (!types_[c].isReal) continue;
+    if (types_[c].scalar != Scalar::Float) continue;
     auto* floats = reinterpret_cast<float*>(arrays_[c].get());
     std::transform(floats, floats + count, floats, [](float x) { return float{half(x)}; });
   }

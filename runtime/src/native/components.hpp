@@ -14,17 +14,25 @@
 
 namespace sk {
 
-/// What native code computes with where a kernel says float.
-enum class RealType : std::uint8_t { Float, Double };
+/// What native code computes with where a kernel says float. Quad stands for double, too (native/quad_type.hpp).
+enum class RealType : std::uint8_t { Float, Double, Quad };
 
 /// A scalar component of an element.
 struct ComponentType {
   std::size_t offset;  ///< in the element, in host memory
   std::size_t hostBytes;
   std::size_t storedBytes;
-  bool isReal;  ///< a float, which may be held as a double
+  program::Scalar scalar;
 };
 std::vector<ComponentType> componentsOf(const program::Element& element, RealType real);
+
+/// Where values of some bytes lie, one each stride.
+template <class Byte>
+struct Values {
+  Byte* first;
+  std::size_t stride;
+  std::size_t bytes;
+};
 
 /// Arrays of `count` elements, uninitialised. Throws std::bad_alloc.
 class Components {
@@ -53,6 +61,8 @@ class Components {
 
  private:
   void allocate(std::int64_t count);
+  Values<std::byte> valuesFrom(std::size_t component, std::int64_t first);
+  Values<const std::byte> valuesFrom(std::size_t component, std::int64_t first) const;
 
   RealType real_ = RealType::Float;
   std::vector<ComponentType> types_;

@@ -182,6 +182,16 @@ class Operands {
   std::deque<std::pair<NativeStream*, Components>> written_;
 };
 
+const program::NativeReduction::Code& codeOf(const program::NativeReduction& reduction, RealType real) {
+  return real == RealType::Float    ? reduction.single
+         : real == RealType::Double ? reduction.reference
+                                    : reduction.quad;
+}
+
+auto codeOf(const program::NativeKernel& kernel, RealType real) {
+  return real == RealType::Float ? kernel.single : real == RealType::Double ? kernel.reference : kernel.quad;
+}
+
 /// A reduction's call, but for its results.
 class Folding {
  public:
@@ -191,8 +201,7 @@ class Folding {
           const Shape& domain, std::vector<native::Table> foldTables,
           std::vector<native::Table> combineTables)
       : fold(real, reduction.fold, arguments, domain, std::move(foldTables)),
-        isSingle_(real == RealType::Float),
-        native_(*reduction.native),
+        code_(codeOf(*reduction.native, real)),
         combineTables_(std::move(combineTables)) {
     for (const std::uint8_t operand : reduction.combineOperands) {
       combine_.push_back(fold.list()[operand]);
@@ -202,16 +211,15 @@ class Folding {
 
   void run(const Extents& block) {
     const native::ReduceCall call{fold.call(), {combine_, {1, 1, 1, 1}, combineTables_}, block};
-    (isSingle_ ? native_.single : native_.reference)(call);
+    code_.run(call);
   }
   void storeIdentity() {
     const native::ReduceCall call{fold.call(), {combine_, {1, 1, 1, 1}, combineTables_}, {1, 1, 1, 1}};
-    (isSingle_ ? native_.singleIdentity : native_.referenceIdentity)(call);
+    code_.identity(call);
   }
 
  private:
-  bool isSingle_;
-  const program::NativeReduction& native_;
+  const program::NativeReduction::Code& code_;
   std::vector<native::Table> combineTables_;
   std::vector<Operand> combine_;
 };
@@ -233,13 +241,9 @@ Operand resultOperand(Operands& fold, const StreamRegion& region, const Extents&
 
 }  // namespace
 
-/// Pairs of floats are doubles here, where these are cheaper.
-RealType NativeDevice::realOf(const Kernel& kernel, const CallOptions& options) const {
-  if (options.precision == Precision::Half) {
-    fail(kernel,
-         "native code has no form in half precision; call it in another one, or on a device with OpenGL");
-  }
-  return isWide(options) ? RealType::Double : real_;
+/// Pairs of floats are doubles here, where these are cheaper. A reference computes in its own precision whatever is asked.
+RealType NativeDevice::realOf(const CallOptions& options) const {
+  return isWide(options) && real_ == RealType::Float ? RealType::Double : real_;
 }
 
 std::vector<native::Table> NativeDevice::tablesOf(const Kernel& kernel, RealType real,
@@ -252,18 +256,22 @@ std::vector<native::Table> NativeDevice::tablesOf(const Kernel& kernel, RealType
   return list;
 }
 
-void NativeDevice::run(const Kernel& kernel, std::span<const Argument> arguments,
+void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments,
                        const CallOptions& options) {
+  const Kernel& kernel =
+      options.precision == Precision::Half && !isReference() ? formOf(called, options) : called;
   const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
-  const RealType real = realOf(kernel, options);
+  const RealType real = realOf(options);
   Operands operands(real, kernel, arguments, domain, tablesOf(kernel, real, options));
-  (real == RealType::Float ? kernel.native->single : kernel.native->reference)(operands.call());
+  codeOf(*kernel.native, real)(operands.call());
   operands.settle();
 }
 
-void NativeDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
+void NativeDevice::reduce(const program::Reduction& called, std::span<const Argument> arguments,
                           const Shape& domain, std::span<void* const> results, const CallOptions& options) {
-  const RealType real = realOf(reduction.fold, options);
+  const program::Reduction& reduction =
+      options.precision == Precision::Half && !isReference() ? halfForm(called) : called;
+  const RealType real = realOf(options);
   Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
                   tablesOf(reduction.combine, real, options));
   std::vector<std::pair<const program::Element*, const Components*>> values;
@@ -284,9 +292,11 @@ void NativeDevice::reduce(const program::Reduction& reduction, std::span<const A
   }
 }
 
-void NativeDevice::reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
+void NativeDevice::reduce(const program::Reduction& called, std::span<const Argument> arguments,
                           const Shape& domain, const Shape& blocks, const CallOptions& options) {
-  const RealType real = realOf(reduction.fold, options);
+  const program::Reduction& reduction =
+      options.precision == Precision::Half && !isReference() ? halfForm(called) : called;
+  const RealType real = realOf(options);
   Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
                   tablesOf(reduction.combine, real, options));
   const Extents counts = fastestFirst(blocks);

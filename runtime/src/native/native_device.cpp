@@ -14,10 +14,17 @@ namespace {
   fail(kernel, "it has no native code; compile its .sk file with skc --target=fragment,native");
 }
 
+[[noreturn]] void failWithoutQuad(const program::Kernel& kernel) {
+  fail(kernel, "it has no native code in __float128; compile its .sk file with skc --quad");
+}
+
 }  // namespace
 
 NativeDevice::NativeDevice(RealType real)
-    : real_(real), name_(real == RealType::Float ? "native" : "reference (native, double)") {
+    : real_(real),
+      name_(real == RealType::Float    ? "native"
+            : real == RealType::Double ? "reference (native, double)"
+                                       : "reference (native, __float128)") {
   constexpr std::int32_t unlimited = std::numeric_limits<std::int32_t>::max();
   limits = {.textureSize = unlimited,
             .textureLayers = 1,
@@ -38,11 +45,17 @@ void NativeDevice::checkProgram(const program::Kernel& kernel) {
   if (kernel.native == nullptr) {
     failWithoutCode(kernel);
   }
+  if (real_ == RealType::Quad && kernel.native->quad == nullptr) {
+    failWithoutQuad(kernel);
+  }
 }
 
 void NativeDevice::checkProgram(const program::Reduction& reduction) {
   if (reduction.native == nullptr) {
     failWithoutCode(reduction.fold);
+  }
+  if (real_ == RealType::Quad && reduction.native->quad.run == nullptr) {
+    failWithoutQuad(reduction.fold);
   }
 }
 

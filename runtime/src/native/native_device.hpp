@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // A device without GL: streams in host memory, kernels as the C++ that skc wrote into the application. With
-// doubles for floats, it is the reference that other devices are measured against.
+// doubles for floats, or __float128, it is the reference that other devices are measured against.
 #pragma once
 
 #include "device_state.hpp"
@@ -24,7 +24,7 @@ class NativeDevice final : public DeviceState {
   const Arithmetic& arithmetic() override { return arithmetic_; }
   bool combinesScattered() const override { return true; }
   bool takesForms() const override { return false; }
-  bool isReference() const override { return real_ == RealType::Double; }
+  bool isReference() const override { return real_ != RealType::Float; }
   void checkProgram(const program::Kernel& kernel) override;
   void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
@@ -39,7 +39,7 @@ class NativeDevice final : public DeviceState {
               const Shape& blocks, const CallOptions& options) override;
 
  private:
-  RealType realOf(const program::Kernel& kernel, const CallOptions& options) const;
+  RealType realOf(const CallOptions& options) const;
   /// Those that a call looks its functions up in; none where it computes them.
   std::vector<native::Table> tablesOf(const program::Kernel& kernel, RealType real,
                                       const CallOptions& options);

@@ -48,8 +48,8 @@ native::Operand operandOf(const StreamRegion& region) {
 NativeStream::NativeStream(NativeDevice& on, const program::Element& type, const Shape& extents, Storage as)
     : StreamState(on, type, extents, as) {
   try {
-    components =
-        Components(type, storage >= Storage::Extended ? RealType::Double : on.real(), extents.size());
+    const RealType least = storage >= Storage::Extended ? RealType::Double : RealType::Float;
+    components = Components(type, std::max(least, on.real()), extents.size());
   } catch (const std::bad_alloc&) {
     throw Error(fmt::format("'{}' has no memory for a stream of {} of shape {}", on.name(), type.name,
                             toString(extents)));

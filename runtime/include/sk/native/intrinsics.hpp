@@ -6,10 +6,10 @@
 #pragma once
 
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <type_traits>
 
+#include "sk/native/math.hpp"
 #include "sk/native/scalar.hpp"
 #include "sk/native/vector.hpp"
 
@@ -27,51 +27,51 @@ namespace sk::native {
 // angles and trigonometry
 SK_NATIVE_1(radians, x * decltype(x)(0.017453292519943295769L))
 SK_NATIVE_1(degrees, x * decltype(x)(57.295779513082320877L))
-SK_NATIVE_1(sin, std::sin(x))
-SK_NATIVE_1(cos, std::cos(x))
-SK_NATIVE_1(tan, std::tan(x))
-SK_NATIVE_1(asin, std::asin(x))
-SK_NATIVE_1(acos, std::acos(x))
-SK_NATIVE_1(atan, std::atan(x))
-SK_NATIVE_2(atanYX, std::atan2(x, y))
-SK_NATIVE_2(atan2, std::atan2(x, y))
-SK_NATIVE_1(sinh, std::sinh(x))
-SK_NATIVE_1(cosh, std::cosh(x))
-SK_NATIVE_1(tanh, std::tanh(x))
-SK_NATIVE_1(asinh, std::asinh(x))
-SK_NATIVE_1(acosh, std::acosh(x))
-SK_NATIVE_1(atanh, std::atanh(x))
+SK_NATIVE_1(sin, Math<decltype(x)>::sin(x))
+SK_NATIVE_1(cos, Math<decltype(x)>::cos(x))
+SK_NATIVE_1(tan, Math<decltype(x)>::tan(x))
+SK_NATIVE_1(asin, Math<decltype(x)>::asin(x))
+SK_NATIVE_1(acos, Math<decltype(x)>::acos(x))
+SK_NATIVE_1(atan, Math<decltype(x)>::atan(x))
+SK_NATIVE_2(atanYX, Math<decltype(x)>::atan2(x, y))
+SK_NATIVE_2(atan2, Math<decltype(x)>::atan2(x, y))
+SK_NATIVE_1(sinh, Math<decltype(x)>::sinh(x))
+SK_NATIVE_1(cosh, Math<decltype(x)>::cosh(x))
+SK_NATIVE_1(tanh, Math<decltype(x)>::tanh(x))
+SK_NATIVE_1(asinh, Math<decltype(x)>::asinh(x))
+SK_NATIVE_1(acosh, Math<decltype(x)>::acosh(x))
+SK_NATIVE_1(atanh, Math<decltype(x)>::atanh(x))
 
 // exponential
-SK_NATIVE_2(pow, std::pow(x, y))
-SK_NATIVE_1(exp, std::exp(x))
-SK_NATIVE_1(log, std::log(x))
-SK_NATIVE_1(exp2, std::exp2(x))
-SK_NATIVE_1(log2, std::log2(x))
-SK_NATIVE_1(log10, std::log10(x))
-SK_NATIVE_1(sqrt, std::sqrt(x))
-SK_NATIVE_1(inverseSqrt, decltype(x)(1) / std::sqrt(x))
-SK_NATIVE_1(rsqrt, decltype(x)(1) / std::sqrt(x))
+SK_NATIVE_2(pow, Math<decltype(x)>::pow(x, y))
+SK_NATIVE_1(exp, Math<decltype(x)>::exp(x))
+SK_NATIVE_1(log, Math<decltype(x)>::log(x))
+SK_NATIVE_1(exp2, Math<decltype(x)>::exp2(x))
+SK_NATIVE_1(log2, Math<decltype(x)>::log2(x))
+SK_NATIVE_1(log10, Math<decltype(x)>::log10(x))
+SK_NATIVE_1(sqrt, Math<decltype(x)>::sqrt(x))
+SK_NATIVE_1(inverseSqrt, decltype(x)(1) / Math<decltype(x)>::sqrt(x))
+SK_NATIVE_1(rsqrt, decltype(x)(1) / Math<decltype(x)>::sqrt(x))
 
 // common
-template <class T> T absOf(T x) { if constexpr (isInteger<T>) { return x < T(0) ? -x : x; } else { return std::fabs(x); } }
+template <class T> T absOf(T x) { if constexpr (isInteger<T>) { return x < T(0) ? -x : x; } else { return Math<T>::fabs(x); } }
 template <class T> T signOf(T x) { return x > T(0) ? T(1) : x < T(0) ? T(-1) : T(0); }
 /// IEEE 754's minNum and maxNum: of a number and a NaN, the number; -0 is below +0.
 template <class T> T minOf(T x, T y) {
-  if constexpr (isInteger<T>) { return y < x ? y : x; } else { return x == y ? (std::signbit(x) ? x : y) : std::fmin(x, y); }
+  if constexpr (isInteger<T>) { return y < x ? y : x; } else { return x == y ? (Math<T>::signbit(x) ? x : y) : Math<T>::fmin(x, y); }
 }
 template <class T> T maxOf(T x, T y) {
-  if constexpr (isInteger<T>) { return x < y ? y : x; } else { return x == y ? (std::signbit(x) ? y : x) : std::fmax(x, y); }
+  if constexpr (isInteger<T>) { return x < y ? y : x; } else { return x == y ? (Math<T>::signbit(x) ? y : x) : Math<T>::fmax(x, y); }
 }
 /// Below 1, also where x is a little less than a whole number.
 template <class T> T fractOf(T x) {
-  if (std::isinf(x)) return std::numeric_limits<T>::quiet_NaN();
-  const T fraction = x - std::floor(x);
-  return fraction >= T(1) ? std::nextafter(T(1), T(0)) : fraction;
+  if (Math<T>::isinf(x)) return T(std::numeric_limits<float>::quiet_NaN());
+  const T fraction = x - Math<T>::floor(x);
+  return fraction >= T(1) ? Math<T>::nextafter(T(1), T(0)) : fraction;
 }
 /// What is left of x by y, exact but for the sum that gives it the sign of y.
 template <class T> T modOf(T x, T y) {
-  const T left = std::fmod(x, y);
+  const T left = Math<T>::fmod(x, y);
   return left != T(0) && (left < T(0)) != (y < T(0)) ? left + y : left;
 }
 template <class T> T mixOf(T x, T y, T t) { return x * (T(1) - t) + y * t; }
@@ -82,15 +82,15 @@ template <class T> T smoothstepOf(T low, T high, T x) {
 SK_NATIVE_1(abs, absOf(x))
 SK_NATIVE_1(fabs, absOf(x))
 SK_NATIVE_1(sign, signOf(x))
-SK_NATIVE_1(floor, std::floor(x))
-SK_NATIVE_1(trunc, std::trunc(x))
-SK_NATIVE_1(round, std::nearbyint(x))
-SK_NATIVE_1(roundEven, std::nearbyint(x))
-SK_NATIVE_1(ceil, std::ceil(x))
+SK_NATIVE_1(floor, Math<decltype(x)>::floor(x))
+SK_NATIVE_1(trunc, Math<decltype(x)>::trunc(x))
+SK_NATIVE_1(round, Math<decltype(x)>::nearbyint(x))
+SK_NATIVE_1(roundEven, Math<decltype(x)>::nearbyint(x))
+SK_NATIVE_1(ceil, Math<decltype(x)>::ceil(x))
 SK_NATIVE_1(fract, fractOf(x))
 SK_NATIVE_1(frac, fractOf(x))
 SK_NATIVE_2(mod, modOf(x, y))
-SK_NATIVE_2(fmod, std::fmod(x, y))
+SK_NATIVE_2(fmod, Math<decltype(x)>::fmod(x, y))
 SK_NATIVE_2(min, minOf(x, y))
 SK_NATIVE_2(max, maxOf(x, y))
 SK_NATIVE_2(fmin, minOf(x, y))
@@ -104,8 +104,8 @@ SK_NATIVE_2(step, y < x ? decltype(x)(0) : decltype(x)(1))
 SK_NATIVE_3(smoothstep, smoothstepOf(x, y, z))
 SK_NATIVE_3(fma, x * y + z)
 template <class A> auto isnan(const A& a) { return byComponent([](auto x) { return bool(x != x); }, a); }
-template <class A> auto isinf(const A& a) { return byComponent([](auto x) { return bool(std::isinf(x)); }, a); }
-template <class A> auto isfinite(const A& a) { return byComponent([](auto x) { return bool(std::isfinite(x)); }, a); }
+template <class A> auto isinf(const A& a) { return byComponent([](auto x) { return bool(Math<decltype(x)>::isinf(x)); }, a); }
+template <class A> auto isfinite(const A& a) { return byComponent([](auto x) { return bool(Math<decltype(x)>::isfinite(x)); }, a); }
 
 // bits: of the float that is nearest, where the real type is wider. The way back needs to know that type.
 inline Uint bitsOf(float x) { return Uint(std::bit_cast<std::uint32_t>(x)); }
@@ -118,20 +118,20 @@ template <class Real, class A> auto intBitsToFloat(const A& a) { return byCompon
 template <class Real, class A> auto uintBitsToFloat(const A& a) { return intBitsToFloat<Real>(a); }
 template <class Real, class A> auto asFloatInt(const A& a) { return intBitsToFloat<Real>(a); }
 template <class Real, class A> auto asFloatUint(const A& a) { return intBitsToFloat<Real>(a); }
-SK_NATIVE_2(ldexp, std::ldexp(x, y.word()))
+SK_NATIVE_2(ldexp, Math<decltype(x)>::ldexp(x, y.word()))
 template <class T> Int exponentOf(T x) {
   int e = 0;
-  if (x != T(0) && std::isfinite(x)) std::frexp(x, &e);
+  if (x != T(0) && Math<T>::isfinite(x)) Math<T>::frexp(x, &e);
   return Int(e);
 }
 template <class T> T mantissaOf(T x) {
   int e = 0;
-  return x == T(0) || !std::isfinite(x) ? x : std::frexp(x, &e);
+  return x == T(0) || !Math<T>::isfinite(x) ? x : Math<T>::frexp(x, &e);
 }
 template <class A> auto frexpExponent(const A& a) { return byComponent([](auto x) { return exponentOf(x); }, a); }
 SK_NATIVE_1(frexpMantissa, mantissaOf(x))
-SK_NATIVE_1(modfFraction, std::copysign(std::isinf(x) ? decltype(x)(0) : x - std::trunc(x), x))
-template <class A> auto nearest(const A& a) { return byComponent([](auto x) { return wholeIndex(std::floor(x + decltype(x)(0.5))); }, a); }
+SK_NATIVE_1(modfFraction, Math<decltype(x)>::copysign(Math<decltype(x)>::isinf(x) ? decltype(x)(0) : x - Math<decltype(x)>::trunc(x), x))
+template <class A> auto nearest(const A& a) { return byComponent([](auto x) { return wholeIndex(Math<decltype(x)>::floor(x + decltype(x)(0.5))); }, a); }
 
 // what a rounding loses: IEEE 754's arithmetic leaves it a float (Knuth, TAOCP 2, 4.2.2; Dekker,
 // Numer. Math. 18, 1971)
@@ -143,11 +143,11 @@ template <class T> T sumErrorOf(T a, T b) {
 /// Of a product that is not finite, 0.
 template <class T> T productErrorOf(T a, T b) {
   const T p = a * b;
-  if (!std::isfinite(p)) return T(0);
+  if (!Math<T>::isfinite(p)) return T(0);
   if constexpr (std::is_same_v<T, float>) {
     return static_cast<float>(double{a} * double{b} - double{p});
   } else {
-    return std::fma(a, b, -p);
+    return Math<T>::fma(a, b, -p);
   }
 }
 SK_NATIVE_2(roundedProduct, x * y)
@@ -173,10 +173,10 @@ template <class A> auto largest(const A& a) {
 }
 template <class A> auto length(const A& a) {
   const auto most = largest(a);
-  if (std::isinf(most)) return most;
+  if (Math<Component<A>>::isinf(most)) return most;
   const auto scale = lengthScale(most);
   const A scaled = a * scale;
-  return std::sqrt(dot(scaled, scaled)) / scale;
+  return Math<Component<A>>::sqrt(dot(scaled, scaled)) / scale;
 }
 template <class A> auto distance(const A& a, const A& b) { return length(a - b); }
 template <class T> auto cross(const Vec<T, 3>& a, const Vec<T, 3>& b) {
@@ -186,7 +186,7 @@ template <class T> auto cross(const Vec<T, 3>& a, const Vec<T, 3>& b) {
 template <class A> A normalize(const A& a) {
   const A scaled = a * lengthScale(largest(a));
   const auto square = dot(scaled, scaled);
-  return square == decltype(square)(0) ? a : A(scaled / std::sqrt(square));
+  return square == decltype(square)(0) ? a : A(scaled / Math<Component<A>>::sqrt(square));
 }
 template <class A> A faceforward(const A& n, const A& i, const A& reference) { return dot(reference, i) < Component<A>(0) ? n : A(-n); }
 template <class A> A reflect(const A& i, const A& n) { return i - n * (Component<A>(2) * dot(n, i)); }
@@ -195,7 +195,7 @@ template <class A> A refract(const A& i, const A& n, const Component<A>& eta) {
   const Real d = dot(n, i);
   const Real k = Real(1) - eta * eta * (Real(1) - d * d);
   if (k < Real(0)) return A(Real(0));
-  return i * eta - n * (eta * d + std::sqrt(k));
+  return i * eta - n * (eta * d + Math<Real>::sqrt(k));
 }
 
 // matrices

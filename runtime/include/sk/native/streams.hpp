@@ -10,6 +10,7 @@
 
 #include "sk/native/call.hpp"
 #include "sk/native/element.hpp"
+#include "sk/native/math.hpp"
 #include "sk/native/vector.hpp"
 
 namespace sk::native {
@@ -178,9 +179,9 @@ class Gather : public StreamParameter {
     Real weights[N];
     for (std::size_t d = 0; d < N; ++d) {
       const Real x = componentAt(place, d);
-      const Real whole = std::floor(x);
+      const Real whole = Math<Real>::floor(x);
       low[d] = wholeIndex(whole).word();
-      weights[d] = std::fabs(x) >= Real(16777216) ? Real(0) : x - whole;   // infinity has none
+      weights[d] = Math<Real>::fabs(x) >= Real(16777216) ? Real(0) : x - whole;   // infinity has none
     }
     return weighted<Carrier, Real, N>(low, weights);
   }

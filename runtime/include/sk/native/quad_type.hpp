@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+//
+// The type behind quad.hpp, for those that only keep such numbers: compilers convert and add them without a library.
+#pragma once
+
+namespace sk::native {
+
+#if defined(__SIZEOF_FLOAT128__)
+__extension__ typedef __float128 Quad;
+#else
+using Quad = long double;
+#endif
+
+}  // namespace sk::native
