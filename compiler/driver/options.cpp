@@ -100,6 +100,8 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
       ->check(CLI::IsMember({"single", "half", "extended", "double"}));
   app.add_flag("--quad", options.quad,
                "Native code for the reference in __float128, too; programs with it link quadmath");
+  app.add_flag("--library", options.library,
+               "The stubs list all kernels and reduces, for programs that load them: sk/library.hpp");
   app.add_option("--profile", options.profile,
                  "Version of GLSL that --emit=glsl and plan are about: " + profileNames())
       ->check(checkProfile, "")

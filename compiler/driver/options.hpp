@@ -24,6 +24,7 @@ struct Options {
   std::string precision;  ///< of --emit=glsl; of stubs: "single" leaves out all other forms
   bool nativeTarget = true;  ///< the stubs have native code
   bool quad = false;  ///< which computes in __float128, too
+  bool library = false;  ///< the stubs have a list of their descriptors
   bool color = false;
   bool fixIts = false;  ///< print mends for tools, too
 };

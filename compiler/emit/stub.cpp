@@ -67,8 +67,8 @@ std::string parameterList(const Module& module, const Kernel& kernel, Form form,
 }
 
 Stub emitStub(const Module& module, const Program& program, std::string_view fileName,
-              std::optional<Reals> native) {
-  StubParts parts{callables(module, program), {}, fileName, native};
+              const StubOptions& options) {
+  StubParts parts{callables(module, program), {}, fileName, options};
   parts.streams = streamStructs(module, parts.callables, fileName);
   return {stubHeader(module, program, parts), stubSource(module, program, parts)};
 }

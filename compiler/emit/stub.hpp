@@ -19,9 +19,14 @@ struct Stub {
   std::string source;   ///< FILE.sk.cpp
 };
 
+struct StubOptions {
+  std::optional<Reals> native =
+      Reals::Double;  ///< real types of the native code; none: there is no such code
+  bool withLibrary = false;  ///< the source has a list of its descriptors: sk/library.hpp
+};
+
 /// `fileName` is the .sk file's name without directories: the source includes "heat.sk.hpp" for "heat.sk".
-/// `native`: the real types of the source's native code; none if it has no such code.
 Stub emitStub(const ir::Module& module, const Program& program, std::string_view fileName,
-              std::optional<Reals> native);
+              const StubOptions& options);
 
 }  // namespace skc::emit

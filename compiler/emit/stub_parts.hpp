@@ -3,14 +3,13 @@
 // Private to emitStub: the two files, and what both of them print alike.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "emit/cpp_names.hpp"
-#include "emit/native_code.hpp"
 #include "emit/stream_structs.hpp"
+#include "emit/stub.hpp"
 
 namespace skc::emit {
 
@@ -19,7 +18,7 @@ struct StubParts {
   std::vector<Callable> callables;
   std::vector<StreamStruct> streams;
   std::string_view fileName;
-  std::optional<Reals> native;   ///< none: the source has no native code
+  StubOptions options;
 };
 
 std::string stubHeader(const ir::Module& module, const Program& program, const StubParts& parts);

@@ -17,7 +17,9 @@ using namespace ir;
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
-Stub stubOf(const Module& module) { return emitStub(module, Program(module), "heat.sk", std::nullopt); }
+Stub stubOf(const Module& module) {
+  return emitStub(module, Program(module), "heat.sk", {.native = std::nullopt});
+}
 
 TEST_CASE("the header") {
   const std::string header = stubOf(sampleModule()).header;
@@ -117,6 +119,26 @@ Hit NearestReduce::operator()(const sk::ElementIn<Hit>& h) const {
   sk::reduce(sk::program::nearestReduction, arguments, results, this->options);
   return value;
 }
+)"));
+}
+
+TEST_CASE("a list of all descriptors, where it is asked for") {
+  const Module module = sampleModule();
+  const Stub plain = stubOf(module);
+  const Stub listed =
+      emitStub(module, Program(module), "heat.sk", {.native = std::nullopt, .withLibrary = true});
+  CHECK(listed.header == plain.header);
+  CHECK_FALSE(contains(plain.source, "Library"));
+  CHECK(contains(listed.source, "#include \"heat.sk.hpp\"\n\n#include <sk/library.hpp>\n"));
+  CHECK(contains(listed.source, R"(
+constexpr const Kernel* allKernels[] = {&diffuseKernel};
+constexpr const Reduction* allReductions[] = {)"));
+  CHECK(contains(listed.source, R"(
+}  // namespace
+
+const Library sk_library{allKernels, allReductions};
+
+}  // namespace sk::program
 )"));
 }
 
