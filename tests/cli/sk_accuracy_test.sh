@@ -5,25 +5,9 @@
 # Usage: sk_accuracy_test.sh SK
 set -euo pipefail
 sk=$(realpath "$1")
-place=$(mktemp -d)
-trap 'rm -rf "$place"' EXIT
-cd "$place"
+tested=("$sk" accuracy)
+source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
 unset SK_DEVICE SK_PROFILE
-
-# run STATUS ARGUMENT...: its texts go to $out and $err.
-run() {
-  local expected=$1 status=0
-  shift
-  line="sk accuracy $*"
-  "$sk" accuracy "$@" >out.txt 2>err.txt </dev/null || status=$?
-  out=$(<out.txt)
-  err=$(<err.txt)
-  ((status == expected)) || broken "status $status, not $expected"
-}
-broken() { printf 'broken: %s\n%s\nstandard output:\n%s\nstandard error:\n%s\n' "$1" "$line" "$out" "$err"; exit 1; }
-prints() { [[ $out == *"$1"* ]] || broken "standard output lacks: $1"; }
-matches() { grep -qE -- "$1" out.txt || broken "no line of standard output matches: $1"; }
-says() { [[ $err == *"$1"* ]] || broken "standard error lacks: $1"; }
 
 # figures FILE: of a table, all but times and what follows from them.
 figures() { sed -E 's/ +[0-9.]+ \[[0-9.]+ [0-9.]+\]/ /; s/ +PARETO$//; s/ +/ /g; /cheapest/d' "$1"; }

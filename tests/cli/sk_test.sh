@@ -7,26 +7,11 @@
 set -euo pipefail
 sk=$(realpath "$1")
 accuracy=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../../docs/accuracy.md")
-place=$(mktemp -d)
-trap 'chmod -R u+w "$place"; rm -rf "$place"' EXIT
-cd "$place"
+tested=("$sk")
+source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
 unset SK_DEVICE SK_PROFILE
 export SK_CACHE=$place/cache
 
-# run STATUS ARGUMENT...: its texts go to $out and $err.
-run() {
-  local expected=$1 status=0
-  shift
-  line="sk $*"
-  "$sk" "$@" >out.txt 2>err.txt </dev/null || status=$?
-  out=$(<out.txt)
-  err=$(<err.txt)
-  ((status == expected)) || broken "status $status, not $expected"
-}
-broken() { printf 'broken: %s\n%s\nstandard output:\n%s\nstandard error:\n%s\n' "$1" "$line" "$out" "$err"; exit 1; }
-prints() { [[ $out == *"$1"* ]] || broken "standard output lacks: $1"; }
-matches() { grep -qE -- "$1" out.txt || broken "no line of standard output matches: $1"; }
-says() { [[ $err == *"$1"* ]] || broken "standard error lacks: $1"; }
 # arithmetic: of a table, what no other load of the machine changes.
 arithmetic() { sed '/^  bandwidth/,$d'; }
 measures() { [[ $err == *measuring* ]] || broken "nothing is measured"; }

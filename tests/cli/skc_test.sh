@@ -6,24 +6,9 @@
 # Usage: skc_test.sh SKC
 set -euo pipefail
 skc=$(realpath "$1")
-place=$(mktemp -d)
-trap 'rm -rf "$place"' EXIT
-cd "$place"
+tested=(timeout 20 "$skc")
+source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
 
-# run STATUS ARGUMENT...: its texts go to $out and $err.
-run() {
-  local expected=$1 status=0
-  shift
-  line="skc $*"
-  timeout 20 "$skc" "$@" >out.txt 2>err.txt </dev/null || status=$?
-  out=$(<out.txt)
-  err=$(<err.txt)
-  ((status == expected)) || broken "status $status, not $expected"
-  [[ $err != *$'\e'* && $out != *$'\e'* ]] || broken "colours without a terminal"
-}
-broken() { printf 'broken: %s\n%s\nstandard output:\n%s\nstandard error:\n%s\n' "$1" "$line" "$out" "$err"; exit 1; }
-prints() { [[ $out == *"$1"* ]] || broken "standard output lacks: $1"; }
-says() { [[ $err == *"$1"* ]] || broken "standard error lacks: $1"; }
 silent() { [[ -z $err ]] || broken "standard error is not empty"; }
 
 # refuses MESSAGE ARGUMENT...: one error, status 1, and no output left behind.
@@ -51,11 +36,11 @@ echo '#define WEIGHT 0.25f' >include/weights.sk
 # Help and version.
 run 0 --help
 prints 'FILE'
-for option in -o --emit --target --profile --kernel -I -D -W --depfile --print-after --version; do prints " $option"; done
+for option in -o --emit --target --profile --kernel -I -D -W --depfile --print-after --library --version; do prints " $option"; done
 run 0 --version
 [[ $out =~ ^skc\ [0-9]+\.[0-9]+\.[0-9]+ ]] || broken "no version"
 
-# Stubs, and the depfile that rebuilds them.
+# Stubs, with a list of their kernels where that is asked for, and the depfile that rebuilds them.
 run 0 -Iinclude heat.sk
 silent
 [[ -s heat.sk.hpp && -s heat.sk.cpp ]] || broken "no stubs beside the caller"
