@@ -94,6 +94,11 @@ class Device {
     return Stream<T>(createStream(ElementTraits<T>::element(), shape, storage));
   }
 
+  /// The same, of a type that is known at run time only; detail::write() and read() move its elements as bytes. `element`
+  /// must outlive the stream.
+  detail::StreamOwner createStream(const program::Element& element, const Shape& shape,
+                                   Storage storage = Storage::Single);
+
   /// The renderer's name as the driver gives it.
   const std::string& name() const;
   /// The version of GL and of the driver, and that of the shading language, as the driver words them; empty where
@@ -119,7 +124,6 @@ class Device {
 
  private:
   explicit Device(std::unique_ptr<DeviceState> state);
-  detail::StreamOwner createStream(const program::Element& element, const Shape& shape, Storage storage);
   DeviceState& state() const;
 
   std::unique_ptr<DeviceState> state_;
