@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "accuracy/chart.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
+
+#include "accuracy/child_process.hpp"
+#include "accuracy/label_places.hpp"
+#include "accuracy/temporary_folder.hpp"
 
 namespace sk_tool {
 
@@ -39,36 +36,104 @@ double floorOf(const Experiment& experiment) {
   return least / 10;
 }
 
-/// The rows that are on the front, or those that are not: time, error, label.
-std::string pointsOf(const Experiment& experiment, bool isPareto) {
-  std::string points;
+struct Point {
+  double time, error;  ///< as drawn: a ratio, and a decimal logarithm
+  std::string text;
+  bool isPareto;
+};
+
+std::vector<Point> pointsOf(const Experiment& experiment) {
+  std::vector<Point> points;
   for (const Row& row : experiment.rows) {
-    if (row.isRefused() || row.isPareto != isPareto || !std::isfinite(row.grade.error())) continue;
-    const double error = std::max(row.grade.error(), floorOf(experiment));
-    fmt::format_to(std::back_inserter(points), "{} {} \"{}{}\"\n", row.time.median, std::log10(error),
-                   row.mode, row.grade.error() == 0 ? " (error 0)" : "");
+    const double error = row.grade.metrics.empty() ? HUGE_VAL : row.grade.error();
+    if (row.isRefused() || !std::isfinite(error)) continue;
+    points.push_back({row.time.median, std::log10(std::max(error, floorOf(experiment))),
+                      error == 0 ? row.mode + " (error 0)" : row.mode, row.isPareto});
   }
   return points;
 }
 
-std::string panelOf(const Experiment& experiment, std::size_t number) {
+/// What an axis shows.
+struct Span {
+  double low, high;
+
+  double size() const { return high - low; }
+  /// All values, `least` at least, with parts of that beyond the ends.
+  static Span around(const std::vector<Point>& points, double Point::* value, double least, double below,
+                     double above) {
+    const auto less = [value](const Point& a, const Point& b) { return a.*value < b.*value; };
+    const auto [first, last] = std::minmax_element(points.begin(), points.end(), less);
+    const double middle = ((*first).*value + (*last).*value) / 2;
+    const double size = std::max((*last).*value - (*first).*value, least);
+    return {middle - size / 2 - below * size, middle + size / 2 + above * size};
+  }
+};
+
+// Pixels of a panel, and of the part of it that the axes enclose.
+constexpr double panelWidth = 520, panelHeight = 360;
+constexpr double leftMargin = 70, rightMargin = 20, bottomMargin = 60, topMargin = 40;
+constexpr double plotWidth = panelWidth - leftMargin - rightMargin;
+constexpr double plotHeight = panelHeight - bottomMargin - topMargin;
+constexpr double headHeight = 40;  ///< above all panels
+constexpr double letterWidth = 7.6;  ///< of the font, generously
+
+const char* colorOf(const Point& point) { return point.isPareto ? "#1b5e9b" : "#888888"; }
+
+/// Names beside their points, with lines to those that had to be put further away.
+std::string labelsOf(const std::vector<Point>& points, const Span& times, const Span& errors) {
+  std::vector<LabelledPoint> places;
+  for (const Point& point : points) {
+    places.push_back({(point.time - times.low) / times.size() * plotWidth,
+                      (point.error - errors.low) / errors.size() * plotHeight,
+                      letterWidth * static_cast<double>(point.text.size())});
+  }
+  const std::vector<LabelPlace> labels = placeLabels(places, plotWidth, plotHeight);
   std::string script;
-  std::string plots;
-  const auto add = [&](const char* name, bool isPareto, const char* color) {
-    const std::string points = pointsOf(experiment, isPareto);
-    if (points.empty()) return;
-    fmt::format_to(std::back_inserter(script), "${}{} << END\n{}END\n", name, number, points);
-    fmt::format_to(
-        std::back_inserter(plots),
-        "{0} ${1}{2} using 1:2 with points pt 7 ps 0.8 lc rgb '{3}', ${1}{2} using 1:2:3 with labels left rotate by 25 "
-        "offset 0.8,0.4 tc rgb '{3}'",
-        plots.empty() ? "" : ",", name, number, color);
-  };
-  add("front", true, "#1b5e9b");
-  add("dominated", false, "#999999");
-  if (plots.empty()) plots = " NaN";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const LabelPlace& label = labels[i];
+    fmt::format_to(std::back_inserter(script),
+                   "set label {} at graph {:.4f},{:.4f} left noenhanced tc rgb '{}'\n",
+                   quoted(points[i].text), label.x / plotWidth, label.y / plotHeight, colorOf(points[i]));
+    if (!label.isApart) continue;
+    const bool isRight = label.x > places[i].x;
+    const double end = isRight ? label.x - 3 : label.x + places[i].textWidth;
+    fmt::format_to(std::back_inserter(script),
+                   "set arrow from graph {:.4f},{:.4f} to graph {:.4f},{:.4f} nohead lc rgb '#bbbbbb' back\n",
+                   places[i].x / plotWidth, places[i].y / plotHeight, end / plotWidth, label.y / plotHeight);
+  }
+  return script;
+}
+
+std::string panelOf(const Experiment& experiment, std::size_t number) {
+  const std::vector<Point> points = pointsOf(experiment);
+  std::string script = "unset label\nunset arrow\n";
+  std::string plot = " NaN";
+  if (!points.empty()) {
+    const Span times = Span::around(points, &Point::time, 0.2, 0.15, 0.45);
+    const Span errors = Span::around(points, &Point::error, 2, 0.15, 0.15);
+    fmt::format_to(std::back_inserter(script), "set xrange [{}:{}]\nset yrange [{}:{}]\n{}$points{} << END\n",
+                   times.low, times.high, errors.low, errors.high, labelsOf(points, times, errors), number);
+    for (const Point& point : points) {
+      fmt::format_to(std::back_inserter(script), "{} {} {}\n", point.time, point.error,
+                     point.isPareto ? "0x1b5e9b" : "0x888888");
+    }
+    script += "END\n";
+    plot = fmt::format(" $points{} using 1:2:3 with points pt 7 ps 0.8 lc rgb variable", number);
+  }
   return fmt::format("{}set title {}\nplot{}\n", script, quoted(experiment.program + ", " + experiment.data),
-                     plots);
+                     plot);
+}
+
+/// Where a panel's axes are in the whole picture, in which gnuplot wants fractions.
+std::string marginsOf(std::size_t number, std::size_t columns, std::size_t rows) {
+  const double width = static_cast<double>(columns) * panelWidth;
+  const double height = static_cast<double>(rows) * panelHeight + headHeight;
+  const double left = static_cast<double>(number % columns) * panelWidth + leftMargin;
+  const double bottom = static_cast<double>(rows - 1 - number / columns) * panelHeight + bottomMargin;
+  return fmt::format(
+      "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\nset tmargin "
+      "at screen {:.4f}\n",
+      left / width, (left + plotWidth) / width, bottom / height, (bottom + plotHeight) / height);
 }
 
 std::string scriptOf(const std::string& file, const std::string& device,
@@ -76,52 +141,32 @@ std::string scriptOf(const std::string& file, const std::string& device,
   const std::size_t columns = experiments.size() > 1 ? 2 : 1;
   const std::size_t rows = (experiments.size() + columns - 1) / columns;
   std::string script = fmt::format(
-      "set terminal {} size {},{} font 'sans,12' background '#ffffff'\n"
+      "set terminal {} size {},{} font 'sans,{}' background '#ffffff'\n"
       "set output {}\n"
-      "set key off\nset grid lc rgb '#dddddd'\nset border 3\nset tics nomirror\n"
+      "set key off\nset grid lt 1 lc rgb '#dddddd'\nset border 3\nset tics nomirror\n"
       "set xlabel 'time over that of the first mode'\nset ylabel 'log10 of the relative error'\n"
-      "set xrange [*<0.9:1.1<*]\nset yrange [*<-8:-4<*]\n"
-      "set offsets graph 0.1, graph 0.35, graph 0.15, graph 0.15\n"
-      "set multiplot layout {},{} title {} noenhanced\n",
-      isPicture(file) ? "pngcairo noenhanced" : "svg noenhanced", columns * 520, rows * 360 + 40,
-      quoted(file), rows, columns, quoted("sk accuracy on " + device));
-  for (std::size_t i = 0; i < experiments.size(); ++i) script += panelOf(experiments[i], i);
+      "set multiplot title {} noenhanced\n",
+      isPicture(file) ? "pngcairo noenhanced" : "svg noenhanced", static_cast<double>(columns) * panelWidth,
+      static_cast<double>(rows) * panelHeight + headHeight,
+      isPicture(file) ? 9 : 12,  // points, or pixels: the same
+      quoted(file), quoted("sk accuracy on " + device));
+  for (std::size_t i = 0; i < experiments.size(); ++i) {
+    script += marginsOf(i, columns, rows) + panelOf(experiments[i], i);
+  }
   return script + "unset multiplot\n";
 }
 
-/// A file that is gone at the end.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& text)
-      : name_((std::filesystem::temp_directory_path() / "sk-chart-XXXXXX").string()) {
-    const int descriptor = ::mkstemp(name_.data());
-    if (descriptor < 0) throw std::runtime_error(fmt::format("cannot write a temporary file '{}'", name_));
-    ::close(descriptor);
-    std::ofstream(name_) << text;
-  }
-  ~TemporaryFile() { ::unlink(name_.c_str()); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  std::string& name() { return name_; }
-
- private:
-  std::string name_;
-};
-
-void runGnuplot(std::string& script) {
-  std::string program = "gnuplot";
-  const std::array<char*, 3> arguments{program.data(), script.data(), nullptr};
-  pid_t child = 0;
-  if (::posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ) != 0) {
+void runGnuplot(const std::string& script) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "chart.gnuplot").string();
+  std::ofstream(file) << script;
+  const std::optional<int> status = runProgram({"gnuplot", file});
+  if (!status) {
     throw std::runtime_error(
         "there is no gnuplot to draw the chart; install it (Debian: gnuplot-nox), or take --json FILE and "
         "draw from that");
   }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (status != 0) throw std::runtime_error("gnuplot could not draw the chart");
+  if (*status != 0) throw std::runtime_error("gnuplot could not draw the chart");
 }
 
 }  // namespace
@@ -137,8 +182,7 @@ void drawChart(const std::string& file, const std::string& device,
   std::ofstream probe(file);
   if (!probe) throw std::runtime_error(fmt::format("cannot write '{}'", file));
   probe.close();
-  TemporaryFile script(scriptOf(file, device, experiments));
-  runGnuplot(script.name());
+  runGnuplot(scriptOf(file, device, experiments));
 }
 
 }  // namespace sk_tool
