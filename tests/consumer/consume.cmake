@@ -73,6 +73,9 @@ if(WAY STREQUAL "find_package")
   relocatable("${WORK}/moved")
   if(EXISTS "${BUILD}/bin/sk")
     step("asking the installed sk" "${WORK}/moved/bin/sk" --version)
+    step("measuring a file by the installed sk" ${CMAKE_COMMAND} -E env --unset=SK_INCLUDE SK_CACHE=off
+         "${WORK}/moved/bin/sk" accuracy "${WORK}/project/scale.sk" --skc "${SKC}" -I "${WORK}/project"
+         --device native --size 64 --rounds 1)
   endif()
   set(place "-DCMAKE_PREFIX_PATH=${WORK}/moved")
 else()

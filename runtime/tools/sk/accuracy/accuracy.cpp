@@ -4,11 +4,14 @@
 #include "accuracy/accuracy.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -16,6 +19,7 @@
 #include <CLI/CLI.hpp>
 
 #include "accuracy/chart.hpp"
+#include "accuracy/file/options.hpp"
 #include "accuracy/programs.hpp"
 #include "accuracy/table.hpp"
 #include "info/device_info.hpp"
@@ -29,7 +33,9 @@ constexpr int schema = 1;  ///< of the JSON
 struct Options {
   std::vector<std::string> programs;
   std::string device;
+  std::string size;  ///< as --size has it
   Measurement measurement{.size = std::size_t{1} << 20, .rounds = 15};
+  FileOptions file;
   std::optional<double> tolerance;
   std::string jsonFile;
   std::string chartFile;
@@ -59,6 +65,31 @@ std::vector<const Program*> chosenPrograms(const std::vector<std::string>& names
   return chosen;
 }
 
+bool isFile(const std::string& program) { return program.ends_with(".sk"); }
+
+/// "N" or "HxW", up to four extents; none where it is no such thing.
+std::vector<std::int64_t> extentsIn(const std::string& text) {
+  std::vector<std::int64_t> extents;
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, 'x');) {
+    std::int64_t extent = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), extent);
+    if (error != std::errc{} || end != word.data() + word.size() || extent < 1) return {};
+    extents.push_back(extent);
+  }
+  return extents.size() > 4 || text.ends_with('x') ? std::vector<std::int64_t>{} : extents;
+}
+
+/// A message for a size that is not allowed, or "".
+std::string checkSize(const std::string& text) {
+  constexpr std::int64_t least = 16, most = std::int64_t{1} << 26;
+  std::int64_t size = 1;
+  for (const std::int64_t extent : extentsIn(text))
+    size = extent > most ? most + 1 : std::min(size * extent, most + 1);
+  if (!extentsIn(text).empty() && size >= least && size <= most) return {};
+  return fmt::format("'{}' is no size; give {} to {} elements, or HxW of them", text, least, most);
+}
+
 void checkWritable(const std::string& file) {
   if (!std::ofstream(file, std::ios::app)) throw std::runtime_error(fmt::format("cannot write '{}'", file));
 }
@@ -66,8 +97,10 @@ void checkWritable(const std::string& file) {
 void writeJson(const Options& options, const sk::Device& device, const std::vector<Experiment>& experiments) {
   Json json = {{"schema", schema},           {"streamkernel", SK_VERSION},
                {"device", describe(device)}, {"size", options.measurement.size},
-               {"seed", inputSeed},          {"rounds", options.measurement.rounds},
-               {"records", Json::array()}};
+               {"seed", inputSeed},          {"rounds", options.measurement.rounds}};
+  if (isFile(options.programs.empty() ? "" : options.programs.front()))
+    json["file"] = options.programs.front();
+  json["records"] = Json::array();
   for (const Experiment& experiment : experiments) addRecords(json["records"], experiment);
   std::ofstream out(options.jsonFile);
   out << json.dump(2) << '\n';
@@ -75,13 +108,42 @@ void writeJson(const Options& options, const sk::Device& device, const std::vect
   if (!out) throw std::runtime_error(fmt::format("cannot write '{}'", options.jsonFile));
 }
 
-void runAccuracy(const Options& options) {
-  const std::vector<const Program*> chosen = chosenPrograms(options.programs);
-  if (!options.chartFile.empty()) checkChartName(options.chartFile);
-  if (!options.jsonFile.empty()) checkWritable(options.jsonFile);
-  sk::Device device(options.device);
+void printHead(const Options& options, const sk::Device& device) {
   fmt::print("{}; times over those of each first mode, {} rounds\n\n", device.name(),
              options.measurement.rounds);
+}
+
+void writeFiles(const Options& options, const sk::Device& device, const std::vector<Experiment>& all) {
+  if (!options.jsonFile.empty()) writeJson(options, device, all);
+  if (!options.chartFile.empty()) drawChart(options.chartFile, device.name(), all);
+}
+
+void runFile(const Options& options) {
+  if (options.programs.size() > 1) {
+    throw std::runtime_error(
+        fmt::format("a .sk file is measured by itself; leave out '{}'", options.programs[1]));
+  }
+  if (options.measurement.data)
+    throw std::runtime_error("--data is of the built-in sums; draw from --range here");
+  const FileMeasurement measurement =
+      options.file.measurement(extentsIn(options.size), options.measurement.rounds);
+  const KernelLibrary library(options.programs.front(), options.file.build);  // outlives the device
+  sk::Device device(options.device);
+  std::vector<std::string> skipped;
+  const std::vector<Experiment> all = measureFile(device, library.list(), measurement, skipped);
+  printHead(options, device);
+  for (const Experiment& experiment : all) fmt::print("{}", tableOf(experiment, true, options.tolerance));
+  if (!skipped.empty()) fmt::print("not measured\n  {}\n", fmt::join(skipped, "\n  "));
+  writeFiles(options, device, all);
+}
+
+void runPrograms(const Options& options) {
+  const std::vector<const Program*> chosen = chosenPrograms(options.programs);
+  if (!options.file.used().empty()) {
+    throw std::runtime_error(fmt::format("{} is for a .sk file; name one", options.file.used()));
+  }
+  sk::Device device(options.device);
+  printHead(options, device);
   std::vector<Experiment> all;
   for (const Program* program : chosen) {
     std::vector<Experiment> experiments = program->measure(device, options.measurement);
@@ -91,8 +153,19 @@ void runAccuracy(const Options& options) {
     }
     std::fflush(stdout);
   }
-  if (!options.jsonFile.empty()) writeJson(options, device, all);
-  if (!options.chartFile.empty()) drawChart(options.chartFile, device.name(), all);
+  writeFiles(options, device, all);
+}
+
+void runAccuracy(Options& options) {
+  if (!options.size.empty()) {
+    options.measurement.size = 1;
+    for (const std::int64_t extent : extentsIn(options.size))
+      options.measurement.size *= static_cast<std::size_t>(extent);
+  }
+  if (!options.chartFile.empty()) checkChartName(options.chartFile);
+  if (!options.jsonFile.empty()) checkWritable(options.jsonFile);
+  const bool hasFile = std::any_of(options.programs.begin(), options.programs.end(), isFile);
+  hasFile ? runFile(options) : runPrograms(options);
 }
 
 std::map<std::string, SumData> dataByName() {
@@ -108,14 +181,17 @@ void addAccuracy(CLI::App& app) {
       app.add_subcommand("accuracy", "What each choice of accuracy costs, and how exact it is");
   auto options = std::make_shared<Options>();
   Measurement& measurement = options->measurement;
-  command->add_option("program", options->programs, listOfPrograms() + " (default: all)")->type_name("");
+  command
+      ->add_option("program", options->programs,
+                   listOfPrograms() + " (default: all), or one FILE.sk, whose kernels get random inputs")
+      ->type_name("");
   command
       ->add_option("--device", options->device,
                    "native, gpu, gpu:N, software, or a part of a renderer's name (default: the best)")
       ->type_name("NAME");
-  command->add_option("--size", measurement.size, "Elements (default: 2^20)")
+  command->add_option("--size", options->size, "Elements (default: 2^20); for a .sk file also HxW")
       ->type_name("N")
-      ->check(CLI::Range(std::size_t{16}, std::size_t{1} << 26));
+      ->check(checkSize, "");
   command->add_option("--rounds", measurement.rounds, "How often each mode is timed, in turns (default: 15)")
       ->type_name("N")
       ->check(CLI::Range(1, 10'000));
@@ -133,6 +209,7 @@ void addAccuracy(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--chart", options->chartFile, "Also draw error over time, by gnuplot, as .svg or .png")
       ->type_name("FILE");
+  options->file.addTo(*command);
   command->callback([options] { runAccuracy(*options); });
 }
 

@@ -36,6 +36,12 @@ Json recordOf(const Experiment& experiment, const Row& row) {
   record["within_bound"] = row.grade.isWithinBound;
   record["pareto"] = row.isPareto;
   if (!row.grade.worst.is_null()) record["worst"] = row.grade.worst;
+  if (const auto& extremes = row.grade.extremes) {
+    record["extremes"] = {{"tried", extremes->tried},
+                          {"other_class", extremes->otherClass},
+                          {"other_value", extremes->otherValue}};
+    if (!extremes->example.is_null()) record["extremes"]["example"] = extremes->example;
+  }
   return record;
 }
 

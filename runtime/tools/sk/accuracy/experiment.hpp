@@ -4,6 +4,7 @@
 // errors. Results only; nothing is measured here.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,12 +20,23 @@ struct Metric {
   double value = 0;  ///< infinity where there is no result at all
 };
 
+/// Results of extreme inputs, whose errors have no size.
+struct ExtremeCounts {
+  std::size_t tried = 0;
+  std::size_t otherClass = 0;  ///< NaN, infinite, 0 or finite where the reference is another of these
+  std::size_t otherValue = 0;  ///< of the same class, but off by more than 1 %
+  Json example = {};  ///< of either, as Grade::worst; null where there are none
+};
+
 /// How wrong the results of a mode are.
 struct Grade {
   std::vector<Metric> metrics = {};  ///< the first is the relative error, by which modes are compared
   std::optional<double> bound = {};  ///< of the metric that Experiment::bounded names
   bool isWithinBound = true;
-  Json worst = {};  ///< of programs that compute element by element: inputs of the largest error
+  Json worst =
+      {};  ///< of programs that compute element by element: inputs of the largest error; of the kernels of a
+  ///< file "inputs" (not of reduces), "result" (its name), "got" and "wanted"
+  std::optional<ExtremeCounts> extremes = {};
 
   double error() const { return metrics.front().value; }
 };

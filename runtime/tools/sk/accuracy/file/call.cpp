@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "accuracy/file/call.hpp"
+
+#include <cstring>
+
+#include "native/native_stream.hpp"
+
+namespace sk_tool {
+
+namespace {
+
+using sk::program::Parameter;
+using sk::program::Scalar;
+
+/// `count` scalars that lie `stride` bytes apart.
+std::vector<double> loadAll(Scalar scalar, const std::byte* from, std::size_t stride, std::size_t count) {
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i) values[i] = load(scalar, from + i * stride);
+  return values;
+}
+
+}  // namespace
+
+std::vector<ResultScalar> resultScalars(const Subject& subject) {
+  std::vector<ResultScalar> scalars;
+  for (const Parameter& parameter : subject.parameters()) {
+    if (!isResult(parameter)) continue;
+    for (const ScalarPlace& place : scalarsOf(*parameter.element)) {
+      scalars.push_back({std::string(parameter.name) + place.member + place.component, place.scalar});
+    }
+  }
+  return scalars;
+}
+
+Call::Call(sk::Device& device, const Subject& subject, const Inputs& inputs)
+    : subject_(subject), inputs_(inputs) {
+  for (std::size_t p = 0; p < inputs.parameters.size(); ++p) {
+    const Parameter& parameter = subject.parameters()[p];
+    const ParameterInput& input = inputs.parameters[p];
+    sk::detail::StreamOwner& stream = streams_.emplace_back();
+    if (isValue(parameter)) continue;
+    stream = device.createStream(*parameter.element, input.shape);
+    if (isResult(parameter)) continue;
+    sk::detail::write(sk::detail::wholeRegion(stream.get()), input.bytes.data(),
+                      static_cast<std::size_t>(input.shape.size()));
+  }
+}
+
+void Call::run(const sk::CallOptions& options, int draw) {
+  std::vector<sk::Argument> arguments;
+  for (std::size_t p = 0; p < streams_.size(); ++p) {
+    const Parameter& parameter = subject_.parameters()[p];
+    if (!isValue(parameter)) {
+      arguments.push_back({.region = sk::detail::wholeRegion(streams_[p].get())});
+      continue;
+    }
+    const bool isSame = parameter.role == sk::program::Role::Iterator;  // in all draws
+    const std::size_t at = isSame ? 0 : static_cast<std::size_t>(draw);
+    arguments.push_back({.value = inputs_.parameters[p].bytes.data() + at * parameter.element->size});
+  }
+  subject_.call(arguments, options);
+}
+
+Results Call::results() const {
+  Results results;
+  for (std::size_t p = 0; p < streams_.size(); ++p) {
+    const Parameter& parameter = subject_.parameters()[p];
+    if (!isResult(parameter)) continue;
+    const auto count = static_cast<std::size_t>(inputs_.extent.results.size());
+    const std::size_t size = parameter.element->size;
+    std::vector<std::byte> elements(count * size);
+    sk::detail::read(sk::detail::wholeRegion(streams_[p].get()), elements.data(), count);
+    for (const ScalarPlace& place : scalarsOf(*parameter.element)) {
+      results.push_back(loadAll(place.scalar, elements.data() + place.offset, size, count));
+    }
+  }
+  return results;
+}
+
+Results Call::exactResults() const {
+  Results results;
+  for (std::size_t p = 0; p < streams_.size(); ++p) {
+    const Parameter& parameter = subject_.parameters()[p];
+    if (!isResult(parameter)) continue;
+    const auto count = static_cast<std::size_t>(inputs_.extent.results.size());
+    const std::vector<sk::ComponentType> types = sk::componentsOf(*parameter.element, sk::RealType::Double);
+    const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
+    const auto arrays = sk::nativeStream(sk::detail::wholeRegion(streams_[p].get())).components.arrays();
+    for (std::size_t c = 0; c < places.size(); ++c) {
+      const Scalar held = types[c].isReal ? Scalar::Double : places[c].scalar;
+      results.push_back(loadAll(held, static_cast<const std::byte*>(arrays[c]), types[c].storedBytes, count));
+    }
+  }
+  return results;
+}
+
+}  // namespace sk_tool

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: MIT
+#include "accuracy/file/inputs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "accuracy/programs.hpp"
+#include "info/numbers.hpp"
+
+namespace sk_tool {
+
+namespace {
+
+using sk::program::Parameter;
+using sk::program::Role;
+using sk::program::Scalar;
+
+constexpr double wideLeast = 1e-4, wideMost = 1e4;  ///< magnitudes of half of all reals; halves hold them
+constexpr double integerMost = 8;
+
+/// Half of the numbers as many between 1 and 2 as between 100 and 200, the others evenly.
+double drawReal(const std::optional<Range>& range, Numbers& numbers) {
+  const bool isLinear = numbers.unit() < 0.5;
+  const auto linear = [&](double low, double high) { return low + (high - low) * numbers.unit(); };
+  const auto logarithmic = [&](double low, double high) {
+    return low * std::exp2(numbers.unit() * std::log2(high / low));
+  };
+  if (!range) {
+    if (isLinear) return linear(-1, 1);
+    const double magnitude = logarithmic(wideLeast, wideMost);
+    return numbers.unit() < 0.5 ? -magnitude : magnitude;
+  }
+  const auto [low, high] = *range;
+  if (isLinear || low == high) return linear(low, high);
+  const bool isNegative = high <= 0 || (low < 0 && numbers.unit() < 0.5);
+  const double most = isNegative ? -low : high;
+  const bool endsAtZero = low <= 0 && high >= 0;
+  const double least = endsAtZero ? most * 0x1p-24 : isNegative ? -high : low;
+  const double magnitude = std::clamp(logarithmic(least, most), least, most);
+  return isNegative ? -magnitude : magnitude;
+}
+
+double drawScalar(Scalar scalar, const std::optional<Range>& range, Numbers& numbers) {
+  if (isReal(scalar)) return drawReal(range, numbers);
+  const bool isSigned = scalar == Scalar::Int || scalar == Scalar::Char || scalar == Scalar::Short;
+  const double most = scalar == Scalar::Bool ? 1 : integerMost;
+  const Range from = range.value_or(Range{isSigned ? -most : 0, most});
+  return std::min(from.low + std::floor(numbers.unit() * (from.high - from.low + 1)), from.high);
+}
+
+/// At most `mostExtremes`.
+std::vector<double> extremesOf(Scalar scalar, const std::optional<Range>& range) {
+  std::vector<double> values{0.0, -0.0, 1, -1};
+  const auto add = [&](double normal, double denormal, double most, int digits) {
+    for (const double value : {normal, denormal, normal - denormal, most, std::exp2(digits), HUGE_VAL}) {
+      values.push_back(value);
+      values.push_back(-value);
+    }
+    values.push_back(std::numeric_limits<double>::quiet_NaN());
+  };
+  using Floats = std::numeric_limits<float>;
+  using Doubles = std::numeric_limits<double>;
+  if (scalar == Scalar::Float) add(Floats::min(), Floats::denorm_min(), Floats::max(), 24);
+  if (scalar == Scalar::Double) add(Doubles::min(), Doubles::denorm_min(), Doubles::max(), 53);
+  if (scalar == Scalar::Half) add(0x1p-14, 0x1p-24, 65504, 11);
+  if (range) {
+    for (const double value : {range->low, range->low + ulpOf(scalar, range->low), range->high,
+                               range->high - ulpOf(scalar, range->high)}) {
+      values.push_back(value);
+    }
+  }
+  return values;
+}
+
+/// How an iterator of integers must step: in whole steps of 1, from the start of its range.
+std::int64_t stepsOf(const Parameter& parameter, const sk::Shape& domain, std::size_t component) {
+  const bool countsElements = domain.rank() == 1 || parameter.element->fields[0].width == 1;
+  return countsElements ? domain.size() : domain[domain.rank() - 1 - static_cast<int>(component)];
+}
+
+/// Begin and end of an iterator's scalar.
+Range endsOf(const Parameter& parameter, Scalar scalar, const std::optional<Range>& range,
+             const sk::Shape& domain, std::size_t component) {
+  if (isReal(scalar)) return range.value_or(Range{-1, 1});
+  const auto steps = static_cast<double>(stepsOf(parameter, domain, component));
+  if (!range) return {0, steps};
+  const double stride = std::max(1.0, std::round((range->high - range->low) / steps));
+  return {range->low, range->low + stride * steps};
+}
+
+class Drawing {
+ public:
+  Drawing(const Subject& subject, const Ranges& ranges, const Extent& extent, Extremes extremes)
+      : subject_(subject), ranges_(ranges), extent_(extent), extremes_(extremes), numbers_(inputSeed) {}
+
+  Inputs draw() {
+    Inputs inputs{.extent = extent_, .parameters = {}, .elements = {}};
+    for (std::int64_t i = 0; i < extent_.results.size(); ++i) inputs.elements.push_back(elementOf(i));
+    places_ = extremeScalars(subject_, ranges_, extremes_);
+    for (const Parameter& parameter : subject_.parameters())
+      inputs.parameters.push_back(drawParameter(parameter));
+    return inputs;
+  }
+
+ private:
+  /// Of the elements that a reduce folds to one, a first one, another for each result.
+  std::int64_t elementOf(std::int64_t result) const {
+    const std::int64_t block = extent_.domain.size() / std::max<std::int64_t>(extent_.results.size(), 1);
+    return result * block + (block > 1 ? result * 7 % block : 0);
+  }
+
+  ParameterInput drawParameter(const Parameter& parameter) {
+    if (isResult(parameter)) return {.shape = extent_.results, .bytes = {}};
+    if (parameter.role == Role::Iterator) return iterator(parameter);
+    const bool isOneValue = isValue(parameter);
+    sk::Shape shape = extent_.domain;
+    if (parameter.role == Role::Gather && parameter.rank != shape.rank()) {
+      shape = cubeOf(parameter.rank, shape.size());
+    }
+    const std::size_t count = static_cast<std::size_t>(isOneValue ? extent_.draws : shape.size());
+    const bool mayBeExtreme = parameter.role != Role::Spec && extremes_ != Extremes::None &&
+                              isOneValue == (extremes_ == Extremes::InValues);
+    ParameterInput input{.shape = shape, .bytes = std::vector<std::byte>(count * parameter.element->size)};
+    const std::vector<std::optional<Range>> ranges = ranges_.of(parameter);
+    const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
+    for (std::size_t c = 0; c < places.size(); ++c) {
+      const bool isExtreme = mayBeExtreme && isDrawn(places[c].scalar, ranges[c]);
+      const std::vector<double> extremes =
+          isExtreme ? extremesOf(places[c].scalar, ranges[c]) : std::vector<double>{};
+      for (std::size_t i = 0; i < count; ++i) {
+        double value = parameter.role == Role::Spec && !ranges[c]
+                           ? 1
+                           : drawScalar(places[c].scalar, ranges[c], numbers_);
+        if (isExtreme && takesExtreme(parameter, i, place_)) value = pick(extremes, i);
+        store(places[c].scalar, value, input.bytes.data() + i * parameter.element->size + places[c].offset);
+      }
+      if (isExtreme) ++place_;
+    }
+    return input;
+  }
+
+  /// First each scalar that may by itself, with each of its extremes; later several at once. Gathers, whose neighbours
+  /// others read, have few.
+  bool takesExtreme(const Parameter& parameter, std::size_t element, std::size_t place) {
+    if (!isTold(element)) return false;
+    const std::size_t number = numberOf(element);
+    if (number < places_ * mostExtremes) return number % places_ == place;
+    return numbers_.unit() < (parameter.role == Role::Gather ? 0.125 : 0.5);
+  }
+  double pick(const std::vector<double>& extremes, std::size_t element) {
+    const std::size_t number = numberOf(element);
+    const auto any = static_cast<std::size_t>(numbers_.unit() * static_cast<double>(extremes.size()));
+    return extremes[number < places_ * mostExtremes ? number / places_ % extremes.size() : any];
+  }
+
+  /// Of the elements of a block, only the one by which its result is told is extreme.
+  std::int64_t block() const { return extent_.domain.size() / extent_.results.size(); }
+  bool isTold(std::size_t element) const {
+    if (extremes_ == Extremes::InValues || block() == 1) return true;
+    const auto at = static_cast<std::int64_t>(element);
+    return at / block() < extent_.results.size() && elementOf(at / block()) == at;
+  }
+  std::size_t numberOf(std::size_t element) const {
+    return extremes_ == Extremes::InValues ? element : element / static_cast<std::size_t>(block());
+  }
+
+  static bool isDrawn(Scalar scalar, const std::optional<Range>& range) {
+    return isReal(scalar) && !(range && range->isValue());
+  }
+
+  ParameterInput iterator(const Parameter& parameter) const {
+    const std::size_t size = parameter.element->size;
+    ParameterInput input{.shape = {}, .bytes = std::vector<std::byte>(2 * size)};
+    const std::vector<std::optional<Range>> ranges = ranges_.of(parameter);
+    const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
+    for (std::size_t c = 0; c < places.size(); ++c) {
+      const Range ends = endsOf(parameter, places[c].scalar, ranges[c], extent_.domain, c);
+      store(places[c].scalar, ends.low, input.bytes.data() + places[c].offset);
+      store(places[c].scalar, ends.high, input.bytes.data() + size + places[c].offset);
+    }
+    return input;
+  }
+
+  const Subject& subject_;
+  const Ranges& ranges_;
+  const Extent& extent_;
+  Extremes extremes_;
+  Numbers numbers_;
+  std::size_t places_ = 0;  ///< scalars that may be extreme
+  std::size_t place_ = 0;  ///< number of the next of them
+};
+
+/// The index of an element, rows first: "3, 5".
+std::string indexText(const sk::Shape& shape, std::int64_t element) {
+  std::vector<std::int64_t> index(static_cast<std::size_t>(shape.rank()));
+  for (int d = shape.rank() - 1; d >= 0; --d) {
+    index[static_cast<std::size_t>(d)] = element % shape[d];
+    element /= shape[d];
+  }
+  return fmt::format("{}", fmt::join(index, ", "));
+}
+
+}  // namespace
+
+Inputs drawInputs(const Subject& subject, const Ranges& ranges, const Extent& extent, Extremes extremes) {
+  return Drawing(subject, ranges, extent, extremes).draw();
+}
+
+int rankOf(const Subject& subject) {
+  int rank = 1;
+  for (const Parameter& parameter : subject.parameters()) {
+    if (parameter.role == Role::Gather) rank = std::max<int>(rank, parameter.rank);
+    if (parameter.role == Role::Iterator) rank = std::max<int>(rank, parameter.element->fields[0].width);
+  }
+  return rank;
+}
+
+sk::Shape cubeOf(int rank, std::int64_t count) {
+  auto side = static_cast<std::int64_t>(std::floor(std::pow(static_cast<double>(count), 1.0 / rank)));
+  while (std::pow(static_cast<double>(side), rank) < static_cast<double>(count)) ++side;
+  switch (rank) {
+    case 1: return {side};
+    case 2: return {side, side};
+    case 3: return {side, side, side};
+    default: return {side, side, side, side};
+  }
+}
+
+bool hasDrawnValues(const Subject& subject, const Ranges& ranges) {
+  for (const Parameter& parameter : subject.parameters()) {
+    if (parameter.role != Role::Uniform) continue;
+    for (const std::optional<Range>& range : ranges.of(parameter)) {
+      if (!range || !range->isValue()) return true;
+    }
+  }
+  return false;
+}
+
+std::size_t extremeScalars(const Subject& subject, const Ranges& ranges, Extremes extremes) {
+  std::size_t count = 0;
+  for (const Parameter& parameter : subject.parameters()) {
+    const bool isElement = parameter.role == Role::Input || parameter.role == Role::Gather;
+    const bool counts = extremes == Extremes::InElements ? isElement : parameter.role == Role::Uniform;
+    if (!counts || extremes == Extremes::None) continue;
+    const std::vector<std::optional<Range>> given = ranges.of(parameter);
+    const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
+    for (std::size_t c = 0; c < places.size(); ++c) {
+      count += isReal(places[c].scalar) && !(given[c] && given[c]->isValue()) ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+Json inputsOf(const Subject& subject, const Inputs& inputs, int draw, std::size_t result) {
+  Json json = Json::object();
+  const std::int64_t element = inputs.elements[result];
+  for (std::size_t p = 0; p < inputs.parameters.size(); ++p) {
+    const Parameter& parameter = subject.parameters()[p];
+    const ParameterInput& input = inputs.parameters[p];
+    if (isResult(parameter)) continue;
+    std::string name(parameter.name);
+    if (parameter.role == Role::Iterator) {
+      json[name] = {{"index", indexText(inputs.extent.domain, element)}};
+      continue;
+    }
+    if (parameter.role == Role::Gather) {
+      if (input.shape != inputs.extent.domain) continue;
+      name += fmt::format("[{}]", indexText(input.shape, element));
+    }
+    const std::size_t at =
+        isValue(parameter) ? static_cast<std::size_t>(draw) : static_cast<std::size_t>(element);
+    const std::byte* bytes = input.bytes.data() + at * parameter.element->size;
+    for (const ScalarPlace& place : scalarsOf(*parameter.element)) {
+      json[name + place.member + place.component] =
+          jsonOf(place.scalar, load(place.scalar, bytes + place.offset));
+    }
+  }
+  return json;
+}
+
+}  // namespace sk_tool

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "accuracy/file/kernel_library.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include <dlfcn.h>
+
+#include <fmt/format.h>
+
+#include "accuracy/child_process.hpp"
+#include "accuracy/temporary_folder.hpp"
+#include "cache_folder.hpp"
+
+namespace sk_tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+fs::path ownFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+
+/// A file to compile as FOLDER/NAME.sk.cpp.
+void runSkc(const fs::path& file, const BuildOptions& options, const fs::path& folder) {
+  std::string skc = options.skc.empty() ? variable("SK_SKC") : options.skc;
+  if (skc.empty()) skc = fs::exists(ownFolder() / "skc") ? (ownFolder() / "skc").string() : "skc";
+  Words words{skc, "--library", "-o", folder.string()};
+  for (const std::string& include : options.includes) words.push_back("-I" + include);
+  for (const std::string& definition : options.definitions) words.push_back("-D" + definition);
+  words.push_back(file.string());
+  const std::optional<int> status = runProgram(words);
+  if (!status) {
+    throw std::runtime_error(fmt::format("there is no '{}' to compile '{}'; name one by --skc FILE or SK_SKC",
+                                         skc, file.string()));
+  }
+  if (*status != 0) throw std::runtime_error(fmt::format("skc does not take '{}'", file.string()));
+}
+
+/// Where sk/sk.hpp is: the place that SK_INCLUDE names, else that of an installation or of the build folder.
+fs::path headerFolder() {
+  std::vector<fs::path> folders{ownFolder() / SK_INCLUDE_FROM_BIN, ownFolder().parent_path() / "include"};
+  if (const std::string chosen = variable("SK_INCLUDE"); !chosen.empty()) folders = {chosen};
+  for (const fs::path& folder : folders) {
+    if (fs::exists(folder / "sk" / "library.hpp")) return folder.lexically_normal();
+  }
+  throw std::runtime_error(fmt::format(
+      "there are no headers of StreamKernel in '{}'; set SK_INCLUDE to the folder that has sk/sk.hpp",
+      folders.front().lexically_normal().string()));
+}
+
+/// By the compiler that CXX names, which may be several words, else by the first that there is.
+void runCompiler(const fs::path& source, const fs::path& object) {
+  std::vector<Words> compilers{{"c++"}, {"g++"}, {"clang++"}};
+  if (std::istringstream chosen(variable("CXX")); !chosen.str().empty()) {
+    compilers.assign(1, {});
+    for (std::string word; chosen >> word;) compilers.front().push_back(word);
+  }
+  const Words options{"-std=c++20", "-O2", "-w", "-fPIC", "-shared",
+                      "-ffp-contract=off",  // as sk_add_kernels has it
+                      // only descriptors stay, not the stubs, which call the runtime that nobody links here
+                      "-fvisibility=hidden", "-ffunction-sections", "-Wl,--gc-sections",
+                      "-I" + headerFolder().string(), source.string(), "-o", object.string()};
+  for (Words words : compilers) {
+    words.insert(words.end(), options.begin(), options.end());
+    const std::optional<int> status = runProgram(words);
+    if (!status) continue;
+    if (*status == 0) return;
+    throw std::runtime_error(fmt::format(
+        "'{}' cannot compile what skc made of the file; CXX names another compiler", words.front()));
+  }
+  throw std::runtime_error(
+      "there is no C++ compiler, which the kernels' native code needs; install one (Debian: g++), or name it "
+      "by CXX");
+}
+
+std::string textOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What the object depends on: the compiler, the headers and what skc has made.
+std::string keyOf(const fs::path& source) {
+  const fs::path headers = headerFolder();
+  fs::file_time_type newest = fs::file_time_type::min();
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(headers / "sk")) {
+    newest = std::max(newest, entry.last_write_time());
+  }
+  fs::path header = source;
+  header.replace_extension(".hpp");
+  return fmt::format("StreamKernel {}, CXX '{}', headers in {} of {}: {}{}", SK_VERSION, variable("CXX"),
+                     headers.string(), newest.time_since_epoch().count(), textOf(header), textOf(source));
+}
+
+/// A compilation takes seconds, so that its result is kept.
+void compile(const fs::path& source, const fs::path& object) {
+  const std::string key = keyOf(source);
+  if (const std::optional<std::string> kept = sk::readCached("kernels", key)) {
+    std::ofstream(object, std::ios::binary) << *kept;
+    return;
+  }
+  runCompiler(source, object);
+  sk::writeCached("kernels", key, textOf(object));
+}
+
+}  // namespace
+
+KernelLibrary::KernelLibrary(const fs::path& file, const BuildOptions& options) {
+  const TemporaryFolder folder;
+  runSkc(file, options, folder.path());
+  const fs::path object = folder.path() / "kernels.so";
+  compile(folder.path() / (file.filename().string() + ".cpp"), object);
+  object_ = ::dlopen(object.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  if (object_ == nullptr) {
+    throw std::runtime_error(
+        fmt::format("cannot load the kernels: {}; is '{}' a place for programs? TMPDIR names another",
+                    ::dlerror(), folder.path().parent_path().string()));
+  }
+  list_ = static_cast<const sk::program::Library*>(::dlsym(object_, sk::program::librarySymbol));
+  if (list_ == nullptr) {
+    ::dlclose(object_);
+    throw std::runtime_error(
+        "this skc is of another version; name the one that belongs to this program by --skc");
+  }
+}
+
+KernelLibrary::~KernelLibrary() { ::dlclose(object_); }
+
+}  // namespace sk_tool

@@ -1,0 +1,160 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# `sk accuracy FILE.sk`: worst inputs are where theory has them, extremes are told apart, and what cannot be measured is
+# refused with a way out. Errors, never times.
+# Usage: sk_accuracy_file_test.sh SK SKC
+set -euo pipefail
+sk=$(realpath "$1")
+skc=$(realpath "$2")
+tested=("$sk" accuracy)
+source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
+unset SK_DEVICE SK_PROFILE SK_INCLUDE CXX
+export SK_SKC=$skc SK_CACHE=$place/cache
+
+# json EXPRESSION: what Python makes of the JSON in all.json, `kernels` being its records by program and mode.
+json() {
+  python3 -c "
+import json, math
+all = json.load(open('all.json'))
+kernels = {(r['program'], r['mode']): r for r in all['records']}
+$1"
+}
+
+cat >kernels.sk <<'EOF'
+#include "scale.sk"
+namespace math {
+// 0 instead of 1/2 where cos(x) rounds to 1, that is below 2^-12, and up to twice as much a little above.
+kernel void cancel(float x<>, out float r<>) { r = (1 - cos(x)) / (x * x); }
+kernel void roots(float x<>, out float r<>) { r = sqrt(x + 1) - sqrt(x); }
+}
+struct Body { float2 at; int kind; };
+// The sum of squares overflows where its root does not.
+kernel void pull(float g, spec bool far, Body b<>, [[wrap]] float w[][], out Body n<>, out float e<>) {
+  n.at = b.at * (g * SCALE);
+  n.kind = b.kind + 1;
+  e = sqrt(b.at.x * b.at.x + b.at.y * b.at.y) - neighbor(w, 1, 0);
+  if (far) e = 2 * e;
+}
+kernel void ramp(iter float t<>, float c[2], out float r<>) { r = c[0] + c[1] * t; }
+reduce void sum(float x<>, reduce float total<> = 0) { total += x; }
+reduce void largest(float x<>, reduce float most<>) { most = max(most, x); }
+kernel void parity(int n<>, out bool odd<>) { odd = (n & 1) == 1; }
+kernel void keep(float x<>, vout float r<>) { if (x > 0) push(r, x); }
+EOF
+mkdir include
+echo '#define SCALE FACTOR' >include/scale.sk
+few=(-Iinclude -DFACTOR=1 --rounds 2)
+small=("${few[@]}" --size 4096)
+
+# What --help has.
+run 0 --help
+for option in --kernel --range --set --no-extremes -I -D --skc; do prints "  $option"; done
+
+# The worst inputs of cancellations, on native code and on the best device.
+for device in native ''; do
+  run 0 kernels.sk "${small[@]}" ${device:+--device "$device"} --kernel cancel --range x=0:1 --json all.json
+  matches '^math::cancel, drawn: 4096 elements; x in \[0, 1\]$'
+  matches '^    single +x = 0x1.*p-[0-9]+: r is 0x'
+  json "
+worst = kernels['math::cancel', 'single']['worst']
+x = worst['inputs']['x']
+assert float.fromhex(x['hex']) == x['value'] and 0 < x['value'] < 1e-3, x
+assert worst['result'] == 'r' and abs(worst['wanted']['value'] - 0.5) < 1e-3 or x['value'] < 1e-7, worst
+assert kernels['math::cancel', 'single']['metrics']['rel err'] >= 1"
+done
+run 0 kernels.sk "${small[@]}" --device native --kernel math::roots --range x=0:1e6 --json all.json
+json "
+assert kernels['math::roots', 'single']['worst']['inputs']['x']['value'] > 1e4
+assert kernels['math::roots', 'single']['metrics']['rel err'] > 1e-4
+assert kernels['math::roots', 'double']['metrics']['rel err'] < 1e-7"
+
+# All of the file: structs, gathers, uniforms, spec parameters, arrays, iterators; what cannot be measured is told.
+run 0 kernels.sk "${small[@]}" --json all.json --chart all.svg --set far=false --range b.at=1:2 --range c=3:4
+for kernel in math::cancel math::roots pull ramp sum largest; do matches "^$kernel, drawn: 4096 elements; b\.at in \[1, 2\]"; done
+prints "  parity: there are no floats in its results"
+prints "  keep: 'r' is a variable output"
+grep -q 'math::cancel, drawn' all.svg || broken "the chart lacks a kernel"
+json "
+assert all['file'] == 'kernels.sk' and all['size'] == 4096
+pull = kernels['pull', 'single']
+names = pull['worst']['inputs']
+assert {'g', 'far', 'b.at.x', 'b.at.y', 'b.kind'} < set(names) and any(n.startswith('w[') for n in names), names
+assert names['far']['hex'] == 'false' and 1 <= names['b.at.y']['value'] <= 2
+assert pull['metrics']['wrong int'] == 0 and pull['metrics']['wrong class'] == 0
+ramp = kernels['ramp', 'single']['worst']['inputs']
+assert 3 <= ramp['c[1]']['value'] <= 4 and ramp['t']['index']
+assert kernels['sum', 'exact']['metrics']['max ulp'] <= 0.5
+assert 'no sum of floats' in kernels['largest', 'exact']['refused']
+assert kernels['largest', 'tree']['metrics']['rel err'] == 0
+for record in all['records']: assert 'refused' in record or record['extremes']['tried'] > 100, record"
+
+# Extremes stand apart: of ordinary numbers nothing overflows.
+run 0 kernels.sk "${small[@]}" --device native --kernel pull --json all.json
+matches '^  of [0-9]+ results of extreme inputs$'
+json "
+single = kernels['pull', 'single']
+assert single['metrics']['wrong class'] == 0 and single['extremes']['other_class'] > 0, single
+example = single['extremes']['example']
+assert example['got']['hex'] == 'inf' and math.isfinite(float.fromhex(example['wanted']['hex'])), example
+assert kernels['pull', 'double']['extremes']['other_class'] == 0"
+run 0 kernels.sk "${small[@]}" --device native --kernel pull --no-extremes
+[[ $out != *extreme* ]] || broken "extremes in spite of --no-extremes"
+
+# The same figures in another run, in the shape that is asked for.
+figures() { sed -E 's/ +[0-9.]+ \[[0-9.]+ [0-9.]+\]/ /; s/ +PARETO$//' "$1"; }
+run 0 kernels.sk "${few[@]}" --size 32x64 --kernel pull --device native --tolerance 1e-6
+matches '^pull, drawn: 2048 elements'
+matches '^  the cheapest within 1e-06: (extended|double)$'
+figures out.txt >first.txt
+run 0 kernels.sk "${few[@]}" --size 32x64 --kernel pull --device native --tolerance 1e-6
+figures out.txt | grep -v cheapest >second.txt
+grep -v cheapest first.txt | cmp -s - second.txt || broken "other errors than the first time"
+
+# Values that are set are all that there is.
+run 0 kernels.sk "${small[@]}" --device native --kernel cancel --set x=0.5 --json all.json
+json "
+single = kernels['math::cancel', 'single']
+assert single['worst']['inputs']['x']['value'] == 0.5 and 'extremes' not in single, single"
+
+# What makes no sense, and what is missing.
+run 1 kernels.sk "${small[@]}" --kernel nosuch
+says "the file has no kernel 'nosuch'; it has math::cancel, math::roots, pull, ramp, parity, keep, sum, largest"
+run 1 kernels.sk "${small[@]}" --kernel parity
+says "parity: there are no floats in its results"
+run 1 kernels.sk "${small[@]}" --kernel keep
+says "'r' is a variable output, whose elements belong to no inputs"
+run 1 kernels.sk "${small[@]}" --kernel pull --range q=0:1
+says "there is no parameter 'q' to draw or set; there are g, far, b, w"
+run 1 kernels.sk "${small[@]}" --kernel pull --set b.at=1,2,3
+says "'b.at' has 2 scalar(s), but 3 values are given"
+for range in x x=1 x=2:1 x=a:b =1:2:; do
+  run 1 kernels.sk --range "$range"
+  says "--range '$range' says nothing; write PARAM=LO:HI"
+done
+run 1 kernels.sk --set g
+says "--set 'g' says nothing; write PARAM=VALUE"
+run 1 kernels.sk --size 0x4
+says '--size'
+run 1 kernels.sk sum
+says "a .sk file is measured by itself; leave out 'sum'"
+run 1 sum --kernel pull
+says '--kernel is for a .sk file; name one'
+run 1 nosuch.sk
+says "skc does not take 'nosuch.sk'"
+run 1 kernels.sk --kernel pull -DFACTOR=1
+says "'scale.sk'"
+says "skc does not take 'kernels.sk'"
+run 1 kernels.sk "${small[@]}" --skc "$place/nosuch"
+says "there is no '$place/nosuch' to compile 'kernels.sk'; name one by --skc FILE or SK_SKC"
+rm -r cache
+CXX=$place/nosuch run 1 kernels.sk "${small[@]}"
+says 'there is no C++ compiler'
+CXX=false run 1 kernels.sk "${small[@]}"
+says "'false' cannot compile"
+run 0 kernels.sk "${small[@]}" --kernel ramp
+CXX=false run 1 kernels.sk "${few[@]}" --size 64 --kernel ramp   # what another compiler made is not taken
+SK_INCLUDE=$place run 1 kernels.sk "${small[@]}"
+says "there are no headers of StreamKernel in '$place'"
+
+echo "sk accuracy measures the kernels of files"
