@@ -12,6 +12,7 @@
 #include "transforms/combine_part.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
+#include "transforms/made_kernel.hpp"
 #include "transforms/sum_terms.hpp"
 
 namespace skc {
@@ -96,44 +97,13 @@ KernelParam like(const KernelParam& param, std::string name, ParamRole role) {
   return makeParam(std::move(name), role, param.type, param.loc);
 }
 
-/// A kernel in the making, with an entry that has a variable for each parameter.
-struct Made {
-  Kernel kernel;
-  Function entry;
-
-  Made(const Kernel& of, const std::string& suffix) {
-    kernel.name = of.name;  // what messages call it
-    kernel.scope = of.scope;
-    kernel.loc = entry.loc = of.loc;
-    kernel.isMade = true;
-    entry.name = of.name + suffix;
-  }
-
-  VarId add(KernelParam param) {
-    const VarRole role = param.role == ParamRole::Input ? VarRole::Element : VarRole::InOut;
-    const VarId var = addVariable(entry, param.name, param.type, role, param.loc);
-    kernel.params.push_back(std::move(param));
-    return var;
-  }
-
-  KernelId finish(Module& module) {
-    kernel.entry = static_cast<FunctionId>(module.functions.size());
-    module.functions.push_back(std::move(entry));
-    module.kernels.push_back(std::move(kernel));
-    return static_cast<KernelId>(module.kernels.size() - 1);
-  }
-};
-
 class Maker {
  public:
   Maker(Module& module, KernelId id, const FoldPattern& pattern, std::vector<VarId> sums)
       : module_(module), id_(id), pattern_(pattern), sums_(std::move(sums)) {}
 
   void make() {
-    const KernelId combine = makeCombination();
-    module_.kernels[combine].reduction =
-        Reduction{combine, std::vector<std::uint32_t>(module_.kernels[combine].params.size()), true, {}};
-    const KernelId fold = makeFold(combine);
+    const KernelId fold = makeFold(makeCombination());
     const KernelId finish = makeFinish();
     module_.kernels[id_].reduction->compensated = Compensated{fold, finish, sums_};
   }
@@ -174,7 +144,7 @@ class Maker {
 
   /// Inputs and accumulators of the fold's types and order.
   KernelId makeCombination() {
-    Made made(kernel(), "_combine");
+    MadeKernel made(kernel(), "_combine");
     std::vector<VarId> parts;
     std::vector<VarId> totals;
     for (const ParamRole role : {ParamRole::Input, ParamRole::Accumulator}) {
@@ -207,11 +177,11 @@ class Maker {
           assign(varRef(made.entry, totals[lost]), BinaryOp::Add, varRef(made.entry, parts[lost])));
       addTo(made.entry.body, made.entry, totals[sum], totals[lost], parts[sum]);
     }
-    return made.finish(module_);
+    return made.finishCombination(module_);
   }
 
   KernelId makeFinish() {
-    Made made(kernel(), "_finish");
+    MadeKernel made(kernel(), "_finish");
     std::vector<VarId> inputs;
     for (const VarId i : sums_) {
       const KernelParam& param = kernel().params[i];

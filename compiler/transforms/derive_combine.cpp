@@ -11,6 +11,7 @@
 #include "ir/reach.hpp"
 #include "transforms/combine_part.hpp"
 #include "transforms/fold_pattern.hpp"
+#include "transforms/made_kernel.hpp"
 
 namespace skc {
 namespace {
@@ -116,50 +117,29 @@ ExprPtr identityOf(const Module& module, const FoldPattern& pattern, MemberPath 
 
 // ---- combining kernels ------------------------------------------------------------------------
 
-/// Adds a parameter to a kernel and to its entry function.
-void addParam(Kernel& kernel, Function& entry, std::string name, const KernelParam& like, ParamRole role) {
-  KernelParam param;
-  param.name = name;
-  param.role = role;
-  param.type = like.type;
-  param.loc = like.loc;
-  kernel.params.push_back(std::move(param));
-  addVariable(entry, std::move(name), like.type, role == ParamRole::Input ? VarRole::Element : VarRole::InOut,
-              like.loc);
-}
-
 /// The reduce that combines what `kernel`, of a known pattern, has folded: `total op= total_part` for each part.
 KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern) {
   const Kernel& kernel = module.kernels[id];
-  const Loc loc = kernel.loc;
-  Kernel made;
-  made.name = kernel.name + "_combine";
-  made.scope = kernel.scope;
-  made.loc = loc;
-  made.isMade = true;
-  Function entry{.name = made.name, .result = {}, .variables = {}, .body = {}, .loc = loc};
+  MadeKernel made(kernel, "_combine");
+  made.kernel.name = made.entry.name;
   std::vector<VarId> accumulators;
   for (VarId i = 0; i < kernel.params.size(); ++i) {
     if (kernel.params[i].role == ParamRole::Accumulator) accumulators.push_back(i);
   }
   for (const ParamRole role : {ParamRole::Input, ParamRole::Accumulator}) {
-    for (VarId i : accumulators) {
+    for (const VarId i : accumulators) {
       const KernelParam& param = kernel.params[i];
-      addParam(made, entry, param.name + (role == ParamRole::Input ? "_part" : ""), param, role);
+      made.add(
+          makeParam(param.name + (role == ParamRole::Input ? "_part" : ""), role, param.type, param.loc));
     }
   }
   for (const FoldPart& part : pattern.parts) {
     const auto found = std::find(accumulators.begin(), accumulators.end(), part.accumulator);
     const auto partial = static_cast<VarId>(found - accumulators.begin());
     const auto total = static_cast<VarId>(accumulators.size()) + partial;
-    entry.body.push_back(combinePart(module, entry, part, partial, total));
+    made.entry.body.push_back(combinePart(module, made.entry, part, partial, total));
   }
-  const auto madeId = static_cast<KernelId>(module.kernels.size());
-  made.entry = static_cast<FunctionId>(module.functions.size());
-  made.reduction = Reduction{madeId, std::vector<std::uint32_t>(made.params.size()), true};
-  module.functions.push_back(std::move(entry));
-  module.kernels.push_back(std::move(made));
-  return madeId;
+  return made.finishCombination(module);
 }
 
 // ---- the cases --------------------------------------------------------------------------------

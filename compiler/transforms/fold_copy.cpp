@@ -7,6 +7,7 @@
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
+#include "transforms/made_kernel.hpp"
 
 namespace skc {
 
@@ -39,22 +40,10 @@ StreamRef* streamOf(Expr& expr) {
 
 }  // namespace
 
-KernelParam makeParam(std::string name, ParamRole role, Type type, Loc loc) {
-  KernelParam made;
-  made.name = std::move(name);
-  made.role = role;
-  made.type = type;
-  made.loc = loc;
-  return made;
-}
-
 FoldCopy::FoldCopy(Module& module, KernelId of, std::string_view suffix)
     : module_(module), before_(module.kernels[of].params.size()) {
   const Kernel& original = module.kernels[of];
-  kernel_.name = original.name;   // what messages call it
-  kernel_.scope = original.scope;
-  kernel_.loc = original.loc;
-  kernel_.isMade = true;
+  kernel_ = madeFor(original);
   for (const KernelParam& param : original.params) kernel_.params.push_back(copyOf(param));
   kernel_.entry = copyFunction(module, original.entry, copies_);
   entry_ = std::move(module.functions[kernel_.entry]);

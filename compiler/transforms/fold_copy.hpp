@@ -41,7 +41,4 @@ class FoldCopy {
   std::vector<ir::VarId> added_;
 };
 
-/// A parameter with this name, role and type.
-ir::KernelParam makeParam(std::string name, ir::ParamRole role, ir::Type type, Loc loc);
-
 }  // namespace skc

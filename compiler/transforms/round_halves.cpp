@@ -11,6 +11,7 @@
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "transforms/copy_functions.hpp"
+#include "transforms/made_kernel.hpp"
 
 namespace skc {
 namespace {
@@ -152,13 +153,9 @@ KernelId roundKernel(Module& module, KernelId id) {
   const FunctionId entry = copyFunction(module, module.kernels[id].entry, copies);
   dropTables(module, copies);
   const Kernel& kernel = module.kernels[id];
-  Kernel made;
-  made.name = kernel.name;
-  made.scope = kernel.scope;
+  Kernel made = madeFor(kernel);
   made.signature = kernel.signature;
   made.entry = entry;
-  made.isMade = true;
-  made.loc = kernel.loc;
   for (const KernelParam& param : kernel.params) made.params.push_back(clone(param));
   if (kernel.reduction) made.reduction = Reduction{{}, kernel.reduction->operands, kernel.reduction->seeded};
   for (const auto& [from, to] : copies) Rounder(module, to == entry ? &made : nullptr).run(to);

@@ -13,6 +13,7 @@
 #include "ir/walk.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
+#include "transforms/made_kernel.hpp"
 #include "transforms/sum_terms.hpp"
 
 namespace skc {
@@ -81,41 +82,18 @@ void add(Block& block, const Function& function, const Digits& digits, const For
   block.push_back(assign(varRef(function, digits.flags), BinaryOp::BitOr, intrinsic(which, operands())));
 }
 
-/// A kernel in the making, with an entry that has a variable for each parameter.
-struct Made {
-  Kernel kernel;
-  Function entry;
-
-  Made(std::string name, std::string entryName, Loc loc) {
-    kernel.name = std::move(name);
-    kernel.loc = entry.loc = loc;
-    kernel.isMade = true;
-    entry.name = std::move(entryName);
+/// Parameters that hold digits.
+Digits addDigits(MadeKernel& made, const Format& format, ParamRole role, const std::string& suffix = {}) {
+  const auto add = [&](const std::string& name, Type type) {
+    return made.add(makeParam(name + suffix, role, type, made.kernel.loc));
+  };
+  Digits digits;
+  for (std::uint32_t i = 0; i < format.groups; ++i) {
+    digits.groups.push_back(add(fmt::format("digits_{}", i), digitsType));
   }
-
-  VarId add(std::string name, ParamRole role, Type type) {
-    const VarRole varRole = role == ParamRole::Input ? VarRole::Element : VarRole::InOut;
-    const VarId var = addVariable(entry, name, type, varRole, kernel.loc);
-    kernel.params.push_back(makeParam(std::move(name), role, type, kernel.loc));
-    return var;
-  }
-
-  Digits addDigits(const Format& format, ParamRole role, const std::string& suffix = {}) {
-    Digits digits;
-    for (std::uint32_t i = 0; i < format.groups; ++i) {
-      digits.groups.push_back(add(fmt::format("digits_{}{}", i, suffix), role, digitsType));
-    }
-    digits.flags = add("flags" + suffix, role, intType);
-    return digits;
-  }
-
-  KernelId finish(Module& module) {
-    kernel.entry = static_cast<FunctionId>(module.functions.size());
-    module.functions.push_back(std::move(entry));
-    module.kernels.push_back(std::move(kernel));
-    return static_cast<KernelId>(module.kernels.size() - 1);
-  }
-};
+  digits.flags = add("flags", intType);
+  return digits;
+}
 
 class State {
  public:
@@ -209,10 +187,9 @@ class State {
   KernelId combination(const Format& format) {
     std::optional<KernelId>& known = combinations_[format.groups];
     if (known) return *known;
-    const std::string name = format.groups == ofProducts.groups ? "exact_products" : "exact_sums";
-    Made made(name, name, {});
-    const Digits parts = made.addDigits(format, ParamRole::Input, "_part");
-    const Digits totals = made.addDigits(format, ParamRole::Accumulator);
+    MadeKernel made(format.groups == ofProducts.groups ? "exact_products" : "exact_sums");
+    const Digits parts = addDigits(made, format, ParamRole::Input, "_part");
+    const Digits totals = addDigits(made, format, ParamRole::Accumulator);
     Block& body = made.entry.body;
     Digits settled;   // inputs stay as they are
     for (const VarId part : parts.groups) {
@@ -228,21 +205,17 @@ class State {
     }
     body.push_back(
         assign(varRef(made.entry, totals.flags), BinaryOp::BitOr, varRef(made.entry, parts.flags)));
-    const KernelId id = made.finish(module_);
-    module_.kernels[id].reduction =
-        Reduction{id, std::vector<std::uint32_t>(module_.kernels[id].params.size()), true, {}};
-    known = id;
-    return id;
+    known = made.finishCombination(module_);
+    return *known;
   }
 
   KernelId makeFinish(KernelId id, const ScalarSum& sum, const Format& format) {
     const Kernel& kernel = module_.kernels[id];
     const KernelParam& param = kernel.params[sum.part.accumulator];
-    Made made(kernel.name, kernel.name + "_finish", kernel.loc);
-    made.kernel.scope = kernel.scope;
-    const VarId plain = made.add(param.name, ParamRole::Input, param.type);
-    const Digits digits = made.addDigits(format, ParamRole::Input);
-    const VarId result = made.add("r_" + param.name, ParamRole::Output, param.type);
+    MadeKernel made(kernel, "_finish");
+    const VarId plain = made.add(makeParam(param.name, ParamRole::Input, param.type, kernel.loc));
+    const Digits digits = addDigits(made, format, ParamRole::Input);
+    const VarId result = made.add(makeParam("r_" + param.name, ParamRole::Output, param.type, kernel.loc));
     Function& entry = made.entry;
     Digits total;
     for (const VarId group : digits.groups) {

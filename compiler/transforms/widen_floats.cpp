@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "transforms/copy_functions.hpp"
+#include "transforms/made_kernel.hpp"
 #include "transforms/wide_types.hpp"
 
 namespace skc {
@@ -110,19 +112,13 @@ class Widener {
 
   /// `holdsFloats`: whether its inputs and outputs are streams of floats; those of a combination are partial results.
   KernelId widen(KernelId id, bool holdsFloats) {
-    Kernel made;
     FunctionCopies copies;
     const FunctionId entry = copyFunction(module_, module_.kernels[id].entry, copies);
-    {
-      const Kernel& kernel = module_.kernels[id];
-      made.name = kernel.name;
-      made.scope = kernel.scope;
-      made.signature = kernel.signature;
-      made.entry = entry;
-      made.isMade = true;
-      made.loc = kernel.loc;
-      if (kernel.reduction)
-        made.reduction = Reduction{{}, kernel.reduction->operands, kernel.reduction->seeded};
+    Kernel made = madeFor(module_.kernels[id]);
+    made.signature = module_.kernels[id].signature;
+    made.entry = entry;
+    if (const std::optional<Reduction>& plain = module_.kernels[id].reduction) {
+      made.reduction = Reduction{{}, plain->operands, plain->seeded};
     }
     for (std::size_t i = 0; i < module_.kernels[id].params.size(); ++i) {
       made.params.push_back(param(module_.kernels[id].params[i], holdsFloats));
@@ -135,38 +131,25 @@ class Widener {
 
   /// Takes doubles and gives them as floats: a reduce's accumulators, in their order.
   KernelId finish(KernelId id) {
-    Kernel made;
-    Function entry;
+    MadeKernel made(module_.kernels[id], "_finish");
     std::vector<VarId> inputs;
     for (const bool isResult : {false, true}) {
       for (const KernelParam& accumulator : module_.kernels[id].params) {
         if (accumulator.role != ParamRole::Accumulator) continue;
-        KernelParam param;
-        param.name = isResult ? "r_" + accumulator.name : accumulator.name;
-        param.role = isResult ? ParamRole::Output : ParamRole::Input;
-        param.type = types_.of(accumulator.type);
+        KernelParam param = makeParam(isResult ? "r_" + accumulator.name : accumulator.name,
+                                      isResult ? ParamRole::Output : ParamRole::Input,
+                                      types_.of(accumulator.type), accumulator.loc);
         if (isResult && param.type != accumulator.type) param.held = accumulator.type;
-        param.loc = accumulator.loc;
-        const VarId var = addVariable(entry, param.name, param.type,
-                                      isResult ? VarRole::InOut : VarRole::Element, param.loc);
-        made.params.push_back(std::move(param));
+        const VarId var = made.add(std::move(param));
         if (isResult) {
-          entry.body.push_back(assign(varRef(entry, var), varRef(entry, inputs[var - inputs.size()])));
+          made.entry.body.push_back(
+              assign(varRef(made.entry, var), varRef(made.entry, inputs[var - inputs.size()])));
         } else {
           inputs.push_back(var);
         }
       }
     }
-    const Kernel& kernel = module_.kernels[id];
-    made.name = kernel.name;  // what messages call it
-    made.scope = kernel.scope;
-    made.isMade = true;
-    made.loc = entry.loc = kernel.loc;
-    entry.name = kernel.name + "_finish";
-    made.entry = static_cast<FunctionId>(module_.functions.size());
-    module_.functions.push_back(std::move(entry));
-    module_.kernels.push_back(std::move(made));
-    return static_cast<KernelId>(module_.kernels.size() - 1);
+    return made.finish(module_);
   }
 
  private:
