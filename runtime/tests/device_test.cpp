@@ -10,6 +10,7 @@
 #include <epoxy/egl.h>
 #include <catch2/catch.hpp>
 
+#include "error_of.hpp"
 #include "sk/sk.hpp"
 #include "test_kernel.hpp"
 

@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include "elements.hpp"
+#include "error_of.hpp"
 #include "sk/sk.hpp"
 #include "test_kernel.hpp"
 

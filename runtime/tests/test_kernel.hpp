@@ -114,17 +114,6 @@ class TestReduction {
   program::Reduction reduction_;
 };
 
-/// The text of the sk::Error that `action` throws; "nothing was thrown" where it throws none.
-template <class Action>
-std::string errorOf(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
-
 /// Each value a bit pattern of its own: 0, 1, 2 ... spread over all 32 bits.
 std::vector<std::uint32_t> bitPatterns(std::size_t count);
 

@@ -2,9 +2,9 @@
 //
 // Calls of compiled kernels that do not fit: each sk::Error names the kernel with its namespace, the
 // parameters as declared and the shapes, and leaves the streams as they were.
-#include <functional>
 #include <type_traits>
 
+#include "error_of.hpp"
 #include "misuse.sk.hpp"
 #include "support/devices.hpp"
 #include "support/values.hpp"
@@ -13,15 +13,6 @@ using namespace run_tests;
 using Catch::Matchers::Contains;
 
 namespace {
-
-std::string errorOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const sk::Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 // What is wrong with the types, the C++ compiler tells (of const outputs: misuse_types/calls.cpp).
 using Floats = sk::Stream<float>&;

@@ -17,6 +17,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "error_of.hpp"
 #include "precision.sk.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
@@ -258,15 +259,6 @@ TEST_CASE("what computes no floats is the same in every precision") {
     CHECK(r.read() == std::vector<std::int32_t>{2, 3, 4});
     CHECK(precision::count.with({.precision = Precision::Extended})(r) == 9);
   });
-}
-
-std::string errorOf(const auto& call) {
-  try {
-    call();
-  } catch (const sk::Error& error) {
-    return error.what();
-  }
-  return {};
 }
 
 TEST_CASE("a declaration chooses where a call does not") {

@@ -12,6 +12,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "error_of.hpp"
 #include "precision.sk.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
@@ -152,15 +153,6 @@ TEST_CASE("one stream for both, views") {
     CHECK(a.read()[5 + 1] == 1);
     CHECK(a.read()[5] == halved(x)[5]);
   });
-}
-
-std::string errorOf(const auto& call) {
-  try {
-    call();
-  } catch (const sk::Error& error) {
-    return error.what();
-  }
-  return {};
 }
 
 TEST_CASE("what holds no floats has no storage to choose") {
