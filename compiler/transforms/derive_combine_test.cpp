@@ -87,6 +87,21 @@ TEST_CASE("the other ways to write it") {
   }
 }
 
+TEST_CASE("chains of sums and differences; more than x itself is not combined by the entry") {
+  const auto chain = [](BinaryOp second, bool isNested) {
+    return [=](Module&, KernelMaker& k) {
+      ExprPtr sum = binary(Add, k.ref(total), literal(1.0F));
+      ExprPtr value =
+          isNested ? binary(second, k.ref(x), std::move(sum)) : binary(second, std::move(sum), k.ref(x));
+      return block(assign(k.ref(total), std::move(value)));
+    };
+  };
+  for (const Body& body : {Body(chain(Add, false)), Body(chain(Sub, false)), Body(chain(Add, true))}) {
+    CHECK(derive(body).combine == "{\n  total += total_part;\n}\n");
+  }
+  CHECK(derive(chain(Sub, true)).combine == "entry");   // x - (total + 1): no known operator
+}
+
 TEST_CASE("min and max") {
   const auto body = [](Intrinsic intrinsicId) {
     return [intrinsicId](Module&, KernelMaker& k) {
@@ -184,6 +199,14 @@ TEST_CASE("vectors, whole and by component") {
   });
   CHECK(parts.combine == "{\n  total.x += total_part.x;\n  total.y *= total_part.y;\n}\n");
   CHECK(parts.identity == "float2{0.0, 1.0}");
+  const auto swapped = [](Module&, KernelMaker& k) {
+    return block(assign(k.ref(total), Add, swizzle(k.ref(x), "yx")));
+  };
+  CHECK(derive(float2, float2, nullptr, swapped).combine == "{\n  total += total_part;\n}\n");
+  const auto turned = [](Module&, KernelMaker& k) {
+    return block(assign(k.ref(total), binary(Add, swizzle(k.ref(total), "yx"), k.ref(x))));
+  };
+  CHECK(derive(float2, float2, nullptr, turned).identity.empty());  // what it adds to is not what it assigns
 }
 
 TEST_CASE("a general body on one type combines by itself; without an identity it starts with an element") {

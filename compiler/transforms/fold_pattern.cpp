@@ -5,40 +5,12 @@
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
+#include "transforms/static_place.hpp"
 
 namespace skc {
 namespace {
 
 using namespace ir;
-
-/// A place made of members and at most one swizzle: all that is known before the program runs.
-struct StaticPlace {
-  VarId root;
-  std::vector<std::uint32_t> members;
-  Type type;
-  unsigned components = 0;
-  bool operator==(const StaticPlace&) const = default;
-};
-
-std::optional<StaticPlace> staticPlace(const Expr& expr) {
-  StaticPlace place{};
-  const Expr* base = &expr;
-  if (const auto* n = std::get_if<Swizzle>(&expr.node)) {
-    for (std::uint8_t component : n->components) place.components |= 1U << component;
-    base = n->base.get();
-  }
-  if (!base->type.isArithmetic() && !base->type.isMatrix()) return std::nullopt;
-  place.type = base->type;
-  if (place.components == 0) place.components = (1U << base->type.width) - 1;
-  while (const auto* n = std::get_if<Member>(&base->node)) {
-    place.members.insert(place.members.begin(), n->field);
-    base = n->base.get();
-  }
-  const auto* root = std::get_if<VarRef>(&base->node);
-  if (root == nullptr) return std::nullopt;
-  place.root = root->var;
-  return place;
-}
 
 /// What a conversion between a narrow type and its carrier converts: operators know only the carrier.
 const Expr& withoutCarrier(const Expr& expr) {
@@ -62,14 +34,17 @@ std::optional<FoldOp> minOrMax(Intrinsic intrinsic) {
   return std::nullopt;
 }
 
-/// The operator by which `value` is `place op f`, possibly a chain `place op f op g`.
+/// The operator by which `value` is `place op f`, possibly a chain `place op f op g`; of one of sums and differences, +.
 std::optional<FoldOp> selfFold(const Expr& value, const StaticPlace& place) {
   if (const auto* n = std::get_if<Binary>(&value.node)) {
     if (isComparison(n->op)) return std::nullopt;
     const bool hasMatrix = n->lhs->type.isMatrix() || n->rhs->type.isMatrix();
-    if (hasMatrix && n->op != BinaryOp::Add) return std::nullopt;   // their products have an order
-    if (isSame(*n->lhs, place) || selfFold(*n->lhs, place) == FoldOp(n->op)) return n->op;
-    if (isCommutative(n->op) && isSame(*n->rhs, place)) return n->op;
+    if (hasMatrix && n->op != BinaryOp::Add) return std::nullopt;  // their products have an order
+    const std::optional<FoldOp> left = selfFold(*n->lhs, place);
+    if (isSame(*n->lhs, place) || left == FoldOp(n->op)) return n->op;
+    if (isCommutative(n->op) && (isSame(*n->rhs, place) || selfFold(*n->rhs, place) == FoldOp(n->op)))
+      return n->op;
+    if (n->op == BinaryOp::Sub && left == FoldOp(BinaryOp::Add)) return BinaryOp::Add;
   }
   if (const auto* n = std::get_if<IntrinsicCall>(&value.node)) {
     const std::optional<FoldOp> op = minOrMax(n->intrinsic);
@@ -106,7 +81,7 @@ class Recogniser {
     if (!op) return std::nullopt;
     if (place->type.isMatrix() && op != FoldOp(BinaryOp::Add)) return std::nullopt;
     if (reads(*n->value) != (n->op ? 0 : 1)) return std::nullopt;
-    return FoldPart{place->root, place->members, place->type, place->components, *op, stmt.loc};
+    return FoldPart{place->root, place->members, place->type, place->mask(), *op, stmt.loc};
   }
 
   std::optional<FoldPattern> run(const Block& body) const {
@@ -163,17 +138,18 @@ class Recogniser {
   bool isPlain(const Stmt& stmt) const {
     const auto* n = std::get_if<Assign>(&stmt.node);
     if (n == nullptr) return false;
-    std::optional<StaticPlace> place = placeOf(*n->place);
+    const std::optional<StaticPlace> place = placeOf(*n->place);
     if (!place) return false;
-    place->root = elementOf(place->root);
-    if (n->op) return isSame(*n->value, *place);
+    StaticPlace element = *place;
+    element.root = elementOf(place->root);
+    if (n->op) return isSame(*n->value, element);
+    const auto areBoth = [&](const Expr& a, const Expr& b) {
+      return (isSame(a, *place) && isSame(b, element)) || (isSame(a, element) && isSame(b, *place));
+    };
     const Expr& value = withoutCarrier(*n->value);
-    if (const auto* b = std::get_if<Binary>(&value.node)) {
-      return isSame(*b->lhs, *place) || isSame(*b->rhs, *place);
-    }
+    if (const auto* b = std::get_if<Binary>(&value.node)) return areBoth(*b->lhs, *b->rhs);
     const auto* c = std::get_if<IntrinsicCall>(&value.node);
-    return c != nullptr && std::any_of(c->args.begin(), c->args.end(),
-                                       [&](const ExprPtr& arg) { return isSame(*arg, *place); });
+    return c != nullptr && areBoth(*c->args[0], *c->args[1]);
   }
 
   const Kernel& kernel_;
@@ -183,16 +159,13 @@ class Recogniser {
 
 namespace {
 
-/// Those of `place + f + g`, where the place itself is none.
-void addSummands(const Expr& value, const StaticPlace& place, std::vector<const Expr*>& all) {
-  const auto* n = std::get_if<Binary>(&value.node);
+/// Those of `place + f - g`, where the place itself is none.
+void addSummands(const Expr& value, const StaticPlace& place, bool isNegative, std::vector<Summand>& all) {
   if (isSame(value, place)) return;
-  if (n != nullptr && (isSame(*n->lhs, place) || isSame(*n->rhs, place) || selfFold(*n->lhs, place))) {
-    addSummands(*n->lhs, place, all);
-    addSummands(*n->rhs, place, all);
-  } else {
-    all.push_back(&value);
-  }
+  if (!selfFold(value, place)) return all.push_back({&value, isNegative});
+  const auto& n = std::get<Binary>(value.node);
+  addSummands(*n.lhs, place, isNegative, all);
+  addSummands(*n.rhs, place, isNegative != (n.op == BinaryOp::Sub), all);
 }
 
 }  // namespace
@@ -201,12 +174,12 @@ std::optional<FoldPart> foldedBy(const Kernel& kernel, const Stmt& stmt) {
   return Recogniser(kernel).foldOf(stmt);
 }
 
-std::vector<const Expr*> summandsOf(const Assign& fold) {
-  std::vector<const Expr*> all;
+std::vector<Summand> summandsOf(const Assign& fold) {
+  std::vector<Summand> all;
   if (fold.op) {
-    all.push_back(fold.value.get());
+    all.push_back({fold.value.get(), false});
   } else {
-    addSummands(*fold.value, *staticPlace(*fold.place), all);
+    addSummands(*fold.value, *staticPlace(*fold.place), false, all);
   }
   return all;
 }

@@ -40,8 +40,12 @@ std::optional<FoldPattern> recogniseFold(const ir::Kernel& kernel, const ir::Fun
 /// What a statement of a reduce folds into an accumulator, if that is all it does with them.
 std::optional<FoldPart> foldedBy(const ir::Kernel& kernel, const ir::Stmt& stmt);
 
-/// What such a statement adds: f and g of `place += f`, `place = place + f + g`. It folds by +.
-std::vector<const ir::Expr*> summandsOf(const ir::Assign& fold);
+/// What such a statement adds: f and g of `place += f`, `place = place + f - g`. It folds by +.
+struct Summand {
+  const ir::Expr* value;
+  bool isNegative;
+};
+std::vector<Summand> summandsOf(const ir::Assign& fold);
 
 /// Whether it folds in the head of a loop, where there is no room for more than the statement.
 bool foldsInLoopHead(const ir::Kernel& kernel, const ir::Function& entry);

@@ -66,11 +66,11 @@ void addTerms(const Expr& value, bool isNegative, std::vector<Term>& terms) {
 
 std::vector<Term> termsOf(const Assign& fold) {
   std::vector<Term> terms;
-  for (const Expr* value : summandsOf(fold)) {
+  for (const auto& [value, isNegative] : summandsOf(fold)) {
     if (hasProduct(*value)) {
-      addTerms(*value, false, terms);
+      addTerms(*value, isNegative, terms);
     } else {
-      terms.push_back({clone(*value), nullptr});
+      terms.push_back({isNegative ? unary(UnaryOp::Negate, clone(*value)) : clone(*value), nullptr});
     }
   }
   return terms;

@@ -112,6 +112,11 @@ TEST_CASE("bits and bools fold") {
 TEST_CASE("how partial results combine follows from the body, or from an overload") {
   onEveryProfile([](sk::Device& device) {
     check<float>(device, "squares", smallAt, reduces::squares, 0.0f, [](float& r, float x) { r += x * x; });
+    check<float2>(
+        device, "sumSwapped", [](std::size_t i) { return float2{smallAt(i), smallAt(i + 1)}; },
+        reduces::sumSwapped, float2{}, [](float2& r, const float2& x) { r = {r.x + x.y, r.y + x.x}; });
+    check<float>(device, "sumOneMore", smallAt, reduces::sumOneMore, 0.0f,
+                 [](float& r, float x) { r += x + 2; });
     check<float>(device, "countPositive", smallAt, reduces::countPositive, 0,
                  [](int& r, float x) { r += x > 0; });
     check<float>(device, "range", bitsAt<float>, reduces::range, float2{INFINITY, -INFINITY},
