@@ -84,4 +84,16 @@ ElementLayout elementLayout(const Module& module, const TypeNames& types, Type t
   return layout;
 }
 
+std::uint32_t offsetOf(const Module& module, const TypeNames& types, Type type,
+                       std::span<const std::uint32_t> members) {
+  const ElementLayout layout = elementLayout(module, types, type);
+  std::string path;
+  for (const std::uint32_t member : members) {
+    const StructField& field = module.structs[type.index].fields[member];
+    path = path.empty() ? field.name : joinPath(path, field.name);
+    type = field.type;
+  }
+  return std::ranges::find(layout.planes, path, &Plane::member)->offset;
+}
+
 }  // namespace skc::emit

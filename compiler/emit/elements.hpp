@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,5 +31,9 @@ struct ElementLayout {
 /// Of a scalar, a vector, a matrix, or a struct of these and of such structs. Vectors are packed and
 /// aligned like their component, rows of matrices likewise.
 ElementLayout elementLayout(const ir::Module& module, const TypeNames& types, ir::Type type);
+
+/// Bytes from an element's start to a member of it that is one plane.
+std::uint32_t offsetOf(const ir::Module& module, const TypeNames& types, ir::Type type,
+                       std::span<const std::uint32_t> members);
 
 }  // namespace skc::emit

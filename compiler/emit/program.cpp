@@ -29,6 +29,7 @@ struct Program::Storage {
   std::vector<std::string_view> sources;
   std::deque<sk::program::Reduction> reductions;
   std::deque<sk::program::CompensatedReduction> compensated;
+  std::deque<std::vector<sk::program::CompensatedSum>> compensatedSums;
   std::deque<sk::program::WideReduction> wide;
   std::deque<sk::program::Kernel> forms;
   std::deque<std::vector<sk::program::ExactSum>> exact;
@@ -194,8 +195,11 @@ class Builder {
   const sk::program::CompensatedReduction* compensated(const Reduction& plain) {
     if (!plain.compensated) return nullptr;
     const Kernel& fold = module_.kernels[plain.compensated->fold];
-    std::vector<std::uint8_t>& sums = storage_.combineOperands.emplace_back();
-    for (const VarId sum : plain.compensated->sums) sums.push_back(static_cast<std::uint8_t>(sum));
+    std::vector<sk::program::CompensatedSum>& sums = storage_.compensatedSums.emplace_back();
+    for (const auto& [accumulator, members] : plain.compensated->sums) {
+      sums.push_back({static_cast<std::uint8_t>(accumulator),
+                      offsetOf(module_, types_, fold.params[accumulator].type, members)});
+    }
     return &storage_.compensated.emplace_back(sk::program::CompensatedReduction{
         reduction(fold, describe(fold)), whole(module_.kernels[plain.compensated->finish]), sums});
   }

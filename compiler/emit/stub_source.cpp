@@ -202,8 +202,10 @@ class SourceWriter {
     reduction(made.reduction, fold, names.fold, names.combine, native_);
     kernel(made.finish, module_.kernels[second.finish], names.finish, native_);
     std::vector<std::string> sums;
-    for (const std::uint8_t sum : made.sums) sums.push_back(std::to_string(sum));
-    list("std::uint8_t", name + "Sums", sums);
+    for (const auto& [accumulator, offset] : made.sums) {
+      sums.push_back(fmt::format("{{{}, {}}}", accumulator, offset));
+    }
+    list("CompensatedSum", name + "Sums", sums);
     text_ +=
         fmt::format("constexpr CompensatedReduction {}Compensated = {{{}Reduction, {}Kernel, {}Sums}};\n\n",
                     name, names.fold, names.finish, name);

@@ -234,12 +234,19 @@ struct KernelParam {
 /// The type of the elements that the parameter's stream holds.
 inline Type heldType(const KernelParam& param) { return param.held.value_or(param.type); }
 
+/// A sum of floats that a reduce folds: an accumulator, or a member of one.
+struct CompensatedSum {
+  VarId accumulator;
+  std::vector<std::uint32_t> members;  ///< way from the accumulator
+};
+
 /// A second form of a reduce that sums floats, set by compensate-sums: the reduce `fold` has one more accumulator for
-/// each of `sums`, after all others and in that order, for what its sum has lost. `finish` is a kernel that
-/// takes each sum and what it has lost, one pair after the other, and gives the results.
+/// each of `sums`, after all others and in that order, for what its sum has lost. `finish` is a kernel that takes the
+/// accumulators which have sums as they are, each once and in their order, then what each of the sums has lost, and gives
+/// these accumulators with both added.
 struct Compensated {
   KernelId fold, finish;
-  std::vector<VarId> sums;
+  std::vector<CompensatedSum> sums;
 };
 
 /// A scalar sum of floats of a reduce, set by sum-exactly: the reduce `fold` has, after all parameters but accumulators, those

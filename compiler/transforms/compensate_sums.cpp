@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
-#include "transforms/combine_part.hpp"
+#include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
 #include "transforms/made_kernel.hpp"
@@ -20,54 +21,18 @@ namespace {
 
 using namespace ir;
 
-bool isAccumulator(const KernelParam& param) { return param.role == ParamRole::Accumulator; }
-
-/// Whether everything that a fold does to an accumulator is to add to the whole of it.
-bool isSum(const FoldPattern& pattern, VarId accumulator) {
-  return std::ranges::all_of(pattern.parts, [&](const FoldPart& part) {
-    return part.accumulator != accumulator || (part.isWhole() && part.op == FoldOp(BinaryOp::Add));
-  });
-}
-
-/// The accumulators that are sums of floats; none where the reduce has no second form.
-std::vector<VarId> sumsOf(const Module& module, KernelId id, const FoldPattern& pattern) {
-  const Kernel& kernel = module.kernels[id];
-  const KernelId combine = *kernel.reduction->combine;
-  if (combine != id && !module.kernels[combine].isMade) return {};   // the author's
-  if (foldsInLoopHead(kernel, module.functions[kernel.entry])) return {};
-  std::vector<VarId> sums;
-  for (VarId i = 0; i < kernel.params.size(); ++i) {
-    const KernelParam& param = kernel.params[i];
-    if (!isAccumulator(param)) continue;
-    if (!param.identity) return {};   // runs start from it, since their first element is no pair of sums
-    if (param.type.isFloat() && isSum(pattern, i)) sums.push_back(i);
-  }
-  return sums;
-}
-
 ExprPtr everywhere(Type type, float value) {
   return type.isScalar() ? literal(value) : construct(type, exprs(literal(value)));
 }
 
-/// total_lost += sumError(total, term); total = roundedSum(total, term)
-void addTo(Block& body, const Function& function, VarId total, VarId lost, VarId term) {
-  const auto both = [&] { return exprs(varRef(function, total), varRef(function, term)); };
-  body.push_back(assign(varRef(function, lost), BinaryOp::Add, intrinsic(Intrinsic::SumError, both())));
-  body.push_back(assign(varRef(function, total), intrinsic(Intrinsic::RoundedSum, both())));
-}
-
-/// The same place of another variable.
-ExprPtr inVariable(const Expr& place, VarId var) {
-  ExprPtr copy = clone(place);
-  walkExprs(*copy, [&](Expr& expr) {
-    if (auto* n = std::get_if<VarRef>(&expr.node)) n->var = var;
-  });
-  return copy;
-}
-
-/// A scalar that is added to a vector is so to each component.
-ExprPtr ofType(Type type, ExprPtr value) {
-  return value->type == type ? std::move(value) : construct(type, exprs(std::move(value)));
+/// The same components of the variable that stands for the sum, which a place is of.
+ExprPtr inVariable(const Function& function, const Expr& place, VarId var) {
+  ExprPtr whole = varRef(function, var);
+  const auto* n = std::get_if<Swizzle>(&place.node);
+  if (n == nullptr) return whole;
+  std::string components;
+  for (const std::uint8_t component : n->components) components += "xyzw"[component];
+  return swizzle(std::move(whole), components);
 }
 
 /// place_lost += sumError(place, value) + productError(value, factor); place = roundedSum(place, value * factor)
@@ -88,126 +53,168 @@ void addTerm(Block& body, Function& function, const Expr& place, VarId lost, Ter
   }
   ExprPtr sumError = intrinsic(Intrinsic::SumError, exprs(clone(place), clone(value)));
   if (error) sumError = binary(BinaryOp::Add, std::move(sumError), std::move(error));
-  body.push_back(assign(inVariable(place, lost), BinaryOp::Add, std::move(sumError)));
+  body.push_back(assign(inVariable(function, place, lost), BinaryOp::Add, std::move(sumError)));
   body.push_back(
       assign(clone(place), intrinsic(Intrinsic::RoundedSum, exprs(clone(place), std::move(value)))));
 }
 
-KernelParam like(const KernelParam& param, std::string name, ParamRole role) {
-  return makeParam(std::move(name), role, param.type, param.loc);
+/// The accumulators for what the sums of one reduce lose, and in one that combines the inputs for what those of its parts
+/// have lost; one for each sum.
+struct Losses {
+  std::vector<FloatSum> sums;
+  std::vector<VarId> lost, lostOfPart;
+};
+
+/// Sums what is lost beside what is added.
+void addLosses(const Kernel& kernel, Function& entry, Block& block, const Losses& losses) {
+  Block made;
+  for (Stmt& stmt : block) {
+    forEachBlock(stmt, [&](Block& inner) { addLosses(kernel, entry, inner, losses); });
+    const std::optional<FoldPart> part = foldedBy(kernel, stmt);
+    const auto sum =
+        std::ranges::find_if(losses.sums, [&](const FloatSum& one) { return part && one.holds(*part); });
+    if (sum == losses.sums.end()) {
+      made.push_back(std::move(stmt));
+      continue;
+    }
+    const auto& fold = std::get<Assign>(stmt.node);
+    const auto k = static_cast<std::size_t>(sum - losses.sums.begin());
+    if (!losses.lostOfPart.empty()) {
+      made.push_back(assign(inVariable(entry, *fold.place, losses.lost[k]), BinaryOp::Add,
+                            inVariable(entry, *fold.place, losses.lostOfPart[k])));
+    }
+    for (Term& term : termsOf(fold)) addTerm(made, entry, *fold.place, losses.lost[k], std::move(term));
+  }
+  block = std::move(made);
+}
+
+/// Puts -0 in the place of a sum's components of an identity that derive-combine has supplied: struct by struct.
+void startFromNegativeZero(ExprPtr& identity, const FloatSum& sum) {
+  ExprPtr* slot = &identity;
+  for (const std::uint32_t field : sum.members) slot = &std::get<Construct>((*slot)->node).args[field];
+  if (sum.components == (1U << sum.type.width) - 1) {
+    *slot = everywhere(sum.type, -0.0F);
+    return;
+  }
+  for (unsigned i = 0; i < sum.type.width; ++i) {
+    if ((sum.components >> i & 1U) != 0) std::get<Construct>((*slot)->node).args[i] = literal(-0.0F);
+  }
 }
 
 class Maker {
  public:
-  Maker(Module& module, KernelId id, const FoldPattern& pattern, std::vector<VarId> sums)
-      : module_(module), id_(id), pattern_(pattern), sums_(std::move(sums)) {}
+  Maker(Module& module, KernelId id, std::vector<FloatSum> sums)
+      : module_(module), id_(id), sums_(std::move(sums)) {}
 
   void make() {
     const KernelId fold = makeFold(makeCombination());
     const KernelId finish = makeFinish();
-    module_.kernels[id_].reduction->compensated = Compensated{fold, finish, sums_};
+    Compensated made{fold, finish, {}};
+    for (const FloatSum& sum : sums_) made.sums.push_back({sum.accumulator, sum.members});
+    module_.kernels[id_].reduction->compensated = std::move(made);
   }
 
  private:
   const Kernel& kernel() const { return module_.kernels[id_]; }
-  bool isSum(VarId param) const { return std::ranges::find(sums_, param) != sums_.end(); }
+
+  /// "m_sum_lost" of m.sum.
+  std::string lostName(const FloatSum& sum) const {
+    const KernelParam& param = kernel().params[sum.accumulator];
+    std::string name = param.name;
+    Type type = param.type;
+    for (const std::uint32_t field : sum.members) {
+      const StructField& member = module_.structs[type.index].fields[field];
+      name += "_" + member.name;
+      type = member.type;
+    }
+    return name + "_lost";
+  }
 
   KernelId makeFold(KernelId combine) {
     FoldCopy copy(module_, id_, "_compensated");
-    std::vector<VarId> lost;
-    for (const VarId i : sums_) {
-      KernelParam& param = copy.param(i);
+    Losses losses{sums_, {}, {}};
+    for (const FloatSum& sum : sums_) {
       // where the plain form starts with its first element, so does -0 + element
-      if (kernel().reduction->seeded) param.identity = everywhere(param.type, -0.0F);
-      lost.push_back(copy.addAccumulator(param.name + "_lost", param.type, everywhere(param.type, 0.0F)));
+      if (kernel().reduction->seeded) startFromNegativeZero(copy.param(sum.accumulator).identity, sum);
+      losses.lost.push_back(copy.addAccumulator(lostName(sum), sum.type, everywhere(sum.type, 0.0F)));
     }
-    rewrite(copy.entry(), copy.entry().body, lost);
+    addLosses(kernel(), copy.entry(), copy.entry().body, losses);
     return copy.finish(combine);
   }
 
-  /// Sums what is lost beside what is added.
-  void rewrite(Function& entry, Block& block, const std::vector<VarId>& lost) const {
-    Block made;
-    for (Stmt& stmt : block) {
-      forEachBlock(stmt, [&](Block& inner) { rewrite(entry, inner, lost); });
-      const std::optional<FoldPart> part = foldedBy(kernel(), stmt);
-      if (!part || !isSum(part->accumulator)) {
-        made.push_back(std::move(stmt));
-        continue;
-      }
-      const auto& fold = std::get<Assign>(stmt.node);
-      const auto k = static_cast<std::size_t>(std::ranges::find(sums_, part->accumulator) - sums_.begin());
-      for (Term& term : termsOf(fold)) addTerm(made, entry, *fold.place, lost[k], std::move(term));
-    }
-    block = std::move(made);
-  }
-
-  /// Inputs and accumulators of the fold's types and order.
+  /// What combines the plain form adds what parts have lost beside the parts.
   KernelId makeCombination() {
-    MadeKernel made(kernel(), "_combine");
-    std::vector<VarId> parts;
-    std::vector<VarId> totals;
-    for (const ParamRole role : {ParamRole::Input, ParamRole::Accumulator}) {
-      const std::string suffix = role == ParamRole::Input ? "_part" : "";
-      std::vector<VarId>& list = role == ParamRole::Input ? parts : totals;
-      for (const KernelParam& param : kernel().params) {
-        if (isAccumulator(param)) list.push_back(made.add(like(param, param.name + suffix, role)));
-      }
-      for (const VarId i : sums_) {
-        const KernelParam& param = kernel().params[i];
-        list.push_back(made.add(like(param, param.name + "_lost" + suffix, role)));
-      }
+    const KernelId plain = *kernel().reduction->combine;
+    FoldCopy copy(module_, plain, plain == id_ ? "_combine" : "_compensated");
+    Losses losses;
+    for (const FloatSum& sum : sums_) {
+      losses.sums.push_back(sum);
+      losses.sums.back().accumulator = sameAccumulator(kernel(), sum.accumulator, module_.kernels[plain]);
+      losses.lostOfPart.push_back(copy.addInput(lostName(sum) + "_part", sum.type));
+      losses.lost.push_back(copy.addAccumulator(lostName(sum), sum.type));
     }
-    std::vector<VarId> accumulators;  // of the plain form, which come first in each list
-    for (VarId i = 0; i < kernel().params.size(); ++i) {
-      if (isAccumulator(kernel().params[i])) accumulators.push_back(i);
-    }
-    const auto placeOf = [&](VarId accumulator) {
-      return static_cast<std::size_t>(std::ranges::find(accumulators, accumulator) - accumulators.begin());
-    };
-    for (const FoldPart& part : pattern_.parts) {
-      if (isSum(part.accumulator)) continue;
-      const std::size_t k = placeOf(part.accumulator);
-      made.entry.body.push_back(combinePart(module_, made.entry, part, parts[k], totals[k]));
-    }
-    for (std::size_t k = 0; k < sums_.size(); ++k) {
-      const std::size_t sum = placeOf(sums_[k]);
-      const std::size_t lost = accumulators.size() + k;
-      made.entry.body.push_back(
-          assign(varRef(made.entry, totals[lost]), BinaryOp::Add, varRef(made.entry, parts[lost])));
-      addTo(made.entry.body, made.entry, totals[sum], totals[lost], parts[sum]);
-    }
-    return made.finishCombination(module_);
+    addLosses(module_.kernels[plain], copy.entry(), copy.entry().body, losses);
+    return copy.finishCombination();
   }
 
   KernelId makeFinish() {
     MadeKernel made(kernel(), "_finish");
-    std::vector<VarId> inputs;
-    for (const VarId i : sums_) {
-      const KernelParam& param = kernel().params[i];
-      inputs.push_back(made.add(like(param, param.name, ParamRole::Input)));
-      inputs.push_back(made.add(like(param, param.name + "_lost", ParamRole::Input)));
+    std::vector<VarId> accumulators;  // of the plain form, each once
+    for (const FloatSum& sum : sums_) {
+      if (accumulators.empty() || accumulators.back() != sum.accumulator) {
+        accumulators.push_back(sum.accumulator);
+      }
+    }
+    const auto add = [&](VarId accumulator, std::string_view prefix, ParamRole role) {
+      const KernelParam& param = kernel().params[accumulator];
+      return made.add(makeParam(std::string(prefix) + param.name, role, param.type, param.loc));
+    };
+    std::vector<VarId> inputs, lost, results;
+    for (const VarId i : accumulators) inputs.push_back(add(i, "", ParamRole::Input));
+    for (const FloatSum& sum : sums_) {
+      lost.push_back(made.add(makeParam(lostName(sum), ParamRole::Input, sum.type, kernel().loc)));
+    }
+    for (const VarId i : accumulators) results.push_back(add(i, "r_", ParamRole::Output));
+    Block& body = made.entry.body;
+    for (std::size_t i = 0; i < accumulators.size(); ++i) {
+      const bool hasMembers = made.kernel.params[inputs[i]].type.kind == Type::Kind::Struct;
+      if (hasMembers) body.push_back(assign(varRef(made.entry, results[i]), varRef(made.entry, inputs[i])));
     }
     for (std::size_t k = 0; k < sums_.size(); ++k) {
-      const KernelParam& param = kernel().params[sums_[k]];
-      const VarId result = made.add(like(param, "r_" + param.name, ParamRole::Output));
-      const auto total = [&] { return varRef(made.entry, inputs[2 * k]); };
-      const auto lost = [&] { return varRef(made.entry, inputs[2 * k + 1]); };
-      // a sum that is not finite has lost NaN; and where nothing is lost, -0 stays
-      ExprPtr isNothing = binary(BinaryOp::Equal, lost(), everywhere(param.type, 0.0F));
-      ExprPtr sum = select(std::move(isNothing), total(), binary(BinaryOp::Add, total(), lost()));
-      made.entry.body.push_back(
-          assign(varRef(made.entry, result),
-                 select(intrinsic(Intrinsic::Isfinite, exprs(lost())), std::move(sum), total())));
+      const auto i = static_cast<std::size_t>(std::ranges::find(accumulators, sums_[k].accumulator) -
+                                              accumulators.begin());
+      body.push_back(assign(partOf(varRef(made.entry, results[i]), sums_[k]),
+                            finished(partOf(varRef(made.entry, inputs[i]), sums_[k]), made.entry, lost[k])));
     }
     return made.finish(module_);
   }
 
+  ExprPtr partOf(ExprPtr accumulator, const FloatSum& sum) const {
+    for (const std::uint32_t field : sum.members)
+      accumulator = member(module_, std::move(accumulator), field);
+    return accumulator;
+  }
+
+  /// The sum and what it has lost. A sum that is not finite has lost NaN; and where nothing is lost, -0 stays.
+  static ExprPtr finished(ExprPtr total, const Function& entry, VarId lostVariable) {
+    const auto lost = [&] { return varRef(entry, lostVariable); };
+    ExprPtr isNothing = binary(BinaryOp::Equal, lost(), everywhere(total->type, 0.0F));
+    ExprPtr sum = binary(BinaryOp::Add, clone(total), lost());
+    sum = select(std::move(isNothing), clone(total), std::move(sum));
+    return select(intrinsic(Intrinsic::Isfinite, exprs(lost())), std::move(sum), std::move(total));
+  }
+
   Module& module_;
   KernelId id_;
-  const FoldPattern& pattern_;
-  std::vector<VarId> sums_;
+  std::vector<FloatSum> sums_;
 };
+
+/// Runs of the second form start from identities, since their first element has no rest beside it.
+bool hasIdentities(const Kernel& kernel) {
+  return std::ranges::all_of(kernel.params, [](const KernelParam& param) {
+    return param.role != ParamRole::Accumulator || param.identity;
+  });
+}
 
 }  // namespace
 
@@ -215,11 +222,9 @@ void compensateSums(Module& module, Diagnostics&) {
   const std::size_t declared = module.kernels.size();  // before those that this adds
   for (KernelId id = 0; id < declared; ++id) {
     const Kernel& kernel = module.kernels[id];
-    if (!kernel.reduction || kernel.isMade) continue;
-    const std::optional<FoldPattern> pattern = recogniseFold(kernel, module.functions[kernel.entry]);
-    if (!pattern) continue;
-    std::vector<VarId> sums = sumsOf(module, id, *pattern);
-    if (!sums.empty()) Maker(module, id, *pattern, std::move(sums)).make();
+    if (!kernel.reduction || kernel.isMade || !hasIdentities(kernel)) continue;
+    std::vector<FloatSum> sums = floatSums(module, id);
+    if (!sums.empty()) Maker(module, id, std::move(sums)).make();
   }
 }
 

@@ -10,7 +10,12 @@
 //              total_lost += sumError(total, term) + productError(x, x);
 //              total = roundedSum(total, term);
 //            }
-//            reduce void squares_combine(float total_part<>, float total_lost_part<>, reduce ... )
+//            reduce void squares_combine(float total_part<>, reduce float total<>, float total_lost_part<>, reduce float
+//                                        total_lost<>) {
+//              total_lost += total_lost_part;
+//              total_lost += sumError(total, total_part);
+//              total = roundedSum(total, total_part);
+//            }
 //            kernel void squares_finish(float total<>, float total_lost<>, out float r_total<>) {
 //              r_total = isfinite(total_lost) ? total + total_lost : total;
 //            }
@@ -18,8 +23,8 @@
 // sumError is the error of a float addition, itself a float (Knuth, TAOCP 2, 4.2.2, theorem B), and productError that of
 // a multiplication (Dekker, Numer. Math. 18, 1971), so that a sum of n terms (sum_terms.hpp) has one rounding of its own and
 // some (log n)^2 u^2 of the sum of magnitudes: Sum2 and Dot2 of Ogita, Rump and Oishi (SIAM J. Sci. Comput. 26,
-// 2005) over a tree. Accumulators that are no sums of whole floats or vectors of them are folded as before; a
-// reduce whose author wrote how partial results combine has no second form.
+// 2005) over a tree. Which accumulators and members are such sums, float_sums.hpp says; all others are folded and combined
+// as before, be it by the author's own reduce. A reduce that has no identities has no second form.
 #pragma once
 
 #include "ir/ir.hpp"

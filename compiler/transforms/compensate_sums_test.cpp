@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: sums of floats get a second form that is valid IR, with an accumulator more for each; what is no
-// such sum, or combines by the author's own reduce, does not. (What it computes: tests/run/sums_test.cpp.)
+// such sum, or is not one in what combines, does not. (What it computes: tests/run/sums_test.cpp.)
 #include "transforms/compensate_sums.hpp"
+
+#include <string_view>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -59,7 +62,9 @@ TEST_CASE("a sum of floats gets an accumulator for what it loses") {
     CHECK(fold.params.back().name == "total_lost");
     CHECK(fold.name == "r");
     CHECK(module.kernels[made->finish].params.size() == 3);
-    CHECK(made->sums == std::vector<VarId>{withGather ? 2U : 1U});
+    REQUIRE(made->sums.size() == 1);
+    CHECK(made->sums[0].accumulator == (withGather ? 2U : 1U));
+    CHECK(made->sums[0].members.empty());
   }
 }
 
@@ -83,6 +88,95 @@ TEST_CASE("vectors of floats are summed so, too") {
   Module module = reduceModule(Type::of(Scalar::Float, 3), BinaryOp::Add);
   transform(module);
   CHECK(second(module) != nullptr);
+}
+
+/// struct Stats { float sum; float3 v; int count; };
+Type addStats(Module& module) {
+  const Type vector = Type::of(Scalar::Float, 3);
+  module.structs.push_back({"Stats", {}, {{"sum", floatType}, {"v", vector}, {"count", intType}}, {}});
+  return Type::structType(static_cast<std::uint32_t>(module.structs.size() - 1));
+}
+ExprPtr field(const Module& module, const KernelMaker& maker, VarId var, std::uint32_t number) {
+  return member(module, maker.ref(var), number);
+}
+
+TEST_CASE("members that are only added to are summed so, others are folded as ever") {
+  Module module = testModule();
+  const Type stats = addStats(module);
+  KernelMaker maker(module, "r");
+  const VarId x = maker.input("x", floatType);
+  const VarId total = maker.accumulator("total", stats);
+  const auto component = [&](std::string_view name) { return swizzle(field(module, maker, total, 1), name); };
+  Block body;
+  body.push_back(assign(field(module, maker, total, 0), BinaryOp::Add, maker.ref(x)));
+  body.push_back(assign(component("xz"), BinaryOp::Add, maker.ref(x)));
+  body.push_back(assign(component("y"), intrinsic(Intrinsic::Max, exprs(component("y"), maker.ref(x)))));
+  body.push_back(assign(field(module, maker, total, 2), BinaryOp::Add, literal(1)));
+  maker.finish(std::move(body));
+  transform(module);
+  const Compensated* made = second(module);
+  REQUIRE(made != nullptr);
+  REQUIRE(made->sums.size() == 2);
+  CHECK(made->sums[0].members == std::vector<std::uint32_t>{0});
+  CHECK(made->sums[1].members == std::vector<std::uint32_t>{1});
+  CHECK(module.kernels[made->fold].params.back().name == "total_v_lost");
+  CHECK(module.kernels[made->finish].params.size() == 4);   // the accumulator, both losses, the result
+}
+
+/// reduce void r(float x<>, reduce Stats total<> = ...) { total.sum += x; } whose parts `combine` combines.
+template <class Combine>
+Module combinedBy(Combine&& combine) {
+  Module module = testModule();
+  const Type stats = addStats(module);
+  const auto identity = [&] {
+    return construct(
+        stats, exprs(literal(0.0F), construct(Type::of(Scalar::Float, 3), exprs(literal(0.0F))), literal(0)));
+  };
+  KernelMaker maker(module, "r");
+  const VarId x = maker.input("x", floatType);
+  const VarId total = maker.accumulator("total", stats, identity());
+  maker.finish(block(assign(field(module, maker, total, 0), BinaryOp::Add, maker.ref(x))));
+  KernelMaker other(module, "r");
+  const VarId part = other.input("part", stats);
+  const VarId whole = other.accumulator("total", stats, identity());
+  Block body;
+  body.push_back(
+      assign(field(module, other, whole, 0), BinaryOp::Add, combine(field(module, other, part, 0))));
+  other.finish(std::move(body));
+  module.kernels[0].reduction->combine = 1;
+  module.kernels[0].reduction->operands = {0, 0};
+  return module;
+}
+
+TEST_CASE("the author's combination counts where it adds the part and no more") {
+  Module adds = combinedBy([](ExprPtr part) { return part; });
+  transform(adds);
+  REQUIRE(second(adds) != nullptr);
+  CHECK(*adds.kernels[second(adds)->fold].reduction->combine != 1);
+  Module scales =
+      combinedBy([](ExprPtr part) { return binary(BinaryOp::Mul, std::move(part), literal(2.0F)); });
+  transform(scales);
+  CHECK(second(scales) == nullptr);
+}
+
+TEST_CASE("what is read besides, or added to in the head of a loop, is no sum") {
+  for (const bool isRead : {true, false}) {
+    Module module = testModule();
+    KernelMaker maker(module, "r");
+    const VarId x = maker.input("x", floatType);
+    const VarId total = maker.accumulator("total", floatType, literal(0.0F));
+    const VarId i = maker.local("i", intType);
+    Block add = block(assign(maker.ref(total), BinaryOp::Add, maker.ref(x)));
+    if (isRead) {
+      maker.finish(block(ifStmt(binary(BinaryOp::Less, maker.ref(total), maker.ref(x)), std::move(add))));
+    } else {
+      maker.finish(
+          block(forLoop(block(declare(i, literal(0))), binary(BinaryOp::Less, maker.ref(i), literal(1)),
+                        std::move(add), block(assign(maker.ref(i), BinaryOp::Add, literal(1))))));
+    }
+    transform(module);
+    CHECK(second(module) == nullptr);
+  }
 }
 
 TEST_CASE("products, integers and doubles have no second form") {

@@ -44,6 +44,7 @@ FoldCopy::FoldCopy(Module& module, KernelId of, std::string_view suffix)
     : module_(module), before_(module.kernels[of].params.size()) {
   const Kernel& original = module.kernels[of];
   kernel_ = madeFor(original);
+  operands_ = original.reduction->operands;
   for (const KernelParam& param : original.params) kernel_.params.push_back(copyOf(param));
   kernel_.entry = copyFunction(module, original.entry, copies_);
   entry_ = std::move(module.functions[kernel_.entry]);
@@ -51,12 +52,20 @@ FoldCopy::FoldCopy(Module& module, KernelId of, std::string_view suffix)
   module.functions[kernel_.entry].body.clear();
 }
 
-VarId FoldCopy::addAccumulator(std::string name, Type type, ExprPtr identity) {
-  KernelParam param = makeParam(name, ParamRole::Accumulator, type, kernel_.loc);
-  param.identity = std::move(identity);
+VarId FoldCopy::add(KernelParam param) {
+  added_.push_back(addVariable(entry_, param.name, param.type));
   kernel_.params.push_back(std::move(param));
-  added_.push_back(addVariable(entry_, std::move(name), type));
   return added_.back();
+}
+
+VarId FoldCopy::addInput(std::string name, Type type) {
+  return add(makeParam(std::move(name), ParamRole::Input, type, kernel_.loc));
+}
+
+VarId FoldCopy::addAccumulator(std::string name, Type type, ExprPtr identity) {
+  KernelParam param = makeParam(std::move(name), ParamRole::Accumulator, type, kernel_.loc);
+  param.identity = std::move(identity);
+  return add(std::move(param));
 }
 
 void FoldCopy::dropAccumulators() { isDropped_ = true; }
@@ -78,7 +87,6 @@ void FoldCopy::renumber() {
     numbers[old] = static_cast<VarId>(variables.size());
     variables.push_back(std::move(entry_.variables[old]));
   }
-  for (const VarId var : added_) variables[numbers[var]].role = VarRole::InOut;
   entry_.variables = std::move(variables);
   entry_.parameterCount = static_cast<std::uint32_t>(parameters);
   std::vector<KernelParam> params;
@@ -86,6 +94,10 @@ void FoldCopy::renumber() {
     if (i >= before_ || numbers[i] != gone) params.push_back(std::move(kernel_.params[i]));
   }
   kernel_.params = std::move(params);
+  for (const VarId var : added_) {
+    const bool isInput = kernel_.params[numbers[var]].role == ParamRole::Input;
+    entry_.variables[numbers[var]].role = isInput ? VarRole::Element : VarRole::InOut;
+  }
 
   const auto variable = [&](Expr& expr) {
     if (auto* n = std::get_if<VarRef>(&expr.node)) n->var = numbers[n->var];
@@ -105,13 +117,22 @@ void FoldCopy::renumber() {
   for (const auto& [old, made] : copies_) walkExprs(module_.functions[made].body, stream);
 }
 
-KernelId FoldCopy::finish(KernelId combine) {
+KernelId FoldCopy::finish(KernelId combine, std::size_t operands, bool seeded) {
   renumber();
   module_.functions[kernel_.entry] = std::move(entry_);
-  kernel_.reduction =
-      Reduction{combine, std::vector<std::uint32_t>(module_.kernels[combine].params.size()), false, {}};
+  operands_.resize(operands);
+  kernel_.reduction = Reduction{combine, std::move(operands_), seeded};
   module_.kernels.push_back(std::move(kernel_));
   return static_cast<KernelId>(module_.kernels.size() - 1);
+}
+
+KernelId FoldCopy::finish(KernelId combine) {
+  return finish(combine, module_.kernels[combine].params.size(), false);
+}
+
+KernelId FoldCopy::finishCombination() {
+  for (KernelParam& param : kernel_.params) param.identity = nullptr;
+  return finish(static_cast<KernelId>(module_.kernels.size()), kernel_.params.size(), true);
 }
 
 }  // namespace skc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A reduce's fold in the making that does what another does, with other accumulators.
+// A reduce in the making that does what another does, with other accumulators.
 #pragma once
 
 #include <string>
@@ -21,20 +21,26 @@ class FoldCopy {
   ir::Function& entry() { return entry_; }
   ir::KernelParam& param(ir::VarId var) { return kernel_.params[var]; }
 
-  /// A new accumulator, of which nobody knows yet, after all others.
-  ir::VarId addAccumulator(std::string name, ir::Type type, ir::ExprPtr identity);
+  /// A new input or accumulator, of which nobody knows yet, after all other parameters.
+  ir::VarId addInput(std::string name, ir::Type type);
+  ir::VarId addAccumulator(std::string name, ir::Type type, ir::ExprPtr identity = nullptr);
   /// The accumulators that there were go; the body does not name them any more.
   void dropAccumulators();
 
-  /// Puts it into the module, a reduce that `combine` combines.
+  /// Puts it into the module, a reduce that `combine` combines, which gets the arguments that the copied reduce gives to
+  /// what combines that; or one that combines by itself and has no identities.
   ir::KernelId finish(ir::KernelId combine);
+  ir::KernelId finishCombination();
 
  private:
+  ir::VarId add(ir::KernelParam param);
   void renumber();
+  ir::KernelId finish(ir::KernelId combine, std::size_t operands, bool seeded);
 
   ir::Module& module_;
   ir::Kernel kernel_;
   ir::Function entry_;
+  std::vector<std::uint32_t> operands_;
   std::size_t before_;  ///< parameters that there were
   bool isDropped_ = false;
   FunctionCopies copies_;

@@ -122,18 +122,6 @@ class Recogniser {
     return place && isAccumulator(place->root) ? place : std::nullopt;
   }
 
-  /// The input that stands where an accumulator does among them.
-  VarId elementOf(VarId accumulator) const {
-    const auto isOf = [](ParamRole role) {
-      return [role](const KernelParam& param) { return param.role == role; };
-    };
-    auto before = std::count_if(kernel_.params.begin(), kernel_.params.begin() + accumulator,
-                                isOf(ParamRole::Accumulator));
-    VarId element = 0;
-    while (kernel_.params[element].role != ParamRole::Input || before-- > 0) ++element;
-    return element;
-  }
-
   /// `place op= its element`, in any of the forms, with the same place in the element.
   bool isPlain(const Stmt& stmt) const {
     const auto* n = std::get_if<Assign>(&stmt.node);
@@ -141,7 +129,7 @@ class Recogniser {
     const std::optional<StaticPlace> place = placeOf(*n->place);
     if (!place) return false;
     StaticPlace element = *place;
-    element.root = elementOf(place->root);
+    element.root = elementOf(kernel_, place->root);
     if (n->op) return isSame(*n->value, element);
     const auto areBoth = [&](const Expr& a, const Expr& b) {
       return (isSame(a, *place) && isSame(b, element)) || (isSame(a, element) && isSame(b, *place));
@@ -184,16 +172,12 @@ std::vector<Summand> summandsOf(const Assign& fold) {
   return all;
 }
 
-bool foldsInLoopHead(const Kernel& kernel, const Function& entry) {
-  const auto folds = [&](const Block& head) {
-    return std::ranges::any_of(head, [&](const Stmt& stmt) { return foldedBy(kernel, stmt).has_value(); });
-  };
-  bool found = false;
-  walkStmts(entry.body, [&](const Stmt& stmt) {
-    const auto* n = std::get_if<Loop>(&stmt.node);
-    found = found || (n != nullptr && (folds(n->init) || folds(n->step)));
-  });
-  return found;
+VarId elementOf(const Kernel& kernel, VarId accumulator) {
+  auto before = std::ranges::count(kernel.params.begin(), kernel.params.begin() + accumulator,
+                                   ParamRole::Accumulator, &KernelParam::role);
+  VarId element = 0;
+  while (kernel.params[element].role != ParamRole::Input || before-- > 0) ++element;
+  return element;
 }
 
 bool foldsAccumulators(const Kernel& kernel) {

@@ -47,10 +47,10 @@ struct Summand {
 };
 std::vector<Summand> summandsOf(const ir::Assign& fold);
 
-/// Whether it folds in the head of a loop, where there is no room for more than the statement.
-bool foldsInLoopHead(const ir::Kernel& kernel, const ir::Function& entry);
-
 /// Whether its inputs have the types of its accumulators, one by one, so that each accumulator has an element.
 bool foldsAccumulators(const ir::Kernel& kernel);
+
+/// Of such a reduce: the input that stands where an accumulator does among them.
+ir::VarId elementOf(const ir::Kernel& kernel, ir::VarId accumulator);
 
 }  // namespace skc

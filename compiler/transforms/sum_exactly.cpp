@@ -11,6 +11,7 @@
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
+#include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
 #include "transforms/made_kernel.hpp"
@@ -33,9 +34,9 @@ constexpr Format ofFloats = {3, 0};
 constexpr Format ofProducts = {6, 149};
 constexpr std::uint32_t mostGroups = 6;
 
-/// A scalar of an accumulator, which is a sum.
+/// A component of a sum.
 struct ScalarSum {
-  FoldPart part;
+  FloatSum whole;
   unsigned component;
 };
 
@@ -103,17 +104,15 @@ class State {
     const Format& format = hasProducts(id, scalar) ? ofProducts : ofFloats;
     const KernelId fold = makeFold(id, scalar, format);
     const KernelId finish = makeFinish(id, scalar, format);
-    module_.kernels[id].reduction->exact.push_back({fold, finish, scalar.part.accumulator});
+    module_.kernels[id].reduction->exact.push_back({fold, finish, scalar.whole.accumulator});
   }
 
  private:
   /// The statement's part in the sum: which component of what it adds; nothing if none.
   static std::optional<unsigned> componentIn(const Kernel& kernel, const Stmt& stmt, const ScalarSum& sum) {
     const std::optional<FoldPart> part = foldedBy(kernel, stmt);
-    if (!part || part->accumulator != sum.part.accumulator || part->members != sum.part.members ||
-        (part->components >> sum.component & 1U) == 0) {
-      return std::nullopt;
-    }
+    const bool isOfSum = part && sum.whole.holds(*part) && (part->components >> sum.component & 1U) != 0;
+    if (!isOfSum) return std::nullopt;
     const auto* swizzled = std::get_if<Swizzle>(&std::get<Assign>(stmt.node).place->node);
     if (swizzled == nullptr) return sum.component;
     unsigned place = 0;
@@ -211,7 +210,7 @@ class State {
 
   KernelId makeFinish(KernelId id, const ScalarSum& sum, const Format& format) {
     const Kernel& kernel = module_.kernels[id];
-    const KernelParam& param = kernel.params[sum.part.accumulator];
+    const KernelParam& param = kernel.params[sum.whole.accumulator];
     MadeKernel made(kernel, "_finish");
     const VarId plain = made.add(makeParam(param.name, ParamRole::Input, param.type, kernel.loc));
     const Digits digits = addDigits(made, format, ParamRole::Input);
@@ -259,7 +258,7 @@ class State {
 
   /// The scalar of an accumulator's value.
   ExprPtr scalarOf(ExprPtr value, const ScalarSum& sum) const {
-    for (const std::uint32_t field : sum.part.members) value = member(module_, std::move(value), field);
+    for (const std::uint32_t field : sum.whole.members) value = member(module_, std::move(value), field);
     return componentOf(*value, sum.component);
   }
 
@@ -267,19 +266,14 @@ class State {
   std::array<std::optional<KernelId>, mostGroups + 1> combinations_ = {};
 };
 
-/// The scalars of a reduce that are sums of floats; none where the author says how partial results combine.
-std::vector<ScalarSum> sumsOf(const Module& module, KernelId id, const FoldPattern& pattern) {
+/// The scalars of a reduce that are sums of floats.
+std::vector<ScalarSum> scalarSums(const Module& module, KernelId id) {
   const Kernel& kernel = module.kernels[id];
-  const KernelId combine = *kernel.reduction->combine;
-  if (combine != id && !module.kernels[combine].isMade) return {};
-  if (foldsInLoopHead(kernel, module.functions[kernel.entry])) return {};
   std::vector<ScalarSum> sums;
-  for (const FoldPart& part : pattern.parts) {
-    const bool isSum = part.op == FoldOp(BinaryOp::Add) && part.type.isFloat() && !part.type.isMatrix();
-    const bool hasIdentity = kernel.reduction->seeded || kernel.params[part.accumulator].identity;
-    if (!isSum || !hasIdentity) continue;
-    for (unsigned i = 0; i < part.type.width; ++i) {
-      if ((part.components >> i & 1U) != 0) sums.push_back({part, i});
+  for (const FloatSum& sum : floatSums(module, id)) {
+    if (!kernel.reduction->seeded && !kernel.params[sum.accumulator].identity) continue;
+    for (unsigned i = 0; i < sum.type.width; ++i) {
+      if ((sum.components >> i & 1U) != 0) sums.push_back({sum, i});
     }
   }
   return sums;
@@ -293,9 +287,9 @@ void sumExactly(Module& module, Diagnostics&) {
   for (KernelId id = 0; id < declared; ++id) {
     const Kernel& kernel = module.kernels[id];
     if (!kernel.reduction || kernel.isMade) continue;
-    const std::optional<FoldPattern> pattern = recogniseFold(kernel, module.functions[kernel.entry]);
-    if (!pattern) continue;
-    for (const ScalarSum& sum : sumsOf(module, id, *pattern)) state.sum(id, sum);
+    // else more than folds by operators names the accumulators, which a form with digits does not have
+    if (!recogniseFold(kernel, module.functions[kernel.entry])) continue;
+    for (const ScalarSum& sum : scalarSums(module, id)) state.sum(id, sum);
   }
 }
 

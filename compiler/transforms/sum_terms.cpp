@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "transforms/sum_terms.hpp"
 
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -22,12 +23,49 @@ const Unary* negation(const Expr& value) {
   return n != nullptr && n->op == UnaryOp::Negate ? n : nullptr;
 }
 
-/// Of floats, or vectors of them: those of matrices are sums.
-const Binary* product(const Expr& value) {
-  const auto* n = std::get_if<Binary>(&value.node);
-  const bool isProduct = n != nullptr && n->op == BinaryOp::Mul && n->lhs->type.isFloat() &&
-                         n->rhs->type.isFloat() && !n->lhs->type.isMatrix() && !n->rhs->type.isMatrix();
-  return isProduct ? n : nullptr;
+std::optional<Term> product(const Expr& value);
+
+/// Products, and 1 times what is none, with first and second factors put together by `make`; nothing where there is none.
+template <class Make>
+std::optional<Term> productOf(const std::vector<const Expr*>& values, Make&& make) {
+  std::vector<ExprPtr> firsts;
+  std::vector<ExprPtr> seconds;
+  bool isProduct = false;
+  for (const Expr* value : values) {
+    std::optional<Term> found = product(*value);
+    isProduct = isProduct || found;
+    firsts.push_back(found ? std::move(found->value) : clone(*value));
+    seconds.push_back(found ? std::move(found->factor) : ofType(value->type, literal(1.0F)));
+  }
+  if (!isProduct) return std::nullopt;
+  return Term{make(std::move(firsts)), make(std::move(seconds))};
+}
+
+/// A product of floats or vectors of them (those of matrices are sums), a vector made of some, or a choice of some.
+std::optional<Term> product(const Expr& value) {
+  const auto isFactor = [](const ExprPtr& factor) { return factor->type.isFloat(); };
+  if (const auto* n = std::get_if<Binary>(&value.node)) {
+    if (n->op != BinaryOp::Mul || !isFactor(n->lhs) || !isFactor(n->rhs)) return std::nullopt;
+    return Term{ofType(value.type, clone(n->lhs)), ofType(value.type, clone(n->rhs))};
+  }
+  if (const Unary* n = negation(value)) {
+    std::optional<Term> negated = product(*n->operand);
+    if (negated) negated->value = unary(UnaryOp::Negate, std::move(negated->value), value.loc);
+    return negated;
+  }
+  if (const auto* n = std::get_if<Construct>(&value.node); n != nullptr && value.type.isFloat()) {
+    std::vector<const Expr*> components;
+    for (const ExprPtr& arg : n->args) components.push_back(arg.get());
+    if (components.size() != value.type.width) return std::nullopt;
+    return productOf(components,
+                     [&](std::vector<ExprPtr> parts) { return construct(value.type, std::move(parts)); });
+  }
+  if (const auto* n = std::get_if<Select>(&value.node); n != nullptr && value.type.isFloat()) {
+    return productOf({n->yes.get(), n->no.get()}, [&](std::vector<ExprPtr> parts) {
+      return select(clone(n->cond), std::move(parts[0]), std::move(parts[1]));
+    });
+  }
+  return std::nullopt;
 }
 
 const IntrinsicCall* dotProduct(const Expr& value) {
@@ -35,10 +73,15 @@ const IntrinsicCall* dotProduct(const Expr& value) {
   return n != nullptr && n->intrinsic == Intrinsic::Dot && n->args[0]->type.isFloat() ? n : nullptr;
 }
 
+const IntrinsicCall* fusedProduct(const Expr& value) {
+  const auto* n = std::get_if<IntrinsicCall>(&value.node);
+  return n != nullptr && n->intrinsic == Intrinsic::Fma && n->args[0]->type.isFloat() ? n : nullptr;
+}
+
 bool hasProduct(const Expr& value) {
   if (const Binary* n = sumOrDifference(value)) return hasProduct(*n->lhs) || hasProduct(*n->rhs);
   if (const Unary* n = negation(value)) return hasProduct(*n->operand);
-  return product(value) != nullptr || dotProduct(value) != nullptr;
+  return product(value) || dotProduct(value) != nullptr || fusedProduct(value) != nullptr;
 }
 
 void addTerms(const Expr& value, bool isNegative, std::vector<Term>& terms) {
@@ -51,8 +94,11 @@ void addTerms(const Expr& value, bool isNegative, std::vector<Term>& terms) {
     addTerms(*n->rhs, isNegative != (n->op == BinaryOp::Sub), terms);
   } else if (const Unary* negated = negation(value)) {
     addTerms(*negated->operand, !isNegative, terms);
-  } else if (const Binary* factors = product(value)) {
-    add(clone(factors->lhs), clone(factors->rhs));
+  } else if (std::optional<Term> factors = product(value)) {
+    add(std::move(factors->value), std::move(factors->factor));
+  } else if (const IntrinsicCall* fused = fusedProduct(value)) {
+    add(clone(fused->args[0]), clone(fused->args[1]));
+    addTerms(*fused->args[2], isNegative, terms);
   } else if (const IntrinsicCall* dot = dotProduct(value)) {
     for (unsigned i = 0; i < dot->args[0]->type.width; ++i) {
       add(componentOf(*dot->args[0], i), componentOf(*dot->args[1], i));
@@ -76,7 +122,15 @@ std::vector<Term> termsOf(const Assign& fold) {
   return terms;
 }
 
+ExprPtr ofType(Type type, ExprPtr value) {
+  return value->type == type ? std::move(value) : construct(type, exprs(std::move(value)));
+}
+
 ExprPtr componentOf(const Expr& value, unsigned component) {
+  if (const auto* n = std::get_if<Construct>(&value.node); n != nullptr && n->args[0]->type.isScalar()) {
+    if (n->args.size() == 1) return clone(n->args[0]);
+    if (n->args.size() == value.type.width) return clone(n->args[component]);
+  }
   ExprPtr whole = clone(value);
   if (!value.type.isVector()) return whole;
   return swizzle(std::move(whole), std::string_view("xyzw").substr(component, 1), value.loc);

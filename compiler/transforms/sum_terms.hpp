@@ -16,8 +16,12 @@ struct Term {
 };
 
 /// The terms of a statement that folds by +. A value that is no sum of products and others is one term, so that
-/// `total += x - mean` adds a float as it is rounded. A dot product of vectors has a term for each component.
+/// `total += x - mean` adds a float as it is rounded. A dot product of vectors has a term for each component, fma() two, and
+/// a vector of products, or a choice of some, is a product of what is made of their factors.
 std::vector<Term> termsOf(const ir::Assign& fold);
+
+/// The value itself, or a vector of this type with a scalar in each component: so scalars are added to vectors.
+ir::ExprPtr ofType(ir::Type type, ir::ExprPtr value);
 
 /// Component `component` of a vector; a scalar itself.
 ir::ExprPtr componentOf(const ir::Expr& value, unsigned component);

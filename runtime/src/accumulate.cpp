@@ -25,24 +25,18 @@ using program::Parameter;
 using program::Reduction;
 using program::Role;
 
-/// Planes that the passes which combine partial results read.
-std::size_t planesCombined(const Reduction& reduction) {
-  std::size_t planes = 0;
-  for (const Parameter& parameter : reduction.combine.parameters) {
-    if (parameter.role == Role::Input) planes += parameter.element->fields.size();
-  }
-  return planes;
-}
-
 /// The compensated form, where the call takes it; else null. Of no element, the plain form's identity is the result.
-const CompensatedReduction* compensated(const Reduction& reduction, const CheckedReduction& checked,
-                                        const CallOptions& options) {
+const CompensatedReduction* compensated(const Reduction& reduction, std::span<const Argument> arguments,
+                                        const CheckedReduction& checked, const CallOptions& options) {
   const CompensatedReduction* second = reduction.compensated;
   if (options.accumulate == Accumulate::Exact && reduction.exact.empty()) {
     fail(reduction.fold, "it has no sum of floats to add exactly; call it without Accumulate::Exact");
   }
   if (options.accumulate == Accumulate::Compensated && second == nullptr) {
-    fail(reduction.fold, "it has no sum of floats to compensate; call it without Accumulate::Compensated");
+    fail(reduction.fold,
+         "it has no sum of floats to compensate, one that elements and partial results are added to and no "
+         "more; "
+         "call it without Accumulate::Compensated");
   }
   if (options.accumulate == Accumulate::Tree || second == nullptr || checked.domain.size() == 0) {
     return nullptr;
@@ -57,11 +51,11 @@ const CompensatedReduction* compensated(const Reduction& reduction, const Checke
     return nullptr;
   }
   const auto room = static_cast<std::size_t>(checked.device.limits.textureUnits);
-  const bool fits = planesCombined(second->reduction) <= room;
+  const bool fits = planesRead(second->reduction.combine, specsOf(reduction.fold, arguments)) <= room;
   return fits || options.accumulate == Accumulate::Compensated ? second : nullptr;
 }
 
-/// Adds floats to floats in memory.
+/// Adds what floats have lost to them, in memory.
 void addFloats(void* to, const void* from, std::size_t bytes) {
   for (std::size_t at = 0; at < bytes; at += sizeof(float)) {
     float a;
@@ -74,11 +68,30 @@ void addFloats(void* to, const void* from, std::size_t bytes) {
   }
 }
 
+/// The accumulators for what sums have lost, in the order of the sums.
+std::span<const Parameter> accumulatorsOfLosses(const CompensatedReduction& second) {
+  return second.reduction.fold.parameters.last(second.sums.size());
+}
+
 /// Where the result of parameter `accumulator` stands among all results.
 std::size_t resultOf(const Kernel& fold, std::size_t accumulator) {
   return static_cast<std::size_t>(std::count_if(
       fold.parameters.begin(), fold.parameters.begin() + static_cast<std::ptrdiff_t>(accumulator),
       [](const Parameter& parameter) { return parameter.role == Role::Accumulator; }));
+}
+
+/// The arguments that have sums, each once.
+std::vector<Argument> resultsWithSums(const CompensatedReduction& second,
+                                      std::span<const Argument> arguments) {
+  std::vector<Argument> results;
+  const program::CompensatedSum* before = nullptr;
+  for (const program::CompensatedSum& sum : second.sums) {
+    if (before == nullptr || before->accumulator != sum.accumulator) {
+      results.push_back({.region = arguments[sum.accumulator].region});
+    }
+    before = &sum;
+  }
+  return results;
 }
 
 /// Whether the call takes the exact form, which is one of floats: doubles are compensated where they stand for floats.
@@ -146,7 +159,7 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
     reduceInForm(checked, reduction, arguments, results, options);
     return;
   }
-  const CompensatedReduction* second = compensated(reduction, checked, options);
+  const CompensatedReduction* second = compensated(reduction, arguments, checked, options);
   if (isExact(checked, options)) {
     reduceExactly(reduction, arguments, checked, results, options);
     return;
@@ -158,14 +171,16 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
   std::vector<Argument> all(arguments.begin(), arguments.end());
   std::vector<void*> places(results.begin(), results.end());
   std::deque<std::vector<std::byte>> lost;
-  for (const std::uint8_t sum : second->sums) {
+  for (const Parameter& parameter : accumulatorsOfLosses(*second)) {
     all.emplace_back();
-    places.push_back(lost.emplace_back(reduction.fold.parameters[sum].element->size).data());
+    places.push_back(lost.emplace_back(parameter.element->size).data());
   }
   checkReduction(second->reduction, all);
   checked.device.reduce(second->reduction, all, checked.domain, places, options);
   for (std::size_t k = 0; k < lost.size(); ++k) {
-    addFloats(results[resultOf(reduction.fold, second->sums[k])], lost[k].data(), lost[k].size());
+    const auto& [accumulator, offset] = second->sums[k];
+    auto* const result = static_cast<std::byte*>(results[resultOf(reduction.fold, accumulator)]);
+    addFloats(result + offset, lost[k].data(), lost[k].size());
   }
 }
 
@@ -183,7 +198,7 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
     reduceInForm(checked, reduction, arguments, options);
     return;
   }
-  const CompensatedReduction* second = compensated(reduction, checked, options);
+  const CompensatedReduction* second = compensated(reduction, arguments, checked, options);
   if (isExact(checked, options)) {
     reduceExactly(reduction, arguments, checked, options);
     return;
@@ -194,22 +209,19 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
   }
   // the sums go where the results will be, what they lose to streams beside them
   std::vector<Argument> all(arguments.begin(), arguments.end());
-  std::vector<Argument> pairs;
   std::vector<detail::StreamOwner> lost;
-  for (const std::uint8_t sum : second->sums) {
-    const Shape& shape = arguments[sum].region.shape;
-    const program::Element& element = *reduction.fold.parameters[sum].element;
-    lost.emplace_back(checked.device.createStream(element, shape, Storage::Single).release());
+  const Shape& shape = arguments[second->sums.front().accumulator].region.shape;
+  for (const Parameter& parameter : accumulatorsOfLosses(*second)) {
+    lost.emplace_back(checked.device.createStream(*parameter.element, shape, Storage::Single).release());
     all.push_back({.region = detail::wholeRegion(lost.back().get())});
-    pairs.push_back({.region = arguments[sum].region});
-    pairs.push_back(all.back());
   }
   checkReductionToStreams(second->reduction, all);
   checked.device.reduce(second->reduction, all, checked.domain, checked.blocks, options);
-  for (const std::uint8_t sum : second->sums) {
-    pairs.push_back({.region = arguments[sum].region});
-  }
-  run(second->finish, pairs,
+  const std::vector<Argument> results = resultsWithSums(*second, arguments);
+  std::vector<Argument> finished = results;
+  finished.insert(finished.end(), all.begin() + static_cast<std::ptrdiff_t>(arguments.size()), all.end());
+  finished.insert(finished.end(), results.begin(), results.end());
+  run(second->finish, finished,
       {.precision = Precision::Single, .intrinsics = options.intrinsics, .tables = options.tables});
 }
 

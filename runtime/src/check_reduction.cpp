@@ -90,27 +90,15 @@ class Arguments {
     }
   }
 
-  /// Planes that a kernel of the reduction reads; an input of `combine` has those of an accumulator.
-  std::size_t planesRead(const Kernel& kernel) const {
-    std::size_t planes = 0;
-    for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
-      const Parameter& parameter = kernel.parameters[i];
-      if (parameter.role == Role::Input || parameter.role == Role::Gather) {
-        planes += assemble::isNeeded(parameter, specs_) ? parameter.element->fields.size() : 0;
-      }
-    }
-    return planes;
-  }
-
   void checkUnits(const DeviceState& device) const {
     const auto most = static_cast<std::size_t>(device.limits.textureUnits);
-    if (const std::size_t planes = planesRead(fold_); planes > most) {
+    if (const std::size_t planes = planesRead(fold_, specs_); planes > most) {
       fail(fold_,
            "the inputs and gathers have {} planes (one a scalar, vector, or member of a struct), but this "
            "device reads {} in one pass; put scalars together in vectors, or divide the reduce",
            planes, most);
     }
-    if (const std::size_t planes = planesRead(reduction_.combine); planes > most) {
+    if (const std::size_t planes = planesRead(reduction_.combine, specs_); planes > most) {
       fail(fold_,
            "to combine partial results, {} planes are read (one a scalar, vector, or member of a struct of "
            "the accumulators), but this device reads {} in one pass; put scalars together in vectors, or "
@@ -194,6 +182,16 @@ class Arguments {
 };
 
 }  // namespace
+
+std::size_t planesRead(const Kernel& kernel, const assemble::SpecValues& specs) {
+  std::size_t planes = 0;
+  for (const Parameter& parameter : kernel.parameters) {
+    if (parameter.role == Role::Input || parameter.role == Role::Gather) {
+      planes += assemble::isNeeded(parameter, specs) ? parameter.element->fields.size() : 0;
+    }
+  }
+  return planes;
+}
 
 CheckedReduction checkReduction(const Reduction& reduction, std::span<const Argument> arguments) {
   return Arguments(reduction, arguments).check(false);

@@ -6,6 +6,7 @@
 
 #include <span>
 
+#include "assemble/condition.hpp"
 #include "check.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
@@ -18,6 +19,9 @@ struct CheckedReduction {
   Shape domain;      ///< of the inputs together
   Shape blocks = {}; ///< their numbers in each dimension of the domain, for a reduction to streams
 };
+
+/// Planes that a kernel of a reduction reads; an input of what combines has those of an accumulator.
+std::size_t planesRead(const program::Kernel& kernel, const assemble::SpecValues& specs);
 
 /// Checks the arguments of a reduction to values: streams, devices, element types, shapes, planes, and that
 /// there are identities where there is no element.

@@ -3,6 +3,7 @@
 // Promises: Accumulate::Exact adds products of floats as they are, also where they are no floats, and rounds once;
 // Accumulate::Compensated is within u + 400 u^2 cond of the sum of products (Dot2 of Ogita, Rump and Oishi, SIAM J.
 // Sci. Comput. 26, 2005, over a tree), where no product is below 2^-100.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -117,6 +118,55 @@ TEST_CASE("vectors' dot products, products by component, differences of products
     CHECK(bits(both.y) == bits(second.rounded()));
     CHECK(bits(dots::crossed.with(exact)(streamOf(device, m))) == bits(difference.rounded()));
   });
+}
+
+TEST_CASE("products that are chosen, put into vectors and added in one call") {
+  for (const double wanted : {1e6, 1e12}) {
+    const Pairs pairs = illConditionedDot(2001, wanted, 10);
+    TrueSum dot;
+    TrueSum more;
+    addAll(dot, pairs.x, pairs.y);
+    addAll(more, pairs.x, pairs.y);
+    for (std::size_t i = 0; i < pairs.x.size(); ++i) more.add(1);
+    const auto withinBound = [](const TrueSum& sum, float result) {
+      return sum.errorOf(result) <= (u + 400 * u * u * sum.condition()) * std::fabs(sum.value());
+    };
+    onEveryProfile([&](sk::Device& device) {
+      const auto x = streamOf(device, pairs.x);
+      const auto y = streamOf(device, pairs.y);
+      const sk::float3 sum = dots::chosen.with(compensated)(x, y);
+      CHECK(withinBound(dot, -sum.x));
+      CHECK(sum.y == 2001.0F);
+      CHECK(withinBound(more, -sum.z));
+      const sk::float3 rounded = dots::chosen.with(exact)(x, y);
+      CHECK(bits(-rounded.x) == bits(dot.rounded()));
+      CHECK(bits(-rounded.z) == bits(more.rounded()));
+    });
+  }
+}
+
+TEST_CASE("products in members, in a loop over a gather, beside others that the author combines") {
+  for (const double wanted : {1e6, 1e10, 1e14}) {
+    const Pairs pairs = illConditionedDot(3001, wanted, 9);
+    const std::vector<float> table = {1.1F, -0x1.234568p20F};
+    TrueSum dot;
+    TrueSum differences;
+    addAll(dot, pairs.x, pairs.y);
+    for (std::size_t i = 0; i < pairs.x.size(); ++i) {
+      for (const float t : table)
+        differences.addProduct(pairs.x[i], t), differences.addProduct(-pairs.y[i], t);
+    }
+    const auto withinBound = [](const TrueSum& sum, float result) {
+      return sum.errorOf(result) <= (u + 400 * u * u * sum.condition()) * std::fabs(sum.value());
+    };
+    onEveryProfile([&](sk::Device& device) {
+      const dots::Products p = dots::members.with(compensated)(
+          streamOf(device, pairs.x), streamOf(device, pairs.y), streamOf(device, table));
+      CHECK(withinBound(dot, p.dots.x));
+      CHECK(withinBound(differences, p.dots.y));
+      CHECK(p.least == *std::min_element(pairs.x.begin(), pairs.x.end()));
+    });
+  }
 }
 
 TEST_CASE("compensated products at the ends of the range") {

@@ -251,6 +251,54 @@ TEST_CASE("members of a struct, and components in another order") {
   });
 }
 
+TEST_CASE("ill-conditioned sums of members, combined by the compiler and by the author") {
+  for (const double wanted : {1e6, 1e10, 1e14}) {  // squares of others overflow
+    const std::vector<float> x = illConditionedSum(4001, wanted, 15);
+    TrueSum sum;
+    TrueSum squares;
+    for (const float v : x) sum.add(v), squares.addProduct(v, v);
+    INFO("condition " << sum.condition());
+    const auto withinBound = [](const TrueSum& expected, float result) {
+      return expected.errorOf(result) <=
+             (u + 400 * u * u * expected.condition()) * std::fabs(expected.value());
+    };
+    onEveryProfile([&](sk::Device& device) {
+      const auto stream = streamOf(device, x);
+      const sums::Moments m = sums::moments.with(compensated)(stream);
+      CHECK(withinBound(sum, m.sum.x));
+      CHECK(withinBound(squares, m.sum.y));
+      CHECK(m.n == 4001.0F);
+      CHECK(m.most == *std::max_element(x.begin(), x.end()));
+      const sums::Totals t = sums::totals.with(compensated)(stream);
+      CHECK(withinBound(sum, t.sum));
+      CHECK(withinBound(sum, t.scaled.x));
+      CHECK(withinBound(sum, -t.scaled.y / 4));
+      CHECK(t.n == 4001);
+      auto results = device.stream<sums::Totals>({1});
+      sums::totals.with(compensated)(stream, results);
+      CHECK(withinBound(sum, results.read()[0].sum));
+      CHECK(withinBound(sum, results.read()[0].scaled.x));
+      const sums::Totals e = sums::totals.with(exact)(stream);
+      CHECK(bits(e.sum) == bits(sum.rounded()));
+      CHECK(bits(e.scaled.x) == bits(sum.rounded()));
+      CHECK(e.n == 4001);
+    });
+  }
+}
+
+TEST_CASE("infinities in members, and what cancels there") {  // R2, R5
+  onEveryProfile([](sk::Device& device) {
+    const auto sum = [&](const std::vector<float>& x) {
+      return sums::totals.with(compensated)(streamOf(device, x));
+    };
+    CHECK(sum({1, inf, 2}).sum == inf);
+    CHECK(sum({3e38F, 3e38F, 1}).scaled.x == inf);
+    CHECK(std::isnan(sum({inf, -inf}).sum));
+    CHECK(sum({1, 0x1p60F, 1, -0x1p60F}).sum == 2.0F);
+    CHECK(sum({}).scaled.y == 0.0F);
+  });
+}
+
 TEST_CASE("sums of rows, into a view of a larger stream") {
   constexpr std::int64_t rows = 3;
   constexpr std::size_t columns = 1201;

@@ -146,6 +146,140 @@ TEST_CASE("infinities stay, an empty sum is 0") {
   });
 }
 
+TEST_CASE("members of structs, nested ones, beside other members") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = cancelling(3000, 21);
+    const std::size_t n = x.size();
+    const std::vector<float> halves(n, 0.5F);
+    const auto m = sums::nested(streamOf(device, x), streamOf(device, halves));
+    CHECK(m.n == static_cast<std::int32_t>(n));
+    CHECK(std::fabs(m.of.s - 0.125) <= bound(0.125, magnitudes(x), n));
+    CHECK(std::fabs(m.of.both.x - 0.125) <= bound(0.125, magnitudes(x), n));
+    CHECK(std::fabs(m.of.both.y - 0.0625) <= bound(0.0625, magnitudes(x), n));
+    CHECK(m.most == *std::max_element(x.begin(), x.end()));
+    const auto none = sums::nested(streamOf(device, x), streamOf(device, std::vector<float>(n, -0.5F)));
+    CHECK(none.of.s == 0.0F);
+    const auto plain = sums::nested.with({.accumulate = sk::Accumulate::Tree});
+    CHECK(plain(streamOf(device, x), streamOf(device, halves)).of.s != m.of.s);
+    CHECK(sums::nested(streamOf<float>(device, {}), streamOf<float>(device, {})).of.both.y == 0.0F);
+  });
+}
+
+TEST_CASE("components that are sums, others that are not, and chains in a loop") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = cancelling(3000, 22);
+    const sums::Mixed m = sums::mixed(streamOf(device, x));
+    CHECK(std::fabs(m.v.x - 0.125) <= bound(0.125, magnitudes(x), x.size()));
+    CHECK(std::fabs(m.v.z + 0.125) <= bound(0.125, magnitudes(x), x.size()));
+    CHECK(m.v.y == *std::min_element(x.begin(), x.end()));
+    CHECK(m.v.w == *std::max_element(x.begin(), x.end()));
+    CHECK(std::fabs(m.s - 0.25) <= bound(0.25, 6 * magnitudes(x), 6 * x.size()));
+  });
+}
+
+TEST_CASE("a struct that folds itself starts with its first element") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = cancelling(1000, 23);
+    std::vector<sums::Pair> pairs;
+    for (const float v : x) pairs.push_back({v, {-0.0F, 2 * v}});
+    const sums::Pair m = sums::addPairs(streamOf(device, pairs));
+    CHECK(std::fabs(m.s - 0.125) <= bound(0.125, magnitudes(x), x.size()));
+    CHECK(std::fabs(m.both.y - 0.25) <= bound(0.25, 2 * magnitudes(x), x.size()));
+    CHECK(std::signbit(m.both.x));
+    CHECK(m.both.x == 0.0F);
+  });
+}
+
+TEST_CASE("members of structs in streams, into a view of a larger one") {
+  onEveryLayout([](sk::Device& device) {
+    constexpr std::int64_t rows = 3;
+    constexpr std::int64_t columns = 1001;
+    std::vector<float> x;
+    for (unsigned r = 0; r < rows; ++r) {
+      const std::vector<float> row = cancelling(500, 30 + r);
+      x.insert(x.end(), row.begin(), row.end());
+    }
+    auto a = device.stream<float>({rows, columns});
+    a.write(x);
+    auto r = device.stream<sums::Ten>({rows + 2, 2});
+    sums::Ten seven{};
+    seven.a = 7;
+    r.write(std::vector<sums::Ten>(2 * (rows + 2), seven));
+    sums::ten(a, r.domain({1, 1}, {rows + 1, 2}));
+    const std::vector<sums::Ten> result = r.read();
+    for (std::size_t i = 0; i < rows; ++i) {
+      const sums::Ten& sum = result[2 * (i + 1) + 1];
+      CHECK(std::fabs(sum.a - 0.125) <= bound(0.125, magnitudes(x), columns));
+      CHECK(std::fabs(sum.b - 0.25) <= bound(0.25, 2 * magnitudes(x), columns));
+      CHECK(std::fabs(sum.i + 0.125) <= bound(0.125, magnitudes(x), columns));
+      CHECK(sum.j == columns);
+      CHECK(result[2 * i].a == 7.0F);
+    }
+  });
+}
+
+TEST_CASE("sums that a specialisation switches off") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = cancelling(500, 24);
+    const auto stream = streamOf(device, x);
+    const sums::Pair one = sums::chosen(stream, sk::none, false);
+    CHECK(std::fabs(one.s - 0.125) <= bound(0.125, magnitudes(x), x.size()));
+    CHECK(one.both.x == 0.0F);
+    const sums::Pair both = sums::chosen(stream, stream, true);
+    CHECK(both.s == one.s);
+    CHECK(both.both.y == one.s);
+  });
+}
+
+TEST_CASE("the author's combination, where it adds") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = cancelling(3000, 25);
+    const auto weights = streamOf<float>(device, {1, -0.5F});
+    const auto stream = streamOf(device, x);
+    const auto least = std::min_element(x.begin(), x.end());
+    for (const auto accumulate : {sk::Accumulate::Default, sk::Accumulate::Compensated}) {
+      const sums::Spread m = sums::spread.with({.accumulate = accumulate})(stream, weights, 2.0F);
+      CHECK(std::fabs(m.sum - 0.25) <= bound(0.25, 2 * magnitudes(x), x.size()));
+      CHECK(std::fabs(m.products - 0.0625) <= bound(0.0625, 2 * magnitudes(x), 2 * x.size()));
+      CHECK(m.least == *least);
+      CHECK(m.at == least - x.begin());
+    }
+  });
+}
+
+TEST_CASE("the author's combination, where it does more") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = cancelling(3000, 26);
+    const sums::Variance v = sums::variance(streamOf(device, x));
+    CHECK(v.n == static_cast<float>(x.size()));
+    CHECK(std::fabs(v.sum - 0.125) <= bound(0.125, magnitudes(x), x.size()));  // the one that is added to
+    const auto plain = sums::variance.with({.accumulate = sk::Accumulate::Tree});
+    CHECK(plain(streamOf(device, x)).m2 == Approx(v.m2).epsilon(1e-4));
+    const auto insisted = sums::scaled.with({.accumulate = sk::Accumulate::Compensated});
+    CHECK_THROWS_WITH(insisted(streamOf(device, x)), Catch::Contains("no sum of floats"));
+  });
+}
+
+TEST_CASE("more planes than a pass reads: plain by default, refused where a call insists") {
+  for (const char* profile : {"glsl330", "essl300"}) {
+    sk::Device& device = run_tests::device(profile);
+    const std::vector<float> x = cancelling(3000, 27);
+    const auto stream = streamOf(device, x);
+    const auto with = [&](sk::Accumulate accumulate) { return sums::many.with({.accumulate = accumulate}); };
+    const bool fits = device.limits().textureUnits >= 34;
+    if (!fits) {
+      CHECK(sums::many(stream).q == with(sk::Accumulate::Tree)(stream).q);
+      CHECK_THROWS_WITH(with(sk::Accumulate::Compensated)(stream),
+                        Catch::Contains("many: to combine partial results, 34 planes are read"));
+    } else {
+      CHECK(std::fabs(sums::many(stream).q - 0.125) <= bound(0.125, magnitudes(x), x.size()));
+    }
+  }
+  const std::vector<float> x = cancelling(3000, 27);
+  const sums::Many m = sums::many(streamOf(run_tests::device("native"), x));
+  CHECK(std::fabs(m.q - 0.125) <= bound(0.125, magnitudes(x), x.size()));
+}
+
 TEST_CASE("compensation of what is no sum is refused") {
   sk::Device& device = run_tests::device("glsl330");
   const auto x = streamOf<float>(device, {1, 2});

@@ -318,13 +318,19 @@ struct WideReduction {
   Kernel finish;
 };
 
-/// A reduction that also sums what its sums of floats lose by rounding: it has one more accumulator for each of `sums`
-/// (parameters of the plain fold), after all parameters of that, in this order. `finish` takes, for each of them,
-/// the sum and what it has lost as Inputs, and then has the results as Outputs: it adds the two.
+/// A sum of floats: an accumulator, or a member of one.
+struct CompensatedSum {
+  std::uint8_t accumulator;  ///< a parameter of the plain fold
+  std::uint32_t offset;  ///< bytes from the accumulator's start in host memory
+};
+
+/// A reduction that also sums what its sums of floats lose by rounding: it has one more accumulator for each of `sums`,
+/// after all parameters of the plain fold, in this order. `finish` has as Inputs the accumulators that have sums, each
+/// once and in their order, then what each sum has lost, and as Outputs these accumulators with both added.
 struct CompensatedReduction {
   Reduction reduction;
   Kernel finish;
-  std::span<const std::uint8_t> sums;
+  std::span<const CompensatedSum> sums;
 };
 
 /// A form of a reduction that adds without rounding what one scalar of an accumulator sums. The fold of `reduction` has all

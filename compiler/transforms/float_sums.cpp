@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/float_sums.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "ir/walk.hpp"
+#include "transforms/static_place.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+bool isAccumulator(const Kernel& kernel, VarId var) {
+  return var < kernel.params.size() && kernel.params[var].role == ParamRole::Accumulator;
+}
+
+/// Whether one of them has something of the other: a struct and its member, say.
+bool overlap(const FloatSum& sum, const StaticPlace& place) {
+  if (sum.accumulator != place.root) return false;
+  const std::size_t common = std::min(sum.members.size(), place.members.size());
+  if (!std::equal(sum.members.begin(), sum.members.begin() + common, place.members.begin())) return false;
+  return place.members.size() < sum.members.size() || (sum.components & place.mask()) != 0;
+}
+
+/// What one reduce adds to, and what else of its accumulators it reads and writes.
+class Uses {
+ public:
+  /// `ofParts`: it combines, and only what it adds as it comes counts as a sum.
+  Uses(const Kernel& kernel, const Function& entry, bool ofParts) : kernel_(kernel), ofParts_(ofParts) {
+    take(entry.body, false);
+  }
+
+  std::vector<FloatSum> sums() const {
+    std::vector<FloatSum> result;
+    for (const FloatSum& sum : added_) {
+      if (std::ranges::none_of(taken_, [&](const StaticPlace& place) { return overlap(sum, place); })) {
+        result.push_back(sum);
+      }
+    }
+    return result;
+  }
+
+ private:
+  void take(const Block& block, bool isHead) {
+    for (const Stmt& stmt : block) {
+      const std::optional<FoldPart> part = isHead ? std::nullopt : foldedBy(kernel_, stmt);
+      if (part && part->op == FoldOp(BinaryOp::Add) && part->type.isFloat() &&
+          (!ofParts_ || addsItsPart(std::get<Assign>(stmt.node)))) {
+        add(*part);
+      } else {
+        forEachOperand(stmt, [&](const ExprPtr& operand) { take(*operand); });
+      }
+      const auto* loop = std::get_if<Loop>(&stmt.node);
+      forEachBlock(stmt, [&](const Block& inner) {
+        take(inner, loop != nullptr && (&inner == &loop->init || &inner == &loop->step));
+      });
+    }
+  }
+
+  void take(const Expr& expr) {
+    if (const std::optional<StaticPlace> place = staticPlace(expr)) {
+      if (isAccumulator(kernel_, place->root)) taken_.push_back(*place);
+    } else {
+      forEachOperand(expr, [&](const ExprPtr& operand) { take(*operand); });
+    }
+  }
+
+  void add(const FoldPart& part) {
+    for (FloatSum& sum : added_) {
+      if (sum.accumulator != part.accumulator || sum.members != part.members) continue;
+      sum.components |= part.components;
+      return;
+    }
+    added_.push_back({part.accumulator, part.members, part.type, part.components});
+  }
+
+  /// `place += part` with the same place of the input that stands for the accumulator.
+  bool addsItsPart(const Assign& fold) const {
+    const std::vector<Summand> summands = summandsOf(fold);
+    if (summands.size() != 1 || summands[0].isNegative) return false;
+    StaticPlace part = *staticPlace(*fold.place);
+    part.root = elementOf(kernel_, part.root);
+    return staticPlace(*summands[0].value) == part;
+  }
+
+  const Kernel& kernel_;
+  const bool ofParts_;
+  std::vector<FloatSum> added_;
+  std::vector<StaticPlace> taken_;
+};
+
+}  // namespace
+
+bool FloatSum::holds(const FoldPart& part) const {
+  return accumulator == part.accumulator && members == part.members && (components & part.components) != 0;
+}
+
+VarId sameAccumulator(const Kernel& of, VarId accumulator, const Kernel& in) {
+  auto before = std::ranges::count(of.params.begin(), of.params.begin() + accumulator, ParamRole::Accumulator,
+                                   &KernelParam::role);
+  VarId same = 0;
+  while (in.params[same].role != ParamRole::Accumulator || before-- > 0) ++same;
+  return same;
+}
+
+std::vector<FloatSum> floatSums(const Module& module, KernelId id) {
+  const Kernel& kernel = module.kernels[id];
+  const Kernel& combine = module.kernels[*kernel.reduction->combine];
+  std::vector<FloatSum> sums = Uses(kernel, module.functions[kernel.entry], false).sums();
+  const std::vector<FloatSum> combined = Uses(combine, module.functions[combine.entry], true).sums();
+  std::erase_if(sums, [&](const FloatSum& sum) {
+    const VarId accumulator = sameAccumulator(kernel, sum.accumulator, combine);
+    return std::ranges::none_of(combined, [&](const FloatSum& other) {
+      return other.accumulator == accumulator && other.members == sum.members &&
+             (other.components & sum.components) == sum.components;
+    });
+  });
+  std::ranges::sort(sums, {}, [](const FloatSum& sum) { return std::tie(sum.accumulator, sum.members); });
+  return sums;
+}
+
+}  // namespace skc
