@@ -7,6 +7,7 @@
 #include "ir/build.hpp"
 #include "ir/reach.hpp"
 #include "transforms/copy_functions.hpp"
+#include "transforms/made_kernel.hpp"
 
 namespace skc {
 namespace {
@@ -29,29 +30,16 @@ KernelId makeKernel(Module& module, TableId table, FunctionId function) {
   FunctionCopies copies;
   const FunctionId computed = copyFunction(module, function, copies);
   dropTables(module, copies);
-  Kernel made;
-  Function entry;
-  made.name = module.tables[table].name;   // what messages call it
-  made.scope = module.tables[table].scope;
-  made.isMade = true;
-  made.loc = entry.loc = module.functions[function].loc;
-  entry.name = made.name + "_values";
-  const auto addParam = [&](std::string name, ParamRole role, VarRole varRole) {
-    KernelParam param;
-    param.name = name;
-    param.role = role;
-    param.type = Type::of(Scalar::Float);
-    param.loc = made.loc;
-    made.params.push_back(std::move(param));
-    return addVariable(entry, std::move(name), Type::of(Scalar::Float), varRole, made.loc);
-  };
-  const VarId x = addParam("x", ParamRole::Input, VarRole::Element);
-  const VarId value = addParam("value", ParamRole::Output, VarRole::InOut);
-  entry.body.push_back(assign(varRef(entry, value), call(module, computed, exprs(varRef(entry, x)))));
-  made.entry = static_cast<FunctionId>(module.functions.size());
-  module.functions.push_back(std::move(entry));
-  module.kernels.push_back(std::move(made));
-  return static_cast<KernelId>(module.kernels.size() - 1);
+  MadeKernel made(module.tables[table].name);   // what messages call it
+  made.kernel.scope = module.tables[table].scope;
+  made.kernel.loc = made.entry.loc = module.functions[function].loc;
+  made.entry.name = made.kernel.name + "_values";
+  const Type type = Type::of(Scalar::Float);
+  const VarId x = made.add(makeParam("x", ParamRole::Input, type, made.kernel.loc));
+  const VarId value = made.add(makeParam("value", ParamRole::Output, type, made.kernel.loc));
+  made.entry.body.push_back(
+      assign(varRef(made.entry, value), call(module, computed, exprs(varRef(made.entry, x)))));
+  return made.finish(module);
 }
 
 }  // namespace

@@ -6,20 +6,17 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <random>
 #include <string>
 #include <vector>
-
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
 
 #include "error_of.hpp"
 #include "precision.sk.hpp"
 #include "sk/sk.hpp"
+#include "support/configuration_file.hpp"
 #include "support/devices.hpp"
 
 namespace run_tests {
@@ -276,17 +273,6 @@ TEST_CASE("a declaration chooses where a call does not") {
     CHECK(well(x) == precision::sum(x));
   });
 }
-
-/// A file for as long as this lives.
-struct ConfigurationFile {
-  explicit ConfigurationFile(const std::string& text)
-      : path((std::filesystem::temp_directory_path() / "sk_precision_test.toml").string() +
-             std::to_string(::getpid())) {
-    std::ofstream(path) << text;
-  }
-  ~ConfigurationFile() { std::filesystem::remove(path); }
-  std::string path;
-};
 
 TEST_CASE("a file chooses, too") {
   const ConfigurationFile file(

@@ -5,17 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 
+#include "error_of.hpp"
 #include "sk/sk.hpp"
+#include "support/configuration_file.hpp"
 #include "support/devices.hpp"
 #include "tables.sk.hpp"
 
@@ -61,16 +59,6 @@ sk::TableReport reportOf(const sk::Device& device, const std::string& function) 
   const auto found = std::ranges::find(reports, function, &sk::TableReport::function);
   REQUIRE(found != reports.end());
   return *found;
-}
-
-template <class Call>
-std::string errorOf(const Call& call) {
-  try {
-    call();
-  } catch (const sk::Error& error) {
-    return error.what();
-  }
-  return {};
 }
 
 TEST_CASE("a linear table's error is what theory says, and what the device tells") {
@@ -205,17 +193,6 @@ TEST_CASE("a function that is not finite in its range has no table") {
     CHECK_FALSE(errorOf([&] { called(device, table::poles, {1}); }).empty());  // again
   });
 }
-
-/// A file for as long as this lives.
-struct ConfigurationFile {
-  explicit ConfigurationFile(const std::string& text)
-      : path((std::filesystem::temp_directory_path() / "sk_tables_test.toml").string() +
-             std::to_string(::getpid())) {
-    std::ofstream(path) << text;
-  }
-  ~ConfigurationFile() { std::filesystem::remove(path); }
-  std::string path;
-};
 
 TEST_CASE("a file gives a table another range, or none") {
   const ConfigurationFile file(

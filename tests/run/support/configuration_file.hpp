@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+//
+// A file of choices of accuracy (docs/accuracy.md) for a test.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <unistd.h>
+
+namespace run_tests {
+
+/// It is there as long as this lives.
+struct ConfigurationFile {
+  explicit ConfigurationFile(const std::string& text)
+      : path((std::filesystem::temp_directory_path() / "sk_test.toml").string() +
+             std::to_string(::getpid())) {
+    std::ofstream(path) << text;
+  }
+  ~ConfigurationFile() { std::filesystem::remove(path); }
+  ConfigurationFile(const ConfigurationFile&) = delete;
+  ConfigurationFile& operator=(const ConfigurationFile&) = delete;
+
+  std::string path;
+};
+
+}  // namespace run_tests
