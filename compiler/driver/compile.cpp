@@ -53,6 +53,7 @@ TransformOptions transformOptions(const Options& options, std::ostream& output) 
     result.limits.push_back(
         {static_cast<std::uint32_t>(profile.drawBuffers), static_cast<std::uint32_t>(profile.textureUnits)});
   }
+  for (const MeasuredDevice& device : options.devices) result.limits.push_back(device.limits);
   result.precisions = options.precision.empty() ? options.emit == Emit::Stubs : options.precision != "single";
   if (!options.printAfter.empty()) {
     result.after = [&output, wanted = options.printAfter](std::string_view name, const ir::Module& module) {
@@ -118,6 +119,21 @@ emit::Stub stubOf(const Options& options, const ir::Module& module) {
                         {options.nativeTarget ? std::optional(reals) : std::nullopt, options.library});
 }
 
+/// Of each measured device, else of the profile.
+std::string planListings(const Options& options, const ir::Module& module) {
+  if (options.devices.empty()) {
+    const sk::assemble::Profile& profile = *sk::assemble::findProfile(options.profile);
+    return planListing(
+        module, profile.name,
+        {static_cast<std::uint32_t>(profile.drawBuffers), static_cast<std::uint32_t>(profile.textureUnits)});
+  }
+  std::string text;
+  for (const MeasuredDevice& device : options.devices) {
+    text += (text.empty() ? "" : "\n") + planListing(module, device.name, device.limits);
+  }
+  return text;
+}
+
 bool writeStubs(const Job& job, const ir::Module& module, const frontend::Frontend& frontend) {
   const Options& options = job.options;
   const emit::Stub stub = stubOf(options, module);
@@ -171,7 +187,7 @@ std::string emitText(const Options& options, const ir::Module& module) {
     case Emit::Ir: return ir::print(module);
     case Emit::Glsl: return glslListing(emit::Program(module), options.profile, options.precision);
     case Emit::Cpp: return emit::nativeListing(module, emit::Program(module), emit::Reals::Double);
-    case Emit::Plan: return planListing(module, options.profile);
+    case Emit::Plan: return planListings(options, module);
     case Emit::Stubs: {
       const emit::Stub stub = stubOf(options, module);
       return stub.header + stub.source;

@@ -76,6 +76,7 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   Options options;
   std::string emit = "stubs", color = "auto";
   std::vector<std::string> targets;
+  std::string deviceFile;
   CLI::App app{
       "skc: compiles StreamKernel files (.sk) to GLSL, descriptors and C++ stubs.\n"
       "FILE.sk becomes FILE.sk.hpp and FILE.sk.cpp.",
@@ -106,6 +107,9 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
                  "Version of GLSL that --emit=glsl and plan are about: " + profileNames())
       ->check(checkProfile, "")
       ->type_name("NAME");
+  app.add_option("--device", deviceFile,
+                 "Plan the passes of large kernels for the devices in this file of sk info --json, too")
+      ->type_name("FILE");
   app.add_option("--kernel", options.kernel, "Emit only this kernel or reduce")->type_name("NAME");
   app.add_option("-I", options.includeDirectories, "Look for #include files in this directory")
       ->type_name("DIR")
@@ -141,6 +145,12 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   options.nativeTarget = targets.empty() || std::ranges::find(targets, "native") != targets.end();
   if (options.emit == Emit::Stubs && !clash.empty()) {
     fmt::print(stderr, "skc: {}\n", clash);
+    return {std::nullopt, 1};
+  }
+  try {
+    if (!deviceFile.empty()) options.devices = readDevices(deviceFile);
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "skc: {}\n", error.what());
     return {std::nullopt, 1};
   }
   options.color = color == "always" || (color == "auto" && isatty(STDERR_FILENO));

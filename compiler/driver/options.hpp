@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "driver/device_file.hpp"
+
 namespace skc::driver {
 
 enum class Emit : std::uint8_t { Stubs, Glsl, Cpp, Ir, Plan, Ast };
@@ -17,6 +19,8 @@ struct Options {
   std::string outputDirectory = ".";
   Emit emit = Emit::Stubs;
   std::string profile = "glsl330";          ///< of --emit=glsl and plan
+  std::vector<MeasuredDevice>
+      devices;      ///< to plan for, beside all profiles; of --emit=plan instead of the profile
   std::string kernel;                       ///< of --emit=glsl, cpp, ir and plan; empty: all
   std::vector<std::string> includeDirectories, definitions, warnings;
   std::string depfile;                      ///< empty: none

@@ -24,14 +24,11 @@ std::string counted(std::size_t count, std::string_view what) {
 
 class PlanPrinter {
  public:
-  PlanPrinter(const Module& module, const sk::assemble::Profile& profile)
-      : module_(module),
-        profile_(profile),
-        limits_{static_cast<std::uint32_t>(profile.drawBuffers),
-                static_cast<std::uint32_t>(profile.textureUnits)} {}
+  PlanPrinter(const Module& module, std::string_view name, const Limits& limits)
+      : module_(module), name_(name), limits_(limits) {}
 
   std::string print() {
-    text_ = fmt::format("{}: {} draw buffers, {} texture units\n", profile_.name, limits_.drawBuffers,
+    text_ = fmt::format("{}: {} draw buffers, {} texture units\n", name_, limits_.drawBuffers,
                         limits_.textureUnits);
     for (const Kernel& kernel : module_.kernels) {
       if (kernel.pass || kernel.isMade) continue;
@@ -131,15 +128,15 @@ class PlanPrinter {
   }
 
   const Module& module_;
-  const sk::assemble::Profile& profile_;
+  std::string_view name_;
   const Limits limits_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string planListing(const Module& module, std::string_view profile) {
-  return PlanPrinter(module, *sk::assemble::findProfile(profile)).print();
+std::string planListing(const Module& module, std::string_view name, const Limits& limits) {
+  return PlanPrinter(module, name, limits).print();
 }
 
 }  // namespace skc::driver

@@ -11,7 +11,7 @@
 
 namespace skc::driver {
 
-/// The module is through all transforms; the profile is in the assembler's table.
-std::string planListing(const ir::Module& module, std::string_view profile);
+/// The module is through all transforms; `name` is that of a profile or of a device, whose limits these are.
+std::string planListing(const ir::Module& module, std::string_view name, const ir::Limits& limits);
 
 }  // namespace skc::driver

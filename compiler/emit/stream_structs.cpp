@@ -95,8 +95,9 @@ std::string constructor(const Module& module, const StreamStruct& streams) {
   std::string text = wrapLine(head + parameters(streams), 100, head.size());
   std::vector<std::string> members;
   for (const DeclaredStream* stream : streams.streams) {
-    members.push_back(fmt::format("{}({}.stream<{}>({{{}}}))", stream->name, deviceName(streams),
-                                  cppType(module, stream->type), extents(*stream)));
+    members.push_back(fmt::format("{0}({1}.stream<{2}>({{{3}}}, sk::Storage::Default, \"{4}{0}\"))",
+                                  stream->name, deviceName(streams), cppType(module, stream->type),
+                                  extents(*stream), qualifier(streams.scope)));
   }
   return text + "\n    : " + join(members, ",\n      ") + " {}\n";
 }

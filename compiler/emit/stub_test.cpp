@@ -231,11 +231,11 @@ struct HeatStreams {
   CHECK(contains(stub.header, "struct sk::ElementTraits<grid::Cell>"));
   CHECK(contains(stub.source, R"(
 HeatStreams_2::HeatStreams_2(sk::Device& device_2, std::int64_t height, std::int64_t width)
-    : u(device_2.stream<float>({height, width})),
-      device(device_2.stream<sk::uint4>({width, 4})) {}
+    : u(device_2.stream<float>({height, width}, sk::Storage::Default, "u")),
+      device(device_2.stream<sk::uint4>({width, 4}, sk::Storage::Default, "device")) {}
 
 grid::HeatStreams::HeatStreams(sk::Device& device)
-    : cells(device.stream<grid::Cell>({2, 3, 4, 5})) {}
+    : cells(device.stream<grid::Cell>({2, 3, 4, 5}, sk::Storage::Default, "grid::cells")) {}
 )"));
   Module empty = testModule();
   empty.streams = streamModule().streams;

@@ -20,6 +20,7 @@ namespace {
 constexpr std::string_view precisions[] = {"half", "single", "extended", "double"};
 constexpr std::string_view accumulates[] = {"tree", "compensated", "extended", "exact"};
 constexpr std::string_view intrinsics[] = {"fast", "accurate"};
+constexpr std::string_view storages[] = {"single", "half", "extended", "double"};
 constexpr std::string_view tableUses[] = {"off", "on"};
 
 /// The enumerator of a name: they follow Default in this order.
@@ -87,6 +88,22 @@ Configuration::RangeChoice rangeOf(const std::string& file, const toml::key& nam
   return choice;
 }
 
+Storage storageOf(const std::string& file, const toml::key& name, const toml::table& table) {
+  Storage storage = Storage::Default;
+  for (const auto& [key, node] : table) {
+    if (key != "storage") {
+      throw Error(fmt::format("{}:{}: a stream has no '{}'; it has storage", file, key.source().begin.line,
+                              key.str()));
+    }
+    storage = choiceOf<Storage>(storages, file, "storage", node);
+  }
+  if (storage == Storage::Default) {
+    throw Error(fmt::format("{}:{}: expected storage = \"half\" or the like for stream '{}'", file,
+                            name.source().begin.line, name.str()));
+  }
+  return storage;
+}
+
 toml::table parsed(const std::string& file) {
   try {
     return toml::parse_file(file);
@@ -111,10 +128,11 @@ CallOptions merged(CallOptions first, const CallOptions& second) {
 Configuration::Configuration(const std::string& file) {
   for (const auto& [key, node] : parsed(file)) {
     const toml::table* named = node.as_table();
-    if ((key != "kernels" && key != "tables") || named == nullptr) {
+    const bool isKnown = key == "kernels" || key == "tables" || key == "streams";
+    if (!isKnown || named == nullptr) {
       throw Error(
-          fmt::format("{}:{}: expected tables like [kernels.\"heat::diffuse\"], [kernels.\"*\"] or "
-                      "[tables.\"heat::response\"]",
+          fmt::format("{}:{}: expected tables like [kernels.\"heat::diffuse\"], [kernels.\"*\"], "
+                      "[tables.\"heat::response\"] or [streams.\"heat::u\"]",
                       file, key.source().begin.line));
     }
     for (const auto& [name, choices] : *named) {
@@ -124,11 +142,20 @@ Configuration::Configuration(const std::string& file) {
       }
       if (key == "kernels") {
         kernels_[std::string(name.str())] = optionsOf(file, *choices.as_table());
+      } else if (key == "streams") {
+        streams_[std::string(name.str())] = sk::storageOf(file, name, *choices.as_table());
       } else {
         tables_[std::string(name.str())] = sk::rangeOf(file, name, *choices.as_table());
       }
     }
   }
+}
+
+Storage Configuration::storageOf(std::string_view stream) const {
+  for (const std::string_view name : {stream, std::string_view("*")}) {
+    if (const auto found = streams_.find(name); found != streams_.end()) return found->second;
+  }
+  return Storage::Single;
 }
 
 TableRange Configuration::rangeOf(const program::Table& table) const {

@@ -12,6 +12,9 @@
 //   low = -4.0
 //   high = 4.0
 //   intervals = 4096
+//
+//   [streams."heat::u"]
+//   storage = "half"
 #pragma once
 
 #include <cstdint>
@@ -34,6 +37,9 @@ class Configuration {
   /// What a call computes with: its own choices, then those of the file for the kernel, then for "*", then the
   /// declaration's.
   CallOptions resolve(const program::Kernel& kernel, const CallOptions& call) const;
+  /// What a stream of this name holds its floats as: the file's choice for it, then for "*", then Single.
+  Storage storageOf(std::string_view stream) const;
+
   /// The range of a table: the file's, or what the declaration says. Throws sk::Error where both together make none.
   TableRange rangeOf(const program::Table& table) const;
 
@@ -46,6 +52,7 @@ class Configuration {
  private:
   std::map<std::string, CallOptions, std::less<>> kernels_;
   std::map<std::string, RangeChoice, std::less<>> tables_;
+  std::map<std::string, Storage, std::less<>> streams_;
 };
 
 }  // namespace sk

@@ -150,9 +150,13 @@ DeviceState& Device::state() const {
   return *state_;
 }
 
-detail::StreamOwner Device::createStream(const program::Element& element, const Shape& shape,
-                                         Storage storage) {
-  if (storage != Storage::Single && !assemble::holdsFloats(element)) {
+detail::StreamOwner Device::createStream(const program::Element& element, const Shape& shape, Storage storage,
+                                         std::string_view name) {
+  const bool holdsFloats = assemble::holdsFloats(element);
+  if (storage == Storage::Default) {
+    storage = holdsFloats ? state().configuration.storageOf(name) : Storage::Single;
+  }
+  if (storage != Storage::Single && !holdsFloats) {
     throw Error(fmt::format(
         "a stream of {} has no float or vector of floats to hold otherwise; make it without a Storage",
         element.name));

@@ -6,6 +6,7 @@
 set -euo pipefail
 sk=$(realpath "$1")
 tested=("$sk" accuracy)
+accuracy=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../../docs/accuracy.md")
 source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
 unset SK_DEVICE SK_PROFILE
 
@@ -80,9 +81,34 @@ grep -q '<svg ' all.svg && grep -q '</svg>' all.svg || broken "no SVG"
 for text in compensated 'sum, illconditioned' 'diffusion, random' 'half storage'; do
   grep -q "$text" all.svg || broken "the chart lacks: $text"
 done
+# No name is on another, sums of equal errors included. (Only names begin where they are; letters are 6 to 8 pixels wide.)
+python3 - all.svg <<'EOF' || broken "names in the chart touch"
+import re, sys
+at = r'translate\(([\d.]+),([\d.]+)\)"[^>]*text-anchor="start">\s*<text>([^<]*)</text>'
+names = [(float(x), float(y), text) for x, y, text in re.findall(at, open(sys.argv[1]).read())]
+assert len(names) > 50, names
+for i, (x, y, text) in enumerate(names):
+    for x2, y2, text2 in names[:i]:
+        assert abs(y - y2) > 12 or x + 6 * len(text) < x2 or x2 + 6 * len(text2) < x, (text, text2, y, y2)
+EOF
 run 0 sum --data wide "${small[@]}" --chart wide.png
 [[ $(head -c 8 wide.png | od -An -tx1 | tr -d ' ') == 89504e470d0a1a0a ]] || broken "no PNG"
 PATH=/nonexistent run 1 sum --data wide "${small[@]}" --chart wide.svg
 says 'there is no gnuplot to draw the chart; install it'
+
+# The errors that the documentation shows: each table behind <!-- sk accuracy ARGUMENTS -->, of the device that it names.
+run 0 sum --data wide "${small[@]}"
+device=${out%%;*}
+while IFS= read -r comment; do
+  arguments=${comment#'<!-- sk accuracy '}
+  read -ra arguments <<<"${arguments%' -->'}"
+  shown=$(sed -n "/^$comment\$/,/^\`\`\`\$/p" "$accuracy" | sed '1,2d;$d')
+  [[ -n $shown && $shown == "$device"* ]] || continue
+  run 0 "${arguments[@]}" --rounds 1
+  figures out.txt >figures.txt
+  while IFS= read -r text; do
+    grep -qxF -- "$text" figures.txt || broken "docs/accuracy.md shows what it does not print: $text"
+  done < <(tail -n +2 <<<"$shown" >shown.txt; figures shown.txt)
+done < <(grep '^<!-- sk accuracy ' "$accuracy")
 
 echo "sk accuracy tells what it should"

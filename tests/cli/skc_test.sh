@@ -36,7 +36,7 @@ echo '#define WEIGHT 0.25f' >include/weights.sk
 # Help and version.
 run 0 --help
 prints 'FILE'
-for option in -o --emit --target --profile --kernel -I -D -W --depfile --print-after --library --version; do prints " $option"; done
+for option in -o --emit --target --profile --kernel -I -D -W --depfile --print-after --library --device --quad --version; do prints " $option"; done
 run 0 --version
 [[ $out =~ ^skc\ [0-9]+\.[0-9]+\.[0-9]+ ]] || broken "no version"
 
@@ -70,6 +70,31 @@ run 0 -Iinclude --emit=ast heat.sk
 prints 'diffuse'
 run 0 -Iinclude --print-after=all heat.sk
 prints 'diffuse'
+
+# Plans for the limits of devices that sk info has measured.
+cat >large.sk <<'SK'
+kernel void spread(float x<>, out float4 a<>, out float4 b<>, out float4 c<>, out float4 d<>, out float4 e<>, out float4 f<>) {
+  a = x; b = x; c = x; d = x; e = x; f = x;
+}
+SK
+cat >devices.json <<'JSON'
+{"devices": [{"name": "native"},
+             {"name": "wide", "limits": {"draw_buffers": 8, "texture_units": 16}},
+             {"name": "narrow", "limits": {"draw_buffers": 3, "texture_units": 16}}]}
+JSON
+run 0 --emit=plan large.sk
+prints 'glsl330: 8 draw buffers'
+run 0 --emit=plan --device=devices.json large.sk
+prints 'wide: 8 draw buffers'
+prints 'narrow: 3 draw buffers'
+prints '6 planes written, 1 read: 2 passes'
+run 0 --device=devices.json large.sk
+grep -qF '{3, 16,' large.sk.cpp || broken "the stub has no plan for 3 draw buffers"
+refuses "'nowhere.json' cannot be read" --device=nowhere.json large.sk
+echo '{"devices": 3' >broken.json
+refuses "'broken.json' is not what sk info --json=broken.json writes" --device=broken.json large.sk
+echo '{"devices": [{"name": "native"}]}' >native.json
+refuses "'native.json' has no device that draws" --device=native.json large.sk
 
 # -D, -W and -Werror.
 echo 'kernel void f(float x<>, out float r<>) { if (x > LIMIT) r = x; }' >partial.sk

@@ -5,6 +5,7 @@
 
 #include "declared.sk.hpp"
 #include "declared_only.sk.hpp"
+#include "support/configuration_file.hpp"
 #include "support/devices.hpp"
 #include "support/values.hpp"
 
@@ -51,4 +52,27 @@ TEST_CASE("declared streams are streams like all others") {
 
 TEST_CASE("an extent below 0 is refused as for any stream") {
   CHECK_THROWS_AS(DeclaredStreams(device("glsl330"), -1), sk::Error);
+}
+
+TEST_CASE("a file chooses what declared streams hold their floats as") {
+  const ConfigurationFile file(
+      "[streams.\"declared::field\"]\nstorage = \"half\"\n"
+      "[streams.\"*\"]\nstorage = \"double\"\n"
+      "[streams.mine]\nstorage = \"single\"\n");
+  constexpr float third = 1.0F / 3;
+  for (const std::string name : {"llvmpipe", "native"}) {
+    sk::Device device({.device = name, .configuration = file.path});
+    declared::DeclaredStreams s(device, 1, 2, 1);
+    s.field.write(std::vector<float>{third, 1});
+    CHECK(s.field.read() == std::vector<float>{sk::half(third), 1});
+    s.flux.writeReals(std::vector<double>{1.0 / 3, 1});
+    CHECK(s.flux.readReals() == std::vector<double>{1.0 / 3, 1});
+    s.narrow.write(std::vector<sk::half>(3, sk::half(1.0F)));   // has no floats to hold otherwise
+    auto mine = device.stream<float>({1}, sk::Storage::Default, "mine");
+    mine.writeReals(std::vector<double>{1.0 / 3});
+    CHECK(mine.readReals() == std::vector<double>{third});
+    auto said = device.stream<float>({1}, sk::Storage::Half, "mine");
+    said.write(std::vector<float>{third});
+    CHECK(said.read() == std::vector<float>{sk::half(third)});
+  }
 }

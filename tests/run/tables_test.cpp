@@ -223,6 +223,12 @@ TEST_CASE("mistakes in a file are told") {
         std::string::npos);
   CHECK(errorIn("[tables.a]\nlow = nan\n").find(":2: low is a number") != std::string::npos);
   CHECK(errorIn("[tables.a]\nsize = 3\n").find(":2: a table has no 'size'") != std::string::npos);
+  CHECK(errorIn("[streams.u]\nstorage = \"quad\"\n").find(":2: storage is one of \"single\", \"half\"") !=
+        std::string::npos);
+  CHECK(errorIn("[streams.u]\nprecision = \"half\"\n")
+            .find(":2: a stream has no 'precision'; it has storage") != std::string::npos);
+  CHECK(errorIn("[streams.u]\n").find(":1: expected storage = \"half\" or the like for stream 'u'") !=
+        std::string::npos);
   CHECK(errorIn("tables = 3\n").find(":1: expected tables like") != std::string::npos);
 }
 

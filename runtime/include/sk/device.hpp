@@ -87,17 +87,18 @@ class Device {
   /// skc was asked for (--quad).
   static Device reference(Reference kind = Reference::Double);
 
-  /// A new stream; its elements are undefined. Throws sk::Error where the shape has no dimension, the device has no
-  /// room, or a storage other than Single is asked for elements without floats.
+  /// A new stream; its elements are undefined. `name`: what a configuration file may call it; the streams of a .sk file's
+  /// struct have their qualified names. Throws sk::Error where the shape has no dimension, the device has no room, or a
+  /// storage other than Single is asked for elements without floats.
   template <ElementType T>
-  Stream<T> stream(const Shape& shape, Storage storage = Storage::Single) {
-    return Stream<T>(createStream(ElementTraits<T>::element(), shape, storage));
+  Stream<T> stream(const Shape& shape, Storage storage = Storage::Default, std::string_view name = {}) {
+    return Stream<T>(createStream(ElementTraits<T>::element(), shape, storage, name));
   }
 
   /// The same, of a type that is known at run time only; detail::write() and read() move its elements as bytes. `element`
   /// must outlive the stream.
   detail::StreamOwner createStream(const program::Element& element, const Shape& shape,
-                                   Storage storage = Storage::Single);
+                                   Storage storage = Storage::Default, std::string_view name = {});
 
   /// The renderer's name as the driver gives it.
   const std::string& name() const;

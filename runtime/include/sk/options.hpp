@@ -10,6 +10,7 @@ namespace sk {
 /// What a stream holds the floats of its elements as. Kernels read and write floats all the same, rounded to nearest;
 /// those in extended or double precision get and give all bits of doubles.
 enum class Storage : std::uint8_t {
+  Default,  ///< what the device's configuration says of the stream's name, else Single
   Single,  ///< floats
   Half,  ///< halves: half the memory, 11 bits
   Extended,  ///< doubles, of which pairs of floats use 48 bits

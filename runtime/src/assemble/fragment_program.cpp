@@ -45,6 +45,7 @@ std::string_view name(Addressing addressing) {
 
 std::string_view name(Storage storage) {
   switch (storage) {
+    case Storage::Default:
     case Storage::Single: return "";
     case Storage::Half: return " of halves";
     case Storage::Extended:
