@@ -56,6 +56,16 @@ sk_double sk_trunc(sk_double a) { return sk_of(trunc(sk_value(a))); }
 sk_double sk_round(sk_double a) { return sk_of(roundEven(sk_value(a))); }
 sk_double sk_sqrt(sk_double a) { return sk_of(sqrt(sk_value(a))); }
 bool sk_isinf(sk_double a) { return sk_abs(a).bits == uvec2(0u, 0x7ff00000u); }
+// What is below the smallest normal double is 0.
+sk_double sk_ldexp(sk_double a, int e) {
+  uint sign = a.bits.y & 0x80000000u;
+  int old = int((a.bits.y >> 20) & 0x7ffu);
+  int scaled = old + clamp(e, -4096, 4096);
+  if (old == 2047) return a;
+  if (old == 0 || scaled <= 0) return sk_double(uvec2(0u, sign));
+  if (scaled >= 2047) return sk_double(uvec2(0u, sign | 0x7ff00000u));
+  return sk_double(uvec2(a.bits.x, (a.bits.y & 0x800fffffu) | (uint(scaled) << 20)));
+}
 )";
 
 constexpr std::string_view pairText = R"(
@@ -68,8 +78,13 @@ sk_double sk_join(float a, float b) {
   sk_precise float s = sk_keep(a + b);
   sk_precise float t = sk_keep(s - a);
   sk_precise float e = sk_keep(b - t);
-  if (b == 0.0) return sk_double(a, 0.0);   // and keeps the sign of a zero
-  return sk_double(s, sk_is_finite(s) ? e : 0.0);
+  return sk_double(b == 0.0 ? a : s, sk_is_finite(s) ? e : 0.0);   // which keeps the sign of a zero
+}
+
+// The result, unless its head is infinite or NaN. Without branches, which take compilers long.
+sk_double sk_where_finite(float head, sk_double result) {
+  bool isFinite = sk_is_finite(head);
+  return sk_double(isFinite ? result.hi : head, isFinite ? result.lo : 0.0);
 }
 
 sk_double sk_two_sum(float a, float b) {
@@ -88,14 +103,10 @@ sk_double sk_two_product(float a, float b) {
   float bh = uintBitsToFloat(floatBitsToUint(b) & 0xfffff000u);
   sk_precise float al = sk_keep(a - ah);
   sk_precise float bl = sk_keep(b - bh);
-  sk_precise float hh = sk_keep(ah * bh);
-  sk_precise float hl = sk_keep(ah * bl);
-  sk_precise float lh = sk_keep(al * bh);
-  sk_precise float ll = sk_keep(al * bl);
-  sk_precise float d = sk_keep(hh - p);
-  sk_precise float e = sk_keep(d + hl);
-  sk_precise float f = sk_keep(e + lh);
-  sk_precise float g = sk_keep(f + ll);
+  sk_precise float d = sk_keep(ah * bh - p);   // products of halves are exact, contracted or not
+  sk_precise float e = sk_keep(d + ah * bl);
+  sk_precise float f = sk_keep(e + al * bh);
+  sk_precise float g = sk_keep(f + al * bl);
   return sk_double(p, sk_is_finite(p) ? g : 0.0);
 }
 
@@ -104,46 +115,46 @@ sk_double sk_neg(sk_double a) { return sk_double(-a.hi, -a.lo); }
 sk_double sk_add(sk_double a, sk_double b) {
   sk_double s = sk_two_sum(a.hi, b.hi);
   sk_double t = sk_two_sum(a.lo, b.lo);
-  if (!sk_is_finite(s.hi)) return sk_double(s.hi, 0.0);
   sk_precise float c = sk_keep(s.lo + t.hi);
   sk_double v = sk_join(s.hi, c);
   sk_precise float w = sk_keep(t.lo + v.lo);
-  return sk_join(v.hi, w);
+  return sk_where_finite(s.hi, sk_join(v.hi, w));
 }
 
 sk_double sk_sub(sk_double a, sk_double b) { return sk_add(a, sk_neg(b)); }
 
 sk_double sk_mul(sk_double a, sk_double b) {
   sk_double p = sk_two_product(a.hi, b.hi);
-  if (!sk_is_finite(p.hi)) return p;
   sk_precise float c = sk_keep(a.hi * b.lo);
   sk_precise float d = sk_keep(a.lo * b.hi);
   sk_precise float e = sk_keep(c + d);
   sk_precise float f = sk_keep(p.lo + e);
-  return sk_join(p.hi, f);
+  return sk_where_finite(p.hi, sk_join(p.hi, f));
 }
 
 sk_double sk_div(sk_double a, sk_double b) {
   sk_precise float q = sk_keep(a.hi / b.hi);
-  if (q == 0.0 || !sk_is_finite(q) || !sk_is_finite(b.hi)) return sk_double(q, 0.0);
   sk_double left = sk_sub(a, sk_mul(b, sk_double(q, 0.0)));
   sk_precise float r = sk_keep(left.hi / b.hi);
   left = sk_sub(left, sk_mul(b, sk_double(r, 0.0)));
   sk_precise float s = sk_keep(left.hi / b.hi);
   sk_double sum = sk_join(q, r);
   sk_precise float t = sk_keep(sum.lo + s);
-  return sk_join(sum.hi, t);
+  sum = sk_join(sum.hi, t);
+  bool isHead = q == 0.0 || !sk_is_finite(q) || !sk_is_finite(b.hi);
+  return sk_double(isHead ? q : sum.hi, isHead ? 0.0 : sum.lo);
 }
 
 sk_double sk_sqrt(sk_double a) {
   sk_precise float s = sk_keep(sqrt(a.hi));
-  if (s == 0.0 || !sk_is_finite(s)) return sk_double(s, 0.0);
   sk_double left = sk_sub(a, sk_two_product(s, s));
   sk_precise float t = sk_keep(0.5 * left.hi / s);
   sk_double root = sk_join(s, t);
   left = sk_sub(a, sk_mul(root, root));
   sk_precise float u = sk_keep(0.5 * left.hi / s);
-  return sk_add(root, sk_double(u, 0.0));
+  root = sk_add(root, sk_double(u, 0.0));
+  bool isHead = s == 0.0 || !sk_is_finite(s);
+  return sk_double(isHead ? s : root.hi, isHead ? 0.0 : root.lo);
 }
 
 bool sk_less(sk_double a, sk_double b) { return a.hi < b.hi || (a.hi == b.hi && a.lo < b.lo); }
@@ -237,6 +248,22 @@ int sk_to_int(sk_double a) {
   if (a.hi < 0.0) return n >= 0x80000000u ? -2147483647 - 1 : -int(n);
   return int(min(n, 0x7fffffffu));
 }
+
+// Of the bits, since a device may reorder products of which some are too large. What is below the smallest normal
+// float is 0.
+float sk_scaled(float a, int e) {
+  uint b = floatBitsToUint(a);
+  uint sign = b & 0x80000000u;
+  int old = int((b >> 23) & 0xffu);
+  int scaled = old + clamp(e, -1024, 1024);
+  if (old == 255) return a;
+  if (old == 0 || scaled <= 0) return uintBitsToFloat(sign);
+  return uintBitsToFloat(scaled >= 255 ? sign | 0x7f800000u : (b & 0x807fffffu) | (uint(scaled) << 23));
+}
+sk_double sk_ldexp(sk_double a, int e) {
+  float hi = sk_scaled(a.hi, e);
+  return sk_double(hi, sk_is_finite(hi) ? sk_scaled(a.lo, e) : 0.0);
+}
 )";
 
 constexpr std::string_view commonText = R"(
@@ -245,19 +272,6 @@ struct sk_double3 { sk_double x, y, z; };
 struct sk_double4 { sk_double x, y, z, w; };
 sk_double2 sk_unpack(uvec4 b) { return sk_double2(sk_unpack(b.xy), sk_unpack(b.zw)); }
 uvec4 sk_pack(sk_double2 a) { return uvec4(sk_pack(a.x), sk_pack(a.y)); }
-
-// Of the bits, since a device may reorder products of which some are too large. What is below the smallest normal
-// double is 0.
-sk_double sk_ldexp(sk_double a, int e) {
-  uvec2 b = sk_pack(a);
-  uint sign = b.y & 0x80000000u;
-  int old = int((b.y >> 20) & 0x7ffu);
-  int scaled = old + clamp(e, -4096, 4096);
-  if (old == 2047) return a;
-  if (old == 0 || scaled <= 0) return sk_unpack(uvec2(0u, sign));
-  if (scaled >= 2047) return sk_unpack(uvec2(0u, sign | 0x7ff00000u));
-  return sk_unpack(uvec2(b.x, (b.y & 0x800fffffu) | (uint(scaled) << 20)));
-}
 )";
 
 }  // namespace
