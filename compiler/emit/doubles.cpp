@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "emit/float_intrinsics.hpp"
 #include "emit/type_names.hpp"
 #include "support/text.hpp"
 
@@ -185,6 +186,54 @@ std::string cross(Polyfills& polyfills) {
   return "sk_cross";
 }
 
+std::string faceforward(Polyfills& polyfills, Type type) {
+  dot(polyfills, type);
+  defineByComponent(polyfills, "sk_neg", type, {type});
+  polyfills.add(
+      fmt::format("{} sk_faceforward({}) {{\n"
+                  "  return sk_less(sk_dot(c, b), sk_to_double(0.0)) ? a : sk_neg(a);\n}}\n",
+                  nameOf(type), parameterList({type, type, type})));
+  return "sk_faceforward";
+}
+
+/// What both directions of a ray are made of.
+void defineForRays(Polyfills& polyfills, Type type) {
+  dot(polyfills, type);
+  defineByComponent(polyfills, "sk_sub", type, {type, type});
+  defineByComponent(polyfills, "sk_mul", type, {type, type.component()});
+}
+
+std::string reflect(Polyfills& polyfills, Type type) {
+  defineForRays(polyfills, type);
+  polyfills.add(
+      fmt::format("{} sk_reflect({}) {{\n"
+                  "  sk_double d = sk_dot(b, a);\n"
+                  "  return sk_sub(a, sk_mul(b, sk_add(d, d)));\n}}\n",
+                  nameOf(type), parameterList({type, type})));
+  return "sk_reflect";
+}
+
+std::string refract(Polyfills& polyfills, Type type) {
+  defineForRays(polyfills, type);
+  const std::string zero = doubleVector(polyfills, type, {type.component()}, {"sk_to_double(0.0)"});
+  polyfills.add(
+      fmt::format("{} sk_refract({}) {{\n"
+                  "  sk_double d = sk_dot(b, a), one = sk_to_double(1.0);\n"
+                  "  sk_double k = sk_sub(one, sk_mul(sk_mul(c, c), sk_sub(one, sk_mul(d, d))));\n"
+                  "  if (sk_less(k, sk_to_double(0.0))) return {};\n"
+                  "  return sk_sub(sk_mul(a, c), sk_mul(b, sk_add(sk_mul(c, d), sk_sqrt(k))));\n}}\n",
+                  nameOf(type), parameterList({type, type, type.component()}), zero));
+  return "sk_refract";
+}
+
+/// What the assembler defines for one double.
+std::string defined(Polyfills& polyfills, sk::program::Intrinsic intrinsic, const std::vector<Type>& types,
+                    const Texts& texts) {
+  const std::string function = polyfills.definedOfDouble(intrinsic);
+  defineByComponent(polyfills, function, types[0], types);
+  return call(function, texts);
+}
+
 std::string namesOf(const std::vector<std::uint8_t>& components) {
   std::string names;
   for (const std::uint8_t component : components) names += letters[component];
@@ -257,6 +306,10 @@ std::string doubleIntrinsic(Polyfills& polyfills, Intrinsic intrinsic, const std
   if (intrinsic == Intrinsic::Distance) return call(distance(polyfills, types[0]), texts);
   if (intrinsic == Intrinsic::Normalize) return call(normalize(polyfills, types[0]), texts);
   if (intrinsic == Intrinsic::Cross) return call(cross(polyfills), texts);
+  if (intrinsic == Intrinsic::Faceforward) return call(faceforward(polyfills, types[0]), texts);
+  if (intrinsic == Intrinsic::Reflect) return call(reflect(polyfills, types[0]), texts);
+  if (intrinsic == Intrinsic::Refract) return call(refract(polyfills, types[0]), texts);
+  if (const auto ours = definedOfDoubles(intrinsic)) return defined(polyfills, *ours, types, texts);
   return byComponent(polyfills, intrinsic, types, texts);
 }
 

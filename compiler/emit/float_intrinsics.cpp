@@ -43,6 +43,12 @@ std::optional<Defined> definedIntrinsic(const ir::IntrinsicCall& call) {
   return row->defined;
 }
 
+std::optional<Defined> definedOfDoubles(ir::Intrinsic intrinsic) {
+  const auto row = std::ranges::find(rows, intrinsic, &Row::intrinsic);
+  if (row == rows.end() || row->defined > Defined::Pow) return std::nullopt;
+  return row->defined;
+}
+
 std::string_view enumerator(Defined intrinsic) {
   return std::ranges::find(rows, intrinsic, &Row::defined)->enumerator;
 }

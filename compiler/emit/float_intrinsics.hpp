@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Intrinsics of floats that bodies leave to the assembler, which defines them as a call asks: accurately, or by the
-// device's own functions.
+// Intrinsics that bodies leave to the assembler, which defines them as a call asks: accurately, or by the
+// device's own functions; of doubles, those that GLSL does not have.
 #pragma once
 
 #include <optional>
@@ -15,6 +15,9 @@ namespace skc::emit {
 
 /// What the runtime calls an intrinsic on these arguments; nothing where GLSL's own function is meant.
 std::optional<sk::program::Intrinsic> definedIntrinsic(const ir::IntrinsicCall& call);
+
+/// Likewise of doubles; nothing for what double_functions.def has.
+std::optional<sk::program::Intrinsic> definedOfDoubles(ir::Intrinsic intrinsic);
 
 /// "Sin".
 std::string_view enumerator(sk::program::Intrinsic intrinsic);

@@ -144,10 +144,19 @@ std::string Polyfills::truncated(Type to) {
   return name;
 }
 
+sk::program::IntrinsicUse& Polyfills::use(sk::program::Intrinsic intrinsic) {
+  const auto found = std::ranges::find(intrinsics_, intrinsic, &sk::program::IntrinsicUse::intrinsic);
+  return found != intrinsics_.end() ? *found : intrinsics_.emplace_back(intrinsic, std::uint8_t{0});
+}
+
 std::string Polyfills::defined(sk::program::Intrinsic intrinsic, int width) {
-  auto use = std::ranges::find(intrinsics_, intrinsic, &sk::program::IntrinsicUse::intrinsic);
-  if (use == intrinsics_.end()) use = intrinsics_.insert(use, {intrinsic, 0});
-  use->widths = static_cast<std::uint8_t>(use->widths | 1U << (width - 1));
+  std::uint8_t& widths = use(intrinsic).widths;
+  widths = static_cast<std::uint8_t>(widths | 1U << (width - 1));
+  return functionName(intrinsic);
+}
+
+std::string Polyfills::definedOfDouble(sk::program::Intrinsic intrinsic) {
+  use(intrinsic).ofDouble = true;
   return functionName(intrinsic);
 }
 

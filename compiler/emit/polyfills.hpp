@@ -27,6 +27,8 @@ class Polyfills {
   std::string truncated(ir::Type to);
   /// An intrinsic that the assembler defines, on arguments of this width; returns the function's name.
   std::string defined(sk::program::Intrinsic intrinsic, int width);
+  /// Likewise on one double.
+  std::string definedOfDouble(sk::program::Intrinsic intrinsic);
 
   /// A Convert of the carrier's value to a narrow type; returns the function's name.
   std::string quantize(ir::Type type);
@@ -40,6 +42,8 @@ class Polyfills {
   const std::vector<sk::program::IntrinsicUse>& intrinsics() const { return intrinsics_; }
 
  private:
+  sk::program::IntrinsicUse& use(sk::program::Intrinsic intrinsic);
+
   std::vector<std::string> functions_;
   std::vector<sk::program::IntrinsicUse> intrinsics_;
 };

@@ -273,7 +273,8 @@ class SourceWriter {
   void intrinsics(const sk::program::Kernel& kernel, const std::string& name) {
     std::vector<std::string> uses;
     for (const sk::program::IntrinsicUse& use : kernel.intrinsics) {
-      uses.push_back(fmt::format("{{Intrinsic::{}, {}}}", enumerator(use.intrinsic), use.widths));
+      uses.push_back(fmt::format("{{Intrinsic::{}, {}{}}}", enumerator(use.intrinsic), use.widths,
+                                 use.ofDouble ? ", true" : ""));
     }
     list("IntrinsicUse", name + "Intrinsics", uses);
     if (!uses.empty()) text_ += "\n";

@@ -233,9 +233,8 @@ ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::
   const SourceLocation where = e->getBeginLoc();
   const Loc loc = module_.loc(where);
   ExprPtr x = value(e->getArg(0));
-  if (!x->type.isFloat())
-    module_.fail(x->type.isDouble() ? Diag::DoubleIntrinsic : Diag::NoIntrinsic, where,
-                 {std::string_view(name), module_.spelling(x->type)});
+  if (!x->type.isFloat() && !x->type.isDouble())
+    module_.fail(Diag::NoIntrinsic, where, {std::string_view(name), module_.spelling(x->type)});
   // the argument is read twice, and an out argument may be the very same variable
   const ir::VarId kept = temporary(x->type, loc);
   const ir::Type type = x->type;

@@ -73,7 +73,7 @@ class Obstacles {
     std::vector<Type> arguments;
     for (const ExprPtr& argument : call->args) arguments.push_back(types_.of(argument->type));
     if (!resultType(call->intrinsic, arguments)) {
-      note(fmt::format("{}() is one of floats alone", nameOf(call->intrinsic)), expr.loc);
+      note(fmt::format("{}() is one of floats alone", ir::row(call->intrinsic).spelling), expr.loc);
     }
   }
 
@@ -83,13 +83,6 @@ class Obstacles {
     if (type.kind == Type::Kind::Struct) {
       for (const StructField& field : module_.structs[type.index].fields) check(field.type, loc);
     }
-  }
-
-  /// frexp and modf are several intrinsics without a spelling.
-  static std::string_view nameOf(Intrinsic intrinsic) {
-    const IntrinsicRow& row = ir::row(intrinsic);
-    if (!row.spelling.empty()) return row.spelling;
-    return intrinsic == Intrinsic::ModfFraction ? "modf" : "frexp";
   }
 
   void note(const std::string& what, Loc loc) {

@@ -53,15 +53,15 @@ TEST_CASE("a wide form computes in doubles and holds floats") {
 
 TEST_CASE("what doubles cannot do has no wide form, and says why") {
   Module module = testModule();
-  KernelMaker maker(module, "waves", 7);
-  const VarId a = maker.input("a", floatType);
+  KernelMaker maker(module, "turned", 7);
+  const VarId m = maker.uniform("m", Type::matrix(2));
   const VarId r = maker.output("r", floatType);
-  ExprPtr sine = intrinsic(Intrinsic::Sin, exprs(maker.ref(a)), atLine(8));
-  const KernelId id = maker.finish(block(assign(maker.ref(r), std::move(sine))));
+  ExprPtr determinant = intrinsic(Intrinsic::Determinant, exprs(maker.ref(m)), atLine(8));
+  const KernelId id = maker.finish(block(assign(maker.ref(r), std::move(determinant))));
   DiagnosticLog log;
   widenFloats(module, log);
   CHECK_FALSE(module.kernels[id].forms.wide);
-  CHECK(module.kernels[id].forms.whyNotWide == "sin() is one of floats alone (test.sk:8)");
+  CHECK(module.kernels[id].forms.whyNotWide == "matrices are of floats (test.sk:7)");
 }
 
 TEST_CASE("a half form rounds what is read and what is computed, once") {

@@ -173,8 +173,9 @@ constexpr const Element& heldBy(const Parameter& parameter) {
   return parameter.held != nullptr ? *parameter.held : *parameter.element;
 }
 
-/// A function of floats that devices get wrong, or each in its own way. Bodies call it by its name in small letters
+/// A function that devices get wrong, or each in its own way. Bodies call it by its name in small letters
 /// with `sk_` in front, and the assembler defines it (assemble/intrinsics.hpp).
+/// Those up to Pow are functions of doubles, too (assemble/double_intrinsics.hpp).
 // clang-format off
 enum class Intrinsic : std::uint8_t {
   Sin, Cos, Tan, Asin, Acos, Atan, Atan2, Sinh, Cosh, Tanh, Asinh, Acosh, Atanh,
@@ -185,7 +186,8 @@ enum class Intrinsic : std::uint8_t {
 // clang-format on
 struct IntrinsicUse {
   Intrinsic intrinsic;
-  std::uint8_t widths;  ///< bit n - 1 is set where it is called with arguments of n components
+  std::uint8_t widths;  ///< bit n - 1 is set where it is called with floats of n components
+  bool ofDouble = false;  ///< it is called with one double
 };
 
 struct Plan;

@@ -200,19 +200,30 @@ TEST_CASE("glslang accepts the points of a scatter output, in layers or not") {
 }
 
 // `precise` is left to the device tests: glslang does not take it from GL_ARB_gpu_shader5.
-TEST_CASE("glslang accepts pairs of floats behind other barriers than `precise`") {
-  Programs programs("barriers");
+TEST_CASE(
+    "glslang accepts doubles and their functions in either form, behind other barriers than `precise`") {
+  Programs programs("doubles");
+  std::vector<IntrinsicUse> all;
+  for (int i = 0; i <= static_cast<int>(Intrinsic::Pow); ++i)
+    all.push_back({static_cast<Intrinsic>(i), 1, true});
   Kernel kernel = samples::saxpy;
   kernel.usesDoubles = true;
   for (Profile profile : profiles()) {
-    profile.doubles = Doubles::Pairs;
-    for (const sk::Barrier barrier : {sk::Barrier::None, sk::Barrier::Xor}) {
-      profile.barrier = barrier;
-      programs.add(
-          fragmentProgram(profile, kernel, {.access = std::vector<StreamAccess>(kernel.parameters.size())}));
+    for (const Doubles form : {Doubles::Native, Doubles::Pairs}) {
+      if (profile.es && form == Doubles::Native) continue;
+      profile.doubles = form;
+      for (const sk::Barrier barrier : {sk::Barrier::None, sk::Barrier::Xor}) {
+        profile.barrier = barrier;
+        for (const std::span<const IntrinsicUse> uses :
+             {std::span<const IntrinsicUse>{}, std::span<const IntrinsicUse>(all)}) {
+          kernel.intrinsics = uses;
+          programs.add(fragmentProgram(profile, kernel,
+                                       {.access = std::vector<StreamAccess>(kernel.parameters.size())}));
+        }
+      }
     }
   }
-  REQUIRE(programs.count() == 4);
+  REQUIRE(programs.count() == 12);
   checkAccepted(programs);
 }
 

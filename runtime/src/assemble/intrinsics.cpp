@@ -4,6 +4,7 @@
 // one float, then those of vectors.
 #include "assemble/intrinsics.hpp"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -397,11 +398,12 @@ IntrinsicTexts fastTexts(std::span<const IntrinsicUse> uses) {
 std::string_view name(Intrinsic intrinsic) { return rowOf(intrinsic).name; }
 
 IntrinsicTexts intrinsicTexts(std::span<const IntrinsicUse> uses, bool accurate) {
-  if (uses.empty()) return {};
+  if (std::ranges::none_of(uses, &IntrinsicUse::widths)) return {};  // or of doubles alone
   if (!accurate) return fastTexts(uses);
   Parts used = 0;
   IntrinsicTexts texts;
   for (const IntrinsicUse& use : uses) {
+    if (use.widths == 0) continue;
     used |= rowOf(use.intrinsic).parts;
     texts.useExactFloats = texts.useExactFloats || use.intrinsic == Intrinsic::Mix;
   }
@@ -410,7 +412,9 @@ IntrinsicTexts intrinsicTexts(std::span<const IntrinsicUse> uses, bool accurate)
   for (unsigned i = 0; i < partCount; ++i) {
     if (used >> i & 1u) texts.definitions += text(static_cast<Part>(i));
   }
-  for (const IntrinsicUse& use : uses) texts.definitions += accurateDefinition(use);
+  for (const IntrinsicUse& use : uses) {
+    if (use.widths != 0) texts.definitions += accurateDefinition(use);
+  }
   return texts;
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/double_intrinsics.hpp"
 #include "assemble/doubles.hpp"
 #include "assemble/exact_sums.hpp"
 #include "assemble/intrinsics.hpp"
@@ -100,12 +101,14 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   std::string program = fmt::format("{}\n// {}\n", profile.version, comment);
   const IntrinsicTexts intrinsics = intrinsicTexts(kernel.intrinsics, profile.accurate);
   const bool hasExactFloats = kernel.usesExactSums || intrinsics.useExactFloats ||
+                              callDoubleIntrinsics(kernel.intrinsics) ||
                               (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
   if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
   if (hasExactFloats) program += exactExtensions(profile.barrier);
   if (profile.es) program += esPrecision;
   if (hasExactFloats) program += exactDefinitions(profile.barrier);
   if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles);
+  program += doubleIntrinsicDefinitions(kernel.intrinsics, profile.doubles, profile.barrier);
   program += intrinsics.definitions;
   addForeign(program, kernel.declarations);
   program += '\n';
