@@ -16,7 +16,8 @@ std::vector<MeasuredDevice> readDevices(const std::string& file) {
   if (!in) throw std::runtime_error(fmt::format("'{}' cannot be read: {}", file, std::strerror(errno)));
   std::vector<MeasuredDevice> devices;
   try {
-    for (const nlohmann::json& device : nlohmann::json::parse(in).at("devices")) {
+    const nlohmann::json written = nlohmann::json::parse(in);
+    for (const nlohmann::json& device : written.at("devices")) {
       const nlohmann::json limits = device.value("limits", nlohmann::json());
       if (!limits.contains("draw_buffers")) continue;
       devices.push_back({device.at("name").get<std::string>(),

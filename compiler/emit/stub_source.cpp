@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "emit/cpp_literals.hpp"
 #include "emit/elements.hpp"
 #include "emit/float_intrinsics.hpp"
 #include "emit/native_code.hpp"
@@ -21,38 +22,6 @@ namespace {
 
 using namespace ir;
 using sk::CallOptions;
-
-/// Compilers limit the length of one string literal; literals side by side are one string.
-constexpr std::size_t pieceSize = 15000;
-
-/// `text` as raw string literals, broken after lines.
-std::string rawString(std::string_view text) {
-  std::string result;
-  do {
-    std::size_t length = text.size();
-    if (length > pieceSize) {
-      const std::size_t lineEnd = text.rfind('\n', pieceSize - 1);
-      length = lineEnd == std::string_view::npos ? pieceSize : lineEnd + 1;
-    }
-    if (!result.empty()) result += "\n    ";
-    result += fmt::format("R\"glsl({})glsl\"", text.substr(0, length));
-    text.remove_prefix(length);
-  } while (!text.empty());
-  return result;
-}
-
-/// A float of C++, with all its digits.
-std::string floatLiteral(float value) { return fmt::format("{:#}F", value); }
-
-/// A path as a string literal.
-std::string quoted(std::string_view text) {
-  std::string result = "\"";
-  for (char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
 
 class SourceWriter {
  public:

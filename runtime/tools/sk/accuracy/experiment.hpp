@@ -33,9 +33,9 @@ struct Grade {
   std::vector<Metric> metrics = {};  ///< the first is the relative error, by which modes are compared
   std::optional<double> bound = {};  ///< of the metric that Experiment::bounded names
   bool isWithinBound = true;
-  Json worst =
-      {};  ///< of programs that compute element by element: inputs of the largest error; of the kernels of a
-  ///< file "inputs" (not of reduces), "result" (its name), "got" and "wanted"
+  /// Of programs that compute element by element: the inputs of the largest error. Of the kernels of a file: "index" and
+  /// "inputs" (not of reduces), "result" (its name), "got" and "wanted".
+  Json worst = {};
   std::optional<ExtremeCounts> extremes = {};
 
   double error() const { return metrics.front().value; }

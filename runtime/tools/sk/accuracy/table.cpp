@@ -52,6 +52,9 @@ std::string caseText(const Json& one) {
                                    value[isIndex ? "index" : "hex"].get<std::string>()));
     }
   }
+  if (inputs.empty() && one.contains("index")) {
+    inputs.push_back(fmt::format("element {}", one["index"].get<std::string>()));
+  }
   if (inputs.size() > most) {
     inputs.resize(most);
     inputs.emplace_back("...");

@@ -87,7 +87,7 @@ Results Call::exactResults() const {
     const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
     const auto arrays = sk::nativeStream(sk::detail::wholeRegion(streams_[p].get())).components.arrays();
     for (std::size_t c = 0; c < places.size(); ++c) {
-      const Scalar held = types[c].isReal ? Scalar::Double : places[c].scalar;
+      const Scalar held = types[c].scalar == Scalar::Float ? Scalar::Double : places[c].scalar;
       results.push_back(loadAll(held, static_cast<const std::byte*>(arrays[c]), types[c].storedBytes, count));
     }
   }

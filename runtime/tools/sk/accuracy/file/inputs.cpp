@@ -51,6 +51,11 @@ double drawScalar(Scalar scalar, const std::optional<Range>& range, Numbers& num
   return std::min(from.low + std::floor(numbers.unit() * (from.high - from.low + 1)), from.high);
 }
 
+/// Whether a scalar may be extreme: a real that is not set.
+bool isDrawnReal(Scalar scalar, const std::optional<Range>& range) {
+  return isReal(scalar) && !(range && range->isValue());
+}
+
 /// At most `mostExtremes`.
 std::vector<double> extremesOf(Scalar scalar, const std::optional<Range>& range) {
   std::vector<double> values{0.0, -0.0, 1, -1};
@@ -75,13 +80,13 @@ std::vector<double> extremesOf(Scalar scalar, const std::optional<Range>& range)
   return values;
 }
 
-/// How an iterator of integers must step: in whole steps of 1, from the start of its range.
+/// How often a component of an iterator steps.
 std::int64_t stepsOf(const Parameter& parameter, const sk::Shape& domain, std::size_t component) {
   const bool countsElements = domain.rank() == 1 || parameter.element->fields[0].width == 1;
   return countsElements ? domain.size() : domain[domain.rank() - 1 - static_cast<int>(component)];
 }
 
-/// Begin and end of an iterator's scalar.
+/// Begin and end of an iterator's scalar; integers go in whole steps.
 Range endsOf(const Parameter& parameter, Scalar scalar, const std::optional<Range>& range,
              const sk::Shape& domain, std::size_t component) {
   if (isReal(scalar)) return range.value_or(Range{-1, 1});
@@ -120,26 +125,34 @@ class Drawing {
     if (parameter.role == Role::Gather && parameter.rank != shape.rank()) {
       shape = cubeOf(parameter.rank, shape.size());
     }
-    const std::size_t count = static_cast<std::size_t>(isOneValue ? extent_.draws : shape.size());
-    const bool mayBeExtreme = parameter.role != Role::Spec && extremes_ != Extremes::None &&
-                              isOneValue == (extremes_ == Extremes::InValues);
+    const auto count = static_cast<std::size_t>(isOneValue ? extent_.draws : shape.size());
     ParameterInput input{.shape = shape, .bytes = std::vector<std::byte>(count * parameter.element->size)};
     const std::vector<std::optional<Range>> ranges = ranges_.of(parameter);
     const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
     for (std::size_t c = 0; c < places.size(); ++c) {
-      const bool isExtreme = mayBeExtreme && isDrawn(places[c].scalar, ranges[c]);
-      const std::vector<double> extremes =
-          isExtreme ? extremesOf(places[c].scalar, ranges[c]) : std::vector<double>{};
+      const std::vector<double> values = drawScalars(parameter, places[c].scalar, ranges[c], count);
       for (std::size_t i = 0; i < count; ++i) {
-        double value = parameter.role == Role::Spec && !ranges[c]
-                           ? 1
-                           : drawScalar(places[c].scalar, ranges[c], numbers_);
-        if (isExtreme && takesExtreme(parameter, i, place_)) value = pick(extremes, i);
-        store(places[c].scalar, value, input.bytes.data() + i * parameter.element->size + places[c].offset);
+        store(places[c].scalar, values[i],
+              input.bytes.data() + i * parameter.element->size + places[c].offset);
       }
-      if (isExtreme) ++place_;
     }
     return input;
+  }
+
+  std::vector<double> drawScalars(const Parameter& parameter, Scalar scalar,
+                                  const std::optional<Range>& range, std::size_t count) {
+    if (parameter.role == Role::Spec && !range) return std::vector<double>(count, 1);
+    std::vector<double> values(count);
+    for (double& value : values) value = drawScalar(scalar, range, numbers_);
+    const bool isWhere =
+        extremes_ != Extremes::None && isValue(parameter) == (extremes_ == Extremes::InValues);
+    if (!isWhere || parameter.role == Role::Spec || !isDrawnReal(scalar, range)) return values;
+    const std::vector<double> extremes = extremesOf(scalar, range);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (takesExtreme(parameter, i, place_)) values[i] = pick(extremes, i);
+    }
+    ++place_;
+    return values;
   }
 
   /// First each scalar that may by itself, with each of its extremes; later several at once. Gathers, whose neighbours
@@ -165,10 +178,6 @@ class Drawing {
   }
   std::size_t numberOf(std::size_t element) const {
     return extremes_ == Extremes::InValues ? element : element / static_cast<std::size_t>(block());
-  }
-
-  static bool isDrawn(Scalar scalar, const std::optional<Range>& range) {
-    return isReal(scalar) && !(range && range->isValue());
   }
 
   ParameterInput iterator(const Parameter& parameter) const {
@@ -218,23 +227,27 @@ int rankOf(const Subject& subject) {
   return rank;
 }
 
+sk::Shape shapeOf(std::span<const std::int64_t> extents) {
+  sk::Shape shape{1};
+  if (extents.size() == 2) shape = {1, 1};
+  if (extents.size() == 3) shape = {1, 1, 1};
+  if (extents.size() == 4) shape = {1, 1, 1, 1};
+  for (int d = 0; d < shape.rank(); ++d) shape = shape.with(d, extents[static_cast<std::size_t>(d)]);
+  return shape;
+}
+
 sk::Shape cubeOf(int rank, std::int64_t count) {
   auto side = static_cast<std::int64_t>(std::floor(std::pow(static_cast<double>(count), 1.0 / rank)));
   while (std::pow(static_cast<double>(side), rank) < static_cast<double>(count)) ++side;
-  switch (rank) {
-    case 1: return {side};
-    case 2: return {side, side};
-    case 3: return {side, side, side};
-    default: return {side, side, side, side};
-  }
+  return shapeOf(std::vector<std::int64_t>(static_cast<std::size_t>(rank), side));
 }
 
 bool hasDrawnValues(const Subject& subject, const Ranges& ranges) {
   for (const Parameter& parameter : subject.parameters()) {
     if (parameter.role != Role::Uniform) continue;
-    for (const std::optional<Range>& range : ranges.of(parameter)) {
-      if (!range || !range->isValue()) return true;
-    }
+    const std::vector<std::optional<Range>> given = ranges.of(parameter);
+    const auto isDrawn = [](const std::optional<Range>& range) { return !range || !range->isValue(); };
+    if (std::any_of(given.begin(), given.end(), isDrawn)) return true;
   }
   return false;
 }
@@ -248,10 +261,14 @@ std::size_t extremeScalars(const Subject& subject, const Ranges& ranges, Extreme
     const std::vector<std::optional<Range>> given = ranges.of(parameter);
     const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
     for (std::size_t c = 0; c < places.size(); ++c) {
-      count += isReal(places[c].scalar) && !(given[c] && given[c]->isValue()) ? 1 : 0;
+      count += isDrawnReal(places[c].scalar, given[c]) ? 1 : 0;
     }
   }
   return count;
+}
+
+std::string indexOf(const Inputs& inputs, std::size_t result) {
+  return indexText(inputs.extent.results, static_cast<std::int64_t>(result));
 }
 
 Json inputsOf(const Subject& subject, const Inputs& inputs, int draw, std::size_t result) {

@@ -6,6 +6,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "accuracy/file/ranges.hpp"
@@ -40,6 +42,8 @@ Inputs drawInputs(const Subject& subject, const Ranges& ranges, const Extent& ex
 
 /// Dimensions that the domain should have, as the gathers and iterators want it.
 int rankOf(const Subject& subject);
+/// Of one to four extents.
+sk::Shape shapeOf(std::span<const std::int64_t> extents);
 /// A line, square, cube ... of `count` elements at least.
 sk::Shape cubeOf(int rank, std::int64_t count);
 
@@ -48,8 +52,10 @@ bool hasDrawnValues(const Subject& subject, const Ranges& ranges);
 /// Reals in elements, or in host values, that may become extreme.
 std::size_t extremeScalars(const Subject& subject, const Ranges& ranges, Extremes extremes);
 /// Of one scalar, at most.
-inline constexpr std::size_t mostExtremes = 32;
+inline constexpr std::size_t mostExtremes = 21;
 
+/// Where a result is, rows first: "3, 5".
+std::string indexOf(const Inputs& inputs, std::size_t result);
 /// The inputs of a result by name, as Json that jsonOf() makes of scalars; gathers by their element in that place.
 Json inputsOf(const Subject& subject, const Inputs& inputs, int draw, std::size_t result);
 

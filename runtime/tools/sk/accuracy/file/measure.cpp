@@ -117,15 +117,6 @@ std::vector<CallMode> modesOf(const Subject& subject, const sk::Device& device) 
 
 // ---- inputs ---------------------------------------------------------------------------------------
 
-sk::Shape shapeOf(const std::vector<std::int64_t>& extents) {
-  switch (extents.size()) {
-    case 1: return {extents[0]};
-    case 2: return {extents[0], extents[1]};
-    case 3: return {extents[0], extents[1], extents[2]};
-    default: return {extents[0], extents[1], extents[2], extents[3]};
-  }
-}
-
 sk::Shape ones(int rank) { return cubeOf(rank, 1); }
 
 Extent ordinaryExtent(const Subject& subject, const sk::Shape& domain, int drawn) {
@@ -259,7 +250,11 @@ class Measured {
   Json caseOf(const ErrorPlace& place, bool hasInputs) const {
     const ResultScalar& scalar = scalars_[place.scalar];
     Json json = Json::object();
-    if (hasInputs) json["inputs"] = inputsOf(subject_, sets_[place.inputs]->inputs, place.draw, place.result);
+    if (hasInputs) {
+      const Inputs& inputs = sets_[place.inputs]->inputs;
+      json["index"] = indexOf(inputs, place.result);
+      json["inputs"] = inputsOf(subject_, inputs, place.draw, place.result);
+    }
     json["result"] = scalar.name;
     json["got"] = jsonOf(scalar.scalar, place.got);
     json["wanted"] = jsonOf(sk::program::Scalar::Double, place.wanted);
