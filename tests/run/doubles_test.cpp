@@ -328,7 +328,8 @@ TEST_CASE("doubles are rounded to integers exactly") {
   std::vector<double> x = {0,          0.5,           1.5,           2.5,           -0.5,        -1.5,
                            -2.5,       0.5 + 0x1p-40, 1.5 - 0x1p-40, 2.5 + 0x1p-40, 1 - 0x1p-48, 3.0,
                            1e9,        1e9 + 0.5,     16777217.5,    8388609.5,     8388608.5,   33554433.5,
-                           -8388609.5, -8388610.5,    123456789.25,  -123456789.75, 0x1p47 - 1};
+                           -8388609.5, -8388610.5,    123456789.25,  -123456789.75, 0x1p47 - 1,  infinity,
+                           -infinity};
   for (const double v : randomDoubles(2000, 41, 40)) x.push_back(v);
   onEveryForm([&](sk::Device& device, const Form&) {
     const auto n = static_cast<std::int64_t>(x.size());

@@ -181,10 +181,9 @@ sk_double sk_pow(sk_double x, sk_double y) {
   sk_double one = D(1.0), zero = D(0.0), a = sk_ldexp(sk_abs(x), 0);
   if (sk_equal(y, zero) || sk_equal(x, one)) return one;
   if (sk_isnan(x) || sk_isnan(y)) return sk_nan();
-  bool even = sk_less(D(1e17), sk_abs(y));   // what is so large, infinity among it
-  bool whole = even || sk_equal(sk_floor(y), y), below = sk_is_negative(y), negative = sk_is_negative(x);
+  bool whole = sk_equal(sk_floor(y), y), below = sk_is_negative(y), negative = sk_is_negative(x);
   sk_double halved = sk_ldexp(y, -1);
-  bool odd = whole && !even && !sk_equal(sk_floor(halved), halved);
+  bool odd = whole && !sk_equal(sk_floor(halved), halved);
   sk_double p = sk_equal(a, one) ? one : sk_power(a, y);
   if (sk_equal(a, zero)) p = below ? sk_infinity() : zero;
   else if (sk_isinf(a)) p = below ? zero : sk_infinity();

@@ -51,9 +51,11 @@ bool sk_less(sk_double a, sk_double b) { return sk_value(a) < sk_value(b); }
 bool sk_less_equal(sk_double a, sk_double b) { return sk_value(a) <= sk_value(b); }
 bool sk_equal(sk_double a, sk_double b) { return sk_value(a) == sk_value(b); }
 sk_double sk_abs(sk_double a) { return sk_double(a.bits & uvec2(0xffffffffu, 0x7fffffffu)); }
-sk_double sk_floor(sk_double a) { return sk_of(floor(sk_value(a))); }
-sk_double sk_trunc(sk_double a) { return sk_of(trunc(sk_value(a))); }
-sk_double sk_round(sk_double a) { return sk_of(roundEven(sk_value(a))); }
+// From 2^52 on, all are whole. Of infinity, Mesa's functions are NaN.
+bool sk_is_whole(sk_double a) { return (a.bits.y & 0x7fffffffu) >= 0x43300000u; }
+sk_double sk_floor(sk_double a) { return sk_is_whole(a) ? a : sk_of(floor(sk_value(a))); }
+sk_double sk_trunc(sk_double a) { return sk_is_whole(a) ? a : sk_of(trunc(sk_value(a))); }
+sk_double sk_round(sk_double a) { return sk_is_whole(a) ? a : sk_of(roundEven(sk_value(a))); }
 sk_double sk_sqrt(sk_double a) { return sk_of(sqrt(sk_value(a))); }
 bool sk_isinf(sk_double a) { return sk_abs(a).bits == uvec2(0u, 0x7ff00000u); }
 // What is below the smallest normal double is 0.
