@@ -3,6 +3,7 @@
 // Promises: how each kind of expression is spelled in GLSL's common subset.
 #include "emit/glsl_expr.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include <catch2/catch.hpp>
@@ -153,6 +154,23 @@ TEST_CASE("intrinsics that the assembler defines take arguments of one width, an
   CHECK(t.polyfills.intrinsics()[0].widths == 0b11);
   CHECK(t.polyfills.intrinsics()[1].intrinsic == Defined::Max);
   CHECK(t.polyfills.intrinsics()[1].widths == 0b10);
+}
+
+TEST_CASE("intrinsics of doubles: the assembler defines them of one, the body of vectors") {
+  Fixture t;
+  const auto wide = [&](VarId var) { return convert(Scalar::Double, t.ref(var)); };
+  CHECK(t.text(intrinsic(Intrinsic::Exp, exprs(wide(t.f)))) == "sk_exp(sk_to_double(f))");
+  CHECK(t.polyfills.functions().empty());
+  CHECK(t.text(intrinsic(Intrinsic::AtanYX, exprs(wide(t.v), wide(t.v)))) ==
+        "sk_atan2(sk_to_double(v), sk_to_double(v))");
+  CHECK(std::ranges::any_of(t.polyfills.functions(), [](const std::string& function) {
+    return function.starts_with("sk_double2 sk_atan2(");
+  }));
+  REQUIRE(t.polyfills.intrinsics().size() == 2);
+  for (const sk::program::IntrinsicUse& use : t.polyfills.intrinsics()) {
+    CHECK(use.ofDouble);
+    CHECK(use.widths == 0);
+  }
 }
 
 TEST_CASE("an intrinsic without GLSL of its own is defined by the assembler") {
