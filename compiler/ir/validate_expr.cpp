@@ -184,9 +184,10 @@ class ExprChecker {
   void rule(Type type, const NeighborRead& n) const { read(type, n.stream, n.offset->type); }
   void rule(Type type, const Sample& n) const {
     const GatherType gather = gatherType(n.stream);
-    require(gather.element.carrier().isFloat(), "a gather that holds no floats is interpolated");
-    require(n.position->type == Type::of(Scalar::Float, gather.rank),
-            "the position in a gather is not float of its rank");
+    require(gather.element.carrier().isFloat() || gather.element.isDouble(),
+            "a gather that holds no floats is interpolated");
+    require(n.position->type == Type::of(type.isDouble() ? Scalar::Double : Scalar::Float, gather.rank),
+            "the position in a gather is not of the interpolated type and its rank");
     require(gather.element.carrier() == type,
             "an interpolated value has another type than the stream's element");
   }

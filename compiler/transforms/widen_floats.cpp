@@ -58,6 +58,8 @@ class Obstacles {
     found_.clear();
     for (const FunctionId id : functionsOf(module_, kernel)) {
       const Function& function = module_.functions[id];
+      function_ = &function;
+      kernel_ = &kernel;
       for (const Variable& variable : function.variables) check(variable.type, variable.loc);
       walkExprs(function.body, [&](const Expr& expr) { check(expr); });
     }
@@ -67,7 +69,8 @@ class Obstacles {
  private:
   void check(const Expr& expr) {
     check(expr.type, expr.loc);
-    if (std::holds_alternative<Sample>(expr.node)) note("sample() interpolates in floats", expr.loc);
+    if (const auto* n = std::get_if<Sample>(&expr.node); n != nullptr && gatherType(n->stream).isNarrow())
+      note("sample() of a type with fewer bits interpolates in floats", expr.loc);
     const auto* call = std::get_if<IntrinsicCall>(&expr.node);
     if (call == nullptr || isOfBits(call->intrinsic)) return;
     std::vector<Type> arguments;
@@ -75,6 +78,11 @@ class Obstacles {
     if (!resultType(call->intrinsic, arguments)) {
       note(fmt::format("{}() is one of floats alone", ir::row(call->intrinsic).spelling), expr.loc);
     }
+  }
+
+  Type gatherType(StreamRef stream) const {
+    return stream.space == StreamRef::Space::Variable ? function_->variables[stream.id].type
+                                                      : kernel_->params[stream.id].type;
   }
 
   void check(Type type, Loc loc) {
@@ -92,6 +100,8 @@ class Obstacles {
 
   const Module& module_;
   WideTypes& types_;
+  const Kernel* kernel_ = nullptr;
+  const Function* function_ = nullptr;  ///< the one that is looked at
   std::string found_;
 };
 

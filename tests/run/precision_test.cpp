@@ -332,10 +332,57 @@ TEST_CASE("sines and exponentials, on doubles inside") {
   });
 }
 
+TEST_CASE("elements are interpolated in doubles") {
+  sk::Device reference = sk::Device::reference();
+  onEveryLayout([&](sk::Device& device) {
+    const std::vector<float> values = numbers(210, 31, -1, 1);
+    std::vector<sk::float2> a, x;
+    std::vector<sk::float3> c;
+    for (std::size_t i = 0; i < 70; ++i) {
+      a.push_back({values[i], values[i + 70]});
+      c.push_back({values[i], values[i + 70], values[i + 140]});
+    }
+    for (const float v : numbers(400, 32, -30, 30)) x.push_back({v, v * 1.7F});
+    for (const float v : {0.0F, 3.0F, -6.0F, 1e8F, -1e30F, std::numeric_limits<float>::infinity()})
+      x.push_back({v, v});
+    const auto n = static_cast<std::int64_t>(x.size());
+    const auto run = [&](sk::Device& on, Precision precision) {
+      auto as = on.stream<sk::float2>({7, 10});
+      auto cs = on.stream<sk::float3>({2, 5, 7});
+      as.write(a);
+      cs.write(c);
+      auto r = on.stream<sk::float2>({n});
+      auto s = on.stream<float>({n});
+      auto t = on.stream<sk::float3>({n});
+      precision::between.with({.precision = precision})(as, streamOf(on, values), cs, streamOf(on, x), r, s,
+                                                        t);
+      std::vector<double> all = r.readReals();
+      for (const double v : s.readReals()) all.push_back(v);
+      for (const double v : t.readReals()) all.push_back(v);
+      return all;
+    };
+    const std::vector<double> exact = run(reference, Precision::Default);
+    for (const Precision precision : widePrecisions(device)) {
+      const std::vector<double> got = run(device, precision);
+      REQUIRE(got.size() == exact.size());
+      for (std::size_t i = 0; i < got.size(); ++i) {
+        INFO(i << ": " << got[i] << ", not " << exact[i]);
+        // the position is off by 2^-44 of up to 50, of which a difference of elements up to 2 is made
+        if (!std::isnan(exact[i]))
+          CHECK(std::fabs(got[i] - exact[i]) <= halfUlp * std::fabs(exact[i]) + 0x1p-36);
+      }
+    }
+  });
+}
+
 TEST_CASE("what has no form is refused") {
   sk::Device& device = run_tests::device("glsl330");
   auto a = streamOf<float>(device, {1, 2});
   auto r = device.stream<float>({2});
+  auto h = device.stream<sk::half>({2});
+  CHECK(errorOf([&] {
+          precision::betweenHalves.with({.precision = Precision::Extended})(h, a, r);
+        }).find("sample() of a type with fewer bits interpolates in floats") != std::string::npos);
   auto v = device.stream<sk::float2>({2});
   const std::string turned =
       errorOf([&] { precision::turned.with({.precision = Precision::Double})({}, v, v); });

@@ -40,6 +40,7 @@ class GatherText {
   /// Weights the neighbours pair by pair, x first. From 2^24 on floats are whole, so that only NaN leaves
   /// the weights anything but numbers.
   void defineSample() {
+    if (holdsDoubles()) return defineSampleOfDoubles();
     const std::string floats = rank_ == 1 ? "float" : fmt::format("vec{}", rank_);
     const std::string weights =
         rank_ == 1
@@ -51,6 +52,25 @@ class GatherText {
         {fmt::format("{} sk_f = floor(sk_x);", floats), fmt::format("{} sk_t = {};", floats, weights),
          fmt::format("{0} sk_i = {0}(clamp(sk_f, -2147483648.0, 2147483520.0));", vector()),
          fmt::format("return {};", weighted(rank_, {}))});
+  }
+
+  /// The same in doubles.
+  void defineSampleOfDoubles() {
+    const std::string place = rank_ == 1 ? "sk_double" : fmt::format("sk_double{}", rank_);
+    std::vector<std::string> lines, wholes;
+    for (int d = 0; d < rank_; ++d) {
+      const std::string x = rank_ == 1 ? "sk_x" : fmt::format("sk_x.{}", "xyzw"[d]);
+      lines.push_back(
+          fmt::format("sk_double sk_f{0} = sk_floor({1}), sk_t{0} = sk_sub({1}, sk_f{0});", d, x));
+      lines.push_back(fmt::format(
+          "if (sk_less_equal(sk_to_double(16777216.0), sk_abs({1}))) sk_t{0} = sk_to_double(0.0);", d, x));
+      wholes.push_back(fmt::format("min(sk_to_int(sk_f{}), 2147483520)", d));
+    }
+    lines.push_back(fmt::format("{0} sk_i = {0}({1});", vector(), fmt::join(wholes, ", ")));
+    lines.push_back(fmt::format("return {};", weighted(rank_, {})));
+    defineLerpOfDoubles();
+    program_.function(
+        fmt::format("{} sk_sample_{}({} sk_x)", parameter_.element->glsl, parameter_.symbol, place), lines);
   }
 
   /// The device's own filter, its boundary mode the sampler's.
@@ -93,15 +113,39 @@ class GatherText {
                                   "return sk_a * (1.0 - sk_t) + sk_b * sk_t;"});
   }
 
+  void defineLerpOfDoubles() {
+    program_.function(
+        "sk_double sk_lerp(sk_double sk_a, sk_double sk_b, sk_double sk_t)",
+        {"sk_double sk_one = sk_to_double(1.0);", "if (sk_less_equal(sk_t, sk_to_double(0.0))) return sk_a;",
+         "if (sk_less_equal(sk_one, sk_t)) return sk_b;",
+         "return sk_add(sk_mul(sk_a, sk_sub(sk_one, sk_t)), sk_mul(sk_b, sk_t));"});
+    const std::string_view type = parameter_.element->glsl;
+    std::vector<std::string> components;
+    for (const program::Field& field : parameter_.element->fields) {
+      for (int c = 0; c < field.width; ++c) {
+        components.push_back(fmt::format("sk_lerp(sk_a.{0}, sk_b.{0}, sk_t)", "xyzw"[components.size()]));
+      }
+    }
+    if (components.size() == 1) return;
+    program_.function(fmt::format("{0} sk_lerp({0} sk_a, {0} sk_b, sk_double sk_t)", type),
+                      {fmt::format("return {}({});", type, fmt::join(components, ", "))});
+  }
+
+  bool holdsDoubles() const { return parameter_.element->fields.front().scalar == program::Scalar::Double; }
+
+  /// The weight along a dimension.
+  std::string weight(std::size_t dimension) const {
+    if (holdsDoubles()) return fmt::format("sk_t{}", dimension);
+    return rank_ == 1 ? "sk_t" : fmt::format("sk_t.{}", "xyzw"[dimension]);
+  }
+
   /// What the first `dimensions` interpolate to, at `ahead` (0 or 1) of sk_i in each of the others.
   std::string weighted(int dimensions, std::array<int, 4> ahead) const {
     if (dimensions == 0) return fmt::format("sk_at_{}({})", parameter_.symbol, stepped(ahead));
     const auto last = static_cast<std::size_t>(dimensions - 1);
     const std::string low = weighted(dimensions - 1, ahead);
     ahead[last] = 1;
-    return fmt::format("sk_lerp({}, {}, sk_t{}{})", low, weighted(dimensions - 1, ahead),
-                       rank_ == 1 ? "" : ".",
-                       rank_ == 1 ? std::string_view() : std::string_view("xyzw").substr(last, 1));
+    return fmt::format("sk_lerp({}, {}, {})", low, weighted(dimensions - 1, ahead), weight(last));
   }
 
   /// "sk_i + ivec2(1, 0)"
