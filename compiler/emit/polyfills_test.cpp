@@ -25,12 +25,13 @@ constexpr std::string_view before = R"(
 #include <cstdio>
 #include <random>
 using uint = std::uint32_t;
-using std::clamp, std::floor, std::isinf, std::max, std::min, std::trunc;
+using std::abs, std::clamp, std::floor, std::isinf, std::max, std::min, std::trunc;
 float intBitsToFloat(int i) { return std::bit_cast<float>(i); }
 float uintBitsToFloat(uint u) { return std::bit_cast<float>(u); }
 int floatBitsToInt(float f) { return std::bit_cast<int>(f); }
 uint floatBitsToUint(float f) { return std::bit_cast<uint>(f); }
 float mix(float a, float b, bool c) { return c ? b : a; }
+float step(float edge, float x) { return x < edge ? 0 : 1; }
 #define sk_precise
 #define sk_keep(x) (x)
 )";
@@ -55,7 +56,8 @@ void check(float x, int e) {
 void checkSum(float x, float y) {   // a double holds the sum of floats whose exponents are near
   const float sum = sk_rounded_sum(x, y);
   same("sum", x, y, sum, x + y);
-  same("error of a sum", x, y, sk_sum_error(x, y), std::isfinite(sum) ? float((double(x) + y) - sum) : NAN);
+  const float error = sk_sum_error(x, y);
+  same("error of a sum", x, y, std::isfinite(error) ? error : NAN, std::isfinite(sum) ? float((double(x) + y) - sum) : NAN);
 }
 void checkProduct(float x, float y) {   // a double holds the product of floats
   const float product = x * y;

@@ -20,11 +20,11 @@
 //              r_total = isfinite(total_lost) ? total + total_lost : total;
 //            }
 //
-// sumError is the error of a float addition, itself a float (Knuth, TAOCP 2, 4.2.2, theorem B), and productError that of
-// a multiplication (Dekker, Numer. Math. 18, 1971), so that a sum of n terms (sum_terms.hpp) has one rounding of its own and
-// some (log n)^2 u^2 of the sum of magnitudes: Sum2 and Dot2 of Ogita, Rump and Oishi (SIAM J. Sci. Comput. 26,
-// 2005) over a tree. Which accumulators and members are such sums, float_sums.hpp says; all others are folded and combined
-// as before, be it by the author's own reduce. A reduce that has no identities has no second form.
+// sumError is the error of a float addition, itself a float, and productError that of a multiplication (Dekker, Numer.
+// Math. 18, 1971), so that a sum of n terms (sum_terms.hpp) has one rounding of its own and some (log n)^2 u^2 of the
+// sum of magnitudes: Sum2 and Dot2 of Ogita, Rump and Oishi (SIAM J. Sci. Comput. 26, 2005) over a tree. Which
+// accumulators and members are such sums, float_sums.hpp says; all others are folded and combined as before, be it by the
+// author's own reduce. A reduce that has no identities has no second form.
 #pragma once
 
 #include "ir/ir.hpp"

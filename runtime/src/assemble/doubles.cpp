@@ -80,7 +80,8 @@ sk_double sk_join(float a, float b) {
   sk_precise float s = sk_keep(a + b);
   sk_precise float t = sk_keep(s - a);
   sk_precise float e = sk_keep(b - t);
-  return sk_double(b == 0.0 ? a : s, sk_is_finite(s) ? e : 0.0);   // which keeps the sign of a zero
+  bool isOne = b == 0.0;   // keeps the sign of a zero
+  return sk_double(isOne ? a : s, isOne || !sk_is_finite(s) ? 0.0 : e);
 }
 
 // The result, unless its head is infinite or NaN. Without branches, which take compilers long.
@@ -89,14 +90,13 @@ sk_double sk_where_finite(float head, sk_double result) {
   return sk_double(isFinite ? result.hi : head, isFinite ? result.lo : 0.0);
 }
 
+// The same of any two; what is lost is not finite where the sum is not.
 sk_double sk_two_sum(float a, float b) {
   sk_precise float s = sk_keep(a + b);
-  sk_precise float c = sk_keep(s - a);
-  sk_precise float d = sk_keep(s - c);
-  sk_precise float e = sk_keep(a - d);
-  sk_precise float f = sk_keep(b - c);
-  sk_precise float g = sk_keep(e + f);
-  return sk_double(s, g);
+  bool isLarge = abs(a) >= abs(b);
+  sk_precise float t = sk_keep(s - (isLarge ? a : b));
+  sk_precise float e = sk_keep((isLarge ? b : a) - t);
+  return sk_double(s, e);
 }
 
 sk_double sk_two_product(float a, float b) {
