@@ -90,7 +90,7 @@ sk_double sk_where_finite(float head, sk_double result) {
   return sk_double(isFinite ? result.hi : head, isFinite ? result.lo : 0.0);
 }
 
-// The same of any two; what is lost is not finite where the sum is not.
+// The sum of any two floats; what is lost is not finite where the sum is not.
 sk_double sk_two_sum(float a, float b) {
   sk_precise float s = sk_keep(a + b);
   bool isLarge = abs(a) >= abs(b);
