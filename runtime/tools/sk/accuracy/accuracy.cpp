@@ -129,10 +129,12 @@ void runFile(const Options& options) {
       options.file.measurement(extentsIn(options.size), options.measurement.rounds);
   const KernelLibrary library(options.programs.front(), options.file.build);  // outlives the device
   sk::Device device(options.device);
-  std::vector<std::string> skipped;
-  const std::vector<Experiment> all = measureFile(device, library.list(), measurement, skipped);
   printHead(options, device);
-  for (const Experiment& experiment : all) fmt::print("{}", tableOf(experiment, true, options.tolerance));
+  const auto [all, skipped] =
+      measureFile(device, library.list(), measurement, [&](const Experiment& experiment) {
+        fmt::print("{}", tableOf(experiment, true, options.tolerance));
+        std::fflush(stdout);
+      });
   if (!skipped.empty()) fmt::print("not measured\n  {}\n", fmt::join(skipped, "\n  "));
   writeFiles(options, device, all);
 }

@@ -272,21 +272,24 @@ class Measured {
 
 }  // namespace
 
-std::vector<Experiment> measureFile(sk::Device& device, const sk::program::Library& library,
-                                    const FileMeasurement& measurement, std::vector<std::string>& skipped) {
-  const std::vector<Subject> subjects = chosenSubjects(library, measurement.kernel, skipped);
+FileResults measureFile(sk::Device& device, const sk::program::Library& library,
+                        const FileMeasurement& measurement,
+                        const std::function<void(const Experiment&)>& report) {
+  FileResults results;
+  const std::vector<Subject> subjects = chosenSubjects(library, measurement.kernel, results.skipped);
   measurement.ranges.check(subjects);
   sk::Device reference = sk::Device::reference();
-  std::vector<Experiment> experiments;
   for (const Subject& subject : subjects) {
     try {
-      experiments.push_back(Measured(device, reference, subject, measurement).experiment());
+      results.experiments.push_back(Measured(device, reference, subject, measurement).experiment());
     } catch (const sk::Error& error) {  // not even in its plainest mode
-      skipped.emplace_back(error.what());
+      results.skipped.emplace_back(error.what());
+      continue;
     }
+    report(results.experiments.back());
   }
-  if (experiments.empty()) failWith(skipped);
-  return experiments;
+  if (results.experiments.empty()) failWith(results.skipped);
+  return results;
 }
 
 }  // namespace sk_tool

@@ -3,6 +3,8 @@
 // `sk accuracy FILE.sk`: each kernel and reduce of a file in every mode, with inputs drawn for it, against the reference.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,9 +23,16 @@ struct FileMeasurement {
   Ranges ranges = {};
 };
 
-/// One experiment a kernel. `skipped` gets a line for each kernel that is not measured, and why. Throws
-/// std::runtime_error where none is left, where one is named that cannot be measured, or parameters that are not there.
-std::vector<Experiment> measureFile(sk::Device& device, const sk::program::Library& library,
-                                    const FileMeasurement& measurement, std::vector<std::string>& skipped);
+/// What came of a file, and a line for each kernel that was not measured, and why.
+struct FileResults {
+  std::vector<Experiment> experiments;  ///< one a kernel
+  std::vector<std::string> skipped;
+};
+
+/// `report` gets each experiment as soon as it is there. Throws std::runtime_error where no kernel can be measured, or none
+/// is of the name, and where parameters are named that are not there.
+FileResults measureFile(sk::Device& device, const sk::program::Library& library,
+                        const FileMeasurement& measurement,
+                        const std::function<void(const Experiment&)>& report);
 
 }  // namespace sk_tool
