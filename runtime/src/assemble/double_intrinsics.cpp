@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The table of functions, over the functions of doubles.hpp and the pieces of double_pieces.hpp alone, so that a text serves both
-// forms. `D(x)` is a constant (double_polynomials.hpp).
+// forms. `D(x)` is a constant (double_polynomials.hpp). NaN is looked for first, since comparisons of it are not the same everywhere.
 #include "assemble/double_intrinsics.hpp"
 
 #include <algorithm>
@@ -42,14 +42,14 @@ sk_double sk_tan(sk_double x) {
     Row{pieces(Piece::Angle), R"(
 sk_double sk_asin(sk_double x) {
   sk_double a = sk_abs(x), one = D(1.0);
-  if (!sk_less_equal(a, one)) return sk_nan();
+  if (sk_isnan(x) || sk_less(one, a)) return sk_nan();
   return sk_toggle(sk_angle(a, sk_sqrt(sk_mul(sk_sub(one, a), sk_add(one, a)))), x);
 }
 )"},
     Row{pieces(Piece::Angle), R"(
 sk_double sk_acos(sk_double x) {
   sk_double a = sk_abs(x), one = D(1.0);
-  if (!sk_less_equal(a, one)) return sk_nan();
+  if (sk_isnan(x) || sk_less(one, a)) return sk_nan();
   sk_double angle = sk_angle(sk_sqrt(sk_mul(sk_sub(one, a), sk_add(one, a))), a);
   return sk_is_negative(x) ? sk_sub(D(3.1415926535897931), angle) : angle;
 }
@@ -82,6 +82,7 @@ sk_double sk_atan2(sk_double y, sk_double x) {
 )"},
     Row{pieces(Piece::ExpReduced), R"(
 sk_double sk_sinh(sk_double x) {
+  if (sk_isnan(x)) return x;
   sk_double a = sk_abs(x), one = D(1.0);
   float f = sk_to_float(a);
   if (f > 800.0) return sk_toggle(sk_infinity(), x);
@@ -93,6 +94,7 @@ sk_double sk_sinh(sk_double x) {
 )"},
     Row{pieces(Piece::ExpReduced), R"(
 sk_double sk_cosh(sk_double x) {
+  if (sk_isnan(x)) return x;
   sk_double a = sk_abs(x);
   if (sk_to_float(a) > 800.0) return sk_infinity();
   int n;
@@ -102,6 +104,7 @@ sk_double sk_cosh(sk_double x) {
 )"},
     Row{pieces(Piece::ExpReduced), R"(
 sk_double sk_tanh(sk_double x) {
+  if (sk_isnan(x)) return x;
   sk_double a = sk_abs(x), one = D(1.0);
   if (sk_to_float(a) > 22.0) return sk_toggle(one, x);
   int n;
@@ -120,7 +123,7 @@ sk_double sk_asinh(sk_double x) {
 )"},
     Row{pieces(Piece::LogPlus), R"(
 sk_double sk_acosh(sk_double x) {
-  if (!sk_less_equal(D(1.0), x)) return sk_nan();
+  if (sk_isnan(x) || sk_less(x, D(1.0))) return sk_nan();
   if (sk_isinf(x)) return x;
   sk_double t = sk_sub(x, D(1.0));
   bool huge = sk_less(D(1e18), x);
@@ -130,13 +133,14 @@ sk_double sk_acosh(sk_double x) {
     Row{pieces(Piece::LogPlus), R"(
 sk_double sk_atanh(sk_double x) {
   sk_double a = sk_abs(x), one = D(1.0);
-  if (!sk_less_equal(a, one)) return sk_nan();
+  if (sk_isnan(x) || sk_less(one, a)) return sk_nan();
   if (sk_equal(a, one)) return sk_toggle(sk_infinity(), x);
   return sk_toggle(sk_mul(D(0.5), sk_log_plus(sk_div(sk_add(a, a), sk_sub(one, a)), 0)), x);
 }
 )"},
     Row{pieces(Piece::ExpReduced), R"(
 sk_double sk_exp(sk_double x) {
+  if (sk_isnan(x)) return x;
   float f = sk_to_float(x);
   if (abs(f) > 800.0) return sk_exp_limit(f);
   int n;
@@ -146,6 +150,7 @@ sk_double sk_exp(sk_double x) {
 )"},
     Row{pieces(Piece::ExpTail), R"(
 sk_double sk_exp2(sk_double x) {
+  if (sk_isnan(x)) return x;
   float f = sk_to_float(x);
   if (abs(f) > 1200.0) return sk_exp_limit(f);
   float n = roundEven(f);

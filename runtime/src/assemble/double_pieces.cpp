@@ -97,7 +97,7 @@ sk_double sk_exp_tail(sk_double r) { return sk_add(r, sk_mul(sk_mul(r, r), sk_ex
 sk_double sk_exp_limit(float x) { return x > 0.0 ? sk_infinity() : D(0.0); }
 )"},
     PieceRow{pieces(Piece::ExpTail), {}, R"(
-// exp(r) - 1 of x = r + n * ln(2), for |x| <= 800 (ln(2) in two parts: Cody and Waite, 1980). NaN of NaN.
+// exp(r) - 1 of x = r + n * ln(2), for |x| <= 800 (ln(2) in two parts: Cody and Waite, 1980).
 sk_double sk_exp_reduced(sk_double x, out int n) {
   float k = roundEven(clamp(sk_to_float(x), -1e3, 1e3) * 1.44269504);
   n = int(k);
