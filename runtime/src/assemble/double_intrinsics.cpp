@@ -73,8 +73,8 @@ sk_double sk_atan2(sk_double y, sk_double x) {
   } else if (sk_equal(larger, zero)) {
     a = one;
   } else {
-    a = sk_ldexp(a, -e);
-    b = sk_ldexp(b, -e);
+    a = sk_ldexp(a, 60 - e);   // the smaller one stays far from 0 where the quotient does
+    b = sk_ldexp(b, 60 - e);
   }
   sk_double angle = sk_angle(b, a);
   return sk_toggle(sk_is_negative(x) ? sk_sub(D(3.1415926535897931), angle) : angle, y);

@@ -15,7 +15,7 @@ namespace sk::assemble {
 bool callDoubleIntrinsics(std::span<const program::IntrinsicUse> uses);
 
 /// Their definitions, which stand behind those of doubles.hpp and of exact_sums.hpp for the same barrier. Of native
-/// doubles within a few 2^-53, of pairs within 2^-46, with the special cases of C99 (annex F); docs/accuracy.md says of each what
+/// doubles within a few 2^-53, of pairs within 2^-45, with the special cases of C99 (annex F); docs/accuracy.md says of each what
 /// holds.
 std::string doubleIntrinsicDefinitions(std::span<const program::IntrinsicUse> uses, Doubles form,
                                        Barrier barrier);
