@@ -198,8 +198,8 @@ TEST_CASE("a file gives a table another range, or none") {
   const ConfigurationFile file(
       "[tables.\"table::bell\"]\nlow = -2\nhigh = 2.0\nintervals = 4096\n"
       "[kernels.\"table::fines\"]\ntables = \"off\"\n");
-  for (const std::string name : {"llvmpipe", "native"}) {
-    sk::Device device({.device = name, .configuration = file.path});
+  for (const bool isNative : {false, true}) {
+    sk::Device device({.device = isNative ? "native" : "", .configuration = file.path});
     const std::vector<float> x = ramp(-2, 2, 10000);
     CHECK(largestError(x, called(device, table::bells, x), bell) < 6e-7);
     CHECK(reportOf(device, "table::bell").range == sk::TableRange{-2, 2, 4096});
