@@ -60,7 +60,9 @@ for device in native ''; do
 worst = kernels['math::cancel', 'single']['worst']
 x = worst['inputs']['x']
 assert float.fromhex(x['hex']) == x['value'] and 0 < x['value'] < 1e-3, x
-assert worst['result'] == 'r' and abs(worst['wanted']['value'] - 0.5) < 1e-3 or x['value'] < 1e-7, worst
+assert worst['result'] == 'r' and abs(worst['wanted']['value'] - 0.5) < 1e-6, worst
+double = kernels['math::cancel', 'double']  # below 1e-5 it loses all but a third of its digits: the reference is no double
+assert double['metrics']['rel err'] > 1e-5 and double['worst']['inputs']['x']['value'] < 1e-4, double
 assert kernels['math::cancel', 'single']['metrics']['rel err'] >= 1"
 done
 run 0 kernels.sk "${small[@]}" --device native --kernel math::roots --range x=0:1e6 --json all.json
@@ -97,7 +99,8 @@ single = kernels['pull', 'single']
 assert single['metrics']['wrong class'] == 0 and single['extremes']['other_class'] > 0, single
 example = single['extremes']['example']
 assert example['got']['hex'] == 'inf' and math.isfinite(float.fromhex(example['wanted']['hex'])), example
-assert kernels['pull', 'double']['extremes']['other_class'] == 0"
+double = kernels['pull', 'double']['extremes']  # overflows nowhere, but cancels, too
+assert double['other_class'] < single['extremes']['other_class'], (double, single)"
 run 0 kernels.sk "${small[@]}" --device native --kernel pull --no-extremes
 [[ $out != *extreme* ]] || broken "extremes in spite of --no-extremes"
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "native/native_stream.hpp"
+#include "sk/native/quad_type.hpp"
 
 namespace sk_tool {
 
@@ -16,6 +17,16 @@ using sk::program::Scalar;
 std::vector<double> loadAll(Scalar scalar, const std::byte* from, std::size_t stride, std::size_t count) {
   std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i) values[i] = load(scalar, from + i * stride);
+  return values;
+}
+
+std::vector<double> loadQuads(const std::byte* from, std::size_t count) {
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    sk::native::Quad value;
+    std::memcpy(&value, from + i * sizeof value, sizeof value);
+    values[i] = static_cast<double>(value);
+  }
   return values;
 }
 
@@ -83,12 +94,14 @@ Results Call::exactResults() const {
     const Parameter& parameter = subject_.parameters()[p];
     if (!isResult(parameter)) continue;
     const auto count = static_cast<std::size_t>(inputs_.extent.results.size());
-    const std::vector<sk::ComponentType> types = sk::componentsOf(*parameter.element, sk::RealType::Double);
+    const std::vector<sk::ComponentType> types = sk::componentsOf(*parameter.element, sk::RealType::Quad);
     const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
     const auto arrays = sk::nativeStream(sk::detail::wholeRegion(streams_[p].get())).components.arrays();
     for (std::size_t c = 0; c < places.size(); ++c) {
-      const Scalar held = types[c].scalar == Scalar::Float ? Scalar::Double : places[c].scalar;
-      results.push_back(loadAll(held, static_cast<const std::byte*>(arrays[c]), types[c].storedBytes, count));
+      const auto* from = static_cast<const std::byte*>(arrays[c]);
+      const bool isQuad = places[c].scalar == Scalar::Float || places[c].scalar == Scalar::Double;
+      results.push_back(isQuad ? loadQuads(from, count)
+                               : loadAll(places[c].scalar, from, types[c].storedBytes, count));
     }
   }
   return results;

@@ -29,7 +29,7 @@ class Call {
   void run(const sk::CallOptions& options, int draw);
   /// Of the last run.
   Results results() const;
-  /// The same of the reference device, floats as the doubles that it holds them as.
+  /// The same of a reference device in __float128, whose reals are rounded to doubles.
   Results exactResults() const;
 
  private:

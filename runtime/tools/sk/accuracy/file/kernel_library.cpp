@@ -35,7 +35,7 @@ fs::path ownFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); 
 void runSkc(const fs::path& file, const BuildOptions& options, const fs::path& folder) {
   std::string skc = options.skc.empty() ? variable("SK_SKC") : options.skc;
   if (skc.empty()) skc = fs::exists(ownFolder() / "skc") ? (ownFolder() / "skc").string() : "skc";
-  Words words{skc, "--library", "-o", folder.string()};
+  Words words{skc, "--library", "--quad", "-o", folder.string()};
   for (const std::string& include : options.includes) words.push_back("-I" + include);
   for (const std::string& definition : options.definitions) words.push_back("-D" + definition);
   words.push_back(file.string());
@@ -61,16 +61,19 @@ fs::path headerFolder() {
 
 /// By the compiler that CXX names, which may be several words, else by the first that there is.
 void runCompiler(const fs::path& source, const fs::path& object) {
-  std::vector<Words> compilers{{"c++"}, {"g++"}, {"clang++"}};
+  std::vector<Words> compilers{{"c++"}, {"g++"}};
   if (std::istringstream chosen(variable("CXX")); !chosen.str().empty()) {
     compilers.assign(1, {});
     for (std::string word; chosen >> word;) compilers.front().push_back(word);
   }
-  const Words options{"-std=c++20", "-O2", "-w", "-fPIC", "-shared",
-                      "-ffp-contract=off",  // as sk_add_kernels has it
-                      // only descriptors stay, not the stubs, which call the runtime that nobody links here
-                      "-fvisibility=hidden", "-ffunction-sections", "-Wl,--gc-sections",
-                      "-I" + headerFolder().string(), source.string(), "-o", object.string()};
+  Words options{"-std=c++20", "-O2", "-w", "-fPIC", "-shared",
+                "-ffp-contract=off",  // as sk_add_kernels has it
+                // only descriptors stay, not the stubs, which call the runtime that nobody links here
+                "-fvisibility=hidden", "-ffunction-sections", "-Wl,--gc-sections",
+                "-I" + headerFolder().string(), source.string(), "-o", object.string()};
+#if defined(__x86_64__) || defined(__i386__) || defined(__powerpc64__)
+  options.emplace_back("-lquadmath");  // where __float128 is another type than long double
+#endif
   for (Words words : compilers) {
     words.insert(words.end(), options.begin(), options.end());
     const std::optional<int> status = runProgram(words);

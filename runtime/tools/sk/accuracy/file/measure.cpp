@@ -133,7 +133,7 @@ Extent extremeExtent(const Subject& subject, std::int64_t count, int drawn) {
           .draws = drawn};
 }
 
-/// Inputs, and what comes of them: on the device, and in doubles.
+/// Inputs, and what comes of them: on the device, and in the reference.
 struct Set {
   Set(sk::Device& device, sk::Device& reference, const Subject& subject, Inputs drawn, Extremes kind)
       : inputs(std::move(drawn)), extremes(kind), call(device, subject, inputs) {
@@ -278,7 +278,7 @@ FileResults measureFile(sk::Device& device, const sk::program::Library& library,
   FileResults results;
   const std::vector<Subject> subjects = chosenSubjects(library, measurement.kernel, results.skipped);
   measurement.ranges.check(subjects);
-  sk::Device reference = sk::Device::reference();
+  sk::Device reference = sk::Device::reference(sk::Reference::Quad);
   for (const Subject& subject : subjects) {
     try {
       results.experiments.push_back(Measured(device, reference, subject, measurement).experiment());
