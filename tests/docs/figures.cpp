@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: MIT
 //
 // docs_figures RESULTS.json README.md: puts what `./dev bench --json RESULTS.json` measured between the
-// marks <!-- figures --> and <!-- /figures -->. The rest of the file stays as it is.
+// marks <!-- figures WORD... --> and <!-- /figures -->: the rows that begin with one of the words. The rest of the file
+// stays as it is.
 #include <exception>
 #include <fstream>
 #include <iterator>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace {
 
-constexpr const char* first = "<!-- figures -->\n";
-constexpr const char* last = "<!-- /figures -->";
+constexpr std::string_view first = "<!-- figures ";
+constexpr std::string_view behindWords = " -->\n";
+constexpr std::string_view last = "<!-- /figures -->";
 
 std::string read(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -22,10 +27,14 @@ std::string read(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-std::string table(const nlohmann::json& results) {
+/// The text up to the first space.
+std::string firstWord(const std::string& text) { return text.substr(0, text.find(' ')); }
+
+std::string table(const nlohmann::json& results, const std::set<std::string>& words) {
   std::string text =
       fmt::format("| on {} | median | bar |\n|---|---|---|\n", results.at("device").get<std::string>());
   for (const nlohmann::json& row : results.at("results")) {
+    if (!words.contains(firstWord(row.at("name")))) continue;
     const std::string unit = row.at("unit");
     const auto figure = [&](const nlohmann::json& value) {
       return fmt::format("{:.3g} {}", value.get<double>(), unit);
@@ -39,12 +48,17 @@ std::string table(const nlohmann::json& results) {
 void update(const std::string& results, const std::string& document) {
   const std::string text = read(document);
   const std::size_t begin = text.find(first);
+  const std::size_t behind = text.find(behindWords, begin);
   const std::size_t end = text.find(last);
-  if (begin == std::string::npos || end == std::string::npos || end < begin) {
-    throw std::runtime_error(fmt::format("'{}' has no {} and {}", document, std::string(first, 16), last));
+  if (begin == std::string::npos || behind == std::string::npos || end == std::string::npos || end < behind) {
+    throw std::runtime_error(fmt::format("'{}' has no {}WORD...{} and {}", document, first,
+                                         behindWords.substr(0, behindWords.size() - 1), last));
   }
+  const std::size_t rows = behind + behindWords.size();
+  std::istringstream listed(text.substr(begin + first.size(), behind - begin - first.size()));
+  const std::set<std::string> words{std::istream_iterator<std::string>(listed), {}};
   std::ofstream out(document, std::ios::binary);
-  out << text.substr(0, begin) << first << table(nlohmann::json::parse(read(results))) << text.substr(end);
+  out << text.substr(0, rows) << table(nlohmann::json::parse(read(results)), words) << text.substr(end);
   if (!out.flush()) throw std::runtime_error(fmt::format("cannot write '{}'", document));
 }
 
