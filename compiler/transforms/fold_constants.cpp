@@ -42,6 +42,17 @@ class State {
       return;
     }
     if (auto* n = std::get_if<Binary>(&slot->node)) dropNeutral(slot, *n);
+    if (std::holds_alternative<Index>(slot->node)) nameComponent(slot);
+  }
+
+  /// `v[1]` of a vector is `v.y`, which later transforms know by its place.
+  void nameComponent(ExprPtr& slot) {
+    auto& n = std::get<Index>(slot->node);
+    const Type vector = n.base->type;
+    const auto component = evaluate(module_, *n.index, Constants::LookThrough);
+    if (!vector.isVector() || !component || *component >= vector.width) return;
+    ExprPtr base = std::move(n.base);
+    slot = makeExpr(slot->type, Swizzle{std::move(base), {static_cast<std::uint8_t>(*component)}}, slot->loc);
   }
 
   /// `true && x` and `false || x`, either way round, are x.

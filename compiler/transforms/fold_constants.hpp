@@ -8,6 +8,9 @@
 //            v = (2.0 * 0.5 - 1.0) * x;  if (periodic && x > 0.0) v = wrapped(x); else v = 2.0 * pi * x;
 //   after    const bool periodic = false;
 //            v = 0.0 * x;  v = 2.0 * pi * x;
+//
+// A component of a vector with a known number gets its name, `a[1]` becomes `a.y`: so later transforms see what is folded
+// and what is written.
 #pragma once
 
 #include "ir/ir.hpp"

@@ -114,6 +114,16 @@ TEST_CASE("names of constants stay in values and decide branches") {
         }) == "{\n  r = 0.0;\n}\n");
 }
 
+TEST_CASE("components of vectors have names, where their numbers are known") {
+  const Type float3 = Type::of(Scalar::Float, 3);
+  CHECK(body([&](Module& m, KernelMaker& k) {
+          const VarId v = k.local("v", float3);
+          return block(declare(v), assign(index(m, k.ref(v), literal(0U)), Add, k.ref(0)),
+                       assign(index(m, k.ref(v), binary(Sub, constantRef(m, 1), literal(2))), k.ref(0)),
+                       assign(index(m, k.ref(v), constantRef(m, 1)), k.ref(0)));
+        }) == "{\n  float3 v;\n  v.x += x;\n  v.z = x;\n  v[n] = x;\n}\n");
+}
+
 TEST_CASE("a branch that declares something stays a scope") {
   CHECK(body([](Module&, KernelMaker& k) {
           return block(ifStmt(literal(true), block(declare(2, k.ref(0)), assign(k.ref(1), k.ref(2)))));

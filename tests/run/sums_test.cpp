@@ -99,6 +99,16 @@ TEST_CASE("vectors, and products of two streams") {
   });
 }
 
+TEST_CASE("components by number") {
+  onEveryProfile([](sk::Device& device) {
+    const std::vector<float> x = cancelling(2000, 8);
+    const sk::float2 total =
+        sums::indexed.with({.accumulate = sk::Accumulate::Compensated})(streamOf(device, x));
+    CHECK(std::fabs(total.x - 0.125) <= bound(0.125, magnitudes(x), x.size()));
+    CHECK(std::fabs(total.y - 0.25) <= bound(0.25, 2 * magnitudes(x), x.size()));
+  });
+}
+
 TEST_CASE("sums beside other accumulators, with an early return") {
   onEveryProfile([](sk::Device& device) {
     std::vector<float> x = cancelling(1000, 6);
