@@ -2,14 +2,32 @@
 #include "driver/device_file.hpp"
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace skc::driver {
+
+namespace {
+
+/// What every device has on which kernels run (ES 3.0).
+constexpr ir::Limits least{.drawBuffers = 4, .textureUnits = 16};
+
+/// Throws std::out_of_range.
+std::uint32_t limitOf(const nlohmann::json& limits, const char* name, std::uint32_t atLeast) {
+  const auto limit = limits.at(name).get<std::int64_t>();
+  if (limit < atLeast || limit > std::numeric_limits<std::int32_t>::max()) {
+    throw std::out_of_range(fmt::format("{} is {}, but every device has {} or more", name, limit, atLeast));
+  }
+  return static_cast<std::uint32_t>(limit);
+}
+
+}  // namespace
 
 std::vector<MeasuredDevice> readDevices(const std::string& file) {
   std::ifstream in(file);
@@ -21,10 +39,10 @@ std::vector<MeasuredDevice> readDevices(const std::string& file) {
       const nlohmann::json limits = device.value("limits", nlohmann::json());
       if (!limits.contains("draw_buffers")) continue;
       devices.push_back({device.at("name").get<std::string>(),
-                         {limits.at("draw_buffers").get<std::uint32_t>(),
-                          limits.at("texture_units").get<std::uint32_t>()}});
+                         {limitOf(limits, "draw_buffers", least.drawBuffers),
+                          limitOf(limits, "texture_units", least.textureUnits)}});
     }
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const std::exception& error) {   // of the JSON, or a limit
     throw std::runtime_error(
         fmt::format("'{}' is not what sk info --json={} writes: {}", file, file, error.what()));
   }

@@ -349,7 +349,7 @@ void checkTables(const Module& module, Stage stage) {
 }
 
 void checkTabulated(const Module& module, const Function& function) {
-  require(*function.table < module.tables.size(), "its table is not in the table");
+  require(*function.table < module.tables.size(), "its values have no table in the module");
   require(function.result.isFloat() && function.result.isScalar() && function.parameterCount == 1 &&
               function.variables[0].role == VarRole::In && function.variables[0].type == function.result,
           "it has a table, but does not take one float and give one");

@@ -35,8 +35,7 @@ const CompensatedReduction* compensated(const Reduction& reduction, std::span<co
   if (options.accumulate == Accumulate::Compensated && second == nullptr) {
     fail(reduction.fold,
          "it has no sum of floats to compensate, one that elements and partial results are added to and no "
-         "more; "
-         "call it without Accumulate::Compensated");
+         "more; call it without Accumulate::Compensated");
   }
   if (options.accumulate == Accumulate::Tree || second == nullptr || checked.domain.size() == 0) {
     return nullptr;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -100,10 +101,25 @@ class Samples {
   std::vector<double> values_;
 };
 
-std::vector<float> coefficientsFor(const Samples& samples, std::int32_t intervals, bool isCubic) {
+/// Intervals for each unit of the argument. Throws sk::Error where look-ups would leave the range of floats.
+float perUnit(const Table& table, const TableRange& range) {
+  const double width = double{range.high} - range.low;
+  const double intervals = range.intervals / width;
+  using Limits = std::numeric_limits<float>;
+  if (width > Limits::max() || intervals > Limits::max() || intervals < Limits::min()) {
+    throw Error(
+        fmt::format("{}: its {} interval(s) are too wide or too narrow for floats; give it another range",
+                    named(table, range), range.intervals));
+  }
+  return static_cast<float>(intervals);
+}
+
+std::vector<float> coefficientsFor(const Samples& samples, std::int32_t intervals,
+                                   Interpolation interpolation) {
+  const bool isCubic = interpolation == Interpolation::Cubic;
   std::vector<float> coefficients;
   const auto count = static_cast<std::size_t>(intervals);
-  coefficients.reserve(count * (isCubic ? 4 : 2));
+  coefficients.reserve(count * static_cast<std::size_t>(assemble::coefficientsOf(interpolation)));
   for (std::size_t i = 0; i < count; ++i) {
     const double rise = samples.value(i + 1) - samples.value(i);
     coefficients.push_back(static_cast<float>(samples.value(i)));
@@ -156,12 +172,13 @@ native::Table FunctionTable::native() const {
 }
 
 FunctionTable buildTable(const Table& table, const TableRange& range) {
+  const float scale = perUnit(table, range);
   const Samples samples(table, range);
   const bool isCubic = table.interpolation == Interpolation::Cubic;
   FunctionTable made{.report = {std::string(table.function), range, table.interpolation,
                                 predictedError(samples, range, isCubic), 0, range.low},
-                     .coefficients = coefficientsFor(samples, range.intervals, isCubic),
-                     .perUnit = static_cast<float>(range.intervals / (double{range.high} - range.low))};
+                     .coefficients = coefficientsFor(samples, range.intervals, table.interpolation),
+                     .perUnit = scale};
   measure(table, made);
   return made;
 }

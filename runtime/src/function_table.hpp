@@ -23,7 +23,8 @@ struct FunctionTable {
   native::Table native() const;
 };
 
-/// Throws sk::Error where the function has no native code, or a value in the range that is not finite.
+/// Throws sk::Error where the function has no native code, or a value in the range that is not finite, and where floats
+/// cannot tell the intervals of the range.
 FunctionTable buildTable(const program::Table& table, const TableRange& range);
 
 /// Those of a device.

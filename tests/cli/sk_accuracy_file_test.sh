@@ -36,6 +36,8 @@ kernel void pull(float g, spec bool far, Body b<>, [[wrap]] float w[][], out Bod
   e = sqrt(b.at.x * b.at.x + b.at.y * b.at.y) - neighbor(w, 1, 0);
   if (far) e = 2 * e;
 }
+[[table(0, 1, 16, linear)]] float curve(float x) { return x * x; }
+[[tables(on)]] kernel void look(float x<>, out float r<>) { r = curve(x); }
 kernel void ramp(iter float t<>, float c[2], out float r<>) { r = c[0] + c[1] * t; }
 reduce void sum(float x<>, reduce float total<> = 0) { total += x; }
 reduce void largest(float x<>, reduce float most<>) { most = max(most, x); }
@@ -70,6 +72,12 @@ json "
 assert kernels['math::roots', 'single']['worst']['inputs']['x']['value'] > 1e4
 assert kernels['math::roots', 'single']['metrics']['rel err'] > 1e-4
 assert kernels['math::roots', 'double']['metrics']['rel err'] < 1e-7"
+
+# A function with a table, computed and looked up: off by h^2 / 4 at most, in the middle of an interval.
+run 0 kernels.sk "${small[@]}" --kernel look --range x=0.5:1 --json all.json
+json "
+assert kernels['look', 'single']['metrics']['max ulp'] <= 0.5
+assert 0.0005 < kernels['look', 'single, tables']['metrics']['rel err'] < 1 / 1024 / 0.25 + 1e-6"
 
 # All of the file: structs, gathers, uniforms, spec parameters, arrays, iterators; what cannot be measured is told.
 run 0 kernels.sk "${small[@]}" --json all.json --chart all.svg --set far=false --range b.at=1:2 --range c=3:4
@@ -121,7 +129,7 @@ assert single['worst']['inputs']['x']['value'] == 0.5 and 'extremes' not in sing
 
 # What makes no sense, and what is missing.
 run 1 kernels.sk "${small[@]}" --kernel nosuch
-says "the file has no kernel 'nosuch'; it has math::cancel, math::roots, pull, ramp, parity, keep, sum, largest"
+says "the file has no kernel 'nosuch'; it has math::cancel, math::roots, pull, look, ramp, parity, keep, sum, largest"
 run 1 kernels.sk "${small[@]}" --kernel parity
 says "parity: there are no floats in its results"
 run 1 kernels.sk "${small[@]}" --kernel keep

@@ -80,19 +80,24 @@ SK
 cat >devices.json <<'JSON'
 {"devices": [{"name": "native"},
              {"name": "wide", "limits": {"draw_buffers": 8, "texture_units": 16}},
-             {"name": "narrow", "limits": {"draw_buffers": 3, "texture_units": 16}}]}
+             {"name": "narrow", "limits": {"draw_buffers": 5, "texture_units": 16}}]}
 JSON
 run 0 --emit=plan large.sk
 prints 'glsl330: 8 draw buffers'
 run 0 --emit=plan --device=devices.json large.sk
 prints 'wide: 8 draw buffers'
-prints 'narrow: 3 draw buffers'
+prints 'narrow: 5 draw buffers'
 prints '6 planes written, 1 read: 2 passes'
 run 0 --device=devices.json large.sk
-grep -qF '{3, 16,' large.sk.cpp || broken "the stub has no plan for 3 draw buffers"
+run 0 --emit=plan --profile=essl300 large.sk
+prints 'essl300: 4 draw buffers'
 refuses "'nowhere.json' cannot be read" --device=nowhere.json large.sk
 echo '{"devices": 3' >broken.json
 refuses "'broken.json' is not what sk info --json=broken.json writes" --device=broken.json large.sk
+for buffers in 0 -1 3; do
+  echo '{"devices": [{"name": "odd", "limits": {"draw_buffers": '$buffers', "texture_units": 16}}]}' >odd.json
+  refuses "draw_buffers is $buffers, but every device has 4 or more" --device=odd.json large.sk
+done
 echo '{"devices": [{"name": "native"}]}' >native.json
 refuses "'native.json' has no device that draws" --device=native.json large.sk
 

@@ -22,9 +22,9 @@ class DeviceState;  // the runtime's own
 
 struct DeviceOptions {
   /// Which device: "native" (the kernels' own C++ on the CPU, no GL), "reference" (the same, computing in double
-  /// wherever a kernel says float) or "reference:quad" (in __float128), "gpu" or "gpu:N" (the N-th hardware device, from 0), "software", or a part of the
-  /// renderer's name in any case ("llvmpipe", "nvidia"). Empty: environment variable SK_DEVICE, and
-  /// without it the best one, which is the first GPU, or a software renderer where there is none.
+  /// wherever a kernel says float) or "reference:quad" (in __float128), "gpu" or "gpu:N" (the N-th hardware device, from
+  /// 0), "software", or a part of the renderer's name in any case ("llvmpipe", "nvidia"). Empty: environment variable
+  /// SK_DEVICE, and without it the best one, which is the first GPU, or a software renderer where there is none.
   std::string device = {};
   /// "glsl330" or "essl300". Empty: environment variable SK_PROFILE, and without it glsl330 where
   /// the device has OpenGL 3.3, else essl300.
@@ -56,7 +56,7 @@ struct DeviceLimits {
   std::int32_t uniformComponents = 0;  ///< components of the uniform arguments of a kernel
 };
 
-/// What the reference computes with: 53 bits, or 113, some fifty times slower.
+/// What the reference computes with: doubles, of 53 bits, or __float128, of 113, which is software.
 enum class Reference : std::uint8_t { Double, Quad };
 
 /// Move-only. Several may live in a process; one thread may use a device at a time. A call makes the

@@ -10,6 +10,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "occurrences.hpp"
+
 #include "assemble/double_polynomials.hpp"
 #include "assemble/intrinsics.hpp"
 
@@ -19,12 +21,6 @@ using sk::program::IntrinsicUse;
 
 namespace {
 
-std::size_t count(const std::string& text, std::string_view what) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
-  return found;
-}
-
 std::string definitions(const std::vector<IntrinsicUse>& uses, Doubles form = Doubles::Pairs) {
   return doubleIntrinsicDefinitions(uses, form, sk::Barrier::Xor);
 }
@@ -33,12 +29,12 @@ TEST_CASE("functions of doubles come with what they need, once") {
   CHECK(definitions({}).empty());
   CHECK(definitions({{Intrinsic::Sin, 0b1111}}).empty());  // of floats
   const std::string text = definitions({{Intrinsic::Log, 1, true}, {Intrinsic::Asinh, 0, true}});
-  CHECK(count(text, "sk_double sk_log(sk_double x) {") == 1);
-  CHECK(count(text, "sk_double sk_asinh(sk_double x) {") == 1);
-  CHECK(count(text, "sk_double sk_log_tail(sk_double f) {") == 1);
+  CHECK(occurrences(text, "sk_double sk_log(sk_double x) {") == 1);
+  CHECK(occurrences(text, "sk_double sk_asinh(sk_double x) {") == 1);
+  CHECK(occurrences(text, "sk_double sk_log_tail(sk_double f) {") == 1);
   CHECK(text.find("sk_double sk_log_plus(") < text.find("sk_double sk_asinh("));
-  CHECK(count(text, "sk_exp_") == 0);
-  CHECK(count(text, "sk_two_over_pi_bits") == 0);
+  CHECK(occurrences(text, "sk_exp_") == 0);
+  CHECK(occurrences(text, "sk_two_over_pi_bits") == 0);
 }
 
 TEST_CASE("what is called with doubles alone is not defined for floats") {
@@ -46,7 +42,7 @@ TEST_CASE("what is called with doubles alone is not defined for floats") {
   CHECK(intrinsicTexts(uses, true).definitions.empty());
   CHECK(intrinsicTexts(uses, false).definitions.empty());
   const std::array both = {IntrinsicUse{Intrinsic::Exp, 0, true}, IntrinsicUse{Intrinsic::Log, 1}};
-  CHECK(count(intrinsicTexts(both, true).definitions, "sk_exp") == 0);
+  CHECK(occurrences(intrinsicTexts(both, true).definitions, "sk_exp") == 0);
 }
 
 TEST_CASE("constants are exact in either form") {

@@ -9,17 +9,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "occurrences.hpp"
+
 using namespace sk::assemble;
 using sk::program::Intrinsic;
 using sk::program::IntrinsicUse;
 
 namespace {
-
-std::size_t count(const std::string& text, std::string_view what) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
-  return found;
-}
 
 TEST_CASE("nothing is defined for a kernel without intrinsics") {
   CHECK(intrinsicTexts({}, true).definitions.empty());
@@ -39,14 +35,14 @@ bvec3 sk_isnan(vec3 x) { return isnan(x); }
 TEST_CASE("accurate functions come with what they need, once") {
   const std::array uses = {IntrinsicUse{Intrinsic::Log, 1}, IntrinsicUse{Intrinsic::Asinh, 0b1010}};
   const std::string text = intrinsicTexts(uses, true).definitions;
-  CHECK(count(text, "float sk_log(float x) {") == 1);
-  CHECK(count(text, "float sk_asinh(float x) {") == 1);
-  CHECK(count(text, "vec2 sk_asinh(vec2 x) {") == 1);
-  CHECK(count(text, "vec3 sk_asinh(") == 0);
-  CHECK(count(text, "vec4 sk_asinh(vec4 x) {") == 1);
+  CHECK(occurrences(text, "float sk_log(float x) {") == 1);
+  CHECK(occurrences(text, "float sk_asinh(float x) {") == 1);
+  CHECK(occurrences(text, "vec2 sk_asinh(vec2 x) {") == 1);
+  CHECK(occurrences(text, "vec3 sk_asinh(") == 0);
+  CHECK(occurrences(text, "vec4 sk_asinh(vec4 x) {") == 1);
   CHECK(text.find("sk_log_tail(float f)") < text.find("float sk_log(float x)"));
   CHECK(text.find("float sk_log(float x)") < text.find("float sk_asinh(float x)"));
-  CHECK(count(text, "sk_reduce") == 0);
+  CHECK(occurrences(text, "sk_reduce") == 0);
 }
 
 TEST_CASE("every intrinsic has both forms, of every width") {
@@ -56,8 +52,8 @@ TEST_CASE("every intrinsic has both forms, of every width") {
     INFO(called);
     for (const std::string_view type : {"float ", "vec2 ", "vec3 ", "vec4 "}) {
       const std::string head = called + std::string(type);
-      CHECK(count(intrinsicTexts({&use, 1}, false).definitions, head) == 1);
-      CHECK(count(intrinsicTexts({&use, 1}, true).definitions, head) == 1);
+      CHECK(occurrences(intrinsicTexts({&use, 1}, false).definitions, head) == 1);
+      CHECK(occurrences(intrinsicTexts({&use, 1}, true).definitions, head) == 1);
     }
   }
 }

@@ -258,8 +258,7 @@ std::vector<native::Table> NativeDevice::tablesOf(const Kernel& kernel, RealType
 
 void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments,
                        const CallOptions& options) {
-  const Kernel& kernel =
-      options.precision == Precision::Half && !isReference() ? formOf(called, options) : called;
+  const Kernel& kernel = takesHalf(options) ? formOf(called, options) : called;
   const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
   const RealType real = realOf(options);
   Operands operands(real, kernel, arguments, domain, tablesOf(kernel, real, options));
@@ -269,8 +268,7 @@ void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments
 
 void NativeDevice::reduce(const program::Reduction& called, std::span<const Argument> arguments,
                           const Shape& domain, std::span<void* const> results, const CallOptions& options) {
-  const program::Reduction& reduction =
-      options.precision == Precision::Half && !isReference() ? halfForm(called) : called;
+  const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
   const RealType real = realOf(options);
   Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
                   tablesOf(reduction.combine, real, options));
@@ -294,8 +292,7 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
 
 void NativeDevice::reduce(const program::Reduction& called, std::span<const Argument> arguments,
                           const Shape& domain, const Shape& blocks, const CallOptions& options) {
-  const program::Reduction& reduction =
-      options.precision == Precision::Half && !isReference() ? halfForm(called) : called;
+  const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
   const RealType real = realOf(options);
   Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
                   tablesOf(reduction.combine, real, options));

@@ -40,6 +40,10 @@ class NativeDevice final : public DeviceState {
 
  private:
   RealType realOf(const CallOptions& options) const;
+  /// Whether a call takes the form that rounds to halves, which a reference does not.
+  bool takesHalf(const CallOptions& options) const {
+    return options.precision == Precision::Half && !isReference();
+  }
   /// Those that a call looks its functions up in; none where it computes them.
   std::vector<native::Table> tablesOf(const program::Kernel& kernel, RealType real,
                                       const CallOptions& options);

@@ -23,6 +23,7 @@ namespace {
 using sk::Accumulate;
 using sk::Intrinsics;
 using sk::Precision;
+using sk::Tables;
 using sk::program::Parameter;
 using sk::program::Role;
 
@@ -89,29 +90,31 @@ std::vector<Subject> chosenSubjects(const sk::program::Library& library, const s
 // ---- modes ----------------------------------------------------------------------------------------
 
 struct CallMode {
-  const char* name;
+  std::string name;
   sk::CallOptions options;
 };
 
 /// Everything is said, so that nothing that the kernel's declaration chooses counts.
 std::vector<CallMode> modesOf(const Subject& subject, const sk::Device& device) {
-  const bool hasFast = !subject.signature().intrinsics.empty() && !device.shadingLanguage().empty();
-  std::vector<CallMode> modes;
-  if (subject.isReduce()) {
-    modes = {{"tree", {Accumulate::Tree, Precision::Single, Intrinsics::Accurate}},
-             {"compensated", {Accumulate::Compensated, Precision::Single, Intrinsics::Accurate}},
-             {"extended", {Accumulate::Tree, Precision::Extended, Intrinsics::Accurate}},
-             {"double", {Accumulate::Tree, Precision::Double, Intrinsics::Accurate}},
-             {"exact", {Accumulate::Exact, Precision::Single, Intrinsics::Accurate}},
-             {"half", {Accumulate::Tree, Precision::Half, Intrinsics::Accurate}}};
-    if (hasFast) modes.push_back({"tree, fast", {Accumulate::Tree, Precision::Single, Intrinsics::Fast}});
-    return modes;
+  const sk::program::Kernel& kernel = subject.signature();
+  const bool hasFast = !kernel.intrinsics.empty() && !device.shadingLanguage().empty();
+  const auto said = [](Accumulate accumulate, Precision precision) {
+    return sk::CallOptions{accumulate, precision, Intrinsics::Accurate, Tables::Off};
+  };
+  const Accumulate plain = subject.isReduce() ? Accumulate::Tree : Accumulate::Default;
+  std::vector<CallMode> modes{{subject.isReduce() ? "tree" : "single", said(plain, Precision::Single)}};
+  const std::string first = modes.front().name;
+  if (hasFast) {
+    modes.push_back({first + ", fast", {plain, Precision::Single, Intrinsics::Fast, Tables::Off}});
   }
-  modes = {{"single", {Accumulate::Default, Precision::Single, Intrinsics::Accurate}}};
-  if (hasFast) modes.push_back({"single, fast", {Accumulate::Default, Precision::Single, Intrinsics::Fast}});
-  modes.push_back({"extended", {Accumulate::Default, Precision::Extended, Intrinsics::Accurate}});
-  modes.push_back({"double", {Accumulate::Default, Precision::Double, Intrinsics::Accurate}});
-  modes.push_back({"half", {Accumulate::Default, Precision::Half, Intrinsics::Accurate}});
+  if (!kernel.tables.empty()) {
+    modes.push_back({first + ", tables", {plain, Precision::Single, Intrinsics::Accurate, Tables::On}});
+  }
+  if (subject.isReduce()) modes.push_back({"compensated", said(Accumulate::Compensated, Precision::Single)});
+  modes.push_back({"extended", said(plain, Precision::Extended)});
+  modes.push_back({"double", said(plain, Precision::Double)});
+  if (subject.isReduce()) modes.push_back({"exact", said(Accumulate::Exact, Precision::Single)});
+  modes.push_back({"half", said(plain, Precision::Half)});
   return modes;
 }
 

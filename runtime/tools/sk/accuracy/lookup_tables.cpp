@@ -8,15 +8,15 @@
 #include <fmt/format.h>
 
 #include "accuracy/compare_modes.hpp"
+#include "accuracy/lookup_tables.sk.hpp"
 #include "accuracy/programs.hpp"
-#include "accuracy/tables.sk.hpp"
 #include "info/numbers.hpp"
 
 namespace sk_tool {
 
 namespace {
 
-constexpr float low = -8, high = 8;  // of tables.sk
+constexpr float low = -8, high = 8;  // of lookup_tables.sk
 
 /// The function takes values in [0, 1], by whose largest errors are relative.
 Grade gradeOf(const std::vector<float>& results, const std::vector<double>& reference) {
