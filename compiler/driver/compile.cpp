@@ -115,7 +115,8 @@ std::string fileName(const ir::Module& module) { return fs::path(module.file).fi
 
 emit::Stub stubOf(const Options& options, const ir::Module& module) {
   const emit::Reals reals = options.quad ? emit::Reals::Quad : emit::Reals::Double;
-  return emit::emitStub(module, emit::Program(module), fileName(module),
+  return emit::emitStub(module, emit::Program(module, {options.fragmentTarget, options.computeTarget}),
+                        fileName(module),
                         {options.nativeTarget ? std::optional(reals) : std::nullopt, options.library});
 }
 

@@ -75,7 +75,7 @@ std::string sinksListing(const Profile& profile, const sk::program::Kernel& kern
            (sk::assemble::isSink(parameter) && sk::assemble::isCounted(parameter));
   };
   if (std::any_of(kernel.parameters.begin(), kernel.parameters.end(), isDrawn)) {
-    programs.push_back(sk::assemble::fragmentProgram(profile, kernel, variant));
+    programs.push_back(sk::assemble::kernelProgram(profile, kernel, variant));
   }
   bool hasTree = false;
   variant.task.work = sk::assemble::Work::List;
@@ -96,7 +96,7 @@ std::string sinksListing(const Profile& profile, const sk::program::Kernel& kern
       }
     }
     variant.task.sink = static_cast<std::uint8_t>(i);
-    programs.push_back(sk::assemble::fragmentProgram(profile, kernel, variant));
+    programs.push_back(sk::assemble::kernelProgram(profile, kernel, variant));
     if (sink.role == sk::program::Role::VariableOutput) continue;
     for (const sk::assemble::PointStep step : pointSteps(sink)) {
       programs.push_back(sk::assemble::pointProgram(profile, sink, step, {}));
@@ -170,12 +170,12 @@ std::string kernelListing(const Profile& profile, const sk::program::Kernel& ker
   const sk::assemble::PassLimits limits{profile.drawBuffers, profile.textureUnits};
   const sk::program::Plan* plan = sk::assemble::planWithin(kernel, limits);
   if (plan == nullptr || sk::assemble::fitsOnePass(kernel, limits)) {
-    return sk::assemble::fragmentProgram(profile, kernel, plainVariant(kernel));
+    return sk::assemble::kernelProgram(profile, kernel, plainVariant(kernel));
   }
   std::string text;
   for (const sk::program::Pass& pass : plan->passes) {
     if (!text.empty()) text += "\n";
-    text += sk::assemble::fragmentProgram(profile, pass.kernel, plainVariant(pass.kernel));
+    text += sk::assemble::kernelProgram(profile, pass.kernel, plainVariant(pass.kernel));
   }
   return text;
 }

@@ -46,9 +46,8 @@ std::string checkProfile(const std::string& value) {
 }
 
 std::string checkTarget(const std::string& value) {
-  if (value == "fragment" || value == "native") return {};
-  if (value == "compute") return "'compute' is not part of this version; use fragment, native";
-  return fmt::format("'{}' is no target; use fragment, native", value);
+  if (value == "fragment" || value == "compute" || value == "native") return {};
+  return fmt::format("'{}' is no target; use fragment, compute, native", value);
 }
 
 std::string checkTransform(const std::string& value) {
@@ -90,7 +89,7 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   app.add_option("--emit", emit, "What to emit: stubs, or glsl, cpp, ir, plan, ast on standard output")
       ->check(checkEmit, "")
       ->type_name("KIND");
-  app.add_option("--target", targets, "Targets that the stubs serve (default: fragment,native)")
+  app.add_option("--target", targets, "Targets that the stubs serve (default: fragment,compute,native)")
       ->delimiter(',')
       ->check(checkTarget, "")
       ->type_name("LIST");
@@ -142,7 +141,12 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   }
   const std::string clash = options.emit == Emit::Stubs ? duplicateStem(options.files) : "";
   options.emit = emits.at(emit);
-  options.nativeTarget = targets.empty() || std::ranges::find(targets, "native") != targets.end();
+  const auto serves = [&](std::string_view target) {
+    return targets.empty() || std::ranges::find(targets, target) != targets.end();
+  };
+  options.fragmentTarget = serves("fragment");
+  options.computeTarget = serves("compute");
+  options.nativeTarget = serves("native");
   if (options.emit == Emit::Stubs && !clash.empty()) {
     fmt::print(stderr, "skc: {}\n", clash);
     return {std::nullopt, 1};

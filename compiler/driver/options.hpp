@@ -26,6 +26,7 @@ struct Options {
   std::string depfile;                      ///< empty: none
   std::string printAfter;                   ///< a transform, "all", or empty
   std::string precision;  ///< of --emit=glsl; of stubs: "single" leaves out all other forms
+  bool fragmentTarget = true, computeTarget = true;  ///< what the stubs' GLSL may run as
   bool nativeTarget = true;  ///< the stubs have native code
   bool quad = false;  ///< which computes in __float128, too
   bool library = false;  ///< the stubs have a list of their descriptors

@@ -35,8 +35,10 @@ std::string glslangOn(const Module& module, std::string_view folderName) {
         variant.access.resize(unit.kernel.parameters.size(), {.addressing = sk::assemble::Addressing::Plane});
         const std::string text = unit.reduction != nullptr
                                      ? sk::assemble::reduceProgram(profile, *unit.reduction, {})
-                                     : sk::assemble::fragmentProgram(profile, unit.kernel, variant);
-        folder.write(fmt::format("{}-{}{}.frag", unit.kernel.entry, profile.name, accurate ? "" : "-fast"),
+                                     : sk::assemble::kernelProgram(profile, unit.kernel, variant);
+        const bool isDrawn = profile.stage == sk::assemble::Stage::Fragment;
+        folder.write(fmt::format("{}-{}{}.{}", unit.kernel.entry, profile.name, accurate ? "" : "-fast",
+                                 isDrawn ? "frag" : "comp"),
                      text);
       }
     }

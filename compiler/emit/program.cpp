@@ -71,7 +71,8 @@ static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program
 template <class Storage>
 class Builder {
  public:
-  Builder(const Module& module, Storage& storage) : module_(module), types_(module), storage_(storage) {}
+  Builder(const Module& module, GlslTargets targets, Storage& storage)
+      : module_(module), types_(module), targets_(targets), storage_(storage) {}
 
   void run() {
     for (const std::string& source : module_.sources) storage_.sources.push_back(storage_.keep(source));
@@ -163,7 +164,9 @@ class Builder {
             .usesDoubles = usesDoubles(module_, kernel),
             .usesExactSums = usesExactSums(module_, kernel),
             .intrinsics = storage_.intrinsics.emplace_back(polyfills.intrinsics()),
-            .tables = tables};
+            .tables = tables,
+            .drawn = targets_.fragment,
+            .dispatched = targets_.compute};
   }
 
   sk::program::Reduction reduction(const Kernel& kernel, const sk::program::Kernel& fold) {
@@ -314,13 +317,14 @@ class Builder {
 
   const Module& module_;
   TypeNames types_;
+  const GlslTargets targets_;
   Storage& storage_;
 };
 
 }  // namespace
 
-Program::Program(const Module& module) : storage_(std::make_unique<Storage>()) {
-  Builder<Storage>(module, *storage_).run();
+Program::Program(const Module& module, GlslTargets targets) : storage_(std::make_unique<Storage>()) {
+  Builder<Storage>(module, targets, *storage_).run();
 }
 Program::Program(Program&&) noexcept = default;
 Program& Program::operator=(Program&&) noexcept = default;

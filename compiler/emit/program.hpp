@@ -20,10 +20,16 @@ struct Unit {
   const sk::program::Reduction* reduction = nullptr;   ///< set for a reduce; its `fold` equals `kernel`
 };
 
+/// What GLSL programs may be assembled as.
+struct GlslTargets {
+  bool fragment = true;
+  bool compute = true;
+};
+
 /// Made from a module that has been through runTransforms. Move-only; views into it stay valid.
 class Program {
  public:
-  explicit Program(const ir::Module& module);
+  explicit Program(const ir::Module& module, GlslTargets targets = {});
   Program(Program&&) noexcept;
   Program& operator=(Program&&) noexcept;
   ~Program();

@@ -351,6 +351,8 @@ class SourceWriter {
     if (!kernel.whyNotHalf.empty()) members.push_back(".whyNotHalf = " + quoted(kernel.whyNotHalf));
     if (!kernel.whyNotWide.empty()) members.push_back(".whyNotWide = " + quoted(kernel.whyNotWide));
     if (!kernel.tables.empty()) members.push_back(fmt::format(".tables = {}Tables", name));
+    if (!kernel.drawn) members.emplace_back(".drawn = false");
+    if (!kernel.dispatched) members.emplace_back(".dispatched = false");
     const std::string newLine = "\n" + std::string(column, ' ');
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
   }

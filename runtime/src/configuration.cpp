@@ -22,6 +22,7 @@ constexpr std::string_view accumulates[] = {"tree", "compensated", "extended", "
 constexpr std::string_view intrinsics[] = {"fast", "accurate"};
 constexpr std::string_view storages[] = {"single", "half", "extended", "double"};
 constexpr std::string_view tableUses[] = {"off", "on"};
+constexpr std::string_view targets[] = {"fragment", "compute", "native"};
 
 /// The enumerator of a name: they follow Default in this order.
 template <class Choice>
@@ -47,10 +48,12 @@ CallOptions optionsOf(const std::string& file, const toml::table& table) {
       options.intrinsics = choiceOf<Intrinsics>(intrinsics, file, "intrinsics", node);
     } else if (key == "tables") {
       options.tables = choiceOf<Tables>(tableUses, file, "tables", node);
+    } else if (key == "target") {
+      options.target = choiceOf<Target>(targets, file, "target", node);
     } else {
       throw Error(fmt::format(
-          "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics and tables", file,
-          key.source().begin.line, key.str()));
+          "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables and target",
+          file, key.source().begin.line, key.str()));
     }
   }
   return options;
@@ -120,6 +123,7 @@ CallOptions merged(CallOptions first, const CallOptions& second) {
   if (first.precision == Precision::Default) first.precision = second.precision;
   if (first.intrinsics == Intrinsics::Default) first.intrinsics = second.intrinsics;
   if (first.tables == Tables::Default) first.tables = second.tables;
+  if (first.target == Target::Default) first.target = second.target;
   return first;
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Choices of accuracy from a file, so that an application need not be compiled again (docs/accuracy.md):
+// Choices of accuracy and speed from a file, so that an application need not be compiled again (docs/accuracy.md):
 //
 //   [kernels."heat::diffuse"]
 //   precision = "extended"
 //
 //   [kernels."*"]
 //   intrinsics = "fast"
+//   target = "fragment"
 //
 //   [tables."heat::response"]
 //   low = -4.0

@@ -44,6 +44,13 @@ std::optional<gl::Api> apiOf(const std::string& profile) {
       fmt::format("there is no profile '{}'; choose one of {} (option or SK_PROFILE)", profile, known));
 }
 
+/// What programs of a profile run as; where none is named, what is faster.
+Target targetOf(const std::string& profile) {
+  const assemble::Profile* found = assemble::findProfile(profile);
+  if (found == nullptr) return Target::Default;
+  return found->stage == assemble::Stage::Compute ? Target::Compute : Target::Fragment;
+}
+
 /// Whether the device is to keep to what its profile guarantees.
 bool wantsGuaranteed(const std::string& limits) {
   if (!limits.empty() && limits != "device" && limits != "guaranteed") {
@@ -92,10 +99,10 @@ std::optional<Barrier> barrierOf(const std::string& name) {
 }
 
 DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles,
-                        const std::string& barrier) {
+                        const std::string& barrier, const std::string& profile) {
   const bool guaranteedLimits = wantsGuaranteed(limits);
   return {textureLimitOf(textureLimit), guaranteedLimits, wantsPairs(doubles, guaranteedLimits),
-          barrierOf(barrier)};
+          barrierOf(barrier), targetOf(profile)};
 }
 
 /// A device with the choices of a file, if one is named.
@@ -113,10 +120,11 @@ std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
   for (const auto& [name, real] : nativeDevices) {
     if (device == name) return configured(std::make_unique<NativeDevice>(real), options.configuration);
   }
-  const gl::OpenRequest request{device, apiOf(chosen(options.profile, "SK_PROFILE"))};
+  const std::string profile = chosen(options.profile, "SK_PROFILE");
+  const gl::OpenRequest request{device, apiOf(profile)};
   const DeviceChoices choices =
       choicesOf(options.textureLimit, chosen(options.limits, "SK_LIMITS"),
-                chosen(options.doubles, "SK_DOUBLES"), chosen(options.barrier, "SK_BARRIER"));
+                chosen(options.doubles, "SK_DOUBLES"), chosen(options.barrier, "SK_BARRIER"), profile);
   return configured(std::make_unique<GlDevice>(gl::openContext(request), choices), options.configuration);
 }
 
@@ -132,7 +140,7 @@ Device& Device::operator=(Device&& other) noexcept = default;
 
 Device Device::adopt(const DeviceOptions& options) {
   const DeviceChoices choices =
-      choicesOf(options.textureLimit, options.limits, options.doubles, options.barrier);
+      choicesOf(options.textureLimit, options.limits, options.doubles, options.barrier, options.profile);
   return Device(configured(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices),
                            options.configuration));
 }

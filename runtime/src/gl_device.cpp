@@ -17,14 +17,15 @@
 #include "plan_run.hpp"
 #include "precision.hpp"
 #include "probe.hpp"
+#include "sink_call.hpp"
 #include "sk/error.hpp"
 
 namespace sk {
 
 namespace {
 
-assemble::Profile profileOf(const gl::Capabilities& capabilities, bool pairs) {
-  assemble::Profile profile = *assemble::findProfile(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300");
+assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capabilities, bool pairs) {
+  assemble::Profile profile = *assemble::findProfile(name);
   if (!capabilities.hasDoubles || pairs) {
     profile.doubles = assemble::Doubles::Pairs;
   }
@@ -46,12 +47,21 @@ Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& cho
 GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     : context(std::move(opened.context)),
       capabilities(std::move(opened.capabilities)),
-      profile(profileOf(capabilities, choices.pairs)),
+      profile(
+          profileOf(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", capabilities, choices.pairs)),
+      computeProfile(profileOf("glsl430", capabilities, choices.pairs)),
+      target(choices.target),
       barrier(barrierOf(capabilities, choices)),
       framebuffers(bound),
       pool(bound, framebuffers),
       sinkPrograms(*this) {
-  choose({});
+  if (target == Target::Compute && !capabilities.hasCompute) {
+    throw Error(
+        fmt::format("'{}' runs no compute programs, which take OpenGL 4.3; leave profile glsl430 (option or "
+                    "SK_PROFILE) out",
+                    capabilities.renderer));
+  }
+  choose({}, assemble::Stage::Fragment);
   limits.textureSize = capabilities.textureSize;
   limits.textureLayers = capabilities.textureLayers;
   if (choices.textureLimit > 0 && choices.textureLimit < limits.textureSize) {
@@ -131,14 +141,29 @@ bool GlDevice::takesPairs(const CallOptions& options) const {
          (asksForPairs || !capabilities.isSoftware || profile.doubles == assemble::Doubles::Pairs);
 }
 
-void GlDevice::choose(const CallOptions& options) {
-  const ProgramChoice choice{.accurate = options.intrinsics != Intrinsics::Fast,
+bool GlDevice::mayDispatch(const program::Kernel& kernel) const {
+  return capabilities.hasCompute && kernel.dispatched && !hasSinks(kernel);
+}
+
+// Where drawing reaches but a part of a GPU, dispatches reach all of it; software does better at drawing.
+assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, const CallOptions& options) const {
+  using assemble::Stage;
+  const Target wanted = options.target != Target::Default ? options.target : target;
+  if (!mayDispatch(kernel)) return Stage::Fragment;
+  if (!kernel.drawn || wanted == Target::Compute) return Stage::Compute;
+  if (wanted == Target::Fragment) return Stage::Fragment;
+  return capabilities.isSoftware ? Stage::Fragment : Stage::Compute;
+}
+
+void GlDevice::choose(const CallOptions& options, assemble::Stage stage) {
+  const ProgramChoice choice{.stage = stage,
+                             .accurate = options.intrinsics != Intrinsics::Fast,
                              .doubles = takesPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
                              .barrier = barrier,
                              .tables = options.tables != Tables::Off};
   auto found = caches_.find(choice);
   if (found == caches_.end()) {
-    assemble::Profile chosen = profile;
+    assemble::Profile chosen = stage == assemble::Stage::Compute ? computeProfile : profile;
     chosen.accurate = choice.accurate;
     chosen.doubles = choice.doubles;
     chosen.barrier = choice.barrier;
@@ -201,7 +226,31 @@ void GlDevice::checkProgram(const program::Reduction& reduction) {
   checkProgram(reduction.combine);
 }
 
+void GlDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
+  if (asked == Target::Native) {
+    fail(kernel, "its streams are on '{}'; native code runs on streams of sk::Device::native()", name());
+  }
+  const bool mustDispatch = asked == Target::Compute || !kernel.drawn;
+  if (mustDispatch && !capabilities.hasCompute) {
+    fail(kernel, "'{}' runs no compute programs, which take OpenGL 4.3; {}", name(),
+         kernel.drawn ? "call it without Target::Compute"
+                      : "compile its .sk file with skc --target=fragment,compute");
+  }
+  if (mustDispatch && hasSinks(kernel)) {
+    fail(kernel, "variable and scatter outputs are drawn; {}",
+         kernel.drawn ? "call it without Target::Compute"
+                      : "compile its .sk file with skc --target=fragment,compute");
+  }
+  if (!kernel.dispatched && (asked == Target::Compute || !kernel.drawn)) {
+    fail(kernel, "it has no compute programs; compile its .sk file with skc --target=fragment,compute");
+  }
+  if (asked == Target::Fragment && !kernel.drawn) {
+    fail(kernel, "it has no fragment programs; compile its .sk file with skc --target=fragment,compute");
+  }
+}
+
 void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& options) {
+  checkTarget(kernel, options.target);
   if (takesPairs(options)) {
     needExactSums(kernel);
   }

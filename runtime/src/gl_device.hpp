@@ -31,10 +31,12 @@ struct DeviceChoices {
   bool guaranteedLimits = false;
   bool pairs = false;               ///< doubles are pairs of floats even where GLSL has double
   std::optional<Barrier> barrier;   ///< none: the one that proves itself
+  Target target = Target::Default;  ///< Fragment, Compute, or what is faster
 };
 
 /// What of a call's options is in all of its programs.
 struct ProgramChoice {
+  assemble::Stage stage = assemble::Stage::Fragment;
   bool accurate = true;
   assemble::Doubles doubles = assemble::Doubles::Native;
   Barrier barrier = Barrier::Xor;
@@ -50,7 +52,9 @@ class GlDevice final : public DeviceState {
   const std::string& name() const override { return capabilities.renderer; }
   const std::string& driver() const override { return capabilities.driver; }
   const std::string& shadingLanguage() const override { return capabilities.shadingLanguage; }
-  std::string_view profileName() const override { return profile.name; }
+  std::string_view profileName() const override {
+    return target == Target::Compute ? computeProfile.name : profile.name;
+  }
   bool isSoftware() const override { return capabilities.isSoftware; }
   const Arithmetic& arithmetic() override;
   bool combinesScattered() const override { return capabilities.blendsFloats; }
@@ -84,7 +88,9 @@ class GlDevice final : public DeviceState {
   /// Throws sk::Error where a kernel cannot use a stream that holds its floats as something else.
   void checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments) const;
   /// From here on, the programs are those for a call with these options.
-  void choose(const CallOptions& options);
+  void choose(const CallOptions& options, assemble::Stage stage);
+  /// What runs the kernel, or the fold of a reduction, in a call with these options.
+  assemble::Stage stageOf(const program::Kernel& kernel, const CallOptions& options) const;
   ProgramCache& programs() { return *programs_; }
   /// The texture of a table, made at first. Binds a texture.
   GLuint textureOf(const FunctionTable& table);
@@ -94,25 +100,31 @@ class GlDevice final : public DeviceState {
 
   gl::Context context;
   const gl::Capabilities capabilities;
-  const assemble::Profile profile;       ///< of the table, but for what the device has
-  Barrier barrier;                       ///< of programs; only arithmetic() tells whether it holds
+  const assemble::Profile profile;  ///< of fragment programs: that of the table, but for what the device has
+  const assemble::Profile computeProfile;  ///< of compute programs; of no meaning where it has none
+  const Target target;  ///< Fragment, Compute, or what is faster
+  Barrier barrier;  ///< of programs; only arithmetic() tells whether it holds
   gl::BoundState bound;
   FramebufferCache framebuffers;
   SurfacePool pool;
   SinkPrograms sinkPrograms;
   gl::LinearSamplers samplers;
   gl::VertexArray vertexArray;
-  std::vector<std::byte> staging;        ///< texels on their way; transfer.cpp's
-  std::vector<Operand> operands;         ///< of the call that runs; run.cpp's
+  std::vector<std::byte> staging;  ///< texels on their way; transfer.cpp's
+  std::vector<Operand> operands;  ///< of the call that runs; run.cpp's
+  bool hasDrawn = false;  ///< since the last dispatch
 
  private:
   bool takesPairs(const CallOptions& options) const;
+  bool mayDispatch(const program::Kernel& kernel) const;
+  /// Throws sk::Error where a kernel cannot run as what a call asks for.
+  void checkTarget(const program::Kernel& kernel, Target asked) const;
   void forgetObjects() noexcept;
   void needExactSums(const program::Kernel& kernel);
 
   std::map<ProgramChoice, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
-  ProgramCache* programs_;               ///< one of them
+  ProgramCache* programs_;  ///< one of them
   std::optional<Arithmetic> arithmetic_;
 };
 

@@ -4,6 +4,7 @@
 #include "pass.hpp"
 
 #include <array>
+#include <utility>
 
 #include "copy_kernel.hpp"
 #include "gl/commands.hpp"
@@ -24,9 +25,22 @@ void blit(GlDevice& device, Surface& from, const Placement& source, Surface& to,
            {target.origin[0], target.origin[1]}, target.extent[0], target.extent[1]);
 }
 
-}  // namespace
-
-namespace {
+/// The images are those of whole textures, whose layers are numbered by the rows of the rectangles.
+void dispatchRects(GlDevice& device, KernelProgram& program, std::span<Surface* const> planes,
+                   std::span<const Rect> rects) {
+  if (std::exchange(device.hasDrawn, false)) {
+    gl::finishDraws();
+  }
+  int unit = 0;
+  for (const Surface* plane : planes) {
+    device.bound.image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
+  }
+  const auto groups = [](GLsizei texels, GLint group) { return (texels + group - 1) / group; };
+  for (const Rect& rect : rects) {
+    program.rect.set({rect.x, rect.y, rect.width, rect.height});
+    gl::dispatch(groups(rect.width, program.workGroup[0]), groups(rect.height, program.workGroup[1]));
+  }
+}
 
 /// Those planes of a parameter that are not in a bundle.
 int bindOwnPlanes(GlDevice& device, const program::Parameter& parameter, std::span<Surface> planes,
@@ -52,12 +66,12 @@ int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit) {
   return unit;
 }
 
-Target targetOf(GlDevice& device, Surface& plane) {
+DrawTarget targetOf(GlDevice& device, Surface& plane) {
   const gl::Texture& texture = plane.texture;
   return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0};
 }
 
-Target targetOf(GlDevice& device, std::span<Surface* const> planes) {
+DrawTarget targetOf(GlDevice& device, std::span<Surface* const> planes) {
   Surface& first = *planes[0];
   if (planes.size() == 1) {
     return targetOf(device, first);
@@ -71,8 +85,9 @@ Target targetOf(GlDevice& device, std::span<Surface* const> planes) {
           isLayered ? first.texture.shape().height : 0};
 }
 
-void drawRects(GlDevice& device, const Target& target, std::span<const Rect> rects, gl::IntUniform& row) {
+void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect> rects, gl::IntUniform& row) {
   device.bound.vertexArray(device.vertexArray.name());
+  device.hasDrawn = true;
   for (const Rect& rect : rects) {
     forEachLayer(rect, target.layerRows, [&](const Rect& part, std::int32_t layer, std::int32_t) {
       selectLayer(device, target, layer, row);
@@ -82,7 +97,17 @@ void drawRects(GlDevice& device, const Target& target, std::span<const Rect> rec
   }
 }
 
-void selectLayer(GlDevice& device, const Target& target, std::int32_t layer, gl::IntUniform& row) {
+void writeRects(GlDevice& device, KernelProgram& program, std::span<Surface* const> planes,
+                std::span<const Rect> rects) {
+  switch (program.stage) {
+    case assemble::Stage::Fragment:
+      drawRects(device, targetOf(device, planes), rects, program.domainRow);
+      return;
+    case assemble::Stage::Compute: dispatchRects(device, program, planes, rects); return;
+  }
+}
+
+void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row) {
   if (target.layerRows == 0) {
     device.bound.framebuffer(target.framebuffer->name());
     row.set(0);
@@ -125,9 +150,9 @@ void bindOperands(GlDevice& device, KernelProgram& program, const program::Kerne
   }
 }
 
-void drawKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
-                const Placement& domain, std::span<const Rect> rects, const Target& target,
-                std::span<const gl::Texture> bundles, const assemble::Task& task) {
+void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
+               const Placement& domain, std::span<const Rect> rects, std::span<Surface* const> targets,
+               std::span<const gl::Texture> bundles, const assemble::Task& task) {
   KernelProgram& program = device.programs().kernelProgram(kernel, operands, domain, task);
   device.bound.program(program.program.name());
   bindOperands(device, program, kernel, operands, bundles);
@@ -135,7 +160,7 @@ void drawKernel(GlDevice& device, const program::Kernel& kernel, std::span<const
   if (task.work == assemble::Work::List) {
     program.target.set(operands[task.sink].placement);
   }
-  drawRects(device, target, rects, program.domainRow);
+  writeRects(device, program, targets, rects);
 }
 
 void copyRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
@@ -146,8 +171,9 @@ void copyRegion(GlDevice& device, const program::Element& element, std::span<Sur
       continue;
     }
     const Operand operands[] = {{nullptr, source, from.subspan(plane, 1)}, {}};
-    drawKernel(device, copyKernel(element.fields[plane]), operands, target, assemble::drawnTexels(target),
-               targetOf(device, to[plane]));
+    Surface* const targets[] = {&to[plane]};
+    runKernel(device, copyKernel(element.fields[plane]), operands, target, assemble::drawnTexels(target),
+              targets);
   }
 }
 

@@ -23,34 +23,38 @@ struct KernelProgram;
 int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit);
 
 /// What a pass draws to: planes of one shape.
-struct Target {
+struct DrawTarget {
   gl::Framebuffer* framebuffer;
   std::int32_t layerRows;   ///< 0 where the planes have no layers
 };
 
 /// Draws to these planes, 1 to gl::maxDrawBuffers. Good until the next one is asked for.
-Target targetOf(GlDevice& device, std::span<Surface* const> planes);
-Target targetOf(GlDevice& device, Surface& plane);
+DrawTarget targetOf(GlDevice& device, std::span<Surface* const> planes);
+DrawTarget targetOf(GlDevice& device, Surface& plane);
 
 /// Binds the framebuffer with a layer of its planes, and tells the program that is bound.
-void selectLayer(GlDevice& device, const Target& target, std::int32_t layer, gl::IntUniform& row);
+void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row);
 
 /// Draws each rectangle of a target with the program that is bound, whose `sk_domain_row` is `row`.
-void drawRects(GlDevice& device, const Target& target, std::span<const assemble::Rect> rects,
+void drawRects(GlDevice& device, const DrawTarget& target, std::span<const assemble::Rect> rects,
                gl::IntUniform& row);
 
+/// Writes each rectangle of planes of one shape with a kernel's program, which is bound: draws or dispatches it.
+void writeRects(GlDevice& device, KernelProgram& program, std::span<Surface* const> planes,
+                std::span<const assemble::Rect> rects);
+
 /// Binds the planes that a kernel's program reads, and sets the uniforms of its parameters; the program is
-/// bound. `operands` and `bundles`: as for drawKernel().
+/// bound. `operands` and `bundles`: as for runKernel().
 void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
                   std::span<const Operand> operands, std::span<const gl::Texture> bundles = {});
 
-/// Draws `rects` of `target` with a kernel. `operands`: one a parameter; those of outputs are not
-/// looked at, since `target` has their planes. No operand is a texture of the target. `bundles`:
+/// Writes `rects` of `targets`, planes of one shape, with a kernel. `operands`: one a parameter; those of outputs are
+/// not looked at, since `targets` are their planes. No operand is a texture of the targets. `bundles`:
 /// the array textures of the plan that the kernel is a pass of. The tree of a list is bound by the caller.
-void drawKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
-                const assemble::Placement& domain, std::span<const assemble::Rect> rects,
-                const Target& target, std::span<const gl::Texture> bundles = {},
-                const assemble::Task& task = {});
+void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
+               const assemble::Placement& domain, std::span<const assemble::Rect> rects,
+               std::span<Surface* const> targets, std::span<const gl::Texture> bundles = {},
+               const assemble::Task& task = {});
 
 /// Copies one region to another of the same shape, plane by plane, wherever each lies. They are not of
 /// the same surface.

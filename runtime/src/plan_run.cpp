@@ -100,8 +100,7 @@ class PlanRun {
     if (targets_.empty()) {   // all of its outputs are left out
       return;
     }
-    drawKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, targetOf(device_, targets_),
-               bundles_);
+    runKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, targets_, bundles_);
   }
 
  private:

@@ -67,9 +67,8 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::s
 std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Kernel& kernel,
                                                                const assemble::Variant& variant) {
   auto made = std::make_unique<KernelProgram>();
-  made->program = build(kernel, assemble::fragmentProgram(profile_, kernel, variant));
+  build(*made, kernel, assemble::kernelProgram(profile_, kernel, variant));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
-  made->domainRow = {made->program.location("sk_domain_row"), false};
   findParameters(*made, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
   for (KernelProgram::Read& read : made->reads) {
     const bool isFiltered = variant.access[read.parameter].filtered;
@@ -195,18 +194,27 @@ void ProgramCache::bindSamplers(const gl::Program& program, const program::Param
   }
 }
 
-gl::Program ProgramCache::build(const program::Kernel& kernel, const std::string& fragmentSource) {
-  const std::string vertexSource = assemble::vertexProgram(profile_);
+void ProgramCache::build(KernelProgram& made, const program::Kernel& kernel, const std::string& source) {
+  const auto built = [&](const std::string& text, std::string& log) {
+    return profile_.stage == assemble::Stage::Compute
+               ? gl::Program::buildCompute(text, log)
+               : gl::Program::build(assemble::vertexProgram(profile_), text, log);
+  };
   std::string log;
-  gl::Program program = gl::Program::build(vertexSource, fragmentSource, log);
-  if (!program) {
+  made.program = built(source, log);
+  if (!made.program) {
     log.clear();
-    gl::Program::build(vertexSource, withTellingLines(fragmentSource), log);
+    built(withTellingLines(source), log);
     throw Error(fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
                             device_.capabilities.renderer, profile_.name,
                             withSourceNames(log, kernel.sources)));
   }
-  return program;
+  made.stage = profile_.stage;
+  made.domainRow = {made.program.location("sk_domain_row"), false};
+  if (made.stage == assemble::Stage::Compute) {
+    made.rect = {made.program.location("sk_rect"), true};
+    made.workGroup = made.program.workGroup();
+  }
 }
 
 ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
@@ -216,8 +224,7 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     auto made = std::make_unique<ReduceProgram>();
     const bool isPartial = variant.walk == assemble::Walk::Partials;
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
-    made->kernel.program = build(kernel, assemble::reduceProgram(profile_, reduction, variant));
-    made->kernel.domainRow = {made->kernel.program.location("sk_domain_row"), false};
+    build(made->kernel, kernel, assemble::reduceProgram(profile_, reduction, variant));
     if (variant.walk != assemble::Walk::Nothing) {
       findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
     }

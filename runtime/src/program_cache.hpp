@@ -58,6 +58,9 @@ struct KernelProgram {
   };
 
   gl::Program program;
+  assemble::Stage stage = assemble::Stage::Fragment;
+  gl::IntUniform rect;          ///< of a compute program: the texels that a dispatch writes
+  std::array<GLint, 3> workGroup{1, 1, 1};
   PlacementUniforms domain;
   gl::IntUniform domainRow;     ///< of a layered domain: the first row of the layer that is drawn
   PlacementUniforms target;     ///< of the scatter output whose list it makes
@@ -105,7 +108,8 @@ class ProgramCache {
   void addDoubles(KernelProgram& made, std::size_t number, const std::string& name,
                   std::span<const program::Field> parts) const;
   void findListUniforms(KernelProgram& made, const program::Parameter& sink);
-  gl::Program build(const program::Kernel& kernel, const std::string& fragmentSource);
+  /// Builds the program of `made` of an assembled text.
+  void build(KernelProgram& made, const program::Kernel& kernel, const std::string& source);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);
 
   GlDevice& device_;

@@ -185,8 +185,7 @@ class ReduceCall {
       for (const assemble::UniformValue& value : pass.uniforms) {
         program.uniform(value).set(value.value);
       }
-      drawRects(device_, targetOf(device_, targets.subspan(first, count)), pass.draws,
-                program.kernel.domainRow);
+      writeRects(device_, program.kernel, targets.subspan(first, count), pass.draws);
     }
   }
 
@@ -221,7 +220,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   checkOptions(reduction.fold, options);
   checkStorages(reduction.fold, arguments);
   const DeviceScope scope(*this);
-  choose(options);
+  choose(options, stageOf(reduction.fold, options));
   const Placement placement = assemble::valuePlacement();
   PlanesLease value(*this);
   takeAccumulators(*this, reduction.fold, {1, 1}, "the result of a reduction", value);
@@ -243,7 +242,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   checkOptions(reduction.fold, options);
   checkStorages(reduction.fold, arguments);
   const DeviceScope scope(*this);
-  choose(options);
+  choose(options, stageOf(reduction.fold, options));
   ReduceCall call(*this, reduction, arguments, domain);
   const Kernel& fold = reduction.fold;
   const auto first = static_cast<std::size_t>(

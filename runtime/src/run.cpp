@@ -77,7 +77,7 @@ class KernelCall {
       const std::vector<std::span<Surface>> drawn = targets.planesOfOutputs();
       runPlan(device_, *plan, {operands_, drawn, domain(), layout, rects.get()});
     } else {
-      drawKernel(device_, kernel_, operands_, domain(), rects.get(), targetOf(device_, targets.planes()));
+      runKernel(device_, kernel_, operands_, domain(), rects.get(), targets.planes());
     }
     targets.putInPlace();
   }
@@ -120,8 +120,8 @@ void GlDevice::run(const Kernel& kernel, std::span<const Argument> arguments, co
 void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> arguments,
                             const CallOptions& options) {
   const DeviceScope scope(*this);
-  choose(options);
   const Kernel& form = formOf(kernel, options);
+  choose(options, stageOf(form, options));
   checkStorages(form, arguments);
   if (!hasSinks(form)) {
     KernelCall(*this, form, arguments).run();

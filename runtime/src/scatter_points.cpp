@@ -110,7 +110,7 @@ class Scatterer {
     return program;
   }
 
-  Target target(std::span<Surface> planes) {
+  DrawTarget target(std::span<Surface> planes) {
     std::array<Surface*, gl::maxDrawBuffers> surfaces{};
     for (std::size_t i = 0; i < planes.size(); ++i) {
       surfaces[i] = &planes[i];
@@ -122,7 +122,7 @@ class Scatterer {
   void points(PointStep step, gl::Blend blend, std::span<Surface> targets, std::int32_t first,
               std::int32_t count) {
     StepProgram& program = programOf(step);
-    const Target drawn = target(targets);
+    const DrawTarget drawn = target(targets);
     bindPlanes(device_, list_, 0);
     const gl::Texture& texture = targets.front().texture;
     const assemble::TextureShape& shape = texture.shape();
@@ -142,7 +142,7 @@ class Scatterer {
   /// Over the region that is written. The steps that draw elements read none.
   void region(PointStep step, std::span<Surface> targets) {
     StepProgram& program = programOf(step);
-    const Target drawn = target(targets);
+    const DrawTarget drawn = target(targets);
     bindPlanes(device_, planes_, 1);
     drawRects(device_, drawn, rects_, program.row());
   }

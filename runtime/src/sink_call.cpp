@@ -106,8 +106,8 @@ class SinkCall {
     if (targets.planes().empty()) {
       return;
     }
-    drawKernel(device_, kernel_, operands_, layout_.whole, layout_.draws, targetOf(device_, targets.planes()),
-               {}, {Work::Counts});
+    runKernel(device_, kernel_, operands_, layout_.whole, layout_.draws, targets.planes(), {},
+              {Work::Counts});
   }
 
   /// Where `counts` is null, the list has slots.
@@ -167,7 +167,7 @@ class SinkCall {
     if (tree != nullptr) {
       bindTree(task, domain, *tree);
     }
-    drawKernel(device_, kernel_, operands_, domain, list.layout.draws, targetOf(device_, targets), {}, task);
+    runKernel(device_, kernel_, operands_, domain, list.layout.draws, targets, {}, task);
   }
 
   void bindTree(const Task& task, const assemble::Placement& domain, CountTree& tree) {

@@ -116,7 +116,9 @@ refuses '--nosuch' --nosuch heat.sk
 refuses 'glsll' --emit=glsll heat.sk
 refuses 'glsl990' --emit=glsl --profile=glsl990 heat.sk
 refuses 'quantum' --target=quantum heat.sk
-refuses 'compute' --target=compute heat.sk
+run 0 -Iinclude -o compute --target=compute heat.sk
+grep -qF '.drawn = false' compute/heat.sk.cpp || broken "--target=compute has fragment programs"
+grep -qF '.dispatched = false' fragment/heat.sk.cpp || broken "--target=fragment has compute programs"
 refuses 'nosuch' --print-after=nosuch heat.sk
 refuses 'nosuch' -Iinclude --emit=glsl --kernel=nosuch heat.sk
 mkdir other

@@ -26,8 +26,9 @@ struct DeviceOptions {
   /// 0), "software", or a part of the renderer's name in any case ("llvmpipe", "nvidia"). Empty: environment variable
   /// SK_DEVICE, and without it the best one, which is the first GPU, or a software renderer where there is none.
   std::string device = {};
-  /// "glsl330" or "essl300". Empty: environment variable SK_PROFILE, and without it glsl330 where
-  /// the device has OpenGL 3.3, else essl300.
+  /// "glsl330" (fragment programs), "glsl430" (compute programs, wherever these serve) or "essl300". Empty: environment
+  /// variable SK_PROFILE, and without it OpenGL where the device has 3.3, of which the faster programs are taken, else
+  /// essl300.
   std::string profile = {};
   /// No texture is wider or higher than this: larger extents are linearised, and larger streams lie in several
   /// layers. 0: environment variable SK_TEXTURE_LIMIT, and without it the device's own limit, which this cannot
@@ -106,7 +107,7 @@ class Device {
   /// there is no GL.
   const std::string& driver() const;
   const std::string& shadingLanguage() const;
-  /// "glsl330" or "essl300".
+  /// "glsl330", "glsl430" where compute programs were asked for, "essl300", or "native".
   std::string_view profile() const;
   const DeviceLimits& limits() const;
   /// Whether the renderer is a program on the CPU.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The dials of accuracy (docs/accuracy.md): what a call, a kernel's declaration, a configuration file or a stream may choose.
+// The dials of accuracy (docs/accuracy.md) and of speed (docs/performance.md): what a call, a kernel's declaration, a
+// configuration file or a stream may choose.
 #pragma once
 
 #include <cstdint>
@@ -51,12 +52,21 @@ enum class Tables : std::uint8_t {
   On,  ///< with the error that Device::tables() tells
 };
 
+/// What programs of a kernel are run as. Results are the same, but for the order in which a reduce adds.
+enum class Target : std::uint8_t {
+  Default,  ///< what is faster on the device
+  Fragment,  ///< drawn, as every GL and ES device can
+  Compute,  ///< dispatched, by OpenGL 4.3
+  Native,  ///< C++ on the CPU, which native devices run
+};
+
 /// What a call may choose, by `sum.with({.accumulate = ...})(x)`.
 struct CallOptions {
   Accumulate accumulate = Accumulate::Default;
   Precision precision = Precision::Default;
   Intrinsics intrinsics = Intrinsics::Default;
   Tables tables = Tables::Default;
+  Target target = Target::Default;
 
   bool operator==(const CallOptions&) const = default;
 };

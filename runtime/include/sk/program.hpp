@@ -251,6 +251,9 @@ struct Kernel {
   const Kernel* wide = nullptr;  ///< the form that computes in doubles what this one does in floats; likewise
   std::string_view whyNotHalf = {}, whyNotWide = {};  ///< where it computes floats, yet has no such form
   std::span<const TableUse> tables = {};  ///< whose functions the body calls
+  bool drawn =
+      true;  ///< whether fragment programs may run it; false where skc was asked for other targets alone
+  bool dispatched = true;  ///< whether compute programs may
 };
 
 /// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.

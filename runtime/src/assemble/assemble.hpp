@@ -25,49 +25,56 @@ enum class Doubles : std::uint8_t {
   Pairs,   ///< pairs of floats
 };
 
+/// What runs a program.
+enum class Stage : std::uint8_t {
+  Fragment,  ///< a draw: an invocation is a fragment, outputs are drawn to
+  Compute,   ///< a dispatch: outputs are images
+};
+
 /// Limits and spellings of one version of a target. The rows are in profiles.cpp.
 struct Profile {
-  std::string_view name;        ///< "glsl330", "essl300"
+  std::string_view name;        ///< "glsl330", "essl300", "glsl430"
   std::string_view version;     ///< the #version line
+  Stage stage;
   bool es;                      ///< precision statements, ES formats and limits
-  int drawBuffers;              ///< guaranteed minimum
-  int textureUnits;             ///< guaranteed minimum for a fragment program
-  int uniformComponents;        ///< likewise; ES counts vectors of four
-  Doubles doubles;              ///< the best form that devices of the profile have
-  bool accurate = true;         ///< functions of ours for the intrinsics that devices get wrong
+  int drawBuffers;  ///< planes that a pass may write: guaranteed minimum of draw buffers, or of images
+  int textureUnits;  ///< guaranteed minimum for a program of the stage
+  int uniformComponents;  ///< likewise; ES counts vectors of four
+  Doubles doubles;  ///< the best form that devices of the profile have
+  bool accurate = true;  ///< functions of ours for the intrinsics that devices get wrong
   Barrier barrier =
-      Barrier::Xor;   ///< Precise needs GL_ARB_gpu_shader5, which devices of the profile may have
-  bool tables = true;           ///< functions that a table may stand for are looked up there
+      Barrier::Xor;  ///< Precise needs GL_ARB_gpu_shader5, which devices of the profile may have
+  bool tables = true;  ///< functions that a table may stand for are looked up there
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();
 
-/// How the texels of the output lie, hence how sk_index() follows from gl_FragCoord. What has to be
+/// How the texels of the output lie, hence how sk_index() follows from a program's texel. What has to be
 /// drawn is drawnTexels() of placement.hpp.
 enum class Domain : std::uint8_t {
-  Plane,      ///< texel = origin + index.xy: a whole 2-D stream or a rectangle of one
-  Linear,     ///< a whole linearised stream: element number = y << shift | x
-  LinearBox,  ///< a box of a linearised stream: texels outside the box are discarded
-  Entry,      ///< of a sink's list, linearised: the element is the one that it comes from (sinks.hpp)
+  Plane,  ///< texel = origin + index.xy: a whole 2-D stream or a rectangle of one
+  Linear,  ///< a whole linearised stream: element number = y << shift | x
+  LinearBox,  ///< a box of a linearised stream: texels outside the box are left out
+  Entry,  ///< of a sink's list, linearised: the element is the one that it comes from (sinks.hpp)
 };
 Domain domainOf(const Placement& output);
 
 /// How an element of a stream is found in its texture.
 enum class Addressing : std::uint8_t {
   Aligned,  ///< inputs: the texel under the fragment; iterators: each component runs along a dimension
-  Plane,    ///< texel = index.xy (plus the view's origin)
-  Linear,   ///< element number = dot(index, strides), texel = (number & mask, number >> shift);
-            ///< iterators: all components run over that number
+  Plane,  ///< texel = index.xy (plus the view's origin)
+  Linear,  ///< element number = dot(index, strides), texel = (number & mask, number >> shift);
+  ///< iterators: all components run over that number
   Layered,  ///< the same in an array texture
 };
 
 struct StreamAccess {
   Addressing addressing = Addressing::Aligned;
-  bool view = false;     ///< a region of its stream: an origin is added
-  bool nearby = false;   ///< gathers: Parameter::reach is known and below every extent, and no extent
-                         ///< of the domain is above the gather's, so that one step wraps or mirrors
-                         ///< a neighbour's index
-  bool filtered = false; ///< gathers: sk_sample_p() is left to the sampler's linear filter (mayFilter())
+  bool view = false;  ///< a region of its stream: an origin is added
+  bool nearby = false;  ///< gathers: Parameter::reach is known and below every extent, and no extent
+      ///< of the domain is above the gather's, so that one step wraps or mirrors
+      ///< a neighbour's index
+  bool filtered = false;  ///< gathers: sk_sample_p() is left to the sampler's linear filter (mayFilter())
   program::Fit fit = program::Fit::Same;  ///< inputs
   Storage storage = Storage::Single;  ///< inputs, outputs and gathers: what the stream holds floats as
   auto operator<=>(const StreamAccess&) const = default;
@@ -80,14 +87,14 @@ bool mayFilter(const program::Parameter& gather);
 /// What a program of a kernel computes (sinks.hpp).
 enum class Work : std::uint8_t {
   Elements,  ///< its outputs; it has no sinks
-  Counts,    ///< its outputs, and how often each element pushes to each counted sink
-  List,      ///< the list of one sink, and nothing else
+  Counts,  ///< its outputs, and how often each element pushes to each counted sink
+  List,  ///< the list of one sink, and nothing else
 };
 
 struct Task {
   Work work = Work::Elements;
-  std::uint8_t sink = 0;            ///< List: the parameter
-  bool treeLayered = false;         ///< List: the tree of a counted sink is
+  std::uint8_t sink = 0;  ///< List: the parameter
+  bool treeLayered = false;  ///< List: the tree of a counted sink is
   auto operator<=>(const Task&) const = default;
 };
 
@@ -106,7 +113,7 @@ struct Variant {
   auto operator<=>(const Variant&) const = default;
 };
 
-/// Names of the uniforms that a fragment program declares, where it needs them; P is the parameter's
+/// Names of the uniforms that a program declares, where it needs them; P is the parameter's
 /// symbol, and the values are those of a Placement (placement.hpp):
 ///   sk_arg_P                       value of uniform parameter P
 ///   sk_begin_P sk_step_P           first value and step of iterator P, of its type
@@ -120,15 +127,17 @@ struct Variant {
 /// and for the domain (hence for every output, which has none of its own) the same with
 /// `sk_domain_origin sk_domain_shape sk_domain_stride sk_domain_shift`; and `sk_domain_row`, an int, where that is
 /// layered: the first row of the layer that is drawn.
-/// Outputs are `layout(location = n) out`, one a plane, numbered in order of parameters and fields; those of
-/// Work::Counts have one more for each counted sink, and those of Work::List are the planes of the sink, for a
+/// A compute program has `sk_rect`, an ivec4: the first texel that is written, and how many in each dimension.
+/// Outputs are `layout(location = n) out`, or images of binding n, one a plane, numbered in order of parameters and
+/// fields; those of Work::Counts have one more for each counted sink, and those of Work::List are the planes of the sink, for a
 /// scatter output after one for its texel. A list of a counted sink reads a tree (count_tree.hpp):
 ///   sk_odd sk_even sk_tree_shift   its textures (samplers) and log2 of their width
 ///   sk_levels, sk_rows[l]          the number of levels, and the first row of level l in its texture
 /// Of a function with a table, those of tables.hpp.
 ///
 /// Indices and extents are below 2^30. Gathers are not empty: the runtime refuses such a call.
-std::string fragmentProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
+/// Compute programs are of Work::Elements alone.
+std::string kernelProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
 
 /// Name of the sampler of a plane of a parameter, for kernels and reductions alike. Planes in a bundle
 /// have that of the bundle.

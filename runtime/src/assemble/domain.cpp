@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Index and number from gl_FragCoord. In a plane the index is a swizzle away, so it is a function;
+// Index and number from the texel that is computed. In a plane the index is a swizzle away, so it is a function;
 // in a linearised stream it takes divisions, so main() computes it once.
 #include "assemble/domain.hpp"
 
@@ -21,8 +21,8 @@ std::string DomainText::index() {
 
 std::string DomainText::position(int components) {
   const bool aligned = domain_ == Domain::Plane && !view_;
-  if (aligned && components == 1) return "int(gl_FragCoord.x)";
-  if (aligned && components == 2) return "ivec2(gl_FragCoord.xy)";
+  if (aligned && components == 1) return std::string(program_.column());
+  if (aligned && components == 2) return std::string(program_.texel());
   static constexpr std::string_view xyzw = "xyzw";
   const std::string whole = index();
   return components == 4 ? whole
@@ -45,13 +45,13 @@ std::string DomainText::number() {
 }
 
 void DomainText::leaveOutside() {
+  if (!isDrawn()) return;  // nothing runs there
   const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
   switch (domain_) {
     case Domain::Plane: {
       const std::string origin = view_ ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
-      program_.prologue(
-          fmt::format("if (any(greaterThanEqual(uvec2(ivec2(gl_FragCoord.xy){}), uvec2({}.xy)))) return;",
-                      origin, shape));
+      program_.prologue(fmt::format("if (any(greaterThanEqual(uvec2({}{}), uvec2({}.xy)))) return;",
+                                    program_.texel(), origin, shape));
       return;
     }
     case Domain::Linear: {
@@ -59,7 +59,7 @@ void DomainText::leaveOutside() {
       program_.prologue(fmt::format("if (({}) >= {}.w * {}.w) return;", texelNumber(), stride, shape));
       return;
     }
-    case Domain::LinearBox: return;   // these are discarded
+    case Domain::LinearBox: return;  // these are discarded
     case Domain::Entry: {
       const std::string stride = program_.uniform("ivec4", "sk_domain_stride");
       program_.prologue(fmt::format("if (sk_element >= {}.w * {}.w) return;", stride, shape));
@@ -69,17 +69,19 @@ void DomainText::leaveOutside() {
 }
 
 Texel DomainText::texel() {
-  if (!layered_) return {"ivec2(gl_FragCoord.xy)"};
-  const std::string row = program_.uniform("int", "sk_domain_row");
-  return {fmt::format("ivec2(gl_FragCoord.xy) + ivec2(0, {})", row),
-          program_.uniform("int", "sk_domain_shift")};
+  const std::string texel(program_.texel());
+  if (!layered_) return {texel};
+  const std::string shift = program_.uniform("int", "sk_domain_shift");
+  if (!isDrawn()) return {texel, shift};
+  return {fmt::format("{} + ivec2(0, {})", texel, program_.uniform("int", "sk_domain_row")), shift};
 }
 
 std::string DomainText::texelNumber() {
   const std::string row =
-      layered_ ? fmt::format("({} + int(gl_FragCoord.y))", program_.uniform("int", "sk_domain_row"))
-               : "int(gl_FragCoord.y)";
-  return fmt::format("{} << {} | int(gl_FragCoord.x)", row, program_.uniform("int", "sk_domain_shift"));
+      layered_ && isDrawn()
+          ? fmt::format("({} + {})", program_.uniform("int", "sk_domain_row"), program_.row())
+          : std::string(program_.row());
+  return fmt::format("{} << {} | {}", row, program_.uniform("int", "sk_domain_shift"), program_.column());
 }
 
 void DomainText::defineIndex() {
@@ -87,7 +89,7 @@ void DomainText::defineIndex() {
   if (program_.isDefined(signature)) return;
   if (domain_ == Domain::Plane) {
     const std::string origin = view_ ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
-    program_.function(signature, {fmt::format("return ivec4(ivec2(gl_FragCoord.xy){}, 0, 0);", origin)});
+    program_.function(signature, {fmt::format("return ivec4({}{}, 0, 0);", program_.texel(), origin)});
     return;
   }
   if (domain_ != Domain::Entry) program_.prologue(fmt::format("int sk_element = {};", texelNumber()));
@@ -105,7 +107,8 @@ void DomainText::defineIndex() {
   const std::string origin = program_.uniform("ivec4", "sk_domain_origin");
   const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
   program_.prologue(fmt::format("sk_here = {} - {};", value, origin));
-  program_.prologue(fmt::format("if (any(greaterThanEqual(uvec4(sk_here), uvec4({})))) discard;", shape));
+  program_.prologue(fmt::format("if (any(greaterThanEqual(uvec4(sk_here), uvec4({})))) {};", shape,
+                                isDrawn() ? "discard" : "return"));
 }
 
 }  // namespace sk::assemble

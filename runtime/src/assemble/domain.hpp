@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Where a fragment is in its domain: the index and the number of the element that it computes, as
-// GLSL expressions. Declares what they need when they are first asked for; discards fragments
+// Where an invocation is in its domain: the index and the number of the element that it computes, as
+// GLSL expressions. Declares what they need when they are first asked for; ends invocations
 // outside a box before main() does anything else.
 #pragma once
 
@@ -25,7 +25,7 @@ class DomainText {
   std::string index();
   /// The first components of the index: an int or an ivec2 to ivec4 expression.
   std::string position(int components);
-  /// The texel under the fragment.
+  /// The texel that is computed.
   Texel texel();
   /// That texel's number, linearised: an int expression that wants brackets.
   std::string texelNumber();
@@ -39,6 +39,7 @@ class DomainText {
   void leaveOutside();
 
  private:
+  bool isDrawn() const { return program_.stage() == Stage::Fragment; }
   void defineIndex();
 
   ProgramText& program_;

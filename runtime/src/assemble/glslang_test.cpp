@@ -35,6 +35,10 @@ class Programs {
     std::ofstream(folder_ / fmt::format("{:04}.{}", count_++, stage)) << text;
   }
 
+  void add(const Profile& profile, std::string_view text) {
+    add(text, profile.stage == Stage::Compute ? "comp" : "frag");
+  }
+
   /// What glslang complains of.
   std::string complaints() const {
     const std::string command =
@@ -114,7 +118,7 @@ void addBoundaries(Programs& programs, const Type& type, int rank, const Place& 
                               .domainView = domain.view,
                               .domainRank = static_cast<std::uint8_t>(rank),
                               .access = {{}, input, with(gather, nearby), {}, {}}};
-        programs.add(fragmentProgram(profile, sample.kernel(), variant));
+        programs.add(profile, kernelProgram(profile, sample.kernel(), variant));
       }
     }
   }
@@ -138,7 +142,7 @@ TEST_CASE("glslang accepts every layout with every boundary") {
       }
     }
   }
-  REQUIRE(programs.count() == 4 * 5 * 4 * 2 * 4 * 3);
+  REQUIRE(programs.count() == 4 * 5 * 4 * 3 * 4 * 3);
   checkAccepted(programs);
 }
 
@@ -150,7 +154,7 @@ TEST_CASE("glslang accepts every type and rank with every boundary") {
       addBoundaries(programs, type, rank, domains[3], inputs[4], inputs[4]);
     }
   }
-  REQUIRE(programs.count() == 8 * 4 * 2 * 2 * 4 * 3);
+  REQUIRE(programs.count() == 8 * 4 * 2 * 3 * 4 * 3);
   checkAccepted(programs);
 }
 
@@ -163,18 +167,20 @@ TEST_CASE("glslang accepts layers, of what is drawn and of what is read") {
       for (const StreamAccess& input : layered) {
         for (const Domain domain : {Domain::Linear, Domain::LinearBox}) {
           const samples::EveryAccess sample(*type.element, type.border, 2, Boundary::Border, -1);
-          programs.add(fragmentProgram(profile, sample.kernel(),
-                                       {.domain = domain,
-                                        .domainLayered = true,
-                                        .access = {{}, input, {Addressing::Layered, true}, {}, {}}}));
+          programs.add(profile, kernelProgram(profile, sample.kernel(),
+                                              {.domain = domain,
+                                               .domainLayered = true,
+                                               .access = {{}, input, {Addressing::Layered, true}, {}, {}}}));
         }
       }
     }
     for (const bool source : {false, true}) {
       for (const bool domain : {false, true}) {
         programs.add(
+            profile,
             reduceProgram(profile, samples::firstHit,
                           {.walk = Walk::Partials, .sourceLayered = source, .domainLayered = domain}));
+        if (profile.stage == Stage::Compute) continue;
         programs.add(treeProgram(profile, {true, source, domain}));
         programs.add(treeProgram(profile, {false, source, domain}));
       }
@@ -188,6 +194,7 @@ TEST_CASE("glslang accepts the points of a scatter output, in layers or not") {
   const Parameter sink{
       .name = "r", .symbol = "r", .role = Role::Scatter, .element = &samples::int3Element, .rank = 1};
   for (const Profile& profile : profiles()) {
+    if (profile.stage == Stage::Compute) continue;
     for (const PointTextures& textures :
          {PointTextures{false, false}, {false, true}, {true, false}, {true, true}}) {
       programs.add(pointVertexProgram(profile, textures), "vert");
@@ -217,22 +224,24 @@ TEST_CASE(
         for (const std::span<const IntrinsicUse> uses :
              {std::span<const IntrinsicUse>{}, std::span<const IntrinsicUse>(all)}) {
           kernel.intrinsics = uses;
-          programs.add(fragmentProgram(profile, kernel,
-                                       {.access = std::vector<StreamAccess>(kernel.parameters.size())}));
+          programs.add(profile,
+                       kernelProgram(profile, kernel,
+                                     {.access = std::vector<StreamAccess>(kernel.parameters.size())}));
         }
       }
     }
   }
-  REQUIRE(programs.count() == 12);
+  REQUIRE(programs.count() == 20);
   checkAccepted(programs);
 }
 
 TEST_CASE("glslang accepts kernels that use nothing of the assembler's, and the vertex program") {
   Programs programs("plain");
   for (const Profile& profile : profiles()) {
-    programs.add(fragmentProgram(profile, samples::saxpy, {.access = {{}, {}, {}, {}}}));
-    programs.add(fragmentProgram(profile, samples::diffuse, {.access = {{}, {Addressing::Plane}, {}}}));
-    programs.add(vertexProgram(profile), "vert");
+    programs.add(profile, kernelProgram(profile, samples::saxpy, {.access = {{}, {}, {}, {}}}));
+    programs.add(profile,
+                 kernelProgram(profile, samples::diffuse, {.access = {{}, {Addressing::Plane}, {}}}));
+    if (profile.stage == Stage::Fragment) programs.add(vertexProgram(profile), "vert");
   }
   checkAccepted(programs);
 }
@@ -246,14 +255,15 @@ TEST_CASE("glslang accepts every pass of a reduction") {
           for (const auto [domain, view] : domains) {
             for (const std::uint8_t rank :
                  {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{3}, std::uint8_t{4}}) {
-              programs.add(reduceProgram(profile, *reduction, {walk, runs, domain, view, rank, rank}));
+              programs.add(profile,
+                           reduceProgram(profile, *reduction, {walk, runs, domain, view, rank, rank}));
             }
           }
         }
       }
     }
   }
-  REQUIRE(programs.count() == 2 * 3 * 4 * 3 * 4 * 4);
+  REQUIRE(programs.count() == 3 * 3 * 4 * 3 * 4 * 4);
   checkAccepted(programs);
 }
 
@@ -267,16 +277,16 @@ TEST_CASE("glslang accepts folds of several inputs to several accumulators, by i
         for (const auto [domain, view] : domains) {
           for (const std::uint8_t first : {std::uint8_t{0}, std::uint8_t{2}}) {
             const auto count = static_cast<std::uint8_t>(first == 0 ? 0 : 3);
-            programs.add(reduceProgram(profile, samples::weigh,
-                                       {.walk = walk,
-                                        .runs = Runs::Split,
-                                        .domain = domain,
-                                        .domainView = view,
-                                        .domainRank = 4,
-                                        .axes = 4,
-                                        .firstPlane = first,
-                                        .planeCount = count,
-                                        .access = {{}, x, y, {Addressing::Plane}, {}, {}}}));
+            programs.add(profile, reduceProgram(profile, samples::weigh,
+                                                {.walk = walk,
+                                                 .runs = Runs::Split,
+                                                 .domain = domain,
+                                                 .domainView = view,
+                                                 .domainRank = 4,
+                                                 .axes = 4,
+                                                 .firstPlane = first,
+                                                 .planeCount = count,
+                                                 .access = {{}, x, y, {Addressing::Plane}, {}, {}}}));
           }
         }
       }

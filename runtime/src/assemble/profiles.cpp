@@ -10,9 +10,10 @@ namespace sk::assemble {
 namespace {
 
 constexpr std::array table = {
-    // name      #version           es     draw buffers  texture units  uniform components (guaranteed minima)
-    Profile{"glsl330", "#version 330 core", false, 8, 16, 1024, Doubles::Native},
-    Profile{"essl300", "#version 300 es", true, 4, 16, 896, Doubles::Pairs},
+    // name      #version  stage  es  draw buffers or images  texture units  uniform components (guaranteed minima)
+    Profile{"glsl330", "#version 330 core", Stage::Fragment, false, 8, 16, 1024, Doubles::Native},
+    Profile{"essl300", "#version 300 es", Stage::Fragment, true, 4, 16, 896, Doubles::Pairs},
+    Profile{"glsl430", "#version 430 core", Stage::Compute, false, 8, 16, 1024, Doubles::Native},
 };
 
 }  // namespace

@@ -10,6 +10,8 @@ TEST_CASE("profiles are found by name") {
   CHECK(findProfile("glsl330")->drawBuffers == 8);
   REQUIRE(findProfile("essl300") != nullptr);
   CHECK(findProfile("essl300")->es);
+  REQUIRE(findProfile("glsl430") != nullptr);
+  CHECK(findProfile("glsl430")->stage == Stage::Compute);
   CHECK(findProfile("glsl") == nullptr);
   for (const Profile& profile : profiles()) CHECK(findProfile(profile.name) == &profile);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A fragment program in the making: sections that grow while parameters are laid out, each
+// A program in the making: sections that grow while parameters are laid out, each
 // declaration made by whoever mentions it first, then put in order around the kernel's own text.
 #pragma once
 
@@ -31,12 +31,21 @@ std::string_view text(Function function);
 
 class ProgramText {
  public:
+  explicit ProgramText(Stage stage = Stage::Fragment) : stage_(stage) {}
+
+  Stage stage() const { return stage_; }
+  /// The texel that an invocation computes, an ivec2, and its coordinates: expressions.
+  std::string_view texel() const { return isDrawn() ? "ivec2(gl_FragCoord.xy)" : "sk_pixel"; }
+  std::string_view column() const { return isDrawn() ? "int(gl_FragCoord.x)" : "sk_pixel.x"; }
+  std::string_view row() const { return isDrawn() ? "int(gl_FragCoord.y)" : "sk_pixel.y"; }
   /// Declares a uniform unless it is declared, and gives its name.
   std::string uniform(std::string_view type, std::string_view name);
   /// Declares an input that is the same for the whole point or triangle.
   void flatInput(std::string_view type, std::string_view name);
-  /// Declares the output of the next location.
+  /// Declares the output of the next location: a variable of the type of a texel.
   void output(std::string_view type, std::string_view name);
+  /// Where a compute program stores its outputs at the end of main(): an ivec2, or in array textures an ivec3.
+  void storeAt(std::string_view place, bool isArray);
   /// Declares a global variable.
   void variable(std::string_view type, std::string_view name);
   /// Defines one of the shared functions unless it is defined.
@@ -53,11 +62,22 @@ class ProgramText {
   std::string finish(const Profile& profile, std::string_view comment, const program::Kernel& kernel) const;
 
  private:
+  struct Output {
+    std::string type, name;
+  };
+
+  bool isDrawn() const { return stage_ == Stage::Fragment; }
+  std::string declarationOfOutputs() const;
+  std::string mainOf(const std::string& body) const;
+
+  Stage stage_;
+  std::string place_;  ///< storeAt()'s
+  bool isArray_ = false;
   std::vector<std::string> uniforms_;
-  std::vector<std::string> outputs_;
+  std::vector<Output> outputs_;
   std::vector<std::string> variables_;
   std::vector<std::string> signatures_;
-  std::uint32_t used_ = 0;   ///< bits of Function
+  std::uint32_t used_ = 0;  ///< bits of Function
   std::string functions_;
   std::string prologue_;
   std::string main_;

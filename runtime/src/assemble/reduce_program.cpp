@@ -60,11 +60,13 @@ Kernel kernelOf(const Reduction& reduction, Walk walk) {
 
 class ReductionText {
  public:
-  ReductionText(const Reduction& reduction, const ReduceVariant& variant)
-      : reduction_(reduction),
+  ReductionText(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant)
+      : profile_(profile),
+        reduction_(reduction),
         variant_(variant),
         held_(kernelOf(reduction, variant.walk), variant.access),
         kernel_(held_.kernel()),
+        program_(profile.stage),
         domain_(program_, variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
                 "sk_result") {
     for (const Parameter& parameter : kernel_.parameters) {
@@ -73,7 +75,7 @@ class ReductionText {
     }
   }
 
-  std::string write(const Profile& profile) {
+  std::string write() {
     if (kernel_.usesLoops) domain_.leaveOutside();
     if (variant_.walk != Walk::Nothing) defineParameters();
     std::vector<Parameter> written = writtenParameters();
@@ -86,9 +88,11 @@ class ReductionText {
       foldRun();
     }
     for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
-    const std::string comment = fmt::format("{} for {}: {}, {}", reduction_.fold.name, profile.name,
+    if (profile_.stage == Stage::Compute)
+      program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
+    const std::string comment = fmt::format("{} for {}: {}, {}", reduction_.fold.name, profile_.name,
                                             name(variant_.walk), name(variant_.runs));
-    return program_.finish(profile, comment, kernel_);
+    return program_.finish(profile_, comment, kernel_);
   }
 
  private:
@@ -391,6 +395,7 @@ class ReductionText {
   }
   void statement(std::string_view line) { program_.statement(line); }
 
+  const Profile& profile_;
   const Reduction& reduction_;
   const ReduceVariant& variant_;
   const HeldKernel held_;
@@ -408,7 +413,7 @@ class ReductionText {
 }  // namespace
 
 std::string reduceProgram(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant) {
-  return ReductionText(reduction, variant).write(profile);
+  return ReductionText(profile, reduction, variant).write();
 }
 
 }  // namespace sk::assemble

@@ -29,6 +29,30 @@ void BoundState::forget() {
   viewport_ = {-1, -1, -1, -1};
   activeUnit_ = -1;
   textures_ = arrayTextures_ = samplers_ = unknownUnits();
+  images_ = unknownUnits<maxImageUnits>();
+}
+
+void BoundState::bindImage(int unit, GLuint name, GLenum format) {
+  const auto slot = static_cast<std::size_t>(unit);
+  keepImage(slot);
+  glBindImageTexture(static_cast<GLuint>(unit), name, 0, GL_TRUE, 0, GL_WRITE_ONLY, format);
+  images_[slot] = name;
+}
+
+/// In an application's context.
+void BoundState::keepImage(std::size_t unit) {
+  KeptImage& kept = keptImages_[unit];
+  if (!isApplications_ || kept.kept) {
+    return;
+  }
+  const auto index = static_cast<GLuint>(unit);
+  glGetIntegeri_v(GL_IMAGE_BINDING_NAME, index, &kept.name);
+  glGetIntegeri_v(GL_IMAGE_BINDING_LEVEL, index, &kept.level);
+  glGetIntegeri_v(GL_IMAGE_BINDING_LAYERED, index, &kept.isLayered);
+  glGetIntegeri_v(GL_IMAGE_BINDING_LAYER, index, &kept.layer);
+  glGetIntegeri_v(GL_IMAGE_BINDING_ACCESS, index, &kept.access);
+  glGetIntegeri_v(GL_IMAGE_BINDING_FORMAT, index, &kept.format);
+  kept.kept = true;
 }
 
 void BoundState::bindTexture(int unit, GLuint name, bool isArray) {
@@ -81,6 +105,15 @@ void BoundState::leaveApplication(GLint activeUnit) {
       glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(kept.texture));
       glBindTexture(GL_TEXTURE_2D_ARRAY, static_cast<GLuint>(kept.arrayTexture));
       glBindSampler(static_cast<GLuint>(unit), static_cast<GLuint>(kept.sampler));
+      kept = {};
+    }
+  }
+  for (std::size_t unit = 0; unit < keptImages_.size(); ++unit) {
+    KeptImage& kept = keptImages_[unit];
+    if (kept.kept) {
+      glBindImageTexture(static_cast<GLuint>(unit), static_cast<GLuint>(kept.name), kept.level,
+                         kept.isLayered != 0 ? GL_TRUE : GL_FALSE, kept.layer,
+                         static_cast<GLenum>(kept.access), static_cast<GLenum>(kept.format));
       kept = {};
     }
   }

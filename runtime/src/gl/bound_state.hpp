@@ -13,6 +13,8 @@ namespace sk::gl {
 
 /// Texture units that may be used: no context that we know has more for a fragment program.
 inline constexpr int maxTextureUnits = 32;
+/// Images that a compute program may write: as many as a draw has targets.
+inline constexpr int maxImageUnits = 16;
 
 class BoundState {
  public:
@@ -38,6 +40,12 @@ class BoundState {
   void sampler(int unit, GLuint name) {
     if (samplers_[static_cast<std::size_t>(unit)] != name) {
       bindSampler(unit, name);
+    }
+  }
+  /// An image that programs write, all layers of it.
+  void image(int unit, GLuint name, GLenum format) {
+    if (images_[static_cast<std::size_t>(unit)] != name) {
+      bindImage(unit, name, format);
     }
   }
   /// Binds a texture where glTexImage2D and the like change it: to unit 0, which is then the active one.
@@ -74,6 +82,8 @@ class BoundState {
  private:
   void bindTexture(int unit, GLuint name, bool isArray);
   void bindSampler(int unit, GLuint name);
+  void bindImage(int unit, GLuint name, GLenum format);
+  void keepImage(std::size_t unit);
   void activateUnit(int unit);
   void keepUnit(std::size_t unit);
   void setViewport(const std::array<GLint, 4>& rectangle) const;
@@ -84,10 +94,15 @@ class BoundState {
     GLint arrayTexture = 0;
     GLint sampler = 0;
   };
+  struct KeptImage {
+    bool kept = false;
+    GLint name = 0, level = 0, isLayered = 0, layer = 0, access = 0, format = 0;
+  };
   // No object has this name, so that whatever is bound next is bound.
   static constexpr GLuint unknown = ~GLuint{0};
-  static constexpr std::array<GLuint, maxTextureUnits> unknownUnits() {
-    std::array<GLuint, maxTextureUnits> units;
+  template <std::size_t count = maxTextureUnits>
+  static constexpr std::array<GLuint, count> unknownUnits() {
+    std::array<GLuint, count> units;
     units.fill(unknown);
     return units;
   }
@@ -101,9 +116,11 @@ class BoundState {
   std::array<GLuint, maxTextureUnits> textures_ = unknownUnits();
   std::array<GLuint, maxTextureUnits> arrayTextures_ = unknownUnits();
   std::array<GLuint, maxTextureUnits> samplers_ = unknownUnits();
+  std::array<GLuint, maxImageUnits> images_ = unknownUnits<maxImageUnits>();
   bool isApplications_ = false;
   bool hasManyViewports_ = false;
   std::array<KeptUnit, maxTextureUnits> keptUnits_{};
+  std::array<KeptImage, maxImageUnits> keptImages_{};
 };
 
 }  // namespace sk::gl

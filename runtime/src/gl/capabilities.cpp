@@ -44,6 +44,16 @@ int largestTexture() {
   return std::min({integerOf(GL_MAX_TEXTURE_SIZE), viewport[0], viewport[1]});
 }
 
+/// Whether compute programs can stand for fragment programs, as wide as these; then uniforms find room in both.
+void readCompute(Capabilities& found) {
+  if (found.api != Api::Gl || found.version < 43) return;
+  found.hasCompute = integerOf(GL_MAX_COMPUTE_IMAGE_UNIFORMS) >= found.drawBuffers &&
+                     integerOf(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS) >= found.textureUnits;
+  if (found.hasCompute) {
+    found.uniformComponents = std::min(found.uniformComponents, integerOf(GL_MAX_COMPUTE_UNIFORM_COMPONENTS));
+  }
+}
+
 bool isRenderable(const Format& format, BoundState& bound) {
   const Texture texture(bound, format, {1, 1});
   if (texture.name() == 0) {
@@ -88,6 +98,7 @@ Capabilities readCapabilities() {
   found.textureUnits = std::min(integerOf(GL_MAX_TEXTURE_IMAGE_UNITS), maxTextureUnits);
   found.uniformComponents = found.api == Api::Gl ? integerOf(GL_MAX_FRAGMENT_UNIFORM_COMPONENTS)
                                                  : 4 * integerOf(GL_MAX_FRAGMENT_UNIFORM_VECTORS);
+  readCompute(found);
   return found;
 }
 

@@ -20,6 +20,7 @@ struct Capabilities {
   bool hasDoubles = false;       ///< GLSL has double (GL_ARB_gpu_shader_fp64)
   bool hasPrecise = false;       ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
   bool filtersFloats = false;    ///< of 32 bits, linearly
+  bool hasCompute = false;       ///< compute programs of GLSL 4.30, within the limits below
   std::string renderer;
   std::string driver;            ///< GL_VERSION, as the driver words it
   std::string shadingLanguage;   ///< GL_SHADING_LANGUAGE_VERSION, likewise
@@ -27,7 +28,7 @@ struct Capabilities {
   int textureLayers = 0;         ///< of an array texture
   int drawBuffers = 0;
   int textureUnits = 0;          ///< at most maxTextureUnits
-  int uniformComponents = 0;     ///< of a fragment program
+  int uniformComponents = 0;     ///< of a program
 };
 
 /// Planes that one pass may write at most, whatever the device allows.

@@ -10,6 +10,16 @@ namespace sk::gl {
 /// Draws the triangle that covers the viewport.
 inline void drawTriangle() { glDrawArrays(GL_TRIANGLES, 0, 3); }
 
+/// Runs so many work groups of the compute program, then lets everything that follows see what they wrote.
+inline void dispatch(GLsizei groupsInX, GLsizei groupsInY) {
+  glDispatchCompute(static_cast<GLuint>(groupsInX), static_cast<GLuint>(groupsInY), 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                  GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+}
+
+/// Lets dispatches write what draws before them have read.
+inline void finishDraws() { glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT); }
+
 /// Waits until everything is done.
 inline void finish() { glFinish(); }
 

@@ -46,12 +46,19 @@ Program Program::build(const std::string& vertexSource, const std::string& fragm
   if (!vertex || !fragment) {
     return {};
   }
+  return link({vertex.get(), fragment.get()}, log);
+}
+
+Program Program::buildCompute(const std::string& source, std::string& log) {
+  const Shader shader = compile(GL_COMPUTE_SHADER, source, log);
+  return shader ? link({shader.get()}, log) : Program();
+}
+
+Program Program::link(std::initializer_list<GLuint> shaders, std::string& log) {
   Program program(glCreateProgram());
-  glAttachShader(program.name(), vertex.get());
-  glAttachShader(program.name(), fragment.get());
+  for (const GLuint shader : shaders) glAttachShader(program.name(), shader);
   glLinkProgram(program.name());
-  glDetachShader(program.name(), vertex.get());
-  glDetachShader(program.name(), fragment.get());
+  for (const GLuint shader : shaders) glDetachShader(program.name(), shader);
   GLint isLinked = GL_FALSE;
   glGetProgramiv(program.name(), GL_LINK_STATUS, &isLinked);
   if (isLinked == GL_FALSE) {
@@ -59,6 +66,12 @@ Program Program::build(const std::string& vertexSource, const std::string& fragm
     return {};
   }
   return program;
+}
+
+std::array<GLint, 3> Program::workGroup() const {
+  std::array<GLint, 3> size{1, 1, 1};
+  glGetProgramiv(name(), GL_COMPUTE_WORK_GROUP_SIZE, size.data());
+  return size;
 }
 
 }  // namespace sk::gl

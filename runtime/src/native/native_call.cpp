@@ -258,6 +258,7 @@ std::vector<native::Table> NativeDevice::tablesOf(const Kernel& kernel, RealType
 
 void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments,
                        const CallOptions& options) {
+  checkTarget(called, options.target);
   const Kernel& kernel = takesHalf(options) ? formOf(called, options) : called;
   const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
   const RealType real = realOf(options);
@@ -268,6 +269,7 @@ void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments
 
 void NativeDevice::reduce(const program::Reduction& called, std::span<const Argument> arguments,
                           const Shape& domain, std::span<void* const> results, const CallOptions& options) {
+  checkTarget(called.fold, options.target);
   const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
   const RealType real = realOf(options);
   Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
@@ -292,6 +294,7 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
 
 void NativeDevice::reduce(const program::Reduction& called, std::span<const Argument> arguments,
                           const Shape& domain, const Shape& blocks, const CallOptions& options) {
+  checkTarget(called.fold, options.target);
   const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
   const RealType real = realOf(options);
   Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),

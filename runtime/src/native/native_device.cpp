@@ -59,6 +59,13 @@ void NativeDevice::checkProgram(const program::Reduction& reduction) {
   }
 }
 
+void NativeDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
+  if (asked == Target::Fragment || asked == Target::Compute) {
+    fail(kernel, "its streams are on '{}', which runs native code; {} programs run on streams of a GL device",
+         name_, asked == Target::Fragment ? "fragment" : "compute");
+  }
+}
+
 std::unique_ptr<StreamState> NativeDevice::createStream(const program::Element& element, const Shape& shape,
                                                         Storage storage) {
   return std::make_unique<NativeStream>(*this, element, shape, storage);

@@ -40,6 +40,8 @@ class NativeDevice final : public DeviceState {
 
  private:
   RealType realOf(const CallOptions& options) const;
+  /// Throws sk::Error where a call asks for GLSL programs.
+  void checkTarget(const program::Kernel& kernel, Target asked) const;
   /// Whether a call takes the form that rounds to halves, which a reference does not.
   bool takesHalf(const CallOptions& options) const {
     return options.precision == Precision::Half && !isReference();

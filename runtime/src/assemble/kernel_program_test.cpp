@@ -32,7 +32,7 @@ std::string definition(const std::string& program, std::string_view begin) {
 struct Accessors {
   Accessors(Boundary boundary, int rank, int reach, const Variant& variant) {
     const samples::EveryAccess sample(samples::floatElement, "-1.0", rank, boundary, reach);
-    const std::string program = fragmentProgram(glsl, sample.kernel(), variant);
+    const std::string program = kernelProgram(glsl, sample.kernel(), variant);
     at = definition(program, "float sk_at_a");
     near = definition(program, "float sk_near_a");
   }
@@ -44,7 +44,7 @@ Variant planeVariant(StreamAccess gather) { return {.access = {{}, {}, gather, {
 }  // namespace
 
 TEST_CASE("an element-wise kernel over planes has no address arithmetic") {
-  CHECK(fragmentProgram(glsl, samples::saxpy, {.access = {{}, {}, {}, {}}}) == R"(#version 330 core
+  CHECK(kernelProgram(glsl, samples::saxpy, {.access = {{}, {}, {}, {}}}) == R"(#version 330 core
 // saxpy for glsl330: plane domain; x aligned; y aligned
 
 uniform float sk_arg_a;
@@ -69,14 +69,14 @@ void main() {
 }
 
 TEST_CASE("a linearised element-wise kernel has none either") {
-  const std::string plane = fragmentProgram(glsl, samples::saxpy, {.access = {{}, {}, {}, {}}});
+  const std::string plane = kernelProgram(glsl, samples::saxpy, {.access = {{}, {}, {}, {}}});
   const std::string linear =
-      fragmentProgram(glsl, samples::saxpy, {.domain = Domain::Linear, .access = {{}, {}, {}, {}}});
+      kernelProgram(glsl, samples::saxpy, {.domain = Domain::Linear, .access = {{}, {}, {}, {}}});
   CHECK(part(plane, "\nuniform", "main() {") == part(linear, "\nuniform", "main() {"));
 }
 
 TEST_CASE("a stencil clamps its neighbours") {
-  CHECK(fragmentProgram(es, samples::diffuse, {.access = {{}, {Addressing::Plane}, {}}}) == R"(#version 300 es
+  CHECK(kernelProgram(es, samples::diffuse, {.access = {{}, {Addressing::Plane}, {}}}) == R"(#version 300 es
 // heat::diffuse for essl300: plane domain; u plane
 precision highp float;
 precision highp int;
@@ -110,7 +110,7 @@ void main() {
 TEST_CASE("a box of a linearised stream discards before it fetches") {
   const Variant variant{
       .domain = Domain::LinearBox, .domainRank = 2, .access = {{}, {Addressing::Linear, true}, {}}};
-  const std::string program = fragmentProgram(glsl, samples::diffuse, variant);
+  const std::string program = kernelProgram(glsl, samples::diffuse, variant);
   CHECK(definition(program, "float sk_near_u") == R"(float sk_near_u(ivec2 sk_d) {
   ivec2 sk_p = clamp(sk_index().xy + sk_d, ivec2(0), sk_shape_u.xy - 1);
   sk_p += sk_origin_u.xy;
@@ -128,7 +128,7 @@ TEST_CASE("a box of a linearised stream discards before it fetches") {
 
 TEST_CASE("structs are rebuilt from their planes and stored to them") {
   const samples::EveryAccess sample(samples::hitElement, "", 1, Boundary::Clamp, 1);
-  const std::string program = fragmentProgram(glsl, sample.kernel(), planeVariant({Addressing::Plane}));
+  const std::string program = kernelProgram(glsl, sample.kernel(), planeVariant({Addressing::Plane}));
   CHECK(definition(program, "Hit sk_fetch_a") == R"(Hit sk_fetch_a(ivec2 sk_t) {
   Hit sk_e;
   sk_e.t = texelFetch(sk_tex0_a, sk_t, 0).x;
@@ -157,7 +157,7 @@ layout(location = 4) out int sk_out_s;
 
 TEST_CASE("declarations come before what speaks of them, and lines are numbered from the program's begin") {
   const samples::EveryAccess sample(samples::hitElement, "", 1, Boundary::Clamp, 1);
-  const std::string program = fragmentProgram(glsl, sample.kernel(), planeVariant({Addressing::Plane}));
+  const std::string program = kernelProgram(glsl, sample.kernel(), planeVariant({Addressing::Plane}));
   CHECK(program.find("struct Hit") < program.find("uniform Hit sk_arg_c;"));
   std::size_t restored = 0;
   int number = 0;
@@ -175,7 +175,7 @@ TEST_CASE("declarations come before what speaks of them, and lines are numbered 
 
 TEST_CASE("bools and vectors of 3 are converted at the borders") {
   const samples::EveryAccess flags(samples::bool3Element, "", 1, Boundary::Clamp, 1);
-  const std::string program = fragmentProgram(glsl, flags.kernel(), planeVariant({Addressing::Plane}));
+  const std::string program = kernelProgram(glsl, flags.kernel(), planeVariant({Addressing::Plane}));
   CHECK(program.find("uniform usampler2D sk_tex_x;") != std::string::npos);
   CHECK(definition(program, "void main") == R"(void main() {
   bvec3 sk_value_r;
@@ -190,7 +190,7 @@ TEST_CASE("bools and vectors of 3 are converted at the borders") {
 }
 
 TEST_CASE("an input that does not lie under the fragment repeats where its extent is 1") {
-  const std::string plane = fragmentProgram(
+  const std::string plane = kernelProgram(
       glsl, samples::saxpy, {.access = {{}, {Addressing::Plane, true}, {Addressing::Linear}, {}}});
   CHECK(definition(plane, "ivec4 sk_index_x") == R"(ivec4 sk_index_x() {
   return min(sk_index(), sk_shape_x - 1);
@@ -294,7 +294,7 @@ TEST_CASE("a kernel with loops leaves fragments beside its domain before it does
   Kernel looping = samples::saxpy;
   looping.usesLoops = true;
   const auto first = [&](const Variant& variant) {
-    return part(fragmentProgram(glsl, looping, variant), "void main() {\n", ";\n");
+    return part(kernelProgram(glsl, looping, variant), "void main() {\n", ";\n");
   };
   CHECK(first({.access = {{}, {}, {}, {}}}) ==
         "void main() {\n  if (any(greaterThanEqual(uvec2(ivec2(gl_FragCoord.xy)), "
@@ -305,6 +305,6 @@ TEST_CASE("a kernel with loops leaves fragments beside its domain before it does
   CHECK(first({.domain = Domain::Linear, .access = {{}, {}, {}, {}}}) ==
         "void main() {\n  if ((int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x)) >= "
         "sk_domain_stride.w * sk_domain_shape.w) return;\n");
-  CHECK(fragmentProgram(glsl, looping, {.domain = Domain::LinearBox, .access = {{}, {}, {}, {}}})
+  CHECK(kernelProgram(glsl, looping, {.domain = Domain::LinearBox, .access = {{}, {}, {}, {}}})
             .find("return;") == std::string::npos);
 }

@@ -90,13 +90,16 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
 
 class KernelText {
  public:
-  KernelText(const Kernel& kernel, const Variant& variant)
-      : held_(kernel, variant.access),
+  KernelText(const Profile& profile, const Kernel& kernel, const Variant& variant)
+      : profile_(profile),
+        held_(kernel, variant.access),
         kernel_(held_.kernel()),
         variant_(variant),
+        program_(profile.stage),
         domain_(program_, variant.domain, variant.domainView, variant.domainRank, variant.domainLayered) {}
 
-  std::string write(const Profile& profile) {
+  std::string write() {
+    assert(profile_.stage == Stage::Fragment || variant_.task.work == Work::Elements);
     if (isList())
       findEntry(program_, domain_, kernel_.parameters[variant_.task.sink], variant_.task.treeLayered);
     if (kernel_.usesLoops) domain_.leaveOutside();
@@ -115,7 +118,9 @@ class KernelText {
     program_.statement(call(kernel_.entry, arguments_, "      ") + ";");
     for (const auto& [parameter, variable] : results_) store(program_, *parameter, variable);
     storeSinks();
-    return program_.finish(profile, describe(profile, kernel_, variant_), kernel_);
+    if (profile_.stage == Stage::Compute)
+      program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
+    return program_.finish(profile_, describe(profile_, kernel_, variant_), kernel_);
   }
 
  private:
@@ -202,6 +207,7 @@ class KernelText {
     }
   }
 
+  const Profile& profile_;
   const HeldKernel held_;
   const Kernel& kernel_;
   const Variant& variant_;
@@ -219,9 +225,9 @@ Domain domainOf(const Placement& output) {
   return output.view ? Domain::LinearBox : Domain::Linear;
 }
 
-std::string fragmentProgram(const Profile& profile, const Kernel& kernel, const Variant& variant) {
+std::string kernelProgram(const Profile& profile, const Kernel& kernel, const Variant& variant) {
   assert(variant.access.size() == kernel.parameters.size());
-  return KernelText(kernel, variant).write(profile);
+  return KernelText(profile, kernel, variant).write();
 }
 
 }  // namespace sk::assemble
