@@ -7,21 +7,22 @@
 
 #include "convert_elements.hpp"
 #include "gl_device.hpp"
+#include "pass.hpp"
 #include "sink_list.hpp"
 #include "sk/error.hpp"
 #include "transfer.hpp"
 
 namespace sk {
 
+using assemble::Placement;
+
 GlStream::GlStream(GlDevice& on, const program::Element& type, const Shape& extents, Storage as)
-    : StreamState(on, type, extents, as), layout(layoutOf(extents, on.textureLimits())) {
+    : StreamState(on, type, extents, as) {
   if (storage != Storage::Single) {
     held_ = std::make_unique<assemble::HeldElement>(type, storage);
   }
-  if (layout.texture.width > 0) {
-    planes = on.takePlanes(held(), layout.texture,
-                           fmt::format("a stream of {} of shape {}", type.name, toString(extents)));
-  }
+  layout = layoutOf(extents, on.textureLimits(), canPack());
+  planes = takePlanesFor(layout);
 }
 
 GlStream::~GlStream() {
@@ -32,6 +33,39 @@ GlStream::~GlStream() {
     owner().pool.give(std::move(total_));
   }
   owner().givePlanes(planes);
+}
+
+std::vector<Surface> GlStream::takePlanesFor(const Layout& planned) {
+  if (planned.texture.width == 0) {
+    return {};
+  }
+  const program::Element& texel =
+      planned.whole.packed ? assemble::fourOf(held().fields.front().scalar) : held();
+  return owner().takePlanes(texel, planned.texture,
+                            fmt::format("a stream of {} of shape {}", element->name, toString(shape)));
+}
+
+void GlStream::relay(bool packed) {
+  if (layout.whole.packed == packed) {
+    return;
+  }
+  Layout wanted = layoutOf(shape, owner().textureLimits(), packed);
+  std::vector<Surface> taken = takePlanesFor(wanted);
+  owner().givePlanes(planes);
+  planes = std::move(taken);
+  layout = std::move(wanted);
+}
+
+void GlStream::unpack() {
+  if (!layout.whole.packed) {
+    return;
+  }
+  Layout wanted = layoutOf(shape, owner().textureLimits());
+  PlanesLease lease(owner());
+  lease.planes = takePlanesFor(wanted);
+  copyRegion(owner(), held(), planes, layout.whole, lease.planes, wanted.whole);
+  std::swap(planes, lease.planes);
+  layout = std::move(wanted);
 }
 
 GlDevice& GlStream::owner() const { return static_cast<GlDevice&>(*device); }
@@ -67,27 +101,50 @@ void GlStream::takeSize(std::int32_t count) {
   layout.draws = assemble::drawnTexels(layout.whole);
 }
 
+// A region of whole texels travels as such, and others once the stream is no longer packed.
+void GlStream::uploadHeld(const StreamRegion& region, const std::byte* elements) {
+  const Placement place = placementOf(region, layout);
+  if (place.packed && assemble::isWholeTexels(place)) {
+    upload(owner(), assemble::fourOf(held().fields.front().scalar), planes, assemble::texelsOf(place),
+           elements);
+    return;
+  }
+  unpack();
+  upload(owner(), held(), planes, placementOf(region, layout), elements);
+}
+
+void GlStream::downloadHeld(const StreamRegion& region, std::byte* elements) {
+  const Placement place = placementOf(region, layout);
+  if (place.packed && assemble::isWholeTexels(place)) {
+    download(owner(), assemble::fourOf(held().fields.front().scalar), planes, assemble::texelsOf(place),
+             elements);
+    return;
+  }
+  unpack();
+  download(owner(), held(), planes, placementOf(region, layout), elements);
+}
+
 void GlStream::write(const StreamRegion& region, const std::byte* elements) {
   const DeviceScope scope(owner());
   if (!held_) {
-    upload(owner(), *element, planes, placementOf(region, layout), elements);
+    uploadHeld(region, elements);
     return;
   }
   const auto count = static_cast<std::size_t>(region.shape.size());
   std::vector<std::byte> converted(count * held().size);
   convertElements(*element, elements, held(), converted.data(), count);
-  upload(owner(), held(), planes, placementOf(region, layout), converted.data());
+  uploadHeld(region, converted.data());
 }
 
 void GlStream::read(const StreamRegion& region, std::byte* elements) {
   const DeviceScope scope(owner());
   if (!held_) {
-    download(owner(), *element, planes, placementOf(region, layout), elements);
+    downloadHeld(region, elements);
     return;
   }
   const auto count = static_cast<std::size_t>(region.shape.size());
   std::vector<std::byte> converted(count * held().size);
-  download(owner(), held(), planes, placementOf(region, layout), converted.data());
+  downloadHeld(region, converted.data());
   convertElements(held(), converted.data(), *element, elements, count);
 }
 
@@ -95,7 +152,7 @@ void GlStream::readReals(const StreamRegion& region, double* values) {
   const DeviceScope scope(owner());
   const auto count = static_cast<std::size_t>(region.shape.size());
   std::vector<std::byte> converted(count * held().size);
-  download(owner(), held(), planes, placementOf(region, layout), converted.data());
+  downloadHeld(region, converted.data());
   readComponents(held(), converted.data(), count, values);
 }
 
@@ -104,12 +161,16 @@ void GlStream::writeReals(const StreamRegion& region, const double* values) {
   const auto count = static_cast<std::size_t>(region.shape.size());
   std::vector<std::byte> converted(count * held().size);
   writeComponents(held(), converted.data(), count, values);
-  upload(owner(), held(), planes, placementOf(region, layout), converted.data());
+  uploadHeld(region, converted.data());
 }
 
 StreamTexture GlStream::texture(int plane) {
   if (planes.empty()) {
     return {};
+  }
+  if (layout.whole.packed) {
+    const DeviceScope scope(owner());
+    unpack();
   }
   const gl::Texture& texture = planes[static_cast<std::size_t>(plane)].texture;
   const assemble::TextureShape& extents = texture.shape();

@@ -32,8 +32,15 @@ class GlStream final : public StreamState {
   /// What the planes hold: the element, or another for it.
   const program::Element& held() const { return held_ ? held_->element : *element; }
 
-  Layout layout;                       ///< holds once the stream is settled
-  std::vector<Surface> planes;         ///< one a field of what is held; none where the stream is empty
+  /// Whether the stream can lie packed, four elements to a texel.
+  bool canPack() const { return mayPack(held()) && mayPack(shape); }
+  /// Makes the stream lie packed or not, as it then does until a kernel writes all of it. The first keeps what it holds; the
+  /// other leaves it undefined. A scope of the device is open.
+  void unpack();
+  void relay(bool packed);
+
+  Layout layout;  ///< holds once the stream is settled
+  std::vector<Surface> planes;  ///< one a field of what is held; none where the stream is empty
 
   /// Takes what a kernel has pushed for its elements, and gives its planes for it. `total`: where their number
   /// is not known, CountTree::totalTexture(); `list` has then room for all that may be.
@@ -42,6 +49,10 @@ class GlStream final : public StreamState {
  private:
   friend class GlDevice;
   GlDevice& owner() const;
+  /// Between all elements of a region, as they are held, and host memory.
+  void uploadHeld(const StreamRegion& region, const std::byte* elements);
+  void downloadHeld(const StreamRegion& region, std::byte* elements);
+  std::vector<Surface> takePlanesFor(const Layout& planned);
   void takeSize(std::int32_t count);
 
   std::unique_ptr<assemble::HeldElement> held_;  ///< where the storage is not Single

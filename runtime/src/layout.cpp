@@ -49,6 +49,18 @@ Layout linearised(const Shape& shape, const assemble::TextureLimits& limits) {
   return layout;
 }
 
+/// That of the texels, each of which has four elements.
+Layout packedLayout(const Shape& shape, const assemble::TextureLimits& limits) {
+  const int last = shape.rank() - 1;
+  Layout layout = layoutOf(shape.with(last, shape[last] / assemble::lanes), limits);
+  layout.whole.packed = true;
+  layout.whole.extent = xFirst(shape);
+  if (layout.whole.linear) {
+    layout.whole.stride = assemble::stridesOf(layout.whole.extent);
+  }
+  return layout;
+}
+
 }  // namespace
 
 assemble::Index4 xFirst(const Shape& shape) {
@@ -59,12 +71,15 @@ assemble::Index4 xFirst(const Shape& shape) {
   return extent;
 }
 
-Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits) {
+Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits, bool packed) {
   if (shape.rank() == 0) {
     throw Error("a stream needs a shape of 1 to 4 dimensions");
   }
   if (shape.size() == 0) {
     return {};
+  }
+  if (packed && shape.size() <= assemble::mostElements) {
+    return packedLayout(shape, limits);
   }
   Layout layout;
   if (liesAsItIs(shape, limits.size)) {
@@ -75,6 +90,16 @@ Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits) {
   }
   layout.draws = assemble::drawnTexels(layout.whole);
   return layout;
+}
+
+bool mayPack(const program::Element& held) {
+  const program::Field& field = held.fields.front();
+  return held.fields.size() == 1 && field.path.empty() && field.width == 1 &&
+         field.scalar != program::Scalar::Double;
+}
+
+bool mayPack(const Shape& shape) {
+  return shape.size() > 0 && shape[shape.rank() - 1] % assemble::lanes == 0;
 }
 
 Layout listLayout(std::int64_t length, const assemble::TextureLimits& limits) {
@@ -102,8 +127,8 @@ assemble::Placement placementOf(const StreamRegion& region, const Layout& layout
 }
 
 bool haveSameTexels(const assemble::Placement& a, const assemble::Placement& b) {
-  return a.extent == b.extent && a.origin == b.origin && a.linear == b.linear && a.layered == b.layered &&
-         (!a.linear || (a.shift == b.shift && a.stride == b.stride));
+  return a.extent == b.extent && a.origin == b.origin && a.linear == b.linear && a.packed == b.packed &&
+         a.layered == b.layered && (!a.linear || (a.shift == b.shift && a.stride == b.stride));
 }
 
 }  // namespace sk

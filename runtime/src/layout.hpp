@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "assemble/placement.hpp"
+#include "sk/program.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
 
@@ -19,8 +20,14 @@ struct Layout {
   std::vector<assemble::Rect> draws;     ///< what a pass over the whole stream draws
 };
 
-/// The layout of a stream of this shape. Throws sk::Error where no texture holds it, or it has no dimension.
-Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits);
+/// The layout of a stream of this shape. `packed`: four elements a texel; the rows are a multiple of that. Throws sk::Error
+/// where no texture holds it, or it has no dimension.
+Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits, bool packed = false);
+
+/// Whether elements of this type can lie four to a texel: one scalar of four bytes at most.
+bool mayPack(const program::Element& held);
+/// Whether the rows of a stream of this shape are a multiple of four, and there are some.
+bool mayPack(const Shape& shape);
 
 /// That of a list of so many elements: linearised, whatever their number. Throws sk::Error where no texture
 /// holds them.
@@ -32,7 +39,7 @@ assemble::Placement placementOf(const StreamRegion& region, const Layout& layout
 /// The shape reversed: x first, missing dimensions 1.
 assemble::Index4 xFirst(const Shape& shape);
 
-/// Whether each element of both regions, of equal shape, is at the same texel.
+/// Whether each element of both regions, of equal shape, is at the same place in the same texel.
 bool haveSameTexels(const assemble::Placement& a, const assemble::Placement& b);
 
 }  // namespace sk

@@ -27,8 +27,8 @@ OutputTargets::OutputTargets(GlDevice& device, const program::Kernel& kernel,
     if (!isOutput(i)) {
       continue;
     }
-    if (const Way way = wayOf(i); way != Way::Direct) {
-      addAside(i, way);
+    if (wayOf(i) != Way::Direct) {
+      addAside(i);
       continue;
     }
     for (Surface& plane : operands_[i].planes) {
@@ -47,20 +47,22 @@ OutputTargets::Way OutputTargets::wayOf(std::size_t output) const {
     isWrittenBefore = isWrittenBefore || (isSame && isOutput(i) && i < output);
   }
   const Placement& placement = operands_[output].placement;
-  if (isWrittenBefore || !haveSameTexels(placement, domain_)) {
-    return Way::Copy;
+  const bool isSame = haveSameTexels(placement, domain_);
+  if (!isWrittenBefore && isSame && !isReadToo) {
+    return Way::Direct;
   }
-  return !isReadToo ? Way::Direct : placement.view ? Way::Copy : Way::Swap;
+  const bool isWhole = !placement.view && !domain_.view;
+  return isWhole && !isWrittenBefore ? Way::Swap : Way::Copy;
 }
 
-/// New planes lie as the domain does, or are those that the stream is to have.
-void OutputTargets::addAside(std::size_t output, Way way) {
-  const GlStream& stream = glStream(arguments_[output].region);
-  const Layout& layout = way == Way::Swap ? stream.layout : layout_;
+/// New planes lie as the domain does.
+void OutputTargets::addAside(std::size_t output) {
+  const program::Element& held = glStream(arguments_[output].region).held();
   aside_.resize(arguments_.size());
   aside_[output] = std::make_unique<PlanesLease>(device_);
   aside_[output]->planes =
-      device_.takePlanes(stream.held(), layout.texture, "an output that the kernel reads too");
+      device_.takePlanes(domain_.packed ? assemble::fourOf(held.fields.front().scalar) : held,
+                         layout_.texture, "an output that the kernel reads too");
   for (Surface& plane : aside_[output]->planes) {
     add(plane);
   }
@@ -77,6 +79,13 @@ std::vector<std::span<Surface>> OutputTargets::planesOfOutputs() const {
   return planes;
 }
 
+void OutputTargets::putCopy(GlStream& stream, const StreamRegion& region, std::span<Surface> drawn) {
+  if (!domain_.packed || !assemble::isWholeTexels(placementOf(region, stream.layout))) {
+    stream.unpack();
+  }
+  copyRegion(device_, stream.held(), drawn, domain_, stream.planes, placementOf(region, stream.layout));
+}
+
 void OutputTargets::putInPlace() {
   for (std::size_t i = 0; i < aside_.size(); ++i) {
     if (!aside_[i]) {
@@ -85,8 +94,9 @@ void OutputTargets::putInPlace() {
     GlStream& stream = glStream(arguments_[i].region);
     if (wayOf(i) == Way::Swap) {
       std::swap(stream.planes, aside_[i]->planes);
+      stream.layout = layout_;
     } else {
-      copyRegion(device_, stream.held(), aside_[i]->planes, domain_, stream.planes, operands_[i].placement);
+      putCopy(stream, arguments_[i].region, aside_[i]->planes);
     }
   }
 }

@@ -11,6 +11,7 @@
 
 #include "assemble/condition.hpp"
 #include "gl_device.hpp"
+#include "gl_stream.hpp"
 #include "layout.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
@@ -42,8 +43,8 @@ class OutputTargets {
   /// How the elements of an output get to where they belong.
   enum class Way {
     Direct,  ///< drawn in place
-    Swap,    ///< drawn to new planes, which become the stream's: the call reads the old ones
-    Copy,    ///< drawn to new planes, and copied from there
+    Swap,  ///< drawn to new planes, which become the stream's: the call reads the old ones, or they lie otherwise
+    Copy,  ///< drawn to new planes, and copied from there
   };
 
   /// Of a reduction: an accumulator.
@@ -53,7 +54,8 @@ class OutputTargets {
   }
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
   Way wayOf(std::size_t output) const;
-  void addAside(std::size_t output, Way way);
+  void addAside(std::size_t output);
+  void putCopy(GlStream& stream, const StreamRegion& region, std::span<Surface> drawn);
 
   GlDevice& device_;
   const program::Kernel& kernel_;
@@ -64,7 +66,7 @@ class OutputTargets {
   const Layout& layout_;
   std::array<Surface*, gl::maxDrawBuffers> targets_{};
   std::size_t count_ = 0;
-  std::vector<std::unique_ptr<PlanesLease>> aside_;   ///< one an argument, or none at all
+  std::vector<std::unique_ptr<PlanesLease>> aside_;  ///< one an argument, or none at all
 };
 
 }  // namespace sk

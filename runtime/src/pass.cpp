@@ -6,9 +6,11 @@
 #include <array>
 #include <utility>
 
+#include "assemble/storage.hpp"
 #include "copy_kernel.hpp"
 #include "gl/commands.hpp"
 #include "gl_device.hpp"
+#include "layout.hpp"
 #include "texel_runs.hpp"
 
 namespace sk {
@@ -165,8 +167,13 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
 
 void copyRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
                 const Placement& source, std::span<Surface> to, const Placement& target) {
+  if (source.packed && target.packed) {
+    copyRegion(device, assemble::fourOf(element.fields.front().scalar), from, assemble::texelsOf(source), to,
+               assemble::texelsOf(target));
+    return;
+  }
   for (std::size_t plane = 0; plane < from.size(); ++plane) {
-    if (!source.linear && !target.linear) {
+    if (!source.linear && !target.linear && source.packed == target.packed) {
       blit(device, from[plane], source, to[plane], target);
       continue;
     }

@@ -57,7 +57,7 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
                const assemble::Task& task = {});
 
 /// Copies one region to another of the same shape, plane by plane, wherever each lies. They are not of
-/// the same surface.
+/// the same surface. `element`: what both hold. A target that is packed is of whole texels, as its source then is.
 void copyRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
                 const assemble::Placement& source, std::span<Surface> to, const assemble::Placement& target);
 

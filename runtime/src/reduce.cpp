@@ -66,12 +66,16 @@ std::vector<Surface*> pointersTo(std::span<Surface> planes) {
 class ReduceCall {
  public:
   ReduceCall(GlDevice& device, const Reduction& reduction, std::span<const Argument> arguments,
-             const Shape& domain)
+             const Shape& domain, const Index4& blocks)
       : device_(device), reduction_(reduction), specs_(specsOf(reduction.fold, arguments)) {
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-      operands_.push_back(operandOf(i, arguments[i], domain));
+    findOperands(arguments, domain);
+    byTexel_ = foldsByTexel(blocks);
+    if (!byTexel_ && domain.size() > 0) {
+      for (std::size_t i = 0; i < arguments.size(); ++i) {
+        if (isRead(i)) glStream(arguments[i].region).unpack();
+      }
+      findOperands(arguments, domain);
     }
-    elements_ = placementOfElements(xFirst(domain));
   }
 
   std::span<const Operand> operands() const { return operands_; }
@@ -80,8 +84,8 @@ class ReduceCall {
   void fold(const Index4& blocks, const Placement& result, std::span<Surface* const> targets) {
     const assemble::ReduceLimits limits{.texture = device_.textureLimits()};
     PlanesLease partials(device_);
-    for (const ReducePass& pass :
-         assemble::planReduction(elements_, result, limits, {.blocks = blocks, .byIndex = foldsByIndex()})) {
+    for (const ReducePass& pass : assemble::planReduction(
+             elements_, result, limits, {.blocks = blocks, .byIndex = foldsByIndex(), .byTexel = byTexel_})) {
       if (pass.toResult) {
         draw(pass, partials.planes, targets);
         continue;
@@ -99,6 +103,20 @@ class ReduceCall {
   }
 
  private:
+  void findOperands(std::span<const Argument> arguments, const Shape& domain) {
+    operands_.clear();
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      operands_.push_back(operandOf(i, arguments[i], domain));
+    }
+    elements_ = placementOfElements(xFirst(domain));
+  }
+
+  /// Whether all inputs are packed and blocks made of whole texels, which are then read as such.
+  bool foldsByTexel(const Index4& blocks) const {
+    return elements_.packed && !foldsByIndex() && assemble::isWholeTexels(elements_) &&
+           elements_.extent[0] / blocks[0] % assemble::lanes == 0;
+  }
+
   Operand operandOf(std::size_t i, const Argument& argument, const Shape& domain) const {
     const Parameter& parameter = reduction_.fold.parameters[i];
     switch (parameter.role) {
@@ -211,6 +229,7 @@ class ReduceCall {
   const assemble::SpecValues specs_;
   std::vector<Operand> operands_;   ///< of the fold
   Placement elements_;
+  bool byTexel_ = false;
 };
 
 }  // namespace
@@ -224,7 +243,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   const Placement placement = assemble::valuePlacement();
   PlanesLease value(*this);
   takeAccumulators(*this, reduction.fold, {1, 1}, "the result of a reduction", value);
-  ReduceCall call(*this, reduction, arguments, domain);
+  ReduceCall call(*this, reduction, arguments, domain, placement.extent);
   if (domain.size() == 0) {
     call.fill(placement, pointersTo(value.planes));
   } else {
@@ -243,7 +262,10 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   checkStorages(reduction.fold, arguments);
   const DeviceScope scope(*this);
   choose(options, stageOf(reduction.fold, options));
-  ReduceCall call(*this, reduction, arguments, domain);
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (reduction.fold.parameters[i].role == Role::Accumulator) glStream(arguments[i].region).unpack();
+  }
+  ReduceCall call(*this, reduction, arguments, domain, xFirst(blocks));
   const Kernel& fold = reduction.fold;
   const auto first = static_cast<std::size_t>(
       std::ranges::find(fold.parameters, Role::Accumulator, &Parameter::role) - fold.parameters.begin());

@@ -59,30 +59,73 @@ class KernelCall {
         kernel_(kernel),
         arguments_(arguments),
         specs_(specsOf(kernel, arguments)),
+        plan_(planFor(kernel, device.limits)),
         operands_(device.operands) {
     operands_.resize(arguments.size());
     while (!isOutput(first_)) {
       ++first_;
     }
+    layOut();
     for (std::size_t i = 0; i < arguments.size(); ++i) {
       operands_[i] = operandOf(i);
     }
   }
 
   void run() {
-    const Layout& layout = glStream(arguments_[first_].region).layout;
-    OutputTargets targets(device_, kernel_, arguments_, specs_, operands_, domain(), layout);
-    const DrawnRects rects(domain(), layout);
-    if (const program::Plan* plan = planFor(kernel_, device_.limits)) {
+    const Layout layout = *layout_;   // a stream's own may change as outputs are put in place
+    OutputTargets targets(device_, kernel_, arguments_, specs_, operands_, domain_, layout);
+    const DrawnRects rects(domain_, layout);
+    if (plan_ != nullptr) {
       const std::vector<std::span<Surface>> drawn = targets.planesOfOutputs();
-      runPlan(device_, *plan, {operands_, drawn, domain(), layout, rects.get()});
+      runPlan(device_, *plan_, {operands_, drawn, domain_, layout, rects.get()});
     } else {
-      runKernel(device_, kernel_, operands_, domain(), rects.get(), targets.planes());
+      runKernel(device_, kernel_, operands_, domain_, rects.get(), targets.planes());
     }
     targets.putInPlace();
   }
 
  private:
+  /// Decides how the outputs lie: packed where the kernel may write them so. What is written in part keeps its layout, if
+  /// that will do.
+  void layOut() {
+    const StreamRegion& region = arguments_[first_].region;
+    GlStream& stream = glStream(region);
+    const bool isWhole = region.shape == stream.shape;
+    bool packs = mayWritePacked();
+    if (!isWhole) {
+      packs =
+          packs && stream.layout.whole.packed && assemble::isWholeTexels(placementOf(region, stream.layout));
+      if (!packs) stream.unpack();
+    }
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      if (keepsScalars(i)) glStream(arguments_[i].region).unpack();
+    }
+    layout_ = &stream.layout;
+    if (stream.layout.whole.packed != packs) {
+      made_ = layoutOf(stream.shape, device_.textureLimits(), packs);
+      layout_ = &made_;
+    }
+    domain_ = placementOf(region, *layout_);
+  }
+
+  /// Whether the outputs may lie packed. A loop would run four times in a row for each texel, and long programs take four
+  /// times as long to compile.
+  bool mayWritePacked() const {
+    constexpr std::size_t longest = 4096;
+    bool may = plan_ == nullptr && !kernel_.usesLoops && kernel_.body.size() <= longest;
+    for (std::size_t i = 0; may && i < arguments_.size(); ++i) {
+      may = !isOutput(i) || glStream(arguments_[i].region).canPack();
+    }
+    return may;
+  }
+
+  /// Whether an argument is read by what knows no packed texels: passes that share textures, and filters.
+  bool keepsScalars(std::size_t i) const {
+    const Role role = kernel_.parameters[i].role;
+    const bool isRead = (role == Role::Input || role == Role::Gather) && isNeeded(i);
+    return isRead && (plan_ != nullptr || assemble::mayFilter(kernel_.parameters[i]));
+  }
+
   Operand operandOf(std::size_t i) const {
     const Parameter& parameter = kernel_.parameters[i];
     const Argument& argument = arguments_[i];
@@ -100,14 +143,17 @@ class KernelCall {
 
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
   bool isOutput(std::size_t i) const { return kernel_.parameters[i].role == Role::Output && isNeeded(i); }
-  const Placement& domain() const { return operands_[first_].placement; }
 
   GlDevice& device_;
   const Kernel& kernel_;
   std::span<const Argument> arguments_;
   const assemble::SpecValues specs_;
+  const program::Plan* const plan_;  ///< null where one pass will do
   std::vector<Operand>& operands_;
-  std::size_t first_ = 0;                               ///< output: its region is the domain
+  std::size_t first_ = 0;  ///< output: its region is the domain
+  Layout made_;
+  const Layout* layout_ = nullptr;  ///< of the first output, after the call
+  Placement domain_;
 };
 
 }  // namespace

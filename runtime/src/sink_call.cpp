@@ -51,6 +51,9 @@ class SinkCall {
         layout_(layoutOf(shape, device.textureLimits())),
         counts_(device) {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
+      if (isScattered(i)) glStream(arguments[i].region).unpack();
+    }
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
       operands_.push_back(operandOf(i, shape));
     }
   }
@@ -75,6 +78,10 @@ class SinkCall {
   }
 
  private:
+  bool isScattered(std::size_t i) const {
+    return kernel_.parameters[i].role == Role::Scatter && assemble::isNeeded(kernel_.parameters[i], specs_);
+  }
+
   Operand operandOf(std::size_t i, const Shape& domain) const {
     const Parameter& parameter = kernel_.parameters[i];
     const Argument& argument = arguments_[i];

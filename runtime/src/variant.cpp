@@ -52,7 +52,8 @@ bool isNearby(const Parameter& gather, const Placement& placement, const Placeme
 /// Whether the sampler's filter reads what sample() means: the whole of a texture, at its edges too.
 bool isFiltered(const Parameter& gather, const Placement& placement, bool filtersFloats) {
   const bool isFloat = gather.element->fields.front().scalar == program::Scalar::Float;
-  return assemble::mayFilter(gather) && !placement.linear && !placement.view && (!isFloat || filtersFloats);
+  return assemble::mayFilter(gather) && !placement.linear && !placement.packed && !placement.view &&
+         (!isFloat || filtersFloats);
 }
 
 StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, const Placement& domain,
@@ -64,6 +65,7 @@ StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, co
     return access;
   }
   access.addressing = addressingOf(placement);
+  access.packed = placement.packed;
   access.fit = operand.fit;
   access.view = access.fit != Fit::Same || placement.origin != assemble::Index4{};
   access.nearby = parameter.role == Role::Gather && isNearby(parameter, placement, domain);
@@ -185,6 +187,7 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
   variant.task = task;
   variant.domain = domainOf(domain, task);
   variant.domainView = isDomainView(domain);
+  variant.domainPacked = domain.packed;
   variant.domainLayered = domain.layered;
   variant.domainRank = assemble::decodedRank(domain);
   variant.specs = specsOf(kernel, operands);
@@ -211,11 +214,14 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
   bits.add(static_cast<std::uint64_t>(domainOf(domain, task)) | std::uint64_t{domain.layered} << 2 |
                std::uint64_t{isDomainView(domain)} << 3,
            4);
-  bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{task.treeLayered} << 3, 4);
+  bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{domain.packed} << 2 |
+               std::uint64_t{task.treeLayered} << 3,
+           4);
   bits.add(task.sink & 15u, 4);
   bits.add(task.sink >> 4, 4);
-  const bool hasStorages = std::ranges::any_of(
-      operands, [](const Operand& operand) { return operand.storage != Storage::Single; });
+  const bool hasStorages = std::ranges::any_of(operands, [](const Operand& operand) {
+    return operand.storage != Storage::Single || operand.placement.packed;
+  });
   bits.add(static_cast<std::uint64_t>(assemble::decodedRank(domain)) | std::uint64_t{hasStorages} << 3, 4);
   bool hasIterator = false;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
@@ -231,7 +237,9 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
       bits.add(static_cast<std::uint64_t>(addressing) | choiceBits(access) << 2, 4);
     }
     if (hasStorages && parameter.role != Role::Uniform && parameter.role != Role::Spec) {
-      bits.add(static_cast<std::uint64_t>(operands[i].storage), 4);
+      bits.add(
+          static_cast<std::uint64_t>(operands[i].storage) | std::uint64_t{operands[i].placement.packed} << 3,
+          4);
     }
   }
   return key;

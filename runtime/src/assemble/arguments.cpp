@@ -50,14 +50,15 @@ Texel inputTexel(ProgramText& program, const Parameter& input, const StreamAcces
   const std::string origin =
       access.view ? " + " + parameterUniform(program, "ivec4", "origin", input) : std::string();
   if (access.addressing == Addressing::Plane) {
-    return {access.view ? fmt::format("{}.xy{}.xy", index, origin) : index + ".xy"};
+    return {access.view ? fmt::format("{}.xy{}.xy", index, origin) : index + ".xy", "", access.packed};
   }
   program.require(Function::Ravel);
   program.require(Function::Texel);
   const std::string stride = parameterUniform(program, "ivec4", "stride", input);
   const std::string shift = parameterUniform(program, "int", "shift", input);
-  return {fmt::format("sk_texel(sk_ravel({}{}, {}), {})", index, origin, stride, shift),
-          access.addressing == Addressing::Layered ? shift : ""};
+  return {fmt::format("sk_texel(sk_ravel({}{}, {}), {}{})", index, origin, stride, shift,
+                      access.packed ? " + 2" : ""),
+          access.addressing == Addressing::Layered ? shift : "", access.packed};
 }
 
 std::string iteratorValue(ProgramText& program, const Parameter& iterator, const StreamAccess& access,

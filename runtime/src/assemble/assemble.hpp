@@ -71,6 +71,7 @@ enum class Addressing : std::uint8_t {
 struct StreamAccess {
   Addressing addressing = Addressing::Aligned;
   bool view = false;  ///< a region of its stream: an origin is added
+  bool packed = false;  ///< four elements a texel
   bool nearby = false;  ///< gathers: Parameter::reach is known and below every extent, and no extent
       ///< of the domain is above the gather's, so that one step wraps or mirrors
       ///< a neighbour's index
@@ -105,6 +106,7 @@ struct Variant {
   Task task = {};
   Domain domain = Domain::Plane;
   bool domainView = false;  ///< Plane: the domain's origin is not (0, 0)
+  bool domainPacked = false;  ///< four elements a texel, which one invocation computes one after the other
   bool domainLayered = false;  ///< what is drawn to is layered
   std::uint8_t domainRank = 2;  ///< Linear, LinearBox: dimensions that an index is decoded into;
       ///< decodedRank() of the output, or more

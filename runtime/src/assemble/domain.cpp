@@ -8,10 +8,22 @@
 
 namespace sk::assemble {
 
-DomainText::DomainText(ProgramText& program, Domain domain, bool view, int rank, bool layered,
-                       std::string_view function)
-    : program_(program), domain_(domain), view_(view), rank_(rank), layered_(layered), function_(function) {
-  if (domain_ == Domain::LinearBox) defineIndex();
+DomainText::DomainText(ProgramText& program, const DomainLayout& layout, std::string_view function)
+    : program_(program), layout_(layout), function_(function) {
+  if (layout_.domain == Domain::LinearBox) defineIndex();
+}
+
+std::string DomainText::lane() {
+  usesLane_ = true;
+  program_.variable("int", "sk_lane");
+  return "sk_lane";
+}
+
+/// The index of the element that is computed, given that of the first one in its texel.
+std::string DomainText::plus(std::string index, int components) {
+  if (!layout_.packed) return index;
+  if (components == 1) return fmt::format("({} + {})", index, lane());
+  return fmt::format("({} + ivec{}({}{}))", index, components, lane(), components == 2 ? ", 0" : ", 0, 0, 0");
 }
 
 std::string DomainText::index() {
@@ -20,9 +32,11 @@ std::string DomainText::index() {
 }
 
 std::string DomainText::position(int components) {
-  const bool aligned = domain_ == Domain::Plane && !view_;
-  if (aligned && components == 1) return std::string(program_.column());
-  if (aligned && components == 2) return std::string(program_.texel());
+  const bool aligned = layout_.domain == Domain::Plane && !layout_.view;
+  if (aligned && components == 1) {
+    return plus(fmt::format("{}{}", layout_.packed ? "4 * " : "", program_.column()), 1);
+  }
+  if (aligned && components == 2) return plus(fmt::format("{}{}", program_.texel(), inElements()), 2);
   static constexpr std::string_view xyzw = "xyzw";
   const std::string whole = index();
   return components == 4 ? whole
@@ -30,12 +44,13 @@ std::string DomainText::position(int components) {
 }
 
 std::string DomainText::number() {
-  switch (domain_) {
+  switch (layout_.domain) {
     case Domain::Plane: {
       const std::string width = program_.uniform("ivec4", "sk_domain_shape") + ".x";
       return fmt::format("{0}.y * {1} + {0}.x", index(), width);
     }
-    case Domain::Linear: return texelNumber();
+    case Domain::Linear:
+      return layout_.packed ? fmt::format("{} | {}", firstElement(), lane()) : texelNumber();
     case Domain::LinearBox:
       program_.require(Function::Ravel);
       return fmt::format("sk_ravel({}, {})", index(), program_.uniform("ivec4", "sk_domain_step"));
@@ -47,16 +62,17 @@ std::string DomainText::number() {
 void DomainText::leaveOutside() {
   if (!isDrawn()) return;  // nothing runs there
   const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
-  switch (domain_) {
+  switch (layout_.domain) {
     case Domain::Plane: {
-      const std::string origin = view_ ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
-      program_.prologue(fmt::format("if (any(greaterThanEqual(uvec2({}{}), uvec2({}.xy)))) return;",
-                                    program_.texel(), origin, shape));
+      const std::string origin =
+          layout_.view ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
+      program_.prologue(fmt::format("if (any(greaterThanEqual(uvec2({}{}{}), uvec2({}.xy)))) return;",
+                                    program_.texel(), inElements(), origin, shape));
       return;
     }
     case Domain::Linear: {
       const std::string stride = program_.uniform("ivec4", "sk_domain_stride");
-      program_.prologue(fmt::format("if (({}) >= {}.w * {}.w) return;", texelNumber(), stride, shape));
+      program_.prologue(fmt::format("if (({}) >= {}.w * {}.w) return;", firstElement(), stride, shape));
       return;
     }
     case Domain::LinearBox: return;  // these are discarded
@@ -70,7 +86,7 @@ void DomainText::leaveOutside() {
 
 Texel DomainText::texel() {
   const std::string texel(program_.texel());
-  if (!layered_) return {texel};
+  if (!layout_.layered) return {texel};
   const std::string shift = program_.uniform("int", "sk_domain_shift");
   if (!isDrawn()) return {texel, shift};
   return {fmt::format("{} + ivec2(0, {})", texel, program_.uniform("int", "sk_domain_row")), shift};
@@ -78,29 +94,38 @@ Texel DomainText::texel() {
 
 std::string DomainText::texelNumber() {
   const std::string row =
-      layered_ && isDrawn()
+      layout_.layered && isDrawn()
           ? fmt::format("({} + {})", program_.uniform("int", "sk_domain_row"), program_.row())
           : std::string(program_.row());
   return fmt::format("{} << {} | {}", row, program_.uniform("int", "sk_domain_shift"), program_.column());
 }
 
+/// The number of the first element in the texel.
+std::string DomainText::firstElement() {
+  return layout_.packed ? fmt::format("({}) << 2", texelNumber()) : texelNumber();
+}
+
 void DomainText::defineIndex() {
   const std::string signature = fmt::format("ivec4 {}()", function_);
   if (program_.isDefined(signature)) return;
-  if (domain_ == Domain::Plane) {
-    const std::string origin = view_ ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
-    program_.function(signature, {fmt::format("return ivec4({}{}, 0, 0);", program_.texel(), origin)});
+  if (layout_.domain == Domain::Plane) {
+    const std::string origin =
+        layout_.view ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
+    const std::string first = fmt::format("ivec4({}{}{}, 0, 0)", program_.texel(), inElements(), origin);
+    program_.function(signature, {fmt::format("return {};", plus(first, 4))});
     return;
   }
-  if (domain_ != Domain::Entry) program_.prologue(fmt::format("int sk_element = {};", texelNumber()));
+  if (layout_.domain != Domain::Entry) program_.prologue(fmt::format("int sk_element = {};", firstElement()));
   std::string value = "ivec4(sk_element, 0, 0, 0)";
-  if (rank_ > 1) {
-    program_.require(rank_ == 2 ? Function::Unravel2 : rank_ == 3 ? Function::Unravel3 : Function::Unravel4);
+  if (layout_.rank > 1) {
+    program_.require(layout_.rank == 2   ? Function::Unravel2
+                     : layout_.rank == 3 ? Function::Unravel3
+                                         : Function::Unravel4);
     value = fmt::format("sk_unravel(sk_element, {})", program_.uniform("ivec4", "sk_domain_stride"));
   }
   program_.variable("ivec4", "sk_here");
-  program_.function(signature, {"return sk_here;"});
-  if (domain_ != Domain::LinearBox) {
+  program_.function(signature, {fmt::format("return {};", plus("sk_here", 4))});
+  if (layout_.domain != Domain::LinearBox) {
     program_.prologue(fmt::format("sk_here = {};", value));
     return;
   }

@@ -14,13 +14,23 @@
 
 namespace sk::assemble {
 
+/// How the texels of a domain lie.
+struct DomainLayout {
+  Domain domain = Domain::Plane;
+  bool view = false;
+  int rank = 2;  ///< of the domain's stream, where that is linearised
+  bool layered = false;
+  bool packed = false;  ///< an invocation computes the four elements of a texel, one after the other
+};
+
 class DomainText {
  public:
-  /// `rank`: of the domain's stream, for domains of linearised streams. `layered`: what is drawn to are layers.
   /// `function`: what index() calls.
-  DomainText(ProgramText& program, Domain domain, bool view, int rank, bool layered,
-             std::string_view function = "sk_index");
+  DomainText(ProgramText& program, const DomainLayout& layout, std::string_view function = "sk_index");
 
+  /// Which of the four elements of a packed texel is computed, an int expression: main() has to set it.
+  std::string lane();
+  bool usesLane() const { return usesLane_; }
   /// A call of the function, which gives an ivec4.
   std::string index();
   /// The first components of the index: an int or an ivec2 to ivec4 expression.
@@ -41,12 +51,13 @@ class DomainText {
  private:
   bool isDrawn() const { return program_.stage() == Stage::Fragment; }
   void defineIndex();
+  std::string firstElement();
+  std::string plus(std::string index, int components);
+  std::string_view inElements() const { return layout_.packed ? " * ivec2(4, 1)" : ""; }
 
   ProgramText& program_;
-  Domain domain_;
-  bool view_;
-  int rank_;
-  bool layered_;
+  DomainLayout layout_;
+  bool usesLane_ = false;
   std::string_view function_;
 };
 

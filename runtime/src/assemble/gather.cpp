@@ -84,6 +84,51 @@ class GatherText {
                                    swizzles[parameter_.element->fields.front().width - 1u])});
   }
 
+  /// A neighbour in the texel of the current element has no boundary, nor has one above or below it in x. All that depends
+  /// on the offset alone is known to the driver's compiler, which then fetches each texel once for all four elements.
+  void defineNearByTexels(DomainText& domain) {
+    const bool isRow = rank_ == 1;
+    const std::string lane = domain.lane();
+    const std::string n = isRow ? "sk_n" : "sk_n.x";
+    const std::string p = isRow ? "sk_p" : "sk_p.x";
+    const std::string q = isRow ? "sk_q" : "sk_q.x";
+    std::vector<std::string> lines = {
+        fmt::format("int sk_x = {} + {}, sk_c = sk_x >> 2;", lane, isRow ? "sk_d" : "sk_d.x")};
+    if (isRow) {
+      const bool isLinear = access_.addressing != Addressing::Plane;
+      lines.push_back(fmt::format("int sk_n = {}.x >> 2;", uniform("shape")));
+      lines.push_back(fmt::format("int sk_p = ({}) + sk_c, sk_q = sk_p;",
+                                  isLinear ? domain.texelNumber() : std::string(program_.column())));
+    } else {
+      lines.push_back(fmt::format("ivec2 sk_n = ivec2({0}.x >> 2, {0}.y);", uniform("shape")));
+      lines.push_back(fmt::format("ivec2 sk_p = {} + ivec2(sk_c, sk_d.y), sk_q = sk_p;", program_.texel()));
+    }
+    if (parameter_.boundary == Boundary::Border) {
+      lines.push_back(fmt::format("bool sk_out = sk_c != 0 && uint({}) >= uint({});", p, n));
+      if (!isRow) lines.emplace_back("sk_out = sk_out || (sk_d.y != 0 && uint(sk_p.y) >= uint(sk_n.y));");
+      lines.push_back(fmt::format("if (sk_out) return {};", parameter_.border));
+    } else {
+      lines.push_back(fmt::format("if (sk_c != 0) {} = {};", q, broughtOnce(p, n)));
+      if (!isRow)
+        lines.push_back(fmt::format("if (sk_d.y != 0) sk_q.y = {};", broughtOnce("sk_p.y", "sk_n.y")));
+    }
+    lines.push_back(fmt::format("{} sk_v = texelFetch({}, {}, 0);", packedType(parameter_),
+                                samplerName(parameter_, 0), place(program_, texelAt("sk_q"))));
+    const auto component = [&](std::string_view number) {
+      return fetchedComponent(program_, parameter_, "sk_v", number);
+    };
+    if (parameter_.boundary == Boundary::Clamp) {
+      lines.push_back(fmt::format("if (sk_c != 0 && {} < 0) return {};", p, component("0")));
+      lines.push_back(fmt::format("if (sk_c != 0 && {} >= {}) return {};", p, n, component("3")));
+    } else if (parameter_.boundary == Boundary::Mirror) {
+      lines.push_back(
+          fmt::format("if (sk_c != 0 && {} != {}) return {};", p, q, component("3 - (sk_x & 3)")));
+    }
+    lines.push_back(fmt::format("return {};", component("sk_x & 3")));
+    program_.function(
+        fmt::format("{} sk_near_{}({} sk_d)", parameter_.element->glsl, parameter_.symbol, vector()), lines);
+  }
+
   void defineNear() {
     std::vector<std::string> lines;
     bringNeighbourInside(lines);
@@ -239,15 +284,40 @@ class GatherText {
     lines.push_back(fmt::format("if ({}) return {};", outside, parameter_.border));
   }
 
+  /// An index of texels, less than an extent outside, brought inside.
+  std::string broughtOnce(std::string_view index, std::string_view extent) {
+    switch (parameter_.boundary) {
+      case Boundary::Clamp: return fmt::format("clamp({}, 0, {} - 1)", index, extent);
+      case Boundary::Wrap:
+        program_.require(Function::WrapOnce);
+        return fmt::format("sk_wrap({}, {})", index, extent);
+      case Boundary::Mirror:
+        program_.require(Function::MirrorOnce);
+        return fmt::format("sk_mirror({}, {})", index, extent);
+      case Boundary::Border: break;
+    }
+    return std::string(index);
+  }
+
+  /// The texel of an index of texels.
+  Texel texelAt(const std::string& index) {
+    if (access_.addressing == Addressing::Plane)
+      return {rank_ == 1 ? fmt::format("ivec2({}, 0)", index) : index};
+    program_.require(Function::Texel);
+    const std::string shift = program_.uniform("int", fmt::format("sk_shift_{}", parameter_.symbol));
+    return {fmt::format("sk_texel({}, {})", index, shift), isLayered(access_) ? shift : ""};
+  }
+
   Texel texel(std::vector<std::string>& lines) {
     if (access_.addressing != Addressing::Plane) {
       if (access_.view) lines.push_back(fmt::format("sk_p += {}{};", uniform("origin"), swizzle()));
       program_.require(Function::Texel);
       const std::string shift = program_.uniform("int", fmt::format("sk_shift_{}", parameter_.symbol));
-      return {fmt::format("sk_texel({}, {})", number(), shift), isLayered(access_) ? shift : ""};
+      return {fmt::format("sk_texel({}, {}{})", number(), shift, access_.packed ? " + 2" : ""),
+              isLayered(access_) ? shift : "", access_.packed};
     }
     const std::string inside = rank_ == 1 ? "ivec2(sk_p, 0)" : rank_ == 2 ? "sk_p" : "sk_p.xy";
-    return {access_.view ? fmt::format("{} + {}.xy", inside, uniform("origin")) : inside};
+    return {access_.view ? fmt::format("{} + {}.xy", inside, uniform("origin")) : inside, "", access_.packed};
   }
 
   std::string number() {
@@ -280,12 +350,13 @@ bool mayFilter(const Parameter& gather) {
 }
 
 void defineGather(ProgramText& program, const Position& here, const Parameter& parameter,
-                  const StreamAccess& access) {
+                  const StreamAccess& access, DomainText* domain) {
   declareSamplers(program, parameter, isLayered(access));
   GatherText gather(program, here, parameter, access);
   const bool interpolates = parameter.usesSample && !access.filtered;
   if (parameter.usesAt || interpolates) gather.defineAt();
-  if (parameter.usesNear) gather.defineNear();
+  if (parameter.usesNear && domain != nullptr) gather.defineNearByTexels(*domain);
+  if (parameter.usesNear && domain == nullptr) gather.defineNear();
   if (interpolates) gather.defineSample();
   if (access.filtered) gather.defineFiltered();
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "assemble/assemble.hpp"
+#include "assemble/domain.hpp"
 #include "assemble/program_text.hpp"
 
 namespace sk::assemble {
@@ -18,7 +19,9 @@ namespace sk::assemble {
 using Position = std::function<std::string(int components)>;
 
 /// Declares the gather's samplers and defines the functions that the body calls.
+/// `domain`: of packed texels, where those of the gather lie as these do (and `access.nearby`), so that neighbours are found
+/// by texels; else null.
 void defineGather(ProgramText& program, const Position& here, const program::Parameter& parameter,
-                  const StreamAccess& access);
+                  const StreamAccess& access, DomainText* domain = nullptr);
 
 }  // namespace sk::assemble

@@ -3,6 +3,7 @@
 // The program of a kernel for one variant. Sections are filled parameter by parameter; main() is one
 // call of the kernel's entry function between fetches and stores.
 #include <cassert>
+#include <deque>
 
 #include <fmt/format.h>
 
@@ -96,7 +97,8 @@ class KernelText {
         kernel_(held_.kernel()),
         variant_(variant),
         program_(profile.stage),
-        domain_(program_, variant.domain, variant.domainView, variant.domainRank, variant.domainLayered) {}
+        domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
+                           variant.domainPacked}) {}
 
   std::string write() {
     assert(profile_.stage == Stage::Fragment || variant_.task.work == Work::Elements);
@@ -115,7 +117,7 @@ class KernelText {
         defineUnused(kernel_.parameters[i]);
       }
     }
-    program_.statement(call(kernel_.entry, arguments_, "      ") + ";");
+    callEntry();
     for (const auto& [parameter, variable] : results_) store(program_, *parameter, variable);
     storeSinks();
     if (profile_.stage == Stage::Compute)
@@ -128,6 +130,27 @@ class KernelText {
     const Parameter* parameter;
     std::string variable;
   };
+  /// Of the entry function. `isLanes`: a vector of the values for the elements of a packed texel.
+  struct Value {
+    std::string text;
+    bool isLanes = false;
+  };
+
+  /// Once, or for each element of a packed texel.
+  void callEntry() {
+    const auto callWith = [&](std::string_view component) {
+      std::vector<std::string> arguments;
+      for (const Value& value : arguments_) {
+        arguments.push_back(value.isLanes ? fmt::format("{}.{}", value.text, component) : value.text);
+      }
+      program_.statement(call(kernel_.entry, arguments, "      ") + ";");
+    };
+    if (!variant_.domainPacked) return callWith("");
+    for (int lane = 0; lane < lanes; ++lane) {
+      if (domain_.usesLane()) program_.statement(fmt::format("sk_lane = {};", lane));
+      callWith(std::string_view("xyzw").substr(static_cast<std::size_t>(lane), 1));
+    }
+  }
 
   bool isList() const { return variant_.task.work == Work::List; }
 
@@ -135,20 +158,21 @@ class KernelText {
     const Parameter& parameter = kernel_.parameters[i];
     switch (parameter.role) {
       case Role::Uniform:
-        arguments_.push_back(parameterUniform(program_, parameter.element->glsl, "arg", parameter));
+        arguments_.push_back({parameterUniform(program_, parameter.element->glsl, "arg", parameter)});
         break;
       case Role::Input: defineInput(parameter, access); break;
       case Role::Output: defineOutput(parameter); break;
       case Role::Gather:
         defineGather(
-            program_, [&](int components) { return domain_.position(components); }, parameter, access);
+            program_, [&](int components) { return domain_.position(components); }, parameter, access,
+            sharesTexels(parameter, access) ? &domain_ : nullptr);
         defineExtent(program_, parameter);
         break;
       case Role::Iterator:
-        arguments_.push_back(iteratorValue(program_, parameter, access, domain_.index()));
+        arguments_.push_back({iteratorValue(program_, parameter, access, domain_.index())});
         break;
       case Role::Spec:
-        arguments_.push_back(specConstant(program_, parameter, variant_.specs[specs_++]));
+        arguments_.push_back({specConstant(program_, parameter, variant_.specs[specs_++])});
         break;
       case Role::Accumulator: assert(!"a reduction has programs of its own"); break;
       case Role::VariableOutput:
@@ -161,7 +185,7 @@ class KernelText {
 
   void defineUnused(const Parameter& parameter) {
     defineAbsent(program_, parameter);
-    if (parameter.role != Role::Gather) arguments_.push_back(absentElement(parameter));
+    if (parameter.role != Role::Gather) arguments_.push_back({absentElement(parameter)});
     if (parameter.role == Role::Output) defineDomainGetters(parameter);
   }
 
@@ -170,9 +194,32 @@ class KernelText {
     declareSamplers(program_, parameter,
                     isAligned ? variant_.domainLayered : access.addressing == Addressing::Layered);
     if (parameter.usesIndex || !isAligned) defineInputIndex(program_, parameter, access, domain_.index());
-    const Texel texel = isAligned ? domain_.texel() : inputTexel(program_, parameter, access);
-    arguments_.push_back(fetch(program_, parameter, texel));
+    if (isAligned && variant_.domainPacked) {
+      fetchLanes(parameter);
+    } else {
+      const Texel texel = isAligned ? domain_.texel() : inputTexel(program_, parameter, access);
+      arguments_.push_back({fetch(program_, parameter, texel)});
+    }
     defineExtent(program_, parameter);
+  }
+
+  /// The four elements of the texel, by one fetch.
+  void fetchLanes(const Parameter& parameter) {
+    const Parameter four = fourOf(parameter);
+    const std::string name = fmt::format("sk_in_{}", parameter.symbol);
+    program_.statement(
+        fmt::format("{} {} = {};", four.element->glsl, name, fetch(program_, four, domain_.texel())));
+    arguments_.push_back({name, true});
+  }
+
+  /// Whether a gather's texels lie as those of the domain do, so that neighbours are found by texels.
+  bool sharesTexels(const Parameter& gather, const StreamAccess& access) const {
+    if (!variant_.domainPacked || !access.packed || !access.nearby || access.view || variant_.domainView) {
+      return false;
+    }
+    const bool isRow = variant_.domain == Domain::Linear && variant_.domainRank == 1 && gather.rank == 1;
+    return variant_.domain == Domain::Plane ? access.addressing == Addressing::Plane
+                                            : isRow && access.addressing != Addressing::Plane;
   }
 
   void defineSink(std::size_t i, const StreamAccess& access) {
@@ -190,12 +237,13 @@ class KernelText {
 
   void defineOutput(const Parameter& parameter) {
     if (isList()) {   // written by another pass
-      arguments_.push_back(fmt::format("sk_unused_{}", parameter.symbol));
-      program_.statement(fmt::format("{} {};", parameter.element->glsl, arguments_.back()));
+      arguments_.push_back({fmt::format("sk_unused_{}", parameter.symbol)});
+      program_.statement(fmt::format("{} {};", parameter.element->glsl, arguments_.back().text));
     } else {
-      declareOutputs(program_, parameter);
-      results_.push_back({&parameter, resultVariable(program_, parameter)});
-      arguments_.push_back(results_.back().variable);
+      const Parameter& written = variant_.domainPacked ? written_.emplace_back(fourOf(parameter)) : parameter;
+      declareOutputs(program_, written);
+      results_.push_back({&written, resultVariable(program_, written)});
+      arguments_.push_back({results_.back().variable, variant_.domainPacked});
     }
     defineDomainGetters(parameter);
   }
@@ -213,7 +261,8 @@ class KernelText {
   const Variant& variant_;
   ProgramText program_;
   DomainText domain_;
-  std::vector<std::string> arguments_;
+  std::vector<Value> arguments_;
+  std::deque<Parameter> written_;  ///< of packed texels
   std::vector<Result> results_;
   std::size_t specs_ = 0;   ///< whose constants are declared
 };

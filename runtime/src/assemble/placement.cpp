@@ -39,6 +39,20 @@ Index4 stridesOf(const Index4& extent) {
   return {1, extent[0], extent[0] * extent[1], extent[0] * extent[1] * extent[2]};
 }
 
+bool isWholeTexels(const Placement& region) {
+  return region.origin[0] % lanes == 0 && region.extent[0] % lanes == 0;
+}
+
+Placement texelsOf(const Placement& region) {
+  assert(region.packed && isWholeTexels(region));
+  Placement texels = region;
+  texels.packed = false;
+  texels.origin[0] /= lanes;
+  texels.extent[0] /= lanes;
+  for (std::size_t d = 1; region.linear && d < texels.stride.size(); ++d) texels.stride[d] /= lanes;
+  return texels;
+}
+
 std::uint8_t decodedRank(const Placement& region) {
   std::uint8_t rank = 4;
   while (rank > 1 && region.origin[rank - 1u] + region.extent[rank - 1u] <= 1) --rank;
@@ -71,6 +85,7 @@ Placement linearPlacement(std::int64_t count, const TextureShape& texture) {
 
 std::vector<Rect> drawnTexels(const Placement& region) {
   if (elements(region.extent) == 0) return {};
+  if (region.packed) return drawnTexels(texelsOf(region));
   if (!region.linear) {
     return {{region.origin[0], region.origin[1], region.extent[0], region.extent[1]}};
   }

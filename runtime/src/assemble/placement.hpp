@@ -18,9 +18,12 @@ using Index4 = std::array<std::int32_t, 4>;
 /// A region of a stream. Plane: element (x, y) of the stream is texel (x, y). Linear: element number
 /// n, row-major in the stream's whole shape, is texel (n & (1 << shift) - 1, n >> shift). Layered: linear in an
 /// array texture whose layers are as high as they are wide and continue each other, so that texel (x, y) is texel
-/// (x, y & (1 << shift) - 1) of layer y >> shift.
+/// (x, y & (1 << shift) - 1) of layer y >> shift. Packed: a texel holds four elements that follow each other in x, of
+/// which each row of the stream has a multiple. Element (x, y) is component x & 3 of texel (x >> 2, y), element number n
+/// component n & 3 of the texel that number n >> 2 would have.
 struct Placement {
   bool linear = false;
+  bool packed = false;
   bool layered = false;  ///< only where linear
   bool view = false;  ///< less than the whole stream
   Index4 origin = {0, 0, 0, 0};  ///< first index of the region in its stream
@@ -36,6 +39,15 @@ std::int64_t elements(const Index4& extent);
 
 /// Elements to step in each dimension of a whole stream of this shape {X, Y, Z, W}: {1, X, XY, XYZ}.
 Index4 stridesOf(const Index4& extent);
+
+/// Elements in a texel of a packed stream.
+inline constexpr std::int32_t lanes = 4;
+
+/// Whether a region of a packed stream is made of whole texels.
+bool isWholeTexels(const Placement& region);
+
+/// Such a region with its texels for elements, which lie as those of a stream that is not packed.
+Placement texelsOf(const Placement& region);
 
 /// How many dimensions of an index in the region can be other than 0: Variant::domainRank for it.
 std::uint8_t decodedRank(const Placement& region);
@@ -71,7 +83,7 @@ struct Rect {
   bool operator==(const Rect&) const = default;
 };
 
-/// The rectangles that a pass over the region draws, one draw each, to write every element of it. They
+/// The rectangles that a pass over the region, which is of whole texels, draws, one draw each, to write every element of it. They
 /// hold no texel that is not an element of the stream, so that no kernel ever runs on what lies in
 /// the unused end of a linearised texture. Empty where the region is; at most three.
 std::vector<Rect> drawnTexels(const Placement& region);

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "assemble/storage.hpp"
+
 namespace sk::assemble {
 namespace {
 
@@ -212,19 +214,25 @@ std::string narrowed(ProgramText& program, const Field& field, const std::string
   return fmt::format("sk_narrow{}({})", field.width, value);
 }
 
-std::string fetchPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
-                       const Texel& texel) {
-  static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
-  const Field& field = heldBy(parameter).fields[plane];
-  std::string value = fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane),
-                                  placeOfPlane(program, parameter, plane, texel),
-                                  swizzles[static_cast<std::size_t>(texelWidth(field) - 1)]);
+/// The program's value of what a plane's texel holds.
+std::string fetchedValue(ProgramText& program, const Parameter& parameter, const Field& field,
+                         std::string value) {
   if (field.scalar == Scalar::Bool) {
     return field.width == 1 ? value + " != 0u" : fmt::format("notEqual({}, uvec{}(0u))", value, field.width);
   }
   if (isWidened(parameter, field)) return widened(program, field, value);
   value = converted(spelling(field).load, std::move(value), valueType(field));
   return isNarrowed(parameter, field) ? narrowed(program, field, value) : value;
+}
+
+std::string fetchPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
+                       const Texel& texel) {
+  static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
+  const Field& field = heldBy(parameter).fields[plane];
+  return fetchedValue(program, parameter, field,
+                      fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane),
+                                  placeOfPlane(program, parameter, plane, texel),
+                                  swizzles[static_cast<std::size_t>(texelWidth(field) - 1)]));
 }
 
 /// `value`, of the field's type, as its output's type.
@@ -283,8 +291,16 @@ void declareOutputs(ProgramText& program, const Parameter& parameter) {
 
 std::string fetch(ProgramText& program, const Parameter& parameter, const Texel& texel) {
   const Element& element = heldBy(parameter);
-  if (!isStruct(element)) return fetchPlane(program, parameter, 0, texel);
   const std::string_view type = parameter.element->glsl;
+  if (texel.packed) {
+    const std::string whole =
+        fmt::format("texelFetch({}, {}, 0)", samplerName(parameter, 0),
+                    placeOfPlane(program, parameter, 0, {"ivec2(sk_t.x >> 2, sk_t.y)", texel.shift}));
+    program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", type, parameter.symbol),
+                     {fmt::format("return {};", fetchedComponent(program, parameter, whole, "sk_t.x & 3"))});
+    return fmt::format("sk_fetch_{}({})", parameter.symbol, texel.at);
+  }
+  if (!isStruct(element)) return fetchPlane(program, parameter, 0, texel);
   std::vector<std::string> statements = {fmt::format("{} sk_e;", type)};
   for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
     const Field& field = element.fields[plane];
@@ -298,6 +314,23 @@ std::string fetch(ProgramText& program, const Parameter& parameter, const Texel&
   statements.emplace_back("return sk_e;");
   program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", type, parameter.symbol), statements);
   return fmt::format("sk_fetch_{}({})", parameter.symbol, texel.at);
+}
+
+std::string fetchedComponent(ProgramText& program, const Parameter& parameter, std::string_view texel,
+                             std::string_view component) {
+  return fetchedValue(program, parameter, heldBy(parameter).fields.front(),
+                      fmt::format("{}[{}]", texel, component));
+}
+
+std::string packedType(const Parameter& parameter) {
+  return texelType(heldBy(parameter).fields.front(), lanes);
+}
+
+Parameter fourOf(const Parameter& parameter) {
+  Parameter four = parameter;
+  four.element = &fourOf(parameter.element->fields.front().scalar);
+  if (parameter.held != nullptr) four.held = &fourOf(parameter.held->fields.front().scalar);
+  return four;
 }
 
 std::string resultVariable(ProgramText& program, const Parameter& parameter) {

@@ -18,8 +18,9 @@ bool isStruct(const program::Element& element);
 
 /// Where an element lies in its textures.
 struct Texel {
-  std::string at;           ///< an ivec2 expression
+  std::string at;           ///< an ivec2 expression; where packed, with elements instead of texels in x
   std::string shift = {};   ///< of layered textures, an int expression: log2 of the rows of a layer
+  bool packed = false;
 };
 
 /// The texel as texelFetch() takes it: an ivec2 expression, or an ivec3 of a layered texture.
@@ -37,6 +38,16 @@ void declareOutputs(ProgramText& program, const program::Parameter& parameter);
 /// An expression for the element at a texel. Structs are fetched by a function, which the first such
 /// expression of a parameter defines.
 std::string fetch(ProgramText& program, const program::Parameter& parameter, const Texel& texel);
+
+/// The element in component `component`, an int expression, of a packed texel, an expression of packedType().
+std::string fetchedComponent(ProgramText& program, const program::Parameter& parameter,
+                             std::string_view texel, std::string_view component);
+
+/// The type of a packed texel as it is fetched: "vec4".
+std::string packedType(const program::Parameter& parameter);
+
+/// A parameter of the packed texels of another: of four of its elements.
+program::Parameter fourOf(const program::Parameter& parameter);
 
 /// An lvalue of the element's type to which main() may compute the parameter's new element: its
 /// output itself where that has the same type, else a local variable that is declared here.

@@ -41,7 +41,7 @@ class PointText {
         step_(step),
         textures_(textures),
         field_(sink.element->fields.front()),
-        domain_(program_, Domain::Linear, false, 1, textures.elements) {}
+        domain_(program_, {.domain = Domain::Linear, .rank = 1, .layered = textures.elements}) {}
 
   std::string write(const Profile& profile) {
     if (hasPoints(step_)) {

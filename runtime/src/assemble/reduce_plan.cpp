@@ -65,13 +65,17 @@ class Planner {
  public:
   Planner(const Placement& input, const Placement& result, const ReduceLimits& limits,
           const Division& division)
-      : input_(input), result_(result), limits_(limits), division_(division) {
-    for (std::size_t d = 0; d < input.extent.size(); ++d) {
-      assert(division.blocks[d] > 0 && input.extent[d] > 0 && input.extent[d] % division.blocks[d] == 0);
+      : elements_(input.extent),
+        input_(division.byTexel ? texelsOf(input) : input),
+        result_(result),
+        limits_(limits),
+        division_(division) {
+    for (std::size_t d = 0; d < input_.extent.size(); ++d) {
+      assert(division.blocks[d] > 0 && input_.extent[d] > 0 && input_.extent[d] % division.blocks[d] == 0);
     }
     assert(elements(division.blocks) == elements(result.extent));
     blocks_ = static_cast<std::int32_t>(elements(result.extent));
-    left_ = static_cast<std::int32_t>(elements(input.extent)) / blocks_;
+    left_ = static_cast<std::int32_t>(elements(input_.extent)) / blocks_;
   }
 
   std::vector<ReducePass> plan() {
@@ -81,17 +85,20 @@ class Planner {
   }
 
  private:
-  /// A pass over the `left_` elements or partial results that each block has.
+  /// A pass over the `left_` elements, texels or partial results that each block has.
   void addPass(Walk walk) {
-    const std::int32_t runs = divideUp(left_, limits_.fanIn);
+    const bool isOfTexels = division_.byTexel && walk != Walk::Partials;
+    const std::int32_t most = isOfTexels ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
+    const std::int32_t runs = divideUp(left_, most);
     const std::int32_t fan = divideUp(left_, runs);   // runs of nearly equal length
     ReducePass pass{};
     pass.toResult = runs == 1;
+    pass.variant.packed = isOfTexels;
     pass.variant.runs = blocks_ == 1 ? Runs::OneBlock : pass.toResult ? Runs::WholeBlocks : Runs::Split;
     pass.uniforms = {{"sk_fan", false, {fan}},
                      {"sk_block_length", false, {left_}},
                      {"sk_blocks", false, {blocks_}},
-                     {"sk_item_shape", true, input_.extent}};
+                     {"sk_item_shape", true, elements_}};
     setSource(pass, walk);
     setDomain(pass, pass.toResult ? result_ : partials(pass, runs));
     left_ = runs;
@@ -160,12 +167,13 @@ class Planner {
     partialsLayered_ = domain.layered;
   }
 
-  const Placement& input_;
+  const Index4 elements_;
+  const Placement input_;  ///< of elements, or of texels
   const Placement& result_;
   const ReduceLimits& limits_;
   const Division& division_;
   std::int32_t blocks_;
-  std::int32_t left_;  ///< elements or partial results of each block
+  std::int32_t left_;  ///< elements, texels or partial results of each block
   std::int32_t sourceShift_ = 0;  ///< of the partial results' texture
   bool partialsLayered_ = false;  ///< whether it is
   std::vector<ReducePass> passes_;

@@ -53,6 +53,7 @@ bool asksForPlace(const program::Kernel& fold);
 struct Division {
   Index4 blocks;  ///< in each dimension of the elements: divisors of their extents
   bool byIndex = false;  ///< Walk::Index; of the elements' placement only the extent counts then
+  bool byTexel = false;  ///< the elements are packed, and blocks made of whole texels
 };
 
 /// The passes that fold elements into `result`, whose elements are the blocks, in their order. There are

@@ -67,7 +67,7 @@ class ReductionText {
         held_(kernelOf(reduction, variant.walk), variant.access),
         kernel_(held_.kernel()),
         program_(profile.stage),
-        domain_(program_, variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
+        domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered},
                 "sk_result") {
     for (const Parameter& parameter : kernel_.parameters) {
       if (parameter.role == Role::Input) inputs_.push_back(&parameter);
@@ -328,8 +328,34 @@ class ReductionText {
     return fetch(program_, input, inputTexel(program_, input, access(i)));
   }
 
-  /// The arguments of the kernel's entry, in its order.
-  std::string folding() {
+  /// The four elements of a packed input at a texel of the walk.
+  static std::string lanesOf(const Parameter& input) { return fmt::format("sk_in_{}", input.symbol); }
+  void fetchLanes(const Texel& texel, bool declare) {
+    for (const Parameter* input : inputs_) {
+      if (!isNeeded(*input, variant_.specs)) continue;
+      const Parameter four = fourOf(*input);
+      statement(fmt::format("{}{}{} = {};", declare ? "" : "  ",
+                            declare ? fmt::format("{} ", four.element->glsl) : "", lanesOf(*input),
+                            fetch(program_, four, texel)));
+    }
+  }
+  void declareLanes() {
+    for (const Parameter* input : inputs_) {
+      if (isNeeded(*input, variant_.specs))
+        statement(fmt::format("{} {};", fourOf(*input).element->glsl, lanesOf(*input)));
+    }
+  }
+
+  /// One element, or from component `first` on those of a packed texel.
+  void foldTexel(std::string_view indent, int first = 0) {
+    if (!variant_.packed) return statement(fmt::format("{}{}", indent, folding({})));
+    for (int lane = first; lane < lanes; ++lane) {
+      statement(fmt::format("{}{}", indent, folding(fmt::format(".{}", "xyzw"[lane]))));
+    }
+  }
+
+  /// A call of the kernel's entry, with the arguments in its order. `lane`: ".x", of packed inputs.
+  std::string folding(std::string_view lane) {
     std::vector<std::string> arguments;
     std::size_t values = 0;
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
@@ -338,7 +364,7 @@ class ReductionText {
         case Role::Uniform:
         case Role::Iterator:
         case Role::Spec: arguments.push_back(arguments_[values++]); break;
-        case Role::Input: arguments.push_back(element(i, next_)); break;
+        case Role::Input: arguments.push_back(lane.empty() ? element(i, next_) : elementOf(i, lane)); break;
         case Role::Accumulator: arguments.push_back(total(parameter)); break;
         case Role::Gather:
         case Role::Output:
@@ -346,7 +372,12 @@ class ReductionText {
         case Role::Scatter: break;
       }
     }
-    return "  " + call(kernel_.entry, arguments, "        ") + ";";
+    return call(kernel_.entry, arguments, "        ") + ";";
+  }
+
+  std::string elementOf(std::size_t i, std::string_view lane) const {
+    const Parameter& input = kernel_.parameters[i];
+    return isNeeded(input, variant_.specs) ? fmt::format("{}{}", lanesOf(input), lane) : absentElement(input);
   }
 
   void startFromIdentities() {
@@ -360,25 +391,31 @@ class ReductionText {
     for (std::size_t k = 0; k < accumulators_.size(); ++k) {
       const auto i = static_cast<std::size_t>(inputs_[k] - kernel_.parameters.data());
       statement(fmt::format("{} {} = {};", accumulators_[k]->element->glsl, total(*accumulators_[k]),
-                            element(i, first_)));
+                            variant_.packed ? elementOf(i, ".x") : element(i, first_)));
     }
   }
 
   /// A run starts from its first element, or else from the identity.
   void foldRun() {
-    const std::string fold = folding();
-    if (variant_.walk == Walk::Partials || reduction_.seeded) {
+    const bool isSeeded = variant_.walk == Walk::Partials || reduction_.seeded;
+    if (isSeeded) {
+      if (variant_.packed) fetchLanes(first_, true);
       startFromElements();
-      statement("for (int sk_k = 1; sk_k < sk_count; ++sk_k) {");
-      for (const std::string& line : step_) statement("  " + line);
-      statement(fold);
+      if (variant_.packed) foldTexel("", 1);
     } else {
       startFromIdentities();
-      statement("for (int sk_k = 0; sk_k < sk_count; ++sk_k) {");
-      statement(fold);
-      for (const std::string& line : step_) statement("  " + line);
+      if (variant_.packed) declareLanes();
     }
+    statement(fmt::format("for (int sk_k = {}; sk_k < sk_count; ++sk_k) {{", isSeeded ? 1 : 0));
+    if (isSeeded) step();
+    if (variant_.packed) fetchLanes(next_, false);
+    foldTexel("  ");
+    if (!isSeeded) step();
     statement("}");
+  }
+
+  void step() {
+    for (const std::string& line : step_) statement("  " + line);
   }
 
   Texel numberedTexel(std::string_view number) {

@@ -40,6 +40,7 @@ struct ReduceVariant {
   bool domainView = false;       ///< Domain::Plane: the domain's origin is not (0, 0)
   std::uint8_t domainRank = 1;   ///< Domain::LinearBox: rank of its stream
   std::uint8_t axes = 1;         ///< Walk::Box and Walk::Index
+  bool packed = false;  ///< walks of elements: the inputs are packed, and a step is one of whole texels
   bool sourceLayered = false;    ///< what is read, but for Walk::Index
   bool domainLayered = false;
   bool reshaped = false;         ///< the result's dimensions are not those of the blocks
