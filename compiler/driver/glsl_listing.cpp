@@ -25,10 +25,18 @@ namespace {
 
 using sk::assemble::Profile;
 
+/// An input whose texels are not those of the domain.
+sk::assemble::StreamAccess foundByIndex(sk::assemble::Domain domain, bool isPacked) {
+  using sk::assemble::Addressing;
+  const bool isPlane = domain == sk::assemble::Domain::Plane;
+  return {.addressing = isPlane ? Addressing::Plane : Addressing::Linear, .packed = isPacked};
+}
+
 /// The variant of streams that share one shape, as most calls have it, and lie as they are where their
-/// rank lets them. Spec parameters are true or 1.
-sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel) {
+/// rank lets them. Spec parameters are true or 1. `packed`: scalars lie four to a texel.
+sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel, bool packed = true) {
   sk::assemble::Variant variant;
+  variant.domainPacked = packed && sk::assemble::mayWritePacked(kernel);
   std::size_t specs = 0;
   for (const sk::program::Parameter& parameter : kernel.parameters) {
     sk::assemble::StreamAccess access;
@@ -37,6 +45,7 @@ sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel) {
       access.addressing = isLinear ? sk::assemble::Addressing::Linear : sk::assemble::Addressing::Plane;
       access.nearby = parameter.reach >= 0;
       access.filtered = sk::assemble::mayFilter(parameter);
+      access.packed = packed && !access.filtered && sk::assemble::mayPack(heldBy(parameter));
       if (isLinear) {
         variant.domain = sk::assemble::Domain::Linear;
         variant.domainRank = std::max(variant.domainRank, parameter.rank);
@@ -49,6 +58,12 @@ sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel) {
       variant.specs[specs++] = isFloat ? std::bit_cast<std::uint32_t>(1.0F) : 1u;
     }
     variant.access.push_back(access);
+  }
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const sk::program::Parameter& parameter = kernel.parameters[i];
+    if (parameter.role != sk::program::Role::Input) continue;
+    const bool isPacked = packed && sk::assemble::mayPack(heldBy(parameter));
+    if (isPacked != variant.domainPacked) variant.access[i] = foundByIndex(variant.domain, isPacked);
   }
   return variant;
 }
@@ -67,6 +82,10 @@ std::vector<sk::assemble::PointStep> pointSteps(const sk::program::Parameter& si
 
 /// Every program of a kernel with sinks: what counts, the sums of counts, each list, and its points.
 std::string sinksListing(const Profile& profile, const sk::program::Kernel& kernel) {
+  if (profile.stage == sk::assemble::Stage::Compute) {
+    return sinksListing(*sk::assemble::findProfile("glsl330"), kernel) +
+           fmt::format("\n// {} has variable or scatter outputs, and is drawn\n", kernel.name);
+  }
   sk::assemble::Variant variant = plainVariant(kernel);
   std::vector<std::string> programs;
   variant.task.work = sk::assemble::Work::Counts;
@@ -107,12 +126,14 @@ std::string sinksListing(const Profile& profile, const sk::program::Kernel& kern
 
 /// Adds what the arguments decide: that of streams which lie as they are.
 void addPlainAccess(const sk::program::Reduction& reduction, sk::assemble::ReduceVariant& variant) {
-  const bool isPartial = variant.walk == sk::assemble::Walk::Partials;
+  const bool isPartial = sk::assemble::isOfPartials(variant.walk);
   const sk::program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
   sk::assemble::Variant plain = plainVariant(kernel);
   for (std::size_t i = 0; i < plain.access.size(); ++i) {
     const bool isInput = kernel.parameters[i].role == sk::program::Role::Input;
-    if (isInput && !isPartial) plain.access[i].addressing = sk::assemble::Addressing::Plane;
+    if (isInput)
+      plain.access[i] = {.addressing =
+                             isPartial ? sk::assemble::Addressing::Aligned : sk::assemble::Addressing::Plane};
   }
   variant.access = std::move(plain.access);
   variant.specs = plain.specs;
@@ -137,16 +158,29 @@ std::vector<sk::assemble::ReduceVariant> drawnVariants(const Profile& profile,
   return parts;
 }
 
+/// Whether all that a fold reads, element by element, lies packed.
+bool readsScalars(const sk::program::Kernel& fold) {
+  return std::ranges::all_of(fold.parameters, [](const sk::program::Parameter& parameter) {
+    return parameter.role != sk::program::Role::Input || sk::assemble::mayPack(heldBy(parameter));
+  });
+}
+
 /// Every program that folds a 1024 x 1024 stream to a value, once; of one form.
 std::string formListing(const Profile& profile, const sk::program::Reduction& reduction) {
   sk::assemble::Placement input;
   input.extent = {1024, 1024, 1, 1};
+  const bool byIndex = sk::assemble::asksForPlace(reduction.fold);
+  input.packed = !byIndex && readsScalars(reduction.fold);
+  const sk::assemble::ReduceLimits limits{.texture = {16384, 256},
+                                          .grouped = profile.stage == sk::assemble::Stage::Compute};
+  const sk::assemble::Division division{.blocks = {1, 1, 1, 1},
+                                        .byIndex = byIndex,
+                                        .byTexel = input.packed,
+                                        .inAnyOrder = reduction.commutative};
   std::string text;
   std::set<sk::assemble::ReduceVariant> seen;
-  const bool byIndex = sk::assemble::asksForPlace(reduction.fold);
   for (sk::assemble::ReducePass& pass :
-       sk::assemble::planReduction(input, sk::assemble::valuePlacement(), {.texture = {16384, 256}},
-                                   {.blocks = {1, 1, 1, 1}, .byIndex = byIndex})) {
+       sk::assemble::planReduction(input, sk::assemble::valuePlacement(), limits, division)) {
     addPlainAccess(reduction, pass.variant);
     for (const sk::assemble::ReduceVariant& variant : drawnVariants(profile, reduction, pass.variant)) {
       if (!seen.insert(variant).second) continue;
@@ -175,7 +209,7 @@ std::string kernelListing(const Profile& profile, const sk::program::Kernel& ker
   std::string text;
   for (const sk::program::Pass& pass : plan->passes) {
     if (!text.empty()) text += "\n";
-    text += sk::assemble::kernelProgram(profile, pass.kernel, plainVariant(pass.kernel));
+    text += sk::assemble::kernelProgram(profile, pass.kernel, plainVariant(pass.kernel, false));
   }
   return text;
 }

@@ -123,12 +123,16 @@ class Builder {
   void addForms(const Kernel& kernel, sk::program::Reduction& made) {
     if (kernel.forms.half) {
       const Kernel& half = module_.kernels[*kernel.forms.half];
-      made.half = &storage_.reductions.emplace_back(reduction(half, describe(half)));
+      sk::program::Reduction& form = storage_.reductions.emplace_back(reduction(half, describe(half)));
+      form.commutative = made.commutative;
+      made.half = &form;
     }
     if (kernel.forms.wide) {
       const Kernel& wide = module_.kernels[*kernel.forms.wide];
-      made.wide = &storage_.wide.emplace_back(sk::program::WideReduction{
+      sk::program::WideReduction& form = storage_.wide.emplace_back(sk::program::WideReduction{
           reduction(wide, describe(wide)), whole(module_.kernels[*wide.reduction->finish])});
+      form.reduction.commutative = made.commutative;
+      made.wide = &form;
     }
   }
 
@@ -180,7 +184,8 @@ class Builder {
             .combineOperands = operands,
             .seeded = kernel.reduction->seeded,
             .compensated = compensated(*kernel.reduction),
-            .exact = exactSums(*kernel.reduction)};
+            .exact = exactSums(*kernel.reduction),
+            .commutative = kernel.reduction->commutative};
   }
 
   std::span<const sk::program::ExactSum> exactSums(const Reduction& plain) {
@@ -190,6 +195,7 @@ class Builder {
       const Kernel& fold = module_.kernels[sum.fold];
       sums.push_back({reduction(fold, describe(fold)), whole(module_.kernels[sum.finish]),
                       static_cast<std::uint8_t>(sum.accumulator)});
+      sums.back().reduction.commutative = true;
     }
     return storage_.exact.emplace_back(std::move(sums));
   }
@@ -203,8 +209,11 @@ class Builder {
       sums.push_back({static_cast<std::uint8_t>(accumulator),
                       offsetOf(module_, types_, fold.params[accumulator].type, members)});
     }
-    return &storage_.compensated.emplace_back(sk::program::CompensatedReduction{
-        reduction(fold, describe(fold)), whole(module_.kernels[plain.compensated->finish]), sums});
+    sk::program::CompensatedReduction& made =
+        storage_.compensated.emplace_back(sk::program::CompensatedReduction{
+            reduction(fold, describe(fold)), whole(module_.kernels[plain.compensated->finish]), sums});
+    made.reduction.commutative = plain.commutative;
+    return &made;
   }
 
   // ---- plans ------------------------------------------------------------------------------------

@@ -156,6 +156,7 @@ class SourceWriter {
     if (made.half != nullptr) members.push_back(fmt::format(".half = &{}HalfReduction", name));
     if (made.wide != nullptr) members.push_back(fmt::format(".wide = &{}Wide", name));
     if (!made.exact.empty()) members.push_back(fmt::format(".exact = {}Exact", name));
+    if (made.commutative) members.emplace_back(".commutative = true");
     text_ +=
         fmt::format("constexpr Reduction {}Reduction = {{\n    {}}};\n\n", name, join(members, ",\n    "));
   }

@@ -145,14 +145,24 @@ bool GlDevice::mayDispatch(const program::Kernel& kernel) const {
   return capabilities.hasCompute && kernel.dispatched && !hasSinks(kernel);
 }
 
-// Where drawing reaches but a part of a GPU, dispatches reach all of it; software does better at drawing.
-assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, const CallOptions& options) const {
+assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, KernelClass kernels,
+                                  const CallOptions& options) {
   using assemble::Stage;
   const Target wanted = options.target != Target::Default ? options.target : target;
   if (!mayDispatch(kernel)) return Stage::Fragment;
   if (!kernel.drawn || wanted == Target::Compute) return Stage::Compute;
   if (wanted == Target::Fragment) return Stage::Fragment;
-  return capabilities.isSoftware ? Stage::Fragment : Stage::Compute;
+  return fasterFor(kernels);
+}
+
+// Drawing reaches but a part of some GPUs, and dispatches all of it; on others, and in software, it is the other way.
+assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
+  std::optional<assemble::Stage>& known = faster_[static_cast<std::size_t>(kernels)];
+  if (!known) {
+    const std::optional<double> ratio = computeOverFragment(*this, kernels);
+    known = ratio.value_or(1) < 1 ? assemble::Stage::Compute : assemble::Stage::Fragment;
+  }
+  return *known;
 }
 
 void GlDevice::choose(const CallOptions& options, assemble::Stage stage) {

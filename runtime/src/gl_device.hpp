@@ -4,6 +4,7 @@
 // list of the streams that live on it. A DeviceScope is open wherever GL is called.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -21,6 +22,7 @@
 #include "program_cache.hpp"
 #include "sink_programs.hpp"
 #include "surface.hpp"
+#include "target_choice.hpp"
 #include "variant.hpp"
 
 namespace sk {
@@ -89,8 +91,8 @@ class GlDevice final : public DeviceState {
   void checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments) const;
   /// From here on, the programs are those for a call with these options.
   void choose(const CallOptions& options, assemble::Stage stage);
-  /// What runs the kernel, or the fold of a reduction, in a call with these options.
-  assemble::Stage stageOf(const program::Kernel& kernel, const CallOptions& options) const;
+  /// What runs the kernel, or the fold of a reduction, in a call with these options. No scope of the device is open.
+  assemble::Stage stageOf(const program::Kernel& kernel, KernelClass kernels, const CallOptions& options);
   ProgramCache& programs() { return *programs_; }
   /// The texture of a table, made at first. Binds a texture.
   GLuint textureOf(const FunctionTable& table);
@@ -116,6 +118,7 @@ class GlDevice final : public DeviceState {
 
  private:
   bool takesPairs(const CallOptions& options) const;
+  assemble::Stage fasterFor(KernelClass kernels);
   bool mayDispatch(const program::Kernel& kernel) const;
   /// Throws sk::Error where a kernel cannot run as what a call asks for.
   void checkTarget(const program::Kernel& kernel, Target asked) const;
@@ -126,6 +129,7 @@ class GlDevice final : public DeviceState {
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
   ProgramCache* programs_;  ///< one of them
   std::optional<Arithmetic> arithmetic_;
+  std::array<std::optional<assemble::Stage>, kernelClasses> faster_;
 };
 
 /// Makes a device's context current and ready for passes, for as long as it lives.

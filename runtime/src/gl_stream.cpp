@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "assemble/planes.hpp"
 #include "convert_elements.hpp"
 #include "gl_device.hpp"
 #include "pass.hpp"

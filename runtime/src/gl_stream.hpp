@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "assemble/assemble.hpp"
 #include "assemble/storage.hpp"
 #include "layout.hpp"
 #include "stream_state.hpp"
@@ -33,7 +34,7 @@ class GlStream final : public StreamState {
   const program::Element& held() const { return held_ ? held_->element : *element; }
 
   /// Whether the stream can lie packed, four elements to a texel.
-  bool canPack() const { return mayPack(held()) && mayPack(shape); }
+  bool canPack() const { return assemble::mayPack(held()) && mayPack(shape); }
   /// Makes the stream lie packed or not, as it then does until a kernel writes all of it. The first keeps what it holds; the
   /// other leaves it undefined. A scope of the device is open.
   void unpack();

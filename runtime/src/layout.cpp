@@ -92,12 +92,6 @@ Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits, bool 
   return layout;
 }
 
-bool mayPack(const program::Element& held) {
-  const program::Field& field = held.fields.front();
-  return held.fields.size() == 1 && field.path.empty() && field.width == 1 &&
-         field.scalar != program::Scalar::Double;
-}
-
 bool mayPack(const Shape& shape) {
   return shape.size() > 0 && shape[shape.rank() - 1] % assemble::lanes == 0;
 }

@@ -24,8 +24,6 @@ struct Layout {
 /// where no texture holds it, or it has no dimension.
 Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits, bool packed = false);
 
-/// Whether elements of this type can lie four to a texel: one scalar of four bytes at most.
-bool mayPack(const program::Element& held);
 /// Whether the rows of a stream of this shape are a multiple of four, and there are some.
 bool mayPack(const Shape& shape);
 

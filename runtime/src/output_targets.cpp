@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "assemble/planes.hpp"
 #include "gl_stream.hpp"
 #include "pass.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "assemble/storage.hpp"
+#include "assemble/planes.hpp"
 #include "copy_kernel.hpp"
 #include "gl/commands.hpp"
 #include "gl_device.hpp"
@@ -36,6 +36,12 @@ void dispatchRects(GlDevice& device, KernelProgram& program, std::span<Surface* 
   int unit = 0;
   for (const Surface* plane : planes) {
     device.bound.image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
+  }
+  if (program.isGrouped) {
+    GLsizei texels = 0;
+    for (const Rect& rect : rects) texels += rect.width * rect.height;
+    gl::dispatch(texels, 1);
+    return;
   }
   const auto groups = [](GLsizei texels, GLint group) { return (texels + group - 1) / group; };
   for (const Rect& rect : rects) {

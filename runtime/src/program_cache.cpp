@@ -222,9 +222,10 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
   std::unique_ptr<ReduceProgram>& kept = reductions_[{&reduction, variant}];
   if (!kept) {
     auto made = std::make_unique<ReduceProgram>();
-    const bool isPartial = variant.walk == assemble::Walk::Partials;
+    const bool isPartial = assemble::isOfPartials(variant.walk);
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
     build(made->kernel, kernel, assemble::reduceProgram(profile_, reduction, variant));
+    made->kernel.isGrouped = variant.walk == assemble::Walk::GroupedPartials;
     if (variant.walk != assemble::Walk::Nothing) {
       findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
     }

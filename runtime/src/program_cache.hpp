@@ -61,6 +61,7 @@ struct KernelProgram {
   assemble::Stage stage = assemble::Stage::Fragment;
   gl::IntUniform rect;          ///< of a compute program: the texels that a dispatch writes
   std::array<GLint, 3> workGroup{1, 1, 1};
+  bool isGrouped = false;       ///< a work group computes a texel
   PlacementUniforms domain;
   gl::IntUniform domainRow;     ///< of a layered domain: the first row of the layer that is drawn
   PlacementUniforms target;     ///< of the scatter output whose list it makes
@@ -94,6 +95,7 @@ class ProgramCache {
                                const assemble::Placement& domain, const assemble::Task& task = {});
   ReduceProgram& reduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
 
+  assemble::Stage stage() const { return profile_.stage; }
   void clear();
   void forget() noexcept;
 

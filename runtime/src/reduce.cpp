@@ -82,10 +82,13 @@ class ReduceCall {
 
   /// Folds the elements, of which there are some, to the planes of all results.
   void fold(const Index4& blocks, const Placement& result, std::span<Surface* const> targets) {
-    const assemble::ReduceLimits limits{.texture = device_.textureLimits()};
+    const assemble::ReduceLimits limits{.texture = device_.textureLimits(), .grouped = mayGroup()};
     PlanesLease partials(device_);
-    for (const ReducePass& pass : assemble::planReduction(
-             elements_, result, limits, {.blocks = blocks, .byIndex = foldsByIndex(), .byTexel = byTexel_})) {
+    const assemble::Division division{.blocks = blocks,
+                                      .byIndex = foldsByIndex(),
+                                      .byTexel = byTexel_,
+                                      .inAnyOrder = reduction_.commutative};
+    for (const ReducePass& pass : assemble::planReduction(elements_, result, limits, division)) {
       if (pass.toResult) {
         draw(pass, partials.planes, targets);
         continue;
@@ -109,6 +112,18 @@ class ReduceCall {
       operands_.push_back(operandOf(i, arguments[i], domain));
     }
     elements_ = placementOfElements(xFirst(domain));
+  }
+
+  /// Whether work groups may fold partial results together: they share an element of each accumulator an invocation.
+  bool mayGroup() const {
+    constexpr std::size_t planeBytes = 4 * sizeof(float);  // at most: four components, or two doubles
+    std::size_t planes = 0;
+    for (const Parameter& parameter : reduction_.fold.parameters) {
+      if (parameter.role == Role::Accumulator) planes += parameter.element->fields.size();
+    }
+    return device_.programs().stage() == assemble::Stage::Compute &&
+           planes * planeBytes * assemble::groupSize <= assemble::groupBytes &&
+           planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
   }
 
   /// Whether all inputs are packed and blocks made of whole texels, which are then read as such.
@@ -184,7 +199,7 @@ class ReduceCall {
   /// Draws a pass, for as many of the targets at a time as the device draws to.
   void draw(const ReducePass& pass, std::span<Surface> partials, std::span<Surface* const> targets) {
     assemble::ReduceVariant variant = pass.variant;
-    const bool isPartial = variant.walk == Walk::Partials;
+    const bool isPartial = assemble::isOfPartials(variant.walk);
     const Kernel& kernel = isPartial ? reduction_.combine : reduction_.fold;
     const std::vector<Operand> operands = isPartial ? operandsOfCombine(partials) : operands_;
     if (variant.walk != Walk::Nothing) {
@@ -227,7 +242,7 @@ class ReduceCall {
   GlDevice& device_;
   const Reduction& reduction_;
   const assemble::SpecValues specs_;
-  std::vector<Operand> operands_;   ///< of the fold
+  std::vector<Operand> operands_;  ///< of the fold
   Placement elements_;
   bool byTexel_ = false;
 };
@@ -238,8 +253,9 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
                       std::span<void* const> results, const CallOptions& options) {
   checkOptions(reduction.fold, options);
   checkStorages(reduction.fold, arguments);
+  const assemble::Stage stage = stageOf(reduction.fold, KernelClass::Reduces, options);
   const DeviceScope scope(*this);
-  choose(options, stageOf(reduction.fold, options));
+  choose(options, stage);
   const Placement placement = assemble::valuePlacement();
   PlanesLease value(*this);
   takeAccumulators(*this, reduction.fold, {1, 1}, "the result of a reduction", value);
@@ -260,8 +276,9 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
                       const Shape& blocks, const CallOptions& options) {
   checkOptions(reduction.fold, options);
   checkStorages(reduction.fold, arguments);
+  const assemble::Stage stage = stageOf(reduction.fold, KernelClass::Reduces, options);
   const DeviceScope scope(*this);
-  choose(options, stageOf(reduction.fold, options));
+  choose(options, stage);
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (reduction.fold.parameters[i].role == Role::Accumulator) glStream(arguments[i].region).unpack();
   }

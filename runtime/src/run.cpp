@@ -72,7 +72,7 @@ class KernelCall {
   }
 
   void run() {
-    const Layout layout = *layout_;   // a stream's own may change as outputs are put in place
+    const Layout& layout = *layout_;
     OutputTargets targets(device_, kernel_, arguments_, specs_, operands_, domain_, layout);
     const DrawnRects rects(domain_, layout);
     if (plan_ != nullptr) {
@@ -108,11 +108,9 @@ class KernelCall {
     domain_ = placementOf(region, *layout_);
   }
 
-  /// Whether the outputs may lie packed. A loop would run four times in a row for each texel, and long programs take four
-  /// times as long to compile.
+  /// Whether the outputs may lie packed.
   bool mayWritePacked() const {
-    constexpr std::size_t longest = 4096;
-    bool may = plan_ == nullptr && !kernel_.usesLoops && kernel_.body.size() <= longest;
+    bool may = plan_ == nullptr && assemble::mayWritePacked(kernel_);
     for (std::size_t i = 0; may && i < arguments_.size(); ++i) {
       may = !isOutput(i) || glStream(arguments_[i].region).canPack();
     }
@@ -165,9 +163,10 @@ void GlDevice::run(const Kernel& kernel, std::span<const Argument> arguments, co
 
 void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> arguments,
                             const CallOptions& options) {
-  const DeviceScope scope(*this);
   const Kernel& form = formOf(kernel, options);
-  choose(options, stageOf(form, options));
+  const assemble::Stage stage = stageOf(form, classOf(form), options);
+  const DeviceScope scope(*this);
+  choose(options, stage);
   checkStorages(form, arguments);
   if (!hasSinks(form)) {
     KernelCall(*this, form, arguments).run();

@@ -35,7 +35,8 @@ std::vector<std::string> writePrograms(const std::string& listing, const fs::pat
   std::string program;
   const auto flush = [&] {
     if (program.empty()) return;
-    names.push_back(fmt::format("{}.{}.frag", prefix, names.size()));
+    const bool isCompute = program.find("local_size_x") != std::string::npos;
+    names.push_back(fmt::format("{}.{}.{}", prefix, names.size(), isCompute ? "comp" : "frag"));
     docs::writeFile(folder / names.back(), program);
     program.clear();
   };
@@ -59,7 +60,7 @@ TEST_CASE("every .sk block compiles, for every profile, to GLSL that glslang acc
     files += fmt::format(" '{}'", docs::fileName(*block));
   }
   std::string programs;
-  for (const std::string profile : {"glsl330", "essl300"}) {
+  for (const std::string profile : {"glsl330", "glsl430", "essl300"}) {
     const docs::Outcome outcome = docs::run(
         fmt::format("skc -Werror --emit=glsl --profile={}{} >{}.txt", profile, files, profile), folder);
     INFO(outcome.output);

@@ -49,6 +49,8 @@ Outcome run(const std::string& command) {
   return {pclose(pipe), output};
 }
 
+bool isCompute(const std::string& program) { return program.find("local_size_x") != std::string::npos; }
+
 }  // namespace
 
 std::vector<std::string> programsOf(const std::string& listing) {
@@ -65,14 +67,14 @@ std::vector<std::vector<Complaint>> complaintsOf(const std::vector<std::string>&
   const Folder folder;
   std::string command = "cd '" + folder.path().string() + "' && '" SK_GLSLANG_VALIDATOR "'";
   for (std::size_t i = 0; i < programs.size(); ++i) {
-    const std::string name = std::to_string(i) + ".frag";
+    const std::string name = std::to_string(i) + (isCompute(programs[i]) ? ".comp" : ".frag");
     std::ofstream(folder.path() / name, std::ios::binary) << programs[i];
     command += " " + name;
   }
   const Outcome outcome = run(command);
 
-  // "12.frag" alone on a line begins a program's messages, which read "ERROR: SOURCE:LINE: text".
-  static const std::regex name(R"((\d+)\.frag)");
+  // "12.frag" or "12.comp" alone on a line begins a program's messages, which read "ERROR: SOURCE:LINE: text".
+  static const std::regex name(R"((\d+)\.(?:frag|comp))");
   static const std::regex message(R"((?:ERROR|WARNING): (?:(\d+):(\d+): )?(.*))");
   std::vector<std::vector<Complaint>> complaints(programs.size());
   std::size_t current = 0;

@@ -18,7 +18,7 @@ struct Complaint {
   std::string text;
 };
 
-/// What glslang complains of in fragment programs, program by program. Throws std::runtime_error where it cannot
+/// What glslang complains of in fragment and compute programs, program by program. Throws std::runtime_error where it cannot
 /// be run.
 std::vector<std::vector<Complaint>> complaintsOf(const std::vector<std::string>& programs);
 

@@ -314,6 +314,7 @@ struct Reduction {
   const Reduction* half = nullptr;  ///< its forms for other precisions, as those of Kernel
   const WideReduction* wide = nullptr;
   std::span<const ExactSum> exact = {};  ///< one for each scalar of the accumulators that is a sum of floats
+  bool commutative = false;  ///< elements may be folded in any order: by operators that are known
 };
 
 /// A reduction whose accumulators are doubles. `finish` takes them as Inputs and has the results as Outputs, which

@@ -71,19 +71,27 @@ enum class Addressing : std::uint8_t {
 struct StreamAccess {
   Addressing addressing = Addressing::Aligned;
   bool view = false;  ///< a region of its stream: an origin is added
-  bool packed = false;  ///< four elements a texel
   bool nearby = false;  ///< gathers: Parameter::reach is known and below every extent, and no extent
       ///< of the domain is above the gather's, so that one step wraps or mirrors
       ///< a neighbour's index
   bool filtered = false;  ///< gathers: sk_sample_p() is left to the sampler's linear filter (mayFilter())
   program::Fit fit = program::Fit::Same;  ///< inputs
   Storage storage = Storage::Single;  ///< inputs, outputs and gathers: what the stream holds floats as
+  bool packed = false;  ///< four elements a texel
   auto operator<=>(const StreamAccess&) const = default;
 };
 
 /// Whether a sampler's linear filter can stand for sk_sample_p(), where the whole of a texture that lies as
 /// it is (Addressing::Plane) is read; a gather of floats, if the device filters these.
 bool mayFilter(const program::Parameter& gather);
+
+/// Whether elements of this type can lie four to a texel (Placement::packed): one scalar of four bytes at most.
+bool mayPack(const program::Element& held);
+
+/// Whether a kernel may write packed texels, the four elements of one after the other, as far as it is its own affair.
+/// Not with loops, which would run four times in a row, nor is it worth it for long programs, which would take four
+/// times as long to compile.
+bool mayWritePacked(const program::Kernel& kernel);
 
 /// What a program of a kernel computes (sinks.hpp).
 enum class Work : std::uint8_t {

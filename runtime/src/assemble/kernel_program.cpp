@@ -2,6 +2,7 @@
 //
 // The program of a kernel for one variant. Sections are filled parameter by parameter; main() is one
 // call of the kernel's entry function between fetches and stores.
+#include <algorithm>
 #include <cassert>
 #include <deque>
 
@@ -66,9 +67,9 @@ std::string_view name(Fit fit) {
 
 /// "diffuse for glsl330: plane domain; u plane view nearby".
 std::string describe(const Profile& profile, const Kernel& kernel, const Variant& variant) {
-  std::string text = fmt::format("{} for {}: {}{}{} domain", kernel.name, profile.name,
-                                 variant.domainLayered ? "layered " : "", name(variant.domain),
-                                 variant.domainView ? " view" : "");
+  std::string text = fmt::format(
+      "{} for {}: {}{}{}{} domain", kernel.name, profile.name, variant.domainLayered ? "layered " : "",
+      variant.domainPacked ? "packed " : "", name(variant.domain), variant.domainView ? " view" : "");
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
     const bool isRead = parameter.role == Role::Input || parameter.role == Role::Gather;
@@ -82,8 +83,8 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
         text += fmt::format("; {}{}", parameter.name, name(access.storage));
       continue;
     }
-    text += fmt::format("; {} {}{}{}{}{}", parameter.name, name(access.addressing),
-                        access.view ? " view" : "", access.nearby ? " nearby" : "",
+    text += fmt::format("; {} {}{}{}{}{}{}", parameter.name, access.packed ? "packed " : "",
+                        name(access.addressing), access.view ? " view" : "", access.nearby ? " nearby" : "",
                         access.filtered ? " filtered" : name(access.fit), name(access.storage));
   }
   return text;
@@ -272,6 +273,20 @@ class KernelText {
 Domain domainOf(const Placement& output) {
   if (!output.linear) return Domain::Plane;
   return output.view ? Domain::LinearBox : Domain::Linear;
+}
+
+bool mayPack(const program::Element& held) {
+  const program::Field& field = held.fields.front();
+  return held.fields.size() == 1 && field.path.empty() && field.width == 1 &&
+         field.scalar != program::Scalar::Double;
+}
+
+bool mayWritePacked(const Kernel& kernel) {
+  constexpr std::size_t longest = 4096;
+  return !kernel.usesLoops && kernel.body.size() <= longest &&
+         std::ranges::all_of(kernel.parameters, [](const Parameter& parameter) {
+           return !isSink(parameter) && (parameter.role != Role::Output || mayPack(heldBy(parameter)));
+         });
 }
 
 std::string kernelProgram(const Profile& profile, const Kernel& kernel, const Variant& variant) {

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "assemble/storage.hpp"
+#include "sk/scalar_bytes.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -225,6 +225,28 @@ std::string fetchedValue(ProgramText& program, const Parameter& parameter, const
   return isNarrowed(parameter, field) ? narrowed(program, field, value) : value;
 }
 
+/// Four of each scalar.
+class FourElements {
+ public:
+  FourElements() {
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      const auto scalar = static_cast<Scalar>(i);
+      types_[i] = fmt::format("{}4", spellings[i].valueVector);
+      fields_[i] = {"", scalar, lanes, 0};
+      elements_[i] = {"texel",
+                      types_[i],
+                      static_cast<std::uint32_t>(lanes * program::hostBytes(scalar)),
+                      {&fields_[i], 1}};
+    }
+  }
+  const Element& of(Scalar scalar) const { return elements_[static_cast<std::size_t>(scalar)]; }
+
+ private:
+  std::array<std::string, spellings.size()> types_;
+  std::array<Field, spellings.size()> fields_;
+  std::array<Element, spellings.size()> elements_;
+};
+
 std::string fetchPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
                        const Texel& texel) {
   static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
@@ -324,6 +346,11 @@ std::string fetchedComponent(ProgramText& program, const Parameter& parameter, s
 
 std::string packedType(const Parameter& parameter) {
   return texelType(heldBy(parameter).fields.front(), lanes);
+}
+
+const Element& fourOf(Scalar scalar) {
+  static const FourElements elements;
+  return elements.of(scalar);
 }
 
 Parameter fourOf(const Parameter& parameter) {

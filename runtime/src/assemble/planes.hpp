@@ -46,7 +46,9 @@ std::string fetchedComponent(ProgramText& program, const program::Parameter& par
 /// The type of a packed texel as it is fetched: "vec4".
 std::string packedType(const program::Parameter& parameter);
 
-/// A parameter of the packed texels of another: of four of its elements.
+/// What a texel of a packed stream holds (Placement::packed), as an element of its own: four of `scalar`.
+const program::Element& fourOf(program::Scalar scalar);
+/// A parameter of the packed texels of another.
 program::Parameter fourOf(const program::Parameter& parameter);
 
 /// An lvalue of the element's type to which main() may compute the parameter's new element: its

@@ -78,7 +78,7 @@ std::string wholeTexel(std::string_view type, std::string_view value) {
 /// Invocations of a work group. Texels lie in squares in memory, and groups that cover some of these whole are
 /// fastest: on an H200, squares of 8 for texels of 16 bytes (4.9 TB/s by saxpy; rows of 256 give 2.5), of 16 for
 /// smaller ones (3.4 TB/s; squares of 8 give 1.3).
-std::pair<int, int> workGroup(int components) {
+std::pair<int, int> groupForTexels(int components) {
   return components == 4 ? std::pair(8, 8) : std::pair(16, 16);
 }
 
@@ -107,6 +107,11 @@ void ProgramText::output(std::string_view type, std::string_view name) {
 void ProgramText::storeAt(std::string_view place, bool isArray) {
   place_ = place;
   isArray_ = isArray;
+}
+
+void ProgramText::dispatchGroups(std::int32_t invocations, std::string_view texel) {
+  invocations_ = invocations;
+  groupTexel_ = texel;
 }
 
 void ProgramText::variable(std::string_view type, std::string_view name) {
@@ -151,7 +156,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   program += intrinsics.definitions;
   addForeign(program, kernel.declarations);
   program += '\n';
-  if (!isDrawn()) program += "uniform ivec4 sk_rect;\n";
+  if (!isDrawn() && invocations_ == 0) program += "uniform ivec4 sk_rect;\n";
   addLines(program, uniforms_);
   program += declarationOfOutputs();
   if (!isDrawn()) program += "ivec2 sk_pixel;\n";
@@ -182,19 +187,29 @@ std::string ProgramText::declarationOfOutputs() const {
 /// Invocations beside the rectangle, which fill its last work groups, leave at once.
 std::string ProgramText::mainOf(const std::string& body) const {
   if (isDrawn()) return "\nvoid main() {\n" + body + "}\n";
-  const auto [width, height] = workGroup(outputs_.empty() ? 0 : componentsOf(outputs_.front().type));
-  std::string text = fmt::format(
-      "\nlayout(local_size_x = {}, local_size_y = {}) in;\n\n"
-      "void main() {{\n"
-      "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n"
-      "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n{}",
-      width, height, body);
+  const auto [width, height] = workGroup();
+  std::string text =
+      fmt::format("\nlayout(local_size_x = {}, local_size_y = {}) in;\n\nvoid main() {{\n", width, height);
+  if (invocations_ > 0) {
+    fmt::format_to(std::back_inserter(text),
+                   "  sk_pixel = {};\n{}  if (gl_LocalInvocationIndex != 0u) return;\n", groupTexel_, body);
+  } else {
+    fmt::format_to(std::back_inserter(text),
+                   "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n"
+                   "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n{}",
+                   body);
+  }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const auto& [type, name] = outputs_[i];
     fmt::format_to(std::back_inserter(text), "  imageStore(sk_image{}, {}, {});\n", i, place_,
                    wholeTexel(type, name));
   }
   return text + "}\n";
+}
+
+std::pair<int, int> ProgramText::workGroup() const {
+  if (invocations_ > 0) return {invocations_, 1};
+  return groupForTexels(outputs_.empty() ? 1 : componentsOf(outputs_.front().type));
 }
 
 std::string call(std::string_view name, const std::vector<std::string>& arguments, std::string_view indent) {

@@ -79,18 +79,118 @@ class Planner {
   }
 
   std::vector<ReducePass> plan() {
-    addPass(division_.byIndex ? Walk::Index : input_.linear ? Walk::Box : Walk::Plane);
-    while (!passes_.back().toResult) addPass(Walk::Partials);
+    const bool isByRows = !division_.byIndex && !input_.linear && blocks_ == 1;
+    if (isByRows) {
+      left2_ = {input_.extent[0], input_.extent[1]};
+      addRows(Walk::Rows);
+    } else {
+      addPass(division_.byIndex ? Walk::Index : input_.linear ? Walk::Box : Walk::Plane);
+    }
+    while (!passes_.back().toResult) {
+      if (mayGroup()) {
+        addGroups();
+      } else if (isByRows) {
+        addRows(Walk::PartialRows);
+      } else {
+        addPass(Walk::Partials);
+      }
+    }
     return std::move(passes_);
   }
 
  private:
+  struct Extent2 {
+    std::int32_t width, height;
+  };
+
+  /// How many texels of a width x height rectangle a run has, `most` at most. In order: a part of a row that divides it,
+  /// where there is one, or whole rows. Where order does not count, a part of a column of elements, since neighbouring
+  /// invocations then read neighbouring texels, and of partial results a square, which leaves invocations side by side.
+  Extent2 runOf(std::int32_t width, std::int32_t height, std::int32_t most, bool ofPartials) const {
+    constexpr std::int32_t side = 8;
+    if (division_.inAnyOrder && ofPartials && most >= side && width >= side && height >= most / side)
+      return {side, most / side};
+    if (division_.inAnyOrder && height >= most) return {1, dividing(height, most)};
+    if (width < most && height > 1) return {width, std::min(height, most / width)};
+    return {dividing(width, std::min(width, most)), 1};
+  }
+
+  /// A length near `most` of which `extent` is a multiple; `most` where there is none.
+  static std::int32_t dividing(std::int32_t extent, std::int32_t most) {
+    for (std::int32_t length = most; 2 * length > most; --length) {
+      if (extent % length == 0) return length;
+    }
+    return most;
+  }
+
+  /// A pass over the rectangle of texels or partial results that is left, to a smaller one.
+  void addRows(Walk walk) {
+    const bool isFirst = walk == Walk::Rows;
+    const bool isOfTexels = isFirst && division_.byTexel;
+    const std::int32_t most = isOfTexels ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
+    const auto [width, height] = left2_;
+    const Extent2 run = runOf(width, height, most, isFirst && limits_.grouped && division_.inAnyOrder);
+    left2_ = {divideUp(width, run.width), divideUp(height, run.height)};
+    left_ = left2_.width * left2_.height;
+    ReducePass pass{};
+    pass.toResult = left_ == 1;
+    pass.variant.walk = walk;
+    pass.variant.packed = isOfTexels;
+    const bool isEven = width % run.width == 0 && height % run.height == 0;
+    if (isFirst && isEven && (run.width == 1 || run.height == 1)) {
+      pass.variant.run = static_cast<std::uint8_t>(run.width * run.height);
+      pass.variant.column = run.width == 1;
+    }
+    pass.uniforms = {{"sk_item_shape", true, elements_},
+                     {"sk_origin", true, isFirst ? input_.origin : Index4{}},
+                     {"sk_source", true, {width, height, 0, 0}},
+                     {"sk_run_shape", true, {run.width, run.height, 0, 0}}};
+    Placement partial;
+    partial.extent = {left2_.width, left2_.height, 1, 1};
+    pass.texture = {left2_.width, left2_.height, 0};
+    addDomain(pass, pass.toResult ? result_ : partial, false);
+    addTarget(pass);
+    if (!pass.toResult) sourceWidth_ = left2_.width;
+    if (pass.toResult) pass.texture = {};
+    passes_.push_back(std::move(pass));
+  }
+
+  /// Where a pass by rows or groups writes first. Its program knows of no other domain, so that passes share it.
+  static void addTarget(ReducePass& pass) {
+    const Rect& drawn = pass.draws.front();
+    pass.uniforms.push_back({"sk_target", true, {drawn.x, drawn.y, 0, 0}});
+    pass.variant.domain = Domain::Linear;
+    pass.variant.domainView = false;
+    pass.variant.domainRank = 1;
+  }
+
+  /// Whether work groups fold the partial results that are left: of one block, in no layers.
+  bool mayGroup() const { return limits_.grouped && blocks_ == 1 && !partialsLayered_; }
+
+  void addGroups() {
+    const std::int32_t fan = std::clamp(divideUp(left_, groupSize), 2, limits_.fanIn);
+    const std::int32_t groups = divideUp(left_, fan * groupSize);
+    ReducePass pass{};
+    pass.toResult = groups == 1;
+    pass.variant.walk = Walk::GroupedPartials;
+    pass.variant.strided = division_.inAnyOrder;
+    pass.uniforms = {{"sk_item_shape", true, elements_},
+                     {"sk_fan", false, {fan}},
+                     {"sk_block_length", false, {left_}},
+                     {"sk_source_width", false, {sourceWidth_}}};
+    left_ = groups;
+    addDomain(pass, pass.toResult ? result_ : partials(pass, groups), false);
+    addTarget(pass);
+    if (!pass.toResult) sourceWidth_ = pass.texture.width;
+    passes_.push_back(std::move(pass));
+  }
+
   /// A pass over the `left_` elements, texels or partial results that each block has.
   void addPass(Walk walk) {
     const bool isOfTexels = division_.byTexel && walk != Walk::Partials;
     const std::int32_t most = isOfTexels ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
     const std::int32_t runs = divideUp(left_, most);
-    const std::int32_t fan = divideUp(left_, runs);   // runs of nearly equal length
+    const std::int32_t fan = divideUp(left_, runs);  // runs of nearly equal length
     ReducePass pass{};
     pass.toResult = runs == 1;
     pass.variant.packed = isOfTexels;
@@ -164,6 +264,7 @@ class Planner {
     addDomain(pass, domain, isByBlocks && !pass.variant.reshaped);
     if (pass.toResult) return;
     sourceShift_ = domain.shift;
+    sourceWidth_ = 1 << domain.shift;
     partialsLayered_ = domain.layered;
   }
 
@@ -174,7 +275,9 @@ class Planner {
   const Division& division_;
   std::int32_t blocks_;
   std::int32_t left_;  ///< elements, texels or partial results of each block
+  Extent2 left2_{};  ///< as a rectangle, of passes by rows
   std::int32_t sourceShift_ = 0;  ///< of the partial results' texture
+  std::int32_t sourceWidth_ = 0;  ///< of that in passes by rows or groups
   bool partialsLayered_ = false;  ///< whether it is
   std::vector<ReducePass> passes_;
 };

@@ -44,6 +44,7 @@ struct ReducePass {
 struct ReduceLimits {
   TextureLimits texture;
   std::int32_t fanIn = program::longestRun;  ///< elements a run, 2 or more
+  bool grouped = false;  ///< passes are dispatches, of which a work group may fold partial results together
 };
 
 /// Whether a fold asks where its elements are, so that it has to find them by their index.
@@ -54,6 +55,7 @@ struct Division {
   Index4 blocks;  ///< in each dimension of the elements: divisors of their extents
   bool byIndex = false;  ///< Walk::Index; of the elements' placement only the extent counts then
   bool byTexel = false;  ///< the elements are packed, and blocks made of whole texels
+  bool inAnyOrder = false;  ///< Reduction::commutative
 };
 
 /// The passes that fold elements into `result`, whose elements are the blocks, in their order. There are

@@ -76,8 +76,9 @@ struct Region {
 
   std::pair<int, int> texel(const Index4& index) const {
     const Index4 p = index + placement.origin;
-    if (!placement.linear) return {p[0], p[1]};
-    const int number = ravel(p, placement.stride);
+    const int elements = placement.packed ? lanes : 1;
+    if (!placement.linear) return {p[0] / elements, p[1]};
+    const int number = ravel(p, placement.stride) / elements;
     return {number & ((1 << placement.shift) - 1), number >> placement.shift};
   }
 };
@@ -90,6 +91,8 @@ class Fragment {
 
   /// Nothing where the fragment is discarded.
   std::optional<Name> run() {
+    if (pass_.variant.walk == Walk::Rows || pass_.variant.walk == Walk::PartialRows) return runRows();
+    if (pass_.variant.walk == Walk::GroupedPartials) return runGroup();
     if (!locate()) return {};
     findRun();
     startWalk();
@@ -108,6 +111,49 @@ class Fragment {
     return value->value;
   }
   int integer(std::string_view name) const { return vector(name)[0]; }
+
+  Name runRows() {
+    const ReduceVariant& v = pass_.variant;
+    const int width = v.run == 0 ? vector("sk_run_shape")[0] : v.column ? 1 : v.run;
+    const int height = v.run == 0 ? vector("sk_run_shape")[1] : v.column ? v.run : 1;
+    const Index4& target = vector("sk_target");
+    const int left = (x_ - target[0]) * width;
+    const int top = (y_ - target[1]) * height;
+    const Index4& extent = vector("sk_source");
+    if (v.run > 0 && (left + width > extent[0] || top + height > extent[1])) {
+      throw std::logic_error("a run of constant length passes the end");
+    }
+    Name total;
+    for (int y = top; y < std::min(top + height, extent[1]); ++y) {
+      for (int x = left; x < std::min(left + width, extent[0]); ++x) {
+        total += element(vector("sk_origin")[0] + x, vector("sk_origin")[1] + y);
+      }
+    }
+    return total;
+  }
+
+  /// What a work group leaves in its first invocation.
+  Name runGroup() {
+    const Index4& target = vector("sk_target");
+    const int group = (y_ - target[1]) << integer("sk_domain_shift") | (x_ - target[0]);
+    const int fan = integer("sk_fan");
+    const int width = integer("sk_source_width");
+    const int base = group * groupSize * fan;
+    const int left = std::min(groupSize * fan, integer("sk_block_length") - base);
+    std::vector<Name> runs;
+    for (int i = 0; i < groupSize; ++i) {
+      Name total;
+      for (int k = 0; k < fan; ++k) {
+        const int at = pass_.variant.strided ? i + k * groupSize : i * fan + k;
+        if (at < left) total += element((base + at) % width, (base + at) / width);
+      }
+      runs.push_back(total);
+    }
+    for (std::size_t s = 1; s < runs.size(); s *= 2) {
+      for (std::size_t i = 0; i + s < runs.size(); i += 2 * s) runs[i] += runs[i + s];
+    }
+    return runs.front();
+  }
 
   bool locate() {
     const ReduceVariant& v = pass_.variant;
@@ -171,6 +217,9 @@ class Fragment {
         p_ = unravel(first_, vector("sk_block_step"), axes);
         return;
       }
+      case Walk::Rows:
+      case Walk::PartialRows:
+      case Walk::GroupedPartials:
       case Walk::Nothing: throw std::logic_error("walk");
     }
   }
@@ -197,6 +246,9 @@ class Fragment {
         const auto [x, y] = input_.texel(corner_ + p_);
         return element(x, y);
       }
+      case Walk::Rows:
+      case Walk::PartialRows:
+      case Walk::GroupedPartials:
       case Walk::Nothing: break;
     }
     throw std::logic_error("walk");
@@ -283,29 +335,36 @@ Texture execute(const std::vector<ReducePass>& passes, Texture source, const Reg
   return source;
 }
 
+/// `length`: of a block. Passes by rows may be one more than the fewest, as a run ends with its row; groups fold more.
 void checkSchedule(const std::vector<ReducePass>& passes, const ReduceLimits& limits, std::int64_t length) {
   std::size_t needed = 1;
   for (std::int64_t left = length; left > limits.fanIn; left = (left + limits.fanIn - 1) / limits.fanIn)
     ++needed;
-  REQUIRE(passes.size() == needed);
+  const bool isByRows = passes.front().variant.walk == Walk::Rows;
+  if (limits.grouped) {
+    REQUIRE(passes.size() <= needed + isByRows);
+  } else {
+    REQUIRE((passes.size() == needed || (isByRows && passes.size() <= needed + 2)));
+  }
   std::set<ReduceVariant> programs;
   for (const ReducePass& pass : passes) {
     programs.insert(pass.variant);
     REQUIRE(pass.toResult == (&pass == &passes.back()));
     REQUIRE((pass.texture.width <= limits.texture.size && pass.texture.height <= limits.texture.size));
   }
-  REQUIRE(programs.size() <= (passes.front().variant.domainLayered ? 4 : 3));
+  REQUIRE(programs.size() <= (passes.front().variant.domainLayered || limits.grouped ? 4 : 3));
 }
 
 /// Reduces to `blocks` and compares every element of the result.
 void check(const Region& input, const Region& result, const ReduceLimits& limits, const Index4& blocks,
-           bool byIndex = false) {
+           bool byIndex = false, bool inAnyOrder = false) {
   const Index4& extent = input.placement.extent;
   Texture source(input.width, input.height);
   char16_t name = 0;
   forEach(extent, [&](const Index4& i) {
     const auto [x, y] = input.texel(i);
-    source.at(x, y) = Name(1, ++name);
+    std::optional<Name>& texel = source.at(x, y);
+    texel = texel.value_or(Name()) + Name(1, ++name);
   });
   std::vector<Name> expected(static_cast<std::size_t>(elements(blocks)));
   name = 0;
@@ -315,14 +374,16 @@ void check(const Region& input, const Region& result, const ReduceLimits& limits
     expected[static_cast<std::size_t>(ravel(block, stridesOf(blocks)))] += ++name;
   });
 
-  const auto passes =
-      planReduction(input.placement, result.placement, limits, {.blocks = blocks, .byIndex = byIndex});
+  const auto passes = planReduction(
+      input.placement, result.placement, limits,
+      {.blocks = blocks, .byIndex = byIndex, .byTexel = input.placement.packed, .inAnyOrder = inAnyOrder});
   checkSchedule(passes, limits, elements(extent) / elements(blocks));
   Texture output = execute(passes, std::move(source), input, result);
   std::size_t written = 0;
   forEach(result.placement.extent, [&](const Index4& b) {
     const auto [x, y] = result.texel(b);
-    const auto& value = output.at(x, y);
+    auto value = output.at(x, y);
+    if (value && inAnyOrder) std::ranges::sort(*value);
     if (!value || *value != expected[written++]) FAIL("block " << written - 1 << " is wrong");
   });
   const auto all = std::ranges::count_if(output.texels, [](const auto& texel) { return texel.has_value(); });
@@ -347,7 +408,7 @@ void checkShape(const Index4& extent, int rank, const ReduceLimits& limits) {
     before[d] = d % 2 == 0 ? 2 : 1;
     after[d] = d % 2 == 0 ? 0 : 3;
   }
-  Index4 rowsBefore{};   // a view of whole rows, planes, ...: its elements are consecutive
+  Index4 rowsBefore{};  // a view of whole rows, planes, ...: its elements are consecutive
   rowsBefore[static_cast<std::size_t>(rank - 1)] = 3;
   const Region value{valuePlacement(), 1, 1};
   const auto inputs = {layOut(extent, rank, none, none, limits.texture.size),
@@ -403,6 +464,58 @@ TEST_CASE("reductions of rank 2 keep the order") {
     for (const int width : lengths) {
       checkShape({width, height, 1, 1}, 2, {{64, mostLayers}, 4});
       if (width * height <= 64) checkShape({width, height, 1, 1}, 2, {{8, mostLayers}, 3});
+    }
+  }
+}
+
+/// A stream of packed elements.
+std::optional<Region> packed(const Index4& extent, int rank, const Index4& before, const Index4& after,
+                             int limit) {
+  const auto texels = [](Index4 index) {
+    index[0] /= lanes;
+    return index;
+  };
+  std::optional<Region> region = layOut(texels(extent), rank, texels(before), texels(after), limit);
+  if (!region) return {};
+  region->placement.packed = true;
+  region->placement.extent = extent;
+  region->placement.origin = before;
+  if (region->placement.linear) region->placement.stride = stridesOf(before + extent + after);
+  return region;
+}
+
+TEST_CASE("reductions of packed streams keep the order") {
+  for (const int height : {1, 2, 3, 5, 8, 16}) {
+    for (const int width : {4, 8, 12, 20, 64, 72}) {
+      for (const int limit : {8, 64}) {
+        for (const bool grouped : {false, true}) {
+          const Index4 extent{width, height, 1, 1};
+          CAPTURE(width, height, limit, grouped);
+          const ReduceLimits limits{{limit, mostLayers}, 8, grouped};
+          for (const Index4& before : {none, Index4{8, 1, 0, 0}}) {
+            if (const auto input = packed(extent, 2, before, none, limit)) {
+              check(*input, {valuePlacement(), 1, 1}, limits, {1, 1, 1, 1});
+              check(*input, {valuePlacement(), 1, 1}, limits, {1, 1, 1, 1}, false, true);
+              const auto rows = layOut({1, height, 1, 1}, 2, none, none, limit);
+              if (rows) check(*input, *rows, limits, {1, height, 1, 1});
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("work groups keep the order, or fold all") {
+  for (const int n : {1, 2, 33, 1000, 4097, 9000}) {
+    for (const int rank : {1, 2}) {
+      const Index4 extent = rank == 1 ? Index4{n, 1, 1, 1} : Index4{(n + 6) / 7, 7, 1, 1};
+      const auto input = layOut(extent, rank, none, none, 2048);
+      for (const bool inAnyOrder : {false, true}) {
+        CAPTURE(n, rank, inAnyOrder);
+        check(*input, {valuePlacement(), 1, 1}, {{2048, mostLayers}, 4, true}, {1, 1, 1, 1}, false,
+              inAnyOrder);
+      }
     }
   }
 }
@@ -471,8 +584,9 @@ TEST_CASE("a reduction to a value takes two programs and the fewest passes") {
   const Placement square{.extent = {4096, 4096, 1, 1}};
   const auto passes = planReduction(square, valuePlacement(), {{16384, 256}, 32});
   REQUIRE(passes.size() == 5);
-  CHECK(passes[0].variant.walk == Walk::Plane);
-  CHECK(passes[0].texture == TextureShape{1024, 512, 0});
+  CHECK(passes[0].variant.walk == Walk::Rows);
+  CHECK(passes[0].variant.run == 32);
+  CHECK(passes[0].texture == TextureShape{128, 4096, 0});
   for (std::size_t i = 1; i < passes.size(); ++i) CHECK(passes[i].variant == passes[1].variant);
   CHECK(passes.back().draws == std::vector<Rect>{{0, 0, 1, 1}});
 }

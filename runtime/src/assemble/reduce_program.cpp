@@ -31,7 +31,10 @@ std::string_view name(Walk walk) {
     case Walk::Plane: return "elements of a plane";
     case Walk::Box: return "elements of a box";
     case Walk::Index: return "elements by index";
+    case Walk::Rows: return "elements of rows";
     case Walk::Partials: return "partial results";
+    case Walk::PartialRows: return "partial results in rows";
+    case Walk::GroupedPartials: return "partial results of groups";
     case Walk::Nothing: return "no elements";
   }
   return {};
@@ -48,7 +51,7 @@ std::string_view name(Runs runs) {
 
 /// The kernel that a walk calls: none, but for the identities, where there is no element.
 Kernel kernelOf(const Reduction& reduction, Walk walk) {
-  if (walk == Walk::Partials) return reduction.combine;
+  if (isOfPartials(walk)) return reduction.combine;
   Kernel kernel = reduction.fold;
   if (walk == Walk::Nothing) {
     kernel.body = {};
@@ -76,12 +79,14 @@ class ReductionText {
   }
 
   std::string write() {
-    if (kernel_.usesLoops) domain_.leaveOutside();
+    if (kernel_.usesLoops && !isByRows() && variant_.walk != Walk::GroupedPartials) domain_.leaveOutside();
     if (variant_.walk != Walk::Nothing) defineParameters();
     std::vector<Parameter> written = writtenParameters();
     for (const Parameter& parameter : written) declareOutputs(program_, parameter);
     if (variant_.walk == Walk::Nothing) {
       startFromIdentities();
+    } else if (variant_.walk == Walk::GroupedPartials) {
+      foldGroup();
     } else {
       findRun();
       startWalk();
@@ -90,8 +95,9 @@ class ReductionText {
     for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
     if (profile_.stage == Stage::Compute)
       program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
-    const std::string comment = fmt::format("{} for {}: {}, {}", reduction_.fold.name, profile_.name,
-                                            name(variant_.walk), name(variant_.runs));
+    const std::string comment =
+        fmt::format("{} for {}: {}{}, {}", reduction_.fold.name, profile_.name,
+                    variant_.packed ? "packed " : "", name(variant_.walk), name(variant_.runs));
     return program_.finish(profile_, comment, kernel_);
   }
 
@@ -187,6 +193,7 @@ class ReductionText {
   /// Defines sk_block (its number), sk_first (the run's first element in it) and sk_count, as far as
   /// they are not constants.
   void findRun() {
+    if (isByRows()) return;
     const bool isByBlock = variant_.runs == Runs::WholeBlocks && variant_.walk == Walk::Plane;
     const std::string number = isByBlock && !variant_.reshaped ? std::string() : domain_.number();
     switch (variant_.runs) {
@@ -217,10 +224,15 @@ class ReductionText {
       case Walk::Plane: startPlane(); return;
       case Walk::Box: startBox(); return;
       case Walk::Index: startIndex(); return;
+      case Walk::Rows:
+      case Walk::PartialRows: startRows(); return;
       case Walk::Partials: startPartials(); return;
+      case Walk::GroupedPartials:
       case Walk::Nothing: return;
     }
   }
+
+  bool isByRows() const { return variant_.walk == Walk::Rows || variant_.walk == Walk::PartialRows; }
 
   bool manyBlocks() const { return variant_.runs != Runs::OneBlock; }
   bool startsInside() const { return variant_.runs != Runs::WholeBlocks; }
@@ -260,6 +272,98 @@ class ReductionText {
     statement("int sk_end = sk_corner.x + sk_block_shape.x;");
     step_ = {"++sk_p.x;", "if (sk_p.x == sk_end) sk_p = ivec2(sk_corner.x, sk_p.y + 1);"};
     first_ = next_ = {"sk_p"};
+  }
+
+  /// sk_corner is the run's first texel, sk_p the texel of the element.
+  void startRows() {
+    vectors({"sk_origin", "sk_target"});
+    const std::string run = variant_.run == 0 ? "sk_run_shape.xy"
+                            : variant_.column ? fmt::format("ivec2(1, {})", variant_.run)
+                                              : fmt::format("ivec2({}, 1)", variant_.run);
+    statement(fmt::format("ivec2 sk_corner = ({} - sk_target.xy) * {};", domain_.texel().at, run));
+    if (kernel_.usesLoops) {   // as DomainText::leaveOutside()
+      vectors({"sk_source"});
+      statement("if (any(greaterThanEqual(uvec2(sk_corner), uvec2(sk_source.xy)))) return;");
+    }
+    if (variant_.run > 0) {
+      statement("ivec2 sk_p = sk_origin.xy + sk_corner;");
+      first_ = {"sk_p"};
+      next_ = {variant_.column ? "sk_p + ivec2(0, sk_k)" : "sk_p + ivec2(sk_k, 0)"};
+      return;
+    }
+    vectors({"sk_source", "sk_run_shape"});
+    statement("ivec2 sk_shape = max(min(sk_run_shape.xy, sk_source.xy - sk_corner), 0);");
+    statement("sk_corner += sk_origin.xy;");
+    statement("ivec2 sk_p = sk_corner;");
+    statement("int sk_count = sk_shape.x * sk_shape.y, sk_end = sk_corner.x + sk_shape.x;");
+    step_ = {"++sk_p.x;", "if (sk_p.x == sk_end) sk_p = ivec2(sk_corner.x, sk_p.y + 1);"};
+    first_ = next_ = {"sk_p"};
+  }
+
+  /// An invocation folds some partial results, and then the group what its invocations have, in their order. Those of a last
+  /// group may have none.
+  void foldGroup() {
+    integers({"sk_fan", "sk_block_length", "sk_source_width"});
+    for (const Parameter* accumulator : accumulators_) {
+      program_.variable("shared " + std::string(accumulator->element->glsl),
+                        fmt::format("{}[{}]", sharedName(*accumulator), groupSize));
+    }
+    program_.function("ivec2 sk_place(int sk_n)", {"int sk_y = sk_n / sk_source_width;",
+                                                   "return ivec2(sk_n - sk_y * sk_source_width, sk_y);"});
+    vectors({"sk_target"});
+    integers({"sk_domain_shift"});
+    program_.require(Function::Texel);
+    program_.dispatchGroups(groupSize, "sk_target.xy + sk_texel(int(gl_WorkGroupID.x), sk_domain_shift)");
+    statement("int sk_i = int(gl_LocalInvocationIndex);");
+    statement(fmt::format("int sk_base = int(gl_WorkGroupID.x) * {} * sk_fan;", groupSize));
+    statement(fmt::format("int sk_left = min({} * sk_fan, sk_block_length - sk_base);", groupSize));
+    if (variant_.strided) {
+      statement(fmt::format("int sk_runs = min({0}, sk_left), sk_count = (sk_left - sk_i + {1}) / {0};",
+                            groupSize, groupSize - 1));
+      statement("sk_base += sk_i;");
+      next_ = {fmt::format("sk_place(sk_base + sk_k * {})", groupSize)};
+    } else {
+      statement(
+          "int sk_runs = (sk_left + sk_fan - 1) / sk_fan, sk_count = min(sk_fan, sk_left - sk_i * sk_fan);");
+      statement("sk_base += sk_i * sk_fan;");
+      next_ = {"sk_place(sk_base + sk_k)"};
+    }
+    for (const Parameter* accumulator : accumulators_) {
+      statement(fmt::format("{} {};", accumulator->element->glsl, total(*accumulator)));
+    }
+    first_ = {"sk_place(sk_base)"};
+    statement("if (sk_i < sk_runs) {");
+    forEachStart([&](const std::string& name, const std::string& value) {
+      statement(fmt::format("  {} = {};", name, value));
+    });
+    statement("  for (int sk_k = 1; sk_k < sk_count; ++sk_k) {");
+    statement("    " + foldingNext());
+    statement("  }");
+    statement("}");
+    foldShared();
+  }
+
+  void foldShared() {
+    const auto keep = [&](std::string_view indent) {
+      for (const Parameter* accumulator : accumulators_) {
+        statement(fmt::format("{}{}[sk_i] = {};", indent, sharedName(*accumulator), total(*accumulator)));
+      }
+    };
+    keep("");
+    statement(fmt::format("for (int sk_s = 1; sk_s < {}; sk_s *= 2) {{", groupSize));
+    statement("  memoryBarrierShared();");
+    statement("  barrier();");
+    statement("  if ((sk_i & (2 * sk_s - 1)) == 0 && sk_i + sk_s < sk_runs) {");
+    statement("    " + folding([&](std::size_t, std::size_t k) {
+                return fmt::format("{}[sk_i + sk_s]", sharedName(*accumulators_[k]));
+              }));
+    keep("    ");
+    statement("  }");
+    statement("}");
+  }
+
+  std::string sharedName(const Parameter& accumulator) const {
+    return fmt::format("sk_shared_{}", accumulator.symbol);
   }
 
   std::string blockIndex() {
@@ -348,15 +452,23 @@ class ReductionText {
 
   /// One element, or from component `first` on those of a packed texel.
   void foldTexel(std::string_view indent, int first = 0) {
-    if (!variant_.packed) return statement(fmt::format("{}{}", indent, folding({})));
+    if (!variant_.packed) return statement(fmt::format("{}{}", indent, foldingNext()));
     for (int lane = first; lane < lanes; ++lane) {
-      statement(fmt::format("{}{}", indent, folding(fmt::format(".{}", "xyzw"[lane]))));
+      const std::string component = fmt::format(".{}", "xyzw"[lane]);
+      const std::string fold = folding([&](std::size_t i, std::size_t) { return elementOf(i, component); });
+      statement(fmt::format("{}{}", indent, fold));
     }
   }
 
-  /// A call of the kernel's entry, with the arguments in its order. `lane`: ".x", of packed inputs.
-  std::string folding(std::string_view lane) {
+  std::string foldingNext() {
+    return folding([&](std::size_t i, std::size_t) { return element(i, next_); });
+  }
+
+  /// A call of the kernel's entry, with the arguments in its order. elementOf(i, k): of parameter i, the k-th input.
+  template <class ElementOf>
+  std::string folding(const ElementOf& inputElement) {
     std::vector<std::string> arguments;
+    std::size_t inputs = 0;
     std::size_t values = 0;
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
       const Parameter& parameter = kernel_.parameters[i];
@@ -364,7 +476,7 @@ class ReductionText {
         case Role::Uniform:
         case Role::Iterator:
         case Role::Spec: arguments.push_back(arguments_[values++]); break;
-        case Role::Input: arguments.push_back(lane.empty() ? element(i, next_) : elementOf(i, lane)); break;
+        case Role::Input: arguments.push_back(inputElement(i, inputs++)); break;
         case Role::Accumulator: arguments.push_back(total(parameter)); break;
         case Role::Gather:
         case Role::Output:
@@ -387,17 +499,26 @@ class ReductionText {
     }
   }
 
-  void startFromElements() {
+  /// visit(accumulator, first value): an accumulator begins as the input that stands where it does among them.
+  template <class Visit>
+  void forEachStart(const Visit& visit) {
     for (std::size_t k = 0; k < accumulators_.size(); ++k) {
       const auto i = static_cast<std::size_t>(inputs_[k] - kernel_.parameters.data());
-      statement(fmt::format("{} {} = {};", accumulators_[k]->element->glsl, total(*accumulators_[k]),
-                            variant_.packed ? elementOf(i, ".x") : element(i, first_)));
+      visit(total(*accumulators_[k]), variant_.packed ? elementOf(i, ".x") : element(i, first_));
     }
+  }
+
+  void startFromElements() {
+    std::size_t k = 0;
+    forEachStart([&](const std::string& name, const std::string& value) {
+      statement(fmt::format("{} {} = {};", accumulators_[k++]->element->glsl, name, value));
+    });
   }
 
   /// A run starts from its first element, or else from the identity.
   void foldRun() {
-    const bool isSeeded = variant_.walk == Walk::Partials || reduction_.seeded;
+    const bool isSeeded = isOfPartials(variant_.walk) || reduction_.seeded;
+    const std::string count = variant_.run > 0 ? fmt::format("{}", variant_.run) : "sk_count";
     if (isSeeded) {
       if (variant_.packed) fetchLanes(first_, true);
       startFromElements();
@@ -406,7 +527,7 @@ class ReductionText {
       startFromIdentities();
       if (variant_.packed) declareLanes();
     }
-    statement(fmt::format("for (int sk_k = {}; sk_k < sk_count; ++sk_k) {{", isSeeded ? 1 : 0));
+    statement(fmt::format("for (int sk_k = {}; sk_k < {}; ++sk_k) {{", isSeeded ? 1 : 0, count));
     if (isSeeded) step();
     if (variant_.packed) fetchLanes(next_, false);
     foldTexel("  ");
@@ -439,12 +560,12 @@ class ReductionText {
   const Kernel& kernel_;
   std::vector<const Parameter*> inputs_;
   std::vector<const Parameter*> accumulators_;
-  std::vector<std::string> arguments_;   ///< those that are the same for all elements, and iterators
+  std::vector<std::string> arguments_;  ///< those that are the same for all elements, and iterators
   ProgramText program_;
   DomainText domain_;
-  Texel first_;                       ///< of the run's first element
-  Texel next_;                        ///< of its element sk_k
-  std::vector<std::string> step_;     ///< statements that go from one element to the next
+  Texel first_;  ///< of the run's first element
+  Texel next_;  ///< of its element sk_k
+  std::vector<std::string> step_;  ///< statements that go from one element to the next
 };
 
 }  // namespace

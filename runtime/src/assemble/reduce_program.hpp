@@ -20,39 +20,56 @@ enum class Walk : std::uint8_t {
   Plane,     ///< a 2-D texture, a block being a rectangle of it
   Box,       ///< a linearised stream, a block being a box of up to 4 axes
   Index,     ///< elements by their index, wherever each input has its own
+  Rows,  ///< a 2-D texture, of which a run is a rectangle, in order a part of a row or whole rows; to one block
   Partials,  ///< the partial results of the pass before
-  Nothing,   ///< no element at all: the identities
+  PartialRows,  ///< those that lie as Rows has left them
+  GroupedPartials,  ///< those again, of any pass to one block, by a work group for each result
+  Nothing,  ///< no element at all: the identities
 };
+
+/// Whether what is folded are partial results, by the combining kernel.
+constexpr bool isOfPartials(Walk walk) {
+  return walk == Walk::Partials || walk == Walk::PartialRows || walk == Walk::GroupedPartials;
+}
+
+/// Invocations of a work group that folds partial results together, and what they may share.
+inline constexpr std::int32_t groupSize = 256;
+inline constexpr std::size_t groupBytes = 32768;
 
 /// How many runs and blocks there are; a block is what one element of the result folds.
 enum class Runs : std::uint8_t {
-  OneBlock,    ///< any number of runs over a single block (a reduction to a value)
-  WholeBlocks, ///< one run a block: the run of the output element under the fragment
-  Split,       ///< several runs a block
+  OneBlock,  ///< any number of runs over a single block (a reduction to a value)
+  WholeBlocks,  ///< one run a block: the run of the output element under the fragment
+  Split,  ///< several runs a block
 };
 
-/// One program of a reduction. Passes with equal variants share it. Where the walk is Partials or Nothing,
+/// One program of a reduction. Passes with equal variants share it. Where the walk is one of partial results or Nothing,
 /// `access` says nothing of inputs; where it is Index, none is aligned; else all are, and lie alike.
 struct ReduceVariant {
   Walk walk = Walk::Line;
   Runs runs = Runs::OneBlock;
   Domain domain = Domain::Linear;
-  bool domainView = false;       ///< Domain::Plane: the domain's origin is not (0, 0)
-  std::uint8_t domainRank = 1;   ///< Domain::LinearBox: rank of its stream
-  std::uint8_t axes = 1;         ///< Walk::Box and Walk::Index
+  bool domainView = false;  ///< Domain::Plane: the domain's origin is not (0, 0)
+  std::uint8_t domainRank = 1;  ///< Domain::LinearBox: rank of its stream
+  std::uint8_t axes = 1;  ///< Walk::Box and Walk::Index
+  std::uint8_t run =
+      0;  ///< Walk::Rows: texels of a run, where all have as many, of one row or column; else 0
+  bool column = false;
+  bool strided =
+      false;  ///< Walk::GroupedPartials: an invocation takes every groupSize-th, not one after the other
   bool packed = false;  ///< walks of elements: the inputs are packed, and a step is one of whole texels
-  bool sourceLayered = false;    ///< what is read, but for Walk::Index
+  bool sourceLayered = false;  ///< what is read, but for Walk::Index
   bool domainLayered = false;
-  bool reshaped = false;         ///< the result's dimensions are not those of the blocks
-  std::uint8_t firstPlane = 0;   ///< of those of all accumulators: the first that is written,
-  std::uint8_t planeCount = 0;   ///< and how many; 0 is all of them
-  std::vector<StreamAccess> access = {};  ///< one a parameter of `fold`, for Walk::Partials of `combine`;
-                                 ///< or none, where there are no gathers, iterators and indices
-  SpecValues specs{};            ///< of the same
+  bool reshaped = false;  ///< the result's dimensions are not those of the blocks
+  std::uint8_t firstPlane = 0;  ///< of those of all accumulators: the first that is written,
+  std::uint8_t planeCount = 0;  ///< and how many; 0 is all of them
+  std::vector<StreamAccess> access = {};  ///< one a parameter of `fold`, for partial results of `combine`;
+      ///< or none, where there are no gathers, iterators and indices
+  SpecValues specs{};  ///< of the same
   auto operator<=>(const ReduceVariant&) const = default;
 };
 
-/// The fragment program. Its samplers are samplerName() of the inputs of `fold`, for Walk::Partials of
+/// The fragment program. Its samplers are samplerName() of the inputs of `fold`, for partial results of
 /// `combine`, and of gathers; its outputs the accumulators' planes, in their order, from location 0. The
 /// names of its integer uniforms are those that the plan gives values for; all that belong to a parameter
 /// are those of a kernel's program (assemble.hpp).

@@ -2,11 +2,8 @@
 #include "assemble/storage.hpp"
 
 #include <algorithm>
-#include <array>
 
-#include "assemble/placement.hpp"
 #include "sk/scalar_bytes.hpp"
-#include "sk/types.hpp"
 
 namespace sk::assemble {
 
@@ -38,33 +35,7 @@ void addFields(const Field& field, Storage storage, std::vector<Field>& fields) 
   }
 }
 
-/// One element for each scalar.
-class FourElements {
- public:
-  FourElements() {
-    for (std::size_t i = 0; i < elements_.size(); ++i) {
-      const auto scalar = static_cast<Scalar>(i);
-      fields_[i] = {"", scalar, lanes, 0};
-      elements_[i] = {"texel",
-                      detail::spellings[i].glsl[lanes - 1],
-                      static_cast<std::uint32_t>(lanes * program::hostBytes(scalar)),
-                      {&fields_[i], 1}};
-    }
-  }
-  const Element& of(Scalar scalar) const { return elements_[static_cast<std::size_t>(scalar)]; }
-
- private:
-  static constexpr std::size_t scalars = std::size(detail::spellings);
-  std::array<Field, scalars> fields_;
-  std::array<Element, scalars> elements_;
-};
-
 }  // namespace
-
-const Element& fourOf(Scalar scalar) {
-  static const FourElements elements;
-  return elements.of(scalar);
-}
 
 HeldElement::HeldElement(const Element& declared, Storage storage) : element(declared) {
   for (const Field& field : declared.fields) addFields(field, storage, fields);

@@ -24,9 +24,6 @@ struct HeldElement {
   program::Element element;
 };
 
-/// What a texel of a packed stream holds (Placement::packed), as an element of its own: four of `scalar`.
-const program::Element& fourOf(program::Scalar scalar);
-
 /// Whether an element has floats that a stream may hold otherwise.
 bool holdsFloats(const program::Element& element);
 
