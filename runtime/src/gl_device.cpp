@@ -11,9 +11,11 @@
 #include "assemble/sinks.hpp"
 #include "assemble/tables.hpp"
 #include "check_argument.hpp"
+#include "copy_bandwidth.hpp"
 #include "gl/commands.hpp"
 #include "gl/errors.hpp"
 #include "gl_stream.hpp"
+#include "pass_trace.hpp"
 #include "plan_run.hpp"
 #include "precision.hpp"
 #include "probe.hpp"
@@ -73,6 +75,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
   if (!context.isAdopted()) {
     gl::setPassState(capabilities);
   }
+  if (capabilities.hasLabels && capabilities.isDebugged) labels.turnOn();
 }
 
 // GL objects are deleted only with their context current. Where it cannot be made current, because
@@ -84,6 +87,8 @@ GlDevice::~GlDevice() {
   } catch (const Error&) {
     forgetObjects();
   }
+  if (passes && current) passes->complete();
+  passes.reset();
   while (firstStream() != nullptr) {
     auto& stream = static_cast<GlStream&>(*firstStream());
     stream.leave();
@@ -102,6 +107,7 @@ GlDevice::~GlDevice() {
 }
 
 void GlDevice::forgetObjects() noexcept {
+  if (passes) passes->forget();
   for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
     auto& stream = static_cast<GlStream&>(*state);
     for (Surface& plane : stream.planes) {
@@ -164,6 +170,14 @@ GLuint GlDevice::textureOf(const FunctionTable& table) {
     texture.write(bound, {0, 0, assemble::tableWidth, rows}, 0, texels.data());
   }
   return texture.name();
+}
+
+void GlDevice::startTrace(const std::string& file) {
+  const double bandwidth = copyBandwidth(*this);
+  trace = std::make_unique<Trace>(file, fmt::format("{} ({})", name(), profileName()), bandwidth);
+  const DeviceScope scope(*this);
+  passes = std::make_unique<PassTrace>(*this, *trace);
+  if (capabilities.hasLabels) labels.turnOn();
 }
 
 void GlDevice::finish() {
@@ -264,8 +278,10 @@ std::vector<Surface> GlDevice::takePlanes(const program::Element& element,
                       shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
                       (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20));
     }
+    labels.texture(plane.texture.name(), whatFor);
     planes.push_back(std::move(plane));
   }
+  countBytes();
   return planes;
 }
 
@@ -274,10 +290,12 @@ void GlDevice::givePlanes(std::vector<Surface>& planes) noexcept {
     pool.give(std::move(plane));
   }
   planes.clear();
+  countBytes();
 }
 
 // An application's own mistakes in an adopted context are not ours to report.
 void GlDevice::throwPendingError() {
+  if (passes) passes->collect();
   const GLenum error = gl::takeError();
   const bool isOurs = !context.isAdopted() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
   if (error != GL_NO_ERROR && isOurs) {

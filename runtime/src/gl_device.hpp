@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "device_state.hpp"
 #include "framebuffer_cache.hpp"
 #include "gl/bound_state.hpp"
+#include "gl/labels.hpp"
 #include "gl/linear_samplers.hpp"
 #include "gl/open_context.hpp"
 #include "gl/saved_state.hpp"
@@ -24,6 +26,8 @@
 #include "variant.hpp"
 
 namespace sk {
+
+class PassTrace;
 
 /// What a user may choose of a device that is found.
 struct DeviceChoices {
@@ -59,6 +63,7 @@ class GlDevice final : public DeviceState {
   void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
                                             Storage storage) override;
+  void startTrace(const std::string& file) override;
   void finish() override;
   void release() override { context.release(); }
   void run(const program::Kernel& kernel, std::span<const Argument> arguments,
@@ -102,12 +107,17 @@ class GlDevice final : public DeviceState {
   SinkPrograms sinkPrograms;
   gl::LinearSamplers samplers;
   gl::VertexArray vertexArray;
+  gl::Labels labels;
+  std::unique_ptr<PassTrace> passes;     ///< null where there is no trace
   std::vector<std::byte> staging;        ///< texels on their way; transfer.cpp's
   std::vector<Operand> operands;         ///< of the call that runs; run.cpp's
 
  private:
   bool takesPairs(const CallOptions& options) const;
   void forgetObjects() noexcept;
+  void countBytes() const noexcept {
+    if (trace) trace->countBytes(pool.bytesUsed(), pool.bytesKept());
+  }
   void needExactSums(const program::Kernel& kernel);
 
   std::map<ProgramChoice, ProgramCache> caches_;

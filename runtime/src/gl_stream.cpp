@@ -67,6 +67,25 @@ void GlStream::takeSize(std::int32_t count) {
   layout.draws = assemble::drawnTexels(layout.whole);
 }
 
+void GlStream::setName(std::string_view given) {
+  StreamState::setName(given);
+  if (owner().labels.isOn()) {
+    const DeviceScope scope(owner());
+    labelPlanes();
+  }
+}
+
+void GlStream::labelPlanes() const {
+  if (name.empty() || !owner().labels.isOn()) {
+    return;
+  }
+  const std::span<const program::Field> fields = held().fields;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    owner().labels.texture(planes[i].texture.name(),
+                           fields[i].path.empty() ? name : fmt::format("{}.{}", name, fields[i].path));
+  }
+}
+
 void GlStream::write(const StreamRegion& region, const std::byte* elements) {
   const DeviceScope scope(owner());
   if (!held_) {

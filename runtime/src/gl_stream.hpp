@@ -28,12 +28,16 @@ class GlStream final : public StreamState {
   void readReals(const StreamRegion& region, double* values) override;
   void writeReals(const StreamRegion& region, const double* values) override;
   StreamTexture texture(int plane) override;
+  void setName(std::string_view given) override;
 
   /// What the planes hold: the element, or another for it.
   const program::Element& held() const { return held_ ? held_->element : *element; }
 
   Layout layout;                       ///< holds once the stream is settled
   std::vector<Surface> planes;         ///< one a field of what is held; none where the stream is empty
+
+  /// For debuggers, where planes have changed.
+  void labelPlanes() const;
 
   /// Takes what a kernel has pushed for its elements, and gives its planes for it. `total`: where their number
   /// is not known, CountTree::totalTexture(); `list` has then room for all that may be.

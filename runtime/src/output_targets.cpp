@@ -85,6 +85,7 @@ void OutputTargets::putInPlace() {
     GlStream& stream = glStream(arguments_[i].region);
     if (wayOf(i) == Way::Swap) {
       std::swap(stream.planes, aside_[i]->planes);
+      stream.labelPlanes();
     } else {
       copyRegion(device_, stream.held(), aside_[i]->planes, domain_, stream.planes, operands_[i].placement);
     }

@@ -8,6 +8,7 @@
 #include "copy_kernel.hpp"
 #include "gl/commands.hpp"
 #include "gl_device.hpp"
+#include "pass_trace.hpp"
 #include "texel_runs.hpp"
 
 namespace sk {
@@ -54,7 +55,8 @@ int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit) {
 
 Target targetOf(GlDevice& device, Surface& plane) {
   const gl::Texture& texture = plane.texture;
-  return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0};
+  return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0,
+          static_cast<std::int32_t>(texture.format().texelBytes())};
 }
 
 Target targetOf(GlDevice& device, std::span<Surface* const> planes) {
@@ -63,12 +65,14 @@ Target targetOf(GlDevice& device, std::span<Surface* const> planes) {
     return targetOf(device, first);
   }
   std::array<GLuint, gl::maxDrawBuffers> names{};
+  std::size_t texelBytes = 0;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     names[i] = planes[i]->texture.name();
+    texelBytes += planes[i]->texture.format().texelBytes();
   }
   const bool isLayered = first.texture.isLayered();
   return {&device.framebuffers.framebufferOf(std::span(names).first(planes.size()), isLayered),
-          isLayered ? first.texture.shape().height : 0};
+          isLayered ? first.texture.shape().height : 0, static_cast<std::int32_t>(texelBytes)};
 }
 
 void drawRects(GlDevice& device, const Target& target, std::span<const Rect> rects, gl::IntUniform& row) {
@@ -129,6 +133,7 @@ void drawKernel(GlDevice& device, const program::Kernel& kernel, std::span<const
                 const Placement& domain, std::span<const Rect> rects, const Target& target,
                 std::span<const gl::Texture> bundles, const assemble::Task& task) {
   KernelProgram& program = device.programs().kernelProgram(kernel, operands, domain, task);
+  const PassScope traced(device, {kernel.name, stepOf(task)}, program, operands, rects, target);
   device.bound.program(program.program.name());
   bindOperands(device, program, kernel, operands, bundles);
   program.domain.set(domain);
@@ -142,6 +147,8 @@ void copyRegion(GlDevice& device, const program::Element& element, std::span<Sur
                 const Placement& source, std::span<Surface> to, const Placement& target) {
   for (std::size_t plane = 0; plane < from.size(); ++plane) {
     if (!source.linear && !target.linear) {
+      const assemble::Rect rect{target.origin[0], target.origin[1], target.extent[0], target.extent[1]};
+      const PassScope traced(device, {"copy", {}, "blit"}, rect, targetOf(device, to[plane]));
       blit(device, from[plane], source, to[plane], target);
       continue;
     }

@@ -26,6 +26,7 @@ int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit);
 struct Target {
   gl::Framebuffer* framebuffer;
   std::int32_t layerRows;   ///< 0 where the planes have no layers
+  std::int32_t texelBytes;  ///< of all planes together
 };
 
 /// Draws to these planes, 1 to gl::maxDrawBuffers. Good until the next one is asked for.

@@ -13,6 +13,7 @@
 #include "gl/texture.hpp"
 #include "gl_device.hpp"
 #include "pass.hpp"
+#include "pass_trace.hpp"
 #include "sk/error.hpp"
 
 namespace sk {
@@ -58,6 +59,9 @@ gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const O
     throw Error(fmt::format("'{}' has no room for inputs that share a texture: {} layers of {} x {} texels",
                             device.capabilities.renderer, shape.layers, shape.width, shape.height));
   }
+  const assemble::Rect texels{0, 0, shape.width, shape.height * shape.layers};
+  const PassScope traced(device, {"copy", "to layers", "blit"}, texels,
+                         Target{nullptr, 0, static_cast<std::int32_t>(made.format().texelBytes())});
   for (std::int32_t i = 0; i < count; ++i) {
     if (Surface* plane = planes[static_cast<std::size_t>(i)]) {
       copyLayers(device, *plane, made, i, count);

@@ -66,6 +66,7 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::s
 
 std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Kernel& kernel,
                                                                const assemble::Variant& variant) {
+  const TraceScope traced(device_.trace.get(), "program", kernel.name);
   auto made = std::make_unique<KernelProgram>();
   made->program = build(kernel, assemble::fragmentProgram(profile_, kernel, variant));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
@@ -196,6 +197,7 @@ void ProgramCache::bindSamplers(const gl::Program& program, const program::Param
 }
 
 gl::Program ProgramCache::build(const program::Kernel& kernel, const std::string& fragmentSource) {
+  const TraceScope traced(device_.trace.get(), "program", "compile");
   const std::string vertexSource = assemble::vertexProgram(profile_);
   std::string log;
   gl::Program program = gl::Program::build(vertexSource, fragmentSource, log);
@@ -206,6 +208,7 @@ gl::Program ProgramCache::build(const program::Kernel& kernel, const std::string
                             device_.capabilities.renderer, profile_.name,
                             withSourceNames(log, kernel.sources)));
   }
+  device_.labels.program(program.name(), kernel.name);
   return program;
 }
 
@@ -213,6 +216,7 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
                                            const assemble::ReduceVariant& variant) {
   std::unique_ptr<ReduceProgram>& kept = reductions_[{&reduction, variant}];
   if (!kept) {
+    const TraceScope traced(device_.trace.get(), "program", reduction.fold.name);
     auto made = std::make_unique<ReduceProgram>();
     const bool isPartial = variant.walk == assemble::Walk::Partials;
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;

@@ -12,6 +12,7 @@
 #include "gl_stream.hpp"
 #include "output_targets.hpp"
 #include "pass.hpp"
+#include "pass_trace.hpp"
 #include "sk/call.hpp"
 #include "transfer.hpp"
 
@@ -60,6 +61,19 @@ std::vector<Surface*> pointersTo(std::span<Surface> planes) {
     pointers.push_back(&plane);
   }
   return pointers;
+}
+
+/// What the trace calls a pass.
+std::string_view stepOf(Walk walk) {
+  switch (walk) {
+    case Walk::Partials: return "combine";
+    case Walk::Nothing: return "identity";
+    case Walk::Line:
+    case Walk::Plane:
+    case Walk::Box:
+    case Walk::Index: break;
+  }
+  return "fold";
 }
 
 /// One call, its arguments checked.
@@ -180,13 +194,15 @@ class ReduceCall {
         variant.planeCount = static_cast<std::uint8_t>(count);
       }
       ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
+      const Target target = targetOf(device_, targets.subspan(first, count));
+      const PassScope traced(device_, {reduction_.fold.name, stepOf(variant.walk)}, program.kernel, operands,
+                             pass.draws, target);
       device_.bound.program(program.kernel.program.name());
       bindOperands(device_, program.kernel, kernel, operands);
       for (const assemble::UniformValue& value : pass.uniforms) {
         program.uniform(value).set(value.value);
       }
-      drawRects(device_, targetOf(device_, targets.subspan(first, count)), pass.draws,
-                program.kernel.domainRow);
+      drawRects(device_, target, pass.draws, program.kernel.domainRow);
     }
   }
 
@@ -221,6 +237,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   checkOptions(reduction.fold, options);
   checkStorages(reduction.fold, arguments);
   const DeviceScope scope(*this);
+  const gl::LabelGroup group(labels, reduction.fold.name);
   choose(options);
   const Placement placement = assemble::valuePlacement();
   PlanesLease value(*this);
@@ -231,6 +248,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   } else {
     call.fold(placement.extent, placement, pointersTo(value.planes));
   }
+  const TraceScope traced(trace.get(), "transfer", "read value");
   auto result = results.begin();
   forEachAccumulator(reduction.fold, std::span<Surface>(value.planes),
                      [&](const program::Element& element, std::span<Surface> planes) {
@@ -243,6 +261,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   checkOptions(reduction.fold, options);
   checkStorages(reduction.fold, arguments);
   const DeviceScope scope(*this);
+  const gl::LabelGroup group(labels, reduction.fold.name);
   choose(options);
   ReduceCall call(*this, reduction, arguments, domain);
   const Kernel& fold = reduction.fold;

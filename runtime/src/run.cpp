@@ -120,6 +120,7 @@ void GlDevice::run(const Kernel& kernel, std::span<const Argument> arguments, co
 void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> arguments,
                             const CallOptions& options) {
   const DeviceScope scope(*this);
+  const gl::LabelGroup group(labels, kernel.name);
   choose(options);
   const Kernel& form = formOf(kernel, options);
   checkStorages(form, arguments);
@@ -140,6 +141,8 @@ void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOp
     fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
   }
   if (DeviceState* device = checkCall(kernel, arguments)) {
+    const TraceScope traced(device->trace.get(), "call", kernel.name);
+    if (device->trace) traced.add("domain", domainOf(kernel, arguments, specsOf(kernel, arguments)));
     const CallOptions chosen = device->configuration.resolve(kernel, options);
     checkTables(kernel, chosen);
     device->run(kernel, arguments, chosen);

@@ -24,6 +24,20 @@ StreamState* checkTransfer(const StreamRegion& region, std::size_t count, const 
   return size == 0 ? nullptr : &stream;
 }
 
+/// A transfer of the elements of a region in the trace of its device.
+class TransferScope {
+ public:
+  TransferScope(const StreamState& stream, std::string_view what, const StreamRegion& region)
+      : traced_(stream.device->trace.get(), "transfer", what) {
+    traced_.add("stream", stream.name);
+    traced_.add("shape", region.shape);
+    traced_.add("bytes", region.shape.size() * static_cast<std::int64_t>(stream.element->size));
+  }
+
+ private:
+  TraceScope traced_;
+};
+
 }  // namespace
 
 StreamState::StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as)
@@ -115,12 +129,14 @@ StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, cons
 
 void detail::write(const StreamRegion& region, const void* elements, std::size_t count) {
   if (StreamState* stream = checkTransfer(region, count, "write")) {
+    const TransferScope traced(*stream, "write", region);
     stream->write(region, static_cast<const std::byte*>(elements));
   }
 }
 
 void detail::read(const StreamRegion& region, void* elements, std::size_t count) {
   if (StreamState* stream = checkTransfer(region, count, "read")) {
+    const TransferScope traced(*stream, "read", region);
     stream->read(region, static_cast<std::byte*>(elements));
   }
 }
@@ -150,6 +166,7 @@ void detail::writeReals(const StreamRegion& region, std::span<const double> valu
                             values.size(), toString(region.shape), components));
   }
   if (!values.empty()) {
+    const TransferScope traced(stream, "writeReals", region);
     stream.writeReals(region, values.data());
   }
 }
@@ -158,6 +175,7 @@ std::vector<double> detail::readReals(const StreamRegion& region) {
   StreamState& stream = liveStream(region, "readReals");
   std::vector<double> values(realsIn(region, *stream.element, "readReals"));
   if (!values.empty()) {
+    const TransferScope traced(stream, "readReals", region);
     stream.readReals(region, values.data());
   }
   return values;

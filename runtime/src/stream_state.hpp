@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 #include "sk/program.hpp"
@@ -33,6 +34,9 @@ class StreamState {
   /// Throws sk::Error where the device has no textures.
   virtual StreamTexture texture(int plane) = 0;
 
+  /// What debuggers and the trace call it.
+  virtual void setName(std::string_view given) { name = given; }
+
   /// In the device's list.
   StreamState* next() const { return next_; }
   /// Takes the stream off its device's list, and forgets the device.
@@ -42,6 +46,7 @@ class StreamState {
   const program::Element* const element;
   const Storage storage;
   Shape shape;  ///< holds once the stream is settled
+  std::string name;  ///< may be empty
 
  protected:
   /// Puts the stream on its device's list.

@@ -78,6 +78,10 @@ Capabilities readCapabilities() {
   found.hasDoubles = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader_fp64");
   found.hasPrecise = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader5");
   found.filtersFloats = found.api == Api::Gl || epoxy_has_gl_extension("GL_OES_texture_float_linear");
+  found.hasLabels =
+      found.version >= (found.api == Api::Gl ? 43 : 32) || epoxy_has_gl_extension("GL_KHR_debug");
+  found.isDebugged = epoxy_has_gl_extension("GL_EXT_debug_tool") ||
+                     (found.hasLabels && (integerOf(GL_CONTEXT_FLAGS) & GL_CONTEXT_FLAG_DEBUG_BIT) != 0);
   if (found.api == Api::Gl && found.version >= 32) {
     found.isCompatibility = (integerOf(GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_COMPATIBILITY_PROFILE_BIT) != 0;
   }

@@ -20,6 +20,8 @@ struct Capabilities {
   bool hasDoubles = false;       ///< GLSL has double (GL_ARB_gpu_shader_fp64)
   bool hasPrecise = false;       ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
   bool filtersFloats = false;    ///< of 32 bits, linearly
+  bool hasLabels = false;        ///< objects may have names for debuggers (KHR_debug)
+  bool isDebugged = false;       ///< a debugger is there, or the context is one for debugging
   std::string renderer;
   std::string driver;            ///< GL_VERSION, as the driver words it
   std::string shadingLanguage;   ///< GL_SHADING_LANGUAGE_VERSION, likewise

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "check_argument.hpp"
+#include "copy_bandwidth.hpp"
 #include "native/native_stream.hpp"
 
 namespace sk {
@@ -62,6 +63,10 @@ void NativeDevice::checkProgram(const program::Reduction& reduction) {
 std::unique_ptr<StreamState> NativeDevice::createStream(const program::Element& element, const Shape& shape,
                                                         Storage storage) {
   return std::make_unique<NativeStream>(*this, element, shape, storage);
+}
+
+void NativeDevice::startTrace(const std::string& file) {
+  trace = std::make_unique<Trace>(file, name_, hostCopyBandwidth());
 }
 
 }  // namespace sk
