@@ -10,6 +10,7 @@
 
 #include "assemble/sinks.hpp"
 #include "assemble/tables.hpp"
+#include "cache_folder.hpp"
 #include "check_argument.hpp"
 #include "copy_bandwidth.hpp"
 #include "gl/commands.hpp"
@@ -52,7 +53,8 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       barrier(barrierOf(capabilities, choices)),
       framebuffers(bound),
       pool(bound, framebuffers),
-      sinkPrograms(*this) {
+      sinkPrograms(*this),
+      binaries(capabilities, driverKey(name(), driver(), profileName())) {
   choose({});
   limits.textureSize = capabilities.textureSize;
   limits.textureLayers = capabilities.textureLayers;

@@ -20,6 +20,7 @@
 #include "gl/open_context.hpp"
 #include "gl/saved_state.hpp"
 #include "gl/vertex_array.hpp"
+#include "program_build.hpp"
 #include "program_cache.hpp"
 #include "sink_programs.hpp"
 #include "surface.hpp"
@@ -108,6 +109,7 @@ class GlDevice final : public DeviceState {
   gl::LinearSamplers samplers;
   gl::VertexArray vertexArray;
   gl::Labels labels;
+  ProgramBinaries binaries;
   std::unique_ptr<PassTrace> passes;     ///< null where there is no trace
   std::vector<std::byte> staging;        ///< texels on their way; transfer.cpp's
   std::vector<Operand> operands;         ///< of the call that runs; run.cpp's

@@ -91,7 +91,23 @@ class PlanRun {
   PlanRun(const PlanRun&) = delete;
   PlanRun& operator=(const PlanRun&) = delete;
 
+  /// Lets the driver begin with the program of a pass. False where it is there already.
+  bool start(const Pass& pass) {
+    choose(pass);
+    return targets_.empty() || device_.programs().startKernelProgram(pass.kernel, operands_, call_.domain);
+  }
+
   void draw(const Pass& pass) {
+    choose(pass);
+    if (targets_.empty()) {   // all of its outputs are left out
+      return;
+    }
+    drawKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, targetOf(device_, targets_),
+               bundles_);
+  }
+
+ private:
+  void choose(const Pass& pass) {
     operands_.clear();
     targets_.clear();
     for (std::size_t i = 0; i < pass.operands.size(); ++i) {
@@ -101,14 +117,8 @@ class PlanRun {
         addTargets(parameter, planesOf(pass.operands[i]));
       }
     }
-    if (targets_.empty()) {   // all of its outputs are left out
-      return;
-    }
-    drawKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, targetOf(device_, targets_),
-               bundles_);
   }
 
- private:
   /// Temporaries lie as the domain does.
   Operand operandOf(const program::PassOperand& operand) {
     return operand.isTemporary
@@ -147,6 +157,9 @@ const Plan* planFor(const program::Kernel& kernel, const DeviceLimits& limits) {
 
 void runPlan(GlDevice& device, const Plan& plan, const PlannedCall& call) {
   PlanRun run(device, plan, call);
+  for (const Pass& pass : plan.passes) {
+    if (!run.start(pass)) break;   // nor are the others new
+  }
   for (const Pass& pass : plan.passes) {
     run.draw(pass);
   }

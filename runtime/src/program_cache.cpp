@@ -55,20 +55,39 @@ ProgramCache::ProgramCache(GlDevice& device, const assemble::Profile& profile)
 
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                            const assemble::Placement& domain, const assemble::Task& task) {
-  std::unique_ptr<KernelProgram>& kept =
-      kernels_[variantKey(kernel, operands, domain, task, device_.capabilities.filtersFloats)];
+  const ProgramKey key = variantKey(kernel, operands, domain, task, device_.capabilities.filtersFloats);
+  std::unique_ptr<KernelProgram>& kept = kernels_[key];
   if (!kept) {
-    kept = makeKernelProgram(
-        kernel, chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats));
+    const TraceScope traced(device_.trace.get(), "program", kernel.name);
+    const assemble::Variant variant =
+        chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats);
+    auto started = startedKernels_.extract(key);
+    kept = makeKernelProgram(kernel, variant,
+                             started.empty() ? begin(assemble::fragmentProgram(profile_, kernel, variant))
+                                             : std::move(started.mapped()));
   }
   return *kept;
 }
 
+bool ProgramCache::startKernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
+                                      const assemble::Placement& domain) {
+  const ProgramKey key = variantKey(kernel, operands, domain, {}, device_.capabilities.filtersFloats);
+  if (kernels_.contains(key)) {
+    return false;
+  }
+  if (!startedKernels_.contains(key)) {
+    const assemble::Variant variant =
+        chooseVariant(kernel, operands, domain, {}, device_.capabilities.filtersFloats);
+    startedKernels_.emplace(key, begin(assemble::fragmentProgram(profile_, kernel, variant)));
+  }
+  return true;
+}
+
 std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Kernel& kernel,
-                                                               const assemble::Variant& variant) {
-  const TraceScope traced(device_.trace.get(), "program", kernel.name);
+                                                               const assemble::Variant& variant,
+                                                               ProgramBuild&& begun) {
   auto made = std::make_unique<KernelProgram>();
-  made->program = build(kernel, assemble::fragmentProgram(profile_, kernel, variant));
+  made->program = finish(kernel, std::move(begun));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
   made->domainRow = {made->program.location("sk_domain_row"), false};
   findParameters(*made, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
@@ -196,14 +215,16 @@ void ProgramCache::bindSamplers(const gl::Program& program, const program::Param
   }
 }
 
-gl::Program ProgramCache::build(const program::Kernel& kernel, const std::string& fragmentSource) {
-  const TraceScope traced(device_.trace.get(), "program", "compile");
-  const std::string vertexSource = assemble::vertexProgram(profile_);
+ProgramBuild ProgramCache::begin(std::string fragmentSource) {
+  return {device_, assemble::vertexProgram(profile_), std::move(fragmentSource)};
+}
+
+gl::Program ProgramCache::finish(const program::Kernel& kernel, ProgramBuild&& begun) {
   std::string log;
-  gl::Program program = gl::Program::build(vertexSource, fragmentSource, log);
+  gl::Program program = begun.finish(device_, log);
   if (!program) {
     log.clear();
-    gl::Program::build(vertexSource, withTellingLines(fragmentSource), log);
+    gl::Program::build(begun.vertexSource(), withTellingLines(begun.fragmentSource()), log);
     throw Error(fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
                             device_.capabilities.renderer, profile_.name,
                             withSourceNames(log, kernel.sources)));
@@ -212,15 +233,31 @@ gl::Program ProgramCache::build(const program::Kernel& kernel, const std::string
   return program;
 }
 
+bool ProgramCache::startReduceProgram(const program::Reduction& reduction,
+                                      const assemble::ReduceVariant& variant) {
+  const ReduceKey key{&reduction, variant};
+  if (reductions_.contains(key)) {
+    return false;
+  }
+  if (!startedReductions_.contains(key)) {
+    startedReductions_.emplace(key, begin(assemble::reduceProgram(profile_, reduction, variant)));
+  }
+  return true;
+}
+
 ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
                                            const assemble::ReduceVariant& variant) {
-  std::unique_ptr<ReduceProgram>& kept = reductions_[{&reduction, variant}];
+  const ReduceKey key{&reduction, variant};
+  std::unique_ptr<ReduceProgram>& kept = reductions_[key];
   if (!kept) {
     const TraceScope traced(device_.trace.get(), "program", reduction.fold.name);
     auto made = std::make_unique<ReduceProgram>();
     const bool isPartial = variant.walk == assemble::Walk::Partials;
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
-    made->kernel.program = build(kernel, assemble::reduceProgram(profile_, reduction, variant));
+    auto started = startedReductions_.extract(key);
+    made->kernel.program =
+        finish(kernel, started.empty() ? begin(assemble::reduceProgram(profile_, reduction, variant))
+                                       : std::move(started.mapped()));
     made->kernel.domainRow = {made->kernel.program.location("sk_domain_row"), false};
     if (variant.walk != assemble::Walk::Nothing) {
       findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
@@ -241,11 +278,19 @@ gl::IntUniform& ReduceProgram::uniform(const assemble::UniformValue& value) {
 }
 
 void ProgramCache::clear() {
+  startedKernels_.clear();
+  startedReductions_.clear();
   kernels_.clear();
   reductions_.clear();
 }
 
 void ProgramCache::forget() noexcept {
+  for (auto& [key, begun] : startedKernels_) {
+    begun.forget();
+  }
+  for (auto& [key, begun] : startedReductions_) {
+    begun.forget();
+  }
   for (auto& [key, kept] : kernels_) {
     if (kept) {
       kept->program.forget();

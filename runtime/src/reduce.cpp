@@ -94,8 +94,12 @@ class ReduceCall {
   void fold(const Index4& blocks, const Placement& result, std::span<Surface* const> targets) {
     const assemble::ReduceLimits limits{.texture = device_.textureLimits()};
     PlanesLease partials(device_);
-    for (const ReducePass& pass :
-         assemble::planReduction(elements_, result, limits, {.blocks = blocks, .byIndex = foldsByIndex()})) {
+    const std::vector<ReducePass> passes =
+        assemble::planReduction(elements_, result, limits, {.blocks = blocks, .byIndex = foldsByIndex()});
+    for (const ReducePass& pass : passes) {
+      if (!start(pass, targets.size())) break;  // nor are the others new
+    }
+    for (const ReducePass& pass : passes) {
       if (pass.toResult) {
         draw(pass, partials.planes, targets);
         continue;
@@ -158,14 +162,15 @@ class ReduceCall {
     return byIndex;
   }
 
-  /// The operands of the combining kernel: planes of partial results, and arguments of the fold.
+  /// The operands of the combining kernel: planes of partial results, where there are some by now, and arguments
+  /// of the fold.
   std::vector<Operand> operandsOfCombine(std::span<Surface> partials) const {
     std::vector<Operand> operands;
     const Kernel& combine = reduction_.combine;
     for (std::size_t i = 0; i < combine.parameters.size(); ++i) {
       const Parameter& parameter = combine.parameters[i];
       if (parameter.role == Role::Input) {
-        const std::size_t count = parameter.element->fields.size();
+        const std::size_t count = std::min(parameter.element->fields.size(), partials.size());
         operands.push_back({.placement = elements_, .planes = partials.first(count)});
         partials = partials.subspan(count);
       } else if (parameter.role == Role::Accumulator) {
@@ -179,30 +184,51 @@ class ReduceCall {
 
   /// Draws a pass, for as many of the targets at a time as the device draws to.
   void draw(const ReducePass& pass, std::span<Surface> partials, std::span<Surface* const> targets) {
-    assemble::ReduceVariant variant = pass.variant;
-    const bool isPartial = variant.walk == Walk::Partials;
+    const bool isPartial = pass.variant.walk == Walk::Partials;
     const Kernel& kernel = isPartial ? reduction_.combine : reduction_.fold;
     const std::vector<Operand> operands = isPartial ? operandsOfCombine(partials) : operands_;
+    forEachPart(pass, operands, targets.size(),
+                [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
+                  ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
+                  const Target target = targetOf(device_, targets.subspan(first, count));
+                  const PassScope traced(device_, {reduction_.fold.name, stepOf(variant.walk)},
+                                         program.kernel, operands, pass.draws, target);
+                  device_.bound.program(program.kernel.program.name());
+                  bindOperands(device_, program.kernel, kernel, operands);
+                  for (const assemble::UniformValue& value : pass.uniforms) {
+                    program.uniform(value).set(value.value);
+                  }
+                  drawRects(device_, target, pass.draws, program.kernel.domainRow);
+                });
+  }
+
+  /// Lets the driver begin with the programs of a pass. False where they are there already.
+  bool start(const ReducePass& pass, std::size_t planes) {
+    bool isNew = false;
+    const bool isPartial = pass.variant.walk == Walk::Partials;
+    forEachPart(pass, isPartial ? operandsOfCombine({}) : operands_, planes,
+                [&](const assemble::ReduceVariant& variant, std::size_t, std::size_t) {
+                  isNew = device_.programs().startReduceProgram(reduction_, variant) || isNew;
+                });
+    return isNew;
+  }
+
+  /// visit(variant, first, count) for as many of the planes at a time as the device draws to.
+  template <class Visit>
+  void forEachPart(const ReducePass& pass, std::span<const Operand> operands, std::size_t planes,
+                   Visit&& visit) const {
+    assemble::ReduceVariant variant = pass.variant;
     if (variant.walk != Walk::Nothing) {
-      addAccess(variant, kernel, operands);
+      addAccess(variant, variant.walk == Walk::Partials ? reduction_.combine : reduction_.fold, operands);
     }
     const auto most = static_cast<std::size_t>(device_.limits.drawBuffers);
-    for (std::size_t first = 0; first < targets.size(); first += most) {
-      const std::size_t count = std::min(most, targets.size() - first);
-      if (targets.size() > most) {
+    for (std::size_t first = 0; first < planes; first += most) {
+      const std::size_t count = std::min(most, planes - first);
+      if (planes > most) {
         variant.firstPlane = static_cast<std::uint8_t>(first);
         variant.planeCount = static_cast<std::uint8_t>(count);
       }
-      ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
-      const Target target = targetOf(device_, targets.subspan(first, count));
-      const PassScope traced(device_, {reduction_.fold.name, stepOf(variant.walk)}, program.kernel, operands,
-                             pass.draws, target);
-      device_.bound.program(program.kernel.program.name());
-      bindOperands(device_, program.kernel, kernel, operands);
-      for (const assemble::UniformValue& value : pass.uniforms) {
-        program.uniform(value).set(value.value);
-      }
-      drawRects(device_, target, pass.draws, program.kernel.domainRow);
+      visit(variant, first, count);
     }
   }
 
@@ -226,7 +252,7 @@ class ReduceCall {
   GlDevice& device_;
   const Reduction& reduction_;
   const assemble::SpecValues specs_;
-  std::vector<Operand> operands_;   ///< of the fold
+  std::vector<Operand> operands_;  ///< of the fold
   Placement elements_;
 };
 

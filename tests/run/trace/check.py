@@ -101,6 +101,8 @@ def check_calls(events, clock):
         check("programs", not programs, programs)
     else:
         check("saxpy is compiled once", len(programs) == 1 and is_inside(programs[0], calls[0]), programs)
+        compiled = [p["args"]["cache"] for p in slices(events, "program", "compile")]
+        check("first time or not", all(c == compiled[0] for c in compiled), compiled)
         check("compiling", len(slices(events, "program", "compile")) >= 4, programs)
     check("waiting", len(slices(events, "wait", "finish")) == 1)
 
@@ -118,6 +120,9 @@ def main():
             check("calls end, timed by queries", ended)
             check_calls(events, "GL timer query")
             check_nesting(events)
+            events, ended = run(folder, "shapes")
+            programs = [len(slices(events, "program", name)) for name in ("saxpy", "total")]
+            check("no shape makes a program", ended and programs == [1, 2], programs)
         events, ended = run(folder, "exit")
         check("what was before an exit", ended and len(slices(events, "call", "saxpy")) == 1, events)
         events, ended = run(folder, "throw")

@@ -32,6 +32,17 @@ void callAll() {
   device.finish();
 }
 
+/// One kernel and one reduce, of which the former's argument `shape` changes alone.
+void callInManyShapes() {
+  sk::Device device;
+  for (std::int64_t rows = 2; rows < 40; ++rows) {
+    auto x = device.stream<float>({rows, 2 * rows + 1}), r = device.stream<float>({rows, 2 * rows + 1});
+    x.write(std::vector<float>(static_cast<std::size_t>(x.size()), 1));
+    saxpy(2, x, x, r);
+    if (total(r) != 3 * static_cast<float>(r.size())) std::abort();
+  }
+}
+
 /// Ends in the middle of things, with a device and streams alive.
 void exitInTheMiddle() {
   sk::Device device;
@@ -69,6 +80,8 @@ int main(int, char** argv) {
   const std::string_view scenario = argv[1];
   if (scenario == "calls") {
     callAll();
+  } else if (scenario == "shapes") {
+    callInManyShapes();
   } else if (scenario == "exit") {
     exitInTheMiddle();
   } else if (scenario == "throw") {
