@@ -17,6 +17,7 @@
 #include "gl/errors.hpp"
 #include "gl_stream.hpp"
 #include "pass_trace.hpp"
+#include "pending_read.hpp"
 #include "plan_run.hpp"
 #include "precision.hpp"
 #include "probe.hpp"
@@ -89,6 +90,7 @@ GlDevice::~GlDevice() {
   } catch (const Error&) {
     forgetObjects();
   }
+  while (!pendingReads.empty() && current) pendingReads.back()->land();
   if (passes && current) passes->complete();
   passes.reset();
   while (firstStream() != nullptr) {
@@ -104,11 +106,16 @@ GlDevice::~GlDevice() {
     sinkPrograms.clear();
     tableTextures_.clear();
     samplers.clear();
+    transferBuffers_.clear();
+    pastFences.clear();
     vertexArray = {};
   }
 }
 
 void GlDevice::forgetObjects() noexcept {
+  while (!pendingReads.empty()) pendingReads.back()->abandon();
+  for (TransferBuffer& buffer : transferBuffers_) buffer.forget();
+  for (gl::Fence& fence : pastFences) fence.forget();
   if (passes) passes->forget();
   for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
     auto& stream = static_cast<GlStream&>(*state);
@@ -175,8 +182,9 @@ GLuint GlDevice::textureOf(const FunctionTable& table) {
 }
 
 void GlDevice::startTrace(const std::string& file) {
-  const double bandwidth = copyBandwidth(*this);
-  trace = std::make_unique<Trace>(file, fmt::format("{} ({})", name(), profileName()), bandwidth);
+  auto started = std::make_unique<Trace>(file, fmt::format("{} ({})", name(), profileName()));
+  started->setBandwidth(copyBandwidth(*this));
+  trace = std::move(started);
   const DeviceScope scope(*this);
   passes = std::make_unique<PassTrace>(*this, *trace);
   if (capabilities.hasLabels) labels.turnOn();
@@ -293,6 +301,27 @@ void GlDevice::givePlanes(std::vector<Surface>& planes) noexcept {
   }
   planes.clear();
   countBytes();
+}
+
+TransferBuffer GlDevice::takeTransferBuffer() {
+  TransferBuffer taken;
+  if (transferBuffers_.empty()) {
+    taken.buffer = gl::PixelBuffer::create();
+  } else {
+    taken = std::move(transferBuffers_.back());
+    transferBuffers_.pop_back();
+    taken.fence = {};
+  }
+  return taken;
+}
+
+void GlDevice::giveTransferBuffer(TransferBuffer&& buffer) noexcept {
+  try {
+    transferBuffers_.reserve(transferBuffers_.size() + 1);
+    transferBuffers_.push_back(std::move(buffer));
+  } catch (const std::bad_alloc&) {
+    buffer.forget();  // it is deleted with its context
+  }
 }
 
 // An application's own mistakes in an adopted context are not ours to report.

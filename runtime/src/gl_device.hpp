@@ -20,6 +20,7 @@
 #include "gl/open_context.hpp"
 #include "gl/saved_state.hpp"
 #include "gl/vertex_array.hpp"
+#include "packed_transfer.hpp"
 #include "program_build.hpp"
 #include "program_cache.hpp"
 #include "sink_programs.hpp"
@@ -29,6 +30,7 @@
 namespace sk {
 
 class PassTrace;
+class PendingRead;
 
 /// What a user may choose of a device that is found.
 struct DeviceChoices {
@@ -95,6 +97,11 @@ class GlDevice final : public DeviceState {
   /// The texture of a table, made at first. Binds a texture.
   GLuint textureOf(const FunctionTable& table);
 
+  /// A buffer that nobody uses. Its fence is none.
+  TransferBuffer takeTransferBuffer();
+  /// Touches no GL, so that futures may be destroyed anywhere.
+  void giveTransferBuffer(TransferBuffer&& buffer) noexcept;
+
   /// Throws sk::Error where the driver has reported an error since it was last asked.
   void throwPendingError();
 
@@ -108,6 +115,8 @@ class GlDevice final : public DeviceState {
   SinkPrograms sinkPrograms;
   gl::LinearSamplers samplers;
   gl::VertexArray vertexArray;
+  std::vector<PendingRead*> pendingReads;  ///< those that must be told of the device's end
+  std::vector<gl::Fence> pastFences;       ///< of those that have ended
   gl::Labels labels;
   ProgramBinaries binaries;
   std::unique_ptr<PassTrace> passes;     ///< null where there is no trace
@@ -124,6 +133,7 @@ class GlDevice final : public DeviceState {
 
   std::map<ProgramChoice, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
+  std::vector<TransferBuffer> transferBuffers_;   ///< idle ones
   ProgramCache* programs_;               ///< one of them
   std::optional<Arithmetic> arithmetic_;
 };

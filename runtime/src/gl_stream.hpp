@@ -25,6 +25,8 @@ class GlStream final : public StreamState {
   void settle() override;
   void write(const StreamRegion& region, const std::byte* elements) override;
   void read(const StreamRegion& region, std::byte* elements) override;
+  std::unique_ptr<TransferState> readAsync(const StreamRegion& region) override;
+  void writeAsync(const StreamRegion& region, const std::byte* elements) override;
   void readReals(const StreamRegion& region, double* values) override;
   void writeReals(const StreamRegion& region, const double* values) override;
   StreamTexture texture(int plane) override;
@@ -47,6 +49,8 @@ class GlStream final : public StreamState {
   friend class GlDevice;
   GlDevice& owner() const;
   void takeSize(std::int32_t count);
+  /// Writes what is held by way of other planes, which no draw that is queued uses.
+  void writeAside(const StreamRegion& region, const std::byte* elements);
 
   std::unique_ptr<assemble::HeldElement> held_;  ///< where the storage is not Single
   Surface total_;  ///< holds the number of elements until somebody asks

@@ -11,6 +11,7 @@
 #include "gl_device.hpp"
 #include "gl_stream.hpp"
 #include "output_targets.hpp"
+#include "packed_transfer.hpp"
 #include "pass.hpp"
 #include "pass_trace.hpp"
 #include "sk/call.hpp"
@@ -256,6 +257,28 @@ class ReduceCall {
   Placement elements_;
 };
 
+/// Waits for the device once, whatever the number of planes: on a GPU all of them come through one buffer. Software has
+/// nothing left to do after the first, and a buffer takes it some microseconds more.
+void readValues(GlDevice& device, const Kernel& fold, std::span<Surface> values, const Placement& placement,
+                std::span<void* const> results) {
+  auto result = results.begin();
+  if (values.size() == 1 || device.capabilities.isSoftware) {
+    forEachAccumulator(fold, values, [&](const program::Element& element, std::span<Surface> planes) {
+      download(device, element, planes, placement, static_cast<std::byte*>(*result++));
+    });
+    return;
+  }
+  PackedRead read(device);
+  forEachAccumulator(fold, values, [&](const program::Element& element, std::span<Surface> planes) {
+    read.add(element, planes, placement);
+  });
+  read.begin();
+  for (std::size_t part = 0; part < results.size(); ++part) {
+    read.take(part, static_cast<std::byte*>(results[part]));
+  }
+  device.throwPendingError();
+}
+
 }  // namespace
 
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
@@ -275,11 +298,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
     call.fold(placement.extent, placement, pointersTo(value.planes));
   }
   const TraceScope traced(trace.get(), "transfer", "read value");
-  auto result = results.begin();
-  forEachAccumulator(reduction.fold, std::span<Surface>(value.planes),
-                     [&](const program::Element& element, std::span<Surface> planes) {
-                       download(*this, element, planes, placement, static_cast<std::byte*>(*result++));
-                     });
+  readValues(*this, reduction.fold, value.planes, placement, results);
 }
 
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,

@@ -141,6 +141,47 @@ void detail::read(const StreamRegion& region, void* elements, std::size_t count)
   }
 }
 
+std::unique_ptr<TransferState> StreamState::readAsync(const StreamRegion& region) {
+  std::vector<std::byte> elements(static_cast<std::size_t>(region.shape.size()) * element->size);
+  read(region, elements.data());
+  return std::make_unique<ReadyTransfer>(std::move(elements));
+}
+
+void detail::TransferDeleter::operator()(TransferState* state) const noexcept { delete state; }
+
+detail::TransferOwner detail::readAsync(const StreamRegion& region) {
+  StreamState& stream = liveStream(region, "readAsync");
+  if (region.shape.size() == 0) {
+    return TransferOwner(new ReadyTransfer({}));
+  }
+  const TransferScope traced(stream, "readAsync", region);
+  return TransferOwner(stream.readAsync(region).release());
+}
+
+void detail::writeAsync(const StreamRegion& region, const void* elements, std::size_t count) {
+  if (StreamState* stream = checkTransfer(region, count, "writeAsync")) {
+    const TransferScope traced(*stream, "writeAsync", region);
+    stream->writeAsync(region, static_cast<const std::byte*>(elements));
+  }
+}
+
+namespace {
+
+TransferState& stateOf(const detail::TransferOwner& transfer) {
+  if (!transfer) {
+    throw Error("the future has no elements: it was made of nothing, moved from, or asked for them before");
+  }
+  return *transfer;
+}
+
+}  // namespace
+
+bool detail::isReady(const TransferOwner& transfer) { return stateOf(transfer).isReady(); }
+void detail::wait(const TransferOwner& transfer) { stateOf(transfer).wait(); }
+void detail::take(TransferOwner transfer, void* elements) {
+  stateOf(transfer).take(static_cast<std::byte*>(elements));
+}
+
 namespace {
 
 /// Floats in the elements of a region, which have nothing else.

@@ -5,12 +5,14 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
+#include "transfer_state.hpp"
 
 namespace sk {
 
@@ -28,6 +30,10 @@ class StreamState {
   /// The region is inside, and has an element; `elements` are as many, laid out as the Element says.
   virtual void write(const StreamRegion& region, const std::byte* elements) = 0;
   virtual void read(const StreamRegion& region, std::byte* elements) = 0;
+  /// Begins to read. The default reads at once, which is as fast where elements are in host memory.
+  virtual std::unique_ptr<TransferState> readAsync(const StreamRegion& region);
+  /// As write(), without waiting for what the device has to do; the elements may be changed at once.
+  virtual void writeAsync(const StreamRegion& region, const std::byte* elements) { write(region, elements); }
   /// `values` has room for every component of every element; all are floats.
   virtual void readReals(const StreamRegion& region, double* values) = 0;
   virtual void writeReals(const StreamRegion& region, const double* values) = 0;

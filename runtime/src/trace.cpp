@@ -41,8 +41,8 @@ Trace::Time Trace::now() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(since).count();
 }
 
-Trace::Trace(const std::string& file, std::string_view device, double bandwidth)
-    : file_(file), bandwidth_(bandwidth), deviceTrack_(file_.openTrack(device)) {
+Trace::Trace(const std::string& file, std::string_view device)
+    : file_(file), deviceTrack_(file_.openTrack(device)) {
   counter_ = quoted(fmt::format("bytes, {} ({})", device, deviceTrack_));
 }
 

@@ -32,13 +32,14 @@ class Trace {
   using Time = std::int64_t;
   static Time now();
 
-  /// `bandwidth`: bytes that the device copies in a nanosecond, read and written ones; 0 where that is not known.
   /// Throws sk::Error where the file cannot be written.
-  Trace(const std::string& file, std::string_view device, double bandwidth);
+  Trace(const std::string& file, std::string_view device);
   ~Trace();
   Trace(const Trace&) = delete;
   Trace& operator=(const Trace&) = delete;
 
+  /// What passes are measured by: bytes that the device copies in a nanosecond, read and written ones; 0: nothing.
+  void setBandwidth(double bandwidth) { bandwidth_ = bandwidth; }
   /// A pass on the tracks of the host and of the device. `clock`: what told the device's times.
   void hostPass(const PassRecord& pass, Time begin, Time end);
   void devicePass(const PassRecord& pass, Time begin, Time end, std::string_view clock);
@@ -67,7 +68,7 @@ class Trace {
   void write() noexcept;
 
   TraceFile file_;
-  double bandwidth_;
+  double bandwidth_ = 0;
   std::int64_t deviceTrack_;
   std::string counter_;  ///< its name
   std::vector<std::int64_t> threads_;  ///< that have a name in the file

@@ -102,7 +102,8 @@ TEST_CASE("a file that cannot be written is an error") {
 
 TEST_CASE("slices are told when the outermost one ends, also by an exception") {
   const File file;
-  Trace trace(file.name, "a device", 10);
+  Trace trace(file.name, "a device");
+  trace.setBandwidth(10);
   try {
     const TraceScope call(&trace, "call", "saxpy");
     call.add("domain", Shape{3, 4});

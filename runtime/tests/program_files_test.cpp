@@ -50,7 +50,10 @@ std::string contentsOf(const fs::path& file) {
 /// A cache folder and a trace of this test's own.
 class Folder {
  public:
+  Folder() { fs::create_directories(path_); }
   ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
 
   /// Those of the kernel: measuring for the trace compiles, too.
   std::vector<fs::path> programs() const {

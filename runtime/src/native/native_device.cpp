@@ -66,7 +66,8 @@ std::unique_ptr<StreamState> NativeDevice::createStream(const program::Element& 
 }
 
 void NativeDevice::startTrace(const std::string& file) {
-  trace = std::make_unique<Trace>(file, name_, hostCopyBandwidth());
+  trace = std::make_unique<Trace>(file, name_);
+  trace->setBandwidth(hostCopyBandwidth());
 }
 
 }  // namespace sk
