@@ -153,6 +153,8 @@ void reduceByFloats(const CheckedReduction& checked, const Reduction& reduction,
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
             const CallOptions& call) {
   const CheckedReduction checked = checkReduction(reduction, arguments);
+  const TraceScope traced(checked.device.trace.get(), "call", reduction.fold.name);
+  traced.add("domain", checked.domain);
   const CallOptions options = resolved(checked, reduction, call);
   if (takesForm(options)) {
     reduceInForm(checked, reduction, arguments, results, options);
@@ -185,6 +187,9 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
 
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& call) {
   const CheckedReduction checked = checkReductionToStreams(reduction, arguments);
+  const TraceScope traced(checked.device.trace.get(), "call", reduction.fold.name);
+  traced.add("domain", checked.domain);
+  traced.add("blocks", checked.blocks);
   const CallOptions options = resolved(checked, reduction, call);
   if (checked.blocks.size() == 0) {
     return;

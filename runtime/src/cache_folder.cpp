@@ -3,11 +3,13 @@
 // A file begins with its key, so that two keys of one hash do not meet and a person can read what it is of.
 #include "cache_folder.hpp"
 
-#include <cstdint>
+#include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <unistd.h>
 
@@ -18,15 +20,6 @@ namespace sk {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// FNV-1a: names of files only.
-std::uint64_t hashOf(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : text) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  }
-  return hash;
-}
 
 /// The key as a line.
 std::string headOf(std::string_view key) {
@@ -41,11 +34,27 @@ fs::path fileOf(const fs::path& folder, std::string_view name, std::string_view 
   return folder / fmt::format("{}-{:016x}", name, hashOf(key));
 }
 
+std::optional<std::string> contentsOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) return std::nullopt;
+  std::string text(static_cast<std::size_t>(std::max<std::streamoff>(in.tellg(), 0)), '\0');
+  in.seekg(0).read(text.data(), static_cast<std::streamsize>(text.size()));
+  return in ? std::optional(std::move(text)) : std::nullopt;
+}
+
+/// Notes that a file is in use, once an hour.
+void touch(const fs::path& file) {
+  std::error_code error;
+  const auto now = fs::file_time_type::clock::now();
+  const auto last = fs::last_write_time(file, error);
+  if (!error && now - last > std::chrono::hours(1)) fs::last_write_time(file, now, error);
+}
+
 void write(const fs::path& file, std::string_view head, std::string_view text) {
   std::error_code ignored;
   fs::create_directories(file.parent_path(), ignored);
   fs::path draft = file;
-  draft += fmt::format(".{}", ::getpid());
+  draft += fmt::format(".{}", ::gettid());
   std::ofstream out(draft, std::ios::binary);
   out << head << text;
   out.close();
@@ -76,10 +85,14 @@ std::optional<std::string> readCached(std::string_view name, std::string_view ke
   if (folder.empty()) {
     return std::nullopt;
   }
-  std::ifstream in(fileOf(folder, name, key), std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const fs::path file = fileOf(folder, name, key);
+  const std::optional<std::string> text = contentsOf(file);
   const std::string head = headOf(key);
-  return text.starts_with(head) ? std::optional(text.substr(head.size())) : std::nullopt;
+  if (!text || !text->starts_with(head)) {
+    return std::nullopt;
+  }
+  touch(file);
+  return text->substr(head.size());
 }
 
 void writeCached(std::string_view name, std::string_view key, std::string_view text) noexcept {
@@ -90,6 +103,43 @@ void writeCached(std::string_view name, std::string_view key, std::string_view t
   } catch (const std::exception&) {
     return;  // it is measured again, then
   }
+}
+
+// Other processes may delete the same files.
+void boundCached(std::string_view name, std::uintmax_t bytes) noexcept {
+  struct File {
+    fs::path path;
+    fs::file_time_type used;
+    std::uintmax_t bytes;
+  };
+  try {
+    std::vector<File> files;
+    std::uintmax_t total = 0;
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(cacheFolder(), error)) {
+      if (!entry.path().filename().string().starts_with(fmt::format("{}-", name))) continue;
+      const File file{entry.path(), entry.last_write_time(error), entry.file_size(error)};
+      if (error) continue;
+      total += files.emplace_back(file).bytes;
+    }
+    if (total <= bytes) return;
+    std::ranges::sort(files, {}, &File::used);
+    for (const File& file : files) {
+      if (total <= bytes / 4 * 3) return;
+      fs::remove(file.path, error);
+      total -= file.bytes;
+    }
+  } catch (const std::exception&) {
+    return;  // no memory, or no folder any more
+  }
+}
+
+std::uint64_t hashOf(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  }
+  return hash;
 }
 
 std::string driverKey(std::string_view renderer, std::string_view driver, std::string_view profile) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "cache_folder.hpp"
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include <unistd.h>
 
@@ -62,6 +64,58 @@ TEST_CASE("a file that somebody else wrote is nothing") {
   writeCached("barrier", "a driver", "precise\n");
   std::ofstream(fs::directory_iterator(folder.path)->path()) << "rubbish";
   CHECK_FALSE(readCached("barrier", "a driver").has_value());
+}
+
+TEST_CASE("who writes at the same time leaves whole files") {
+  const Folder folder;
+  const Variable cache("SK_CACHE", folder.path);
+  const std::string one(100'000, '1'), two(200'000, '2');
+  writeCached("program", "sources", one);
+  bool isWhole = true;
+  {
+    std::jthread first([&] {
+      for (int i = 0; i < 100; ++i) writeCached("program", "sources", one);
+    });
+    std::jthread second([&] {
+      for (int i = 0; i < 100; ++i) writeCached("program", "sources", two);
+    });
+    for (int i = 0; i < 100; ++i) {
+      const std::optional<std::string> read = readCached("program", "sources");
+      isWhole = isWhole && (read == one || read == two);
+    }
+  }
+  CHECK(isWhole);
+  CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);
+}
+
+TEST_CASE("files of a name are deleted when they are too many, the longest unused first") {
+  const Folder folder;
+  const Variable cache("SK_CACHE", folder.path);
+  writeCached("barrier", "a driver", "precise\n");
+  for (int i = 0; i < 10; ++i) {
+    writeCached("program", std::to_string(i), std::string(1000, 'x'));
+  }
+  const auto now = fs::file_time_type::clock::now();
+  int order = 0;
+  for (int i : {3, 4, 5, 6, 7, 8, 9, 0, 1, 2}) {  // from the longest unused on
+    for (const auto& entry : fs::directory_iterator(folder.path)) {
+      std::ifstream in(entry.path());
+      std::string key;
+      std::getline(in, key);
+      if (key == std::to_string(i)) fs::last_write_time(entry.path(), now - std::chrono::hours(200 - order));
+    }
+    ++order;
+  }
+  CHECK(readCached("program", "3").has_value());  // which is used thereby
+  boundCached("program", 20'000);
+  CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 11);
+  boundCached("program", 8'100);  // three quarters hold six files of 1002 bytes
+  CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 7);
+  CHECK(readCached("program", "3").has_value());
+  CHECK(readCached("program", "2").has_value());
+  CHECK_FALSE(readCached("program", "4").has_value());
+  CHECK(readCached("barrier", "a driver").has_value());
+  boundCached("nothing", 0);
 }
 
 TEST_CASE("where nothing can be kept, nothing fails") {

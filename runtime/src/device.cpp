@@ -105,10 +105,12 @@ DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, co
           barrierOf(barrier), targetOf(profile)};
 }
 
-/// A device with the choices of a file, if one is named.
+/// A device with the choices of a file and with a trace, if they are named.
 std::unique_ptr<DeviceState> configured(std::unique_ptr<DeviceState> state, const std::string& file) {
   const std::string name = chosen(file, "SK_CONFIG");
   if (!name.empty()) state->configuration = Configuration(name);
+  const std::string trace = chosen({}, "SK_TRACE");
+  if (!trace.empty()) state->startTrace(trace);
   return state;
 }
 
@@ -169,7 +171,9 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
         "a stream of {} has no float or vector of floats to hold otherwise; make it without a Storage",
         element.name));
   }
-  return detail::StreamOwner(state().createStream(element, shape, storage).release());
+  detail::StreamOwner stream(state().createStream(element, shape, storage).release());
+  if (!name.empty()) stream->setName(name);
+  return stream;
 }
 
 const std::string& Device::name() const { return state().name(); }
@@ -180,7 +184,10 @@ const DeviceLimits& Device::limits() const { return state().limits; }
 bool Device::isSoftware() const { return state().isSoftware(); }
 const Arithmetic& Device::arithmetic() { return state().arithmetic(); }
 std::vector<TableReport> Device::tables() const { return state().tables.reports(); }
-void Device::finish() { state().finish(); }
+void Device::finish() {
+  const TraceScope traced(state().trace.get(), "wait", "finish");
+  state().finish();
+}
 void Device::release() { state().release(); }
 
 }  // namespace sk

@@ -16,6 +16,7 @@
 #include "sk/device.hpp"
 #include "sk/program.hpp"
 #include "stream_state.hpp"
+#include "trace.hpp"
 
 namespace sk {
 
@@ -45,6 +46,8 @@ class DeviceState {
   /// Throws sk::Error where there is no room. A storage other than Single is for elements with floats.
   virtual std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
                                                     Storage storage) = 0;
+  /// Traces everything from now on. Throws sk::Error where the file cannot be written.
+  virtual void startTrace(const std::string& file) = 0;
   virtual void finish() = 0;
   virtual void release() = 0;
 
@@ -61,6 +64,7 @@ class DeviceState {
   DeviceLimits limits;
   Configuration configuration;
   FunctionTables tables;
+  std::unique_ptr<Trace> trace;  ///< null where SK_TRACE names no file
 
  protected:
   DeviceState() = default;

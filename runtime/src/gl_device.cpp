@@ -10,10 +10,14 @@
 
 #include "assemble/sinks.hpp"
 #include "assemble/tables.hpp"
+#include "cache_folder.hpp"
 #include "check_argument.hpp"
+#include "copy_bandwidth.hpp"
 #include "gl/commands.hpp"
 #include "gl/errors.hpp"
 #include "gl_stream.hpp"
+#include "pass_trace.hpp"
+#include "pending_read.hpp"
 #include "plan_run.hpp"
 #include "precision.hpp"
 #include "probe.hpp"
@@ -54,7 +58,8 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       barrier(barrierOf(capabilities, choices)),
       framebuffers(bound),
       pool(bound, framebuffers),
-      sinkPrograms(*this) {
+      sinkPrograms(*this),
+      binaries(capabilities, driverKey(name(), driver(), profileName())) {
   if (target == Target::Compute && !capabilities.hasCompute) {
     throw Error(
         fmt::format("'{}' runs no compute programs, which take OpenGL 4.3; leave profile glsl430 (option or "
@@ -83,6 +88,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
   if (!context.isAdopted()) {
     gl::setPassState(capabilities);
   }
+  if (capabilities.hasLabels && capabilities.isDebugged) labels.turnOn();
 }
 
 // GL objects are deleted only with their context current. Where it cannot be made current, because
@@ -94,6 +100,9 @@ GlDevice::~GlDevice() {
   } catch (const Error&) {
     forgetObjects();
   }
+  while (!pendingReads.empty() && current) pendingReads.back()->land();
+  if (passes && current) passes->complete();
+  passes.reset();
   while (firstStream() != nullptr) {
     auto& stream = static_cast<GlStream&>(*firstStream());
     stream.leave();
@@ -107,11 +116,17 @@ GlDevice::~GlDevice() {
     sinkPrograms.clear();
     tableTextures_.clear();
     samplers.clear();
+    transferBuffers_.clear();
+    pastFences.clear();
     vertexArray = {};
   }
 }
 
 void GlDevice::forgetObjects() noexcept {
+  while (!pendingReads.empty()) pendingReads.back()->abandon();
+  for (TransferBuffer& buffer : transferBuffers_) buffer.forget();
+  for (gl::Fence& fence : pastFences) fence.forget();
+  if (passes) passes->forget();
   for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
     auto& stream = static_cast<GlStream&>(*state);
     for (Surface& plane : stream.planes) {
@@ -199,6 +214,15 @@ GLuint GlDevice::textureOf(const FunctionTable& table) {
     texture.write(bound, {0, 0, assemble::tableWidth, rows}, 0, texels.data());
   }
   return texture.name();
+}
+
+void GlDevice::startTrace(const std::string& file) {
+  auto started = std::make_unique<Trace>(file, fmt::format("{} ({})", name(), profileName()));
+  started->setBandwidth(copyBandwidth(*this));
+  trace = std::move(started);
+  const DeviceScope scope(*this);
+  passes = std::make_unique<PassTrace>(*this, *trace);
+  if (capabilities.hasLabels) labels.turnOn();
 }
 
 void GlDevice::finish() {
@@ -323,8 +347,10 @@ std::vector<Surface> GlDevice::takePlanes(const program::Element& element,
                       shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
                       (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20));
     }
+    labels.texture(plane.texture.name(), whatFor);
     planes.push_back(std::move(plane));
   }
+  countBytes();
   return planes;
 }
 
@@ -333,10 +359,33 @@ void GlDevice::givePlanes(std::vector<Surface>& planes) noexcept {
     pool.give(std::move(plane));
   }
   planes.clear();
+  countBytes();
+}
+
+TransferBuffer GlDevice::takeTransferBuffer() {
+  TransferBuffer taken;
+  if (transferBuffers_.empty()) {
+    taken.buffer = gl::PixelBuffer::create();
+  } else {
+    taken = std::move(transferBuffers_.back());
+    transferBuffers_.pop_back();
+    taken.fence = {};
+  }
+  return taken;
+}
+
+void GlDevice::giveTransferBuffer(TransferBuffer&& buffer) noexcept {
+  try {
+    transferBuffers_.reserve(transferBuffers_.size() + 1);
+    transferBuffers_.push_back(std::move(buffer));
+  } catch (const std::bad_alloc&) {
+    buffer.forget();  // it is deleted with its context
+  }
 }
 
 // An application's own mistakes in an adopted context are not ours to report.
 void GlDevice::throwPendingError() {
+  if (passes) passes->collect();
   const GLenum error = gl::takeError();
   const bool isOurs = !context.isAdopted() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
   if (error != GL_NO_ERROR && isOurs) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -15,10 +16,13 @@
 #include "device_state.hpp"
 #include "framebuffer_cache.hpp"
 #include "gl/bound_state.hpp"
+#include "gl/labels.hpp"
 #include "gl/linear_samplers.hpp"
 #include "gl/open_context.hpp"
 #include "gl/saved_state.hpp"
 #include "gl/vertex_array.hpp"
+#include "packed_transfer.hpp"
+#include "program_build.hpp"
 #include "program_cache.hpp"
 #include "sink_programs.hpp"
 #include "surface.hpp"
@@ -26,6 +30,9 @@
 #include "variant.hpp"
 
 namespace sk {
+
+class PassTrace;
+class PendingRead;
 
 /// What a user may choose of a device that is found.
 struct DeviceChoices {
@@ -65,6 +72,7 @@ class GlDevice final : public DeviceState {
   void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
                                             Storage storage) override;
+  void startTrace(const std::string& file) override;
   void finish() override;
   void release() override { context.release(); }
   void run(const program::Kernel& kernel, std::span<const Argument> arguments,
@@ -97,6 +105,11 @@ class GlDevice final : public DeviceState {
   /// The texture of a table, made at first. Binds a texture.
   GLuint textureOf(const FunctionTable& table);
 
+  /// A buffer that nobody uses. Its fence is none.
+  TransferBuffer takeTransferBuffer();
+  /// Touches no GL, so that futures may be destroyed anywhere.
+  void giveTransferBuffer(TransferBuffer&& buffer) noexcept;
+
   /// Throws sk::Error where the driver has reported an error since it was last asked.
   void throwPendingError();
 
@@ -112,6 +125,11 @@ class GlDevice final : public DeviceState {
   SinkPrograms sinkPrograms;
   gl::LinearSamplers samplers;
   gl::VertexArray vertexArray;
+  std::vector<PendingRead*> pendingReads;  ///< those that must be told of the device's end
+  std::vector<gl::Fence> pastFences;  ///< of those that have ended
+  gl::Labels labels;
+  ProgramBinaries binaries;
+  std::unique_ptr<PassTrace> passes;  ///< null where there is no trace
   std::vector<std::byte> staging;  ///< texels on their way; transfer.cpp's
   std::vector<Operand> operands;  ///< of the call that runs; run.cpp's
   bool hasDrawn = false;  ///< since the last dispatch
@@ -123,10 +141,14 @@ class GlDevice final : public DeviceState {
   /// Throws sk::Error where a kernel cannot run as what a call asks for.
   void checkTarget(const program::Kernel& kernel, Target asked) const;
   void forgetObjects() noexcept;
+  void countBytes() const noexcept {
+    if (trace) trace->countBytes(pool.bytesUsed(), pool.bytesKept());
+  }
   void needExactSums(const program::Kernel& kernel);
 
   std::map<ProgramChoice, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
+  std::vector<TransferBuffer> transferBuffers_;  ///< idle ones
   ProgramCache* programs_;  ///< one of them
   std::optional<Arithmetic> arithmetic_;
   std::array<std::optional<assemble::Stage>, kernelClasses> faster_;

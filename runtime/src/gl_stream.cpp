@@ -8,7 +8,9 @@
 #include "assemble/planes.hpp"
 #include "convert_elements.hpp"
 #include "gl_device.hpp"
+#include "packed_transfer.hpp"
 #include "pass.hpp"
+#include "pending_read.hpp"
 #include "sink_list.hpp"
 #include "sk/error.hpp"
 #include "transfer.hpp"
@@ -46,17 +48,6 @@ std::vector<Surface> GlStream::takePlanesFor(const Layout& planned) {
                             fmt::format("a stream of {} of shape {}", element->name, toString(shape)));
 }
 
-void GlStream::relay(bool packed) {
-  if (layout.whole.packed == packed) {
-    return;
-  }
-  Layout wanted = layoutOf(shape, owner().textureLimits(), packed);
-  std::vector<Surface> taken = takePlanesFor(wanted);
-  owner().givePlanes(planes);
-  planes = std::move(taken);
-  layout = std::move(wanted);
-}
-
 void GlStream::unpack() {
   if (!layout.whole.packed) {
     return;
@@ -67,6 +58,7 @@ void GlStream::unpack() {
   copyRegion(owner(), held(), planes, layout.whole, lease.planes, wanted.whole);
   std::swap(planes, lease.planes);
   layout = std::move(wanted);
+  labelPlanes();
 }
 
 GlDevice& GlStream::owner() const { return static_cast<GlDevice&>(*device); }
@@ -103,26 +95,47 @@ void GlStream::takeSize(std::int32_t count) {
 }
 
 // A region of whole texels travels as such, and others once the stream is no longer packed.
-void GlStream::uploadHeld(const StreamRegion& region, const std::byte* elements) {
+GlStream::Travelling GlStream::travelling(const StreamRegion& region) {
   const Placement place = placementOf(region, layout);
-  if (place.packed && assemble::isWholeTexels(place)) {
-    upload(owner(), assemble::fourOf(held().fields.front().scalar), planes, assemble::texelsOf(place),
-           elements);
-    return;
+  if (!place.packed) {
+    return {&held(), region.shape, place};
   }
-  unpack();
-  upload(owner(), held(), planes, placementOf(region, layout), elements);
+  if (!assemble::isWholeTexels(place)) {
+    unpack();
+    return {&held(), region.shape, placementOf(region, layout)};
+  }
+  const int last = region.shape.rank() - 1;
+  return {&assemble::fourOf(held().fields.front().scalar),
+          region.shape.with(last, region.shape[last] / assemble::lanes), assemble::texelsOf(place)};
+}
+
+void GlStream::uploadHeld(const StreamRegion& region, const std::byte* elements) {
+  const Travelling what = travelling(region);
+  upload(owner(), *what.element, planes, what.place, elements);
 }
 
 void GlStream::downloadHeld(const StreamRegion& region, std::byte* elements) {
-  const Placement place = placementOf(region, layout);
-  if (place.packed && assemble::isWholeTexels(place)) {
-    download(owner(), assemble::fourOf(held().fields.front().scalar), planes, assemble::texelsOf(place),
-             elements);
+  const Travelling what = travelling(region);
+  download(owner(), *what.element, planes, what.place, elements);
+}
+
+void GlStream::setName(std::string_view given) {
+  StreamState::setName(given);
+  if (owner().labels.isOn()) {
+    const DeviceScope scope(owner());
+    labelPlanes();
+  }
+}
+
+void GlStream::labelPlanes() const {
+  if (name.empty() || !owner().labels.isOn()) {
     return;
   }
-  unpack();
-  download(owner(), held(), planes, placementOf(region, layout), elements);
+  const std::span<const program::Field> fields = held().fields;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    owner().labels.texture(planes[i].texture.name(),
+                           fields[i].path.empty() ? name : fmt::format("{}.{}", name, fields[i].path));
+  }
 }
 
 void GlStream::write(const StreamRegion& region, const std::byte* elements) {
@@ -147,6 +160,44 @@ void GlStream::read(const StreamRegion& region, std::byte* elements) {
   std::vector<std::byte> converted(count * held().size);
   downloadHeld(region, converted.data());
   convertElements(held(), converted.data(), *element, elements, count);
+}
+
+std::unique_ptr<TransferState> GlStream::readAsync(const StreamRegion& region) {
+  const DeviceScope scope(owner());
+  return std::make_unique<PendingRead>(owner(), *this, region);
+}
+
+void GlStream::writeAsync(const StreamRegion& region, const std::byte* elements) {
+  const DeviceScope scope(owner());
+  std::vector<std::byte> converted;
+  if (held_) {
+    const auto count = static_cast<std::size_t>(region.shape.size());
+    converted.resize(count * held().size);
+    convertElements(*element, elements, held(), converted.data(), count);
+    elements = converted.data();
+  }
+  if (owner().capabilities.isSoftware && drawsKeepBits(held())) {
+    writeAside(region, elements);
+  } else {
+    const Travelling what = travelling(region);
+    writePacked(owner(), *what.element, planes, what.place, elements);
+  }
+}
+
+// A software renderer that is given texels for a texture draws everything that is queued for it first.
+void GlStream::writeAside(const StreamRegion& region, const std::byte* elements) {
+  const Travelling what = travelling(region);
+  const Layout own = layoutOf(what.shape, owner().textureLimits());
+  PlanesLease aside(owner());
+  aside.planes = owner().takePlanes(*what.element, own.texture, "elements that are written");
+  upload(owner(), *what.element, aside.planes, own.whole, elements);
+  const bool isWhole = !what.place.view && haveSameTexels(what.place, own.whole);
+  if (isWhole && own.texture == planes.front().texture.shape()) {
+    std::swap(planes, aside.planes);
+    labelPlanes();
+  } else {
+    drawRegion(owner(), *what.element, aside.planes, own.whole, planes, what.place);
+  }
 }
 
 void GlStream::readReals(const StreamRegion& region, double* values) {

@@ -26,22 +26,34 @@ class GlStream final : public StreamState {
   void settle() override;
   void write(const StreamRegion& region, const std::byte* elements) override;
   void read(const StreamRegion& region, std::byte* elements) override;
+  std::unique_ptr<TransferState> readAsync(const StreamRegion& region) override;
+  void writeAsync(const StreamRegion& region, const std::byte* elements) override;
   void readReals(const StreamRegion& region, double* values) override;
   void writeReals(const StreamRegion& region, const double* values) override;
   StreamTexture texture(int plane) override;
+  void setName(std::string_view given) override;
 
   /// What the planes hold: the element, or another for it.
   const program::Element& held() const { return held_ ? held_->element : *element; }
 
   /// Whether the stream can lie packed, four elements to a texel.
   bool canPack() const { return assemble::mayPack(held()) && mayPack(shape); }
-  /// Makes the stream lie packed or not, as it then does until a kernel writes all of it. The first keeps what it holds; the
-  /// other leaves it undefined. A scope of the device is open.
+  /// Makes the stream lie unpacked, as it then does until a kernel writes all of it. A scope of the device is open.
   void unpack();
-  void relay(bool packed);
+
+  /// What goes between a region and host memory: elements as they are held, or packed texels. May unpack the stream.
+  struct Travelling {
+    const program::Element* element;
+    Shape shape;  ///< of such elements
+    assemble::Placement place;
+  };
+  Travelling travelling(const StreamRegion& region);
 
   Layout layout;  ///< holds once the stream is settled
   std::vector<Surface> planes;  ///< one a field of what is held; none where the stream is empty
+
+  /// For debuggers, where planes have changed.
+  void labelPlanes() const;
 
   /// Takes what a kernel has pushed for its elements, and gives its planes for it. `total`: where their number
   /// is not known, CountTree::totalTexture(); `list` has then room for all that may be.
@@ -55,6 +67,8 @@ class GlStream final : public StreamState {
   void downloadHeld(const StreamRegion& region, std::byte* elements);
   std::vector<Surface> takePlanesFor(const Layout& planned);
   void takeSize(std::int32_t count);
+  /// Writes what is held by way of other planes, which no draw that is queued uses.
+  void writeAside(const StreamRegion& region, const std::byte* elements);
 
   std::unique_ptr<assemble::HeldElement> held_;  ///< where the storage is not Single
   Surface total_;  ///< holds the number of elements until somebody asks

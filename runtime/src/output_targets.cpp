@@ -96,6 +96,7 @@ void OutputTargets::putInPlace() {
     if (wayOf(i) == Way::Swap) {
       std::swap(stream.planes, aside_[i]->planes);
       stream.layout = layout_;
+      stream.labelPlanes();
     } else {
       putCopy(stream, arguments_[i].region, aside_[i]->planes);
     }

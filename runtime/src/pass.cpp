@@ -3,6 +3,7 @@
 // Binding and drawing.
 #include "pass.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "gl/commands.hpp"
 #include "gl_device.hpp"
 #include "layout.hpp"
+#include "pass_trace.hpp"
 #include "texel_runs.hpp"
 
 namespace sk {
@@ -76,7 +78,8 @@ int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit) {
 
 DrawTarget targetOf(GlDevice& device, Surface& plane) {
   const gl::Texture& texture = plane.texture;
-  return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0};
+  return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0,
+          static_cast<std::int32_t>(texture.format().texelBytes())};
 }
 
 DrawTarget targetOf(GlDevice& device, std::span<Surface* const> planes) {
@@ -90,7 +93,13 @@ DrawTarget targetOf(GlDevice& device, std::span<Surface* const> planes) {
   }
   const bool isLayered = first.texture.isLayered();
   return {&device.framebuffers.framebufferOf(std::span(names).first(planes.size()), isLayered),
-          isLayered ? first.texture.shape().height : 0};
+          isLayered ? first.texture.shape().height : 0, texelsOf(planes).texelBytes};
+}
+
+DrawTarget texelsOf(std::span<Surface* const> planes) {
+  std::size_t bytes = 0;
+  for (const Surface* plane : planes) bytes += plane->texture.format().texelBytes();
+  return {nullptr, 0, static_cast<std::int32_t>(bytes)};
 }
 
 void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect> rects, gl::IntUniform& row) {
@@ -162,6 +171,8 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
                const Placement& domain, std::span<const Rect> rects, std::span<Surface* const> targets,
                std::span<const gl::Texture> bundles, const assemble::Task& task) {
   KernelProgram& program = device.programs().kernelProgram(kernel, operands, domain, task);
+  const PassScope traced(device, nameOf(kernel.name, stepOf(task), program), program, operands, rects,
+                         texelsOf(targets));
   device.bound.program(program.program.name());
   bindOperands(device, program, kernel, operands, bundles);
   program.domain.set(domain);
@@ -170,6 +181,17 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
   }
   writeRects(device, program, targets, rects);
 }
+
+namespace {
+
+void drawPlane(GlDevice& device, const program::Field& field, Surface& from, const Placement& source,
+               Surface& to, const Placement& target) {
+  const Operand operands[] = {{nullptr, source, {&from, 1}}, {}};
+  Surface* const targets[] = {&to};
+  runKernel(device, copyKernel(field), operands, target, assemble::drawnTexels(target), targets);
+}
+
+}  // namespace
 
 void copyRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
                 const Placement& source, std::span<Surface> to, const Placement& target) {
@@ -180,13 +202,24 @@ void copyRegion(GlDevice& device, const program::Element& element, std::span<Sur
   }
   for (std::size_t plane = 0; plane < from.size(); ++plane) {
     if (!source.linear && !target.linear && source.packed == target.packed) {
+      const assemble::Rect rect{target.origin[0], target.origin[1], target.extent[0], target.extent[1]};
+      const PassScope traced(device, {"copy", {}, "blit"}, rect, targetOf(device, to[plane]));
       blit(device, from[plane], source, to[plane], target);
       continue;
     }
-    const Operand operands[] = {{nullptr, source, from.subspan(plane, 1)}, {}};
-    Surface* const targets[] = {&to[plane]};
-    runKernel(device, copyKernel(element.fields[plane]), operands, target, assemble::drawnTexels(target),
-              targets);
+    drawPlane(device, element.fields[plane], from[plane], source, to[plane], target);
+  }
+}
+
+bool drawsKeepBits(const program::Element& element) {
+  return std::ranges::find(element.fields, program::Scalar::Half, &program::Field::scalar) ==
+         element.fields.end();
+}
+
+void drawRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
+                const Placement& source, std::span<Surface> to, const Placement& target) {
+  for (std::size_t plane = 0; plane < from.size(); ++plane) {
+    drawPlane(device, element.fields[plane], from[plane], source, to[plane], target);
   }
 }
 

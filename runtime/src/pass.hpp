@@ -26,11 +26,15 @@ int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit);
 struct DrawTarget {
   gl::Framebuffer* framebuffer;
   std::int32_t layerRows;   ///< 0 where the planes have no layers
+  std::int32_t texelBytes;  ///< of all planes together
 };
 
 /// Draws to these planes, 1 to gl::maxDrawBuffers. Good until the next one is asked for.
 DrawTarget targetOf(GlDevice& device, std::span<Surface* const> planes);
 DrawTarget targetOf(GlDevice& device, Surface& plane);
+
+/// The same as far as a trace asks for it: nothing is bound.
+DrawTarget texelsOf(std::span<Surface* const> planes);
 
 /// Binds the framebuffer with a layer of its planes, and tells the program that is bound.
 void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row);
@@ -60,5 +64,13 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
 /// the same surface. `element`: what both hold. A target that is packed is of whole texels, as its source then is.
 void copyRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
                 const assemble::Placement& source, std::span<Surface> to, const assemble::Placement& target);
+
+/// The same by draws alone, which a software renderer does in its time, while it does blits at once. Bit for bit, where
+/// drawsKeepBits().
+void drawRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
+                const assemble::Placement& source, std::span<Surface> to, const assemble::Placement& target);
+
+/// Programs read halves as floats, which not all of their NaNs survive.
+bool drawsKeepBits(const program::Element& element);
 
 }  // namespace sk

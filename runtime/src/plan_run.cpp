@@ -13,6 +13,7 @@
 #include "gl/texture.hpp"
 #include "gl_device.hpp"
 #include "pass.hpp"
+#include "pass_trace.hpp"
 #include "sk/error.hpp"
 
 namespace sk {
@@ -58,6 +59,9 @@ gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const O
     throw Error(fmt::format("'{}' has no room for inputs that share a texture: {} layers of {} x {} texels",
                             device.capabilities.renderer, shape.layers, shape.width, shape.height));
   }
+  const assemble::Rect texels{0, 0, shape.width, shape.height * shape.layers};
+  const PassScope traced(device, {"copy", "to layers", "blit"}, texels,
+                         DrawTarget{nullptr, 0, static_cast<std::int32_t>(made.format().texelBytes())});
   for (std::int32_t i = 0; i < count; ++i) {
     if (Surface* plane = planes[static_cast<std::size_t>(i)]) {
       copyLayers(device, *plane, made, i, count);
@@ -87,7 +91,22 @@ class PlanRun {
   PlanRun(const PlanRun&) = delete;
   PlanRun& operator=(const PlanRun&) = delete;
 
+  /// Lets the driver begin with the program of a pass. False where it is there already.
+  bool start(const Pass& pass) {
+    choose(pass);
+    return targets_.empty() || device_.programs().startKernelProgram(pass.kernel, operands_, call_.domain);
+  }
+
   void draw(const Pass& pass) {
+    choose(pass);
+    if (targets_.empty()) {   // all of its outputs are left out
+      return;
+    }
+    runKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, targets_, bundles_);
+  }
+
+ private:
+  void choose(const Pass& pass) {
     operands_.clear();
     targets_.clear();
     for (std::size_t i = 0; i < pass.operands.size(); ++i) {
@@ -97,13 +116,8 @@ class PlanRun {
         addTargets(parameter, planesOf(pass.operands[i]));
       }
     }
-    if (targets_.empty()) {   // all of its outputs are left out
-      return;
-    }
-    runKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, targets_, bundles_);
   }
 
- private:
   /// Temporaries lie as the domain does.
   Operand operandOf(const program::PassOperand& operand) {
     return operand.isTemporary
@@ -142,6 +156,9 @@ const Plan* planFor(const program::Kernel& kernel, const DeviceLimits& limits) {
 
 void runPlan(GlDevice& device, const Plan& plan, const PlannedCall& call) {
   PlanRun run(device, plan, call);
+  for (const Pass& pass : plan.passes) {
+    if (!run.start(pass)) break;   // nor are the others new
+  }
   for (const Pass& pass : plan.passes) {
     run.draw(pass);
   }

@@ -55,19 +55,39 @@ ProgramCache::ProgramCache(GlDevice& device, const assemble::Profile& profile)
 
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                            const assemble::Placement& domain, const assemble::Task& task) {
-  std::unique_ptr<KernelProgram>& kept =
-      kernels_[variantKey(kernel, operands, domain, task, device_.capabilities.filtersFloats)];
+  const ProgramKey key = variantKey(kernel, operands, domain, task, device_.capabilities.filtersFloats);
+  std::unique_ptr<KernelProgram>& kept = kernels_[key];
   if (!kept) {
-    kept = makeKernelProgram(
-        kernel, chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats));
+    const TraceScope traced(device_.trace.get(), "program", kernel.name);
+    const assemble::Variant variant =
+        chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats);
+    auto started = startedKernels_.extract(key);
+    kept = makeKernelProgram(kernel, variant,
+                             started.empty() ? begin(assemble::kernelProgram(profile_, kernel, variant))
+                                             : std::move(started.mapped()));
   }
   return *kept;
 }
 
+bool ProgramCache::startKernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
+                                      const assemble::Placement& domain) {
+  const ProgramKey key = variantKey(kernel, operands, domain, {}, device_.capabilities.filtersFloats);
+  if (kernels_.contains(key)) {
+    return false;
+  }
+  if (!startedKernels_.contains(key)) {
+    const assemble::Variant variant =
+        chooseVariant(kernel, operands, domain, {}, device_.capabilities.filtersFloats);
+    startedKernels_.emplace(key, begin(assemble::kernelProgram(profile_, kernel, variant)));
+  }
+  return true;
+}
+
 std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Kernel& kernel,
-                                                               const assemble::Variant& variant) {
+                                                               const assemble::Variant& variant,
+                                                               ProgramBuild&& begun) {
   auto made = std::make_unique<KernelProgram>();
-  build(*made, kernel, assemble::kernelProgram(profile_, kernel, variant));
+  finish(*made, kernel, std::move(begun));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
   findParameters(*made, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
   for (KernelProgram::Read& read : made->reads) {
@@ -194,21 +214,22 @@ void ProgramCache::bindSamplers(const gl::Program& program, const program::Param
   }
 }
 
-void ProgramCache::build(KernelProgram& made, const program::Kernel& kernel, const std::string& source) {
-  const auto built = [&](const std::string& text, std::string& log) {
-    return profile_.stage == assemble::Stage::Compute
-               ? gl::Program::buildCompute(text, log)
-               : gl::Program::build(assemble::vertexProgram(profile_), text, log);
-  };
+ProgramBuild ProgramCache::begin(std::string source) {
+  const bool isCompute = profile_.stage == assemble::Stage::Compute;
+  return {device_, {isCompute ? std::string() : assemble::vertexProgram(profile_), std::move(source)}};
+}
+
+void ProgramCache::finish(KernelProgram& made, const program::Kernel& kernel, ProgramBuild&& begun) {
   std::string log;
-  made.program = built(source, log);
+  made.program = begun.finish(device_, log);
   if (!made.program) {
     log.clear();
-    built(withTellingLines(source), log);
+    gl::Program::build({begun.sources().vertex, withTellingLines(begun.sources().main)}, log);
     throw Error(fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
                             device_.capabilities.renderer, profile_.name,
                             withSourceNames(log, kernel.sources)));
   }
+  device_.labels.program(made.program.name(), kernel.name);
   made.stage = profile_.stage;
   made.domainRow = {made.program.location("sk_domain_row"), false};
   if (made.stage == assemble::Stage::Compute) {
@@ -217,14 +238,31 @@ void ProgramCache::build(KernelProgram& made, const program::Kernel& kernel, con
   }
 }
 
+bool ProgramCache::startReduceProgram(const program::Reduction& reduction,
+                                      const assemble::ReduceVariant& variant) {
+  const ReduceKey key{&reduction, variant};
+  if (reductions_.contains(key)) {
+    return false;
+  }
+  if (!startedReductions_.contains(key)) {
+    startedReductions_.emplace(key, begin(assemble::reduceProgram(profile_, reduction, variant)));
+  }
+  return true;
+}
+
 ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
                                            const assemble::ReduceVariant& variant) {
-  std::unique_ptr<ReduceProgram>& kept = reductions_[{&reduction, variant}];
+  const ReduceKey key{&reduction, variant};
+  std::unique_ptr<ReduceProgram>& kept = reductions_[key];
   if (!kept) {
+    const TraceScope traced(device_.trace.get(), "program", reduction.fold.name);
     auto made = std::make_unique<ReduceProgram>();
     const bool isPartial = assemble::isOfPartials(variant.walk);
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
-    build(made->kernel, kernel, assemble::reduceProgram(profile_, reduction, variant));
+    auto started = startedReductions_.extract(key);
+    finish(made->kernel, kernel,
+           started.empty() ? begin(assemble::reduceProgram(profile_, reduction, variant))
+                           : std::move(started.mapped()));
     made->kernel.isGrouped = variant.walk == assemble::Walk::GroupedPartials;
     if (variant.walk != assemble::Walk::Nothing) {
       findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
@@ -245,11 +283,19 @@ gl::IntUniform& ReduceProgram::uniform(const assemble::UniformValue& value) {
 }
 
 void ProgramCache::clear() {
+  startedKernels_.clear();
+  startedReductions_.clear();
   kernels_.clear();
   reductions_.clear();
 }
 
 void ProgramCache::forget() noexcept {
+  for (auto& [key, begun] : startedKernels_) {
+    begun.forget();
+  }
+  for (auto& [key, begun] : startedReductions_) {
+    begun.forget();
+  }
   for (auto& [key, kept] : kernels_) {
     if (kept) {
       kept->program.forget();

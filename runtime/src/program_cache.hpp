@@ -19,6 +19,7 @@
 #include "gl/program.hpp"
 #include "gl/uniform.hpp"
 #include "placement_uniforms.hpp"
+#include "program_build.hpp"
 #include "sk/program.hpp"
 #include "variant.hpp"
 
@@ -95,6 +96,12 @@ class ProgramCache {
                                const assemble::Placement& domain, const assemble::Task& task = {});
   ReduceProgram& reduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
 
+  /// Lets the driver begin with what the functions above will be asked for, so that it compiles several programs at once.
+  /// False where it is there already.
+  bool startKernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
+                          const assemble::Placement& domain);
+  bool startReduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
+
   assemble::Stage stage() const { return profile_.stage; }
   void clear();
   void forget() noexcept;
@@ -103,21 +110,24 @@ class ProgramCache {
   using ReduceKey = std::pair<const program::Reduction*, assemble::ReduceVariant>;
 
   std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
-                                                   const assemble::Variant& variant);
+                                                   const assemble::Variant& variant, ProgramBuild&& begun);
   void findParameters(KernelProgram& made, const program::Kernel& kernel, const assemble::SpecValues& specs);
   void findTables(KernelProgram& made, const program::Kernel& kernel, int& unit);
   void findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter);
   void addDoubles(KernelProgram& made, std::size_t number, const std::string& name,
                   std::span<const program::Field> parts) const;
   void findListUniforms(KernelProgram& made, const program::Parameter& sink);
-  /// Builds the program of `made` of an assembled text.
-  void build(KernelProgram& made, const program::Kernel& kernel, const std::string& source);
+  ProgramBuild begin(std::string source);
+  /// Throws sk::Error where the driver refuses the program, with its words.
+  void finish(KernelProgram& made, const program::Kernel& kernel, ProgramBuild&& begun);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);
 
   GlDevice& device_;
   const assemble::Profile profile_;
   std::unordered_map<ProgramKey, std::unique_ptr<KernelProgram>, ProgramKeyHash> kernels_;
   std::map<ReduceKey, std::unique_ptr<ReduceProgram>> reductions_;
+  std::unordered_map<ProgramKey, ProgramBuild, ProgramKeyHash> startedKernels_;
+  std::map<ReduceKey, ProgramBuild> startedReductions_;
 };
 
 }  // namespace sk

@@ -11,7 +11,9 @@
 #include "gl_device.hpp"
 #include "gl_stream.hpp"
 #include "output_targets.hpp"
+#include "packed_transfer.hpp"
 #include "pass.hpp"
+#include "pass_trace.hpp"
 #include "sk/call.hpp"
 #include "transfer.hpp"
 
@@ -62,6 +64,22 @@ std::vector<Surface*> pointersTo(std::span<Surface> planes) {
   return pointers;
 }
 
+/// What the trace calls a pass.
+std::string_view stepOf(Walk walk) {
+  switch (walk) {
+    case Walk::Partials:
+    case Walk::PartialRows:
+    case Walk::GroupedPartials: return "combine";
+    case Walk::Nothing: return "identity";
+    case Walk::Line:
+    case Walk::Plane:
+    case Walk::Box:
+    case Walk::Rows:
+    case Walk::Index: break;
+  }
+  return "fold";
+}
+
 /// One call, its arguments checked.
 class ReduceCall {
  public:
@@ -88,7 +106,11 @@ class ReduceCall {
                                       .byIndex = foldsByIndex(),
                                       .byTexel = byTexel_,
                                       .inAnyOrder = reduction_.commutative};
-    for (const ReducePass& pass : assemble::planReduction(elements_, result, limits, division)) {
+    const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
+    for (const ReducePass& pass : passes) {
+      if (!start(pass, targets.size())) break;  // nor are the others new
+    }
+    for (const ReducePass& pass : passes) {
       if (pass.toResult) {
         draw(pass, partials.planes, targets);
         continue;
@@ -177,14 +199,15 @@ class ReduceCall {
     return byIndex;
   }
 
-  /// The operands of the combining kernel: planes of partial results, and arguments of the fold.
+  /// The operands of the combining kernel: planes of partial results, where there are some by now, and arguments
+  /// of the fold.
   std::vector<Operand> operandsOfCombine(std::span<Surface> partials) const {
     std::vector<Operand> operands;
     const Kernel& combine = reduction_.combine;
     for (std::size_t i = 0; i < combine.parameters.size(); ++i) {
       const Parameter& parameter = combine.parameters[i];
       if (parameter.role == Role::Input) {
-        const std::size_t count = parameter.element->fields.size();
+        const std::size_t count = std::min(parameter.element->fields.size(), partials.size());
         operands.push_back({.placement = elements_, .planes = partials.first(count)});
         partials = partials.subspan(count);
       } else if (parameter.role == Role::Accumulator) {
@@ -198,27 +221,53 @@ class ReduceCall {
 
   /// Draws a pass, for as many of the targets at a time as the device draws to.
   void draw(const ReducePass& pass, std::span<Surface> partials, std::span<Surface* const> targets) {
-    assemble::ReduceVariant variant = pass.variant;
-    const bool isPartial = assemble::isOfPartials(variant.walk);
+    const bool isPartial = assemble::isOfPartials(pass.variant.walk);
     const Kernel& kernel = isPartial ? reduction_.combine : reduction_.fold;
     const std::vector<Operand> operands = isPartial ? operandsOfCombine(partials) : operands_;
+    forEachPart(pass, operands, targets.size(),
+                [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
+                  ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
+                  const std::span<Surface* const> planes = targets.subspan(first, count);
+                  const PassScope traced(device_,
+                                         nameOf(reduction_.fold.name, stepOf(variant.walk), program.kernel),
+                                         program.kernel, operands, pass.draws, texelsOf(planes));
+                  device_.bound.program(program.kernel.program.name());
+                  bindOperands(device_, program.kernel, kernel, operands);
+                  for (const assemble::UniformValue& value : pass.uniforms) {
+                    program.uniform(value).set(value.value);
+                  }
+                  writeRects(device_, program.kernel, planes, pass.draws);
+                });
+  }
+
+  /// Lets the driver begin with the programs of a pass. False where they are there already.
+  bool start(const ReducePass& pass, std::size_t planes) {
+    bool isNew = false;
+    const bool isPartial = assemble::isOfPartials(pass.variant.walk);
+    forEachPart(pass, isPartial ? operandsOfCombine({}) : operands_, planes,
+                [&](const assemble::ReduceVariant& variant, std::size_t, std::size_t) {
+                  isNew = device_.programs().startReduceProgram(reduction_, variant) || isNew;
+                });
+    return isNew;
+  }
+
+  /// visit(variant, first, count) for as many of the planes at a time as the device draws to.
+  template <class Visit>
+  void forEachPart(const ReducePass& pass, std::span<const Operand> operands, std::size_t planes,
+                   Visit&& visit) const {
+    assemble::ReduceVariant variant = pass.variant;
     if (variant.walk != Walk::Nothing) {
-      addAccess(variant, kernel, operands);
+      addAccess(variant, assemble::isOfPartials(variant.walk) ? reduction_.combine : reduction_.fold,
+                operands);
     }
     const auto most = static_cast<std::size_t>(device_.limits.drawBuffers);
-    for (std::size_t first = 0; first < targets.size(); first += most) {
-      const std::size_t count = std::min(most, targets.size() - first);
-      if (targets.size() > most) {
+    for (std::size_t first = 0; first < planes; first += most) {
+      const std::size_t count = std::min(most, planes - first);
+      if (planes > most) {
         variant.firstPlane = static_cast<std::uint8_t>(first);
         variant.planeCount = static_cast<std::uint8_t>(count);
       }
-      ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
-      device_.bound.program(program.kernel.program.name());
-      bindOperands(device_, program.kernel, kernel, operands);
-      for (const assemble::UniformValue& value : pass.uniforms) {
-        program.uniform(value).set(value.value);
-      }
-      writeRects(device_, program.kernel, targets.subspan(first, count), pass.draws);
+      visit(variant, first, count);
     }
   }
 
@@ -247,6 +296,28 @@ class ReduceCall {
   bool byTexel_ = false;
 };
 
+/// Waits for the device once, whatever the number of planes: on a GPU all of them come through one buffer. Software has
+/// nothing left to do after the first, and a buffer takes it some microseconds more.
+void readValues(GlDevice& device, const Kernel& fold, std::span<Surface> values, const Placement& placement,
+                std::span<void* const> results) {
+  auto result = results.begin();
+  if (values.size() == 1 || device.capabilities.isSoftware) {
+    forEachAccumulator(fold, values, [&](const program::Element& element, std::span<Surface> planes) {
+      download(device, element, planes, placement, static_cast<std::byte*>(*result++));
+    });
+    return;
+  }
+  PackedRead read(device);
+  forEachAccumulator(fold, values, [&](const program::Element& element, std::span<Surface> planes) {
+    read.add(element, planes, placement);
+  });
+  read.begin();
+  for (std::size_t part = 0; part < results.size(); ++part) {
+    read.take(part, static_cast<std::byte*>(results[part]));
+  }
+  device.throwPendingError();
+}
+
 }  // namespace
 
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
@@ -255,6 +326,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   checkStorages(reduction.fold, arguments);
   const assemble::Stage stage = stageOf(reduction.fold, KernelClass::Reduces, options);
   const DeviceScope scope(*this);
+  const gl::LabelGroup group(labels, reduction.fold.name);
   choose(options, stage);
   const Placement placement = assemble::valuePlacement();
   PlanesLease value(*this);
@@ -265,11 +337,8 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   } else {
     call.fold(placement.extent, placement, pointersTo(value.planes));
   }
-  auto result = results.begin();
-  forEachAccumulator(reduction.fold, std::span<Surface>(value.planes),
-                     [&](const program::Element& element, std::span<Surface> planes) {
-                       download(*this, element, planes, placement, static_cast<std::byte*>(*result++));
-                     });
+  const TraceScope traced(trace.get(), "transfer", "read value");
+  readValues(*this, reduction.fold, value.planes, placement, results);
 }
 
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
@@ -278,6 +347,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   checkStorages(reduction.fold, arguments);
   const assemble::Stage stage = stageOf(reduction.fold, KernelClass::Reduces, options);
   const DeviceScope scope(*this);
+  const gl::LabelGroup group(labels, reduction.fold.name);
   choose(options, stage);
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (reduction.fold.parameters[i].role == Role::Accumulator) glStream(arguments[i].region).unpack();

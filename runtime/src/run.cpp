@@ -166,6 +166,7 @@ void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> argu
   const Kernel& form = formOf(kernel, options);
   const assemble::Stage stage = stageOf(form, classOf(form), options);
   const DeviceScope scope(*this);
+  const gl::LabelGroup group(labels, kernel.name);
   choose(options, stage);
   checkStorages(form, arguments);
   if (!hasSinks(form)) {
@@ -185,6 +186,8 @@ void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOp
     fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
   }
   if (DeviceState* device = checkCall(kernel, arguments)) {
+    const TraceScope traced(device->trace.get(), "call", kernel.name);
+    if (device->trace) traced.add("domain", domainOf(kernel, arguments, specsOf(kernel, arguments)));
     const CallOptions chosen = device->configuration.resolve(kernel, options);
     checkTables(kernel, chosen);
     device->run(kernel, arguments, chosen);

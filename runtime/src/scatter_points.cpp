@@ -11,6 +11,7 @@
 #include "gl/points.hpp"
 #include "gl_device.hpp"
 #include "pass.hpp"
+#include "pass_trace.hpp"
 #include "sk/types.hpp"
 #include "texel_runs.hpp"
 
@@ -132,6 +133,9 @@ class Scatterer {
     device_.bound.vertexArray(device_.vertexArray.name());
     const gl::Blending blending(device_.capabilities, blend, device_.context.isAdopted());
     const assemble::Rect whole{0, 0, shape.width, texture.rows()};
+    const assemble::Rect written{0, 0, count, 1};
+    const PassScope traced(device_, {sink_.name, "scatter"}, std::span<const Surface>(list_),
+                           std::span(&written, 1), drawn);
     forEachLayer(whole, drawn.layerRows, [&](const assemble::Rect& part, std::int32_t layer, std::int32_t) {
       selectLayer(device_, drawn, layer, program.row());
       device_.bound.viewport(0, 0, part.width, part.height);
@@ -144,6 +148,8 @@ class Scatterer {
     StepProgram& program = programOf(step);
     const DrawTarget drawn = target(targets);
     bindPlanes(device_, planes_, 1);
+    const PassScope traced(device_, {sink_.name, "scatter"}, std::span<const Surface>(planes_),
+                           std::span<const assemble::Rect>(rects_), drawn);
     drawRects(device_, drawn, rects_, program.row());
   }
 

@@ -10,6 +10,7 @@
 
 #include "gl/commands.hpp"
 #include "pass.hpp"
+#include "pass_trace.hpp"
 #include "sk/error.hpp"
 #include "sk/types.hpp"
 
@@ -55,7 +56,11 @@ void CountTree::draw(const assemble::TreeLevel& level, Surface& below, bool ofCo
   } else {
     program.set("sk_below_row", belowRow);
   }
-  drawRects(device_, targetOf(device_, ofLevel(number)), level.draws, program.row());
+  const DrawTarget target = targetOf(device_, ofLevel(number));
+  const auto bytesBelow = level.children * static_cast<std::int64_t>(below.texture.format().texelBytes());
+  const PassScope traced(device_, {"sums of counts", "tree"}, bytesBelow,
+                         std::span<const assemble::Rect>(level.draws), target);
+  drawRects(device_, target, level.draws, program.row());
 }
 
 std::int32_t CountTree::total() {
@@ -78,6 +83,7 @@ std::vector<Surface> CountTree::totalTexture() {
 }
 
 std::int32_t readTotal(GlDevice& device, Surface& total) {
+  const TraceScope traced(device.trace.get(), "transfer", "read number of pushes");
   std::array<std::int32_t, 4> sums{};
   total.framebufferIn(device.bound).read(device.bound, total.texture.format().tight, 0, 0, 1, 1, sums.data());
   device.throwPendingError();

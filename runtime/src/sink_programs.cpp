@@ -28,7 +28,7 @@ gl::IntUniform& StepProgram::find(std::string_view name, bool isVector) {
 std::unique_ptr<StepProgram> SinkPrograms::build(const std::string& vertexSource,
                                                  const std::string& fragmentSource, std::string_view what) {
   std::string log;
-  gl::Program program = gl::Program::build(vertexSource, fragmentSource, log);
+  gl::Program program = ProgramBuild(device_, {vertexSource, fragmentSource}).finish(device_, log);
   if (!program) {
     throw Error(fmt::format("the driver of '{}' refuses the program of {}:\n{}",
                             device_.capabilities.renderer, what, log));

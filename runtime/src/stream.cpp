@@ -24,6 +24,20 @@ StreamState* checkTransfer(const StreamRegion& region, std::size_t count, const 
   return size == 0 ? nullptr : &stream;
 }
 
+/// A transfer of the elements of a region in the trace of its device.
+class TransferScope {
+ public:
+  TransferScope(const StreamState& stream, std::string_view what, const StreamRegion& region)
+      : traced_(stream.device->trace.get(), "transfer", what) {
+    traced_.add("stream", stream.name);
+    traced_.add("shape", region.shape);
+    traced_.add("bytes", region.shape.size() * static_cast<std::int64_t>(stream.element->size));
+  }
+
+ private:
+  TraceScope traced_;
+};
+
 }  // namespace
 
 StreamState::StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as)
@@ -115,14 +129,57 @@ StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, cons
 
 void detail::write(const StreamRegion& region, const void* elements, std::size_t count) {
   if (StreamState* stream = checkTransfer(region, count, "write")) {
+    const TransferScope traced(*stream, "write", region);
     stream->write(region, static_cast<const std::byte*>(elements));
   }
 }
 
 void detail::read(const StreamRegion& region, void* elements, std::size_t count) {
   if (StreamState* stream = checkTransfer(region, count, "read")) {
+    const TransferScope traced(*stream, "read", region);
     stream->read(region, static_cast<std::byte*>(elements));
   }
+}
+
+std::unique_ptr<TransferState> StreamState::readAsync(const StreamRegion& region) {
+  std::vector<std::byte> elements(static_cast<std::size_t>(region.shape.size()) * element->size);
+  read(region, elements.data());
+  return std::make_unique<ReadyTransfer>(std::move(elements));
+}
+
+void detail::TransferDeleter::operator()(TransferState* state) const noexcept { delete state; }
+
+detail::TransferOwner detail::readAsync(const StreamRegion& region) {
+  StreamState& stream = liveStream(region, "readAsync");
+  if (region.shape.size() == 0) {
+    return TransferOwner(new ReadyTransfer({}));
+  }
+  const TransferScope traced(stream, "readAsync", region);
+  return TransferOwner(stream.readAsync(region).release());
+}
+
+void detail::writeAsync(const StreamRegion& region, const void* elements, std::size_t count) {
+  if (StreamState* stream = checkTransfer(region, count, "writeAsync")) {
+    const TransferScope traced(*stream, "writeAsync", region);
+    stream->writeAsync(region, static_cast<const std::byte*>(elements));
+  }
+}
+
+namespace {
+
+TransferState& stateOf(const detail::TransferOwner& transfer) {
+  if (!transfer) {
+    throw Error("the future has no elements: it was made of nothing, moved from, or asked for them before");
+  }
+  return *transfer;
+}
+
+}  // namespace
+
+bool detail::isReady(const TransferOwner& transfer) { return stateOf(transfer).isReady(); }
+void detail::wait(const TransferOwner& transfer) { stateOf(transfer).wait(); }
+void detail::take(TransferOwner transfer, void* elements) {
+  stateOf(transfer).take(static_cast<std::byte*>(elements));
 }
 
 namespace {
@@ -150,6 +207,7 @@ void detail::writeReals(const StreamRegion& region, std::span<const double> valu
                             values.size(), toString(region.shape), components));
   }
   if (!values.empty()) {
+    const TransferScope traced(stream, "writeReals", region);
     stream.writeReals(region, values.data());
   }
 }
@@ -158,6 +216,7 @@ std::vector<double> detail::readReals(const StreamRegion& region) {
   StreamState& stream = liveStream(region, "readReals");
   std::vector<double> values(realsIn(region, *stream.element, "readReals"));
   if (!values.empty()) {
+    const TransferScope traced(stream, "readReals", region);
     stream.readReals(region, values.data());
   }
   return values;

@@ -5,11 +5,14 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <string>
 #include <string_view>
 
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
+#include "transfer_state.hpp"
 
 namespace sk {
 
@@ -27,11 +30,18 @@ class StreamState {
   /// The region is inside, and has an element; `elements` are as many, laid out as the Element says.
   virtual void write(const StreamRegion& region, const std::byte* elements) = 0;
   virtual void read(const StreamRegion& region, std::byte* elements) = 0;
+  /// Begins to read. The default reads at once, which is as fast where elements are in host memory.
+  virtual std::unique_ptr<TransferState> readAsync(const StreamRegion& region);
+  /// As write(), without waiting for what the device has to do; the elements may be changed at once.
+  virtual void writeAsync(const StreamRegion& region, const std::byte* elements) { write(region, elements); }
   /// `values` has room for every component of every element; all are floats.
   virtual void readReals(const StreamRegion& region, double* values) = 0;
   virtual void writeReals(const StreamRegion& region, const double* values) = 0;
   /// Throws sk::Error where the device has no textures.
   virtual StreamTexture texture(int plane) = 0;
+
+  /// What debuggers and the trace call it.
+  virtual void setName(std::string_view given) { name = given; }
 
   /// In the device's list.
   StreamState* next() const { return next_; }
@@ -42,6 +52,7 @@ class StreamState {
   const program::Element* const element;
   const Storage storage;
   Shape shape;  ///< holds once the stream is settled
+  std::string name;  ///< may be empty
 
  protected:
   /// Puts the stream on its device's list.

@@ -35,6 +35,7 @@ Surface SurfacePool::take(const gl::Format& format, const assemble::TextureShape
     Surface surface = std::move(found->second.back().surface);
     found->second.pop_back();
     bytes_ -= surface.texture.bytes();
+    used_ += static_cast<std::int64_t>(surface.texture.bytes());
     return surface;
   }
   Surface surface{gl::Texture(bound_, format, shape), {}};
@@ -42,6 +43,7 @@ Surface SurfacePool::take(const gl::Format& format, const assemble::TextureShape
     clear();
     surface.texture = gl::Texture(bound_, format, shape);
   }
+  if (surface) used_ += static_cast<std::int64_t>(surface.texture.bytes());
   return surface;
 }
 
@@ -50,6 +52,7 @@ Surface SurfacePool::take(const gl::Format& format, const assemble::TextureShape
 void SurfacePool::give(Surface&& surface) noexcept {
   const gl::Texture& texture = surface.texture;
   const std::size_t bytes = texture.bytes();
+  used_ -= static_cast<std::int64_t>(bytes);
   try {
     std::vector<Idle>& shelf = idle_[key(texture.format(), texture.shape())];
     shelf.reserve(shelf.size() + 1);

@@ -44,6 +44,10 @@ class SurfacePool {
     }
   }
   void clear() { deleteOlderThan(clock_ + 1); }
+
+  /// Of surfaces that were taken, and of those that nobody uses.
+  std::int64_t bytesUsed() const { return used_; }
+  std::int64_t bytesKept() const { return static_cast<std::int64_t>(bytes_); }
   void forget() noexcept;
 
  private:
@@ -61,6 +65,7 @@ class SurfacePool {
   FramebufferCache& framebuffers_;
   std::unordered_map<std::uint64_t, std::vector<Idle>> idle_;
   std::size_t bytes_ = 0;
+  std::int64_t used_ = 0;
   std::int64_t clock_ = 0;
 };
 

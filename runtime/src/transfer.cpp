@@ -149,12 +149,7 @@ class PlaneTransfer {
     });
   }
 
-  /// Every GL reads the tight texels of a format. ES promises the wide ones and one pair of the
-  /// driver's choice.
-  bool readsTight() const {
-    return device_.capabilities.api == gl::Api::Gl || format_.tight == format_.wide ||
-           surface_.framebuffer.readsOnEs(device_.bound, format_.tight);
-  }
+  bool readsTight() const { return readTransferOf(device_, surface_) == format_.tight; }
 
   GlDevice& device_;
   const Element& element_;
@@ -177,6 +172,18 @@ bool goesByRows(const Placement& region, std::size_t texelBytes, std::int64_t co
 
 }  // namespace
 
+/// Every GL reads the tight texels of a format. ES promises the wide ones and one pair of the driver's choice.
+gl::Transfer readTransferOf(GlDevice& device, Surface& plane) {
+  const gl::Format& format = plane.texture.format();
+  const bool readsTight = device.capabilities.api == gl::Api::Gl || format.tight == format.wide ||
+                          plane.framebufferIn(device.bound).readsOnEs(device.bound, format.tight);
+  return readsTight ? format.tight : format.wide;
+}
+
+bool readsByRows(const Placement& region, std::size_t texelBytes) {
+  return goesByRows(region, texelBytes, readCost, 1);
+}
+
 void upload(GlDevice& device, const Element& element, std::span<Surface> planes, const Placement& region,
             const std::byte* elements) {
   for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -195,7 +202,7 @@ void download(GlDevice& device, const Element& element, std::span<Surface> plane
               std::byte* elements) {
   for (std::size_t i = 0; i < planes.size(); ++i) {
     PlaneTransfer plane(device, element, element.fields[i], planes[i]);
-    if (goesByRows(region, planes[i].texture.format().texelBytes(), readCost, 1)) {
+    if (readsByRows(region, planes[i].texture.format().texelBytes())) {
       plane.readByRows(region, elements);
     } else {
       forEachTexelRun(region, [&](const TexelRun& run) {

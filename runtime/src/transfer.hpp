@@ -14,6 +14,12 @@ namespace sk {
 
 class GlDevice;
 
+/// How a plane's texels are read: Format::tight, or, where the driver cannot, Format::wide.
+gl::Transfer readTransferOf(GlDevice& device, Surface& plane);
+
+/// Whether it is cheaper to read the rows that a region lies in than each of its runs by itself.
+bool readsByRows(const assemble::Placement& region, std::size_t texelBytes);
+
 /// Copies all elements of a region, row-major in host memory, to its planes.
 void upload(GlDevice& device, const program::Element& element, std::span<Surface> planes,
             const assemble::Placement& region, const std::byte* elements);

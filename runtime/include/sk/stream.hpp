@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "sk/future.hpp"
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
 #include "sk/types.hpp"
@@ -65,6 +66,8 @@ StreamRegion wholeRegion(StreamState* state);
 StreamRegion partOf(const StreamRegion& region, const Index& begin, const Index& end);
 void write(const StreamRegion& region, const void* elements, std::size_t count);
 void read(const StreamRegion& region, void* elements, std::size_t count);
+TransferOwner readAsync(const StreamRegion& region);
+void writeAsync(const StreamRegion& region, const void* elements, std::size_t count);
 std::vector<double> readReals(const StreamRegion& region);
 void writeReals(const StreamRegion& region, std::span<const double> values);
 StreamTexture textureOf(StreamState* state, int plane);
@@ -106,6 +109,19 @@ class View {
     detail::write(region_, bytes.data(), bytes.size());
   }
 
+  /// The same without waiting for what the device has been asked before. The memory may be changed as soon as this
+  /// returns.
+  void writeAsync(std::span<const value_type> elements) const
+    requires isWritable
+  {
+    detail::writeAsync(region_, elements.data(), elements.size());
+  }
+  void writeAsync(std::span<const std::uint8_t> elements) const
+    requires(isWritable && std::is_same_v<value_type, bool>)
+  {
+    detail::writeAsync(region_, elements.data(), elements.size());
+  }
+
   /// The elements of the region, row-major (bool: bytes of 0 and 1). Waits for the device.
   std::vector<HostElement<value_type>> read() const {
     std::vector<HostElement<value_type>> elements(static_cast<std::size_t>(size()));
@@ -118,6 +134,12 @@ class View {
     requires std::is_same_v<value_type, bool>
   {
     detail::read(region_, elements.data(), elements.size());
+  }
+
+  /// The elements as they are now, when somebody asks the future for them; returns without waiting for the device. What
+  /// is written later does not change them. Throws sk::Error where there is no memory.
+  Future<HostElement<value_type>> readAsync() const {
+    return {detail::readAsync(region_), static_cast<std::size_t>(size())};
   }
 
   /// The components of the elements, which are floats, in the precision that the device holds them in: a
@@ -166,6 +188,15 @@ class Stream {
     all().write(elements);
   }
 
+  /// The same without waiting for what the device has been asked before. The memory may be changed as soon as this
+  /// returns.
+  void writeAsync(std::span<const T> elements) { all().writeAsync(elements); }
+  void writeAsync(std::span<const std::uint8_t> elements)
+    requires std::is_same_v<T, bool>
+  {
+    all().writeAsync(elements);
+  }
+
   /// The elements, row-major (bool: bytes of 0 and 1). Waits for the device.
   std::vector<HostElement<T>> read() const { return all().read(); }
   /// The same into memory of the caller's, of exactly size() elements, else sk::Error.
@@ -175,6 +206,11 @@ class Stream {
   {
     all().read(elements);
   }
+
+  /// The elements as they are now, when somebody asks the future for them; returns without waiting for the device, unless
+  /// a kernel has pushed to the stream and their number is not known yet. What is written later does not change them.
+  /// Throws sk::Error where there is no memory.
+  Future<HostElement<T>> readAsync() const { return all().readAsync(); }
 
   /// The components of the elements, which are floats, in the precision that the device holds them in: a
   /// reference device has doubles. One element after the other. Throws sk::Error where a component is no float.
@@ -196,7 +232,7 @@ class Stream {
   StreamRegion handle() const { return {state_.get(), {}, {}}; }
 
   /// The texture of a plane, for drawing from it in the same context (an adopted one). It is good
-  /// until a kernel next writes the stream: a call that reads and writes it puts another in its place.
+  /// until a kernel or writeAsync() next writes the stream: a call that reads and writes it puts another in its place.
   StreamTexture texture(int plane = 0) const { return detail::textureOf(state_.get(), plane); }
 
  private:

@@ -54,6 +54,15 @@ void readCompute(Capabilities& found) {
   }
 }
 
+std::vector<GLenum> binaryFormats(const Capabilities& found) {
+  if (found.api == Api::Gl && found.version < 41 && !epoxy_has_gl_extension("GL_ARB_get_program_binary")) {
+    return {};
+  }
+  std::vector<GLint> formats(static_cast<std::size_t>(integerOf(GL_NUM_PROGRAM_BINARY_FORMATS)));
+  if (!formats.empty()) glGetIntegerv(GL_PROGRAM_BINARY_FORMATS, formats.data());
+  return {formats.begin(), formats.end()};
+}
+
 bool isRenderable(const Format& format, BoundState& bound) {
   const Texture texture(bound, format, {1, 1});
   if (texture.name() == 0) {
@@ -88,6 +97,11 @@ Capabilities readCapabilities() {
   found.hasDoubles = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader_fp64");
   found.hasPrecise = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader5");
   found.filtersFloats = found.api == Api::Gl || epoxy_has_gl_extension("GL_OES_texture_float_linear");
+  found.hasLabels =
+      found.version >= (found.api == Api::Gl ? 43 : 32) || epoxy_has_gl_extension("GL_KHR_debug");
+  found.isDebugged = epoxy_has_gl_extension("GL_EXT_debug_tool") ||
+                     (found.hasLabels && (integerOf(GL_CONTEXT_FLAGS) & GL_CONTEXT_FLAG_DEBUG_BIT) != 0);
+  found.binaryFormats = binaryFormats(found);
   if (found.api == Api::Gl && found.version >= 32) {
     found.isCompatibility = (integerOf(GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_COMPATIBILITY_PROFILE_BIT) != 0;
   }

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include <epoxy/gl.h>
 
 #include "gl/context.hpp"
 
@@ -21,14 +24,17 @@ struct Capabilities {
   bool hasPrecise = false;       ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
   bool filtersFloats = false;    ///< of 32 bits, linearly
   bool hasCompute = false;       ///< compute programs of GLSL 4.30, within the limits below
+  bool hasLabels = false;        ///< objects may have names for debuggers (KHR_debug)
+  bool isDebugged = false;       ///< a debugger is there, or the context is one for debugging
+  std::vector<GLenum> binaryFormats;  ///< of programs that the driver gives and takes; none where it does not
   std::string renderer;
-  std::string driver;            ///< GL_VERSION, as the driver words it
-  std::string shadingLanguage;   ///< GL_SHADING_LANGUAGE_VERSION, likewise
-  int textureSize = 0;           ///< also as a viewport
-  int textureLayers = 0;         ///< of an array texture
+  std::string driver;  ///< GL_VERSION, as the driver words it
+  std::string shadingLanguage;  ///< GL_SHADING_LANGUAGE_VERSION, likewise
+  int textureSize = 0;  ///< also as a viewport
+  int textureLayers = 0;  ///< of an array texture
   int drawBuffers = 0;
-  int textureUnits = 0;          ///< at most maxTextureUnits
-  int uniformComponents = 0;     ///< of a program
+  int textureUnits = 0;  ///< at most maxTextureUnits
+  int uniformComponents = 0;  ///< of a program
 };
 
 /// Planes that one pass may write at most, whatever the device allows.

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// Compiling and linking.
+// Compiling and linking. The driver is asked nothing before the end, since every question waits for the answer.
 #include "gl/program.hpp"
 
 namespace sk::gl {
 
 namespace {
-
-void deleteShader(GLuint name) { glDeleteShader(name); }
-using Shader = ObjectName<deleteShader>;
 
 /// Adds the driver's log of a shader or program to `log`.
 template <class GetParameter, class GetLog>
@@ -23,49 +20,87 @@ void appendLog(GLuint object, GetParameter getParameter, GetLog getLog, std::str
   }
 }
 
-Shader compile(GLenum stage, const std::string& source, std::string& log) {
-  Shader shader(glCreateShader(stage));
+ObjectName<deleteShader> compile(GLenum stage, const std::string& source) {
+  ObjectName<deleteShader> shader(glCreateShader(stage));
   const char* text = source.data();
   const auto length = static_cast<GLint>(source.size());
   glShaderSource(shader.get(), 1, &text, &length);
   glCompileShader(shader.get());
-  GLint isCompiled = GL_FALSE;
-  glGetShaderiv(shader.get(), GL_COMPILE_STATUS, &isCompiled);
-  if (isCompiled == GL_FALSE) {
-    appendLog(shader.get(), glGetShaderiv, glGetShaderInfoLog, log);
-    return {};
-  }
   return shader;
+}
+
+/// Adds the log of a shader that does not compile.
+bool isCompiled(GLuint shader, std::string& log) {
+  GLint status = GL_FALSE;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &status);
+  if (status == GL_FALSE) {
+    appendLog(shader, glGetShaderiv, glGetShaderInfoLog, log);
+  }
+  return status != GL_FALSE;
+}
+
+bool isLinked(GLuint program) {
+  GLint status = GL_FALSE;
+  glGetProgramiv(program, GL_LINK_STATUS, &status);
+  return status != GL_FALSE;
 }
 
 }  // namespace
 
-Program Program::build(const std::string& vertexSource, const std::string& fragmentSource, std::string& log) {
-  const Shader vertex = compile(GL_VERTEX_SHADER, vertexSource, log);
-  const Shader fragment = compile(GL_FRAGMENT_SHADER, fragmentSource, log);
-  if (!vertex || !fragment) {
-    return {};
-  }
-  return link({vertex.get(), fragment.get()}, log);
+Program Program::build(const ProgramSources& sources, std::string& log) {
+  return PendingProgram(sources, false).finish(log);
 }
 
-Program Program::buildCompute(const std::string& source, std::string& log) {
-  const Shader shader = compile(GL_COMPUTE_SHADER, source, log);
-  return shader ? link({shader.get()}, log) : Program();
-}
-
-Program Program::link(std::initializer_list<GLuint> shaders, std::string& log) {
+Program Program::load(GLenum format, std::span<const std::byte> bytes) {
   Program program(glCreateProgram());
-  for (const GLuint shader : shaders) glAttachShader(program.name(), shader);
-  glLinkProgram(program.name());
-  for (const GLuint shader : shaders) glDetachShader(program.name(), shader);
-  GLint isLinked = GL_FALSE;
-  glGetProgramiv(program.name(), GL_LINK_STATUS, &isLinked);
-  if (isLinked == GL_FALSE) {
-    appendLog(program.name(), glGetProgramiv, glGetProgramInfoLog, log);
+  glProgramBinary(program.name(), format, bytes.data(), static_cast<GLsizei>(bytes.size()));
+  return isLinked(program.name()) ? std::move(program) : Program();
+}
+
+ProgramBinary Program::binary() const {
+  GLint length = 0;
+  glGetProgramiv(name(), GL_PROGRAM_BINARY_LENGTH, &length);
+  ProgramBinary binary;
+  binary.bytes.resize(static_cast<std::size_t>(length));
+  if (length > 0) {
+    glGetProgramBinary(name(), length, &length, &binary.format, binary.bytes.data());
+    binary.bytes.resize(static_cast<std::size_t>(length));
+  }
+  return binary;
+}
+
+PendingProgram::PendingProgram(const ProgramSources& sources, bool isKept)
+    : program_(glCreateProgram()),
+      main_(compile(sources.isCompute() ? GL_COMPUTE_SHADER : GL_FRAGMENT_SHADER, sources.main)) {
+  if (!sources.isCompute()) {
+    vertex_ = compile(GL_VERTEX_SHADER, sources.vertex);
+    glAttachShader(program_.name(), vertex_.get());
+  }
+  glAttachShader(program_.name(), main_.get());
+  if (isKept) {
+    glProgramParameteri(program_.name(), GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+  }
+  glLinkProgram(program_.name());
+}
+
+Program PendingProgram::finish(std::string& log) {
+  if (!isLinked(program_.name())) {
+    if ((!vertex_ || isCompiled(vertex_.get(), log)) && isCompiled(main_.get(), log)) {
+      appendLog(program_.name(), glGetProgramiv, glGetProgramInfoLog, log);
+    }
     return {};
   }
-  return program;
+  if (vertex_) glDetachShader(program_.name(), vertex_.get());
+  glDetachShader(program_.name(), main_.get());
+  vertex_ = {};
+  main_ = {};
+  return std::move(program_);
+}
+
+void PendingProgram::forget() noexcept {
+  program_.forget();
+  vertex_.forget();
+  main_.forget();
 }
 
 std::array<GLint, 3> Program::workGroup() const {

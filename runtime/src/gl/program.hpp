@@ -1,26 +1,45 @@
 // SPDX-License-Identifier: MIT
 //
-// A linked program: of a vertex and a fragment shader, or of a compute shader.
+// A linked program of a vertex and a fragment shader, or of a compute shader, from their sources or in the driver's own form.
 #pragma once
 
 #include <array>
-#include <initializer_list>
+#include <cstddef>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "gl/object_name.hpp"
 
 namespace sk::gl {
 
 inline void deleteProgram(GLuint name) { glDeleteProgram(name); }
+inline void deleteShader(GLuint name) { glDeleteShader(name); }
+
+/// A program as a driver has made it. Another driver, or another version, may refuse it.
+struct ProgramBinary {
+  GLenum format = 0;
+  std::vector<std::byte> bytes;  ///< none where the driver gives none
+};
+
+/// What a program is compiled of.
+struct ProgramSources {
+  std::string vertex;  ///< empty: it is a compute program
+  std::string main;  ///< the fragment shader, or the compute shader
+
+  bool isCompute() const { return vertex.empty(); }
+};
 
 class Program {
  public:
   Program() = default;
   /// Compiles and links. Where the driver refuses, the result is empty and `log` has its words.
-  static Program build(const std::string& vertexSource, const std::string& fragmentSource, std::string& log);
+  static Program build(const ProgramSources& sources, std::string& log);
+  /// Empty where the driver refuses. The format is one that it knows.
+  static Program load(GLenum format, std::span<const std::byte> bytes);
 
-  /// The same of a compute shader.
-  static Program buildCompute(const std::string& source, std::string& log);
+  /// Of a program that was started to be kept.
+  ProgramBinary binary() const;
 
   GLuint name() const { return name_.get(); }
   explicit operator bool() const { return static_cast<bool>(name_); }
@@ -33,10 +52,30 @@ class Program {
   void forget() noexcept { name_.forget(); }
 
  private:
+  friend class PendingProgram;
   explicit Program(GLuint name) : name_(name) {}
-  static Program link(std::initializer_list<GLuint> shaders, std::string& log);
 
   ObjectName<deleteProgram> name_;
+};
+
+/// A program that the driver has been told to compile. Drivers that compile on threads of their own
+/// (KHR_parallel_shader_compile, and others without a word) work at several at a time.
+class PendingProgram {
+ public:
+  PendingProgram() = default;
+  /// Waits for nothing. `isKept`: somebody will ask for the binary.
+  PendingProgram(const ProgramSources& sources, bool isKept);
+
+  /// Waits. Where the driver refuses, the result is empty and `log` has its words.
+  Program finish(std::string& log);
+  void forget() noexcept;
+
+ private:
+  using Shader = ObjectName<deleteShader>;
+
+  Program program_;
+  Shader vertex_;  ///< none of a compute program
+  Shader main_;
 };
 
 }  // namespace sk::gl

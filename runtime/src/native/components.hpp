@@ -43,6 +43,7 @@ class Components {
   Components(const program::Element& element, RealType real, std::span<const std::vector<std::byte>> arrays);
 
   RealType real() const { return real_; }
+  std::span<const ComponentType> types() const { return types_; }
 
   /// A copy that holds floats as `real`.
   Components clone(std::int64_t count, RealType real) const;

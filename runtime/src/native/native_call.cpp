@@ -11,6 +11,7 @@
 #include "iterator.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
+#include "native/native_trace.hpp"
 #include "precision.hpp"
 
 namespace sk {
@@ -263,7 +264,10 @@ void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments
   const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
   const RealType real = realOf(options);
   Operands operands(real, kernel, arguments, domain, tablesOf(kernel, real, options));
-  codeOf(*kernel.native, real)(operands.call());
+  {
+    const NativePass traced(trace.get(), kernel, {}, arguments, domain);
+    codeOf(*kernel.native, real)(operands.call());
+  }
   operands.settle();
 }
 
@@ -282,6 +286,7 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
     folding.fold.list()[i] = {.components = value.arrays(), .stride = {1, 1, 1, 1}};
     values.emplace_back(parameter.element, &value);
   }
+  const NativePass traced(trace.get(), reduction.fold, "fold", arguments, domain);
   if (domain.size() == 0) {
     folding.storeIdentity();
   } else {
@@ -309,7 +314,10 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
   if (domain.size() != 0) {
     Extents block = fastestFirst(domain);
     for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
-    folding.run(block);
+    {
+      const NativePass traced(trace.get(), reduction.fold, "fold", arguments, domain);
+      folding.run(block);
+    }
     folding.fold.settle();
     return;
   }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "check_argument.hpp"
+#include "copy_bandwidth.hpp"
 #include "native/native_stream.hpp"
 
 namespace sk {
@@ -69,6 +70,11 @@ void NativeDevice::checkTarget(const program::Kernel& kernel, Target asked) cons
 std::unique_ptr<StreamState> NativeDevice::createStream(const program::Element& element, const Shape& shape,
                                                         Storage storage) {
   return std::make_unique<NativeStream>(*this, element, shape, storage);
+}
+
+void NativeDevice::startTrace(const std::string& file) {
+  trace = std::make_unique<Trace>(file, name_);
+  trace->setBandwidth(hostCopyBandwidth());
 }
 
 }  // namespace sk

@@ -15,6 +15,11 @@ class NativeDevice final : public DeviceState {
   ~NativeDevice() override;
 
   RealType real() const { return real_; }
+  /// For the trace: streams have so many bytes more, or less.
+  void countBytes(std::int64_t change) noexcept {
+    bytes_ += change;
+    if (trace) trace->countBytes(bytes_, 0);
+  }
 
   const std::string& name() const override { return name_; }
   const std::string& driver() const override { return none_; }
@@ -29,6 +34,7 @@ class NativeDevice final : public DeviceState {
   void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
                                             Storage storage) override;
+  void startTrace(const std::string& file) override;
   void finish() override {}
   void release() override {}
   void run(const program::Kernel& kernel, std::span<const Argument> arguments,
@@ -51,6 +57,7 @@ class NativeDevice final : public DeviceState {
                                       const CallOptions& options);
 
   RealType real_;
+  std::int64_t bytes_ = 0;  ///< of streams
   std::string name_;
   std::string none_;
   Arithmetic arithmetic_;   ///< IEEE 754's, which compilers keep to

@@ -54,6 +54,20 @@ NativeStream::NativeStream(NativeDevice& on, const program::Element& type, const
     throw Error(fmt::format("'{}' has no memory for a stream of {} of shape {}", on.name(), type.name,
                             toString(extents)));
   }
+  countBytes();
+}
+
+NativeStream::~NativeStream() {
+  if (device != nullptr) owner().countBytes(-bytes_);
+}
+
+void NativeStream::countBytes() noexcept {
+  const std::int64_t before = bytes_;
+  bytes_ = 0;
+  for (const ComponentType& component : components.types()) {
+    bytes_ += shape.size() * static_cast<std::int64_t>(component.storedBytes);
+  }
+  owner().countBytes(bytes_ - before);
 }
 
 NativeDevice& NativeStream::owner() const { return static_cast<NativeDevice&>(*device); }
@@ -105,6 +119,7 @@ void NativeStream::become(const native::Pushed& pushed, RealType real) {
   Components given(*element, real, pushed);
   components = real == components.real() ? std::move(given) : given.clone(count, components.real());
   shape = Shape(count);
+  countBytes();
 }
 
 }  // namespace sk

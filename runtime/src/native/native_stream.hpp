@@ -16,6 +16,8 @@ class NativeStream final : public StreamState {
   /// Throws sk::Error where there is no room.
   NativeStream(NativeDevice& device, const program::Element& element, const Shape& shape, Storage storage);
 
+  ~NativeStream() override;
+
   void settle() override {}
   void write(const StreamRegion& region, const std::byte* elements) override;
   void read(const StreamRegion& region, std::byte* elements) override;
@@ -33,6 +35,9 @@ class NativeStream final : public StreamState {
 
  private:
   NativeDevice& owner() const;
+  void countBytes() noexcept;
+
+  std::int64_t bytes_ = 0;  ///< as the trace knows them
 };
 
 /// The stream of an argument of a call on a native device.

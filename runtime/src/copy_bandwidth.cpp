@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "copy_bandwidth.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cache_folder.hpp"
+#include "copy_kernel.hpp"
+#include "gl/commands.hpp"
+#include "gl_device.hpp"
+#include "layout.hpp"
+#include "pass.hpp"
+#include "sk/error.hpp"
+#include "trace.hpp"
+
+namespace sk {
+
+namespace {
+
+/// Of each of both streams: more than caches hold.
+constexpr std::int64_t rows = 4096, columns = 2048;
+constexpr std::int64_t streamBytes = rows * columns * static_cast<std::int64_t>(sizeof(float4));
+constexpr int rounds = 4;
+/// What is shorter is repeated, so that waiting for its end does not count.
+constexpr Trace::Time leastTime = 10'000'000;
+/// A GPU that had nothing to do takes so long to get to its full speed (an H200: 0.2 s).
+constexpr Trace::Time wakingTime = 300'000'000;
+
+/// The best of some rounds; copy(times) returns when all of it is done.
+template <class Copy>
+double measure(Copy&& copy) {
+  double best = 0;
+  int times = 1;
+  for (int round = 0; round < rounds; ++round) {
+    const Trace::Time start = Trace::now();
+    copy(times);
+    const Trace::Time took = std::max<Trace::Time>(Trace::now() - start, 1);
+    best = std::max(best, static_cast<double>(2 * streamBytes) * times / static_cast<double>(took));
+    if (took < leastTime) times = static_cast<int>(std::min<Trace::Time>(times * leastTime / took + 1, 256));
+  }
+  return best;
+}
+
+/// Software has the bandwidth of the processor that it runs on.
+std::string processor() {
+  std::ifstream in("/proc/cpuinfo");
+  std::string name;
+  for (std::string line; name.empty() && std::getline(in, line);) {
+    if (line.starts_with("model name")) name = line.substr(std::min(line.find(": "), line.size()));
+  }
+  return fmt::format("{} threads{}", std::thread::hardware_concurrency(), name);
+}
+
+template <class Measure>
+double kept(const std::string& key, Measure&& measureNow) {
+  double bandwidth = 0;
+  if (const std::optional<std::string> text = readCached("bandwidth", key)) {
+    std::from_chars(text->data(), text->data() + text->size(), bandwidth);
+  }
+  if (bandwidth <= 0) {
+    bandwidth = measureNow();
+    if (bandwidth > 0) writeCached("bandwidth", key, fmt::format("{:.4g}\n", bandwidth));
+  }
+  return bandwidth;
+}
+
+double measureDevice(GlDevice& device) {
+  const program::Element& element = ElementTraits<float4>::element();
+  const Layout layout = layoutOf({rows, columns}, device.textureLimits());
+  const assemble::Stage stage = device.stageOf(copyKernel(element.fields[0]), KernelClass::Elements, {});
+  const DeviceScope scope(device);
+  PlanesLease from(device), to(device);
+  try {
+    from.planes = device.takePlanes(element, layout.texture, "measuring how fast the device copies");
+    to.planes = device.takePlanes(element, layout.texture, "measuring how fast the device copies");
+  } catch (const Error&) {
+    return 0;
+  }
+  device.choose({}, stage);
+  const auto draw = [&](std::span<Surface> source, std::span<Surface> target) {
+    const Operand operands[] = {{nullptr, layout.whole, source}, {}};
+    Surface* const targets[] = {&target.front()};
+    runKernel(device, copyKernel(element.fields[0]), operands, layout.whole, layout.draws, targets);
+  };
+  draw(from.planes, to.planes);
+  draw(to.planes, from.planes);  // both have been written, so that the memory is there
+  if (!device.isSoftware()) {
+    for (const Trace::Time start = Trace::now(); Trace::now() - start < wakingTime; gl::finish()) {
+      draw(from.planes, to.planes);
+    }
+  }
+  const double drawn = measure([&](int times) {
+    for (int i = 0; i < times; ++i) draw(from.planes, to.planes);
+    gl::finish();
+  });
+  const double copied = measure([&](int times) {
+    for (int i = 0; i < times; ++i)
+      copyRegion(device, element, from.planes, layout.whole, to.planes, layout.whole);
+    gl::finish();
+  });
+  return std::max(drawn, copied);
+}
+
+double measureHost() {
+  const std::size_t threads = std::max(std::thread::hardware_concurrency(), 1U);
+  const auto bytes = static_cast<std::size_t>(streamBytes) / threads;
+  try {
+    const auto from = std::make_unique<std::byte[]>(bytes * threads);
+    const auto to = std::make_unique<std::byte[]>(bytes * threads);
+    return measure([&](int times) {
+      std::vector<std::jthread> all;
+      for (std::size_t thread = 0; thread < threads; ++thread) {
+        all.emplace_back([&, place = thread * bytes] {
+          for (int i = 0; i < times; ++i) std::memcpy(to.get() + place, from.get() + place, bytes);
+        });
+      }
+    });
+  } catch (const std::exception&) {
+    return 0;  // no memory, or no threads
+  }
+}
+
+}  // namespace
+
+double copyBandwidth(GlDevice& device) {
+  if (std::int64_t{device.limits.textureSize} < rows) return 0;  // textures made small, to try layers out
+  const std::string key = driverKey(device.name(), device.driver(), device.profileName());
+  return kept(device.isSoftware() ? key + ", " + processor() : key, [&] { return measureDevice(device); });
+}
+
+double hostCopyBandwidth() {
+  return kept(driverKey("native", processor(), ""), [] { return measureHost(); });
+}
+
+}  // namespace sk

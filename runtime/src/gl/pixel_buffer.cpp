@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#include "gl/pixel_buffer.hpp"
+
+#include "gl/errors.hpp"
+
+namespace sk::gl {
+
+bool BoundPixels::allocate(std::size_t bytes) const {
+  const bool isRead = target_ == GL_PIXEL_PACK_BUFFER;
+  dropErrors();
+  glBufferData(target_, static_cast<GLsizeiptr>(bytes), nullptr, isRead ? GL_STREAM_READ : GL_STREAM_DRAW);
+  return takeError() == GL_NO_ERROR;
+}
+
+std::byte* BoundPixels::map(std::size_t bytes) const {
+  const bool isRead = target_ == GL_PIXEL_PACK_BUFFER;
+  const GLbitfield access = isRead ? GL_MAP_READ_BIT : GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT;
+  return static_cast<std::byte*>(glMapBufferRange(target_, 0, static_cast<GLsizeiptr>(bytes), access));
+}
+
+}  // namespace sk::gl

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+//
+// A buffer of the driver's that texels go through on their way to or from host memory, so that nobody waits for them.
+#pragma once
+
+#include <cstddef>
+
+#include "gl/object_name.hpp"
+
+namespace sk::gl {
+
+inline void deleteBuffer(GLuint name) { glDeleteBuffers(1, &name); }
+
+class PixelBuffer {
+ public:
+  PixelBuffer() = default;
+  static PixelBuffer create() {
+    GLuint name = 0;
+    glGenBuffers(1, &name);
+    return PixelBuffer(name);
+  }
+
+  GLuint name() const { return name_.get(); }
+  explicit operator bool() const { return static_cast<bool>(name_); }
+  void forget() noexcept { name_.forget(); }
+
+ private:
+  explicit PixelBuffer(GLuint name) : name_(name) {}
+
+  ObjectName<deleteBuffer> name_;
+};
+
+/// A buffer as what texels are read to or written from, for as long as this lives: addresses of texels are offsets in
+/// it then.
+class BoundPixels {
+ public:
+  enum class Way : GLenum { Read = GL_PIXEL_PACK_BUFFER, Write = GL_PIXEL_UNPACK_BUFFER };
+
+  BoundPixels(const PixelBuffer& buffer, Way way) : target_(static_cast<GLenum>(way)) {
+    glBindBuffer(target_, buffer.name());
+  }
+  ~BoundPixels() { glBindBuffer(target_, 0); }
+  BoundPixels(const BoundPixels&) = delete;
+  BoundPixels& operator=(const BoundPixels&) = delete;
+
+  /// New, undefined bytes; what still uses the old ones keeps them. False where there is no memory.
+  bool allocate(std::size_t bytes) const;
+  /// The address of all of them, until unmap(): after a read for reading, else for writing everything. Null where the
+  /// driver fails.
+  std::byte* map(std::size_t bytes) const;
+  /// False where the driver has lost what was written.
+  bool unmap() const { return glUnmapBuffer(target_) == GL_TRUE; }
+
+ private:
+  GLenum target_;
+};
+
+}  // namespace sk::gl

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "native/native_trace.hpp"
+
+#include <new>
+
+#include "native/native_stream.hpp"
+
+namespace sk {
+
+namespace {
+
+/// Of a region, in the arrays that hold it.
+std::int64_t bytesOf(const StreamRegion& region) {
+  const auto& stream = static_cast<const NativeStream&>(*region.stream);
+  std::int64_t bytes = 0;
+  for (const ComponentType& component : stream.components.types()) {
+    bytes += region.shape.size() * static_cast<std::int64_t>(component.storedBytes);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+void NativePass::begin(const program::Kernel& kernel, std::string_view step,
+                       std::span<const Argument> arguments, const Shape& domain) {
+  record_ = {std::string(kernel.name), std::string(step), "native", toString(domain), 0, 0};
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i].region.stream == nullptr) continue;
+    const program::Role role = kernel.parameters[i].role;
+    const bool isRead = role == program::Role::Input || role == program::Role::Gather;
+    (isRead ? record_.bytesRead : record_.bytesWritten) += bytesOf(arguments[i].region);
+  }
+  begin_ = Trace::now();
+}
+
+void NativePass::end() noexcept {
+  const Trace::Time end = Trace::now();
+  try {
+    trace_->hostPass(record_, begin_, end);
+    trace_->devicePass(record_, begin_, end, "wall clock");
+  } catch (const std::bad_alloc&) {
+    return;  // a pass less in the trace
+  }
+}
+
+}  // namespace sk

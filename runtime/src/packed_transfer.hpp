@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+//
+// Elements between regions of streams and host memory through a buffer of the driver's, all planes in one, so that the
+// device is waited for once, or not at all. A scope of the device must be open.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "assemble/placement.hpp"
+#include "gl/fence.hpp"
+#include "gl/pixel_buffer.hpp"
+#include "sk/program.hpp"
+#include "surface.hpp"
+
+namespace sk {
+
+class GlDevice;
+
+/// A buffer, and when the device is done with it; kept for the next transfer.
+struct TransferBuffer {
+  gl::PixelBuffer buffer;
+  gl::Fence fence;
+
+  void forget() noexcept;
+};
+
+/// First what is to be read is added, then all of it begun, then taken part by part.
+class PackedRead {
+ public:
+  explicit PackedRead(GlDevice& device);
+  /// Gives the buffer back; touches no GL.
+  ~PackedRead();
+  PackedRead(const PackedRead&) = delete;
+  PackedRead& operator=(const PackedRead&) = delete;
+
+  /// All elements of a region; its number as a part. `element` must outlive this, the planes begin().
+  std::size_t add(const program::Element& element, std::span<Surface> planes,
+                  const assemble::Placement& region);
+  /// Queues the reading. What is written to the planes later is not read. Throws sk::Error where there is no memory.
+  void begin();
+
+  bool isReady() const { return held_.fence.isReached(); }
+  void wait() const { held_.fence.wait(); }
+  /// The elements of a part, row-major. Waits for them. Throws sk::Error where the driver fails.
+  void take(std::size_t part, std::byte* elements);
+  void forget() noexcept { held_.forget(); }
+
+ private:
+  struct Part {
+    const program::Element* element;
+    assemble::Placement region;
+    std::size_t firstBlock;
+  };
+  /// Texels of a plane that are read in one piece.
+  struct Block {
+    Surface* plane;
+    const gl::Format* format;
+    const program::Field* field;
+    gl::Transfer transfer;  ///< how the texels lie in the buffer
+    assemble::Rect rect;  ///< rows are those of all layers
+    std::int64_t
+        first;  ///< its first element in the region; wholeRows: it is all rows that the region lies in
+    std::size_t offset;  ///< in the buffer
+  };
+  static constexpr std::int64_t wholeRows = -1;
+
+  void addBlock(Surface& plane, const program::Field& field, const assemble::Rect& rect, std::int64_t first);
+  void readBlock(const Block& block);
+  static void unpack(const Part& part, const Block& block, const std::byte* texels, std::byte* elements);
+
+  GlDevice& device_;
+  TransferBuffer held_;
+  std::vector<Part> parts_;
+  std::vector<Block> blocks_;
+  std::size_t bytes_ = 0;
+};
+
+/// Copies all elements of a region, row-major in host memory, to its planes. The memory may be reused at once; nobody
+/// waits for the device. Throws sk::Error where there is no memory.
+void writePacked(GlDevice& device, const program::Element& element, std::span<Surface> planes,
+                 const assemble::Placement& region, const std::byte* elements);
+
+}  // namespace sk

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+//
+// Programs' binaries in the cache folder: that another device takes them, and that nothing is worse where they are
+// broken.
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <epoxy/gl.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+
+#include "sk/sk.hpp"
+#include "test_kernel.hpp"
+
+namespace {
+
+using namespace sk;
+using namespace sk::test;
+namespace fs = std::filesystem;
+
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    const char* old = std::getenv(name);
+    old_ = old == nullptr ? "" : old;
+    ::setenv(name, value.c_str(), 1);
+  }
+  ~Variable() { old_.empty() ? ::unsetenv(name_) : ::setenv(name_, old_.c_str(), 1); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::string old_;
+};
+
+std::string contentsOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A cache folder and a trace of this test's own.
+class Folder {
+ public:
+  Folder() { fs::create_directories(path_); }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  /// Those of the kernel: measuring for the trace compiles, too.
+  std::vector<fs::path> programs() const {
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(path_)) {
+      const bool isProgram = entry.path().filename().string().starts_with("program-");
+      const std::string text = contentsOf(entry.path());
+      if (isProgram && text.substr(0, text.find('\n')).find("twice") != std::string::npos)
+        found.push_back(entry.path());
+    }
+    return found;
+  }
+  /// Changes what is after the first line of each program's file.
+  void change(const std::function<void(std::string&)>& edit) const {
+    for (const fs::path& file : programs()) {
+      const std::string text = contentsOf(file);
+      const std::size_t body = text.find('\n') + 1;
+      std::string binary = text.substr(body);
+      edit(binary);
+      std::ofstream(file, std::ios::binary) << text.substr(0, body) << binary;
+    }
+  }
+  /// How many programs a new device has found, as its trace says, when it has doubled a number.
+  std::size_t hits(const std::string& profile) const {
+    static const TestKernel twice("twice", "void twice(float x, out float r) { r = 2.0 * x; }\n",
+                                  {input<float>("x"), output<float>("r")});
+    const Variable cache("SK_CACHE", path_);
+    const fs::path trace = path_ / "trace.json";
+    const Variable traced("SK_TRACE", trace);
+    fs::remove(trace);
+    {
+      Device device(DeviceOptions{.profile = profile});
+      auto x = device.stream<float>({3, 5});
+      x.write(std::vector<float>(15, 1.5F));
+      twice(x, x);
+      CHECK(x.read() == std::vector<float>(15, 3));
+      hasBinaries = hasBinaries && formats() > 0;
+    }
+    const std::string text = contentsOf(trace);
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = text.find("\"cache\":\"hit\"", at)) != std::string::npos; ++at) ++found;
+    return found;
+  }
+
+  mutable bool hasBinaries = true;  ///< all devices that were asked
+
+ private:
+  static GLint formats() {
+    GLint count = 0;
+    glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
+    return count;
+  }
+
+  fs::path path_ = fs::temp_directory_path() / ("sk_programs_" + std::to_string(::getpid()));
+};
+
+/// As the runtime computes it (FNV-1a).
+std::uint64_t hashOf(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return hash;
+}
+
+constexpr std::size_t headBytes = 16;
+
+}  // namespace
+
+TEST_CASE("a program that one device has compiled is another's without compiling") {
+  for (const std::string& profile : profileNames) {
+    const Folder folder;
+    CHECK(folder.hits(profile) == 0);
+    if (!folder.hasBinaries) continue;
+    CHECK(folder.programs().size() == 1);
+    CHECK(folder.hits(profile) == 1);
+    CHECK(folder.programs().size() == 1);
+  }
+}
+
+TEST_CASE("a broken binary, and one that the driver refuses, is made anew") {
+  const Folder folder;
+  folder.hits("");
+  if (!folder.hasBinaries) return;
+  const auto breaks = [&](const std::function<void(std::string&)>& edit) {
+    folder.change(edit);
+    CHECK(folder.hits("") == 0);
+    CHECK(folder.hits("") == 1);
+  };
+  breaks([](std::string& text) { text.back() = static_cast<char>(~text.back()); });
+  breaks([](std::string& text) { text.resize(text.size() / 2); });
+  breaks([](std::string& text) { text.clear(); });
+  breaks([](std::string& text) { text[0] = static_cast<char>(~text[0]); });  // another format
+  breaks([](std::string& text) {  // whole, but no program
+    const std::string nonsense(text.size() - headBytes, 'x');
+    const std::uint64_t hash = hashOf(nonsense);
+    std::memcpy(text.data() + 8, &hash, sizeof hash);
+    text = text.substr(0, headBytes) + nonsense;
+  });
+}
