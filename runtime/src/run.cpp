@@ -32,7 +32,8 @@ class DrawnRects {
  public:
   DrawnRects(const Placement& domain, const Layout& layout) {
     if (!domain.linear) {
-      plane_ = {domain.origin[0], domain.origin[1], domain.extent[0], domain.extent[1]};
+      const Placement texels = domain.packed ? assemble::texelsOf(domain) : domain;
+      plane_ = {texels.origin[0], texels.origin[1], texels.extent[0], texels.extent[1]};
       rects_ = {&plane_, 1};
     } else if (!domain.view) {
       rects_ = layout.draws;
