@@ -28,6 +28,9 @@ namespace sk {
 
 namespace {
 
+/// A trial is off by as much at times, and what is drawn runs on more devices.
+constexpr double worthDispatching = 0.9;
+
 assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capabilities, bool pairs) {
   assemble::Profile profile = *assemble::findProfile(name);
   if (!capabilities.hasDoubles || pairs) {
@@ -175,7 +178,7 @@ assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
   std::optional<assemble::Stage>& known = faster_[static_cast<std::size_t>(kernels)];
   if (!known) {
     const std::optional<double> ratio = computeOverFragment(*this, kernels);
-    known = ratio.value_or(1) < 1 ? assemble::Stage::Compute : assemble::Stage::Fragment;
+    known = ratio.value_or(1) < worthDispatching ? assemble::Stage::Compute : assemble::Stage::Fragment;
   }
   return *known;
 }

@@ -114,7 +114,7 @@ class Trial {
   Trial(GlDevice& device, KernelClass kernels)
       : device_(device),
         kernels_(kernels),
-        shape_(device.capabilities.isSoftware ? Shape{512, 512} : Shape{2048, 2048}),
+        shape_(device.capabilities.isSoftware ? Shape{1024, 1024} : Shape{2048, 2048}),
         x_(device.createStream(floats, shape_, Storage::Single)),
         y_(device.createStream(floats, shape_, Storage::Single)),
         r_(device.createStream(floats, shape_, Storage::Single)) {
@@ -125,7 +125,7 @@ class Trial {
 
   /// The shortest of some runs of each, in turns, after one that compiles.
   double computeOverFragment() {
-    constexpr int rounds = 5;
+    constexpr int rounds = 3;
     std::array<double, 2> best;
     best.fill(std::numeric_limits<double>::infinity());
     for (int round = -1; round < rounds; ++round) {
