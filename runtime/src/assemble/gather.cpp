@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstdlib>
 #include <span>
 
 #include <fmt/format.h>
@@ -85,44 +86,40 @@ class GatherText {
   }
 
   /// A neighbour in the texel of the current element has no boundary, nor has one above or below it in x. All that depends
-  /// on the offset alone is known to the driver's compiler, which then fetches each texel once for all four elements.
+  /// on the offset alone is known to the driver's compiler. main() fetches each texel in reach once for all four elements;
+  /// those that no neighbour is in are never used, and compilers drop them.
   void defineNearByTexels(DomainText& domain) {
     const bool isRow = rank_ == 1;
-    const std::string lane = domain.lane();
-    const std::string n = isRow ? "sk_n" : "sk_n.x";
+    const std::string extents = isRow
+                                    ? fmt::format("int sk_n = {}.x >> 2;", uniform("shape"))
+                                    : fmt::format("ivec2 sk_n = ivec2({0}.x >> 2, {0}.y);", uniform("shape"));
+    const std::string here = isRow ? rowOfTexels(domain) : std::string(program_.texel());
     const std::string p = isRow ? "sk_p" : "sk_p.x";
-    const std::string q = isRow ? "sk_q" : "sk_q.x";
+    const std::string n = isRow ? "sk_n" : "sk_n.x";
+    defineTexels(extents, here);
     std::vector<std::string> lines = {
-        fmt::format("int sk_x = {} + {}, sk_c = sk_x >> 2;", lane, isRow ? "sk_d" : "sk_d.x")};
-    if (isRow) {
-      const bool isLinear = access_.addressing != Addressing::Plane;
-      lines.push_back(fmt::format("int sk_n = {}.x >> 2;", uniform("shape")));
-      lines.push_back(fmt::format("int sk_p = ({}) + sk_c, sk_q = sk_p;",
-                                  isLinear ? domain.texelNumber() : std::string(program_.column())));
-    } else {
-      lines.push_back(fmt::format("ivec2 sk_n = ivec2({0}.x >> 2, {0}.y);", uniform("shape")));
-      lines.push_back(fmt::format("ivec2 sk_p = {} + ivec2(sk_c, sk_d.y), sk_q = sk_p;", program_.texel()));
+        fmt::format("int sk_x = {} + {}, sk_c = sk_x >> 2;", domain.lane(), isRow ? "sk_d" : "sk_d.x")};
+    const auto component = [&](std::string_view number) {
+      return fetchedComponent(program_, parameter_, "sk_v", number);
+    };
+    const bool looksOut = parameter_.boundary != Boundary::Wrap;
+    if (looksOut) {
+      lines.push_back(extents);
+      lines.push_back(isRow ? fmt::format("int sk_p = {} + sk_c;", here)
+                            : fmt::format("ivec2 sk_p = {} + ivec2(sk_c, sk_d.y);", here));
     }
     if (parameter_.boundary == Boundary::Border) {
       lines.push_back(fmt::format("bool sk_out = sk_c != 0 && uint({}) >= uint({});", p, n));
       if (!isRow) lines.emplace_back("sk_out = sk_out || (sk_d.y != 0 && uint(sk_p.y) >= uint(sk_n.y));");
       lines.push_back(fmt::format("if (sk_out) return {};", parameter_.border));
-    } else {
-      lines.push_back(fmt::format("if (sk_c != 0) {} = {};", q, broughtOnce(p, n)));
-      if (!isRow)
-        lines.push_back(fmt::format("if (sk_d.y != 0) sk_q.y = {};", broughtOnce("sk_p.y", "sk_n.y")));
     }
-    lines.push_back(fmt::format("{} sk_v = texelFetch({}, {}, 0);", packedType(parameter_),
-                                samplerName(parameter_, 0), place(program_, texelAt("sk_q"))));
-    const auto component = [&](std::string_view number) {
-      return fetchedComponent(program_, parameter_, "sk_v", number);
-    };
+    chooseTexel(lines);
     if (parameter_.boundary == Boundary::Clamp) {
       lines.push_back(fmt::format("if (sk_c != 0 && {} < 0) return {};", p, component("0")));
       lines.push_back(fmt::format("if (sk_c != 0 && {} >= {}) return {};", p, n, component("3")));
     } else if (parameter_.boundary == Boundary::Mirror) {
-      lines.push_back(
-          fmt::format("if (sk_c != 0 && {} != {}) return {};", p, q, component("3 - (sk_x & 3)")));
+      lines.push_back(fmt::format("if (sk_c != 0 && uint({}) >= uint({})) return {};", p, n,
+                                  component("3 - (sk_x & 3)")));
     }
     lines.push_back(fmt::format("return {};", component("sk_x & 3")));
     program_.function(
@@ -284,6 +281,56 @@ class GatherText {
     lines.push_back(fmt::format("if ({}) return {};", outside, parameter_.border));
   }
 
+  /// The number of the current texel in its row, or among all of a linearised stream.
+  std::string rowOfTexels(DomainText& domain) const {
+    return access_.addressing == Addressing::Plane ? std::string(program_.column())
+                                                   : fmt::format("({})", domain.texelNumber());
+  }
+
+  /// Texels that neighbours may be in, left and right of the current one, and above and below.
+  int reachInX() const { return (parameter_.reach + lanes - 1) / lanes; }
+  int reachInY() const { return rank_ == 1 ? 0 : parameter_.reach; }
+  std::string texelName(int x, int y) const {
+    const auto part = [](int offset) { return fmt::format("{}{}", offset < 0 ? "m" : "", std::abs(offset)); };
+    return fmt::format("sk_texel_{}_{}_{}", parameter_.symbol, part(x), part(y));
+  }
+
+  /// Variables that main() fills with these texels; those beyond a border hold what nobody looks at.
+  void defineTexels(const std::string& extents, const std::string& here) {
+    const bool isRow = rank_ == 1;
+    const std::string name = fmt::format("sk_texel_{}", parameter_.symbol);
+    std::vector<std::string> lines = {extents, isRow ? fmt::format("int sk_p = {} + sk_d;", here)
+                                                     : fmt::format("ivec2 sk_p = {} + sk_d;", here)};
+    if (isRow) {
+      lines.push_back(fmt::format("if (sk_d != 0) sk_p = {};", broughtOnce("sk_p", "sk_n")));
+    } else {
+      lines.push_back(fmt::format("if (sk_d.x != 0) sk_p.x = {};", broughtOnce("sk_p.x", "sk_n.x")));
+      lines.push_back(fmt::format("if (sk_d.y != 0) sk_p.y = {};", broughtOnce("sk_p.y", "sk_n.y")));
+    }
+    lines.push_back(fmt::format("return texelFetch({}, {}, 0);", samplerName(parameter_, 0),
+                                place(program_, texelAt("sk_p"))));
+    program_.function(fmt::format("{} {}({} sk_d)", packedType(parameter_), name, vector()), lines);
+    for (int y = -reachInY(); y <= reachInY(); ++y) {
+      for (int x = -reachInX(); x <= reachInX(); ++x) {
+        program_.variable(packedType(parameter_), texelName(x, y));
+        program_.prologue(isRow ? fmt::format("{} = {}({});", texelName(x, y), name, x)
+                                : fmt::format("{} = {}(ivec2({}, {}));", texelName(x, y), name, x, y));
+      }
+    }
+  }
+
+  /// Makes sk_v that of them which is sk_c texels to the right and sk_d.y below.
+  void chooseTexel(std::vector<std::string>& lines) const {
+    for (int y = -reachInY(); y <= reachInY(); ++y) {
+      std::string row;
+      for (int x = -reachInX(); x < reachInX(); ++x)
+        row += fmt::format("sk_c == {} ? {} : ", x, texelName(x, y));
+      row += texelName(reachInX(), y);
+      lines.push_back(y == -reachInY() ? fmt::format("{} sk_v = {};", packedType(parameter_), row)
+                                       : fmt::format("if (sk_d.y == {}) sk_v = {};", y, row));
+    }
+  }
+
   /// An index of texels, less than an extent outside, brought inside.
   std::string broughtOnce(std::string_view index, std::string_view extent) {
     switch (parameter_.boundary) {
@@ -294,7 +341,7 @@ class GatherText {
       case Boundary::Mirror:
         program_.require(Function::MirrorOnce);
         return fmt::format("sk_mirror({}, {})", index, extent);
-      case Boundary::Border: break;
+      case Boundary::Border: return fmt::format("clamp({}, 0, {} - 1)", index, extent);
     }
     return std::string(index);
   }

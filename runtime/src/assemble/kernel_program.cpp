@@ -215,7 +215,9 @@ class KernelText {
 
   /// Whether a gather's texels lie as those of the domain do, so that neighbours are found by texels.
   bool sharesTexels(const Parameter& gather, const StreamAccess& access) const {
-    if (!variant_.domainPacked || !access.packed || !access.nearby || access.view || variant_.domainView) {
+    constexpr int farthest = 4;  // a gather of rank 2 has 27 texels in reach then
+    if (gather.reach > farthest || !variant_.domainPacked || !access.packed || !access.nearby ||
+        access.view || variant_.domainView) {
       return false;
     }
     const bool isRow = variant_.domain == Domain::Linear && variant_.domainRank == 1 && gather.rank == 1;

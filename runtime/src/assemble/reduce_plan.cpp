@@ -129,7 +129,7 @@ class Planner {
     const bool isOfTexels = isFirst && division_.byTexel;
     const std::int32_t most = isOfTexels ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
     const auto [width, height] = left2_;
-    const Extent2 run = runOf(width, height, most, isFirst && limits_.grouped && division_.inAnyOrder);
+    const Extent2 run = runOf(width, height, most, !isFirst);
     left2_ = {divideUp(width, run.width), divideUp(height, run.height)};
     left_ = left2_.width * left2_.height;
     ReducePass pass{};
@@ -168,7 +168,10 @@ class Planner {
   bool mayGroup() const { return limits_.grouped && blocks_ == 1 && !partialsLayered_; }
 
   void addGroups() {
-    const std::int32_t fan = std::clamp(divideUp(left_, groupSize), 2, limits_.fanIn);
+    constexpr std::int32_t shortFan = 16;  // which leaves enough groups for all of a GPU
+    const bool isLast = left_ <= groupSize * limits_.fanIn;
+    const std::int32_t fan =
+        isLast ? std::max(divideUp(left_, groupSize), 2) : std::min(limits_.fanIn, shortFan);
     const std::int32_t groups = divideUp(left_, fan * groupSize);
     ReducePass pass{};
     pass.toResult = groups == 1;
