@@ -183,6 +183,7 @@ std::string_view Device::profile() const { return state().profileName(); }
 const DeviceLimits& Device::limits() const { return state().limits; }
 bool Device::isSoftware() const { return state().isSoftware(); }
 const Arithmetic& Device::arithmetic() { return state().arithmetic(); }
+std::vector<TargetTrial> Device::trialTargets() { return state().trialTargets(); }
 std::vector<TableReport> Device::tables() const { return state().tables.reports(); }
 void Device::finish() {
   const TraceScope traced(state().trace.get(), "wait", "finish");

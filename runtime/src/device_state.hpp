@@ -33,6 +33,8 @@ class DeviceState {
   virtual bool isSoftware() const = 0;
   /// Tries the device out, unless that is known.
   virtual const Arithmetic& arithmetic() = 0;
+  /// Of all classes of kernels; none where there is no choice.
+  virtual std::vector<TargetTrial> trialTargets() { return {}; }
   /// Whether scatter outputs may combine what comes with what they hold.
   virtual bool combinesScattered() const = 0;
   /// Whether precisions other than float's are forms of a kernel: native code computes in any real type.

@@ -183,6 +183,17 @@ assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
   return *known;
 }
 
+std::vector<TargetTrial> GlDevice::trialTargets() {
+  std::vector<TargetTrial> trials;
+  for (std::size_t i = 0; capabilities.hasCompute && i < kernelClasses; ++i) {
+    const auto kernels = static_cast<KernelClass>(i);
+    if (const std::optional<double> ratio = computeOverFragment(*this, kernels)) {
+      trials.push_back({nameOf(kernels), *ratio});
+    }
+  }
+  return trials;
+}
+
 void GlDevice::choose(const CallOptions& options, assemble::Stage stage) {
   const ProgramChoice choice{.stage = stage,
                              .accurate = options.intrinsics != Intrinsics::Fast,

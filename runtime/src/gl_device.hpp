@@ -66,6 +66,7 @@ class GlDevice final : public DeviceState {
   }
   bool isSoftware() const override { return capabilities.isSoftware; }
   const Arithmetic& arithmetic() override;
+  std::vector<TargetTrial> trialTargets() override;
   bool combinesScattered() const override { return capabilities.blendsFloats; }
   bool takesForms() const override { return true; }
   void checkProgram(const program::Kernel& kernel) override;

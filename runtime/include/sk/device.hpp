@@ -57,6 +57,12 @@ struct DeviceLimits {
   std::int32_t uniformComponents = 0;  ///< components of the uniform arguments of a kernel
 };
 
+/// What a trial with one class of kernels has found out (docs/runtime.md, Targets).
+struct TargetTrial {
+  std::string_view kernels;  ///< "elements", "neighbours", "gathers", "loops" or "reduces"
+  double computeOverFragment;  ///< the time that compute programs take over that of fragment programs
+};
+
 /// What the reference computes with: doubles, of 53 bits, or __float128, of 113, which is software.
 enum class Reference : std::uint8_t { Double, Quad };
 
@@ -115,6 +121,10 @@ class Device {
   /// What the device's float arithmetic is good for. The first time that anybody asks, a program tries it with a
   /// thousand pairs of floats, in some ms; what comes of it is kept for the driver, on disk, too (docs/runtime.md).
   const Arithmetic& arithmetic();
+
+  /// Which programs are faster for which kernels, compute or fragment ones: tries out what was not tried out on this
+  /// driver before. Empty where the device has not both.
+  std::vector<TargetTrial> trialTargets();
 
   /// The tables that stand for functions of kernels which have run on the device, by the functions' names.
   std::vector<TableReport> tables() const;

@@ -53,6 +53,10 @@ void measure(sk::Device& device, Json& info) {
   info["indices"] = probeIndices(device);
   info["doubles"] = probeDoubles(device);
   info["costs"] = probeCosts(device);
+  info["compute_over_fragment"] = Json::object();
+  for (const sk::TargetTrial& trial : device.trialTargets()) {
+    info["compute_over_fragment"][std::string(trial.kernels)] = trial.computeOverFragment;
+  }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   info["measured_in_seconds"] = std::round(10 * taken.count()) / 10;
 }

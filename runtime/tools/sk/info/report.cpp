@@ -173,6 +173,11 @@ class Report {
     line("costs", "a call {:.3g} us, a pass that needs the one before {:.3g} us, with readback {:.3g} us",
          number(costs, "call_us"), number(costs, "pass_us"), number(costs, "pass_and_readback_us"));
     if (hasGl) line("", "a program that the driver has never seen {:.3g} ms", number(costs, "compile_ms"));
+    std::string ratios;
+    for (const auto& [kernels, ratio] : info_.at("compute_over_fragment").items()) {
+      ratios += fmt::format("{}{} {:.3g}", ratios.empty() ? "" : ", ", kernels, ratio.get<double>());
+    }
+    if (!ratios.empty()) line("", "compute programs over fragment programs: {} times", ratios);
   }
 
   const Json& info_;
