@@ -267,6 +267,8 @@ struct Reduction {
   std::vector<ExactSum> exact = {};
   /// Of a wide form: a kernel that takes the accumulators, which are doubles, and gives them as floats.
   std::optional<KernelId> finish = {};
+  /// Elements may be folded in any order: every accumulator is folded by an operator that is known.
+  bool commutative = false;
 };
 
 /// A kernel's forms for other precisions, whose parameters are the same: set by widen-floats and round-halves.

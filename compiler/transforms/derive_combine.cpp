@@ -179,6 +179,7 @@ class State {
     if (pattern && !kernel.reduction->combine && !checkAssociative(kernel, *pattern)) return;
     const bool isGiven = anyAccumulator(kernel, [](const KernelParam& param) { return !!param.identity; });
     if (pattern) addIdentities(kernel, *pattern);
+    const bool isDerived = pattern && !kernel.reduction->combine;
     if (kernel.reduction->combine) {
       if (!checkCombination(kernel)) return;
       needInputs(module_.kernels[*kernel.reduction->combine]);
@@ -192,6 +193,7 @@ class State {
     } else {
       return needCombine(kernel);
     }
+    module_.kernels[id].reduction->commutative = isDerived;
     checkIdentities(module_.kernels[id]);
   }
 
