@@ -5,6 +5,12 @@
 include_guard(GLOBAL)
 cmake_policy(VERSION 3.25)
 
+# What the .sk.cpp files are compiled with by GCC and Clang. Native code rounds each operation by itself, as the language says: no
+# fused multiply-add. Nobody looks at errno or at the flags of exceptions, which would keep loops from being vectorised;
+# results are IEEE 754's all the same.
+set(SK_NATIVE_OPTIONS -ffp-contract=off -fno-math-errno -fno-trapping-math $<$<NOT:$<CONFIG:Debug>>:-O3>
+    CACHE INTERNAL "")
+
 # sk_add_kernels(<target> <file.sk>...
 #                [TARGETS <fragment|compute|native>...]     what skc emits for (default: skc's own)
 #                [INCLUDE_DIRECTORIES <folder>...]          searched by #include in .sk files
@@ -101,9 +107,8 @@ function(sk_add_kernel_file target file options)
     COMMENT "skc ${file}"
     VERBATIM)
   target_sources(${target} PRIVATE "${output}/${name}.cpp" "${output}/${name}.hpp")
-  # Native code rounds each operation by itself, as the language says: no fused multiply-add.
   set_property(SOURCE "${output}/${name}.cpp" APPEND PROPERTY
-               COMPILE_OPTIONS $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
+               COMPILE_OPTIONS "$<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:${SK_NATIVE_OPTIONS}>")
   target_include_directories(${target} PRIVATE "${tree}")
 endfunction()
 

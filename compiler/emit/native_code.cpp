@@ -10,6 +10,7 @@
 
 #include "emit/cpp_names.hpp"
 #include "emit/native_stmt.hpp"
+#include "emit/stream_uses.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "support/text.hpp"
@@ -70,11 +71,14 @@ class KernelWriter {
         names_(module, kernel, types_),
         functions_(functionNames(module, kernel, names_)),
         context_{module, types_, names_, kernel, functions_},
+        uses_(streamUses(module, kernel)),
         name_(fmt::format("sk_{}", name)) {}
 
   std::string write() {
-    text_ = fmt::format("template <class sk_real>\nstruct {} {{\n", name_);
+    text_ = fmt::format("template <class sk_real{}>\nstruct {} {{\n",
+                        hasInside() ? ", bool sk_isInside = false" : "", name_);
     members();
+    forLoops();
     for (const ConstantId id : constantsOf(module_, kernel_)) constant(id);
     for (const FunctionId id : functionsOf(module_, kernel_)) text_ += nativeFunction(context_, id) + "\n";
     for (const FunctionId id : tabulatedFunctionsOf(module_, kernel_)) lookUp(functions_.at(id));
@@ -94,7 +98,7 @@ class KernelWriter {
     for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
       const KernelParam& param = kernel_.params[i];
       const std::string border = param.border ? ", " + nativeExpr(context_, std::nullopt, *param.border) : "";
-      line(1, fmt::format("{} {};", memberType(param), member(i)));
+      line(1, fmt::format("{} {};", memberType(i), member(i)));
       inits.push_back(fmt::format("{}(sk_call, {}{})", member(i), i, border));
     }
     std::size_t tables = 0;
@@ -103,12 +107,14 @@ class KernelWriter {
       line(1, fmt::format("native::TableOf<sk_real> sk_values_{};", function));
       inits.push_back(fmt::format("sk_values_{}(sk_call.tables, {})", function, tables++));
     }
-    line(1, "native::Index sk_index{}, sk_extent{};\n");
+    line(1, "native::Index sk_index{}, sk_extent{};");
+    line(1, "int sk_i = 0;\n");
     line(1, fmt::format("explicit {}(const native::Call& sk_call) : {} {{}}\n", name_, join(inits, ", ")));
   }
 
-  std::string memberType(const KernelParam& param) const {
+  std::string memberType(std::uint32_t i) const {
     static constexpr std::string_view boundaries[] = {"Clamp", "Wrap", "Mirror", "Border"};
+    const KernelParam& param = kernel_.params[i];
     const std::string element = type(param.type);
     switch (param.role) {
       case ParamRole::Uniform:
@@ -117,13 +123,57 @@ class KernelWriter {
       case ParamRole::Output:
       case ParamRole::Accumulator: return fmt::format("native::Output<{}>", element);
       case ParamRole::Gather:
-        return fmt::format("native::Gather<{}, {}, native::Boundary::{}>", element, param.rank,
-                           boundaries[static_cast<std::size_t>(param.boundary)]);
+        return fmt::format(
+            "native::Gather<{}, {}, native::Boundary::{}{}>", element, param.rank,
+            boundaries[static_cast<std::size_t>(param.boundary)],
+            isInRow(i) ? fmt::format(", {}{}", uses_.params[i].reach, hasInside() ? ", sk_isInside" : "")
+                       : "");
       case ParamRole::VariableOutput: return fmt::format("native::VariableOutput<{}>", element);
       case ParamRole::Scatter: return fmt::format("native::Scatter<{}, {}>", element, param.rank);
       case ParamRole::Iterator: return fmt::format("native::Iterator<{}>", element);
     }
     return {};
+  }
+
+  /// What run.hpp and fold.hpp want to know.
+  void forLoops() {
+    if (hasInside()) line(1, fmt::format("using sk_Inside = {}<sk_real, true>;", name_));
+    const auto has = [&](ParamRole role) { return !paramsOf(role).empty(); };
+    if (!kernel_.reduction) {
+      const bool isOrdered = has(ParamRole::VariableOutput) || has(ParamRole::Scatter);
+      line(1, fmt::format("static constexpr bool sk_isOrdered = {};", isOrdered));
+    } else {
+      line(1, fmt::format("static constexpr bool sk_isCommutative = {};", kernel_.reduction->commutative));
+    }
+    line(1, fmt::format("static constexpr bool sk_isUneven = {};", uses_.loops));
+    std::vector<std::string> placed;
+    for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
+      switch (kernel_.params[i].role) {
+        case ParamRole::Input:
+        case ParamRole::Output:
+        case ParamRole::Gather:
+        case ParamRole::Iterator: placed.push_back(member(i)); break;
+        case ParamRole::Uniform:
+        case ParamRole::Spec:
+        case ParamRole::Accumulator:
+        case ParamRole::VariableOutput:
+        case ParamRole::Scatter: break;
+      }
+    }
+    line(1, fmt::format("auto sk_streams() {{ return std::tie({}); }}\n", join(placed, ", ")));
+  }
+
+  /// Whether a gather's neighbours are so near that most elements have them in their own row.
+  bool isInRow(std::uint32_t param) const {
+    constexpr std::int32_t farthest = 8;
+    const std::int32_t reach = uses_.params[param].reach;
+    return reach >= 0 && reach <= farthest;
+  }
+  bool hasInside() const {
+    for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
+      if (isInRow(i) && !kernel_.reduction) return true;
+    }
+    return false;
   }
 
   void constant(ConstantId id) {
@@ -151,7 +201,7 @@ class KernelWriter {
     entryCall([&](std::uint32_t i) { return elementArgument(i); });
     for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
       if (kernel_.params[i].role == ParamRole::Output) {
-        line(2, fmt::format("{}.store(sk_index, sk_value_{});", member(i), names_.symbol(i)));
+        line(2, fmt::format("{}.store(sk_i, sk_value_{});", member(i), names_.symbol(i)));
       }
     }
     line(1, "}");
@@ -162,7 +212,7 @@ class KernelWriter {
       case ParamRole::Uniform:
       case ParamRole::Spec: return member(i) + ".get()";
       case ParamRole::Input:
-      case ParamRole::Iterator: return member(i) + ".at(sk_index)";
+      case ParamRole::Iterator: return member(i) + ".at(sk_i)";
       case ParamRole::Output: return "sk_value_" + names_.symbol(i);
       case ParamRole::Gather:
       case ParamRole::VariableOutput:
@@ -193,7 +243,7 @@ class KernelWriter {
     line(1, fmt::format("static constexpr bool sk_isSeeded = {};\n", kernel_.reduction->seeded));
     if (kernel_.reduction->seeded) {
       line(1, fmt::format("sk_State sk_seed() const {{ return sk_State({}); }}",
-                          list(inputs, [&](std::uint32_t i) { return member(i) + ".at(sk_index)"; })));
+                          list(inputs, [&](std::uint32_t i) { return member(i) + ".at(sk_i)"; })));
     }
     if (hasIdentities(kernel_)) {
       line(1, fmt::format("sk_State sk_identity() const {{ return sk_State({}); }}",
@@ -265,6 +315,7 @@ class KernelWriter {
   KernelNames names_;
   std::map<FunctionId, std::string> functions_;
   NativeContext context_;
+  StreamUses uses_;
   std::string name_;
   std::string text_;
 };
@@ -304,6 +355,31 @@ std::span<const std::string_view> realTypes(Reals reals) {
   static constexpr std::string_view all[] = {"float", "double", "native::Quad"};
   return std::span(all).first(static_cast<std::size_t>(reals) + 1);
 }
+
+/// The functions around the loops of a kernel, one for each real type.
+class Loops {
+ public:
+  Loops(std::string name, Speed speed, std::string parameters, std::string arguments)
+      : name_(std::move(name)),
+        speed_(speed),
+        parameters_(std::move(parameters)),
+        arguments_(std::move(arguments)) {}
+
+  /// What to call: `loop` itself, or a function that is added to `text`.
+  std::string define(const std::string& loop, std::string_view real, std::string& text) const {
+    if (speed_ == Speed::Any || (real != "float" && real != "double")) return loop;
+    const bool isFloat = real == "float";
+    const std::string function = name_ + (isFloat ? "Loop" : "DoubleLoop");
+    text += fmt::format("{} void {}({}) {{\n  {}({});\n}}\n", isFloat ? "SK_NATIVE_HOT" : "SK_NATIVE_INLINED",
+                        function, parameters_, loop, arguments_);
+    return function;
+  }
+
+ private:
+  std::string name_;
+  Speed speed_;
+  std::string parameters_, arguments_;
+};
 
 /// The form of a kernel in half precision, if it has one, and what combines it, where that is another.
 std::string halfForm(const Module& module, const Kernel& kernel, const std::string& name) {
@@ -372,26 +448,37 @@ std::string nativeListing(const Module& module, const Program& program, Reals re
   return text + "}  // namespace\n}  // namespace sk::generated\n";
 }
 
-std::string nativeKernelDescriptor(const std::string& name, Reals reals) {
+std::string nativeKernelDescriptor(const std::string& name, NativeForm form) {
+  const Loops loops(name, form.speed, "const native::Call& call, native::Range pieces", "call, pieces");
+  std::string text;
   std::vector<std::string> code;
-  for (const std::string_view real : realTypes(reals)) {
-    code.push_back(fmt::format("&native::runKernel<generated::sk_{}<{}>>", name, real));
+  for (const std::string_view real : realTypes(form.reals)) {
+    const std::string kernel = fmt::format("generated::sk_{}<{}>", name, real);
+    const std::string loop = loops.define(fmt::format("native::runPieces<{}>", kernel), real, text);
+    code.push_back(fmt::format("&native::runKernel<{}, &{}>", kernel, loop));
   }
-  if (reals == Reals::Single) code.emplace_back("nullptr");
-  return fmt::format("constexpr NativeKernel {}Native = {{{}}};\n\n", name, join(code, ",\n    "));
+  if (form.reals == Reals::Single) code.emplace_back("nullptr");
+  return fmt::format("{}constexpr NativeKernel {}Native = {{{}}};\n\n", text, name, join(code, ",\n    "));
 }
 
 std::string nativeReductionDescriptor(const std::string& name, const std::string& combine,
-                                      const Kernel& reduce, Reals reals) {
+                                      const Kernel& reduce, NativeForm form) {
+  std::string text;
   std::vector<std::string> code;
-  for (const std::string_view real : realTypes(reals)) {
+  for (const std::string_view real : realTypes(form.reals)) {
+    const std::string fold = fmt::format("generated::sk_{}<{}>", name, real);
+    const std::string both = fmt::format("{}, generated::sk_{}<{}>", fold, combine, real);
+    const Loops loops(
+        name, form.speed,
+        fmt::format("const native::ReduceCall& call, native::Range pieces, {}::sk_State* states", fold),
+        "call, pieces, states");
+    const std::string loop = loops.define(fmt::format("native::foldPieces<{}>", both), real, text);
     const std::string identity =
-        hasIdentities(reduce) ? fmt::format(", &native::storeIdentity<generated::sk_{}<{}>>", name, real)
-                              : "";
-    code.push_back(fmt::format("{{&native::runReduction<generated::sk_{0}<{2}>, generated::sk_{1}<{2}>>{3}}}",
-                               name, combine, real, identity));
+        hasIdentities(reduce) ? fmt::format(", &native::storeIdentity<{}>", fold) : "";
+    code.push_back(fmt::format("{{&native::runReduction<{}, &{}>{}}}", both, loop, identity));
   }
-  return fmt::format("constexpr NativeReduction {}Native = {{\n    {}}};\n\n", name, join(code, ",\n    "));
+  return fmt::format("{}constexpr NativeReduction {}Native = {{\n    {}}};\n\n", text, name,
+                     join(code, ",\n    "));
 }
 
 }  // namespace skc::emit

@@ -197,7 +197,7 @@ class NativeExpr {
     return {fmt::format("{}.at({})", stream(n.stream), text(*n.index))};
   }
   Parts print(Type, const NeighborRead& n) const {
-    return {fmt::format("{}.near(sk_index, {})", stream(n.stream), text(*n.offset))};
+    return {fmt::format("{}.near(sk_i, {})", stream(n.stream), text(*n.offset))};
   }
   Parts print(Type type, const Sample& n) const {
     return {fmt::format("{}.template sample<{}>({})", stream(n.stream), typeText(type), text(*n.position))};

@@ -73,7 +73,7 @@ class SourceWriter {
     const sk::program::Table* made = program_.tables()[id];
     if (made == nullptr) return;
     const std::string& name = tableNames_[id];
-    kernel(*made->values, module_.kernels[*module_.tables[id].kernel], name, native_);
+    kernel(*made->values, module_.kernels[*module_.tables[id].kernel], name, inAnyReal(Speed::Any));
     text_ += fmt::format(
         "constexpr Table {0}Table = {{\"{1}\", {{{2}, {3}, {4}}}, Interpolation::{5}, &{0}Kernel}};\n\n",
         name, made->function, floatLiteral(made->range.low), floatLiteral(made->range.high),
@@ -87,27 +87,33 @@ class SourceWriter {
     const Kernel& declared = kernelOf(unit);
     const sk::program::Kernel& whole = program_.units()[unit].kernel;
     if (whole.half != nullptr) {
-      kernel(*whole.half, module_.kernels[*declared.forms.half], names_[unit] + "Half", ofFloats());
+      kernel(*whole.half, module_.kernels[*declared.forms.half], names_[unit] + "Half", ofFloats(Speed::Any));
     }
     if (whole.wide != nullptr) {
       kernel(*whole.wide, module_.kernels[*declared.forms.wide], names_[unit] + "Wide", {});
     }
-    kernel(whole, declared, names_[unit], native_);
+    kernel(whole, declared, names_[unit], inAnyReal(Speed::Best));
     if (const sk::program::Reduction* made = program_.units()[unit].reduction) {
       const std::string combine = combination(unit, *made);
       if (made->compensated != nullptr) compensated(*made->compensated, declared, names_[unit]);
       forms(*made, declared, names_[unit]);
       exactSums(made->exact, declared, names_[unit]);
-      reduction(*made, declared, names_[unit], combine, native_);
+      reduction(*made, declared, names_[unit], combine, inAnyReal(Speed::Best));
     }
   }
 
-  /// The native code of what has a meaning for floats alone.
-  std::optional<Reals> ofFloats() const { return native_ ? std::optional(Reals::Single) : std::nullopt; }
+  /// The native code of what computes in any real type, and of what has a meaning for floats alone; nothing where there is none.
+  std::optional<NativeForm> inAnyReal(Speed speed) const {
+    return native_ ? std::optional(NativeForm{*native_, speed}) : std::nullopt;
+  }
+  std::optional<NativeForm> ofFloats(Speed speed) const {
+    return native_ ? std::optional(NativeForm{Reals::Single, speed}) : std::nullopt;
+  }
 
   /// Those of a reduction: NAMEHalfReduction and NAMEWide.
   void forms(const sk::program::Reduction& made, const Kernel& declared, const std::string& name) {
-    if (made.half != nullptr) reductionForm(*made.half, *declared.forms.half, name + "Half", ofFloats());
+    if (made.half != nullptr)
+      reductionForm(*made.half, *declared.forms.half, name + "Half", ofFloats(Speed::Any));
     if (made.wide == nullptr) return;
     reductionForm(made.wide->reduction, *declared.forms.wide, name + "Wide", {});
     const KernelId finish = *module_.kernels[*declared.forms.wide].reduction->finish;
@@ -117,7 +123,7 @@ class SourceWriter {
   }
 
   void reductionForm(const sk::program::Reduction& made, KernelId id, const std::string& name,
-                     std::optional<Reals> native) {
+                     std::optional<NativeForm> native) {
     const KernelId combine = *module_.kernels[id].reduction->combine;
     kernel(made.fold, module_.kernels[id], name, native);
     if (combine != id) kernel(made.combine, module_.kernels[combine], name + "Combine", native);
@@ -126,7 +132,7 @@ class SourceWriter {
 
   /// The constant NAMEKernel, and what it refers to; `native`: the real types of its native code, if it has any.
   void kernel(const sk::program::Kernel& made, const Kernel& declared, const std::string& name,
-              std::optional<Reals> native) {
+              std::optional<NativeForm> native) {
     kernelParts(made, declared, name);
     if (made.planCount > 0) plans(made, declared, name);
     const bool hasNative = native && !declared.reduction;
@@ -137,7 +143,7 @@ class SourceWriter {
 
   /// The constant NAMEReduction. `combine` is the name of what combines.
   void reduction(const sk::program::Reduction& made, const Kernel& declared, const std::string& name,
-                 const std::string& combine, std::optional<Reals> native) {
+                 const std::string& combine, std::optional<NativeForm> native) {
     const Kernel& combining = module_.kernels[*declared.reduction->combine];
     const bool hasOperands =
         std::any_of(combining.params.begin(), combining.params.end(), [](const KernelParam& param) {
@@ -167,10 +173,10 @@ class SourceWriter {
     const Compensated& second = *declared.reduction->compensated;
     const Kernel& fold = module_.kernels[second.fold];
     const CompensatedNames names(name);
-    kernel(made.reduction.combine, module_.kernels[*fold.reduction->combine], names.combine, native_);
-    kernel(made.reduction.fold, fold, names.fold, native_);
-    reduction(made.reduction, fold, names.fold, names.combine, native_);
-    kernel(made.finish, module_.kernels[second.finish], names.finish, native_);
+    kernel(made.reduction.combine, module_.kernels[*fold.reduction->combine], names.combine, {});
+    kernel(made.reduction.fold, fold, names.fold, {});
+    reduction(made.reduction, fold, names.fold, names.combine, inAnyReal(Speed::Best));
+    kernel(made.finish, module_.kernels[second.finish], names.finish, inAnyReal(Speed::Any));
     std::vector<std::string> sums;
     for (const auto& [accumulator, offset] : made.sums) {
       sums.push_back(fmt::format("{{{}, {}}}", accumulator, offset));
@@ -192,11 +198,11 @@ class SourceWriter {
       const ExactNames names(name, k);
       const std::string combineName = exactCombinationName(module_.kernels[combine]);
       if (combinations_.insert(combine).second) {
-        kernel(made[k].reduction.combine, module_.kernels[combine], combineName, ofFloats());
+        kernel(made[k].reduction.combine, module_.kernels[combine], combineName, {});
       }
-      kernel(made[k].reduction.fold, fold, names.fold, ofFloats());
-      reduction(made[k].reduction, fold, names.fold, combineName, ofFloats());
-      kernel(made[k].finish, module_.kernels[sum.finish], names.finish, ofFloats());
+      kernel(made[k].reduction.fold, fold, names.fold, {});
+      reduction(made[k].reduction, fold, names.fold, combineName, ofFloats(Speed::Best));
+      kernel(made[k].finish, module_.kernels[sum.finish], names.finish, ofFloats(Speed::Any));
       items.push_back(
           fmt::format("{{{}Reduction, {}Kernel, {}}}", names.fold, names.finish, sum.accumulator));
     }
@@ -213,7 +219,7 @@ class SourceWriter {
       return names_[other];
     }
     const std::string name = names_[unit] + "Combine";
-    kernel(made.combine, module_.kernels[id], name, native_);
+    kernel(made.combine, module_.kernels[id], name, {});
     return name;
   }
 

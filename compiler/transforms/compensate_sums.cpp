@@ -111,6 +111,7 @@ class Maker {
     const KernelId finish = makeFinish();
     Compensated made{fold, finish, {}};
     for (const FloatSum& sum : sums_) made.sums.push_back({sum.accumulator, sum.members});
+    module_.kernels[fold].reduction->commutative = module_.kernels[id_].reduction->commutative;
     module_.kernels[id_].reduction->compensated = std::move(made);
   }
 

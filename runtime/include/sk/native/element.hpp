@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
+#include <utility>
 
 #include "sk/native/scalar.hpp"
 
@@ -34,34 +35,61 @@ struct Cursor {
 };
 
 template <class T>
-void visit(T& value, auto&& scalar);
+constexpr void visit(T& value, auto&& scalar);
 
 /// scalar(component) for every scalar of a value, in order.
 template <class T>
   requires requires { T::sk_members(); }
-void visitMembers(T& value, auto&& scalar) {
+constexpr void visitMembers(T& value, auto&& scalar) {
   std::apply([&](auto... members) { (visit(value.*members, scalar), ...); }, T::sk_members());
 }
+/// each(item) for all, without a loop: the compiler then keeps them in registers.
 template <class T, std::size_t N>
-void visitMembers(Vec<T, N>& value, auto&& scalar) {
-  for (T& component : value.components) scalar(component);
+constexpr void unrolled(T (&items)[N], auto&& each) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) { (each(items[I]), ...); }(std::make_index_sequence<N>());
+}
+
+template <class T, std::size_t N>
+constexpr void visitMembers(Vec<T, N>& value, auto&& scalar) {
+  unrolled(value.components, scalar);
 }
 template <class T, std::size_t N>
-void visitMembers(Mat<T, N>& value, auto&& scalar) {
-  for (Vec<T, N>& row : value.rows) visitMembers(row, scalar);
+constexpr void visitMembers(Mat<T, N>& value, auto&& scalar) {
+  unrolled(value.rows, [&](Vec<T, N>& row) { visitMembers(row, scalar); });
+}
+/// The accumulators of a reduction.
+template <class... T>
+constexpr void visitMembers(std::tuple<T...>& value, auto&& scalar) {
+  std::apply([&](T&... accumulator) { (visit(accumulator, scalar), ...); }, value);
 }
 template <class T, std::size_t N>
-void visitMembers(Array<T, N>& value, auto&& scalar) {
+constexpr void visitMembers(Array<T, N>& value, auto&& scalar) {
   for (T& element : value.elements) visit(element, scalar);
 }
 
 template <class T>
-void visit(T& value, auto&& scalar) {
+constexpr void visit(T& value, auto&& scalar) {
   if constexpr (requires { visitMembers(value, scalar); }) {
     visitMembers(value, scalar);
   } else {
     scalar(value);
   }
+}
+
+/// How many scalars a value has, and their bytes in memory.
+struct Extent {
+  std::size_t scalars = 0;
+  std::size_t bytes = 0;
+};
+template <class T>
+constexpr Extent measured() {
+  Extent extent;
+  T value{};
+  visit(value, [&]<class S>(S&) {
+    ++extent.scalars;
+    extent.bytes += sizeof(typename StoredOf<S>::Type);
+  });
+  return extent;
 }
 
 template <class T>

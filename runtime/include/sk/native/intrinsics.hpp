@@ -58,10 +58,10 @@ template <class T> T absOf(T x) { if constexpr (isInteger<T>) { return x < T(0) 
 template <class T> T signOf(T x) { return x > T(0) ? T(1) : x < T(0) ? T(-1) : T(0); }
 /// IEEE 754's minNum and maxNum: of a number and a NaN, the number; -0 is below +0.
 template <class T> T minOf(T x, T y) {
-  if constexpr (isInteger<T>) { return y < x ? y : x; } else { return x == y ? (Math<T>::signbit(x) ? x : y) : Math<T>::fmin(x, y); }
+  if constexpr (isInteger<T>) { return y < x ? y : x; } else { return x == y ? (Math<T>::signbit(x) ? x : y) : x < y || y != y ? x : y; }
 }
 template <class T> T maxOf(T x, T y) {
-  if constexpr (isInteger<T>) { return x < y ? y : x; } else { return x == y ? (Math<T>::signbit(x) ? y : x) : Math<T>::fmax(x, y); }
+  if constexpr (isInteger<T>) { return x < y ? y : x; } else { return x == y ? (Math<T>::signbit(x) ? y : x) : x > y || y != y ? x : y; }
 }
 /// Below 1, also where x is a little less than a whole number.
 template <class T> T fractOf(T x) {
@@ -143,11 +143,11 @@ template <class T> T sumErrorOf(T a, T b) {
 /// Of a product that is not finite, 0.
 template <class T> T productErrorOf(T a, T b) {
   const T p = a * b;
-  if (!Math<T>::isfinite(p)) return T(0);
   if constexpr (std::is_same_v<T, float>) {
-    return static_cast<float>(double{a} * double{b} - double{p});
+    const auto error = static_cast<float>(double{a} * double{b} - double{p});
+    return Math<T>::isfinite(p) ? error : T(0);
   } else {
-    return Math<T>::fma(a, b, -p);
+    return Math<T>::isfinite(p) ? Math<T>::fma(a, b, -p) : T(0);
   }
 }
 SK_NATIVE_2(roundedProduct, x * y)

@@ -6,6 +6,9 @@
 #include <tuple>
 
 #include "sk/native/exact.hpp"
+#include "sk/native/fold.hpp"
+#include "sk/native/gather.hpp"
+#include "sk/native/hot.hpp"
 #include "sk/native/intrinsics.hpp"
 #include "sk/native/run.hpp"
 #include "sk/native/streams.hpp"

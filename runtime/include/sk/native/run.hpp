@@ -1,141 +1,175 @@
 // SPDX-License-Identifier: MIT
 //
-// The loops around native code. A kernel is a struct made from a Call; its members sk_index and sk_extent are the
-// current element's index and the domain's shape, and sk_element() computes that element. A reduction has
-// instead, for a State, which is a tuple of its accumulators:
+// The loops around kernels in native code (fold.hpp has those around reductions). A kernel is a struct made from a Call, with
 //
-//   State sk_identity()             where a run of elements starts (not of a seeded one)
-//   State sk_seed()                 the current element as accumulators (of a seeded one)
-//   void sk_fold(State&)            folds the current element
-//   void sk_combine(State&, State)  folds the accumulators of a later run; of the kernel that combines
-//   void sk_store(State)            writes the results, at sk_index
+//   Index sk_index, sk_extent     the current element's index, and the domain's shape
+//   int sk_i                      its number in the chunk
+//   auto sk_streams()             references to the parameters that are placed at a chunk
+//   void sk_element()             computes the current element
+//   bool sk_isOrdered             elements are computed one after the other: it pushes or scatters
+//   bool sk_isUneven              elements may take very different times: it has loops
+//
+// It may have a second form, sk_Inside, which knows that no neighbour lies outside of its row. Rows are divided into pieces, which
+// threads share out among them.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+#include <tuple>
 #include <utility>
-#include <vector>
 
+#include "sk/native/gather.hpp"
 #include "sk/native/streams.hpp"
 
 namespace sk::native {
 
-/// visit(index) for every index from `begin` to `end`, row-major.
-template <class Visit>
-void forEachIndex(const Extents& begin, const Extents& end, Visit&& visit) {
-  Index index;
-  for (std::int64_t w = begin[3]; w < end[3]; ++w) {
-    for (std::int64_t z = begin[2]; z < end[2]; ++z) {
-      for (std::int64_t y = begin[1]; y < end[1]; ++y) {
-        for (std::int64_t x = begin[0]; x < end[0]; ++x) {
-          index = Index(Int(x), Int(y), Int(z), Int(w));
-          visit(index);
+/// The rows of a domain in pieces of elements that are neighbours.
+class Pieces {
+ public:
+  static constexpr std::int64_t longest = 1 << 13;
+
+  explicit Pieces(const Extents& domain) : domain_(domain), perRow_((domain[0] + longest - 1) / longest) {}
+
+  std::int64_t count() const { return perRow_ * domain_[1] * domain_[2] * domain_[3]; }
+  std::int64_t elementsOfOne() const { return std::min(domain_[0], longest); }
+
+  /// visit(first, count) for the elements of these pieces, as many neighbours at a time as `most` allows.
+  template <class Visit>
+  void forEachChunk(Range pieces, int most, Visit&& visit) const {
+    Extents at = firstOf(pieces.begin);
+    for (std::int64_t left = pieces.end - pieces.begin; left > 0;) {
+      const std::int64_t end = std::min(domain_[0], at[0] + left * longest);
+      left -= (end - at[0] + longest - 1) / longest;
+      while (at[0] < end) {
+        const auto count = static_cast<int>(std::min<std::int64_t>(end - at[0], most));
+        visit(at, count);
+        at[0] += count;
+      }
+      at[0] = 0;
+      for (std::size_t d = 1; d < 4 && ++at[d] == domain_[d]; ++d) at[d] = 0;
+    }
+  }
+
+ private:
+  Extents firstOf(std::int64_t piece) const {
+    const std::int64_t row = piece / perRow_;
+    return {piece % perRow_ * longest, row % domain_[1], row / domain_[1] % domain_[2],
+            row / domain_[1] / domain_[2]};
+  }
+
+  Extents domain_;
+  std::int64_t perRow_;
+};
+
+template <class Kernel>
+bool isDirect(Kernel& kernel) {
+  return std::apply([](auto&... stream) { return (stream.isDirect() && ...); }, kernel.sk_streams());
+}
+template <class Kernel>
+void place(Kernel& kernel, const Chunk& chunk) {
+  chunk.scratch.restart();
+  std::apply([&](auto&... stream) { (stream.place(chunk), ...); }, kernel.sk_streams());
+  kernel.sk_index = toIndex(chunk.first);
+}
+
+/// How long a chunk may be.
+template <class Kernel>
+int longestChunk(Kernel& kernel) {
+  return isDirect(kernel) ? std::numeric_limits<int>::max() : laidOut;
+}
+
+/// From here on, element i of the chunk is the current one.
+template <class Kernel>
+void moveTo(Kernel& kernel, std::int32_t x, int i) {
+  kernel.sk_i = i;
+  kernel.sk_index.components[0] = Int(x + i);
+}
+
+/// Runs a kernel on chunks.
+template <class Kernel>
+class ChunkRunner {
+ public:
+  explicit ChunkRunner(const Call& call) : kernel_(call), longest_(longestChunk(kernel_)) {
+    kernel_.sk_extent = toIndex(call.domain);
+  }
+
+  Kernel& kernel() { return kernel_; }
+  /// The length of a chunk, at most.
+  int longest() const { return longest_; }
+
+  /// Elements from `a` to `b` of a chunk, and from `c` to `d`. None writes what another one reads: the runtime copies streams that
+  /// are read elsewhere than they are written.
+  void run(const Extents& first, int count, int a, int b, int c = 0, int d = 0) {
+    place(kernel_, {first, count, scratch_});
+    Kernel here = kernel_;  // which nothing that is stored can change
+    const auto x = static_cast<std::int32_t>(first[0]);
+    for (int part = 0; part < 2; ++part, a = c, b = d) {
+      if constexpr (Kernel::sk_isOrdered) {
+        for (int i = a; i < b; ++i) {
+          moveTo(here, x, i);
+          here.sk_element();
+        }
+      } else {
+#pragma GCC ivdep
+        for (int i = a; i < b; ++i) {
+          moveTo(here, x, i);
+          here.sk_element();
         }
       }
     }
   }
-}
-
-template <class Kernel>
-void runKernel(const Call& call) {
-  Kernel kernel(call);
-  kernel.sk_extent = toIndex(call.domain);
-  forEachIndex({}, call.domain, [&](const Index& index) {
-    kernel.sk_index = index;
-    kernel.sk_element();
-  });
-}
-
-/// Results of runs of elements, each with how many leaves it is made of; two of equal size become one. So a
-/// sum of n elements has an error of some log n roundings, not n.
-template <class Combine, class State>
-class Runs {
- public:
-  explicit Runs(Combine& combine) : combine_(combine) {}
-
-  void add(State&& state) {
-    std::size_t leaves = 1;
-    while (!runs_.empty() && runs_.back().leaves == leaves) {
-      combine_.sk_combine(runs_.back().state, state);
-      state = std::move(runs_.back().state);
-      runs_.pop_back();
-      leaves *= 2;
-    }
-    runs_.push_back({leaves, std::move(state)});
-  }
-  /// Of all that were added, in order.
-  State take() {
-    State last = std::move(runs_.back().state);
-    runs_.pop_back();
-    while (!runs_.empty()) {
-      combine_.sk_combine(runs_.back().state, last);
-      last = std::move(runs_.back().state);
-      runs_.pop_back();
-    }
-    return last;
-  }
 
  private:
-  struct Run {
-    std::size_t leaves;
-    State state;
-  };
-  Combine& combine_;
-  std::vector<Run> runs_;
+  Kernel kernel_;
+  int longest_;
+  Scratch scratch_;
 };
 
-/// Folds the elements of a block; there is one at least, or an identity.
-template <class Fold, class Combine>
-auto foldBlock(Fold& fold, Combine& combine, const Extents& begin, const Extents& end) {
-  using State = typename Fold::sk_State;
-  constexpr int leaf = 16;  // elements that are folded one after the other; program::longestRun at most
-  Runs<Combine, State> runs(combine);
-  State state{};
-  int count = 0;
-  forEachIndex(begin, end, [&](const Index& index) {
-    fold.sk_index = index;
-    if (count == 0) {
-      if constexpr (Fold::sk_isSeeded) {
-        state = fold.sk_seed();
-      } else {
-        state = fold.sk_identity();
-        fold.sk_fold(state);
-      }
-    } else {
-      fold.sk_fold(state);
-    }
-    if (++count == leaf) {
-      runs.add(std::move(state));
-      count = 0;
-    }
-  });
-  if (count > 0) runs.add(std::move(state));
-  return runs.take();
+template <class Kernel>
+concept HasInside = requires { typename Kernel::sk_Inside; };
+
+/// The part of each row where no neighbour is outside of it.
+template <class Kernel>
+Range insideOf(Kernel& kernel, std::int64_t extent) {
+  Range inside{0, extent};
+  const auto narrow = [&](auto& stream) {
+    if constexpr (requires { stream.narrow(inside); }) stream.narrow(inside);
+  };
+  std::apply([&](auto&... stream) { (narrow(stream), ...); }, kernel.sk_streams());
+  return inside;
 }
 
-/// Each block of the domain to one element of the results. No block is empty.
-template <class Fold, class Combine>
-void runReduction(const ReduceCall& call) {
-  Fold fold(call.fold);
-  fold.sk_extent = toIndex(call.fold.domain);
-  Combine combine(call.combine);
-  Extents blocks;
-  for (std::size_t d = 0; d < 4; ++d) blocks[d] = call.fold.domain[d] / call.block[d];
-  forEachIndex({}, blocks, [&](const Index& at) {
-    Extents begin;
-    Extents end;
-    for (std::size_t d = 0; d < 4; ++d) {
-      begin[d] = at.components[d].word() * call.block[d];
-      end[d] = begin[d] + call.block[d];
-    }
-    const typename Fold::sk_State state = foldBlock(fold, combine, begin, end);
-    fold.sk_store(at, state);
-  });
+/// The elements of some of the domain's Pieces, one after the other.
+template <class Kernel>
+void runPieces(const Call& call, Range pieces) {
+  ChunkRunner<Kernel> whole(call);
+  const Pieces all(call.domain);
+  if constexpr (HasInside<Kernel>) {
+    ChunkRunner<typename Kernel::sk_Inside> inside(call);
+    const Range range = insideOf(inside.kernel(), call.domain[0]);
+    all.forEachChunk(pieces, whole.longest(), [&](const Extents& first, int count) {
+      const int a = static_cast<int>(std::clamp<std::int64_t>(range.begin - first[0], 0, count));
+      const int b = static_cast<int>(std::clamp<std::int64_t>(range.end - first[0], a, count));
+      if (a < b) inside.run(first, count, a, b);
+      if (a > 0 || b < count) whole.run(first, count, 0, a, b, count);
+    });
+  } else {
+    all.forEachChunk(pieces, whole.longest(),
+                     [&](const Extents& first, int count) { whole.run(first, count, 0, count); });
+  }
 }
 
-/// Where there is no element: the identities, to the one element of the results.
-template <class Fold>
-void storeIdentity(const ReduceCall& call) {
-  Fold fold(call.fold);
-  fold.sk_store(Index(Int(0)), fold.sk_identity());
+/// A kernel over the domain; `hot` is runPieces of it.
+template <class Kernel, auto hot>
+void runKernel(const Call& call) {
+  const Pieces pieces(call.domain);
+  if (pieces.count() == 0) return;
+  if constexpr (Kernel::sk_isOrdered) {
+    hot(call, {0, pieces.count()});
+  } else {
+    inParallel(pieces.count(), pieces.elementsOfOne(), Kernel::sk_isUneven ? Deal::AsTheyCome : Deal::Evenly,
+               [&](Range range) { hot(call, range); });
+  }
 }
 
 }  // namespace sk::native

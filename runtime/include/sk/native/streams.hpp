@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// The parameters of a kernel in native code. An Index is the domain's, x fastest.
+// The parameters of a kernel in native code (gather.hpp has those that are read anywhere). An Index is the domain's, x fastest.
+// What the loops of run.hpp go through is placed at a chunk; its elements there have numbers from 0 on.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 #include "sk/native/call.hpp"
+#include "sk/native/chunk.hpp"
 #include "sk/native/element.hpp"
-#include "sk/native/math.hpp"
 #include "sk/native/vector.hpp"
 
 namespace sk::native {
-
-using Index = Vec<Int, 4>;
 
 /// One index into a stream of rank N: Int, or Vec<Int, N>.
 template <std::size_t N>
@@ -26,12 +23,6 @@ template <>
 struct IndexOfRank<1> {
   using Type = Int;
 };
-
-inline Index toIndex(const Extents& extents) {
-  Index index{};
-  for (std::size_t d = 0; d < 4; ++d) index.components[d] = Int(extents[d]);
-  return index;
-}
 
 /// A uniform or spec parameter.
 template <class T>
@@ -55,11 +46,23 @@ class Iterator {
         begin_(load<T>(call.operands[parameter].components.data(), 0)),
         end_(load<T>(call.operands[parameter].components.data(), 1)) {}
 
-  T at(const Index& index) const {
-    T value{};
+  bool isDirect() const { return true; }
+  void place(const Chunk& chunk) {
     for (std::size_t c = 0; c < widthOf<T>; ++c) {
-      componentAt(value, c) =
-          ramp(componentAt(begin_, c), componentAt(end_, c), position(index, c), steps(c));
+      first_[c] = countsElements_ ? number(chunk.first) : chunk.first[c];
+      if constexpr (isInteger<Scalar>) {
+        const Scalar begin = componentAt(begin_, c);
+        componentAt(step_, c) = Scalar((std::int64_t{componentAt(end_, c).word()} - begin.word()) / steps(c));
+        componentAt(start_, c) = begin + componentAt(step_, c) * Scalar(first_[c]);
+      }
+    }
+  }
+
+  T at(int i) const {
+    T value{};
+    for (std::size_t c = 0; c < widthOf<T>; ++c) componentAt(value, c) = componentOf(c, c == 0 ? i : 0);
+    if (countsElements_) {
+      for (std::size_t c = 1; c < widthOf<T>; ++c) componentAt(value, c) = componentOf(c, i);
     }
     return value;
   }
@@ -70,25 +73,27 @@ class Iterator {
   std::int64_t steps(std::size_t component) const {
     return countsElements_ ? domain_[0] * domain_[1] * domain_[2] * domain_[3] : domain_[component];
   }
-  std::int64_t position(const Index& index, std::size_t component) const {
-    if (!countsElements_) return index.components[component].word();
+  std::int64_t number(const Extents& index) const {
     std::int64_t number = 0;
-    for (std::size_t d = 4; d-- > 0;) number = number * domain_[d] + index.components[d].word();
+    for (std::size_t d = 4; d-- > 0;) number = number * domain_[d] + index[d];
     return number;
   }
-  static Scalar ramp(Scalar begin, Scalar end, std::int64_t k, std::int64_t n) {
+  Scalar componentOf(std::size_t c, int i) const {
     if constexpr (isInteger<Scalar>) {
-      const std::int64_t first = begin.word();
-      return Scalar(first + (std::int64_t{end.word()} - first) / n * k);
+      return componentAt(start_, c) + componentAt(step_, c) * Scalar(i);
     } else {
       using W = Wide<Scalar>;
-      return static_cast<Scalar>(W(begin) + (W(end) - W(begin)) * static_cast<W>(k) / static_cast<W>(n));
+      const W begin = componentAt(begin_, c);
+      const W k = static_cast<W>(first_[c]) + static_cast<W>(i);  // exact
+      return static_cast<Scalar>(begin + (W(componentAt(end_, c)) - begin) * k / static_cast<W>(steps(c)));
     }
   }
 
   Extents domain_;
   bool countsElements_;
   T begin_, end_;
+  T start_{}, step_{};  ///< of integers: at the chunk's first element, and from one to the next
+  std::int64_t first_[4]{};
 };
 
 /// What all streams have.
@@ -111,117 +116,109 @@ class StreamParameter {
   const Operand* operand_;
 };
 
+/// The arrays of an element's components, from the chunk's first element on.
+template <class T>
+class Lanes {
+ public:
+  T load(int i) const { return native::load<T>(arrays_, i); }
+  void store(int i, const T& value) const { native::store(arrays_, i, value); }
+
+  void place(void* const* arrays, std::int64_t first) {
+    each([&]<class Stored>(std::size_t c, Stored*) { arrays_[c] = static_cast<Stored*>(arrays[c]) + first; });
+  }
+  /// In memory of its own, uninitialised.
+  void place(Scratch& scratch, int count) {
+    each([&]<class Stored>(std::size_t c, Stored*) {
+      arrays_[c] = scratch.take(static_cast<std::size_t>(count) * sizeof(Stored));
+    });
+  }
+
+ private:
+  void each(auto&& component) const {
+    T value{};
+    std::size_t c = 0;
+    visit(value, [&]<class S>(S&) { component(c++, static_cast<typename StoredOf<S>::Type*>(nullptr)); });
+  }
+
+  void* arrays_[measured<T>().scalars]{};
+};
+
 /// `T x<>`. A stream that is left out has zeros, which nobody looks at.
 template <class T>
 class Input : public StreamParameter {
  public:
   using StreamParameter::StreamParameter;
 
-  T at(const Index& index) const {
-    return isGiven() ? load<T>(operand().components.data(), number(own(index))) : T{};
+  /// Whether its elements lie as the domain's do along x.
+  bool isDirect() const {
+    return isGiven() && operand().multiply[0] == 1 && operand().divide[0] == 1 && operand().stride[0] == 1;
   }
-  Index index(const Index& index) const { return toIndex(own(index)); }
+  void place(const Chunk& chunk) {
+    for (std::size_t d = 0; d < 4; ++d)
+      own_[d] = chunk.first[d] * operand().multiply[d] / operand().divide[d];
+    if (isGiven() && (chunk.count == 1 || isDirect())) {
+      lanes_.place(operand().components.data(), number(own_));
+    } else {
+      layOut(chunk);
+    }
+  }
+
+  T at(int i) const { return lanes_.load(i); }
+  /// Of the element of the domain that has this index.
+  Index index(const Index& index) const {
+    Index own = toIndex(own_);
+    const bool isSame = operand().multiply[0] == 1 && operand().divide[0] == 1;
+    own.components[0] =
+        isSame ? index.components[0]
+               : Int(std::int64_t{index.components[0].word()} * operand().multiply[0] / operand().divide[0]);
+    return own;
+  }
 
  private:
-  Extents own(const Index& index) const {
-    Extents position;
-    for (std::size_t d = 0; d < 4; ++d) {
-      position[d] = index.components[d].word() * operand().multiply[d] / operand().divide[d];
+  void layOut(const Chunk& chunk) {
+    lanes_.place(chunk.scratch, chunk.count);
+    const std::int64_t step = operand().multiply[0] * operand().stride[0];
+    const std::int64_t repeats = operand().divide[0];
+    std::int64_t element = number(own_);
+    std::int64_t repeated = chunk.first[0] % repeats;
+    for (int i = 0; i < chunk.count; ++i) {
+      lanes_.store(i, isGiven() ? load<T>(operand().components.data(), element) : T{});
+      if (++repeated < repeats) continue;
+      repeated = 0;
+      element += step;
     }
-    return position;
   }
+
+  Extents own_{};  ///< where the chunk begins here
+  Lanes<T> lanes_;
 };
 
-/// `out T r<>`.
+/// `out T r<>`. What is stored to one that is left out is lost.
 template <class T>
 class Output : public StreamParameter {
  public:
   using StreamParameter::StreamParameter;
 
+  bool isDirect() const { return isGiven(); }
+  void place(const Chunk& chunk) {
+    if (isGiven()) {
+      lanes_.place(operand().components.data(), number(chunk.first));
+    } else {
+      lanes_.place(chunk.scratch, chunk.count);
+    }
+  }
+  void store(int i, const T& value) const { lanes_.store(i, value); }
+
+  /// At any index, whatever the chunk.
   void store(const Index& index, const T& value) const {
     if (!isGiven()) return;
     Extents position;
     for (std::size_t d = 0; d < 4; ++d) position[d] = index.components[d].word();
     native::store(operand().components.data(), number(position), value);
   }
-};
-
-enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };
-
-/// `T a[]` of rank N.
-template <class T, std::size_t N, Boundary boundary>
-class Gather : public StreamParameter {
- public:
-  using Position = typename IndexOfRank<N>::Type;
-
-  Gather(const Call& call, std::size_t parameter, const T& border = T{})
-      : StreamParameter(call, parameter), border_(border) {}
-
-  T at(const Position& position) const {
-    Extents index{};
-    for (std::size_t d = 0; d < N; ++d) index[d] = componentAt(position, d).word();
-    return element(index);
-  }
-  /// At an offset from the current element.
-  T near(const Index& here, const Position& offset) const {
-    Extents index{};
-    for (std::size_t d = 0; d < N; ++d) {
-      index[d] = std::int64_t{here.components[d].word()} + componentAt(offset, d).word();
-    }
-    return element(index);
-  }
-
-  /// Linear interpolation in the carrier of T; a neighbour of no weight is not looked at.
-  template <class Carrier, class Place>
-  Carrier sample(const Place& place) const {
-    using Real = Component<Place>;
-    Extents low{};
-    Real weights[N];
-    for (std::size_t d = 0; d < N; ++d) {
-      const Real x = componentAt(place, d);
-      const Real whole = Math<Real>::floor(x);
-      low[d] = wholeIndex(whole).word();
-      weights[d] = Math<Real>::fabs(x) >= Real(16777216) ? Real(0) : x - whole;   // infinity has none
-    }
-    return weighted<Carrier, Real, N>(low, weights);
-  }
 
  private:
-  T element(Extents index) const {
-    for (std::size_t d = 0; d < N; ++d) {
-      const std::int64_t n = operand().extent[d];
-      if constexpr (boundary == Boundary::Border) {
-        if (index[d] < 0 || index[d] >= n) return border_;
-      } else {
-        index[d] = brought(index[d], n);
-      }
-    }
-    return load<T>(operand().components.data(), number(index));
-  }
-
-  static std::int64_t brought(std::int64_t i, std::int64_t n) {
-    if constexpr (boundary == Boundary::Clamp) return std::clamp<std::int64_t>(i, 0, n - 1);
-    const std::int64_t period = boundary == Boundary::Mirror ? 2 * n : n;
-    const std::int64_t inside = (i % period + period) % period;
-    return inside < n ? inside : period - 1 - inside;
-  }
-
-  template <class Carrier, class Real, std::size_t D>
-  Carrier weighted(const Extents& at, const Real* weights) const {
-    if constexpr (D == 0) {
-      return convert<Carrier>(element(at));
-    } else {
-      Extents next = at;
-      ++next[D - 1];
-      const Real t = weights[D - 1];
-      if (t <= Real(0)) return weighted<Carrier, Real, D - 1>(at, weights);
-      if (t >= Real(1)) return weighted<Carrier, Real, D - 1>(next, weights);
-      return weighted<Carrier, Real, D - 1>(at, weights) * (Real(1) - t) +
-             weighted<Carrier, Real, D - 1>(next, weights) * t;
-    }
-  }
-
-  T border_;
+  Lanes<T> lanes_;
 };
 
 /// `vout T r<>`.

@@ -98,9 +98,11 @@ constexpr auto byComponent(Operation&& operation, const Arguments&... arguments)
     return operation(arguments...);
   } else {
     using Result = decltype(operation(componentAt(arguments, 0)...));
-    Vec<Result, width> result;
-    for (std::size_t i = 0; i < width; ++i) result.components[i] = operation(componentAt(arguments, i)...);
-    return result;
+    // no loop: the compiler then keeps the components in registers
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+      const auto at = [&](std::size_t i) { return operation(componentAt(arguments, i)...); };
+      return Vec<Result, width>(at(I)...);
+    }(std::make_index_sequence<width>());
   }
 }
 

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: MIT
+//
+// The loops around reductions in native code. Such a kernel has, beside what run.hpp asks of all but sk_element(), for a State, which is
+// a tuple of its accumulators:
+//
+//   State sk_identity()             where a run of elements starts (not of a seeded one)
+//   State sk_seed()                 the current element as accumulators (of a seeded one)
+//   void sk_fold(State&)            folds the current element
+//   void sk_combine(State&, State)  folds the accumulators of a later run; of the kernel that combines
+//   void sk_store(Index, State)     writes the results
+//   bool sk_isCommutative           runs may be combined in any order
+//
+// A block of the domain is divided into pieces, which are folded by themselves and then combined in order. What a piece is does not
+// depend on how many threads there are, and so neither do the results.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "sk/native/run.hpp"
+
+namespace sk::native {
+
+/// Elements, or partial results, that are folded one after the other; program::longestRun at most.
+inline constexpr int leaf = 16;
+
+/// Results of runs, each with how many leaves it is made of; two of equal size become one. So a sum of n elements
+/// has an error of some log n roundings, not n.
+template <class Combine, class State>
+class Runs {
+ public:
+  explicit Runs(Combine& combine) : combine_(combine) {}
+
+  void add(const State& state) {
+    runs_[count_++] = {1, state};
+    while (count_ > 1 && runs_[count_ - 2].leaves == runs_[count_ - 1].leaves) merge();
+  }
+  /// Of all that were added, in order; there is one at least.
+  const State& take() {
+    while (count_ > 1) merge();
+    count_ = 0;
+    return runs_[0].state;
+  }
+
+ private:
+  struct Run {
+    std::int64_t leaves;
+    State state;
+  };
+
+  void merge() {
+    --count_;
+    combine_.sk_combine(runs_[count_ - 1].state, runs_[count_].state);
+    runs_[count_ - 1].leaves += runs_[count_].leaves;
+  }
+
+  Combine& combine_;
+  Run runs_[64];  // more leaves than there are numbers for
+  int count_ = 0;
+};
+
+/// Accumulators side by side, an array for each of their scalars, so that neighbours are folded in one operation.
+template <class State>
+class Columns {
+ public:
+  /// As many as stay in the nearest cache beside the elements.
+  static constexpr int most =
+      static_cast<int>(std::bit_floor(std::clamp<std::size_t>(2048 / measured<State>().bytes, 32, 512)));
+
+  State load(int k) const {
+    State state{};
+    std::size_t at = 0;
+    visit(state, [&]<class S>(S& scalar) { scalar = static_cast<S>(array<S>(at)[k]); });
+    return state;
+  }
+  void store(int k, State state) {
+    std::size_t at = 0;
+    visit(state, [&]<class S>(S& scalar) { array<S>(at)[k] = static_cast<Stored<S>>(scalar); });
+  }
+
+ private:
+  template <class S>
+  using Stored = typename StoredOf<S>::Type;
+
+  template <class S>
+  Stored<S>* array(std::size_t& at) {
+    auto* const first = reinterpret_cast<Stored<S>*>(bytes_ + at);
+    at += most * sizeof(Stored<S>);
+    return first;
+  }
+  template <class S>
+  const Stored<S>* array(std::size_t& at) const {
+    auto* const first = reinterpret_cast<const Stored<S>*>(bytes_ + at);
+    at += most * sizeof(Stored<S>);
+    return first;
+  }
+
+  alignas(64) std::byte bytes_[most * measured<State>().bytes];
+};
+
+/// How the blocks of a reduction's domain are divided: into whole rows, or parts of one.
+class FoldPieces {
+ public:
+  explicit FoldPieces(const ReduceCall& call) : block_(call.block) {
+    constexpr std::int64_t most = 1 << 14;
+    for (std::size_t d = 0; d < 4; ++d) blocks_[d] = call.fold.domain[d] / block_[d];
+    rows_ = block_[1] * block_[2] * block_[3];
+    width_ = std::min(block_[0], most);
+    perRow_ = (block_[0] + width_ - 1) / width_;
+    height_ = perRow_ > 1 ? 1 : std::min(most / width_, rows_);
+  }
+
+  std::int64_t ofBlock() const { return perRow_ * ((rows_ + height_ - 1) / height_); }
+  std::int64_t count() const { return ofBlock() * blocks_[0] * blocks_[1] * blocks_[2] * blocks_[3]; }
+  std::int64_t elementsOfOne() const { return width_ * height_; }
+  Extents blockAt(std::int64_t number) const {
+    Extents at;
+    for (std::size_t d = 0; d < 4; ++d) {
+      at[d] = number % blocks_[d];
+      number /= blocks_[d];
+    }
+    return at;
+  }
+
+  /// visit(first, count) for the rows of a piece.
+  template <class Visit>
+  void forEachRow(const Extents& block, std::int64_t piece, Visit&& visit) const {
+    const std::int64_t row = piece / perRow_ * height_;
+    const std::int64_t x = piece % perRow_ * width_;
+    const std::int64_t rows = std::min(height_, rows_ - row);
+    Extents in{x, row % block_[1], row / block_[1] % block_[2], row / block_[1] / block_[2]};
+    for (std::int64_t k = 0; k < rows; ++k) {
+      Extents first;
+      for (std::size_t d = 0; d < 4; ++d) first[d] = block[d] * block_[d] + in[d];
+      visit(first, static_cast<int>(std::min(width_, block_[0] - x)));
+      for (std::size_t d = 1; d < 4 && ++in[d] == block_[d]; ++d) in[d] = 0;
+    }
+  }
+
+ private:
+  Extents block_;
+  Extents blocks_;
+  std::int64_t rows_;  ///< of a block
+  std::int64_t width_;  ///< of a piece
+  std::int64_t perRow_;
+  std::int64_t height_;  ///< rows of a piece
+};
+
+/// Folds pieces of blocks, one after the other.
+template <class Fold, class Combine>
+class PieceFolder {
+ public:
+  using State = typename Fold::sk_State;
+
+  explicit PieceFolder(const ReduceCall& call)
+      : pieces_(call),
+        fold_(call.fold),
+        combine_(call.combine),
+        runs_(combine_),
+        longest_(longestChunk(fold_)) {
+    fold_.sk_extent = toIndex(call.fold.domain);
+  }
+
+  /// Of the block that is there. It has one element at least.
+  const State& fold(const Extents& block, std::int64_t piece) {
+    pieces_.forEachRow(block, piece, [&](Extents first, int count) {
+      while (count > 0) {
+        const int now = std::min(count, longest_);
+        place(fold_, {first, now, scratch_});
+        if constexpr (Fold::sk_isCommutative) {
+          foldColumns(static_cast<std::int32_t>(first[0]), now);
+        } else {
+          foldInOrder(static_cast<std::int32_t>(first[0]), now);
+        }
+        first[0] += now;
+        count -= now;
+      }
+    });
+    endLeaf();
+    return runs_.take();
+  }
+  void store(const Extents& block, const State& state) { fold_.sk_store(toIndex(block), state); }
+
+ private:
+  // ---- in any order: each column folds every so many-th element -----------------------------------
+
+  void foldColumns(std::int32_t x, int count) {
+    Fold here = fold_;  // which nothing that is stored can change
+    for (int first = 0; first < count;) {
+      const int now = std::min(count - first, Columns<State>::most);
+      const int begun = std::min(now, columnsUsed_);
+#pragma GCC ivdep
+      for (int k = 0; k < begun; ++k) {
+        moveTo(here, x, first + k);
+        State state = columns_.load(k);
+        here.sk_fold(state);
+        columns_.store(k, state);
+      }
+#pragma GCC ivdep
+      for (int k = begun; k < now; ++k) {
+        moveTo(here, x, first + k);
+        columns_.store(k, started(here));
+      }
+      columnsUsed_ = std::max(columnsUsed_, now);
+      first += now;
+      if (++folded_ == leaf) endLeaf();
+    }
+  }
+
+  /// The columns become one.
+  State gathered() {
+    Combine here = combine_;
+    while (columnsUsed_ > 1) {
+      const int half = (columnsUsed_ + 1) / 2;
+      const int pairs = columnsUsed_ - half;
+#pragma GCC ivdep
+      for (int k = 0; k < pairs; ++k) {
+        State state = columns_.load(k);
+        here.sk_combine(state, columns_.load(k + half));
+        columns_.store(k, state);
+      }
+      columnsUsed_ = half;
+    }
+    columnsUsed_ = 0;
+    return columns_.load(0);
+  }
+
+  // ---- in order ----------------------------------------------------------------------------------
+
+  void foldInOrder(std::int32_t x, int count) {
+    Fold here = fold_;
+    for (int i = 0; i < count;) {
+      const int end = std::min(count, i + leaf - folded_);
+      folded_ += end - i;
+      State state = state_;
+      if (folded_ == end - i) {
+        moveTo(here, x, i++);
+        state = started(here);
+      }
+      for (; i < end; ++i) {
+        moveTo(here, x, i);
+        here.sk_fold(state);
+      }
+      state_ = state;
+      if (folded_ == leaf) endLeaf();
+    }
+  }
+
+  /// A run of one element, the current one.
+  static State started(Fold& here) {
+    if constexpr (Fold::sk_isSeeded) {
+      return here.sk_seed();
+    } else {
+      State state = here.sk_identity();
+      here.sk_fold(state);
+      return state;
+    }
+  }
+
+  void endLeaf() {
+    if (folded_ == 0) return;
+    folded_ = 0;
+    if constexpr (Fold::sk_isCommutative) {
+      runs_.add(gathered());
+    } else {
+      runs_.add(state_);
+    }
+  }
+
+  FoldPieces pieces_;
+  Fold fold_;
+  Combine combine_;
+  Runs<Combine, State> runs_;
+  int longest_;
+  Scratch scratch_;
+  int folded_ = 0;  ///< elements of the leaf so far, in each column
+  State state_{};  ///< of them, in order
+  Columns<State> columns_;  ///< of them, in any order
+  int columnsUsed_ = 0;
+};
+
+/// Folds pieces. The results of those that are whole blocks are stored; of others, they go to states[piece].
+template <class Fold, class Combine>
+void foldPieces(const ReduceCall& call, Range range, typename Fold::sk_State* states) {
+  PieceFolder<Fold, Combine> folder(call);
+  const FoldPieces pieces(call);
+  const std::int64_t ofBlock = pieces.ofBlock();
+  for (std::int64_t piece = range.begin; piece < range.end; ++piece) {
+    const Extents block = pieces.blockAt(piece / ofBlock);
+    const auto& state = folder.fold(block, piece % ofBlock);
+    if (states != nullptr) {
+      states[piece] = state;
+    } else {
+      folder.store(block, state);
+    }
+  }
+}
+
+/// Each block of the domain to one element of the results; `hot` is foldPieces. No block is empty.
+template <class Fold, class Combine, auto hot>
+void runReduction(const ReduceCall& call) {
+  using State = typename Fold::sk_State;
+  const FoldPieces pieces(call);
+  const std::int64_t ofBlock = pieces.ofBlock();
+  std::vector<State> states(static_cast<std::size_t>(ofBlock == 1 ? 0 : pieces.count()));
+  State* const results = ofBlock == 1 ? nullptr : states.data();
+  inParallel(pieces.count(), pieces.elementsOfOne(), Fold::sk_isUneven ? Deal::AsTheyCome : Deal::Evenly,
+             [&](Range range) { hot(call, range, results); });
+  if (results == nullptr) return;
+  const Fold fold(call.fold);
+  Combine combine(call.combine);
+  Runs<Combine, State> runs(combine);
+  for (std::int64_t piece = 0; piece < pieces.count(); ++piece) {
+    runs.add(states[static_cast<std::size_t>(piece)]);
+    if ((piece + 1) % ofBlock == 0) fold.sk_store(toIndex(pieces.blockAt(piece / ofBlock)), runs.take());
+  }
+}
+
+/// Where there is no element: the identities, to the one element of the results.
+template <class Fold>
+void storeIdentity(const ReduceCall& call) {
+  Fold fold(call.fold);
+  fold.sk_store(Index(Int(0)), fold.sk_identity());
+}
+
+}  // namespace sk::native

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+//
+// The function around a kernel's loops: all that it calls becomes part of it, and there is a clone of it for each generation of
+// CPUs, of which the program's loader takes the best that this one runs. All of them round alike: nothing is contracted. Vectors
+// of 512 bits have none: loops that wait for memory gain nothing by them, and each clone takes as long to compile again.
+#pragma once
+
+#include <cstdint>  // which tells of the C library
+
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define SK_NATIVE_HOT __attribute__((flatten, target_clones("default", "arch=x86-64-v3")))
+#elif defined(__GNUC__)
+#define SK_NATIVE_HOT __attribute__((flatten))
+#else
+#define SK_NATIVE_HOT
+#endif
+
+/// Without the clones.
+#if defined(__GNUC__)
+#define SK_NATIVE_INLINED __attribute__((flatten))
+#else
+#define SK_NATIVE_INLINED
+#endif

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+//
+// Loops on OpenMP's threads, which the application's own loops share. It is the only file that knows of them.
+#include "sk/native/parallel.hpp"
+
+#include <algorithm>
+#include <exception>
+
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+namespace sk::native {
+
+#if defined(_OPENMP)
+
+namespace {
+
+/// Elements that a thread must have to do: those that take as long as waking it, of the simplest kernels.
+constexpr std::int64_t worthAThread = 1 << 13;
+
+int threadsFor(std::int64_t count, std::int64_t cost) {
+  if (omp_in_parallel() != 0) return 1;
+  return static_cast<int>(
+      std::min<std::int64_t>({omp_get_max_threads(), count, count * cost / worthAThread}));
+}
+
+/// No exception may leave a thread: the last one is kept.
+class Guarded {
+ public:
+  Guarded(void (*work)(void*, Range), void* context) : work_(work), context_(context) {}
+
+  void operator()(Range range) {
+    try {
+      work_(context_, range);
+    } catch (...) {
+#pragma omp critical(sk_native_thrown)
+      thrown_ = std::current_exception();
+    }
+  }
+  void rethrow() const {
+    if (thrown_) std::rethrow_exception(thrown_);
+  }
+
+ private:
+  void (*work_)(void*, Range);
+  void* context_;
+  std::exception_ptr thrown_;
+};
+
+/// Part `number` of `parts` that are as equal as can be.
+Range partOf(std::int64_t count, std::int64_t number, std::int64_t parts) {
+  return {count * number / parts, count * (number + 1) / parts};
+}
+
+}  // namespace
+
+void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(void*, Range), void* context) {
+  const int threads = threadsFor(count, cost);
+  if (threads <= 1) {
+    work(context, {0, count});
+    return;
+  }
+  Guarded guarded(work, context);
+  if (deal == Deal::Evenly) {
+#pragma omp parallel num_threads(threads)
+    guarded(partOf(count, omp_get_thread_num(), omp_get_num_threads()));
+  } else {
+    const std::int64_t parts = std::min<std::int64_t>(count, std::int64_t{threads} * 16);
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+    for (std::int64_t part = 0; part < parts; ++part) guarded(partOf(count, part, parts));
+  }
+  guarded.rethrow();
+}
+
+#else
+
+void inParallel(std::int64_t count, std::int64_t, Deal, void (*work)(void*, Range), void* context) {
+  work(context, {0, count});
+}
+
+#endif
+
+}  // namespace sk::native
