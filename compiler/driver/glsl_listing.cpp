@@ -173,10 +173,12 @@ std::string formListing(const Profile& profile, const sk::program::Reduction& re
   input.packed = !byIndex && readsScalars(reduction.fold);
   const sk::assemble::ReduceLimits limits{.texture = {16384, 256},
                                           .grouped = profile.stage == sk::assemble::Stage::Compute};
-  const sk::assemble::Division division{.blocks = {1, 1, 1, 1},
-                                        .byIndex = byIndex,
-                                        .byTexel = input.packed,
-                                        .inAnyOrder = reduction.commutative};
+  const sk::assemble::Division division{
+      .blocks = {1, 1, 1, 1},
+      .byIndex = byIndex,
+      .byTexel = input.packed,
+      .inAnyOrder = reduction.commutative,
+      .foldCombines = !reduction.seeded && reduction.combine.body == reduction.fold.body};
   std::string text;
   std::set<sk::assemble::ReduceVariant> seen;
   for (sk::assemble::ReducePass& pass :

@@ -39,13 +39,9 @@ void dispatchRects(GlDevice& device, KernelProgram& program, std::span<Surface* 
   for (const Surface* plane : planes) {
     device.bound.image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
   }
-  if (program.isGrouped) {
-    GLsizei texels = 0;
-    for (const Rect& rect : rects) texels += rect.width * rect.height;
-    gl::dispatch(texels, 1);
-    return;
-  }
-  const auto groups = [](GLsizei texels, GLint group) { return (texels + group - 1) / group; };
+  const auto groups = [&](GLsizei texels, GLint group) {
+    return program.isGrouped ? texels : (texels + group - 1) / group;
+  };
   for (const Rect& rect : rects) {
     program.rect.set({rect.x, rect.y, rect.width, rect.height});
     gl::dispatch(groups(rect.width, program.workGroup[0]), groups(rect.height, program.workGroup[1]));

@@ -263,7 +263,7 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     finish(made->kernel, kernel,
            started.empty() ? begin(assemble::reduceProgram(profile_, reduction, variant))
                            : std::move(started.mapped()));
-    made->kernel.isGrouped = variant.walk == assemble::Walk::GroupedPartials;
+    made->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials;
     if (variant.walk != assemble::Walk::Nothing) {
       findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
     }

@@ -105,7 +105,8 @@ class ReduceCall {
     const assemble::Division division{.blocks = blocks,
                                       .byIndex = foldsByIndex(),
                                       .byTexel = byTexel_,
-                                      .inAnyOrder = reduction_.commutative};
+                                      .inAnyOrder = reduction_.commutative,
+                                      .foldCombines = foldCombines()};
     const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
     for (const ReducePass& pass : passes) {
       if (!start(pass, targets.size())) break;  // nor are the others new
@@ -146,6 +147,11 @@ class ReduceCall {
     return device_.programs().stage() == assemble::Stage::Compute &&
            planes * planeBytes * assemble::groupSize <= assemble::groupBytes &&
            planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
+  }
+
+  bool foldCombines() const {
+    return !reduction_.seeded && reduction_.combine.entry == reduction_.fold.entry &&
+           reduction_.combine.body.data() == reduction_.fold.body.data();
   }
 
   /// Whether all inputs are packed and blocks made of whole texels, which are then read as such.

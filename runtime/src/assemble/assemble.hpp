@@ -137,7 +137,8 @@ struct Variant {
 /// and for the domain (hence for every output, which has none of its own) the same with
 /// `sk_domain_origin sk_domain_shape sk_domain_stride sk_domain_shift`; and `sk_domain_row`, an int, where that is
 /// layered: the first row of the layer that is drawn.
-/// A compute program has `sk_rect`, an ivec4: the first texel that is written, and how many in each dimension.
+/// A compute program has `sk_rect`, an ivec4: the first texel that is written, and how many in each dimension. One whose
+/// work groups each compute a texel is dispatched with as many groups.
 /// Outputs are `layout(location = n) out`, or images of binding n, one a plane, numbered in order of parameters and
 /// fields; those of Work::Counts have one more for each counted sink, and those of Work::List are the planes of the sink, for a
 /// scatter output after one for its texel. A list of a counted sink reads a tree (count_tree.hpp):

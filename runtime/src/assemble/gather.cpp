@@ -292,13 +292,13 @@ class GatherText {
   int reachInY() const { return rank_ == 1 ? 0 : parameter_.reach; }
   std::string texelName(int x, int y) const {
     const auto part = [](int offset) { return fmt::format("{}{}", offset < 0 ? "m" : "", std::abs(offset)); };
-    return fmt::format("sk_texel_{}_{}_{}", parameter_.symbol, part(x), part(y));
+    return fmt::format("sk_texel_{}_{}_{}", part(x), part(y), parameter_.symbol);
   }
 
   /// Variables that main() fills with these texels; those beyond a border hold what nobody looks at.
   void defineTexels(const std::string& extents, const std::string& here) {
     const bool isRow = rank_ == 1;
-    const std::string name = fmt::format("sk_texel_{}", parameter_.symbol);
+    const std::string name = fmt::format("sk_texel_at_{}", parameter_.symbol);
     std::vector<std::string> lines = {extents, isRow ? fmt::format("int sk_p = {} + sk_d;", here)
                                                      : fmt::format("ivec2 sk_p = {} + sk_d;", here)};
     if (isRow) {

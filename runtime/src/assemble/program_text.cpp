@@ -109,10 +109,7 @@ void ProgramText::storeAt(std::string_view place, bool isArray) {
   isArray_ = isArray;
 }
 
-void ProgramText::dispatchGroups(std::int32_t invocations, std::string_view texel) {
-  invocations_ = invocations;
-  groupTexel_ = texel;
-}
+void ProgramText::dispatchGroups(std::int32_t width, std::int32_t height) { group_ = {width, height}; }
 
 void ProgramText::variable(std::string_view type, std::string_view name) {
   addOnce(variables_, fmt::format("{} {};", type, name));
@@ -156,7 +153,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   program += intrinsics.definitions;
   addForeign(program, kernel.declarations);
   program += '\n';
-  if (!isDrawn() && invocations_ == 0) program += "uniform ivec4 sk_rect;\n";
+  if (!isDrawn()) program += "uniform ivec4 sk_rect;\n";
   addLines(program, uniforms_);
   program += declarationOfOutputs();
   if (!isDrawn()) program += "ivec2 sk_pixel;\n";
@@ -187,17 +184,19 @@ std::string ProgramText::declarationOfOutputs() const {
 /// Invocations beside the rectangle, which fill its last work groups, leave at once.
 std::string ProgramText::mainOf(const std::string& body) const {
   if (isDrawn()) return "\nvoid main() {\n" + body + "}\n";
-  const auto [width, height] = workGroup();
+  const bool isGrouped = group_.first > 0;
+  const auto [width, height] =
+      isGrouped ? group_ : groupForTexels(outputs_.empty() ? 1 : componentsOf(outputs_.front().type));
   std::string text =
       fmt::format("\nlayout(local_size_x = {}, local_size_y = {}) in;\n\nvoid main() {{\n", width, height);
-  if (invocations_ > 0) {
-    fmt::format_to(std::back_inserter(text),
-                   "  sk_pixel = {};\n{}  if (gl_LocalInvocationIndex != 0u) return;\n", groupTexel_, body);
+  if (isGrouped) {
+    text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body +
+            "  if (gl_LocalInvocationIndex != 0u) return;\n";
   } else {
-    fmt::format_to(std::back_inserter(text),
-                   "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n"
-                   "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n{}",
-                   body);
+    text +=
+        "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n"
+        "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n" +
+        body;
   }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const auto& [type, name] = outputs_[i];
@@ -205,11 +204,6 @@ std::string ProgramText::mainOf(const std::string& body) const {
                    wholeTexel(type, name));
   }
   return text + "}\n";
-}
-
-std::pair<int, int> ProgramText::workGroup() const {
-  if (invocations_ > 0) return {invocations_, 1};
-  return groupForTexels(outputs_.empty() ? 1 : componentsOf(outputs_.front().type));
 }
 
 std::string call(std::string_view name, const std::vector<std::string>& arguments, std::string_view indent) {

@@ -47,9 +47,8 @@ class ProgramText {
   void output(std::string_view type, std::string_view name);
   /// Where a compute program stores its outputs at the end of main(): an ivec2, or in array textures an ivec3.
   void storeAt(std::string_view place, bool isArray);
-  /// Of a compute program: a texel is computed by a work group of so many invocations, whose first one stores it. `texel`:
-  /// which, an ivec2 expression.
-  void dispatchGroups(std::int32_t invocations, std::string_view texel);
+  /// Of a compute program: a work group of so many invocations computes a texel, and the first of them stores it.
+  void dispatchGroups(std::int32_t width, std::int32_t height);
   /// Declares a global variable.
   void variable(std::string_view type, std::string_view name);
   /// Defines one of the shared functions unless it is defined.
@@ -73,13 +72,11 @@ class ProgramText {
   bool isDrawn() const { return stage_ == Stage::Fragment; }
   std::string declarationOfOutputs() const;
   std::string mainOf(const std::string& body) const;
-  std::pair<int, int> workGroup() const;
 
   Stage stage_;
   std::string place_;  ///< storeAt()'s
   bool isArray_ = false;
-  std::int32_t invocations_ = 0;  ///< of a group for each texel; 0: of one invocation
-  std::string groupTexel_;
+  std::pair<std::int32_t, std::int32_t> group_{};  ///< for each texel; none: there is an invocation for each
   std::vector<std::string> uniforms_;
   std::vector<Output> outputs_;
   std::vector<std::string> variables_;

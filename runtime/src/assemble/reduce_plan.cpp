@@ -130,9 +130,12 @@ class Planner {
     const std::int32_t most = isOfTexels ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
     const auto [width, height] = left2_;
     const Extent2 run = runOf(width, height, most, !isFirst);
-    left2_ = {divideUp(width, run.width), divideUp(height, run.height)};
+    const bool isGrouped = isFirst && limits_.grouped && division_.inAnyOrder && division_.foldCombines;
+    const std::int32_t side = isGrouped ? groupSide : 1;
+    left2_ = {divideUp(width, run.width * side), divideUp(height, run.height * side)};
     left_ = left2_.width * left2_.height;
     ReducePass pass{};
+    pass.variant.grouped = isGrouped;
     pass.toResult = left_ == 1;
     pass.variant.walk = walk;
     pass.variant.packed = isOfTexels;

@@ -56,6 +56,7 @@ struct Division {
   bool byIndex = false;  ///< Walk::Index; of the elements' placement only the extent counts then
   bool byTexel = false;  ///< the elements are packed, and blocks made of whole texels
   bool inAnyOrder = false;  ///< Reduction::commutative
+  bool foldCombines = false;  ///< the fold is what combines, and starts from an identity
 };
 
 /// The passes that fold elements into `result`, whose elements are the blocks, in their order. There are

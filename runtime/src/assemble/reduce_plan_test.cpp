@@ -120,12 +120,26 @@ class Fragment {
     const int left = (x_ - target[0]) * width;
     const int top = (y_ - target[1]) * height;
     const Index4& extent = vector("sk_source");
+    if (v.grouped) {
+      Name all;
+      for (int k = 0; k < groupSide * groupSide; ++k) {
+        const int x = (x_ - target[0]) * groupSide + k % groupSide;
+        const int y = (y_ - target[1]) * groupSide + k / groupSide;
+        all += rectangle(x * width, y * height, width, height);
+      }
+      return all;
+    }
     if (v.run > 0 && (left + width > extent[0] || top + height > extent[1])) {
       throw std::logic_error("a run of constant length passes the end");
     }
+    return rectangle(left, top, width, height);
+  }
+
+  /// What is of it in the source, row by row.
+  Name rectangle(int left, int top, int width, int height) {
     Name total;
-    for (int y = top; y < std::min(top + height, extent[1]); ++y) {
-      for (int x = left; x < std::min(left + width, extent[0]); ++x) {
+    for (int y = top; y < std::min(top + height, vector("sk_source")[1]); ++y) {
+      for (int x = left; x < std::min(left + width, vector("sk_source")[0]); ++x) {
         total += element(vector("sk_origin")[0] + x, vector("sk_origin")[1] + y);
       }
     }
@@ -374,9 +388,12 @@ void check(const Region& input, const Region& result, const ReduceLimits& limits
     expected[static_cast<std::size_t>(ravel(block, stridesOf(blocks)))] += ++name;
   });
 
-  const auto passes = planReduction(
-      input.placement, result.placement, limits,
-      {.blocks = blocks, .byIndex = byIndex, .byTexel = input.placement.packed, .inAnyOrder = inAnyOrder});
+  const auto passes = planReduction(input.placement, result.placement, limits,
+                                    {.blocks = blocks,
+                                     .byIndex = byIndex,
+                                     .byTexel = input.placement.packed,
+                                     .inAnyOrder = inAnyOrder,
+                                     .foldCombines = inAnyOrder});
   checkSchedule(passes, limits, elements(extent) / elements(blocks));
   Texture output = execute(passes, std::move(source), input, result);
   std::size_t written = 0;

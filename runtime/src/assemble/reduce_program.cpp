@@ -15,6 +15,7 @@
 #include "assemble/gather.hpp"
 #include "assemble/planes.hpp"
 #include "assemble/program_text.hpp"
+#include "assemble/reduce_names.hpp"
 #include "assemble/storage.hpp"
 
 namespace sk::assemble {
@@ -24,30 +25,6 @@ using program::Kernel;
 using program::Parameter;
 using program::Reduction;
 using program::Role;
-
-std::string_view name(Walk walk) {
-  switch (walk) {
-    case Walk::Line: return "elements of a line";
-    case Walk::Plane: return "elements of a plane";
-    case Walk::Box: return "elements of a box";
-    case Walk::Index: return "elements by index";
-    case Walk::Rows: return "elements of rows";
-    case Walk::Partials: return "partial results";
-    case Walk::PartialRows: return "partial results in rows";
-    case Walk::GroupedPartials: return "partial results of groups";
-    case Walk::Nothing: return "no elements";
-  }
-  return {};
-}
-
-std::string_view name(Runs runs) {
-  switch (runs) {
-    case Runs::OneBlock: return "one block";
-    case Runs::WholeBlocks: return "a run for each block";
-    case Runs::Split: return "several runs for each block";
-  }
-  return {};
-}
 
 /// The kernel that a walk calls: none, but for the identities, where there is no element.
 Kernel kernelOf(const Reduction& reduction, Walk walk) {
@@ -91,13 +68,14 @@ class ReductionText {
       findRun();
       startWalk();
       foldRun();
+      if (variant_.grouped) foldSquare();
     }
     for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
     if (profile_.stage == Stage::Compute)
       program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
     const std::string comment =
         fmt::format("{} for {}: {}{}, {}", reduction_.fold.name, profile_.name,
-                    variant_.packed ? "packed " : "", name(variant_.walk), name(variant_.runs));
+                    variant_.packed ? "packed " : "", nameOf(variant_.walk), nameOf(variant_.runs));
     return program_.finish(profile_, comment, kernel_);
   }
 
@@ -277,11 +255,19 @@ class ReductionText {
   /// sk_corner is the run's first texel, sk_p the texel of the element.
   void startRows() {
     vectors({"sk_origin", "sk_target"});
+    if (variant_.grouped) program_.dispatchGroups(groupSide, groupSide);
     const std::string run = variant_.run == 0 ? "sk_run_shape.xy"
                             : variant_.column ? fmt::format("ivec2(1, {})", variant_.run)
                                               : fmt::format("ivec2({}, 1)", variant_.run);
-    statement(fmt::format("ivec2 sk_corner = ({} - sk_target.xy) * {};", domain_.texel().at, run));
-    if (kernel_.usesLoops) {   // as DomainText::leaveOutside()
+    const std::string number =
+        variant_.grouped ? fmt::format("(({} - sk_target.xy) * {} + ivec2(gl_LocalInvocationID.xy))",
+                                       domain_.texel().at, groupSide)
+                         : fmt::format("({} - sk_target.xy)", domain_.texel().at);
+    statement(fmt::format("ivec2 sk_corner = {} * {};", number, run));
+    if (variant_.grouped) {
+      vectors({"sk_source"});
+      statement("bool sk_isInside = all(lessThan(sk_corner, sk_source.xy));");
+    } else if (kernel_.usesLoops) {  // as DomainText::leaveOutside()
       vectors({"sk_source"});
       statement("if (any(greaterThanEqual(uvec2(sk_corner), uvec2(sk_source.xy)))) return;");
     }
@@ -304,18 +290,17 @@ class ReductionText {
   /// group may have none.
   void foldGroup() {
     integers({"sk_fan", "sk_block_length", "sk_source_width"});
-    for (const Parameter* accumulator : accumulators_) {
-      program_.variable("shared " + std::string(accumulator->element->glsl),
-                        fmt::format("{}[{}]", sharedName(*accumulator), groupSize));
-    }
+    declareShared();
     program_.function("ivec2 sk_place(int sk_n)", {"int sk_y = sk_n / sk_source_width;",
                                                    "return ivec2(sk_n - sk_y * sk_source_width, sk_y);"});
     vectors({"sk_target"});
     integers({"sk_domain_shift"});
-    program_.require(Function::Texel);
-    program_.dispatchGroups(groupSize, "sk_target.xy + sk_texel(int(gl_WorkGroupID.x), sk_domain_shift)");
+    program_.dispatchGroups(groupSize, 1);
+    const std::string texel = domain_.texel().at;
+    statement(fmt::format("int sk_group = ({0}.y - sk_target.y) << sk_domain_shift | ({0}.x - sk_target.x);",
+                          texel));
     statement("int sk_i = int(gl_LocalInvocationIndex);");
-    statement(fmt::format("int sk_base = int(gl_WorkGroupID.x) * {} * sk_fan;", groupSize));
+    statement(fmt::format("int sk_base = sk_group * {} * sk_fan;", groupSize));
     statement(fmt::format("int sk_left = min({} * sk_fan, sk_block_length - sk_base);", groupSize));
     if (variant_.strided) {
       statement(fmt::format("int sk_runs = min({0}, sk_left), sk_count = (sk_left - sk_i + {1}) / {0};",
@@ -340,6 +325,21 @@ class ReductionText {
     statement("    " + foldingNext());
     statement("  }");
     statement("}");
+    foldShared();
+  }
+
+  void declareShared() {
+    for (const Parameter* accumulator : accumulators_) {
+      program_.variable("shared " + std::string(accumulator->element->glsl),
+                        fmt::format("{}[{}]", sharedName(*accumulator), groupSize));
+    }
+  }
+
+  /// Invocations outside have the identities.
+  void foldSquare() {
+    declareShared();
+    statement("int sk_i = int(gl_LocalInvocationIndex);");
+    statement(fmt::format("int sk_runs = {};", groupSize));
     foldShared();
   }
 
@@ -527,7 +527,8 @@ class ReductionText {
       startFromIdentities();
       if (variant_.packed) declareLanes();
     }
-    statement(fmt::format("for (int sk_k = {}; sk_k < {}; ++sk_k) {{", isSeeded ? 1 : 0, count));
+    const std::string_view bound = variant_.grouped ? "sk_isInside && sk_k" : "sk_k";
+    statement(fmt::format("for (int sk_k = {}; {} < {}; ++sk_k) {{", isSeeded ? 1 : 0, bound, count));
     if (isSeeded) step();
     if (variant_.packed) fetchLanes(next_, false);
     foldTexel("  ");
