@@ -33,7 +33,7 @@ def quoted(text):
 def draw(found, folder):
     if shutil.which("gnuplot") is None:
         sys.exit("report.py: there is no gnuplot to draw charts (Debian: gnuplot-nox)")
-    for name, script in (("ratios", ratios_script(found)), ("sizes", sizes_script(found))):
+    for name, script in (("performance", ratios_script(found)), ("performance-sizes", sizes_script(found))):
         if script is None:
             continue
         size, body = script

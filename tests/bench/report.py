@@ -20,7 +20,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("files", nargs="+", metavar="RESULTS.json")
     parser.add_argument("--json", metavar="FILE", help="write all results to one file")
-    parser.add_argument("--chart", metavar="DIR", help="draw ratios.svg, sizes.svg and the same as .png")
+    parser.add_argument("--chart", metavar="DIR", help="draw performance.svg, performance-sizes.svg and the same as .png")
     parser.add_argument("--document", metavar="FILE",
                         help="write the tables between the marks <!-- bench NAME --> and <!-- /bench -->")
     arguments = parser.parse_args()

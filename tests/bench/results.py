@@ -91,7 +91,7 @@ def rate_text(run, seconds):
     """Work in a second: operations where they are many for each byte, else bytes."""
     operations, size = run["operations"], run["bytes"]
     if operations > 4 * size:
-        return f"{operations / seconds / 1e9:.3g} GFLOP/s"
+        return f"{operations / seconds / 1e9:.3g} Gop/s"
     return f"{size / seconds / 1e9:.3g} GB/s"
 
 

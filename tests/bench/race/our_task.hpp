@@ -35,7 +35,14 @@ class OurTask : public Task {
   sk::Device& device_;
 };
 
-/// Reads pairs and the like as the numbers that they are made of.
+/// Numbers, two of which are an element.
+inline std::vector<sk::float2> pairsOf(const std::vector<float>& parts) {
+  std::vector<sk::float2> pairs;
+  for (std::size_t i = 0; i + 1 < parts.size(); i += 2) pairs.push_back({parts[i], parts[i + 1]});
+  return pairs;
+}
+
+/// The other way: the numbers that elements are made of.
 template <class Vector>
 std::vector<float> flat(const std::vector<Vector>& elements) {
   static_assert(sizeof(Vector) % sizeof(float) == 0);

@@ -2,8 +2,10 @@
 #include "programs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "constants.hpp"
 #include "programs/all.hpp"
 
 namespace race {
@@ -14,6 +16,16 @@ template <int operations, int bytes>
 Work each(double n) {
   return {operations * n, bytes * n};
 }
+
+/// The columns of a grid of n elements.
+double columnsOf(double n) { return std::exp2(std::ceil(std::log2(n) / 2)); }
+
+Work gemvWork(double n) { return {2 * n, 4 * n}; }
+Work gemmWork(double n) { return {2 * n * columnsOf(n), 4 * (2 * n + columnsOf(n) * columnsOf(n))}; }
+/// Comparisons, of the best that sort by these.
+Work sortWork(double n) { return {n * std::log2(n), 8 * n}; }
+Work bodiesWork(double n) { return {20 * n * n, 28 * n}; }
+Work fourierWork(double n) { return {5 * n * std::log2(n), 16 * n}; }
 
 }  // namespace
 
@@ -57,6 +69,28 @@ const std::vector<Program>& programs() {
        binomialOurs},
       // Operations depend on the picture.
       {"mandelbrot", "pixels", {12, 16, 20}, {}, each<0, 4>, grid, mandelbrotCheck, mandelbrotOurs},
+      {"sgemv", "elements", {12, 16, 20, 24}, {}, gemvWork, gemvProblem, gemvCheck, gemvOurs},
+      {"sgemm", "elements", {12, 16, 20}, {}, gemmWork, gemmProblem, gemmCheck, gemmOurs},
+      {"prefix scan", "ints", {12, 16, 20, 24}, {}, each<1, 8>, scanProblem, scanCheck, scanOurs},
+      {"sort", "floats", {12, 16, 20}, {}, sortWork, sortProblem, sortCheck, sortOurs},
+      {"n-body", "bodies", {10, 12, 14}, {}, bodiesWork, bodiesProblem, bodiesCheck, bodiesOurs},
+      {"fft", "complex numbers", {12, 16, 20}, {}, fourierWork, fourierProblem, fourierCheck, fourierOurs},
+      {"gray-scott",
+       "elements",
+       {12, 16, 20},
+       {},
+       each<24 * reactionSteps, 16 * reactionSteps>,
+       reactionProblem,
+       reactionCheck,
+       reactionOurs},
+      {"sparse matrix",
+       "rows",
+       {12, 16, 20},
+       {},
+       each<2 * sparseRow, 8 * sparseRow + 12>,
+       sparseProblem,
+       sparseCheck,
+       sparseOurs},
   };
   return table;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <thread>
 
 #include <benchmark/benchmark.h>
 
@@ -29,8 +30,12 @@ class Collector final : public benchmark::BenchmarkReporter {
   std::map<std::string, Run> runs_;
 };
 
+/// Threads of the one before may still spin in wait for more work.
+constexpr auto pause = std::chrono::milliseconds(2);
+
 /// All iterations at once: the runner waits for its device but once.
 void timed(benchmark::State& state, Task& task) {
+  std::this_thread::sleep_for(pause);
   while (state.KeepRunningBatch(state.max_iterations)) {
     const auto start = Clock::now();
     task.run(static_cast<int>(state.max_iterations));

@@ -160,7 +160,7 @@ void Session::runProblem(const Program& program, int log2, bool withPeers) {
     const double median = medianOf(seconds[i]);
     fmt::print("  {:<22} {:>10.4g} ms {:>9.3g} GB/s", runs[i].contender, 1e3 * median,
                work.bytes / median / 1e9);
-    if (work.operations > 0) fmt::print(" {:>9.3g} GFLOP/s", work.operations / median / 1e9);
+    if (work.operations > 0) fmt::print(" {:>9.3g} Gop/s", work.operations / median / 1e9);
     fmt::print("\n");
     runs_.push_back(std::move(runs[i]));
   }

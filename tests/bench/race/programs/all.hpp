@@ -32,6 +32,37 @@ RACE_OURS(binomial);
 Check mandelbrotCheck(const Problem& problem);
 RACE_OURS(mandelbrot);
 
+Problem gemvProblem(int log2);
+Check gemvCheck(const Problem& problem);
+RACE_OURS(gemv);
+Problem gemmProblem(int log2);
+Check gemmCheck(const Problem& problem);
+RACE_OURS(gemm);
+
+Problem scanProblem(int log2);
+Check scanCheck(const Problem& problem);
+RACE_OURS(scan);
+
+Problem sortProblem(int log2);
+Check sortCheck(const Problem& problem);
+RACE_OURS(sort);
+
+Problem bodiesProblem(int log2);
+Check bodiesCheck(const Problem& problem);
+RACE_OURS(bodies);
+
+Problem fourierProblem(int log2);
+Check fourierCheck(const Problem& problem);
+RACE_OURS(fourier);
+
+Problem reactionProblem(int log2);
+Check reactionCheck(const Problem& problem);
+RACE_OURS(reaction);
+
+Problem sparseProblem(int log2);
+Check sparseCheck(const Problem& problem);
+RACE_OURS(sparse);
+
 #undef RACE_OURS
 
 }  // namespace race

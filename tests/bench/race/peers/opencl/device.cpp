@@ -59,27 +59,27 @@ std::vector<float> ClBuffer::readFloats(std::size_t count) const {
   return values;
 }
 
-ClKernel::ClKernel(const std::string& text, const char* name, const std::string& options) {
-  const ClDevice& device = ClDevice::instance();
+cl_program ClDevice::programOf(const std::string& text) const {
+  if (const auto found = programs_.find(text); found != programs_.end()) return found->second;
   const char* source = text.c_str();
   cl_int status = CL_SUCCESS;
-  program_ = clCreateProgramWithSource(device.context(), 1, &source, nullptr, &status);
+  const cl_program program = clCreateProgramWithSource(context_, 1, &source, nullptr, &status);
   check(status, "clCreateProgramWithSource");
-  const cl_device_id id = device.id();
-  if (clBuildProgram(program_, 1, &id, ("-cl-std=CL1.2 -w " + options).c_str(), nullptr, nullptr) !=
-      CL_SUCCESS) {
+  if (clBuildProgram(program, 1, &id_, "-cl-std=CL1.2 -w", nullptr, nullptr) != CL_SUCCESS) {
     std::array<char, 4096> log{};
-    clGetProgramBuildInfo(program_, id, CL_PROGRAM_BUILD_LOG, log.size() - 1, log.data(), nullptr);
-    throw std::runtime_error(std::string("OpenCL: ") + name + " does not compile: " + log.data());
+    clGetProgramBuildInfo(program, id_, CL_PROGRAM_BUILD_LOG, log.size() - 1, log.data(), nullptr);
+    throw std::runtime_error(std::string("OpenCL: a kernel does not compile: ") + log.data());
   }
-  kernel_ = clCreateKernel(program_, name, &status);
+  return programs_[text] = program;
+}
+
+ClKernel::ClKernel(const std::string& text, const char* name) {
+  cl_int status = CL_SUCCESS;
+  kernel_ = clCreateKernel(ClDevice::instance().programOf(text), name, &status);
   check(status, "clCreateKernel");
 }
 
-ClKernel::~ClKernel() {
-  clReleaseKernel(kernel_);
-  clReleaseProgram(program_);
-}
+ClKernel::~ClKernel() { clReleaseKernel(kernel_); }
 
 ClKernel& ClKernel::over(std::vector<std::size_t> global, std::vector<std::size_t> local) {
   global_ = std::move(global);
@@ -107,8 +107,8 @@ void ClKernel::set(cl_uint index, std::int32_t value) {
   check(clSetKernelArg(kernel_, index, sizeof value, &value), "clSetKernelArg");
 }
 
-void ClKernel::set(cl_uint index, ClLocal local) {
-  check(clSetKernelArg(kernel_, index, local.bytes, nullptr), "clSetKernelArg");
+void ClKernel::set(cl_uint index, const cl_float4& value) {
+  check(clSetKernelArg(kernel_, index, sizeof value, &value), "clSetKernelArg");
 }
 
 void ClTask::run(int times) {

@@ -6,7 +6,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #define CL_TARGET_OPENCL_VERSION 120
@@ -27,7 +30,8 @@ class ClDevice {
   std::size_t units() const { return units_; }
   cl_context context() const { return context_; }
   cl_command_queue queue() const { return queue_; }
-  cl_device_id id() const { return id_; }
+  /// The compiled program of a text, which is kept. Throws std::runtime_error with what the compiler said.
+  cl_program programOf(const std::string& text) const;
 
  private:
   ClDevice();
@@ -37,6 +41,7 @@ class ClDevice {
   cl_device_id id_ = nullptr;
   cl_context context_ = nullptr;
   cl_command_queue queue_ = nullptr;
+  mutable std::map<std::string, cl_program> programs_;
 };
 
 class ClBuffer {
@@ -55,16 +60,11 @@ class ClBuffer {
   cl_mem memory_ = nullptr;
 };
 
-/// Bytes of local memory, as an argument.
-struct ClLocal {
-  std::size_t bytes;
-};
-
 /// A kernel with its arguments and its domain.
 class ClKernel {
  public:
-  /// Compiles `text` (once for each text) with options such as "-D steps=256".
-  ClKernel(const std::string& text, const char* name, const std::string& options = "");
+  /// The kernel `name` of a text, which is compiled once.
+  ClKernel(const std::string& text, const char* name);
   ~ClKernel();
   ClKernel(const ClKernel&) = delete;
   ClKernel& operator=(const ClKernel&) = delete;
@@ -84,9 +84,8 @@ class ClKernel {
   void set(cl_uint index, const ClBuffer& buffer);
   void set(cl_uint index, float value);
   void set(cl_uint index, std::int32_t value);
-  void set(cl_uint index, ClLocal local);
+  void set(cl_uint index, const cl_float4& value);
 
-  cl_program program_ = nullptr;
   cl_kernel kernel_ = nullptr;
   std::vector<std::size_t> global_, local_;
 };
@@ -99,5 +98,35 @@ class ClTask : public Task {
  protected:
   virtual void once() = 0;
 };
+
+/// A task of kernels, one after the other, that is put together like a list.
+class ClSteps final : public ClTask {
+ public:
+  template <class Content>
+  const ClBuffer& buffer(const Content& content) {
+    return buffers_.emplace_back(content);
+  }
+  ClKernel& step(const char* text, const char* name) { return steps_.emplace_back(text, name); }
+  /// What result() reads.
+  void gives(const ClBuffer& result, std::size_t size) {
+    result_ = &result;
+    size_ = size;
+  }
+
+  std::vector<float> result() override { return result_->readFloats(size_); }
+
+ private:
+  void once() override {
+    for (const ClKernel& step : steps_) step.enqueue();
+  }
+
+  std::deque<ClBuffer> buffers_;
+  std::deque<ClKernel> steps_;
+  const ClBuffer* result_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+inline std::size_t sizeOf(const Problem& problem) { return static_cast<std::size_t>(problem.size()); }
+inline std::size_t bytesOf(const Problem& problem) { return sizeOf(problem) * sizeof(float); }
 
 }  // namespace race

@@ -26,27 +26,17 @@ kernel void escape(float left, float top, float perColumn, float perRow, int mos
 }
 )";
 
-class Picture final : public ClTask {
- public:
-  explicit Picture(const Problem& p)
-      : size_(static_cast<std::size_t>(p.size())), steps_(size_ * sizeof(float)), kernel_(text, "escape") {
-    kernel_
-        .with(mandelbrotLeft, mandelbrotTop, mandelbrotExtent / static_cast<float>(p.columns),
-              mandelbrotExtent / static_cast<float>(p.rows), mandelbrotSteps, steps_)
-        .over({static_cast<std::size_t>(p.columns) / 16, static_cast<std::size_t>(p.rows)});
-  }
-  std::vector<float> result() override { return steps_.readFloats(size_); }
-
- private:
-  void once() override { kernel_.enqueue(); }
-
-  std::size_t size_;
-  ClBuffer steps_;
-  ClKernel kernel_;
-};
-
 }  // namespace
 
-std::unique_ptr<Task> mandelbrotOpenCl(const Problem& p) { return std::make_unique<Picture>(p); }
+std::unique_ptr<Task> mandelbrotOpenCl(const Problem& p) {
+  auto task = std::make_unique<ClSteps>();
+  const ClBuffer& steps = task->buffer(bytesOf(p));
+  task->step(text, "escape")
+      .with(mandelbrotLeft, mandelbrotTop, mandelbrotExtent / static_cast<float>(p.columns),
+            mandelbrotExtent / static_cast<float>(p.rows), mandelbrotSteps, steps)
+      .over({static_cast<std::size_t>(p.columns) / 16, static_cast<std::size_t>(p.rows)});
+  task->gives(steps, sizeOf(p));
+  return task;
+}
 
 }  // namespace race

@@ -14,4 +14,12 @@ RACE_ADD_PEERS(contenders) {
   contenders.push_back({"5-point stencil", name, heatOpenCl});
   contenders.push_back({"9-point stencil", name, binomialOpenCl});
   contenders.push_back({"mandelbrot", name, mandelbrotOpenCl});
+  contenders.push_back({"sgemv", name, gemvOpenCl});
+  contenders.push_back({"sgemm", name, gemmOpenCl});
+  contenders.push_back({"prefix scan", name, scanOpenCl});
+  contenders.push_back({"sort", name, sortOpenCl});
+  contenders.push_back({"n-body", name, bodiesOpenCl});
+  contenders.push_back({"fft", name, fourierOpenCl});
+  contenders.push_back({"gray-scott", name, reactionOpenCl});
+  contenders.push_back({"sparse matrix", name, sparseOpenCl});
 }

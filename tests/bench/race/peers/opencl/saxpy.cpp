@@ -13,28 +13,16 @@ kernel void saxpy(float a, global const float* restrict x, global const float* r
 }
 )";
 
-class Saxpy final : public ClTask {
- public:
-  explicit Saxpy(const Problem& p)
-      : size_(static_cast<std::size_t>(p.size())),
-        x_(p.floats[0]),
-        y_(p.floats[1]),
-        r_(size_ * sizeof(float)),
-        kernel_(text, "saxpy") {
-    kernel_.with(saxpyFactor, x_, y_, r_).over({size_});
-  }
-  std::vector<float> result() override { return r_.readFloats(size_); }
-
- private:
-  void once() override { kernel_.enqueue(); }
-
-  std::size_t size_;
-  ClBuffer x_, y_, r_;
-  ClKernel kernel_;
-};
-
 }  // namespace
 
-std::unique_ptr<Task> saxpyOpenCl(const Problem& p) { return std::make_unique<Saxpy>(p); }
+std::unique_ptr<Task> saxpyOpenCl(const Problem& p) {
+  auto task = std::make_unique<ClSteps>();
+  const ClBuffer& x = task->buffer(p.floats[0]);
+  const ClBuffer& y = task->buffer(p.floats[1]);
+  const ClBuffer& r = task->buffer(bytesOf(p));
+  task->step(text, "saxpy").with(saxpyFactor, x, y, r).over({sizeOf(p)});
+  task->gives(r, sizeOf(p));
+  return task;
+}
 
 }  // namespace race

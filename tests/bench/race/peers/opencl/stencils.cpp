@@ -28,29 +28,20 @@ kernel void binomial(float flow, int rows, int columns, global const float* rest
 }
 )";
 
-class Stencil final : public ClTask {
- public:
-  Stencil(const Problem& p, const char* kernel)
-      : size_(static_cast<std::size_t>(p.size())),
-        u_(p.floats[0]),
-        v_(size_ * sizeof(float)),
-        kernel_(text, kernel) {
-    kernel_.with(heatFlow, static_cast<std::int32_t>(p.rows), static_cast<std::int32_t>(p.columns), u_, v_)
-        .over({static_cast<std::size_t>(p.columns), static_cast<std::size_t>(p.rows)});
-  }
-  std::vector<float> result() override { return v_.readFloats(size_); }
-
- private:
-  void once() override { kernel_.enqueue(); }
-
-  std::size_t size_;
-  ClBuffer u_, v_;
-  ClKernel kernel_;
-};
+std::unique_ptr<Task> stencil(const Problem& p, const char* kernel) {
+  auto task = std::make_unique<ClSteps>();
+  const ClBuffer& u = task->buffer(p.floats[0]);
+  const ClBuffer& v = task->buffer(bytesOf(p));
+  task->step(text, kernel)
+      .with(heatFlow, static_cast<std::int32_t>(p.rows), static_cast<std::int32_t>(p.columns), u, v)
+      .over({static_cast<std::size_t>(p.columns), static_cast<std::size_t>(p.rows)});
+  task->gives(v, sizeOf(p));
+  return task;
+}
 
 }  // namespace
 
-std::unique_ptr<Task> heatOpenCl(const Problem& p) { return std::make_unique<Stencil>(p, "heat"); }
-std::unique_ptr<Task> binomialOpenCl(const Problem& p) { return std::make_unique<Stencil>(p, "binomial"); }
+std::unique_ptr<Task> heatOpenCl(const Problem& p) { return stencil(p, "heat"); }
+std::unique_ptr<Task> binomialOpenCl(const Problem& p) { return stencil(p, "binomial"); }
 
 }  // namespace race

@@ -15,5 +15,13 @@ void dotOpenMp(const Problem& p, float* total);
 void heatOpenMp(const Problem& p, float* v);
 void binomialOpenMp(const Problem& p, float* v);
 void mandelbrotOpenMp(const Problem& p, float* steps);
+void gemvOpenMp(const Problem& p, float* y);
+void gemmOpenMp(const Problem& p, float* c);
+std::unique_ptr<Task> scanOpenMp(const Problem& p);
+void sortOpenMp(const Problem& p, float* sorted);
+void bodiesOpenMp(const Problem& p, float* accelerations);
+std::unique_ptr<Task> fourierOpenMp(const Problem& p);
+std::unique_ptr<Task> reactionOpenMp(const Problem& p);
+void sparseOpenMp(const Problem& p, float* y);
 
 }  // namespace race

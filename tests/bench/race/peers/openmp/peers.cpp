@@ -16,4 +16,12 @@ RACE_ADD_PEERS(contenders) {
   add("5-point stencil", asMany, heatOpenMp);
   add("9-point stencil", asMany, binomialOpenMp);
   add("mandelbrot", asMany, mandelbrotOpenMp);
+  add("sgemv", [](const Problem& p) { return p.rows; }, gemvOpenMp);
+  add("sgemm", asMany, gemmOpenMp);
+  contenders.push_back({"prefix scan", "OpenMP", scanOpenMp});
+  add("sort", asMany, sortOpenMp);
+  add("n-body", [](const Problem& p) { return 3 * p.size(); }, bodiesOpenMp);
+  contenders.push_back({"fft", "OpenMP", fourierOpenMp});
+  contenders.push_back({"gray-scott", "OpenMP", reactionOpenMp});
+  add("sparse matrix", asMany, sparseOpenMp);
 }
