@@ -5,6 +5,7 @@ import results
 
 head = ["bar", "needed", "measured", "holds"]
 
+NOT_MEASURED = "not measured"
 LARGE = 20  # log2
 
 # Our contender, programs, peers (the fastest of them counts at each size), least ratio.
@@ -61,7 +62,7 @@ def ratio_row(found, program, ours, peers, least):
                 worst = (median, f"{median:.2f} ({low:.2f}-{high:.2f}) at 2^{log2}, {fastest} against {peer}")
     name = f"{program}: {'the best of ours' if len(ours) != 1 else ours[0]} against {' or '.join(peers)}"
     if worst is None:
-        return [name, f"at least {least}", "not measured", ""]
+        return [name, f"at least {least}", NOT_MEASURED, ""]
     return [name, f"at least {least}", worst[1], verdict(round(worst[0], 2) >= least)]
 
 
@@ -74,7 +75,7 @@ def compensated_row(found):
         if ratios and (worst is None or ratios[1] > worst[0]):
             worst = (ratios[1], f"{ratios[1]:.2f} ({ratios[0]:.2f}-{ratios[2]:.2f}) at 2^{log2}")
     if worst is None:
-        return [name, needed, "not measured", ""]
+        return [name, needed, NOT_MEASURED, ""]
     return [name, needed, worst[1], verdict(round(worst[0], 2) <= COMPENSATED)]
 
 
@@ -84,7 +85,7 @@ def linear_row(found, program, ours):
     points = [(2.0 ** log2, found.seconds((program, log2), ours)) for log2 in large_sizes(found, program)]
     points = [point for point in points if point[1]]
     if len(points) < 3:
-        return [name, needed, "not measured", ""]
+        return [name, needed, NOT_MEASURED, ""]
     exponent = results.slope(points)
     first, last = points[0], points[-1]
     return [name, needed,

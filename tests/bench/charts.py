@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Charts by gnuplot: how contenders compare at each program's largest size, and what an element costs at every size."""
+import math
 import os
 import shutil
 import subprocess
@@ -75,17 +76,16 @@ def ratios_script(found):
         blocks += f"$c{number} << END\n{points}END\n"
         size = 1.3 if contender in found.ours() else 1.0
         plots.append(f"$c{number} using 1:2 with points pt {shape} ps {size} lw 1.5 lc rgb '{color}' title {quoted(contender)}")
-    ticks, value = [], 1.0
-    while value > least / 2:
-        value /= 2
-    while value < most * 2:
-        ticks.append(f"'{f'{value:g}' if value >= 1 else f'1/{1 / value:g}'}' {value:.10g}")
-        value *= 2
+    step = next(step for step in (2, 4, 8, 16, 32, 64) if math.log(most / least, step) < 11 or step == 64)
+    ticks = []
+    for power in range(math.floor(math.log(least, step)) - 1, math.ceil(math.log(most, step)) + 2):
+        value = step ** abs(power)
+        ticks.append(f"'{f'1/{value}' if power < 0 else value}' {float(step) ** power:.10g}")
     labels = ", ".join(f"{quoted(f'{program}, 2^{log2}')} {len(rows) - i}" for i, (program, log2) in enumerate(rows))
     body = blocks + (
         f"set title {quoted(f'Speed over that of {baseline} (its time over theirs; further right is faster)')}\n"
         f"set logscale x 2\nset xrange [{least / 1.6:.6g}:{most * 1.6:.6g}]\nset yrange [0.4:{len(rows) + 0.6}]\n"
-        f"set xtics ({', '.join(ticks)})\nset ytics ({labels})\nset tics nomirror scale 0\nset border 1 lc rgb '#888888'\n"
+        f"set xtics ({', '.join(ticks)})\nset ytics ({labels})\nset tics nomirror scale 0 textcolor rgb '#333333'\nset border 1 lc rgb '#888888'\n"
         "set grid xtics ytics lt 1 lc rgb '#e4e4e4'\n"
         "set key outside right center reverse Left samplen 1 spacing 1.4\n"
         f"set arrow from 1,0.4 to 1,{len(rows) + 0.6} nohead lw 2 lc rgb '#444444' back\n"
@@ -102,7 +102,7 @@ def sizes_script(found):
     width, height, top = columns * 340, rows * 250 + 90, 90
     contenders = found.ours() + found.peers()
     body = ("set key off\nset logscale y\nset format y '%g'\nset grid lt 1 lc rgb '#e4e4e4'\n"
-            "set border 3 lc rgb '#888888'\nset tics nomirror\n"
+            "set border 3 lc rgb '#888888'\nset tics nomirror textcolor rgb '#333333'\n"
             "set multiplot title 'Nanoseconds an element, over the logarithm (base 2) of their number'\n")
     body += legend(contenders, width, height)
     for number, program in enumerate(programs):
@@ -123,7 +123,7 @@ def legend(contenders, width, height):
     # An empty plot draws them once.
     text += ("set lmargin at screen 0\nset rmargin at screen 0.001\nset tmargin at screen 0.001\nset bmargin at screen 0\n"
              "unset tics\nunset border\nset xrange [0:1]\nset yrange [1:2]\nplot NaN\n"
-             "unset label\nset tics nomirror\nset border 3 lc rgb '#888888'\n")
+             "unset label\nset tics nomirror textcolor rgb '#333333'\nset border 3 lc rgb '#888888'\n")
     return text
 
 

@@ -27,7 +27,9 @@ def main():
     found = results.read(arguments.files)
     print_tables(found)
     held = bars.judge(found)
-    print(results.plain(bars.head, held))
+    measured = [row for row in held if row[2] != bars.NOT_MEASURED]
+    if measured:
+        print("\n" + results.plain(bars.head, measured))
     if arguments.json:
         with open(arguments.json, "w", encoding="utf-8") as file:
             json.dump(found.document, file, indent=1)

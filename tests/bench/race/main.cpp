@@ -63,13 +63,16 @@ int run(CommandLine& c, const std::filesystem::path& executable) {
   }
   for (const std::string& text : peers.absent) fmt::print("absent: {}\n", text);
   race::Session session(c.settings, devices, peers.contenders);
-  session.runAll();
-
-  if (!c.json.empty()) {
+  // Kept as it goes: who ends a long run early has what was measured.
+  const auto keep = [&] {
+    if (c.json.empty()) return;
     std::ofstream file(c.json);
     file << race::resultsOf(session, devices.renderer()).dump(1) << "\n";
     if (!file.flush()) throw std::runtime_error(fmt::format("cannot write '{}'", c.json.string()));
-  }
+  };
+  keep();
+  session.runAll(keep);
+
   const auto& absences = session.absences();
   return std::any_of(absences.begin(), absences.end(), [](const auto& a) { return a.isWrong; }) ? 1 : 0;
 }

@@ -17,6 +17,9 @@
 namespace race {
 namespace {
 
+/// From what takes less, nothing is concluded for larger problems.
+constexpr double tellingSeconds = 0.02;
+
 double sizeOf(int log2) { return std::ldexp(1.0, log2); }
 
 /// How the time grows with the size: as the operations do, or the bytes.
@@ -63,10 +66,12 @@ double medianOf(std::vector<double> values) {
 
 }  // namespace
 
-void Session::runAll() {
+void Session::runAll(const std::function<void()>& keep) {
   const std::regex wanted(settings_.filter);
   for (const Program& program : programs()) {
-    if (std::regex_search(program.name, wanted)) runProgram(program);
+    if (!std::regex_search(program.name, wanted)) continue;
+    runProgram(program);
+    keep();
   }
 }
 
@@ -119,7 +124,8 @@ std::unique_ptr<Task> Session::checkedTask(const Program& program, int log2, con
     const auto start = std::chrono::steady_clock::now();
     task->run(1);
     const std::chrono::duration<double> once = std::chrono::steady_clock::now() - start;
-    secondsPerWork = once.count() / growthOf(program, log2);
+    // Of short runs, most may be what does not grow.
+    secondsPerWork = once.count() < tellingSeconds ? 0 : once.count() / growthOf(program, log2);
     if (const auto fault = faultOf(task->result(), check)) {
       leaveOut(program, log2, contender, *fault, true);
       return nullptr;

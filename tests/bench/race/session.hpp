@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -48,8 +49,8 @@ class Session {
   Session(const Settings& settings, const OurDevices& devices, const std::vector<Contender>& peers)
       : settings_(settings), devices_(devices), peers_(peers) {}
 
-  /// Prints a line for each problem as it goes.
-  void runAll();
+  /// Prints the times of each problem as it goes, and calls `keep` after each program.
+  void runAll(const std::function<void()>& keep);
 
   const std::vector<Run>& runs() const { return runs_; }
   const std::vector<Absence>& absences() const { return absences_; }

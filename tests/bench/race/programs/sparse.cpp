@@ -50,13 +50,14 @@ Problem sparseProblem(int log2) {
   const std::int64_t width = std::min(band, n);
   for (std::int64_t row = 0; row < n; ++row) {
     const std::int64_t first = std::clamp<std::int64_t>(row - width / 2, 0, n - width);
-    const auto begin = static_cast<std::ptrdiff_t>(columns.size());
-    for (std::int32_t i = starts[static_cast<std::size_t>(row)];
-         i < starts[static_cast<std::size_t>(row) + 1]; ++i) {
-      const float place = places[static_cast<std::size_t>(i)] * static_cast<float>(width);
-      columns.push_back(static_cast<std::int32_t>(first + static_cast<std::int64_t>(place)));
+    const std::int32_t begin = starts[static_cast<std::size_t>(row)],
+                       end = starts[static_cast<std::size_t>(row) + 1];
+    const std::int64_t part = width / (end - begin);  // of the band, with one entry
+    for (std::int32_t i = begin; i < end; ++i) {
+      const auto inPart =
+          static_cast<std::int64_t>(places[static_cast<std::size_t>(i)] * static_cast<float>(part));
+      columns.push_back(static_cast<std::int32_t>(first + (i - begin) * part + inPart));
     }
-    std::sort(columns.begin() + begin, columns.end());
   }
   p.floats = {numbers(starts.back(), 1), numbers(n, 2)};
   p.ints = {std::move(starts), std::move(columns)};
