@@ -51,7 +51,5 @@ constexpr const char* addPeersName = "race_add_peers";
 
 }  // namespace race
 
-/// Begins the definition of that function.
-#define RACE_ADD_PEERS(contenders)                                       \
-  extern "C" __attribute__((visibility("default"))) void race_add_peers( \
-      std::vector<race::Contender>& contenders)
+/// Begins the definition of that function: RACE_ADD_PEERS(std::vector<race::Contender>& contenders) { ... }
+#define RACE_ADD_PEERS extern "C" __attribute__((visibility("default"))) void race_add_peers

@@ -16,7 +16,8 @@ struct Row {
 
 const Row rows[] = {
     {"native", Kind::Native, {}},
-    {"fragment", Kind::Gl, {}},
+    {"fragment", Kind::Gl, {.target = sk::Target::Fragment}},
+    {"compute", Kind::Gl, {.target = sk::Target::Compute}},
 };
 
 }  // namespace

@@ -189,7 +189,7 @@ class CubTask final : public Task {
 }  // namespace
 }  // namespace race
 
-RACE_ADD_PEERS(contenders) {
+RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   using namespace race;
   int devices = 0;
   check(cudaGetDeviceCount(&devices));

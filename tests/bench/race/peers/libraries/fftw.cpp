@@ -45,7 +45,7 @@ class Transform final : public Task {
 }  // namespace
 }  // namespace race
 
-RACE_ADD_PEERS(contenders) {
+RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   contenders.push_back(
       {"fft", "FFTW", [](const race::Problem& p) { return std::make_unique<race::Transform>(p); }});
 }

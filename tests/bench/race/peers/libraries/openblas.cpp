@@ -26,7 +26,7 @@ void dot(const Problem& p, float* total) {
 }  // namespace
 }  // namespace race
 
-RACE_ADD_PEERS(contenders) {
+RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   using namespace race;
   contenders.push_back(onCpu("dot", "OpenBLAS", one, dot));
   contenders.push_back(onCpu("sgemv", "OpenBLAS", [](const Problem& p) { return p.rows; }, gemv));

@@ -96,7 +96,7 @@ void ClKernel::enqueue() const {
 
 void ClKernel::set(cl_uint index, const ClBuffer& buffer) {
   const cl_mem memory = buffer.get();
-  check(clSetKernelArg(kernel_, index, sizeof memory, &memory), "clSetKernelArg");
+  check(clSetKernelArg(kernel_, index, sizeof(cl_mem), static_cast<const void*>(&memory)), "clSetKernelArg");
 }
 
 void ClKernel::set(cl_uint index, float value) {

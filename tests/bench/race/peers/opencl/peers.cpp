@@ -4,7 +4,7 @@
 #include "peers/opencl/all.hpp"
 #include "peers/opencl/device.hpp"
 
-RACE_ADD_PEERS(contenders) {
+RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   using namespace race;
   const std::string& name = ClDevice::instance().name();
   contenders.push_back({"saxpy", name, saxpyOpenCl});

@@ -4,7 +4,7 @@
 #include "peers/cpu_task.hpp"
 #include "peers/openmp/all.hpp"
 
-RACE_ADD_PEERS(contenders) {
+RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   using namespace race;
   const auto add = [&](const char* program, auto resultSize, auto function) {
     contenders.push_back(onCpu(program, "OpenMP", resultSize, function));
