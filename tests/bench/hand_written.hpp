@@ -7,38 +7,11 @@
 #include <string>
 #include <vector>
 
-#include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include "plain_context.hpp"
+
 namespace bench {
-
-/// A context without a window on the renderer of this name. It is current only where `Current` says so.
-class PlainContext {
- public:
-  /// Throws std::runtime_error where no display has such a renderer with GL 3.3.
-  explicit PlainContext(const std::string& renderer);
-  ~PlainContext();
-  PlainContext(const PlainContext&) = delete;
-  PlainContext& operator=(const PlainContext&) = delete;
-
-  /// Makes the context current for as long as it lives, and none after that.
-  class Current {
-   public:
-    explicit Current(const PlainContext& context);
-    ~Current();
-    Current(const Current&) = delete;
-    Current& operator=(const Current&) = delete;
-
-   private:
-    EGLDisplay display_;
-  };
-
- private:
-  bool tryDisplay(EGLDisplay display, const std::string& renderer);
-
-  EGLDisplay display_ = EGL_NO_DISPLAY;
-  EGLContext context_ = EGL_NO_CONTEXT;
-};
 
 /// One pass that writes a float texture of width x height from up to two like it. Make it, use it and let
 /// it go while its context is current.

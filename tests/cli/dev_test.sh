@@ -70,8 +70,22 @@ says 'installing 1 Debian packages: cmake'
 called 'apt-get -q -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 install --no-install-recommends cmake'
 never_called 'apt-get .* update'
 
+# What benchmarks alone want is installed for them alone, and CMake then looks for it; files are the caller's.
+stand_in dpkg-query 'for name in "${@:4}"; do [[ $name == libbenchmark-dev ]] && echo "not-installed $name" || echo "installed $name"; done'
+mkdir -p "$place/repo/tests/bench"
+printf '#!/bin/bash\necho "benchmarks of ${1##*/} in ${PWD##*/}: ${*:2}"\n' >"$place/repo/tests/bench/bench.sh"
+chmod +x "$place/repo/tests/bench/bench.sh"
+run 0 build
+never_called apt-get
+run 0 bench --json x.json
+says 'installing 1 Debian packages: libbenchmark-dev'
+called 'cmake --preset release'
+called 'cmake --build --preset release --target tests/bench/all tests/bench/race/all -- --quiet'
+says 'benchmarks of release in elsewhere: --json x.json'
+
 # A bare machine has no package lists: they are fetched, then it is tried again.
 stand_in apt-get 'case $* in *" update") touch "${0%/*}/../lists" ;; *) test -e "${0%/*}/../lists" ;; esac'
+stand_in dpkg-query 'for name in "${@:4}"; do [[ $name == cmake ]] && echo "not-installed $name" || echo "installed $name"; done'
 run 0 build
 called 'apt-get -q -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 update'
 
@@ -110,7 +124,7 @@ says 'no C++ compiler found'
 says 'cmake could not configure'
 
 # packages.txt: every line says one package, under a section.
-awk '/^#/ || !NF { next } /^\[(build|lint)\]$/ { section = 1; next }
+awk '/^#/ || !NF { next } /^\[(build|lint|bench)\]$/ { section = 1; next }
      !section || !/^[a-z0-9][a-z0-9.+-]+( +#.*)?$/ { print "packages.txt:" NR ": " $0; bad = 1 }
      END { exit bad }' "$root/packages.txt"
 echo "./dev does what ./dev help says"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The measured figures of README.md: the table is there and every row has a figure with its unit. Whether
-// they are fast enough is `./dev bench --check`'s business.
+// The measured figures of README.md and docs/performance.md: the tables are there and every row has its figures. Whether
+// they are good enough is `./dev bench`'s business.
 #include <regex>
 
 #include <catch2/catch.hpp>
@@ -24,4 +24,46 @@ TEST_CASE("README.md has a table of measured figures", "[figures]") {
     ++rows;
   }
   CHECK(rows >= 3);
+}
+
+namespace {
+
+/// The rows of the table between the marks of this name, without its head; every table of docs/performance.md has one.
+std::vector<std::string> rowsOf(const std::string& text, const std::string& name) {
+  const std::string mark = "<!-- bench " + name + " -->\n";
+  const std::size_t begin = text.find(mark);
+  const std::size_t end = text.find("<!-- /bench -->", begin);
+  INFO(mark);
+  REQUIRE(begin != std::string::npos);
+  REQUIRE(end != std::string::npos);
+  const std::vector<std::string> lines =
+      docs::linesOf(text.substr(begin + mark.size(), end - begin - mark.size()));
+  std::vector<std::string> rows;
+  for (const std::string& line : lines) {
+    if (line.starts_with("| ")) rows.push_back(line);
+  }
+  REQUIRE(rows.size() > 1);
+  rows.erase(rows.begin());
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("docs/performance.md has tables of what was measured", "[figures]") {
+  const std::string text = docs::readFile(std::filesystem::path(SK_DOCS_SOURCE) / "docs" / "performance.md");
+  // Program, size, time, rate, and a peer's ratio with its quartiles where that took part.
+  static const std::regex program(
+      R"(\| [^|]+ \| 2\^\d+ [^|]+ \| \d[\d.e+]* (s|ms|us) \| \d[\d.e+-]* \w+/s \|( (\d[\d.]* \(\d[\d.]*-\d[\d.]*\))? \|)*)");
+  for (const char* table : {"native", "fragment", "compute"}) {
+    for (const std::string& row : rowsOf(text, table)) {
+      INFO(row);
+      CHECK(std::regex_match(row, program));
+    }
+  }
+  // What, how much, what was measured, whether it holds.
+  static const std::regex bar(R"(\| [^|]+ \| [^|]+ \| (\S[^|]* \| (yes|NO)|not measured \| ) \|)");
+  for (const std::string& row : rowsOf(text, "bars")) {
+    INFO(row);
+    CHECK(std::regex_match(row, bar));
+  }
 }

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""What must hold. A ratio is a peer's time over ours; it is judged at the size where it is worst, of those that are large
+enough for the work, and not what surrounds it, to be what takes the time."""
+import results
+
+head = ["bar", "needed", "measured", "holds"]
+
+NOT_MEASURED = "not measured"
+LARGE = 20  # log2
+
+# Our contender, programs, peers (the fastest of them counts at each size), least ratio.
+RATIOS = [
+    ("native", ["saxpy", "sum", "5-point stencil"], ["OpenMP"], 0.95),
+    ("fragment", ["saxpy", "sum", "5-point stencil"], ["GLSL", "GLSL packed"], 1.0),
+]
+BEST_OF_ALL = ("mandelbrot", ["OpenMP", "PoCL", "OpenCL", "GLSL"], 1.0)
+COMPENSATED = 1.1  # times the plain sum's time, natively
+LINEAR = ["saxpy", "sum", "5-point stencil"]
+EXPONENT = 1.1  # of the size, in the time, from LARGE on: caches end on the way
+
+
+def judge(found):
+    """Rows for `head`; one without a measurement says so."""
+    rows = []
+    for ours, programs, peers, least in RATIOS:
+        if ours in found.ours():
+            for program in programs:
+                rows.append(ratio_row(found, program, [ours], peers, least))
+    program, peers, least = BEST_OF_ALL
+    rows.append(ratio_row(found, program, found.ours(), peers, least))
+    rows.append(compensated_row(found))
+    for program in LINEAR:
+        rows += [linear_row(found, program, ours) for ours in found.ours()]
+    for figure in found.document.get("results", []):
+        if "bar" in figure:
+            unit = figure["unit"]
+            rows.append([figure["name"], f"at most {figure['bar']:g} {unit}", f"{figure['median']:.3g} {unit}",
+                         verdict(figure["passed"])])
+    return rows
+
+
+def verdict(holds):
+    return "yes" if holds else "NO"
+
+
+def large_sizes(found, program):
+    return [log2 for log2 in found.sizes(program) if log2 >= LARGE]
+
+
+def ratio_row(found, program, ours, peers, least):
+    """The fastest of `ours` against the fastest of `peers`, at the size that is worst for us."""
+    worst = None
+    for log2 in large_sizes(found, program):
+        problem = (program, log2)
+        mine = [name for name in ours if found.seconds(problem, name)]
+        theirs = [name for name in peers if found.seconds(problem, name)]
+        if mine and theirs:
+            fastest = min(mine, key=lambda name: found.seconds(problem, name))
+            peer = min(theirs, key=lambda name: found.seconds(problem, name))
+            low, median, high = found.ratios(problem, fastest, peer)
+            if worst is None or median < worst[0]:
+                worst = (median, f"{median:.2f} ({low:.2f}-{high:.2f}) at 2^{log2}, {fastest} against {peer}")
+    name = f"{program}: {'the best of ours' if len(ours) != 1 else ours[0]} against {' or '.join(peers)}"
+    if worst is None:
+        return [name, f"at least {least}", NOT_MEASURED, ""]
+    return [name, f"at least {least}", worst[1], verdict(round(worst[0], 2) >= least)]
+
+
+def compensated_row(found):
+    name = "a compensated sum's time over a plain one's, native"
+    needed = f"at most {COMPENSATED}"
+    worst = None
+    for log2 in large_sizes(found, "sum"):
+        ratios = found.ratios(("sum", log2), "native", "native compensated")
+        if ratios and (worst is None or ratios[1] > worst[0]):
+            worst = (ratios[1], f"{ratios[1]:.2f} ({ratios[0]:.2f}-{ratios[2]:.2f}) at 2^{log2}")
+    if worst is None:
+        return [name, needed, NOT_MEASURED, ""]
+    return [name, needed, worst[1], verdict(round(worst[0], 2) <= COMPENSATED)]
+
+
+def linear_row(found, program, ours):
+    name = f"{program}: {ours}'s cost grows linearly"
+    needed = f"as n^{EXPONENT} at most"
+    points = [(2.0 ** log2, found.seconds((program, log2), ours)) for log2 in large_sizes(found, program)]
+    points = [point for point in points if point[1]]
+    if len(points) < 3:
+        return [name, needed, NOT_MEASURED, ""]
+    exponent = results.slope(points)
+    first, last = points[0], points[-1]
+    return [name, needed,
+            f"n^{exponent:.2f}; {1e9 * first[1] / first[0]:.3g} ns an element of 2^{int(first[0]).bit_length() - 1}, "
+            f"{1e9 * last[1] / last[0]:.3g} of 2^{int(last[0]).bit_length() - 1}",
+            verdict(exponent <= EXPONENT)]

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "ours.hpp"
+
+#include <fmt/format.h>
+
+namespace race {
+namespace {
+
+enum class Kind { Native, Gl };
+
+struct Row {
+  const char* name;
+  Kind kind;
+  sk::CallOptions options;
+};
+
+const Row rows[] = {
+    {"native", Kind::Native, {}},
+    {"fragment", Kind::Gl, {.target = sk::Target::Fragment}},
+    {"compute", Kind::Gl, {.target = sk::Target::Compute}},
+};
+
+}  // namespace
+
+OurDevices::OurDevices(const std::string& gl) {
+  sk::Device* native = &devices_.emplace_back("native");
+  sk::Device* other = nullptr;
+  std::string why;
+  try {
+    other = &devices_.emplace_back(gl);
+    renderer_ = other->name();
+  } catch (const sk::Error& error) {
+    why = error.what();
+  }
+  for (const Row& row : rows) {
+    sk::Device* device = row.kind == Kind::Native ? native : other;
+    if (device != nullptr) {
+      contenders_.push_back({row.name, device, row.options});
+    } else {
+      absent_.push_back(fmt::format("{}: {}", row.name, why));
+    }
+  }
+}
+
+}  // namespace race

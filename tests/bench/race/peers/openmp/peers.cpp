@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+//
+// The list of the peers written with OpenMP.
+#include "peers/cpu_task.hpp"
+#include "peers/openmp/all.hpp"
+
+RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
+  using namespace race;
+  const auto add = [&](const char* program, auto resultSize, auto function) {
+    contenders.push_back(onCpu(program, "OpenMP", resultSize, function));
+  };
+  add("saxpy", asMany, saxpyOpenMp);
+  add("sum", one, sumOpenMp);
+  add("compensated sum", one, compensatedSumOpenMp);
+  add("dot", one, dotOpenMp);
+  add("5-point stencil", asMany, heatOpenMp);
+  add("9-point stencil", asMany, binomialOpenMp);
+  add("mandelbrot", asMany, mandelbrotOpenMp);
+  add("sgemv", [](const Problem& p) { return p.rows; }, gemvOpenMp);
+  add("sgemm", asMany, gemmOpenMp);
+  contenders.push_back({"prefix scan", "OpenMP", scanOpenMp});
+  add("sort", asMany, sortOpenMp);
+  add("n-body", [](const Problem& p) { return 3 * p.size(); }, bodiesOpenMp);
+  contenders.push_back({"fft", "OpenMP", fourierOpenMp});
+  contenders.push_back({"gray-scott", "OpenMP", reactionOpenMp});
+  add("sparse matrix", asMany, sparseOpenMp);
+}

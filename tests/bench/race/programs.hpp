@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+//
+// The programs that are raced, a row each: what they compute of how many elements, what that costs at least, how it is
+// checked, and how the runtime does it. A program's file in programs/ holds its functions.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "contender.hpp"
+
+namespace race {
+
+/// What some or all numbers of the result must be.
+struct Check {
+  std::vector<std::int64_t> places;  ///< none: all, in order
+  std::vector<double> values;
+  double tolerance = 0;  ///< relative to the largest magnitude of `values`
+  double exempt =
+      0;  ///< the part of them that may be further off, where a rounding decides (Mandelbrot's border)
+};
+
+/// The work of a problem of n elements, as an algorithm that wastes nothing has it.
+struct Work {
+  double operations;  ///< of floats; 0 where there are none to speak of
+  double bytes;  ///< read and written once
+};
+
+using MakeOurs = std::unique_ptr<Task> (*)(sk::Device& device, const sk::CallOptions& options,
+                                           const Problem& problem);
+
+struct Program {
+  const char* name;
+  const char* element;  ///< what a size counts
+  std::vector<int> sizes;  ///< their logarithms to base 2, where nothing else is asked for
+  std::vector<int> ownSizes;  ///< further ones, where only ours show how their cost grows
+  Work (*work)(double n);
+  Problem (*problem)(int log2);
+  Check (*check)(const Problem& problem);
+  MakeOurs ours;
+  const char* variantName = nullptr;  ///< another way that we do it, raced beside the first; none, as a rule
+  MakeOurs variant = nullptr;
+};
+
+const std::vector<Program>& programs();
+
+// Ingredients of problems.
+
+/// 2^log2 elements as rows of equal length, as square as may be.
+Problem grid(int log2);
+/// n numbers in [low, high), the same each time, that repeat late.
+std::vector<float> numbers(std::int64_t n, std::uint32_t seed, float low = 0, float high = 1);
+/// At most `most` of the places 0 to n-1, the first and the last among them.
+std::vector<std::int64_t> somePlaces(std::int64_t n, std::int64_t most = 4096);
+
+}  // namespace race

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+//
+// The functions of all programs, which the table in programs.cpp is made of.
+#pragma once
+
+#include "programs.hpp"
+
+namespace race {
+
+#define RACE_OURS(name) \
+  std::unique_ptr<Task> name##Ours(sk::Device& device, const sk::CallOptions& options, const Problem& problem)
+
+Problem saxpyProblem(int log2);
+Check saxpyCheck(const Problem& problem);
+RACE_OURS(saxpy);
+
+Problem sumProblem(int log2);
+Check sumCheck(const Problem& problem);
+RACE_OURS(sum);
+Check compensatedSumCheck(const Problem& problem);
+RACE_OURS(compensatedSum);
+Problem dotProblem(int log2);
+Check dotCheck(const Problem& problem);
+RACE_OURS(dot);
+
+Problem stencilProblem(int log2);
+Check heatCheck(const Problem& problem);
+RACE_OURS(heat);
+Check binomialCheck(const Problem& problem);
+RACE_OURS(binomial);
+
+Check mandelbrotCheck(const Problem& problem);
+RACE_OURS(mandelbrot);
+
+Problem gemvProblem(int log2);
+Check gemvCheck(const Problem& problem);
+RACE_OURS(gemv);
+Problem gemmProblem(int log2);
+Check gemmCheck(const Problem& problem);
+RACE_OURS(gemm);
+
+Problem scanProblem(int log2);
+Check scanCheck(const Problem& problem);
+RACE_OURS(scan);
+
+Problem sortProblem(int log2);
+Check sortCheck(const Problem& problem);
+RACE_OURS(sort);
+
+Problem bodiesProblem(int log2);
+Check bodiesCheck(const Problem& problem);
+RACE_OURS(bodies);
+
+Problem fourierProblem(int log2);
+Check fourierCheck(const Problem& problem);
+RACE_OURS(fourier);
+
+Problem reactionProblem(int log2);
+Check reactionCheck(const Problem& problem);
+RACE_OURS(reaction);
+
+Problem sparseProblem(int log2);
+Check sparseCheck(const Problem& problem);
+RACE_OURS(sparse);
+
+#undef RACE_OURS
+
+}  // namespace race

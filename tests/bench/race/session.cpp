@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <regex>
+
+#include <fmt/format.h>
+
+namespace race {
+namespace {
+
+/// From what takes less, nothing is concluded for larger problems.
+constexpr double tellingSeconds = 0.02;
+
+double sizeOf(int log2) { return std::ldexp(1.0, log2); }
+
+/// How the time grows with the size: as the operations do, or the bytes.
+double growthOf(const Program& program, int log2) {
+  const Work work = program.work(sizeOf(log2));
+  return std::max(work.operations, work.bytes);
+}
+
+/// Bytes that may be allocated without a page going to disk; a great many where the system does not tell.
+double availableMemory() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string word; file >> word;) {
+    double kibibytes = 0;
+    if (word == "MemAvailable:" && file >> kibibytes) return kibibytes * 1024;
+  }
+  return std::numeric_limits<double>::max();
+}
+
+/// Seconds of one run: the shortest of a few, where they are short.
+double shortestOf(Task& task) {
+  double shortest = std::numeric_limits<double>::max();
+  for (int run = 0; run < 3 && (run == 0 || shortest < 5 * tellingSeconds); ++run) {
+    const auto start = std::chrono::steady_clock::now();
+    task.run(1);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    shortest = std::min(shortest, taken.count());
+  }
+  return shortest;
+}
+
+/// What is wrong with a result; nothing where it is right.
+std::optional<std::string> faultOf(const std::vector<float>& result, const Check& check) {
+  const bool isWhole = check.places.empty();
+  if (isWhole && result.size() != check.values.size()) {
+    return fmt::format("gives {} numbers, not {}", result.size(), check.values.size());
+  }
+  double largest = 0;
+  for (const double value : check.values) largest = std::max(largest, std::fabs(value));
+  std::size_t count = 0;
+  std::string first;
+  for (std::size_t i = 0; i < check.values.size(); ++i) {
+    const std::size_t place = isWhole ? i : static_cast<std::size_t>(check.places[i]);
+    if (place >= result.size()) return fmt::format("gives {} numbers only", result.size());
+    if (std::fabs(result[place] - check.values[i]) <= check.tolerance * largest) continue;
+    if (count++ == 0) first = fmt::format("number {} is {}, not {}", place, result[place], check.values[i]);
+  }
+  if (static_cast<double>(count) <= check.exempt * static_cast<double>(check.values.size())) return {};
+  return fmt::format("{} ({} of {} that were looked at are wrong)", first, count, check.values.size());
+}
+
+double medianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+void Session::runAll(const std::function<void()>& keep) {
+  const std::regex wanted(settings_.filter);
+  for (const Program& program : programs()) {
+    if (!std::regex_search(program.name, wanted)) continue;
+    runProgram(program);
+    keep();
+  }
+}
+
+void Session::runProgram(const Program& program) {
+  if (!settings_.sizes.empty()) {
+    for (const int log2 : settings_.sizes) runProblem(program, log2, settings_.withPeers);
+    return;
+  }
+  for (const int log2 : program.sizes) runProblem(program, log2, settings_.withPeers);
+  for (const int log2 : program.ownSizes) runProblem(program, log2, false);
+}
+
+std::vector<Session::Entry> Session::entriesOf(const Program& program, bool withPeers) const {
+  std::vector<Entry> entries;
+  const auto add = [&](const Ours& ours, const std::string& name, MakeOurs make) {
+    entries.push_back(
+        {{program.name, name,
+          [&ours, make](const Problem& problem) { return make(*ours.device, ours.options, problem); }},
+         true});
+  };
+  for (const Ours& ours : devices_.contenders()) {
+    add(ours, ours.name, program.ours);
+    if (program.variant != nullptr)
+      add(ours, fmt::format("{} {}", ours.name, program.variantName), program.variant);
+  }
+  if (!withPeers) return entries;
+  for (const Contender& peer : peers_) {
+    if (peer.program == program.name) entries.push_back({peer, false});
+  }
+  return entries;
+}
+
+void Session::leaveOut(const Program& program, int log2, const Contender& contender, std::string why,
+                       bool isWrong) {
+  fmt::print("  {} is left out: {}\n", contender.name, why);
+  absences_.push_back({program.name, log2, contender.name, std::move(why), isWrong});
+}
+
+std::unique_ptr<Task> Session::checkedTask(const Program& program, int log2, const Contender& contender,
+                                           const Problem& problem, const Check& check) {
+  double& secondsPerWork = secondsPerWork_[{program.name, contender.name}];
+  const double expected = secondsPerWork * growthOf(program, log2);
+  if (expected > settings_.longestSeconds) {
+    leaveOut(program, log2, contender, fmt::format("would take about {:.0f} s", expected), false);
+    return nullptr;
+  }
+  try {
+    std::unique_ptr<Task> task = contender.make(problem);
+    task->run(1);  // compiles, and touches memory
+    const double once = shortestOf(*task);
+    // Of short runs, most may be what does not grow.
+    secondsPerWork = once < tellingSeconds ? 0 : once / growthOf(program, log2);
+    if (const auto fault = faultOf(task->result(), check)) {
+      leaveOut(program, log2, contender, *fault, true);
+      return nullptr;
+    }
+    return task;
+  } catch (const std::exception& error) {
+    leaveOut(program, log2, contender, error.what(), false);
+    return nullptr;
+  }
+}
+
+void Session::runProblem(const Program& program, int log2, bool withPeers) {
+  const std::vector<Entry> entries = entriesOf(program, withPeers);
+  fmt::print("{}, 2^{} {}\n", program.name, log2, program.element);
+  std::fflush(stdout);
+  // Everybody has arrays of his own, and there are the problem's and those that go to a check.
+  const double needed = program.work(sizeOf(log2)).bytes * static_cast<double>(entries.size() + 2);
+  if (needed > availableMemory()) {
+    fmt::print("  left out: {:.3g} GB of memory are needed, more than there is\n", needed / 1e9);
+    return;
+  }
+  const Problem problem = program.problem(log2);
+  const Check check = program.check(problem);
+  std::vector<std::unique_ptr<Task>> tasks;
+  std::vector<Runner> runners;
+  std::vector<Run> runs;
+  for (const Entry& entry : entries) {
+    if (auto task = checkedTask(program, log2, entry.contender, problem, check)) {
+      runners.push_back({entry.contender.name, task.get()});
+      runs.push_back({&program, log2, entry.contender.name, entry.isOurs, {}});
+      tasks.push_back(std::move(task));
+    }
+  }
+  const auto seconds = race(runners, settings_.patience);
+  const Work work = program.work(sizeOf(log2));
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    runs[i].seconds = seconds[i];
+    const double median = medianOf(seconds[i]);
+    fmt::print("  {:<22} {:>10.4g} ms {:>9.3g} GB/s", runs[i].contender, 1e3 * median,
+               work.bytes / median / 1e9);
+    if (work.operations > 0) fmt::print(" {:>9.3g} Gop/s", work.operations / median / 1e9);
+    fmt::print("\n");
+    runs_.push_back(std::move(runs[i]));
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace race

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Tells what benchmarks have measured: report.py RESULTS.json ... [--json FILE] [--chart DIR] [--document FILE].
+
+The files are what sk_race, sk_bench and torch_peer.py write; together they are one set of results. Prints a table for each
+of our contenders, and which bars hold. A ratio here is a peer's time over ours: how many times as fast we are.
+"""
+import argparse
+import json
+import os
+import re
+import sys
+
+import bars
+import charts
+import results
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("files", nargs="+", metavar="RESULTS.json")
+    parser.add_argument("--json", metavar="FILE", help="write all results to one file")
+    parser.add_argument("--chart", metavar="DIR", help="draw performance.svg, performance-sizes.svg and the same as .png")
+    parser.add_argument("--document", metavar="FILE",
+                        help="write the tables between the marks <!-- bench NAME --> and <!-- /bench -->")
+    arguments = parser.parse_args()
+    found = results.read(arguments.files)
+    print_tables(found)
+    held = bars.judge(found)
+    measured = [row for row in held if row[2] != bars.NOT_MEASURED]
+    if measured:
+        print("\n" + results.plain(bars.head, measured))
+    if arguments.json:
+        with open(arguments.json, "w", encoding="utf-8") as file:
+            json.dump(found.document, file, indent=1)
+            file.write("\n")
+    if arguments.chart:
+        os.makedirs(arguments.chart, exist_ok=True)
+        charts.draw(found, arguments.chart)
+    if arguments.document:
+        update(arguments.document, found, held)
+    return 0
+
+
+def print_tables(found):
+    for ours in found.ours():
+        head, rows = results.table_of(found, ours)
+        print(f"\n{ours}: its time, and the peers' over that (above 1: {ours} is faster)\n")
+        print(results.plain(head, rows))
+
+
+def update(path, found, held):
+    """Replaces what is between the marks; a mark names a table: `bars`, `machine`, or one of our contenders."""
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+
+    def replaced(match):
+        name = match.group(1)
+        if name == "bars":
+            body = results.markdown(bars.head, held)
+        elif name == "machine":
+            body = found.machine_text() + "\n"
+        elif name in found.ours():
+            body = results.markdown(*results.table_of(found, name, largest_only=True))
+        else:
+            return match.group(0)  # measured elsewhere
+        return f"<!-- bench {name} -->\n{body}<!-- /bench -->"
+
+    text, count = re.subn(r"<!-- bench ([\w -]+?) -->\n.*?<!-- /bench -->", replaced, text, flags=re.S)
+    if count == 0:
+        sys.exit(f"report.py: '{path}' has no <!-- bench NAME --> and <!-- /bench -->")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
