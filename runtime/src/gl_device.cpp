@@ -16,6 +16,7 @@
 #include "gl/commands.hpp"
 #include "gl/errors.hpp"
 #include "gl_stream.hpp"
+#include "keep_heap.hpp"
 #include "pass_trace.hpp"
 #include "pending_read.hpp"
 #include "plan_run.hpp"
@@ -92,6 +93,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     gl::setPassState(capabilities);
   }
   if (capabilities.hasLabels && capabilities.isDebugged) labels.turnOn();
+  if (capabilities.isSoftware) keepHeap();
 }
 
 // GL objects are deleted only with their context current. Where it cannot be made current, because
@@ -200,6 +202,9 @@ void GlDevice::choose(const CallOptions& options, assemble::Stage stage) {
                              .doubles = takesPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
                              .barrier = barrier,
                              .tables = options.tables != Tables::Off};
+  if (programs_ != nullptr && choice == chosen_) {
+    return;
+  }
   auto found = caches_.find(choice);
   if (found == caches_.end()) {
     assemble::Profile chosen = stage == assemble::Stage::Compute ? computeProfile : profile;
@@ -210,6 +215,7 @@ void GlDevice::choose(const CallOptions& options, assemble::Stage stage) {
     found = caches_.try_emplace(choice, *this, chosen).first;
   }
   programs_ = &found->second;
+  chosen_ = choice;
 }
 
 GLuint GlDevice::textureOf(const FunctionTable& table) {
@@ -310,7 +316,6 @@ void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& op
 // Lists of sinks, and bundles of planes, are made of what the kernel declares; a vector of doubles has more planes than
 // one of floats.
 void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments) const {
-  const bool isPlanned = planFor(kernel, limits) != nullptr;
   std::size_t written = 0;
   std::size_t read = 0;
   bool isOther = false;
@@ -328,7 +333,7 @@ void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argu
            "'{}' is a variable or scatter output, whose stream holds floats; make it with Storage::Single",
            parameter.name);
     }
-    if (isPlanned) {
+    if (planFor(kernel, limits) != nullptr) {
       fail(kernel,
            "it takes several passes on this device, for which the stream of '{}' has to hold floats; make it "
            "with Storage::Single",

@@ -150,7 +150,8 @@ class GlDevice final : public DeviceState {
   std::map<ProgramChoice, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
   std::vector<TransferBuffer> transferBuffers_;  ///< idle ones
-  ProgramCache* programs_;  ///< one of them
+  ProgramCache* programs_ = nullptr;  ///< one of them
+  ProgramChoice chosen_;  ///< its key
   std::optional<Arithmetic> arithmetic_;
   std::array<std::optional<assemble::Stage>, kernelClasses> faster_;
 };

@@ -125,15 +125,14 @@ class KeyBits {
 
 std::size_t ProgramKeyHash::operator()(const ProgramKey& key) const {
   std::uint64_t hash = reinterpret_cast<std::uintptr_t>(key.kernel);
-  for (const std::uint64_t word : key.words) {
-    hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
+  const auto add = [&](std::uint64_t word, std::size_t place) {
+    if (word == 0) return;  // most are
+    hash = (hash ^ (word + place)) * 0x9E3779B97F4A7C15u;
     hash ^= hash >> 29;
-  }
-  for (const std::uint32_t spec : key.specs) {
-    hash = (hash ^ spec) * 0x9E3779B97F4A7C15u;
-    hash ^= hash >> 29;
-  }
-  return hash;
+  };
+  for (std::size_t i = 0; i < key.words.size(); ++i) add(key.words[i], i);
+  for (std::size_t i = 0; i < key.specs.size(); ++i) add(key.specs[i], i);
+  return hash * 0x9E3779B97F4A7C15u >> 32;
 }
 
 std::uint32_t specBits(const Parameter& parameter, const void* value) {
@@ -156,6 +155,7 @@ Operand regionOperand(const Argument& argument, const Shape& domain) {
   GlStream& stream = glStream(argument.region);
   Operand operand{.placement = placementOf(argument.region, stream.layout), .planes = stream.planes};
   operand.storage = stream.storage;
+  if (argument.fit == Fit::Same) return operand;
   const assemble::Index4 whole = xFirst(domain);
   for (std::size_t d = 0; d < whole.size(); ++d) {
     switch (argument.fit) {
