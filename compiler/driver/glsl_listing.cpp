@@ -37,6 +37,7 @@ sk::assemble::StreamAccess foundByIndex(sk::assemble::Domain domain, bool isPack
 sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel, bool packed = true) {
   sk::assemble::Variant variant;
   variant.domainPacked = packed && sk::assemble::mayWritePacked(kernel);
+  variant.domainEven = true;
   std::size_t specs = 0;
   for (const sk::program::Parameter& parameter : kernel.parameters) {
     sk::assemble::StreamAccess access;

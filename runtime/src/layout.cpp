@@ -14,8 +14,11 @@ namespace sk {
 
 namespace {
 
+/// A longer row makes a texture that is but one texel high, of which a device that works on squares of texels wastes most.
+constexpr std::int64_t longestRow = 256;
+
 bool liesAsItIs(const Shape& shape, std::int32_t longest) {
-  if (shape.rank() > 2) {
+  if (shape.rank() > 2 || (shape.rank() == 1 && shape[0] > longestRow)) {
     return false;
   }
   for (int d = 0; d < shape.rank(); ++d) {

@@ -106,6 +106,11 @@ std::uint64_t choiceBits(const StreamAccess& access) {
   return std::uint64_t{access.view} | std::uint64_t{access.nearby} << 1;
 }
 
+/// Whether a kernel with loops need not look for fragments outside. A list's passes draw other texels than its domain's.
+bool isEven(const program::Kernel& kernel, const Placement& domain, const Task& task) {
+  return kernel.usesLoops && task.work != Work::List && assemble::drawsWholeQuads(domain);
+}
+
 /// Packs small numbers into the words of a key.
 class KeyBits {
  public:
@@ -188,6 +193,7 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
   variant.domain = domainOf(domain, task);
   variant.domainView = isDomainView(domain);
   variant.domainPacked = domain.packed;
+  variant.domainEven = isEven(kernel, domain, task);
   variant.domainLayered = domain.layered;
   variant.domainRank = assemble::decodedRank(domain);
   variant.specs = specsOf(kernel, operands);
@@ -223,6 +229,9 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
     return operand.storage != Storage::Single || operand.placement.packed;
   });
   bits.add(static_cast<std::uint64_t>(assemble::decodedRank(domain)) | std::uint64_t{hasStorages} << 3, 4);
+  if (kernel.usesLoops) {
+    bits.add(isEven(kernel, domain, task), 4);
+  }
   bool hasIterator = false;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];

@@ -115,6 +115,7 @@ struct Variant {
   Domain domain = Domain::Plane;
   bool domainView = false;  ///< Plane: the domain's origin is not (0, 0)
   bool domainPacked = false;  ///< four elements a texel, which one invocation computes one after the other
+  bool domainEven = false;  ///< drawsWholeQuads(): no fragment is outside
   bool domainLayered = false;  ///< what is drawn to is layered
   std::uint8_t domainRank = 2;  ///< Linear, LinearBox: dimensions that an index is decoded into;
       ///< decodedRank() of the output, or more

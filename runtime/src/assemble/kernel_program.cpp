@@ -105,7 +105,7 @@ class KernelText {
     assert(profile_.stage == Stage::Fragment || variant_.task.work == Work::Elements);
     if (isList())
       findEntry(program_, domain_, kernel_.parameters[variant_.task.sink], variant_.task.treeLayered);
-    if (kernel_.usesLoops) domain_.leaveOutside();
+    if (kernel_.usesLoops && !variant_.domainEven) domain_.leaveOutside();
     if (kernel_.usesIndex) domain_.index();
     if (kernel_.usesExtent) {
       program_.function("ivec4 sk_extent()",

@@ -83,6 +83,17 @@ Placement linearPlacement(std::int64_t count, const TextureShape& texture) {
   return placement;
 }
 
+bool drawsWholeQuads(const Placement& region) {
+  if (region.packed) return drawsWholeQuads(texelsOf(region));
+  const auto isEven = [](std::int32_t number) { return number % 2 == 0; };
+  if (region.linear) {
+    return !region.view && !region.layered &&
+           elements(region.extent) % (std::int64_t{2} << region.shift) == 0;
+  }
+  return isEven(region.origin[0]) && isEven(region.origin[1]) && isEven(region.extent[0]) &&
+         isEven(region.extent[1]);
+}
+
 std::vector<Rect> drawnTexels(const Placement& region) {
   if (elements(region.extent) == 0) return {};
   if (region.packed) return drawnTexels(texelsOf(region));

@@ -88,4 +88,7 @@ struct Rect {
 /// the unused end of a linearised texture. Empty where the region is; at most three.
 std::vector<Rect> drawnTexels(const Placement& region);
 
+/// Whether these rectangles have even edges all around, so that the quads of 2 x 2 fragments that GPUs shade lie inside.
+bool drawsWholeQuads(const Placement& region);
+
 }  // namespace sk::assemble

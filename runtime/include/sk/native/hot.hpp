@@ -7,7 +7,9 @@
 
 #include <cstdint>  // which tells of the C library
 
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
+#if defined(SK_NATIVE_PLAIN)  // by those who would rather compile sooner than run faster
+#define SK_NATIVE_HOT
+#elif defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__)
 #define SK_NATIVE_HOT __attribute__((flatten, target_clones("default", "arch=x86-64-v3")))
 #elif defined(__GNUC__)
@@ -17,7 +19,7 @@
 #endif
 
 /// Without the clones.
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(SK_NATIVE_PLAIN)
 #define SK_NATIVE_INLINED __attribute__((flatten))
 #else
 #define SK_NATIVE_INLINED
