@@ -8,7 +8,6 @@
 #include "convert_elements.hpp"
 #include "gl_device.hpp"
 #include "packed_transfer.hpp"
-#include "pass.hpp"
 #include "pending_read.hpp"
 #include "sink_list.hpp"
 #include "sk/error.hpp"
@@ -127,26 +126,7 @@ void GlStream::writeAsync(const StreamRegion& region, const std::byte* elements)
     convertElements(*element, elements, held(), converted.data(), count);
     elements = converted.data();
   }
-  if (owner().capabilities.isSoftware && drawsKeepBits(held())) {
-    writeAside(region, elements);
-  } else {
-    writePacked(owner(), held(), planes, placementOf(region, layout), elements);
-  }
-}
-
-// A software renderer that is given texels for a texture draws everything that is queued for it first.
-void GlStream::writeAside(const StreamRegion& region, const std::byte* elements) {
-  const assemble::Placement to = placementOf(region, layout);
-  const Layout own = layoutOf(region.shape, owner().textureLimits());
-  PlanesLease aside(owner());
-  aside.planes = owner().takePlanes(held(), own.texture, "elements that are written");
-  upload(owner(), held(), aside.planes, own.whole, elements);
-  if (!to.view && haveSameTexels(to, own.whole) && own.texture == planes.front().texture.shape()) {
-    std::swap(planes, aside.planes);
-    labelPlanes();
-  } else {
-    drawRegion(owner(), held(), aside.planes, own.whole, planes, to);
-  }
+  writePacked(owner(), held(), planes, placementOf(region, layout), elements);
 }
 
 void GlStream::readReals(const StreamRegion& region, double* values) {
