@@ -122,7 +122,6 @@ GlDevice::~GlDevice() {
     tableTextures_.clear();
     samplers.clear();
     transferBuffers_.clear();
-    pastFences.clear();
     vertexArray = {};
   }
 }
@@ -130,7 +129,6 @@ GlDevice::~GlDevice() {
 void GlDevice::forgetObjects() noexcept {
   while (!pendingReads.empty()) pendingReads.back()->abandon();
   for (TransferBuffer& buffer : transferBuffers_) buffer.forget();
-  for (gl::Fence& fence : pastFences) fence.forget();
   if (passes) passes->forget();
   for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
     auto& stream = static_cast<GlStream&>(*state);

@@ -127,7 +127,6 @@ class GlDevice final : public DeviceState {
   gl::LinearSamplers samplers;
   gl::VertexArray vertexArray;
   std::vector<PendingRead*> pendingReads;  ///< those that must be told of the device's end
-  std::vector<gl::Fence> pastFences;  ///< of those that have ended
   gl::Labels labels;
   ProgramBinaries binaries;
   std::unique_ptr<PassTrace> passes;  ///< null where there is no trace

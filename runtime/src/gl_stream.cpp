@@ -9,7 +9,6 @@
 #include "convert_elements.hpp"
 #include "gl_device.hpp"
 #include "packed_transfer.hpp"
-#include "pass.hpp"
 #include "pending_read.hpp"
 #include "sink_list.hpp"
 #include "sk/error.hpp"
@@ -176,28 +175,8 @@ void GlStream::writeAsync(const StreamRegion& region, const std::byte* elements)
     convertElements(*element, elements, held(), converted.data(), count);
     elements = converted.data();
   }
-  if (owner().capabilities.isSoftware && drawsKeepBits(held())) {
-    writeAside(region, elements);
-  } else {
-    const Travelling what = travelling(region);
-    writePacked(owner(), *what.element, planes, what.place, elements);
-  }
-}
-
-// A software renderer that is given texels for a texture draws everything that is queued for it first.
-void GlStream::writeAside(const StreamRegion& region, const std::byte* elements) {
   const Travelling what = travelling(region);
-  const Layout own = layoutOf(what.shape, owner().textureLimits());
-  PlanesLease aside(owner());
-  aside.planes = owner().takePlanes(*what.element, own.texture, "elements that are written");
-  upload(owner(), *what.element, aside.planes, own.whole, elements);
-  const bool isWhole = !what.place.view && haveSameTexels(what.place, own.whole);
-  if (isWhole && own.texture == planes.front().texture.shape()) {
-    std::swap(planes, aside.planes);
-    labelPlanes();
-  } else {
-    drawRegion(owner(), *what.element, aside.planes, own.whole, planes, what.place);
-  }
+  writePacked(owner(), *what.element, planes, what.place, elements);
 }
 
 void GlStream::readReals(const StreamRegion& region, double* values) {

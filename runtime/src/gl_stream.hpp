@@ -67,8 +67,6 @@ class GlStream final : public StreamState {
   void downloadHeld(const StreamRegion& region, std::byte* elements);
   std::vector<Surface> takePlanesFor(const Layout& planned);
   void takeSize(std::int32_t count);
-  /// Writes what is held by way of other planes, which no draw that is queued uses.
-  void writeAside(const StreamRegion& region, const std::byte* elements);
 
   std::unique_ptr<assemble::HeldElement> held_;  ///< where the storage is not Single
   Surface total_;  ///< holds the number of elements until somebody asks

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Buffers of the driver's, by which software renderers move nothing but the values of reductions, against direct transfers.
+// Transfers through buffers of the driver's against direct ones.
 #include "packed_transfer.hpp"
 
 #include <array>

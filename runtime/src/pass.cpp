@@ -3,7 +3,6 @@
 // Binding and drawing.
 #include "pass.hpp"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -178,17 +177,6 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
   writeRects(device, program, targets, rects);
 }
 
-namespace {
-
-void drawPlane(GlDevice& device, const program::Field& field, Surface& from, const Placement& source,
-               Surface& to, const Placement& target) {
-  const Operand operands[] = {{nullptr, source, {&from, 1}}, {}};
-  Surface* const targets[] = {&to};
-  runKernel(device, copyKernel(field), operands, target, assemble::drawnTexels(target), targets);
-}
-
-}  // namespace
-
 void copyRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
                 const Placement& source, std::span<Surface> to, const Placement& target) {
   if (source.packed && target.packed) {
@@ -203,19 +191,10 @@ void copyRegion(GlDevice& device, const program::Element& element, std::span<Sur
       blit(device, from[plane], source, to[plane], target);
       continue;
     }
-    drawPlane(device, element.fields[plane], from[plane], source, to[plane], target);
-  }
-}
-
-bool drawsKeepBits(const program::Element& element) {
-  return std::ranges::find(element.fields, program::Scalar::Half, &program::Field::scalar) ==
-         element.fields.end();
-}
-
-void drawRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
-                const Placement& source, std::span<Surface> to, const Placement& target) {
-  for (std::size_t plane = 0; plane < from.size(); ++plane) {
-    drawPlane(device, element.fields[plane], from[plane], source, to[plane], target);
+    const Operand operands[] = {{nullptr, source, from.subspan(plane, 1)}, {}};
+    Surface* const targets[] = {&to[plane]};
+    runKernel(device, copyKernel(element.fields[plane]), operands, target, assemble::drawnTexels(target),
+              targets);
   }
 }
 

@@ -65,12 +65,4 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
 void copyRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
                 const assemble::Placement& source, std::span<Surface> to, const assemble::Placement& target);
 
-/// The same by draws alone, which a software renderer does in its time, while it does blits at once. Bit for bit, where
-/// drawsKeepBits().
-void drawRegion(GlDevice& device, const program::Element& element, std::span<Surface> from,
-                const assemble::Placement& source, std::span<Surface> to, const assemble::Placement& target);
-
-/// Programs read halves as floats, which not all of their NaNs survive.
-bool drawsKeepBits(const program::Element& element);
-
 }  // namespace sk

@@ -7,11 +7,8 @@
 #include <utility>
 
 #include "convert_elements.hpp"
-#include "copy_kernel.hpp"
 #include "gl_stream.hpp"
-#include "pass.hpp"
 #include "sk/error.hpp"
-#include "transfer.hpp"
 
 namespace sk {
 
@@ -31,7 +28,10 @@ PendingRead::PendingRead(GlDevice& device, GlStream& stream, const StreamRegion&
       count_(static_cast<std::size_t>(region.shape.size())) {
   device.pendingReads.push_back(this);
   try {
-    begin(stream, region);
+    const GlStream::Travelling what = stream.travelling(region);
+    const program::Element& own = held_ ? held_->element : element_;  // the stream's may end before this does
+    read_.emplace(device).add(what.element == &stream.held() ? own : *what.element, stream.planes, what.place);
+    read_->begin();
   } catch (...) {
     leave();
     throw;
@@ -42,34 +42,17 @@ PendingRead::~PendingRead() {
   if (device_ != nullptr) leave();
 }
 
-void PendingRead::begin(GlStream& stream, const StreamRegion& region) {
-  const GlStream::Travelling what = stream.travelling(region);
-  // the stream's own element may end before this does
-  texel_ = what.element != &stream.held() ? what.element : held_ ? &held_->element : &element_;
-  if (!device_->capabilities.isSoftware || !drawsKeepBits(*texel_)) {
-    packed_.emplace(*device_).add(*texel_, stream.planes, what.place);
-    packed_->begin();
-    return;
-  }
-  device_->pastFences.clear();
-  layout_ = layoutOf(what.shape, device_->textureLimits());
-  drawn_.emplace(*device_).planes =
-      device_->takePlanes(*texel_, layout_.texture, "elements that are read later");
-  drawRegion(*device_, *texel_, stream.planes, what.place, drawn_->planes, layout_.whole);
-  fence_ = gl::Fence::insert();
-}
-
 bool PendingRead::isReady() {
   if (device_ == nullptr) return true;
   const DeviceScope scope(*device_);
-  return isThere();
+  return read_->isReady();
 }
 
 void PendingRead::wait() {
   if (device_ == nullptr) return;
   const TraceScope traced(device_->trace.get(), "wait", "readAsync: wait");
   const DeviceScope scope(*device_);
-  packed_ ? packed_->wait() : fence_.wait();
+  read_->wait();
 }
 
 void PendingRead::take(std::byte* elements) {
@@ -87,12 +70,7 @@ void PendingRead::take(std::byte* elements) {
 void PendingRead::copy(std::byte* elements) {
   std::vector<std::byte> texels;
   if (held_) texels.resize(count_ * held_->element.size);
-  std::byte* const to = held_ ? texels.data() : elements;
-  if (packed_) {
-    packed_->take(0, to);
-  } else {
-    download(*device_, *texel_, drawn_->planes, layout_.whole, to);
-  }
+  read_->take(0, held_ ? texels.data() : elements);
   if (held_) convertElements(held_->element, texels.data(), element_, elements, count_);
 }
 
@@ -108,12 +86,7 @@ void PendingRead::land() noexcept {
 }
 
 void PendingRead::abandon() noexcept {
-  if (packed_) packed_->forget();
-  fence_.forget();
-  if (drawn_) {
-    for (Surface& plane : drawn_->planes) plane.forget();
-    drawn_->planes.clear();
-  }
+  read_->forget();
   try {
     failure_ =
         "readAsync: the device has ended on a thread that could not use it, before the elements were there; "
@@ -127,14 +100,7 @@ void PendingRead::abandon() noexcept {
 // Touches no GL: a future may be destroyed where the context is not current.
 void PendingRead::leave() noexcept {
   std::erase(device_->pendingReads, this);
-  try {
-    device_->pastFences.reserve(device_->pastFences.size() + 1);
-    device_->pastFences.push_back(std::move(fence_));
-  } catch (const std::bad_alloc&) {
-    fence_.forget();  // it is deleted with its context
-  }
-  drawn_.reset();
-  packed_.reset();
+  read_.reset();
   device_ = nullptr;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Elements of a GL stream on their way to host memory. On a GPU they go to a buffer of the driver's. A software renderer
-// would first draw everything that is queued; there they are copied by one more draw, which it does in its time, and read
-// from the copy.
+// Elements of a GL stream on their way to host memory, through a buffer of the driver's.
 #pragma once
 
 #include <memory>
@@ -11,9 +9,7 @@
 #include <vector>
 
 #include "assemble/storage.hpp"
-#include "gl/fence.hpp"
 #include "gl_device.hpp"
-#include "layout.hpp"
 #include "packed_transfer.hpp"
 #include "transfer_state.hpp"
 
@@ -37,20 +33,14 @@ class PendingRead final : public TransferState {
   void abandon() noexcept;
 
  private:
-  void begin(GlStream& stream, const StreamRegion& region);
-  bool isThere() const { return packed_ ? packed_->isReady() : fence_.isReached(); }
   void copy(std::byte* elements);
   void leave() noexcept;
 
   GlDevice* device_;  ///< null once it has ended, or the elements are taken
   const program::Element& element_;
   std::unique_ptr<assemble::HeldElement> held_;  ///< where the planes hold another
-  const program::Element* texel_ = nullptr;  ///< what is copied: an element as it is held, or a packed texel
   std::size_t count_;
-  std::optional<PackedRead> packed_;
-  std::optional<PlanesLease> drawn_;  ///< the copy, which lies as
-  Layout layout_;
-  gl::Fence fence_;  ///< behind it
+  std::optional<PackedRead> read_;
   std::vector<std::byte> landed_;
   std::string failure_;
 };

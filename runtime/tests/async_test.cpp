@@ -145,22 +145,26 @@ TEST_CASE("neither asking nor writing waits for the device") {
   r.domain({1, 1}, {9, 9}).writeAsync(std::vector<float>(64, 0));
   slow()(x, r);
   r.readAsync().get();
-  const auto start = std::chrono::steady_clock::now();
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  const auto before = now();
+  slow()(x, r);
+  device.finish();
+  const auto start = now();
   slow()(x, r);
   Future<float> future = r.readAsync();
-  const auto asked = std::chrono::steady_clock::now();
+  const auto asked = now();
   r.writeAsync(std::vector<float>(512 * 512, 0.25F));
   r.domain({1, 1}, {9, 9}).writeAsync(std::vector<float>(64, 0));
-  const auto written = std::chrono::steady_clock::now();
+  const auto written = now();
   const bool wasReady = future.ready();
   future.wait();
-  const auto there = std::chrono::steady_clock::now();
-  INFO("asking " << milliseconds(asked - start) << " ms, writing " << milliseconds(written - asked)
-                 << " ms, waiting " << milliseconds(there - written) << " ms");
   CHECK(future.ready());
-  if (milliseconds(there - written) > 50) {  // else the device is too fast to tell
+  const double whole = milliseconds(start - before);
+  INFO("the kernel " << whole << " ms, asking " << milliseconds(asked - start) << " ms, writing "
+                     << milliseconds(written - asked) << " ms");
+  if (whole > 50 && !device.isSoftware()) {  // else the device is too fast to tell, or draws before it reads
     CHECK_FALSE(wasReady);
-    CHECK(asked - start < (there - start) / 4);
+    CHECK(milliseconds(written - start) < whole / 2);
   }
   CHECK(future.get().front() != 0.25F);
   CHECK(r.read().back() == 0.25F);

@@ -232,7 +232,7 @@ class Stream {
   StreamRegion handle() const { return {state_.get(), {}, {}}; }
 
   /// The texture of a plane, for drawing from it in the same context (an adopted one). It is good
-  /// until a kernel or writeAsync() next writes the stream: a call that reads and writes it puts another in its place.
+  /// until a kernel next writes the stream: a call that reads and writes it puts another in its place.
   StreamTexture texture(int plane = 0) const { return detail::textureOf(state_.get(), plane); }
 
  private:
