@@ -18,6 +18,7 @@
 #include "gl/open_context.hpp"
 #include "gl/saved_state.hpp"
 #include "gl/vertex_array.hpp"
+#include "native/rest_threads.hpp"
 #include "program_cache.hpp"
 #include "sink_programs.hpp"
 #include "surface.hpp"
@@ -124,6 +125,7 @@ class DeviceScope {
       saved_.emplace(device.capabilities, device.bound);
     }
     device.pool.trim();
+    if (device.isSoftware()) native::restThreads();
   }
 
  private:
