@@ -367,8 +367,9 @@ class Loops {
 
   /// What to call: `loop` itself, or a function that is added to `text`.
   std::string define(const std::string& loop, std::string_view real, std::string& text) const {
-    if (speed_ == Speed::Any || (real != "float" && real != "double")) return loop;
     const bool isFloat = real == "float";
+    const bool isDouble = real == "double" && speed_ == Speed::Best;
+    if (speed_ == Speed::Any || !(isFloat || isDouble)) return loop;
     const std::string function = name_ + (isFloat ? "Loop" : "DoubleLoop");
     text += fmt::format("{} void {}({}) {{\n  {}({});\n}}\n", isFloat ? "SK_NATIVE_HOT" : "SK_NATIVE_INLINED",
                         function, parameters_, loop, arguments_);

@@ -52,10 +52,11 @@ enum class Reals : std::uint8_t {
   Quad,  ///< and that of the widest reference
 };
 
-/// How much is done for the speed of a kernel's native code.
+/// How much is done for the speed of a kernel's native code, which takes compilers long.
 enum class Speed : std::uint8_t {
   Any,  ///< nothing: it computes one element of results, or shows what another device would compute
-  Best,  ///< its loops are compiled as a whole, of floats for each generation of CPUs
+  OfFloats,  ///< its loops are compiled as a whole, for each generation of CPUs; not those of wider real types
+  Best,  ///< those of doubles are also compiled as a whole
 };
 
 struct NativeForm {

@@ -98,7 +98,7 @@ class SourceWriter {
       if (made->compensated != nullptr) compensated(*made->compensated, declared, names_[unit]);
       forms(*made, declared, names_[unit]);
       exactSums(made->exact, declared, names_[unit]);
-      reduction(*made, declared, names_[unit], combine, inAnyReal(Speed::Best));
+      reduction(*made, declared, names_[unit], combine, inAnyReal(Speed::OfFloats));
     }
   }
 
@@ -175,7 +175,7 @@ class SourceWriter {
     const CompensatedNames names(name);
     kernel(made.reduction.combine, module_.kernels[*fold.reduction->combine], names.combine, {});
     kernel(made.reduction.fold, fold, names.fold, {});
-    reduction(made.reduction, fold, names.fold, names.combine, inAnyReal(Speed::Best));
+    reduction(made.reduction, fold, names.fold, names.combine, inAnyReal(Speed::OfFloats));
     kernel(made.finish, module_.kernels[second.finish], names.finish, inAnyReal(Speed::Any));
     std::vector<std::string> sums;
     for (const auto& [accumulator, offset] : made.sums) {
@@ -201,7 +201,7 @@ class SourceWriter {
         kernel(made[k].reduction.combine, module_.kernels[combine], combineName, {});
       }
       kernel(made[k].reduction.fold, fold, names.fold, {});
-      reduction(made[k].reduction, fold, names.fold, combineName, ofFloats(Speed::Best));
+      reduction(made[k].reduction, fold, names.fold, combineName, ofFloats(Speed::Any));
       kernel(made[k].finish, module_.kernels[sum.finish], names.finish, ofFloats(Speed::Any));
       items.push_back(
           fmt::format("{{{}Reduction, {}Kernel, {}}}", names.fold, names.finish, sum.accumulator));

@@ -21,6 +21,7 @@
 #include "gl/open_context.hpp"
 #include "gl/saved_state.hpp"
 #include "gl/vertex_array.hpp"
+#include "native/rest_threads.hpp"
 #include "packed_transfer.hpp"
 #include "program_build.hpp"
 #include "program_cache.hpp"
@@ -163,6 +164,7 @@ class DeviceScope {
       saved_.emplace(device.capabilities, device.bound);
     }
     device.pool.trim();
+    if (device.isSoftware()) native::restThreads();
   }
 
  private:

@@ -10,8 +10,8 @@ shift 3
 options=("$@")
 source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
 
-# Where the loops that may be vectorised begin: the lines that follow the pragma.
-loopsIn() { grep -n -A1 '#pragma GCC ivdep' "$include/sk/native/$1" | sed -n 's/^\([0-9]*\)-.*for (.*/\1/p'; }
+# Where the loops that may be vectorised begin: the lines that follow the mark.
+loopsIn() { grep -n -A1 '^ *SK_NATIVE_INDEPENDENT' "$include/sk/native/$1" | sed -n 's/^\([0-9]*\)-.*for (.*/\1/p'; }
 
 # vectorised HEADER KERNEL: a loop of the header is, for this kernel alone.
 vectorised() {

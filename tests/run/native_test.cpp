@@ -2,6 +2,7 @@
 //
 // Promises: native code needs no GL; the reference computes in double and takes the same calls. What arithmetic
 // gives at its extremes is the business of tests/numerics.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include "native.sk.hpp"
+#include "sk/native/parallel.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
 
@@ -62,6 +64,82 @@ TEST_CASE("sums have the error of a tree, not of a loop") {
   // 16 elements one after the other, then pairs: 15 + 17 roundings of half an ulp
   CHECK(std::fabs(total - exact) <= 32 * 0x1p-24 * exact);
   CHECK(sum(streamOf(reference, x)) == static_cast<float>(exact));
+}
+
+TEST_CASE("results have the same bits on one thread as on many") {
+  sk::Device device = sk::Device::native();
+  std::vector<float> values((1 << 18) + 7);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(static_cast<float>(i));
+  const auto x = streamOf(device, values);
+  const auto sums = [&] {
+    return std::vector<float>{sum.with({.accumulate = sk::Accumulate::Tree})(x),
+                              sum.with({.accumulate = sk::Accumulate::Compensated})(x),
+                              sum.with({.accumulate = sk::Accumulate::Extended})(x)};
+  };
+  const std::vector<float> onMany = sums();
+  std::vector<float> onOne;
+  sk::native::inParallel(2, 1 << 20, sk::native::Deal::Evenly, [&](sk::native::Range range) {
+    if (range.begin == 0) onOne = sums();  // a thread of several starts no others
+  });
+  CHECK(onOne == onMany);
+}
+
+/// What each block of a stream of {height, width} folds to, by a loop: add() of the slopes, and compose().
+struct Folded {
+  std::vector<std::int32_t> sums;
+  std::vector<Line> lines;
+};
+Folded foldedBlocks(const std::vector<Line>& x, std::size_t width, std::size_t blockHeight,
+                    std::size_t blockWidth) {
+  Folded folded;
+  const std::size_t height = x.size() / width;
+  for (std::size_t y = 0; y < height; y += blockHeight) {
+    for (std::size_t left = 0; left < width; left += blockWidth) {
+      std::uint32_t sum = 0;
+      Line all{1, 0};
+      for (std::size_t i = 0; i < blockHeight * blockWidth; ++i) {
+        const Line& l = x[(y + i / blockWidth) * width + left + i % blockWidth];
+        sum += static_cast<std::uint32_t>(l.slope);
+        all = {all.slope * l.slope, all.offset * l.slope + l.offset};
+      }
+      folded.sums.push_back(static_cast<std::int32_t>(sum));
+      folded.lines.push_back(all);
+    }
+  }
+  return folded;
+}
+
+TEST_CASE("blocks of every width are folded, each in its order") {
+  sk::Device device = sk::Device::native();
+  const std::size_t height = 36;
+  const std::size_t width = 1200;
+  std::vector<Line> x(height * width);
+  std::vector<std::int32_t> slopes;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = {i % 7 == 3 ? -1 : 1, static_cast<std::int32_t>(i % 11)};
+    slopes.push_back(x[i].slope);
+  }
+  auto lines = device.stream<Line>({height, width});
+  auto ints = device.stream<std::int32_t>({height, width});
+  lines.write(x);
+  ints.write(slopes);
+  for (const std::size_t blockHeight : {1U, 2U, 36U}) {
+    for (const std::size_t blockWidth : {1U, 2U, 8U, 10U, 600U, 1200U}) {
+      INFO("blocks of " << blockHeight << " rows of " << blockWidth);
+      const sk::Shape shape{static_cast<std::int64_t>(height / blockHeight),
+                            static_cast<std::int64_t>(width / blockWidth)};
+      auto sums = device.stream<std::int32_t>(shape);
+      auto composed = device.stream<Line>(shape);
+      add(ints, sums);
+      compose(lines, composed);
+      const Folded expected = foldedBlocks(x, width, blockHeight, blockWidth);
+      CHECK(sums.read() == expected.sums);
+      const std::vector<Line> got = composed.read();
+      CHECK(std::equal(got.begin(), got.end(), expected.lines.begin(), [](const Line& a, const Line& b) {
+        return a.slope == b.slope && a.offset == b.offset;
+      }));
+    }
+  }
 }
 
 TEST_CASE("a stream that is read at other places is read as it was") {

@@ -9,6 +9,7 @@
 #include "check.hpp"
 #include "check_argument.hpp"
 #include "iterator.hpp"
+#include "native/collapse.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
 #include "native/native_trace.hpp"
@@ -75,7 +76,17 @@ class Operands {
   }
 
   std::span<Operand> list() { return list_; }
-  native::Call call() const { return {list_, fastestFirst(domain_), tables_}; }
+  /// Of a kernel; of a reduction, whose domain is divided into blocks.
+  native::Call call() {
+    Extents whole = fastestFirst(domain_);
+    return call(whole);
+  }
+  native::Call call(Extents& block) {
+    native::Call made = callAsItIs();
+    collapse(kernel_, list_, made.domain, block);
+    return made;
+  }
+  native::Call callAsItIs() const { return {list_, fastestFirst(domain_), tables_}; }
 
   /// Memory for a value of this element.
   Components& value(const program::Element& element, std::int64_t count = 1) {
@@ -134,8 +145,10 @@ class Operands {
     if (isWritten(parameter.role)) {
       operand.components = arraysToWrite(stream);
     } else {
-      const bool isCopied = stream.components.real() != real_ || isReadWhileWritten(i);
-      operand.components = isCopied ? copyOf(stream).arrays() : stream.components.arrays();
+      operand.holdsFloats = parameter.role == Role::Input && areWidened(stream) && !isReadWhileWritten(i);
+      const bool isOfReal = stream.components.real() == real_ || operand.holdsFloats;
+      operand.components =
+          isOfReal && !isReadWhileWritten(i) ? stream.components.arrays() : copyOf(stream).arrays();
     }
     if (parameter.role == Role::Input) fit(operand, argument.fit, fastestFirst(domain_));
     return operand;
@@ -145,6 +158,14 @@ class Operands {
     Components& components = this->value(*parameter.element, count);
     components.write(0, count, static_cast<const std::byte*>(value), parameter.element->size);
     return {.components = components.arrays()};
+  }
+
+  /// Whether the code has a double for each float that the stream holds, and for nothing else.
+  bool areWidened(const NativeStream& stream) const {
+    return real_ == RealType::Double && stream.components.real() == RealType::Float &&
+           std::ranges::none_of(stream.element->fields, [](const program::Field& field) {
+             return field.scalar == program::Scalar::Double;
+           });
   }
 
   bool isReadWhileWritten(std::size_t input) const {
@@ -210,13 +231,12 @@ class Folding {
     combine_.resize(reduction.combine.parameters.size());
   }
 
-  void run(const Extents& block) {
-    const native::ReduceCall call{fold.call(), {combine_, {1, 1, 1, 1}, combineTables_}, block};
-    code_.run(call);
+  void run(Extents block) {
+    const native::Call whole = fold.call(block);
+    code_.run({whole, {combine_, {1, 1, 1, 1}, combineTables_}, block});
   }
   void storeIdentity() {
-    const native::ReduceCall call{fold.call(), {combine_, {1, 1, 1, 1}, combineTables_}, {1, 1, 1, 1}};
-    code_.identity(call);
+    code_.identity({fold.callAsItIs(), {combine_, {1, 1, 1, 1}, combineTables_}, {1, 1, 1, 1}});
   }
 
  private:

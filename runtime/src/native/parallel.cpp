@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <exception>
 
+#include "native/rest_threads.hpp"
+
 #if defined(_OPENMP)
 #include <omp.h>
 #endif
@@ -15,6 +17,9 @@ namespace sk::native {
 #if defined(_OPENMP)
 
 namespace {
+
+/// Whether this thread has started others here since they last were to rest: those of the application are its own business.
+thread_local bool haveThreads = false;
 
 /// Elements that a thread must have to do: those that take as long as waking it, of the simplest kernels.
 constexpr std::int64_t worthAThread = 1 << 13;
@@ -61,6 +66,7 @@ void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(v
     work(context, {0, count});
     return;
   }
+  haveThreads = true;
   Guarded guarded(work, context);
   if (deal == Deal::Evenly) {
 #pragma omp parallel num_threads(threads)
@@ -73,11 +79,17 @@ void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(v
   guarded.rethrow();
 }
 
+void restThreads() {
+  if (haveThreads) omp_pause_resource_all(omp_pause_soft);
+  haveThreads = false;
+}
+
 #else
 
 void inParallel(std::int64_t count, std::int64_t, Deal, void (*work)(void*, Range), void* context) {
   work(context, {0, count});
 }
+void restThreads() {}
 
 #endif
 

@@ -28,6 +28,7 @@ struct Operand {
   Extents extent{1, 1, 1, 1};          ///< of the region
   Extents multiply{1, 1, 1, 1};        ///< an element input's index is the domain's, times this,
   Extents divide{1, 1, 1, 1};          ///< divided by this
+  bool holdsFloats = false;     ///< element inputs: where the code has doubles, the arrays hold floats
   bool countsElements = false;  ///< iterators: by element number, else by the index in each dimension
   Pushed* pushed = nullptr;  ///< variable outputs
 };

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "sk/native/scalar.hpp"
@@ -98,6 +99,19 @@ T load(void* const* components, std::int64_t element) {
   Cursor cursor{components, element};
   visit(value,
         [&]<class S>(S& scalar) { scalar = static_cast<S>(cursor.next<typename StoredOf<S>::Type>()); });
+  return value;
+}
+
+/// Of arrays that hold floats where T has another real type.
+template <class T>
+T loadFloats(void* const* components, std::int64_t element) {
+  T value{};
+  Cursor cursor{components, element};
+  visit(value, [&]<class S>(S& scalar) {
+    using Stored = typename StoredOf<S>::Type;
+    using Held = std::conditional_t<std::is_floating_point_v<Stored>, float, Stored>;
+    scalar = static_cast<S>(cursor.next<Held>());
+  });
   return value;
 }
 

@@ -15,92 +15,17 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "sk/native/columns.hpp"
+#include "sk/native/fold_narrow.hpp"
+#include "sk/native/hot.hpp"
 #include "sk/native/run.hpp"
 
 namespace sk::native {
-
-/// Elements, or partial results, that are folded one after the other; program::longestRun at most.
-inline constexpr int leaf = 16;
-
-/// Results of runs, each with how many leaves it is made of; two of equal size become one. So a sum of n elements
-/// has an error of some log n roundings, not n.
-template <class Combine, class State>
-class Runs {
- public:
-  explicit Runs(Combine& combine) : combine_(combine) {}
-
-  void add(const State& state) {
-    runs_[count_++] = {1, state};
-    while (count_ > 1 && runs_[count_ - 2].leaves == runs_[count_ - 1].leaves) merge();
-  }
-  /// Of all that were added, in order; there is one at least.
-  const State& take() {
-    while (count_ > 1) merge();
-    count_ = 0;
-    return runs_[0].state;
-  }
-
- private:
-  struct Run {
-    std::int64_t leaves;
-    State state;
-  };
-
-  void merge() {
-    --count_;
-    combine_.sk_combine(runs_[count_ - 1].state, runs_[count_].state);
-    runs_[count_ - 1].leaves += runs_[count_].leaves;
-  }
-
-  Combine& combine_;
-  Run runs_[64];  // more leaves than there are numbers for
-  int count_ = 0;
-};
-
-/// Accumulators side by side, an array for each of their scalars, so that neighbours are folded in one operation.
-template <class State>
-class Columns {
- public:
-  /// As many as stay in the nearest cache beside the elements.
-  static constexpr int most =
-      static_cast<int>(std::bit_floor(std::clamp<std::size_t>(2048 / measured<State>().bytes, 32, 512)));
-
-  State load(int k) const {
-    State state{};
-    std::size_t at = 0;
-    visit(state, [&]<class S>(S& scalar) { scalar = static_cast<S>(array<S>(at)[k]); });
-    return state;
-  }
-  void store(int k, State state) {
-    std::size_t at = 0;
-    visit(state, [&]<class S>(S& scalar) { array<S>(at)[k] = static_cast<Stored<S>>(scalar); });
-  }
-
- private:
-  template <class S>
-  using Stored = typename StoredOf<S>::Type;
-
-  template <class S>
-  Stored<S>* array(std::size_t& at) {
-    auto* const first = reinterpret_cast<Stored<S>*>(bytes_ + at);
-    at += most * sizeof(Stored<S>);
-    return first;
-  }
-  template <class S>
-  const Stored<S>* array(std::size_t& at) const {
-    auto* const first = reinterpret_cast<const Stored<S>*>(bytes_ + at);
-    at += most * sizeof(Stored<S>);
-    return first;
-  }
-
-  alignas(64) std::byte bytes_[most * measured<State>().bytes];
-};
 
 /// How the blocks of a reduction's domain are divided: into whole rows, or parts of one.
 class FoldPieces {
@@ -193,14 +118,14 @@ class PieceFolder {
     for (int first = 0; first < count;) {
       const int now = std::min(count - first, Columns<State>::most);
       const int begun = std::min(now, columnsUsed_);
-#pragma GCC ivdep
+      SK_NATIVE_INDEPENDENT
       for (int k = 0; k < begun; ++k) {
         moveTo(here, x, first + k);
         State state = columns_.load(k);
         here.sk_fold(state);
         columns_.store(k, state);
       }
-#pragma GCC ivdep
+      SK_NATIVE_INDEPENDENT
       for (int k = begun; k < now; ++k) {
         moveTo(here, x, first + k);
         columns_.store(k, started(here));
@@ -217,7 +142,7 @@ class PieceFolder {
     while (columnsUsed_ > 1) {
       const int half = (columnsUsed_ + 1) / 2;
       const int pairs = columnsUsed_ - half;
-#pragma GCC ivdep
+      SK_NATIVE_INDEPENDENT
       for (int k = 0; k < pairs; ++k) {
         State state = columns_.load(k);
         here.sk_combine(state, columns_.load(k + half));
@@ -250,18 +175,8 @@ class PieceFolder {
     }
   }
 
-  /// A run of one element, the current one.
-  static State started(Fold& here) {
-    if constexpr (Fold::sk_isSeeded) {
-      return here.sk_seed();
-    } else {
-      State state = here.sk_identity();
-      here.sk_fold(state);
-      return state;
-    }
-  }
-
-  void endLeaf() {
+  // Seldom enough called to be compiled once, and not in each clone.
+  [[gnu::noinline]] void endLeaf() {
     if (folded_ == 0) return;
     folded_ = 0;
     if constexpr (Fold::sk_isCommutative) {
@@ -282,6 +197,17 @@ class PieceFolder {
   Columns<State> columns_;  ///< of them, in any order
   int columnsUsed_ = 0;
 };
+
+/// Folds groups of narrow blocks, and stores their results. It waits for memory, and is compiled once, not in each clone.
+template <class Fold, class Combine>
+[[gnu::noinline]] void foldNarrow(const ReduceCall& call, Range range) {
+  NarrowFolder<Fold, Combine> folder(call);
+  const NarrowGroups groups(call, folder.most);
+  for (std::int64_t group = range.begin; group < range.end; ++group) {
+    const Extents first = groups.firstOf(group);
+    folder.fold(first, groups.lengthFrom(first));
+  }
+}
 
 /// Folds pieces. The results of those that are whole blocks are stored; of others, they go to states[piece].
 template <class Fold, class Combine>
@@ -304,12 +230,18 @@ void foldPieces(const ReduceCall& call, Range range, typename Fold::sk_State* st
 template <class Fold, class Combine, auto hot>
 void runReduction(const ReduceCall& call) {
   using State = typename Fold::sk_State;
+  constexpr Deal deal = Fold::sk_isUneven ? Deal::AsTheyCome : Deal::Evenly;
+  if (NarrowGroups::isNarrow(call)) {
+    const NarrowGroups groups(call, NarrowFolder<Fold, Combine>::most);
+    inParallel(groups.count(), groups.elementsOfOne(), deal,
+               [&](Range range) { foldNarrow<Fold, Combine>(call, range); });
+    return;
+  }
   const FoldPieces pieces(call);
   const std::int64_t ofBlock = pieces.ofBlock();
   std::vector<State> states(static_cast<std::size_t>(ofBlock == 1 ? 0 : pieces.count()));
   State* const results = ofBlock == 1 ? nullptr : states.data();
-  inParallel(pieces.count(), pieces.elementsOfOne(), Fold::sk_isUneven ? Deal::AsTheyCome : Deal::Evenly,
-             [&](Range range) { hot(call, range, results); });
+  inParallel(pieces.count(), pieces.elementsOfOne(), deal, [&](Range range) { hot(call, range, results); });
   if (results == nullptr) return;
   const Fold fold(call.fold);
   Combine combine(call.combine);

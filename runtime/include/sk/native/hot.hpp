@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// The function around a kernel's loops: all that it calls becomes part of it, and there is a clone of it for each generation of
-// CPUs, of which the program's loader takes the best that this one runs. All of them round alike: nothing is contracted. Vectors
-// of 512 bits have none: loops that wait for memory gain nothing by them, and each clone takes as long to compile again.
+// How native loops become fast: marks for compilers. All that the function around a kernel's loops calls becomes part of it, and
+// there is a clone of it for each generation of CPUs, of which the program's loader takes the best that this one runs. They
+// round alike: nothing is contracted. Vectors of 512 bits have none: loops that wait for memory gain nothing by them, and
+// each clone takes as long to compile again.
 #pragma once
 
 #include <cstdint>  // which tells of the C library
@@ -23,4 +24,13 @@
 #define SK_NATIVE_INLINED __attribute__((flatten))
 #else
 #define SK_NATIVE_INLINED
+#endif
+
+/// Before a loop whose rounds may be computed in any order: none reads what another one writes.
+#if defined(__clang__)
+#define SK_NATIVE_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define SK_NATIVE_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define SK_NATIVE_INDEPENDENT
 #endif

@@ -5,6 +5,12 @@
 
 #include <tuple>
 
+// A kernel of any name may be in front of these.
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+#endif
+
 #include "sk/native/exact.hpp"
 #include "sk/native/fold.hpp"
 #include "sk/native/gather.hpp"
@@ -12,3 +18,7 @@
 #include "sk/native/intrinsics.hpp"
 #include "sk/native/run.hpp"
 #include "sk/native/streams.hpp"
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

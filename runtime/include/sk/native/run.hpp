@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "sk/native/gather.hpp"
+#include "sk/native/hot.hpp"
 #include "sk/native/streams.hpp"
 
 namespace sk::native {
@@ -110,7 +111,7 @@ class ChunkRunner {
           here.sk_element();
         }
       } else {
-#pragma GCC ivdep
+        SK_NATIVE_INDEPENDENT
         for (int i = a; i < b; ++i) {
           moveTo(here, x, i);
           here.sk_element();

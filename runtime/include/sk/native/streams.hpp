@@ -10,6 +10,7 @@
 #include "sk/native/call.hpp"
 #include "sk/native/chunk.hpp"
 #include "sk/native/element.hpp"
+#include "sk/native/hot.hpp"
 #include "sk/native/vector.hpp"
 
 namespace sk::native {
@@ -150,13 +151,11 @@ class Input : public StreamParameter {
   using StreamParameter::StreamParameter;
 
   /// Whether its elements lie as the domain's do along x.
-  bool isDirect() const {
-    return isGiven() && operand().multiply[0] == 1 && operand().divide[0] == 1 && operand().stride[0] == 1;
-  }
+  bool isDirect() const { return isGiven() && isDense() && !operand().holdsFloats; }
   void place(const Chunk& chunk) {
     for (std::size_t d = 0; d < 4; ++d)
       own_[d] = chunk.first[d] * operand().multiply[d] / operand().divide[d];
-    if (isGiven() && (chunk.count == 1 || isDirect())) {
+    if (isDirect() || (chunk.count == 1 && isGiven() && !operand().holdsFloats)) {
       lanes_.place(operand().components.data(), number(own_));
     } else {
       layOut(chunk);
@@ -175,17 +174,32 @@ class Input : public StreamParameter {
   }
 
  private:
+  bool isDense() const {
+    return operand().multiply[0] == 1 && operand().divide[0] == 1 && operand().stride[0] == 1;
+  }
+  T elementAt(std::int64_t number) const {
+    void* const* arrays = operand().components.data();
+    return operand().holdsFloats ? loadFloats<T>(arrays, number) : load<T>(arrays, number);
+  }
+
   void layOut(const Chunk& chunk) {
     lanes_.place(chunk.scratch, chunk.count);
-    const std::int64_t step = operand().multiply[0] * operand().stride[0];
-    const std::int64_t repeats = operand().divide[0];
     std::int64_t element = number(own_);
-    std::int64_t repeated = chunk.first[0] % repeats;
-    for (int i = 0; i < chunk.count; ++i) {
-      lanes_.store(i, isGiven() ? load<T>(operand().components.data(), element) : T{});
-      if (++repeated < repeats) continue;
-      repeated = 0;
-      element += step;
+    if (!isGiven()) {
+      for (int i = 0; i < chunk.count; ++i) lanes_.store(i, T{});
+    } else if (isDense()) {
+      SK_NATIVE_INDEPENDENT
+      for (int i = 0; i < chunk.count; ++i) lanes_.store(i, elementAt(element + i));
+    } else {
+      const std::int64_t step = operand().multiply[0] * operand().stride[0];
+      const std::int64_t repeats = operand().divide[0];
+      std::int64_t repeated = chunk.first[0] % repeats;
+      for (int i = 0; i < chunk.count; ++i) {
+        lanes_.store(i, elementAt(element));
+        if (++repeated < repeats) continue;
+        repeated = 0;
+        element += step;
+      }
     }
   }
 
