@@ -9,6 +9,7 @@
 #include "convert_elements.hpp"
 #include "gl_device.hpp"
 #include "packed_transfer.hpp"
+#include "pass.hpp"
 #include "pending_read.hpp"
 #include "sink_list.hpp"
 #include "sk/error.hpp"

@@ -27,6 +27,13 @@ sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
   return stream;
 }
 
+TEST_CASE("a byte that is not 0 is a bool that is true") {
+  sk::Device native = sk::Device::native();
+  auto stream = native.stream<bool>({4});
+  stream.write(std::vector<std::uint8_t>{0, 1, 7, 255});
+  CHECK(stream.read() == std::vector<std::uint8_t>{0, 1, 1, 1});
+}
+
 TEST_CASE("the native device says what it is") {
   sk::Device device = sk::Device::native();
   CHECK(device.name() == "native");

@@ -135,7 +135,12 @@ Values<const std::byte> Components::valuesFrom(std::size_t component, std::int64
 void Components::write(std::int64_t first, std::int64_t count, const std::byte* elements,
                        std::size_t elementBytes) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    move({elements + types_[c].offset, elementBytes, types_[c].hostBytes}, valuesFrom(c, first), count);
+    const Values<std::byte> held = valuesFrom(c, first);
+    move({elements + types_[c].offset, elementBytes, types_[c].hostBytes}, held, count);
+    if (types_[c].scalar == Scalar::Bool) {   // any byte that is not 0 is true
+      std::transform(held.first, held.first + count, held.first,
+                     [](std::byte value) { return std::byte{value != std::byte{0}}; });
+    }
   }
 }
 
