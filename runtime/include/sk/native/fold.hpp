@@ -231,11 +231,13 @@ template <class Fold, class Combine, auto hot>
 void runReduction(const ReduceCall& call) {
   using State = typename Fold::sk_State;
   constexpr Deal deal = Fold::sk_isUneven ? Deal::AsTheyCome : Deal::Evenly;
-  if (NarrowGroups::isNarrow(call)) {
-    const NarrowGroups groups(call, NarrowFolder<Fold, Combine>::most);
-    inParallel(groups.count(), groups.elementsOfOne(), deal,
-               [&](Range range) { foldNarrow<Fold, Combine>(call, range); });
-    return;
+  if constexpr (NarrowGroups::isFew<State>) {
+    if (NarrowGroups::isNarrow(call)) {
+      const NarrowGroups groups(call, NarrowFolder<Fold, Combine>::most);
+      inParallel(groups.count(), groups.elementsOfOne(), deal,
+                 [&](Range range) { foldNarrow<Fold, Combine>(call, range); });
+      return;
+    }
   }
   const FoldPieces pieces(call);
   const std::int64_t ofBlock = pieces.ofBlock();

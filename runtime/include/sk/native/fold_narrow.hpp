@@ -20,6 +20,9 @@ class NarrowGroups {
     for (std::size_t d = 0; d < 4; ++d) blocks_[d] = call.fold.domain[d] / block_[d];
   }
 
+  /// Accumulators of many scalars, as those of exact sums, gain little by it, and take compilers long.
+  template <class State>
+  static constexpr bool isFew = measured<State>().scalars <= 8;
   static bool isNarrow(const ReduceCall& call) {
     return call.block[0] <= 8 && call.block[0] < call.fold.domain[0];
   }
