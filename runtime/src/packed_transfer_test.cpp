@@ -67,11 +67,12 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
   stream.write(region, given.data());
   {
     const DeviceScope scope(device);
+    const GlStream::Travelling what = stream.travelling(region);
     PackedRead read(device);
-    const std::size_t part = read.add(element, stream.planes, placementOf(region, stream.layout));
-    const std::size_t again = read.add(element, stream.planes, placementOf(region, stream.layout));
+    const std::size_t part = read.add(*what.element, stream.planes, what.place);
+    const std::size_t again = read.add(*what.element, stream.planes, what.place);
     read.begin();
-    upload(device, element, stream.planes, placementOf(region, stream.layout), bitsOf(element, count).data());
+    upload(device, *what.element, stream.planes, what.place, bitsOf(element, count).data());
     read.wait();
     CHECK(read.isReady());
     read.take(again, found.data());
@@ -83,7 +84,8 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
   given = bitsOf(element, count);
   {
     const DeviceScope scope(device);
-    writePacked(device, element, stream.planes, placementOf(region, stream.layout), given.data());
+    const GlStream::Travelling what = stream.travelling(region);
+    writePacked(device, *what.element, stream.planes, what.place, given.data());
   }
   stream.read(region, found.data());
   CHECK(areEqual(element, given, found));

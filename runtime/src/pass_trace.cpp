@@ -144,19 +144,20 @@ void PassTrace::forget() noexcept {
   for (gl::Timestamp& stamp : idle_) stamp.forget();
 }
 
+/// The domain is told in elements.
 PassRecord recordOf(const PassName& name, std::int64_t bytesRead, std::span<const Rect> rects,
-                    const DrawTarget& target) {
+                    const DrawTarget& target, int elementsOfTexel) {
   const std::int64_t texels = texelsOf(rects);
   const bool isBox = rects.size() == 1 && rects.front().height > 1;
-  std::string domain = isBox ? fmt::format("{{{}, {}}}", rects.front().height, rects.front().width)
-                             : fmt::format("{{{}}}", texels);
+  std::string domain = isBox ? fmt::format("{{{}, {}}}", rects.front().height, rects.front().width * elementsOfTexel)
+                             : fmt::format("{{{}}}", texels * elementsOfTexel);
   return {std::string(name.kernel),  std::string(name.step), name.kind, std::move(domain), bytesRead,
           texels * target.texelBytes};
 }
 
 PassRecord recordOf(const PassName& name, const KernelProgram& program, std::span<const Operand> operands,
                     std::span<const Rect> rects, const DrawTarget& target) {
-  return recordOf(name, bytesRead(program, operands), rects, target);
+  return recordOf(name, bytesRead(program, operands), rects, target, program.isPacked ? assemble::lanes : 1);
 }
 
 PassRecord recordOf(const PassName& name, std::span<const Surface> planes, std::span<const Rect> rects,

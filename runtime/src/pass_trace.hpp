@@ -61,9 +61,9 @@ struct PassName {
 /// What a pass of a kernel's program over these texels of the target reads and writes.
 PassRecord recordOf(const PassName& name, const KernelProgram& program, std::span<const Operand> operands,
                     std::span<const assemble::Rect> rects, const DrawTarget& target);
-/// Of one that is known to read so many bytes.
+/// Of one that is known to read so many bytes and to write so many elements a texel.
 PassRecord recordOf(const PassName& name, std::int64_t bytesRead, std::span<const assemble::Rect> rects,
-                    const DrawTarget& target);
+                    const DrawTarget& target, int elementsOfTexel = 1);
 /// Of one that reads the whole of some planes.
 PassRecord recordOf(const PassName& name, std::span<const Surface> planes,
                     std::span<const assemble::Rect> rects, const DrawTarget& target);

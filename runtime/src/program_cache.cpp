@@ -87,6 +87,7 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
                                                                const assemble::Variant& variant,
                                                                ProgramBuild&& begun) {
   auto made = std::make_unique<KernelProgram>();
+  made->isPacked = variant.domainPacked;
   finish(*made, kernel, std::move(begun));
   made->domain = PlacementUniforms(made->program, "sk_domain_*");
   findParameters(*made, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);

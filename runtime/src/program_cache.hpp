@@ -63,6 +63,7 @@ struct KernelProgram {
   gl::IntUniform rect;          ///< of a compute program: the texels that a dispatch writes
   std::array<GLint, 3> workGroup{1, 1, 1};
   bool isGrouped = false;       ///< a work group computes a texel
+  bool isPacked = false;        ///< a texel holds as many elements as it has lanes
   PlacementUniforms domain;
   gl::IntUniform domainRow;     ///< of a layered domain: the first row of the layer that is drawn
   PlacementUniforms target;     ///< of the scatter output whose list it makes

@@ -123,12 +123,12 @@ class Trial {
     detail::write(detail::wholeRegion(y_.get()), values.data(), values.size());
   }
 
-  /// The shortest of some runs of each, in turns, after one that compiles.
+  /// The shortest of some runs of each, in turns, after some more: the first one compiles, and memory and clocks warm up.
   double computeOverFragment() {
-    constexpr int rounds = 3;
+    constexpr int warm = 3, rounds = 5;
     std::array<double, 2> best;
     best.fill(std::numeric_limits<double>::infinity());
-    for (int round = -1; round < rounds; ++round) {
+    for (int round = -warm; round < rounds; ++round) {
       const double drawn = seconds(Target::Fragment);
       const double dispatched = seconds(Target::Compute);
       if (round >= 0) best = {std::min(best[0], drawn), std::min(best[1], dispatched)};

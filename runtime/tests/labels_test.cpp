@@ -50,12 +50,12 @@ bool hasProgram(const std::string& label) {
 }  // namespace
 
 TEST_CASE("textures and programs have the names of streams and kernels while there is a trace") {
-  static const TestKernel twice("heat::twice", "void heat_twice(float x, out float r) { r = 2.0 * x; }\n",
-                                {input<float>("x"), output<float>("r")});
+  static const TestKernel twice("heat::twice", "void heat_twice(vec4 x, out vec4 r) { r = 2.0 * x; }\n",
+                                {input<float4>("x"), output<float4>("r")});
   const Traced traced(std::filesystem::temp_directory_path() / ("sk_labels_" + std::to_string(::getpid())));
   for (const std::string& profile : profileNames) {
     Device device(DeviceOptions{.profile = profile});
-    auto u = device.stream<float>({4, 4}, Storage::Default, "heat::u");
+    auto u = device.stream<float4>({4, 4}, Storage::Default, "heat::u");
     if (!epoxy_has_gl_extension("GL_KHR_debug")) continue;
     CHECK(labelOf(GL_TEXTURE, u.texture().name) == "heat::u");
     const GLuint before = u.texture().name;

@@ -115,6 +115,16 @@ class Planner {
     return {dividing(width, std::min(width, most)), 1};
   }
 
+  /// Whether the program that folds these runs first may know their length, which makes it a program of its own: where
+  /// all have it and there is enough to fold.
+  bool hasKnownRun(const Extent2& run) const {
+    constexpr std::int32_t unit = 4;
+    const auto [width, height] = left2_;
+    const bool isEven = width % run.width == 0 && height % run.height == 0;
+    const bool isLine = run.width == 1 || run.height == 1;
+    return isEven && isLine && width * height >= limits_.knownRuns && run.width * run.height % unit == 0;
+  }
+
   /// A length near `most` of which `extent` is a multiple; `most` where there is none.
   static std::int32_t dividing(std::int32_t extent, std::int32_t most) {
     for (std::int32_t length = most; 2 * length > most; --length) {
@@ -128,22 +138,21 @@ class Planner {
     const bool isFirst = walk == Walk::Rows;
     const bool isOfTexels = isFirst && division_.byTexel;
     const std::int32_t most = isOfTexels ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
-    const auto [width, height] = left2_;
+    const auto [width, height] = left2_;  // before the pass
     const Extent2 run = runOf(width, height, most, !isFirst);
     const bool isGrouped = isFirst && limits_.grouped && division_.inAnyOrder && division_.foldCombines;
     const std::int32_t side = isGrouped ? groupSide : 1;
-    left2_ = {divideUp(width, run.width * side), divideUp(height, run.height * side)};
-    left_ = left2_.width * left2_.height;
     ReducePass pass{};
     pass.variant.grouped = isGrouped;
-    pass.toResult = left_ == 1;
     pass.variant.walk = walk;
     pass.variant.packed = isOfTexels;
-    const bool isEven = width % run.width == 0 && height % run.height == 0;
-    if (isFirst && isEven && (run.width == 1 || run.height == 1)) {
+    if (isFirst && hasKnownRun(run)) {
       pass.variant.run = static_cast<std::uint8_t>(run.width * run.height);
       pass.variant.column = run.width == 1;
     }
+    left2_ = {divideUp(width, run.width * side), divideUp(height, run.height * side)};
+    left_ = left2_.width * left2_.height;
+    pass.toResult = left_ == 1;
     pass.uniforms = {{"sk_item_shape", true, elements_},
                      {"sk_origin", true, isFirst ? input_.origin : Index4{}},
                      {"sk_source", true, {width, height, 0, 0}},

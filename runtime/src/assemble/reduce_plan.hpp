@@ -45,6 +45,7 @@ struct ReduceLimits {
   TextureLimits texture;
   std::int32_t fanIn = program::longestRun;  ///< elements a run, 2 or more
   bool grouped = false;  ///< passes are dispatches, of which a work group may fold partial results together
+  std::int32_t knownRuns = 1 << 16;  ///< elements or texels from which on programs know how long runs are
 };
 
 /// Whether a fold asks where its elements are, so that it has to find them by their index.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs schedules in C++ over strings. Concatenation is associative and does not commute, so that a
-// block's result is its elements' names in row-major order, or the schedule is wrong. Fragment is the
-// transliteration of what reduceProgram writes; texels that nothing has written may not be read.
+// Runs schedules in C++ over strings, whose concatenation does not commute: a block's result is its elements' names in
+// row-major order. Fragment is the transliteration of what reduceProgram writes; unwritten texels may not be read.
 #include "assemble/reduce_plan.hpp"
 
 #include <algorithm>
@@ -508,7 +507,7 @@ TEST_CASE("reductions of packed streams keep the order") {
         for (const bool grouped : {false, true}) {
           const Index4 extent{width, height, 1, 1};
           CAPTURE(width, height, limit, grouped);
-          const ReduceLimits limits{{limit, mostLayers}, 8, grouped};
+          const ReduceLimits limits{{limit, mostLayers}, 16, grouped, 64};
           for (const Index4& before : {none, Index4{8, 1, 0, 0}}) {
             if (const auto input = packed(extent, 2, before, none, limit)) {
               check(*input, {valuePlacement(), 1, 1}, limits, {1, 1, 1, 1});
@@ -580,30 +579,4 @@ TEST_CASE("results of other dimensions than the blocks keep the order") {
       }
     }
   }
-}
-
-TEST_CASE("a linearised stream is seen with as few axes as it allows") {
-  const auto walk = [](const Index4& extent, const Index4& blocks) {
-    Placement input{.linear = true, .extent = extent, .stride = stridesOf(extent), .shift = 4};
-    Placement result{.linear = true, .extent = blocks, .stride = stridesOf(blocks), .shift = 4};
-    const ReduceVariant variant = planReduction(input, result, {{1024, mostLayers}}).front().variant;
-    return std::pair(variant.walk, int{variant.axes});
-  };
-  CHECK(walk({4, 5, 6, 7}, {1, 1, 1, 1}).first == Walk::Line);
-  CHECK(walk({4, 5, 6, 7}, {1, 5, 6, 7}).first == Walk::Line);
-  CHECK(walk({4, 5, 6, 7}, {1, 1, 2, 7}).first == Walk::Line);
-  CHECK(walk({4, 5, 6, 7}, {4, 5, 6, 1}) == std::pair(Walk::Box, 2));
-  CHECK(walk({4, 5, 6, 7}, {4, 5, 1, 1}) == std::pair(Walk::Box, 2));
-  CHECK(walk({4, 6, 6, 7}, {2, 3, 2, 1}) == std::pair(Walk::Box, 4));
-}
-
-TEST_CASE("a reduction to a value takes two programs and the fewest passes") {
-  const Placement square{.extent = {4096, 4096, 1, 1}};
-  const auto passes = planReduction(square, valuePlacement(), {{16384, 256}, 32});
-  REQUIRE(passes.size() == 5);
-  CHECK(passes[0].variant.walk == Walk::Rows);
-  CHECK(passes[0].variant.run == 32);
-  CHECK(passes[0].texture == TextureShape{128, 4096, 0});
-  for (std::size_t i = 1; i < passes.size(); ++i) CHECK(passes[i].variant == passes[1].variant);
-  CHECK(passes.back().draws == std::vector<Rect>{{0, 0, 1, 1}});
 }

@@ -57,6 +57,14 @@ Json infoOf(sk::Device& device, bool refresh) {
   return info;
 }
 
+/// With its profile's programs alone: what a device chooses for itself may be computed by others.
+sk::Device openPlain(sk::DeviceOptions options) {
+  sk::Device device(options);
+  if (!options.profile.empty()) return device;
+  options.profile = device.profile();
+  return sk::Device(options);
+}
+
 /// The device that is asked for; else the best one with GL, if any, and native code.
 Json infoOfAll(const Options& options) {
   Json all;
@@ -64,7 +72,7 @@ Json infoOfAll(const Options& options) {
   const char* chosen = std::getenv("SK_DEVICE");
   const std::string name = options.device.empty() && chosen != nullptr ? chosen : options.device;
   try {
-    sk::Device device(sk::DeviceOptions{.device = name, .profile = options.profile});
+    sk::Device device = openPlain({.device = name, .profile = options.profile});
     all["devices"].push_back(infoOf(device, options.refresh));
   } catch (const sk::Error& error) {
     if (!name.empty() || !options.profile.empty()) throw;
