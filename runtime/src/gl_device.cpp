@@ -29,8 +29,8 @@ namespace sk {
 
 namespace {
 
-/// A trial is off by as much at times, and what is drawn runs on more devices.
-constexpr double worthDispatching = 0.9;
+/// A trial is off by as much at times, in software by more, and what is drawn runs on more devices.
+constexpr double worthDispatching = 0.9, worthDispatchingInSoftware = 0.7;
 
 assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capabilities, bool pairs) {
   assemble::Profile profile = *assemble::findProfile(name);
@@ -178,7 +178,8 @@ assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
   std::optional<assemble::Stage>& known = faster_[static_cast<std::size_t>(kernels)];
   if (!known) {
     const std::optional<double> ratio = computeOverFragment(*this, kernels);
-    known = ratio.value_or(1) < worthDispatching ? assemble::Stage::Compute : assemble::Stage::Fragment;
+    const double worth = capabilities.isSoftware ? worthDispatchingInSoftware : worthDispatching;
+    known = ratio.value_or(1) < worth ? assemble::Stage::Compute : assemble::Stage::Fragment;
   }
   return *known;
 }
