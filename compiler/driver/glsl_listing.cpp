@@ -179,7 +179,7 @@ std::string formListing(const Profile& profile, const sk::program::Reduction& re
       .byIndex = byIndex,
       .byTexel = input.packed,
       .inAnyOrder = reduction.commutative,
-      .foldCombines = !reduction.seeded && reduction.combine.body == reduction.fold.body};
+      .foldCombines = sk::assemble::foldCombines(reduction)};
   std::string text;
   std::set<sk::assemble::ReduceVariant> seen;
   for (sk::assemble::ReducePass& pass :

@@ -4,6 +4,7 @@
 #include "cache_folder.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -103,6 +104,17 @@ void writeCached(std::string_view name, std::string_view key, std::string_view t
   } catch (const std::exception&) {
     return;  // it is measured again, then
   }
+}
+
+double measuredOnce(std::string_view name, std::string_view key, const std::function<double()>& measure) {
+  double number = 0;
+  if (const std::optional<std::string> text = readCached(name, key)) {
+    std::from_chars(text->data(), text->data() + text->size(), number);
+  }
+  if (number > 0) return number;
+  number = measure();
+  if (number > 0) writeCached(name, key, fmt::format("{:.4g}\n", number));
+  return number;
 }
 
 // Other processes may delete the same files.

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,9 @@ std::optional<std::string> readCached(std::string_view name, std::string_view ke
 /// Keeps a text under a name for a key: `key` says what the text depends on, in words. Readers see all of it or
 /// nothing, also while other processes write the same.
 void writeCached(std::string_view name, std::string_view key, std::string_view text) noexcept;
+
+/// What is kept as a number above 0, else what `measure` finds, which is kept if it is one.
+double measuredOnce(std::string_view name, std::string_view key, const std::function<double()>& measure);
 
 /// Deletes files of a name, the longest unused first, until those that stay take three quarters of `bytes` or less; none where they
 /// take no more than `bytes`.

@@ -2,12 +2,10 @@
 #include "copy_bandwidth.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <exception>
 #include <fstream>
 #include <memory>
-#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -59,19 +57,6 @@ std::string processor() {
     if (line.starts_with("model name")) name = line.substr(std::min(line.find(": "), line.size()));
   }
   return fmt::format("{} threads{}", std::thread::hardware_concurrency(), name);
-}
-
-template <class Measure>
-double kept(const std::string& key, Measure&& measureNow) {
-  double bandwidth = 0;
-  if (const std::optional<std::string> text = readCached("bandwidth", key)) {
-    std::from_chars(text->data(), text->data() + text->size(), bandwidth);
-  }
-  if (bandwidth <= 0) {
-    bandwidth = measureNow();
-    if (bandwidth > 0) writeCached("bandwidth", key, fmt::format("{:.4g}\n", bandwidth));
-  }
-  return bandwidth;
 }
 
 double measureDevice(GlDevice& device) {
@@ -135,11 +120,12 @@ double measureHost() {
 double copyBandwidth(GlDevice& device) {
   if (std::int64_t{device.limits.textureSize} < rows) return 0;  // textures made small, to try layers out
   const std::string key = driverKey(device.name(), device.driver(), device.profileName());
-  return kept(device.isSoftware() ? key + ", " + processor() : key, [&] { return measureDevice(device); });
+  return measuredOnce("bandwidth", device.isSoftware() ? key + ", " + processor() : key,
+                      [&] { return measureDevice(device); });
 }
 
 double hostCopyBandwidth() {
-  return kept(driverKey("native", processor(), ""), [] { return measureHost(); });
+  return measuredOnce("bandwidth", driverKey("native", processor(), ""), measureHost);
 }
 
 }  // namespace sk

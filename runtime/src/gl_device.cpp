@@ -283,22 +283,20 @@ void GlDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
   if (asked == Target::Native) {
     fail(kernel, "its streams are on '{}'; native code runs on streams of sk::Device::native()", name());
   }
+  constexpr std::string_view compileForBoth = "compile its .sk file with skc --target=fragment,compute";
   const bool mustDispatch = asked == Target::Compute || !kernel.drawn;
+  const std::string_view wayOut = kernel.drawn ? "call it without Target::Compute" : compileForBoth;
   if (mustDispatch && !capabilities.hasCompute) {
-    fail(kernel, "'{}' runs no compute programs, which take OpenGL 4.3; {}", name(),
-         kernel.drawn ? "call it without Target::Compute"
-                      : "compile its .sk file with skc --target=fragment,compute");
+    fail(kernel, "'{}' runs no compute programs, which take OpenGL 4.3; {}", name(), wayOut);
   }
   if (mustDispatch && hasSinks(kernel)) {
-    fail(kernel, "variable and scatter outputs are drawn; {}",
-         kernel.drawn ? "call it without Target::Compute"
-                      : "compile its .sk file with skc --target=fragment,compute");
+    fail(kernel, "variable and scatter outputs are drawn; {}", wayOut);
   }
-  if (!kernel.dispatched && (asked == Target::Compute || !kernel.drawn)) {
-    fail(kernel, "it has no compute programs; compile its .sk file with skc --target=fragment,compute");
+  if (mustDispatch && !kernel.dispatched) {
+    fail(kernel, "it has no compute programs; {}", compileForBoth);
   }
   if (asked == Target::Fragment && !kernel.drawn) {
-    fail(kernel, "it has no fragment programs; compile its .sk file with skc --target=fragment,compute");
+    fail(kernel, "it has no fragment programs; {}", compileForBoth);
   }
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "assemble/assemble.hpp"
+#include "buffered_transfer.hpp"
 #include "device_state.hpp"
 #include "framebuffer_cache.hpp"
 #include "gl/bound_state.hpp"
@@ -22,7 +23,6 @@
 #include "gl/saved_state.hpp"
 #include "gl/vertex_array.hpp"
 #include "native/rest_threads.hpp"
-#include "packed_transfer.hpp"
 #include "program_build.hpp"
 #include "program_cache.hpp"
 #include "sink_programs.hpp"

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "assemble/planes.hpp"
+#include "buffered_transfer.hpp"
 #include "convert_elements.hpp"
 #include "gl_device.hpp"
-#include "packed_transfer.hpp"
 #include "pass.hpp"
 #include "pending_read.hpp"
 #include "sink_list.hpp"
@@ -177,7 +177,7 @@ void GlStream::writeAsync(const StreamRegion& region, const std::byte* elements)
     elements = converted.data();
   }
   const Travelling what = travelling(region);
-  writePacked(owner(), *what.element, planes, what.place, elements);
+  writeBuffered(owner(), *what.element, planes, what.place, elements);
 }
 
 void GlStream::readReals(const StreamRegion& region, double* values) {

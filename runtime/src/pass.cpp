@@ -73,8 +73,7 @@ int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit) {
 
 DrawTarget targetOf(GlDevice& device, Surface& plane) {
   const gl::Texture& texture = plane.texture;
-  return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0,
-          static_cast<std::int32_t>(texture.format().texelBytes())};
+  return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0};
 }
 
 DrawTarget targetOf(GlDevice& device, std::span<Surface* const> planes) {
@@ -88,13 +87,7 @@ DrawTarget targetOf(GlDevice& device, std::span<Surface* const> planes) {
   }
   const bool isLayered = first.texture.isLayered();
   return {&device.framebuffers.framebufferOf(std::span(names).first(planes.size()), isLayered),
-          isLayered ? first.texture.shape().height : 0, texelsOf(planes).texelBytes};
-}
-
-DrawTarget texelsOf(std::span<Surface* const> planes) {
-  std::size_t bytes = 0;
-  for (const Surface* plane : planes) bytes += plane->texture.format().texelBytes();
-  return {nullptr, 0, static_cast<std::int32_t>(bytes)};
+          isLayered ? first.texture.shape().height : 0};
 }
 
 void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect> rects, gl::IntUniform& row) {
@@ -167,7 +160,7 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
                std::span<const gl::Texture> bundles, const assemble::Task& task) {
   KernelProgram& program = device.programs().kernelProgram(kernel, operands, domain, task);
   const PassScope traced(device, nameOf(kernel.name, stepOf(task), program), program, operands, rects,
-                         texelsOf(targets));
+                         texelBytesOf(targets));
   device.bound.program(program.program.name());
   bindOperands(device, program, kernel, operands, bundles);
   program.domain.set(domain);
@@ -187,7 +180,8 @@ void copyRegion(GlDevice& device, const program::Element& element, std::span<Sur
   for (std::size_t plane = 0; plane < from.size(); ++plane) {
     if (!source.linear && !target.linear && source.packed == target.packed) {
       const assemble::Rect rect{target.origin[0], target.origin[1], target.extent[0], target.extent[1]};
-      const PassScope traced(device, {"copy", {}, "blit"}, rect, targetOf(device, to[plane]));
+      const PassScope traced(device, {"copy", {}, "blit"}, rect,
+                             to[plane].texture.format().texelBytes());
       blit(device, from[plane], source, to[plane], target);
       continue;
     }

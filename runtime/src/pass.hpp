@@ -26,15 +26,11 @@ int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit);
 struct DrawTarget {
   gl::Framebuffer* framebuffer;
   std::int32_t layerRows;   ///< 0 where the planes have no layers
-  std::int32_t texelBytes;  ///< of all planes together
 };
 
 /// Draws to these planes, 1 to gl::maxDrawBuffers. Good until the next one is asked for.
 DrawTarget targetOf(GlDevice& device, std::span<Surface* const> planes);
 DrawTarget targetOf(GlDevice& device, Surface& plane);
-
-/// The same as far as a trace asks for it: nothing is bound.
-DrawTarget texelsOf(std::span<Surface* const> planes);
 
 /// Binds the framebuffer with a layer of its planes, and tells the program that is bound.
 void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row);

@@ -144,32 +144,43 @@ void PassTrace::forget() noexcept {
   for (gl::Timestamp& stamp : idle_) stamp.forget();
 }
 
+std::size_t texelBytesOf(std::span<Surface* const> planes) {
+  std::size_t bytes = 0;
+  for (const Surface* plane : planes) bytes += plane->texture.format().texelBytes();
+  return bytes;
+}
+std::size_t texelBytesOf(std::span<const Surface> planes) {
+  std::size_t bytes = 0;
+  for (const Surface& plane : planes) bytes += plane.texture.format().texelBytes();
+  return bytes;
+}
+
 /// The domain is told in elements.
 PassRecord recordOf(const PassName& name, std::int64_t bytesRead, std::span<const Rect> rects,
-                    const DrawTarget& target, int elementsOfTexel) {
+                    std::size_t texelBytes, int elementsOfTexel) {
   const std::int64_t texels = texelsOf(rects);
   const bool isBox = rects.size() == 1 && rects.front().height > 1;
   std::string domain = isBox ? fmt::format("{{{}, {}}}", rects.front().height, rects.front().width * elementsOfTexel)
                              : fmt::format("{{{}}}", texels * elementsOfTexel);
   return {std::string(name.kernel),  std::string(name.step), name.kind, std::move(domain), bytesRead,
-          texels * target.texelBytes};
+          texels * static_cast<std::int64_t>(texelBytes)};
 }
 
 PassRecord recordOf(const PassName& name, const KernelProgram& program, std::span<const Operand> operands,
-                    std::span<const Rect> rects, const DrawTarget& target) {
-  return recordOf(name, bytesRead(program, operands), rects, target, program.isPacked ? assemble::lanes : 1);
+                    std::span<const Rect> rects, std::size_t texelBytes) {
+  return recordOf(name, bytesRead(program, operands), rects, texelBytes, program.isPacked ? assemble::lanes : 1);
 }
 
 PassRecord recordOf(const PassName& name, std::span<const Surface> planes, std::span<const Rect> rects,
-                    const DrawTarget& target) {
+                    std::size_t texelBytes) {
   std::int64_t bytes = 0;
   for (const Surface& plane : planes) bytes += static_cast<std::int64_t>(plane.texture.bytes());
-  return recordOf(name, bytes, rects, target);
+  return recordOf(name, bytes, rects, texelBytes);
 }
 
-PassRecord recordOf(const PassName& name, const Rect& rect, const DrawTarget& target) {
+PassRecord recordOf(const PassName& name, const Rect& rect, std::size_t texelBytes) {
   const std::span<const Rect> rects(&rect, 1);
-  return recordOf(name, texelsOf(rects) * target.texelBytes, rects, target);
+  return recordOf(name, texelsOf(rects) * static_cast<std::int64_t>(texelBytes), rects, texelBytes);
 }
 
 PassName nameOf(std::string_view kernel, std::string_view step, const KernelProgram& program) {

@@ -58,18 +58,22 @@ struct PassName {
   std::string_view kind = "draw";
 };
 
-/// What a pass of a kernel's program over these texels of the target reads and writes.
+/// Bytes that a pass writes for each texel, of all planes together.
+std::size_t texelBytesOf(std::span<Surface* const> planes);
+std::size_t texelBytesOf(std::span<const Surface> planes);
+
+/// What a pass of a kernel's program over these texels, of so many bytes, reads and writes.
 PassRecord recordOf(const PassName& name, const KernelProgram& program, std::span<const Operand> operands,
-                    std::span<const assemble::Rect> rects, const DrawTarget& target);
+                    std::span<const assemble::Rect> rects, std::size_t texelBytes);
 /// Of one that is known to read so many bytes and to write so many elements a texel.
 PassRecord recordOf(const PassName& name, std::int64_t bytesRead, std::span<const assemble::Rect> rects,
-                    const DrawTarget& target, int elementsOfTexel = 1);
+                    std::size_t texelBytes, int elementsOfTexel = 1);
 /// Of one that reads the whole of some planes.
 PassRecord recordOf(const PassName& name, std::span<const Surface> planes,
-                    std::span<const assemble::Rect> rects, const DrawTarget& target);
+                    std::span<const assemble::Rect> rects, std::size_t texelBytes);
 
 /// Of one that copies texels to a rectangle of the target.
-PassRecord recordOf(const PassName& name, const assemble::Rect& rect, const DrawTarget& target);
+PassRecord recordOf(const PassName& name, const assemble::Rect& rect, std::size_t texelBytes);
 
 /// Of one that runs a kernel's program.
 PassName nameOf(std::string_view kernel, std::string_view step, const KernelProgram& program);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "assemble/storage.hpp"
+#include "buffered_transfer.hpp"
 #include "gl_device.hpp"
-#include "packed_transfer.hpp"
 #include "transfer_state.hpp"
 
 namespace sk {
@@ -40,7 +40,7 @@ class PendingRead final : public TransferState {
   const program::Element& element_;
   std::unique_ptr<assemble::HeldElement> held_;  ///< where the planes hold another
   std::size_t count_;
-  std::optional<PackedRead> read_;
+  std::optional<BufferedRead> read_;
   std::vector<std::byte> landed_;
   std::string failure_;
 };

@@ -60,8 +60,7 @@ gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const O
                             device.capabilities.renderer, shape.layers, shape.width, shape.height));
   }
   const assemble::Rect texels{0, 0, shape.width, shape.height * shape.layers};
-  const PassScope traced(device, {"copy", "to layers", "blit"}, texels,
-                         DrawTarget{nullptr, 0, static_cast<std::int32_t>(made.format().texelBytes())});
+  const PassScope traced(device, {"copy", "to layers", "blit"}, texels, made.format().texelBytes());
   for (std::int32_t i = 0; i < count; ++i) {
     if (Surface* plane = planes[static_cast<std::size_t>(i)]) {
       copyLayers(device, *plane, made, i, count);

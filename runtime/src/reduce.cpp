@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "assemble/reduce_plan.hpp"
+#include "buffered_transfer.hpp"
 #include "check_reduction.hpp"
 #include "gl_device.hpp"
 #include "gl_stream.hpp"
 #include "output_targets.hpp"
-#include "packed_transfer.hpp"
 #include "pass.hpp"
 #include "pass_trace.hpp"
 #include "sk/call.hpp"
@@ -106,7 +106,7 @@ class ReduceCall {
                                       .byIndex = foldsByIndex(),
                                       .byTexel = byTexel_,
                                       .inAnyOrder = reduction_.commutative,
-                                      .foldCombines = foldCombines()};
+                                      .foldCombines = assemble::foldCombines(reduction_)};
     const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
     for (const ReducePass& pass : passes) {
       if (!start(pass, targets.size())) break;  // nor are the others new
@@ -147,11 +147,6 @@ class ReduceCall {
     return device_.programs().stage() == assemble::Stage::Compute &&
            planes * planeBytes * assemble::groupSize <= assemble::groupBytes &&
            planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
-  }
-
-  bool foldCombines() const {
-    return !reduction_.seeded && reduction_.combine.entry == reduction_.fold.entry &&
-           reduction_.combine.body.data() == reduction_.fold.body.data();
   }
 
   /// Whether all inputs are packed and blocks made of whole texels, which are then read as such.
@@ -236,7 +231,7 @@ class ReduceCall {
                   const std::span<Surface* const> planes = targets.subspan(first, count);
                   const PassScope traced(device_,
                                          nameOf(reduction_.fold.name, stepOf(variant.walk), program.kernel),
-                                         program.kernel, operands, pass.draws, texelsOf(planes));
+                                         program.kernel, operands, pass.draws, texelBytesOf(planes));
                   device_.bound.program(program.kernel.program.name());
                   bindOperands(device_, program.kernel, kernel, operands);
                   for (const assemble::UniformValue& value : pass.uniforms) {
@@ -313,7 +308,7 @@ void readValues(GlDevice& device, const Kernel& fold, std::span<Surface> values,
     });
     return;
   }
-  PackedRead read(device);
+  BufferedRead read(device);
   forEachAccumulator(fold, values, [&](const program::Element& element, std::span<Surface> planes) {
     read.add(element, planes, placement);
   });

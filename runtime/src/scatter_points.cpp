@@ -135,7 +135,7 @@ class Scatterer {
     const assemble::Rect whole{0, 0, shape.width, texture.rows()};
     const assemble::Rect written{0, 0, count, 1};
     const PassScope traced(device_, {sink_.name, "scatter"}, std::span<const Surface>(list_),
-                           std::span(&written, 1), drawn);
+                           std::span(&written, 1), texelBytesOf(targets));
     forEachLayer(whole, drawn.layerRows, [&](const assemble::Rect& part, std::int32_t layer, std::int32_t) {
       selectLayer(device_, drawn, layer, program.row());
       device_.bound.viewport(0, 0, part.width, part.height);
@@ -149,7 +149,7 @@ class Scatterer {
     const DrawTarget drawn = target(targets);
     bindPlanes(device_, planes_, 1);
     const PassScope traced(device_, {sink_.name, "scatter"}, std::span<const Surface>(planes_),
-                           std::span<const assemble::Rect>(rects_), drawn);
+                           std::span<const assemble::Rect>(rects_), texelBytesOf(targets));
     drawRects(device_, drawn, rects_, program.row());
   }
 

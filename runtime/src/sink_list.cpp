@@ -56,11 +56,11 @@ void CountTree::draw(const assemble::TreeLevel& level, Surface& below, bool ofCo
   } else {
     program.set("sk_below_row", belowRow);
   }
-  const DrawTarget target = targetOf(device_, ofLevel(number));
+  Surface& above = ofLevel(number);
   const auto bytesBelow = level.children * static_cast<std::int64_t>(below.texture.format().texelBytes());
   const PassScope traced(device_, {"sums of counts", "tree"}, bytesBelow,
-                         std::span<const assemble::Rect>(level.draws), target);
-  drawRects(device_, target, level.draws, program.row());
+                         std::span<const assemble::Rect>(level.draws), above.texture.format().texelBytes());
+  drawRects(device_, targetOf(device_, above), level.draws, program.row());
 }
 
 std::int32_t CountTree::total() {

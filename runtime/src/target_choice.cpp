@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <limits>
 #include <memory>
@@ -169,15 +168,6 @@ class Trial {
   const std::unique_ptr<StreamState> x_, y_, r_;
 };
 
-/// What an earlier process has found out.
-std::optional<double> kept(std::string_view name, std::string_view key) {
-  const std::optional<std::string> text = readCached(name, key);
-  if (!text) return std::nullopt;
-  double ratio = 0;
-  const auto parsed = std::from_chars(text->data(), text->data() + text->size(), ratio);
-  return parsed.ec == std::errc() && ratio > 0 ? std::optional(ratio) : std::nullopt;
-}
-
 }  // namespace
 
 std::string_view nameOf(KernelClass kernels) {
@@ -203,16 +193,11 @@ KernelClass classOf(const Kernel& kernel) {
 std::optional<double> computeOverFragment(GlDevice& device, KernelClass kernels) {
   const std::string name = fmt::format("compute-over-fragment-{}", nameOf(kernels));
   const std::string key = driverKey(device.name(), device.driver(), device.profileName());
-  std::optional<double> ratio = kept(name, key);
-  if (!ratio) {
-    try {
-      ratio = Trial(device, kernels).computeOverFragment();
-      writeCached(name, key, fmt::format("{:.4g}\n", *ratio));
-    } catch (const Error&) {
-      return std::nullopt;
-    }
+  try {
+    return measuredOnce(name, key, [&] { return Trial(device, kernels).computeOverFragment(); });
+  } catch (const Error&) {
+    return std::nullopt;
   }
-  return ratio;
 }
 
 }  // namespace sk

@@ -8,13 +8,18 @@ head = ["bar", "needed", "measured", "holds"]
 NOT_MEASURED = "not measured"
 LARGE = 20  # log2
 
-# Our contender, programs, peers (the fastest of them counts at each size), least ratio.
+HUGE = 26
+
+# Our contender, programs, peers (the fastest of them counts at each size), least ratio, from which size on. Rows whose peers are
+# not there are left out: `copy`, PyTorch and CUB are on GPUs.
 RATIOS = [
-    ("native", ["saxpy", "sum", "5-point stencil"], ["OpenMP"], 0.95),
-    ("fragment", ["saxpy", "sum", "5-point stencil"], ["GLSL", "GLSL packed"], 1.0),
+    ("native", ["saxpy", "sum", "5-point stencil"], ["OpenMP"], 0.95, LARGE),
+    ("fragment", ["saxpy", "sum", "5-point stencil"], ["GLSL", "GLSL packed"], 1.0, LARGE),
+    ("compute", ["saxpy", "5-point stencil"], ["copy"], 0.95, HUGE),
+    ("compute", ["sum"], ["PyTorch", "CUB"], 0.95, HUGE),
 ]
 BEST_OF_ALL = ("mandelbrot", ["OpenMP", "PoCL", "OpenCL", "GLSL"], 1.0)
-COMPENSATED = 1.1  # times the plain sum's time, natively
+COMPENSATED = 1.1  # times the plain sum's time, natively and on a GPU
 LINEAR = ["saxpy", "sum", "5-point stencil"]
 EXPONENT = 1.1  # of the size, in the time, from LARGE on: caches end on the way
 
@@ -22,13 +27,15 @@ EXPONENT = 1.1  # of the size, in the time, from LARGE on: caches end on the way
 def judge(found):
     """Rows for `head`; one without a measurement says so."""
     rows = []
-    for ours, programs, peers, least in RATIOS:
-        if ours in found.ours():
+    for ours, programs, peers, least, smallest in RATIOS:
+        if ours in found.ours() and set(peers) & set(found.peers()):
             for program in programs:
-                rows.append(ratio_row(found, program, [ours], peers, least))
+                rows.append(ratio_row(found, program, [ours], peers, least, smallest))
     program, peers, least = BEST_OF_ALL
-    rows.append(ratio_row(found, program, found.ours(), peers, least))
-    rows.append(compensated_row(found))
+    rows.append(ratio_row(found, program, found.ours(), peers, least, LARGE))
+    rows.append(compensated_row(found, "native"))
+    if "PyTorch" in found.peers():
+        rows.append(compensated_row(found, "compute"))
     for program in LINEAR:
         rows += [linear_row(found, program, ours) for ours in found.ours()]
     for figure in found.document.get("results", []):
@@ -43,14 +50,14 @@ def verdict(holds):
     return "yes" if holds else "NO"
 
 
-def large_sizes(found, program):
-    return [log2 for log2 in found.sizes(program) if log2 >= LARGE]
+def large_sizes(found, program, smallest=LARGE):
+    return [log2 for log2 in found.sizes(program) if log2 >= smallest]
 
 
-def ratio_row(found, program, ours, peers, least):
+def ratio_row(found, program, ours, peers, least, smallest):
     """The fastest of `ours` against the fastest of `peers`, at the size that is worst for us."""
     worst = None
-    for log2 in large_sizes(found, program):
+    for log2 in large_sizes(found, program, smallest):
         problem = (program, log2)
         mine = [name for name in ours if found.seconds(problem, name)]
         theirs = [name for name in peers if found.seconds(problem, name)]
@@ -66,12 +73,12 @@ def ratio_row(found, program, ours, peers, least):
     return [name, f"at least {least}", worst[1], verdict(round(worst[0], 2) >= least)]
 
 
-def compensated_row(found):
-    name = "a compensated sum's time over a plain one's, native"
+def compensated_row(found, ours):
+    name = f"a compensated sum's time over a plain one's, {ours}"
     needed = f"at most {COMPENSATED}"
     worst = None
     for log2 in large_sizes(found, "sum"):
-        ratios = found.ratios(("sum", log2), "native", "native compensated")
+        ratios = found.ratios(("sum", log2), ours, f"{ours} compensated")
         if ratios and (worst is None or ratios[1] > worst[0]):
             worst = (ratios[1], f"{ratios[1]:.2f} ({ratios[0]:.2f}-{ratios[2]:.2f}) at 2^{log2}")
     if worst is None:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Tells what benchmarks have measured: report.py RESULTS.json ... [--json FILE] [--chart DIR] [--document FILE].
+"""Tells what benchmarks have measured: report.py RESULTS.json ... [--json FILE] [--chart DIR] [--document FILE [--machine NAME]].
 
 The files are what sk_race, sk_bench and torch_peer.py write; together they are one set of results. Prints a table for each
 of our contenders, and which bars hold. A ratio here is a peer's time over ours: how many times as fast we are.
@@ -23,6 +23,8 @@ def main():
     parser.add_argument("--chart", metavar="DIR", help="draw performance.svg, performance-sizes.svg and the same as .png")
     parser.add_argument("--document", metavar="FILE",
                         help="write the tables between the marks <!-- bench NAME --> and <!-- /bench -->")
+    parser.add_argument("--machine", metavar="NAME", default="",
+                        help="of the document's tables, write those of this machine: <!-- bench NAME ... -->")
     arguments = parser.parse_args()
     found = results.read(arguments.files)
     print_tables(found)
@@ -38,7 +40,7 @@ def main():
         os.makedirs(arguments.chart, exist_ok=True)
         charts.draw(found, arguments.chart)
     if arguments.document:
-        update(arguments.document, found, held)
+        update(arguments.document, arguments.machine, found, held)
     return 0
 
 
@@ -49,13 +51,17 @@ def print_tables(found):
         print(results.plain(head, rows))
 
 
-def update(path, found, held):
-    """Replaces what is between the marks; a mark names a table: `bars`, `machine`, or one of our contenders."""
+def update(path, machine, found, held):
+    """Replaces what is between the marks; a mark names a table: `bars`, `machine`, or one of our contenders, behind the name
+    of another machine if that is given."""
     with open(path, encoding="utf-8") as file:
         text = file.read()
 
     def replaced(match):
-        name = match.group(1)
+        mark = match.group(1)
+        if machine and not mark.startswith(machine + " "):
+            return match.group(0)  # measured here
+        name = mark[len(machine):].strip()
         if name == "bars":
             body = results.markdown(bars.head, held)
         elif name == "machine":
@@ -64,7 +70,7 @@ def update(path, found, held):
             body = results.markdown(*results.table_of(found, name, largest_only=True))
         else:
             return match.group(0)  # measured elsewhere
-        return f"<!-- bench {name} -->\n{body}<!-- /bench -->"
+        return f"<!-- bench {mark} -->\n{body}<!-- /bench -->"
 
     text, count = re.subn(r"<!-- bench ([\w -]+?) -->\n.*?<!-- /bench -->", replaced, text, flags=re.S)
     if count == 0:

@@ -20,7 +20,7 @@ below() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a < b) }
 
 # Command lines that make no sense.
 run 0 --help
-for option in --device --size --rounds --data --tolerance --json --chart; do prints "$option"; done
+for option in --device --profile --size --rounds --data --tolerance --json --chart; do prints "$option"; done
 run 1 nosuch
 says "there is no program 'nosuch': it is one of sum, dot, moments, diffusion, polynomial, transcendentals, tables"
 run 1 sum --data lumpy
@@ -33,6 +33,8 @@ run 1 sum --tolerance=-1
 says '--tolerance'
 run 1 sum --device abacus
 says "sk: no device 'abacus' was found"
+run 1 sum --profile glsl999
+says "there is no profile 'glsl999'; choose one of glsl330"
 run 1 sum --chart picture.gif
 says "no chart can be 'picture.gif': its name must end in .svg or .png"
 run 1 sum --size 64 --json no/such/folder.json

@@ -75,9 +75,8 @@ std::string wholeTexel(std::string_view type, std::string_view value) {
   return fmt::format("{}({}, {}, {})", vector, value, zero, zero);
 }
 
-/// Invocations of a work group. Texels lie in squares in memory, and groups that cover some of these whole are
-/// fastest: on an H200, squares of 8 for texels of 16 bytes (4.9 TB/s by saxpy; rows of 256 give 2.5), of 16 for
-/// smaller ones (3.4 TB/s; squares of 8 give 1.3).
+/// Invocations of a work group. Texels lie in squares in memory, and groups that cover some of these whole are fastest: on
+/// an H200 squares of 8 for texels of 16 bytes, where rows take twice as long, and of 16 for smaller ones.
 std::pair<int, int> groupForTexels(int components) {
   return components == 4 ? std::pair(8, 8) : std::pair(16, 16);
 }

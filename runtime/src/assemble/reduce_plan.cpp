@@ -299,6 +299,11 @@ class Planner {
 
 }  // namespace
 
+bool foldCombines(const program::Reduction& reduction) {
+  return !reduction.seeded && reduction.combine.entry == reduction.fold.entry &&
+         reduction.combine.body == reduction.fold.body;
+}
+
 bool asksForPlace(const program::Kernel& fold) {
   using program::Role;
   return fold.usesIndex || std::ranges::any_of(fold.parameters, [](const program::Parameter& parameter) {

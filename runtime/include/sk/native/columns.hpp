@@ -56,7 +56,7 @@ class Columns {
  public:
   /// As many as stay in the nearest cache beside the elements.
   static constexpr int most =
-      static_cast<int>(std::bit_floor(std::clamp<std::size_t>(2048 / measured<State>().bytes, 32, 512)));
+      static_cast<int>(std::bit_floor(std::clamp<std::size_t>(2048 / footprintOf<State>().bytes, 32, 512)));
 
   State load(int k) const {
     State state{};
@@ -86,7 +86,7 @@ class Columns {
     return first;
   }
 
-  alignas(64) std::byte bytes_[most * measured<State>().bytes];
+  alignas(64) std::byte bytes_[most * footprintOf<State>().bytes];
 };
 
 /// A run of one element, the current one.

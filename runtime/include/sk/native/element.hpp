@@ -78,19 +78,19 @@ constexpr void visit(T& value, auto&& scalar) {
 }
 
 /// How many scalars a value has, and their bytes in memory.
-struct Extent {
+struct Footprint {
   std::size_t scalars = 0;
   std::size_t bytes = 0;
 };
 template <class T>
-constexpr Extent measured() {
-  Extent extent;
+constexpr Footprint footprintOf() {
+  Footprint footprint;
   T value{};
   visit(value, [&]<class S>(S&) {
-    ++extent.scalars;
-    extent.bytes += sizeof(typename StoredOf<S>::Type);
+    ++footprint.scalars;
+    footprint.bytes += sizeof(typename StoredOf<S>::Type);
   });
-  return extent;
+  return footprint;
 }
 
 template <class T>

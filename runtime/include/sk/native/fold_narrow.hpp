@@ -22,7 +22,7 @@ class NarrowGroups {
 
   /// Accumulators of many scalars, as those of exact sums, gain little by it, and take compilers long.
   template <class State>
-  static constexpr bool isFew = measured<State>().scalars <= 8;
+  static constexpr bool isFew = footprintOf<State>().scalars <= 8;
   static bool isNarrow(const ReduceCall& call) {
     return call.block[0] <= 8 && call.block[0] < call.fold.domain[0];
   }

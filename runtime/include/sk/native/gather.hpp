@@ -159,7 +159,7 @@ class Gather : public StreamParameter {
   }
 
   T border_;
-  void* arrays_[measured<T>().scalars]{};
+  void* arrays_[footprintOf<T>().scalars]{};
   std::int64_t first_;
   std::int64_t extent_[N];
   std::int64_t stride_[N];

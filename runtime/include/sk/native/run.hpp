@@ -27,20 +27,20 @@ namespace sk::native {
 /// The rows of a domain in pieces of elements that are neighbours.
 class Pieces {
  public:
-  static constexpr std::int64_t longest = 1 << 13;
-
-  explicit Pieces(const Extents& domain) : domain_(domain), perRow_((domain[0] + longest - 1) / longest) {}
+  /// Of kernels with loops, an element may take as long as a thousand others, so that a few are enough for a piece.
+  Pieces(const Extents& domain, bool areUneven)
+      : domain_(domain), longest_(areUneven ? 1 << 6 : 1 << 13), perRow_((domain[0] + longest_ - 1) / longest_) {}
 
   std::int64_t count() const { return perRow_ * domain_[1] * domain_[2] * domain_[3]; }
-  std::int64_t elementsOfOne() const { return std::min(domain_[0], longest); }
+  std::int64_t elementsOfOne() const { return std::min(domain_[0], longest_); }
 
   /// visit(first, count) for the elements of these pieces, as many neighbours at a time as `most` allows.
   template <class Visit>
   void forEachChunk(Range pieces, int most, Visit&& visit) const {
     Extents at = firstOf(pieces.begin);
     for (std::int64_t left = pieces.end - pieces.begin; left > 0;) {
-      const std::int64_t end = std::min(domain_[0], at[0] + left * longest);
-      left -= (end - at[0] + longest - 1) / longest;
+      const std::int64_t end = std::min(domain_[0], at[0] + left * longest_);
+      left -= (end - at[0] + longest_ - 1) / longest_;
       while (at[0] < end) {
         const auto count = static_cast<int>(std::min<std::int64_t>(end - at[0], most));
         visit(at, count);
@@ -54,11 +54,12 @@ class Pieces {
  private:
   Extents firstOf(std::int64_t piece) const {
     const std::int64_t row = piece / perRow_;
-    return {piece % perRow_ * longest, row % domain_[1], row / domain_[1] % domain_[2],
+    return {piece % perRow_ * longest_, row % domain_[1], row / domain_[1] % domain_[2],
             row / domain_[1] / domain_[2]};
   }
 
   Extents domain_;
+  std::int64_t longest_;
   std::int64_t perRow_;
 };
 
@@ -144,7 +145,7 @@ Range insideOf(Kernel& kernel, std::int64_t extent) {
 template <class Kernel>
 void runPieces(const Call& call, Range pieces) {
   ChunkRunner<Kernel> whole(call);
-  const Pieces all(call.domain);
+  const Pieces all(call.domain, Kernel::sk_isUneven);
   if constexpr (HasInside<Kernel>) {
     ChunkRunner<typename Kernel::sk_Inside> inside(call);
     const Range range = insideOf(inside.kernel(), call.domain[0]);
@@ -163,13 +164,14 @@ void runPieces(const Call& call, Range pieces) {
 /// A kernel over the domain; `hot` is runPieces of it.
 template <class Kernel, auto hot>
 void runKernel(const Call& call) {
-  const Pieces pieces(call.domain);
+  const Pieces pieces(call.domain, Kernel::sk_isUneven);
   if (pieces.count() == 0) return;
   if constexpr (Kernel::sk_isOrdered) {
     hot(call, {0, pieces.count()});
   } else {
-    inParallel(pieces.count(), pieces.elementsOfOne(), Kernel::sk_isUneven ? Deal::AsTheyCome : Deal::Evenly,
-               [&](Range range) { hot(call, range); });
+    constexpr std::int64_t costOfElement = Kernel::sk_isUneven ? 1 << 6 : 1;
+    inParallel(pieces.count(), pieces.elementsOfOne() * costOfElement,
+               Kernel::sk_isUneven ? Deal::AsTheyCome : Deal::Evenly, [&](Range range) { hot(call, range); });
   }
 }
 

@@ -119,7 +119,7 @@ class StreamParameter {
 
 /// The arrays of an element's components, from the chunk's first element on.
 template <class T>
-class Lanes {
+class ComponentArrays {
  public:
   T load(int i) const { return native::load<T>(arrays_, i); }
   void store(int i, const T& value) const { native::store(arrays_, i, value); }
@@ -141,7 +141,7 @@ class Lanes {
     visit(value, [&]<class S>(S&) { component(c++, static_cast<typename StoredOf<S>::Type*>(nullptr)); });
   }
 
-  void* arrays_[measured<T>().scalars]{};
+  void* arrays_[footprintOf<T>().scalars]{};
 };
 
 /// `T x<>`. A stream that is left out has zeros, which nobody looks at.
@@ -156,13 +156,13 @@ class Input : public StreamParameter {
     for (std::size_t d = 0; d < 4; ++d)
       own_[d] = chunk.first[d] * operand().multiply[d] / operand().divide[d];
     if (isDirect() || (chunk.count == 1 && isGiven() && !operand().holdsFloats)) {
-      lanes_.place(operand().components.data(), number(own_));
+      arrays_.place(operand().components.data(), number(own_));
     } else {
       layOut(chunk);
     }
   }
 
-  T at(int i) const { return lanes_.load(i); }
+  T at(int i) const { return arrays_.load(i); }
   /// Of the element of the domain that has this index.
   Index index(const Index& index) const {
     Index own = toIndex(own_);
@@ -183,19 +183,19 @@ class Input : public StreamParameter {
   }
 
   void layOut(const Chunk& chunk) {
-    lanes_.place(chunk.scratch, chunk.count);
+    arrays_.place(chunk.scratch, chunk.count);
     std::int64_t element = number(own_);
     if (!isGiven()) {
-      for (int i = 0; i < chunk.count; ++i) lanes_.store(i, T{});
+      for (int i = 0; i < chunk.count; ++i) arrays_.store(i, T{});
     } else if (isDense()) {
       SK_NATIVE_INDEPENDENT
-      for (int i = 0; i < chunk.count; ++i) lanes_.store(i, elementAt(element + i));
+      for (int i = 0; i < chunk.count; ++i) arrays_.store(i, elementAt(element + i));
     } else {
       const std::int64_t step = operand().multiply[0] * operand().stride[0];
       const std::int64_t repeats = operand().divide[0];
       std::int64_t repeated = chunk.first[0] % repeats;
       for (int i = 0; i < chunk.count; ++i) {
-        lanes_.store(i, elementAt(element));
+        arrays_.store(i, elementAt(element));
         if (++repeated < repeats) continue;
         repeated = 0;
         element += step;
@@ -204,7 +204,7 @@ class Input : public StreamParameter {
   }
 
   Extents own_{};  ///< where the chunk begins here
-  Lanes<T> lanes_;
+  ComponentArrays<T> arrays_;
 };
 
 /// `out T r<>`. What is stored to one that is left out is lost.
@@ -216,12 +216,12 @@ class Output : public StreamParameter {
   bool isDirect() const { return isGiven(); }
   void place(const Chunk& chunk) {
     if (isGiven()) {
-      lanes_.place(operand().components.data(), number(chunk.first));
+      arrays_.place(operand().components.data(), number(chunk.first));
     } else {
-      lanes_.place(chunk.scratch, chunk.count);
+      arrays_.place(chunk.scratch, chunk.count);
     }
   }
-  void store(int i, const T& value) const { lanes_.store(i, value); }
+  void store(int i, const T& value) const { arrays_.store(i, value); }
 
   /// At any index, whatever the chunk.
   void store(const Index& index, const T& value) const {
@@ -232,7 +232,7 @@ class Output : public StreamParameter {
   }
 
  private:
-  Lanes<T> lanes_;
+  ComponentArrays<T> arrays_;
 };
 
 /// `vout T r<>`.

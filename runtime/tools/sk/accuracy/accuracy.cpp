@@ -33,6 +33,7 @@ constexpr int schema = 1;  ///< of the JSON
 struct Options {
   std::vector<std::string> programs;
   std::string device;
+  std::string profile;
   std::string size;  ///< as --size has it
   Measurement measurement{.size = std::size_t{1} << 20, .rounds = 15};
   FileOptions file;
@@ -128,7 +129,7 @@ void runFile(const Options& options) {
   const FileMeasurement measurement =
       options.file.measurement(extentsIn(options.size), options.measurement.rounds);
   const KernelLibrary library(options.programs.front(), options.file.build);  // outlives the device
-  sk::Device device(options.device);
+  sk::Device device(sk::DeviceOptions{.device = options.device, .profile = options.profile});
   printHead(options, device);
   const auto [all, skipped] =
       measureFile(device, library.list(), measurement, [&](const Experiment& experiment) {
@@ -144,7 +145,7 @@ void runPrograms(const Options& options) {
   if (!options.file.used().empty()) {
     throw std::runtime_error(fmt::format("{} is for a .sk file; name one", options.file.used()));
   }
-  sk::Device device(options.device);
+  sk::Device device(sk::DeviceOptions{.device = options.device, .profile = options.profile});
   printHead(options, device);
   std::vector<Experiment> all;
   for (const Program* program : chosen) {
@@ -190,6 +191,11 @@ void addAccuracy(CLI::App& app) {
   command
       ->add_option("--device", options->device,
                    "native, gpu, gpu:N, software, or a part of a renderer's name (default: the best)")
+      ->type_name("NAME");
+  command
+      ->add_option(
+          "--profile", options->profile,
+          "glsl330 or essl300: run fragment programs, glsl430: compute programs (default: the faster)")
       ->type_name("NAME");
   command->add_option("--size", options->size, "Elements (default: 2^20); for a .sk file also HxW")
       ->type_name("N")

@@ -27,13 +27,13 @@ struct TransferBuffer {
 };
 
 /// First what is to be read is added, then all of it begun, then taken part by part.
-class PackedRead {
+class BufferedRead {
  public:
-  explicit PackedRead(GlDevice& device);
+  explicit BufferedRead(GlDevice& device);
   /// Gives the buffer back; touches no GL.
-  ~PackedRead();
-  PackedRead(const PackedRead&) = delete;
-  PackedRead& operator=(const PackedRead&) = delete;
+  ~BufferedRead();
+  BufferedRead(const BufferedRead&) = delete;
+  BufferedRead& operator=(const BufferedRead&) = delete;
 
   /// All elements of a region; its number as a part. `element` must outlive this, the planes begin().
   std::size_t add(const program::Element& element, std::span<Surface> planes,
@@ -79,7 +79,7 @@ class PackedRead {
 
 /// Copies all elements of a region, row-major in host memory, to its planes. The memory may be reused at once; nobody
 /// waits for the device. Throws sk::Error where there is no memory.
-void writePacked(GlDevice& device, const program::Element& element, std::span<Surface> planes,
+void writeBuffered(GlDevice& device, const program::Element& element, std::span<Surface> planes,
                  const assemble::Placement& region, const std::byte* elements);
 
 }  // namespace sk

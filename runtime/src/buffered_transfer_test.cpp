@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Transfers through buffers of the driver's against direct ones.
-#include "packed_transfer.hpp"
+#include "buffered_transfer.hpp"
 
 #include <array>
 #include <cstddef>
@@ -68,7 +68,7 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
   {
     const DeviceScope scope(device);
     const GlStream::Travelling what = stream.travelling(region);
-    PackedRead read(device);
+    BufferedRead read(device);
     const std::size_t part = read.add(*what.element, stream.planes, what.place);
     const std::size_t again = read.add(*what.element, stream.planes, what.place);
     read.begin();
@@ -85,7 +85,7 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
   {
     const DeviceScope scope(device);
     const GlStream::Travelling what = stream.travelling(region);
-    writePacked(device, *what.element, stream.planes, what.place, given.data());
+    writeBuffered(device, *what.element, stream.planes, what.place, given.data());
   }
   stream.read(region, found.data());
   CHECK(areEqual(element, given, found));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "packed_transfer.hpp"
+#include "buffered_transfer.hpp"
 
 #include <cstring>
 #include <utility>
@@ -48,11 +48,11 @@ void TransferBuffer::forget() noexcept {
   fence.forget();
 }
 
-PackedRead::PackedRead(GlDevice& device) : device_(device), held_(device.takeTransferBuffer()) {}
+BufferedRead::BufferedRead(GlDevice& device) : device_(device), held_(device.takeTransferBuffer()) {}
 
-PackedRead::~PackedRead() { device_.giveTransferBuffer(std::move(held_)); }
+BufferedRead::~BufferedRead() { device_.giveTransferBuffer(std::move(held_)); }
 
-std::size_t PackedRead::add(const Element& element, std::span<Surface> planes, const Placement& region) {
+std::size_t BufferedRead::add(const Element& element, std::span<Surface> planes, const Placement& region) {
   parts_.push_back({&element, region, blocks_.size()});
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const Field& field = element.fields[i];
@@ -65,13 +65,13 @@ std::size_t PackedRead::add(const Element& element, std::span<Surface> planes, c
   return parts_.size() - 1;
 }
 
-void PackedRead::addBlock(Surface& plane, const Field& field, const Rect& rect, std::int64_t first) {
+void BufferedRead::addBlock(Surface& plane, const Field& field, const Rect& rect, std::int64_t first) {
   const gl::Transfer transfer = readTransferOf(device_, plane);
   blocks_.push_back({&plane, &plane.texture.format(), &field, transfer, rect, first, bytes_});
   bytes_ += aligned(texelsOf(rect) * transfer.texelBytes());
 }
 
-void PackedRead::begin() {
+void BufferedRead::begin() {
   {
     const gl::BoundPixels bound(held_.buffer, gl::BoundPixels::Way::Read);
     if (!bound.allocate(bytes_)) failForMemory(device_, bytes_);
@@ -80,7 +80,7 @@ void PackedRead::begin() {
   held_.fence = gl::Fence::insert();
 }
 
-void PackedRead::readBlock(const Block& block) {
+void BufferedRead::readBlock(const Block& block) {
   gl::Framebuffer& framebuffer = block.plane->framebufferIn(device_.bound);
   const std::size_t rowBytes = static_cast<std::size_t>(block.rect.width) * block.transfer.texelBytes();
   forEachLayer(block.rect, layerRows(*block.plane),
@@ -91,7 +91,7 @@ void PackedRead::readBlock(const Block& block) {
                });
 }
 
-void PackedRead::take(std::size_t part, std::byte* elements) {
+void BufferedRead::take(std::size_t part, std::byte* elements) {
   wait();
   const gl::BoundPixels bound(held_.buffer, gl::BoundPixels::Way::Read);
   const std::byte* texels = bound.map(bytes_);
@@ -106,7 +106,7 @@ void PackedRead::take(std::size_t part, std::byte* elements) {
   bound.unmap();
 }
 
-void PackedRead::unpack(const Part& part, const Block& block, const std::byte* texels, std::byte* elements) {
+void BufferedRead::unpack(const Part& part, const Block& block, const std::byte* texels, std::byte* elements) {
   const Element& element = *part.element;
   const std::size_t count = texelsOf(block.rect);
   std::vector<std::byte> narrowed;
@@ -135,7 +135,7 @@ void PackedRead::unpack(const Part& part, const Block& block, const std::byte* t
   }
 }
 
-void writePacked(GlDevice& device, const Element& element, std::span<Surface> planes, const Placement& region,
+void writeBuffered(GlDevice& device, const Element& element, std::span<Surface> planes, const Placement& region,
                  const std::byte* elements) {
   const auto count = static_cast<std::size_t>(assemble::elements(region.extent));
   std::size_t bytes = 0;
