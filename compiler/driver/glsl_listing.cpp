@@ -174,12 +174,11 @@ std::string formListing(const Profile& profile, const sk::program::Reduction& re
   input.packed = !byIndex && readsScalars(reduction.fold);
   const sk::assemble::ReduceLimits limits{.texture = {16384, 256},
                                           .grouped = profile.stage == sk::assemble::Stage::Compute};
-  const sk::assemble::Division division{
-      .blocks = {1, 1, 1, 1},
-      .byIndex = byIndex,
-      .byTexel = input.packed,
-      .inAnyOrder = reduction.commutative,
-      .foldCombines = sk::assemble::foldCombines(reduction)};
+  const sk::assemble::Division division{.blocks = {1, 1, 1, 1},
+                                        .byIndex = byIndex,
+                                        .byTexel = input.packed,
+                                        .inAnyOrder = reduction.commutative,
+                                        .inGroups = sk::assemble::foldsInGroups(reduction)};
   std::string text;
   std::set<sk::assemble::ReduceVariant> seen;
   for (sk::assemble::ReducePass& pass :

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "emit/glsl_body.hpp"
 
+#include <algorithm>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,10 +33,21 @@ class Used {
     if (expr) walkExprs(*expr, [&](const Expr& inner) { markOne(inner); });
   }
 
+  /// Whether another uses nothing that this does not.
+  bool includes(const Used& other) const {
+    return isWithin(other.structs_, structs_) && isWithin(other.constants_, constants_);
+  }
   bool hasStruct(std::size_t index) const { return structs_[index]; }
   bool hasConstant(std::size_t index) const { return constants_[index]; }
 
  private:
+  static bool isWithin(const std::vector<bool>& few, const std::vector<bool>& many) {
+    for (std::size_t i = 0; i < few.size(); ++i) {
+      if (few[i] && !many[i]) return false;
+    }
+    return true;
+  }
+
   void markOne(const Expr& expr) {
     mark(expr.type);
     const auto* n = std::get_if<ConstantRef>(&expr.node);
@@ -85,6 +98,28 @@ std::string structsText(const GlslContext& context, const Used& used) {
   return text;
 }
 
+/// All that a kernel uses.
+Used usedBy(const GlslContext& context) {
+  Used used(context.module);
+  for (const KernelParam& param : context.kernel.params) {
+    used.mark(param.border);
+    used.mark(param.identity);
+  }
+  for (const FunctionId id : functionsOf(context.module, context.kernel))
+    used.mark(context.module.functions[id]);
+  return used;
+}
+
+/// Whether a program's intrinsics are among those that another one has.
+bool hasIntrinsics(const Polyfills& program, const Polyfills& others) {
+  return std::ranges::all_of(others.intrinsics(), [&](const sk::program::IntrinsicUse& wanted) {
+    return std::ranges::any_of(program.intrinsics(), [&](const sk::program::IntrinsicUse& use) {
+      return use.intrinsic == wanted.intrinsic && use.ofDouble == wanted.ofDouble &&
+             (use.widths & wanted.widths) == wanted.widths;
+    });
+  });
+}
+
 template <class Predicate>
 std::string constantsText(const GlslContext& context, Predicate&& isWanted) {
   std::string text;
@@ -128,6 +163,31 @@ GlslBody glslBody(const GlslContext& context) {
   text.declarations += paramConstants;
   text.body += constants + writer.take();
   return text;
+}
+
+std::optional<std::string> glslAddition(const GlslContext& first, const GlslContext& second) {
+  if (!usedBy(first).includes(usedBy(second)) || !hasIntrinsics(first.polyfills, second.polyfills))
+    return std::nullopt;
+  std::string text;
+  for (const std::string& polyfill : second.polyfills.functions()) {
+    const bool isThere = std::ranges::count(first.polyfills.functions(), polyfill) > 0;
+    if (!isThere) text += polyfill + "\n";
+  }
+  const std::vector<FunctionId> there = functionsOf(first.module, first.kernel);
+  std::set<std::string> taken;
+  for (const FunctionId id : there) taken.insert(first.names.function(id));
+  for (ConstantId id = 0; id < first.module.constants.size(); ++id) taken.insert(first.names.constant(id));
+  LineWriter writer;
+  for (const FunctionId id : functionsOf(second.module, second.kernel)) {
+    const std::string& name = second.names.function(id);
+    if (std::ranges::find(there, id) != there.end()) {
+      if (first.names.function(id) != name) return std::nullopt;
+    } else {
+      if (taken.contains(name)) return std::nullopt;
+      writeFunction(second, id, writer);
+    }
+  }
+  return text + writer.take();
 }
 
 }  // namespace skc::emit

@@ -5,6 +5,7 @@
 // functions that the assembler writes between the two; neither they nor main() are made here.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "emit/glsl_expr.hpp"
@@ -17,5 +18,9 @@ struct GlslBody {
 };
 
 GlslBody glslBody(const GlslContext& context);
+
+/// What a program that holds the body of `first` has to add in order to run `second`, whose bodies glslBody() has made; nothing
+/// where that takes more than functions, or two would have one name.
+std::optional<std::string> glslAddition(const GlslContext& first, const GlslContext& second);
 
 }  // namespace skc::emit

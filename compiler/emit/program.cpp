@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "emit/program.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <string>
 #include <utility>
@@ -173,6 +174,25 @@ class Builder {
             .dispatched = targets_.compute};
   }
 
+  /// Reduction::addition.
+  std::string_view addition(const Kernel& fold, const Kernel& combine) {
+    const auto isFolded = [](const KernelParam& param) {
+      return param.role == ParamRole::Input || param.role == ParamRole::Accumulator;
+    };
+    if (&combine == &fold || !std::ranges::all_of(combine.params, isFolded) ||
+        !tabulatedFunctionsOf(module_, combine).empty() ||
+        (usesDoubles(module_, combine) && !usesDoubles(module_, fold)) ||
+        (usesExactSums(module_, combine) && !usesExactSums(module_, fold))) {
+      return {};
+    }
+    const KernelNames names[] = {{module_, fold, types_}, {module_, combine, types_}};
+    Polyfills polyfills[2];
+    const GlslContext contexts[] = {{module_, types_, names[0], fold, polyfills[0]},
+                                    {module_, types_, names[1], combine, polyfills[1]}};
+    for (const GlslContext& context : contexts) glslBody(context);
+    return storage_.keep(glslAddition(contexts[0], contexts[1]).value_or(""));
+  }
+
   sk::program::Reduction reduction(const Kernel& kernel, const sk::program::Kernel& fold) {
     const Kernel& combine = module_.kernels[*kernel.reduction->combine];
     std::vector<std::uint8_t>& operands = storage_.combineOperands.emplace_back();
@@ -182,6 +202,7 @@ class Builder {
     return {.fold = fold,
             .combine = &combine == &kernel ? fold : describe(combine),
             .combineOperands = operands,
+            .addition = addition(kernel, combine),
             .seeded = kernel.reduction->seeded,
             .compensated = compensated(*kernel.reduction),
             .exact = exactSums(*kernel.reduction),

@@ -55,6 +55,9 @@ TEST_CASE("a reduce's descriptor") {
   CHECK(power.combine.entry == "power_combine");
   CHECK(power.fold.body.find("power_combine") == std::string_view::npos);
   CHECK(power.fold.parameters[1].identity == "0.0");
+  CHECK(power.addition.find("void power_combine(") != std::string_view::npos);
+  CHECK(power.addition.find("void power(") == std::string_view::npos);  // which is in the fold's body
+  CHECK(nearest.addition.empty());
 }
 
 TEST_CASE("descriptors stay valid when the program moves") {

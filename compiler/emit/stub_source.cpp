@@ -152,11 +152,13 @@ class SourceWriter {
     std::vector<std::string> operands;
     for (std::uint8_t operand : made.combineOperands) operands.push_back(std::to_string(operand));
     if (hasOperands) list("std::uint8_t", name + "Operands", operands);
+    programText(name + "Addition", made.addition);
     if (native) text_ += nativeReductionDescriptor(name, combine, declared, *native);
     std::vector<std::string> members = {
         fmt::format(".fold = {}Kernel", name), fmt::format(".combine = {}Kernel", combine),
-        fmt::format(".combineOperands = {}", hasOperands ? name + "Operands" : "{}"),
-        fmt::format(".seeded = {}", made.seeded)};
+        fmt::format(".combineOperands = {}", hasOperands ? name + "Operands" : "{}")};
+    if (!made.addition.empty()) members.push_back(fmt::format(".addition = {}Addition", name));
+    members.push_back(fmt::format(".seeded = {}", made.seeded));
     if (native) members.push_back(fmt::format(".native = &{}Native", name));
     if (made.compensated != nullptr) members.push_back(fmt::format(".compensated = &{}Compensated", name));
     if (made.half != nullptr) members.push_back(fmt::format(".half = &{}HalfReduction", name));
@@ -225,11 +227,8 @@ class SourceWriter {
 
   /// What the descriptor of a kernel refers to.
   void kernelParts(const sk::program::Kernel& kernel, const Kernel& declared, const std::string& name) {
-    if (!kernel.declarations.empty()) {
-      text_ += fmt::format("constexpr std::string_view {}Declarations =\n    {};\n\n", name,
-                           rawString(kernel.declarations));
-    }
-    text_ += fmt::format("constexpr std::string_view {}Body =\n    {};\n\n", name, rawString(kernel.body));
+    programText(name + "Declarations", kernel.declarations);
+    programText(name + "Body", kernel.body);
     for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
       conditionSteps(name, kernel.parameters[i]);
       if (declared.params[i].type.kind == Type::Kind::Array) arrayElement(name, kernel.parameters[i]);
@@ -244,6 +243,11 @@ class SourceWriter {
     text_ += "};\n\n";
     intrinsics(kernel, name);
     tableUses(kernel, name);
+  }
+
+  void programText(const std::string& name, std::string_view text) {
+    if (text.empty()) return;
+    text_ += fmt::format("constexpr std::string_view {} =\n    {};\n\n", name, rawString(text));
   }
 
   void intrinsics(const sk::program::Kernel& kernel, const std::string& name) {

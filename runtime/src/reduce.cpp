@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "assemble/program_text.hpp"
 #include "assemble/reduce_plan.hpp"
 #include "buffered_transfer.hpp"
 #include "check_reduction.hpp"
@@ -106,7 +107,7 @@ class ReduceCall {
                                       .byIndex = foldsByIndex(),
                                       .byTexel = byTexel_,
                                       .inAnyOrder = reduction_.commutative,
-                                      .foldCombines = assemble::foldCombines(reduction_)};
+                                      .inGroups = assemble::foldsInGroups(reduction_)};
     const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
     for (const ReducePass& pass : passes) {
       if (!start(pass, targets.size())) break;  // nor are the others new

@@ -295,14 +295,47 @@ class GatherText {
     return fmt::format("sk_texel_{}_{}_{}", part(x), part(y), parameter_.symbol);
   }
 
+  /// Whether the work group fetches all texels that its invocations reach, into memory that they share. A GPU fetches a
+  /// few texels a clock, and each is wanted by as many invocations as there are neighbours.
+  bool sharesTile() {
+    return program_.stage() == Stage::Compute && rank_ == 2 && access_.addressing == Addressing::Plane &&
+           program_.takeShared(tileTexels() * 4 * sizeof(float));
+  }
+  int tileWidth() const { return groupOfWideTexels.first + 2 * reachInX(); }
+  int tileHeight() const { return groupOfWideTexels.second + 2 * reachInY(); }
+  std::size_t tileTexels() const { return static_cast<std::size_t>(tileWidth() * tileHeight()); }
+
+  /// Invocations take turns, one after the other the texels of a row. `at` is the function that fetches one.
+  void fillTile(std::string_view at) {
+    const auto [width, height] = groupOfWideTexels;
+    program_.variable(fmt::format("shared {}", packedType(parameter_)),
+                      fmt::format("sk_tile_{}[{}][{}]", parameter_.symbol, tileHeight(), tileWidth()));
+    constexpr std::string_view local = "ivec2 sk_local()";
+    if (!program_.isDefined(local)) program_.function(local, {"return ivec2(gl_LocalInvocationID.xy);"});
+    program_.together(fmt::format("for (int sk_k = int(gl_LocalInvocationIndex); sk_k < {}; sk_k += {}) {{",
+                                  tileTexels(), width * height));
+    program_.together(fmt::format("  ivec2 sk_t = ivec2(sk_k % {0}, sk_k / {0});", tileWidth()));
+    program_.together(fmt::format("  sk_tile_{}[sk_t.y][sk_t.x] = {}(sk_t - ivec2({}, {}) - sk_local());",
+                                  parameter_.symbol, at, reachInX(), reachInY()));
+    program_.together("}");
+  }
+  std::string texelOfTile(int x, int y) const {
+    return fmt::format("sk_tile_{}[sk_local().y + {}][sk_local().x + {}]", parameter_.symbol, y + reachInY(),
+                       x + reachInX());
+  }
+
   /// Variables that main() fills with these texels; those beyond a border hold what nobody looks at.
   void defineTexels(const std::string& extents, const std::string& here) {
     const bool isRow = rank_ == 1;
+    const bool isTiled = sharesTile();
     const std::string name = fmt::format("sk_texel_at_{}", parameter_.symbol);
     std::vector<std::string> lines = {extents, isRow ? fmt::format("int sk_p = {} + sk_d;", here)
                                                      : fmt::format("ivec2 sk_p = {} + sk_d;", here)};
     if (isRow) {
       lines.push_back(fmt::format("if (sk_d != 0) sk_p = {};", broughtOnce("sk_p", "sk_n")));
+    } else if (isTiled) {  // for invocations beside the domain, too, whose texels are neighbours
+      lines.push_back(fmt::format("sk_p = ivec2({}, {});", broughtOnce("sk_p.x", "sk_n.x"),
+                                  broughtOnce("sk_p.y", "sk_n.y")));
     } else {
       lines.push_back(fmt::format("if (sk_d.x != 0) sk_p.x = {};", broughtOnce("sk_p.x", "sk_n.x")));
       lines.push_back(fmt::format("if (sk_d.y != 0) sk_p.y = {};", broughtOnce("sk_p.y", "sk_n.y")));
@@ -313,10 +346,12 @@ class GatherText {
     for (int y = -reachInY(); y <= reachInY(); ++y) {
       for (int x = -reachInX(); x <= reachInX(); ++x) {
         program_.variable(packedType(parameter_), texelName(x, y));
-        program_.prologue(isRow ? fmt::format("{} = {}({});", texelName(x, y), name, x)
-                                : fmt::format("{} = {}(ivec2({}, {}));", texelName(x, y), name, x, y));
+        program_.prologue(isTiled ? fmt::format("{} = {};", texelName(x, y), texelOfTile(x, y))
+                          : isRow ? fmt::format("{} = {}({});", texelName(x, y), name, x)
+                                  : fmt::format("{} = {}(ivec2({}, {}));", texelName(x, y), name, x, y));
       }
     }
+    if (isTiled) fillTile(name);
   }
 
   /// Makes sk_v that of them which is sk_c texels to the right and sk_d.y below.

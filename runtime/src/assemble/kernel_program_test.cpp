@@ -282,6 +282,20 @@ TEST_CASE("gathers with a border") {
 )");
 }
 
+TEST_CASE("a dispatched stencil fetches each texel once for its work group") {
+  const samples::EveryAccess sample(samples::floatElement, "", 2, Boundary::Clamp, 1);
+  const StreamAccess packed{.addressing = Addressing::Plane, .nearby = true, .packed = true};
+  const Variant variant{
+      .domainPacked = true,
+      .access = {{.packed = true}, {.packed = true}, packed, {.packed = true}, {.packed = true}}};
+  const std::string program = kernelProgram(*findProfile("glsl430"), sample.kernel(), variant);
+  CHECK(program.find("shared vec4 sk_tile_a[18][10];") != std::string::npos);
+  const std::string main = part(program, "void main() {", "return;");
+  CHECK(main.find("barrier();") != std::string::npos);  // which all invocations reach, those outside, too
+  CHECK(main.find("if (any(greaterThanEqual(") > main.find("barrier();"));
+  CHECK(kernelProgram(glsl, sample.kernel(), variant).find("sk_tile_a") == std::string::npos);
+}
+
 TEST_CASE("the vertex program needs no data") {
   CHECK(vertexProgram(glsl) == R"(#version 330 core
 void main() {

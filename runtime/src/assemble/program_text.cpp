@@ -75,10 +75,9 @@ std::string wholeTexel(std::string_view type, std::string_view value) {
   return fmt::format("{}({}, {}, {})", vector, value, zero, zero);
 }
 
-/// Invocations of a work group. Texels lie in squares in memory, and groups that cover some of these whole are fastest: on
-/// an H200 squares of 8 for texels of 16 bytes, where rows take twice as long, and of 16 for smaller ones.
+/// Invocations of a work group.
 std::pair<int, int> groupForTexels(int components) {
-  return components == 4 ? std::pair(8, 8) : std::pair(16, 16);
+  return components == 4 ? groupOfWideTexels : std::pair(16, 16);
 }
 
 constexpr std::string_view esPrecision =
@@ -136,6 +135,18 @@ void ProgramText::prologue(std::string_view line) {
   fmt::format_to(std::back_inserter(prologue_), "  {}\n", line);
 }
 
+void ProgramText::together(std::string_view line) {
+  fmt::format_to(std::back_inserter(together_), "  {}\n", line);
+}
+
+bool ProgramText::takeShared(std::size_t bytes) {
+  if (shared_ + bytes > groupBytes) return false;
+  shared_ += bytes;
+  return true;
+}
+
+void ProgramText::foreign(std::string_view text) { foreign_ += text; }
+
 std::string ProgramText::finish(const Profile& profile, std::string_view comment,
                                 const program::Kernel& kernel) const {
   std::string program = fmt::format("{}\n// {}\n", profile.version, comment);
@@ -161,6 +172,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   program += functions_;
   program += tableDefinitions(kernel.tables, profile.tables);
   addForeign(program, kernel.body);
+  addForeign(program, foreign_);
   return program + mainOf(prologue_ + main_);
 }
 
@@ -192,10 +204,9 @@ std::string ProgramText::mainOf(const std::string& body) const {
     text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body +
             "  if (gl_LocalInvocationIndex != 0u) return;\n";
   } else {
-    text +=
-        "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n"
-        "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n" +
-        body;
+    text += "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n" + together_;
+    if (!together_.empty()) text += "  memoryBarrierShared();\n  barrier();\n";
+    text += "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n" + body;
   }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const auto& [type, name] = outputs_[i];

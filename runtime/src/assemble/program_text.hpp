@@ -14,19 +14,25 @@
 
 namespace sk::assemble {
 
+/// Invocations of a work group that shares nothing but texels of 16 bytes. Texels lie in squares in memory, and groups that
+/// cover some of these whole are fastest, in columns; of squares of 8 an H200 starts too few in time.
+inline constexpr std::pair<int, int> groupOfWideTexels{8, 16};
+/// Bytes that a work group may share, on any device.
+inline constexpr std::size_t groupBytes = 32768;
+
 /// Functions of the assembler's own that programs share; their text is in functions.cpp.
 enum class Function : std::uint8_t {
-  Unravel2,    ///< index of an element number in 2, 3 or 4 dimensions; the highest that is
-  Unravel3,    ///< required serves for all
+  Unravel2,  ///< index of an element number in 2, 3 or 4 dimensions; the highest that is
+  Unravel3,  ///< required serves for all
   Unravel4,
-  Ravel,       ///< element number of an index
-  Texel,       ///< texel of an element number
-  Layered,     ///< texel of a layered texture
-  Wrap,        ///< wrapped sum of an index and an offset
-  WrapOnce,    ///< wrapped index that is less than an extent away
+  Ravel,  ///< element number of an index
+  Texel,  ///< texel of an element number
+  Layered,  ///< texel of a layered texture
+  Wrap,  ///< wrapped sum of an index and an offset
+  WrapOnce,  ///< wrapped index that is less than an extent away
   Mirror,
   MirrorOnce,
-  ToHalf,      ///< the nearest half of a float, as a float
+  ToHalf,  ///< the nearest half of a float, as a float
 };
 std::string_view text(Function function);
 
@@ -60,6 +66,13 @@ class ProgramText {
   void statement(std::string_view line);
   /// Adds a line to main() before every line that statement() has added and adds.
   void prologue(std::string_view line);
+  /// Adds a line to main() of a compute program before all of these, which every invocation of a work group runs, those
+  /// beside the domain, too. All have run these lines before any goes on.
+  void together(std::string_view line);
+  /// Takes bytes of the memory that a work group shares; false where there are not as many left.
+  bool takeShared(std::size_t bytes);
+  /// Adds text of skc's behind the kernel's own.
+  void foreign(std::string_view text);
 
   /// The whole program. `comment` is its first comment line, without the slashes.
   std::string finish(const Profile& profile, std::string_view comment, const program::Kernel& kernel) const;
@@ -83,8 +96,11 @@ class ProgramText {
   std::vector<std::string> signatures_;
   std::uint32_t used_ = 0;  ///< bits of Function
   std::string functions_;
+  std::string together_;
   std::string prologue_;
   std::string main_;
+  std::string foreign_;
+  std::size_t shared_ = 0;  ///< bytes
 };
 
 /// `name(arguments)`, on one line or, where that is too long, with a line for each argument.

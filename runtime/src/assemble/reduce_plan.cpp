@@ -140,7 +140,7 @@ class Planner {
     const std::int32_t most = isOfTexels ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
     const auto [width, height] = left2_;  // before the pass
     const Extent2 run = runOf(width, height, most, !isFirst);
-    const bool isGrouped = isFirst && limits_.grouped && division_.inAnyOrder && division_.foldCombines;
+    const bool isGrouped = isFirst && limits_.grouped && division_.inAnyOrder && division_.inGroups;
     const std::int32_t side = isGrouped ? groupSide : 1;
     ReducePass pass{};
     pass.variant.grouped = isGrouped;
@@ -299,9 +299,10 @@ class Planner {
 
 }  // namespace
 
-bool foldCombines(const program::Reduction& reduction) {
-  return !reduction.seeded && reduction.combine.entry == reduction.fold.entry &&
-         reduction.combine.body == reduction.fold.body;
+bool foldsInGroups(const program::Reduction& reduction) {
+  const bool foldCombines =
+      reduction.combine.entry == reduction.fold.entry && reduction.combine.body == reduction.fold.body;
+  return !reduction.seeded && (foldCombines || !reduction.addition.empty());
 }
 
 bool asksForPlace(const program::Kernel& fold) {

@@ -48,8 +48,8 @@ struct ReduceLimits {
   std::int32_t knownRuns = 1 << 16;  ///< elements or texels from which on programs know how long runs are
 };
 
-/// Whether partial results are combined by the fold itself, which starts from an identity.
-bool foldCombines(const program::Reduction& reduction);
+/// Whether a program that folds elements can also combine what its invocations have, each starting from an identity.
+bool foldsInGroups(const program::Reduction& reduction);
 
 /// Whether a fold asks where its elements are, so that it has to find them by their index.
 bool asksForPlace(const program::Kernel& fold);
@@ -60,7 +60,7 @@ struct Division {
   bool byIndex = false;  ///< Walk::Index; of the elements' placement only the extent counts then
   bool byTexel = false;  ///< the elements are packed, and blocks made of whole texels
   bool inAnyOrder = false;  ///< Reduction::commutative
-  bool foldCombines = false;  ///< foldCombines()
+  bool inGroups = false;  ///< foldsInGroups()
 };
 
 /// The passes that fold elements into `result`, whose elements are the blocks, in their order. There are

@@ -71,7 +71,7 @@ bool inside(const Index4& index, const Index4& extent) {
 /// A region of a stream: a whole one, or a part with margins around it.
 struct Region {
   Placement placement;
-  int width, height;   ///< of its texture
+  int width, height;  ///< of its texture
 
   std::pair<int, int> texel(const Index4& index) const {
     const Index4 p = index + placement.origin;
@@ -392,7 +392,7 @@ void check(const Region& input, const Region& result, const ReduceLimits& limits
                                      .byIndex = byIndex,
                                      .byTexel = input.placement.packed,
                                      .inAnyOrder = inAnyOrder,
-                                     .foldCombines = inAnyOrder});
+                                     .inGroups = inAnyOrder});
   checkSchedule(passes, limits, elements(extent) / elements(blocks));
   Texture output = execute(passes, std::move(source), input, result);
   std::size_t written = 0;

@@ -58,6 +58,7 @@ class ReductionText {
   std::string write() {
     if (kernel_.usesLoops && !isByRows() && variant_.walk != Walk::GroupedPartials) domain_.leaveOutside();
     if (variant_.walk != Walk::Nothing) defineParameters();
+    if (variant_.grouped) program_.foreign(reduction_.addition);
     std::vector<Parameter> written = writtenParameters();
     for (const Parameter& parameter : written) declareOutputs(program_, parameter);
     if (variant_.walk == Walk::Nothing) {
@@ -354,7 +355,7 @@ class ReductionText {
     statement("  memoryBarrierShared();");
     statement("  barrier();");
     statement("  if ((sk_i & (2 * sk_s - 1)) == 0 && sk_i + sk_s < sk_runs) {");
-    statement("    " + folding([&](std::size_t, std::size_t k) {
+    statement("    " + calling(reduction_.combine, [&](std::size_t, std::size_t k) {
                 return fmt::format("{}[sk_i + sk_s]", sharedName(*accumulators_[k]));
               }));
     keep("    ");
@@ -464,27 +465,34 @@ class ReductionText {
     return folding([&](std::size_t i, std::size_t) { return element(i, next_); });
   }
 
-  /// A call of the kernel's entry, with the arguments in its order. elementOf(i, k): of parameter i, the k-th input.
   template <class ElementOf>
   std::string folding(const ElementOf& inputElement) {
+    return calling(kernel_, inputElement);
+  }
+
+  /// A call of the entry of this kernel, or of one that combines, with the arguments in its order. inputElement(i, k): of
+  /// parameter i, the k-th input.
+  template <class ElementOf>
+  std::string calling(const Kernel& kernel, const ElementOf& inputElement) {
     std::vector<std::string> arguments;
     std::size_t inputs = 0;
+    std::size_t accumulators = 0;
     std::size_t values = 0;
-    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
-      const Parameter& parameter = kernel_.parameters[i];
+    for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+      const Parameter& parameter = kernel.parameters[i];
       switch (parameter.role) {
         case Role::Uniform:
         case Role::Iterator:
         case Role::Spec: arguments.push_back(arguments_[values++]); break;
         case Role::Input: arguments.push_back(inputElement(i, inputs++)); break;
-        case Role::Accumulator: arguments.push_back(total(parameter)); break;
+        case Role::Accumulator: arguments.push_back(total(*accumulators_[accumulators++])); break;
         case Role::Gather:
         case Role::Output:
         case Role::VariableOutput:
         case Role::Scatter: break;
       }
     }
-    return call(kernel_.entry, arguments, "        ") + ";";
+    return call(kernel.entry, arguments, "        ") + ";";
   }
 
   std::string elementOf(std::size_t i, std::string_view lane) const {

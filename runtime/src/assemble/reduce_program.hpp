@@ -32,10 +32,9 @@ constexpr bool isOfPartials(Walk walk) {
   return walk == Walk::Partials || walk == Walk::PartialRows || walk == Walk::GroupedPartials;
 }
 
-/// Invocations of a work group that folds partial results together, as a row or a square, and what they may share.
+/// Invocations of a work group that folds partial results together, as a row or a square.
 inline constexpr std::int32_t groupSize = 256;
 inline constexpr std::int32_t groupSide = 16;
-inline constexpr std::size_t groupBytes = 32768;
 
 /// How many runs and blocks there are; a block is what one element of the result folds.
 enum class Runs : std::uint8_t {
@@ -56,8 +55,7 @@ struct ReduceVariant {
   std::uint8_t run =
       0;  ///< Walk::Rows: texels of a run, where all have as many, of one row or column; else 0
   bool column = false;
-  bool grouped =
-      false;  ///< Walk::Rows: a work group folds together what its invocations have, by the fold itself
+  bool grouped = false;  ///< Walk::Rows: a work group combines what its invocations have
   bool strided =
       false;  ///< Walk::GroupedPartials: an invocation takes every groupSize-th, not one after the other
   bool packed = false;  ///< walks of elements: the inputs are packed, and a step is one of whole texels
