@@ -37,6 +37,7 @@ assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capab
   if (!capabilities.hasDoubles || pairs) {
     profile.doubles = assemble::Doubles::Pairs;
   }
+  profile.sharesTexels = !capabilities.isSoftware;
   return profile;
 }
 

@@ -45,6 +45,8 @@ struct Profile {
   Barrier barrier =
       Barrier::Xor;  ///< Precise needs GL_ARB_gpu_shader5, which devices of the profile may have
   bool tables = true;  ///< functions that a table may stand for are looked up there
+  bool sharesTexels =
+      true;  ///< compute programs fetch a texel once for all neighbours in a work group, which pays on GPUs
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();

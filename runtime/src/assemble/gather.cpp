@@ -298,23 +298,33 @@ class GatherText {
   /// Whether the work group fetches all texels that its invocations reach, into memory that they share. A GPU fetches a
   /// few texels a clock, and each is wanted by as many invocations as there are neighbours.
   bool sharesTile() {
-    return program_.stage() == Stage::Compute && rank_ == 2 && access_.addressing == Addressing::Plane &&
+    return program_.sharesTexels() && rank_ == 2 && access_.addressing == Addressing::Plane &&
            program_.takeShared(tileTexels() * 4 * sizeof(float));
   }
   int tileWidth() const { return groupOfWideTexels.first + 2 * reachInX(); }
   int tileHeight() const { return groupOfWideTexels.second + 2 * reachInY(); }
   std::size_t tileTexels() const { return static_cast<std::size_t>(tileWidth() * tileHeight()); }
 
-  /// Invocations take turns, one after the other the texels of a row. `at` is the function that fetches one.
+  /// Each invocation fetches the texel of its own, and the first ones another of those around. `at` is the function that
+  /// fetches one.
   void fillTile(std::string_view at) {
     const auto [width, height] = groupOfWideTexels;
+    const int inRows = tileWidth() * 2 * reachInY();  // of those around, above and below
+    const int around = static_cast<int>(tileTexels()) - width * height;
+    assert(reachInX() == 1 && around <= width * height);
     program_.variable(fmt::format("shared {}", packedType(parameter_)),
                       fmt::format("sk_tile_{}[{}][{}]", parameter_.symbol, tileHeight(), tileWidth()));
     constexpr std::string_view local = "ivec2 sk_local()";
     if (!program_.isDefined(local)) program_.function(local, {"return ivec2(gl_LocalInvocationID.xy);"});
-    program_.together(fmt::format("for (int sk_k = int(gl_LocalInvocationIndex); sk_k < {}; sk_k += {}) {{",
-                                  tileTexels(), width * height));
-    program_.together(fmt::format("  ivec2 sk_t = ivec2(sk_k % {0}, sk_k / {0});", tileWidth()));
+    program_.together(fmt::format("{} = {}(ivec2(0, 0));", texelName(0, 0), at));
+    program_.together(fmt::format("{} = {};", texelOfTile(0, 0), texelName(0, 0)));
+    program_.together(fmt::format("if (gl_LocalInvocationIndex < {}u) {{", around));
+    program_.together("  int sk_k = int(gl_LocalInvocationIndex);");
+    program_.together(fmt::format("  ivec2 sk_t = ivec2(sk_k % {0}, sk_k / {0} + (sk_k < {1} ? 0 : {2}));",
+                                  tileWidth(), inRows / 2, height));
+    program_.together(
+        fmt::format("  if (sk_k >= {0}) sk_t = ivec2((sk_k - {0}) % 2 * {1}, (sk_k - {0}) / 2 + {2});",
+                    inRows, width + 1, reachInY()));
     program_.together(fmt::format("  sk_tile_{}[sk_t.y][sk_t.x] = {}(sk_t - ivec2({}, {}) - sk_local());",
                                   parameter_.symbol, at, reachInX(), reachInY()));
     program_.together("}");
@@ -346,6 +356,7 @@ class GatherText {
     for (int y = -reachInY(); y <= reachInY(); ++y) {
       for (int x = -reachInX(); x <= reachInX(); ++x) {
         program_.variable(packedType(parameter_), texelName(x, y));
+        if (isTiled && x == 0 && y == 0) continue;  // which fillTile() keeps
         program_.prologue(isTiled ? fmt::format("{} = {};", texelName(x, y), texelOfTile(x, y))
                           : isRow ? fmt::format("{} = {}({});", texelName(x, y), name, x)
                                   : fmt::format("{} = {}(ivec2({}, {}));", texelName(x, y), name, x, y));

@@ -97,7 +97,7 @@ class KernelText {
         held_(kernel, variant.access),
         kernel_(held_.kernel()),
         variant_(variant),
-        program_(profile.stage),
+        program_(profile),
         domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
                            variant.domainPacked}) {}
 

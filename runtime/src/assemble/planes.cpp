@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
 
 #include <fmt/format.h>
@@ -392,6 +393,25 @@ void store(ProgramText& program, const Parameter& parameter, std::string_view va
     if (field.scalar == Scalar::Half && parameter.held != nullptr) value = halved(program, field, value);
     program.statement(fmt::format("{} = {};", output, toOutput(field, std::move(value))));
   }
+}
+
+std::vector<Parameter> cutToPlanes(std::span<const Parameter* const> parameters, std::size_t first,
+                                   std::size_t count) {
+  std::vector<Parameter> cut;
+  std::size_t before = 0;  // planes of the parameters so far
+  const std::size_t end = count == 0 ? SIZE_MAX : first + count;
+  for (const Parameter* parameter : parameters) {
+    const std::size_t after = before + parameter->element->fields.size();
+    const std::size_t from = std::max(first, before);
+    const std::size_t to = std::min(end, after);
+    if (from < to) {
+      cut.push_back(*parameter);
+      cut.back().firstPlane = static_cast<std::uint8_t>(from - before);
+      cut.back().planeCount = static_cast<std::uint8_t>(to - from);
+    }
+    before = after;
+  }
+  return cut;
 }
 
 }  // namespace sk::assemble

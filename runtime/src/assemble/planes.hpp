@@ -5,8 +5,10 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "assemble/assemble.hpp"
 #include "assemble/program_text.hpp"
@@ -62,5 +64,10 @@ void copyPlanes(ProgramText& program, const program::Parameter& parameter, const
 /// Statements that copy an element-typed variable to the parameter's outputs; none where the
 /// variable is the output.
 void store(ProgramText& program, const program::Parameter& parameter, std::string_view variable);
+
+/// Those of the parameters that have some of `count` planes from `first` on, counted through all of them, cut to these; 0 is
+/// all from there on.
+std::vector<program::Parameter> cutToPlanes(std::span<const program::Parameter* const> parameters,
+                                            std::size_t first, std::size_t count);
 
 }  // namespace sk::assemble

@@ -38,9 +38,11 @@ std::string_view text(Function function);
 
 class ProgramText {
  public:
-  explicit ProgramText(Stage stage = Stage::Fragment) : stage_(stage) {}
+  ProgramText() = default;  ///< of what is drawn
+  explicit ProgramText(const Profile& profile) : stage_(profile.stage), sharesTexels_(profile.sharesTexels) {}
 
   Stage stage() const { return stage_; }
+  bool sharesTexels() const { return sharesTexels_ && stage_ == Stage::Compute; }
   /// The texel that an invocation computes, an ivec2, and its coordinates: expressions.
   std::string_view texel() const { return isDrawn() ? "ivec2(gl_FragCoord.xy)" : "sk_pixel"; }
   std::string_view column() const { return isDrawn() ? "int(gl_FragCoord.x)" : "sk_pixel.x"; }
@@ -86,7 +88,8 @@ class ProgramText {
   std::string declarationOfOutputs() const;
   std::string mainOf(const std::string& body) const;
 
-  Stage stage_;
+  Stage stage_ = Stage::Fragment;
+  bool sharesTexels_ = false;
   std::string place_;  ///< storeAt()'s
   bool isArray_ = false;
   std::pair<std::int32_t, std::int32_t> group_{};  ///< for each texel; none: there is an invocation for each

@@ -79,9 +79,9 @@ class Planner {
   }
 
   std::vector<ReducePass> plan() {
-    const bool isByRows = !division_.byIndex && !input_.linear && blocks_ == 1;
+    const bool isByRows = !division_.byIndex && blocks_ == 1 && (!input_.linear || isRows());
     if (isByRows) {
-      left2_ = {input_.extent[0], input_.extent[1]};
+      takeRectangle();
       addRows(Walk::Rows);
     } else {
       addPass(division_.byIndex ? Walk::Index : input_.linear ? Walk::Box : Walk::Plane);
@@ -110,6 +110,7 @@ class Planner {
     constexpr std::int32_t side = 8;
     if (division_.inAnyOrder && ofPartials && most >= side && width >= side && height >= most / side)
       return {side, most / side};
+    if (isRagged()) return {1, std::min(height, most)};
     if (division_.inAnyOrder && height >= most) return {1, dividing(height, most)};
     if (width < most && height > 1) return {width, std::min(height, most / width)};
     return {dividing(width, std::min(width, most)), 1};
@@ -120,7 +121,7 @@ class Planner {
   bool hasKnownRun(const Extent2& run) const {
     constexpr std::int32_t unit = 4;
     const auto [width, height] = left2_;
-    const bool isEven = width % run.width == 0 && height % run.height == 0;
+    const bool isEven = width % run.width == 0 && height % run.height == 0 && !isRagged();
     const bool isLine = run.width == 1 || run.height == 1;
     return isEven && isLine && width * height >= limits_.knownRuns && run.width * run.height % unit == 0;
   }
@@ -140,10 +141,11 @@ class Planner {
     const std::int32_t most = isOfTexels ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
     const auto [width, height] = left2_;  // before the pass
     const Extent2 run = runOf(width, height, most, !isFirst);
-    const bool isGrouped = isFirst && limits_.grouped && division_.inAnyOrder && division_.inGroups;
+    const bool isGrouped = isFirst && foldsInGroups();
     const std::int32_t side = isGrouped ? groupSide : 1;
     ReducePass pass{};
     pass.variant.grouped = isGrouped;
+    pass.variant.ragged = isRagged();
     pass.variant.walk = walk;
     pass.variant.packed = isOfTexels;
     if (isFirst && hasKnownRun(run)) {
@@ -154,9 +156,10 @@ class Planner {
     left_ = left2_.width * left2_.height;
     pass.toResult = left_ == 1;
     pass.uniforms = {{"sk_item_shape", true, elements_},
-                     {"sk_origin", true, isFirst ? input_.origin : Index4{}},
-                     {"sk_source", true, {width, height, 0, 0}},
+                     {"sk_origin", true, isFirst && !input_.linear ? input_.origin : Index4{}},
+                     {"sk_source", true, {width, height, lastRow_, 0}},
                      {"sk_run_shape", true, {run.width, run.height, 0, 0}}};
+    lastRow_ = left2_.width;
     Placement partial;
     partial.extent = {left2_.width, left2_.height, 1, 1};
     pass.texture = {left2_.width, left2_.height, 0};
@@ -175,6 +178,26 @@ class Planner {
     pass.variant.domainView = false;
     pass.variant.domainRank = 1;
   }
+
+  /// Whether a linearised stream is folded as the rows of its texture, in any order: squares of it are read faster than lines.
+  bool isRows() const {
+    const Axes axes = collapse(input_, division_.blocks);
+    return foldsInGroups() && isLine(axes) && startOf(input_) == 0 && !input_.layered;
+  }
+
+  /// All elements or texels as a rectangle, of which the last row may be shorter.
+  void takeRectangle() {
+    left2_ = {input_.extent[0], input_.extent[1]};
+    if (input_.linear) {
+      left2_.width = std::min(left_, 1 << input_.shift);
+      left2_.height = divideUp(left_, left2_.width);
+    }
+    lastRow_ = left_ - (left2_.height - 1) * left2_.width;
+  }
+  bool isRagged() const { return lastRow_ != left2_.width; }
+
+  /// Whether work groups combine what their invocations have folded of the elements.
+  bool foldsInGroups() const { return limits_.grouped && division_.inAnyOrder && division_.inGroups; }
 
   /// Whether work groups fold the partial results that are left: of one block, in no layers.
   bool mayGroup() const { return limits_.grouped && blocks_ == 1 && !partialsLayered_; }
@@ -252,13 +275,18 @@ class Planner {
     return shape;
   }
 
+  static std::int32_t startOf(const Placement& input) {
+    std::int32_t start = 0;
+    for (std::size_t d = 0; d < input.origin.size(); ++d) start += input.origin[d] * input.stride[d];
+    return start;
+  }
+  static bool isLine(const Axes& axes) { return axes.count == 1 && axes.stride[0] == 1; }
+
   void setLinearSource(ReducePass& pass) const {
     const Axes axes = collapse(input_, division_.blocks);
-    std::int32_t start = 0;
-    for (std::size_t d = 0; d < input_.origin.size(); ++d) start += input_.origin[d] * input_.stride[d];
-    pass.uniforms.push_back({"sk_start", false, {start}});
+    pass.uniforms.push_back({"sk_start", false, {startOf(input_)}});
     pass.uniforms.push_back({"sk_shift", false, {input_.shift}});
-    if (axes.count == 1 && axes.stride[0] == 1) {
+    if (isLine(axes)) {
       pass.variant.walk = Walk::Line;
       return;
     }
@@ -291,6 +319,7 @@ class Planner {
   std::int32_t blocks_;
   std::int32_t left_;  ///< elements, texels or partial results of each block
   Extent2 left2_{};  ///< as a rectangle, of passes by rows
+  std::int32_t lastRow_ = 0;  ///< the length of its last row
   std::int32_t sourceShift_ = 0;  ///< of the partial results' texture
   std::int32_t sourceWidth_ = 0;  ///< of that in passes by rows or groups
   bool partialsLayered_ = false;  ///< whether it is

@@ -134,11 +134,14 @@ class Fragment {
     return rectangle(left, top, width, height);
   }
 
-  /// What is of it in the source, row by row.
+  /// What is of it in the source, row by row; its last row is shorter only where the program knows it.
   Name rectangle(int left, int top, int width, int height) {
     Name total;
-    for (int y = top; y < std::min(top + height, vector("sk_source")[1]); ++y) {
-      for (int x = left; x < std::min(left + width, vector("sk_source")[0]); ++x) {
+    const Index4& extent = vector("sk_source");
+    if (pass_.variant.ragged && width > 1) throw std::logic_error("a run of rows reaches the shorter one");
+    for (int y = top; y < std::min(top + height, extent[1]); ++y) {
+      const bool isShorter = pass_.variant.ragged && y == extent[1] - 1;
+      for (int x = left; x < std::min(left + width, isShorter ? extent[2] : extent[0]); ++x) {
         total += element(vector("sk_origin")[0] + x, vector("sk_origin")[1] + y);
       }
     }

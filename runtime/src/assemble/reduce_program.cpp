@@ -46,7 +46,7 @@ class ReductionText {
         variant_(variant),
         held_(kernelOf(reduction, variant.walk), variant.access),
         kernel_(held_.kernel()),
-        program_(profile.stage),
+        program_(profile),
         domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered},
                 "sk_result") {
     for (const Parameter& parameter : kernel_.parameters) {
@@ -59,7 +59,7 @@ class ReductionText {
     if (kernel_.usesLoops && !isByRows() && variant_.walk != Walk::GroupedPartials) domain_.leaveOutside();
     if (variant_.walk != Walk::Nothing) defineParameters();
     if (variant_.grouped) program_.foreign(reduction_.addition);
-    std::vector<Parameter> written = writtenParameters();
+    std::vector<Parameter> written = cutToPlanes(accumulators_, variant_.firstPlane, variant_.planeCount);
     for (const Parameter& parameter : written) declareOutputs(program_, parameter);
     if (variant_.walk == Walk::Nothing) {
       startFromIdentities();
@@ -69,7 +69,7 @@ class ReductionText {
       findRun();
       startWalk();
       foldRun();
-      if (variant_.grouped) foldSquare();
+      if (variant_.grouped) combineInGroup();
     }
     for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
     if (profile_.stage == Stage::Compute)
@@ -145,26 +145,6 @@ class ReductionText {
       case Role::VariableOutput:
       case Role::Scatter: return;
     }
-  }
-
-  /// Those accumulators of which this program writes planes, and which.
-  std::vector<Parameter> writtenParameters() const {
-    std::vector<Parameter> written;
-    std::size_t before = 0;   // planes of the accumulators so far
-    const std::size_t first = variant_.firstPlane;
-    const std::size_t end = variant_.planeCount == 0 ? SIZE_MAX : first + variant_.planeCount;
-    for (const Parameter* accumulator : accumulators_) {
-      const std::size_t after = before + accumulator->element->fields.size();
-      const std::size_t from = std::max(first, before);
-      const std::size_t to = std::min(end, after);
-      if (from < to) {
-        written.push_back(*accumulator);
-        written.back().firstPlane = static_cast<std::uint8_t>(from - before);
-        written.back().planeCount = static_cast<std::uint8_t>(to - from);
-      }
-      before = after;
-    }
-    return written;
   }
 
   // ---- the walk ---------------------------------------------------------------------------------
@@ -279,6 +259,13 @@ class ReductionText {
       return;
     }
     vectors({"sk_source", "sk_run_shape"});
+    if (variant_.ragged) {
+      statement("int sk_rows = sk_source.y - (sk_corner.x < sk_source.z ? 0 : 1);");
+      statement("int sk_count = clamp(sk_rows - sk_corner.y, 0, sk_run_shape.y);");
+      statement("ivec2 sk_p = sk_origin.xy + sk_corner;");
+      next_ = {"sk_p + ivec2(0, sk_k)"};
+      return;
+    }
     statement("ivec2 sk_shape = max(min(sk_run_shape.xy, sk_source.xy - sk_corner), 0);");
     statement("sk_corner += sk_origin.xy;");
     statement("ivec2 sk_p = sk_corner;");
@@ -336,8 +323,8 @@ class ReductionText {
     }
   }
 
-  /// Invocations outside have the identities.
-  void foldSquare() {
+  /// Invocations without elements have the identities.
+  void combineInGroup() {
     declareShared();
     statement("int sk_i = int(gl_LocalInvocationIndex);");
     statement(fmt::format("int sk_runs = {};", groupSize));
