@@ -32,12 +32,13 @@ namespace {
 /// A trial is off by as much at times, in software by more, and what is drawn runs on more devices.
 constexpr double worthDispatching = 0.9, worthDispatchingInSoftware = 0.7;
 
-assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capabilities, bool pairs) {
+assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capabilities,
+                            const DeviceChoices& choices) {
   assemble::Profile profile = *assemble::findProfile(name);
-  if (!capabilities.hasDoubles || pairs) {
+  if (!capabilities.hasDoubles || choices.pairs) {
     profile.doubles = assemble::Doubles::Pairs;
   }
-  profile.sharesTexels = !capabilities.isSoftware;
+  profile.sharesTexels = choices.sharesTexels.value_or(!capabilities.isSoftware);
   return profile;
 }
 
@@ -56,9 +57,8 @@ Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& cho
 GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     : context(std::move(opened.context)),
       capabilities(std::move(opened.capabilities)),
-      profile(
-          profileOf(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", capabilities, choices.pairs)),
-      computeProfile(profileOf("glsl430", capabilities, choices.pairs)),
+      profile(profileOf(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", capabilities, choices)),
+      computeProfile(profileOf("glsl430", capabilities, choices)),
       target(choices.target),
       barrier(barrierOf(capabilities, choices)),
       framebuffers(bound),

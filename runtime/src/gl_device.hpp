@@ -40,8 +40,9 @@ struct DeviceChoices {
   std::int32_t textureLimit = 0;    ///< 0: the device's own
   bool guaranteedLimits = false;
   bool pairs = false;               ///< doubles are pairs of floats even where GLSL has double
-  std::optional<Barrier> barrier;   ///< none: the one that proves itself
+  std::optional<Barrier> barrier = {};  ///< none: the one that proves itself
   Target target = Target::Default;  ///< Fragment, Compute, or what is faster
+  std::optional<bool> sharesTexels = {};  ///< assemble::Profile::sharesTexels; none: on hardware
 };
 
 /// What of a call's options is in all of its programs.
