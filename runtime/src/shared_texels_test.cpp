@@ -4,6 +4,7 @@
 // wherever the domain ends in a group. On a software renderer, which is made to share what only GPUs do.
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,25 +39,35 @@ std::string bodyOf(int reach) {
   return body + "}\n";
 }
 
-std::vector<float> weighed(GlDevice& device, const Shape& shape, Boundary boundary, int reach) {
-  const std::string body = bodyOf(reach);
-  const std::array<Parameter, 2> parameters{
-      {{.name = "a",
-        .symbol = "a",
-        .role = Role::Gather,
-        .element = &floats,
-        .rank = 2,
-        .boundary = boundary,
-        .border = "-7.0",
-        .usesNear = true,
-        .reach = reach},
-       {.name = "r", .symbol = "r", .role = Role::Output, .element = &floats}}};
-  const Kernel kernel{.name = "weigh",
-                      .entry = "weigh",
-                      .declarations = {},
-                      .body = body,
-                      .parameters = parameters,
-                      .sources = {}};
+/// Lives as long as the devices that run it, which know it by its address.
+struct Weigh {
+  Weigh(Boundary boundary, int reach)
+      : body(bodyOf(reach)),
+        parameters{{{.name = "a",
+                     .symbol = "a",
+                     .role = Role::Gather,
+                     .element = &floats,
+                     .rank = 2,
+                     .boundary = boundary,
+                     .border = "-7.0",
+                     .usesNear = true,
+                     .reach = reach},
+                    {.name = "r", .symbol = "r", .role = Role::Output, .element = &floats}}},
+        kernel{.name = "weigh",
+               .entry = "weigh",
+               .declarations = {},
+               .body = body,
+               .parameters = parameters,
+               .sources = {}} {}
+  Weigh(const Weigh&) = delete;
+  Weigh& operator=(const Weigh&) = delete;
+
+  std::string body;
+  std::array<Parameter, 2> parameters;
+  Kernel kernel;
+};
+
+std::vector<float> weighed(GlDevice& device, const Kernel& kernel, const Shape& shape) {
   std::vector<float> values(static_cast<std::size_t>(shape.size()));
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i * 37 % 101);
   const auto a = device.createStream(floats, shape, Storage::Single);
@@ -77,11 +88,13 @@ TEST_CASE("stencils that share texels in work groups") {
     return std::make_unique<GlDevice>(gl::openContext({"software", gl::Api::Gl}), choices);
   };
   const auto sharing = open(true), fetching = open(false);
+  std::deque<Weigh> kernels;
   for (const Boundary boundary : {Boundary::Clamp, Boundary::Wrap, Boundary::Mirror, Boundary::Border}) {
     for (const int reach : {1, 2, 4}) {
+      const Kernel& kernel = kernels.emplace_back(boundary, reach).kernel;
       for (const Shape& shape : {Shape{5, 8}, Shape{16, 32}, Shape{17, 36}, Shape{33, 100}}) {
         CAPTURE(static_cast<int>(boundary), reach, shape[0], shape[1]);
-        CHECK(weighed(*sharing, shape, boundary, reach) == weighed(*fetching, shape, boundary, reach));
+        CHECK(weighed(*sharing, kernel, shape) == weighed(*fetching, kernel, shape));
       }
     }
   }
