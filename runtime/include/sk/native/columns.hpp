@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What reductions in native code are put together from: runs of elements that have been folded, and accumulators side by side.
+// What reductions in native code are put together from: runs of elements that have been folded, and accumulators side by side, which
+// are columns of the table that elements make when they are written down row by row.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sk/native/call.hpp"
 #include "sk/native/element.hpp"
+#include "sk/native/hot.hpp"
 
 namespace sk::native {
 
@@ -50,14 +53,16 @@ class Runs {
   int count_ = 0;
 };
 
-/// Accumulators side by side, an array for each of their scalars, so that neighbours are folded in one operation.
+/// How many accumulators have so many bytes, in a power of 2.
 template <class State>
+constexpr int columnsIn(std::size_t bytes, std::size_t least, std::size_t most) {
+  return static_cast<int>(std::bit_floor(std::clamp(bytes / footprintOf<State>().bytes, least, most)));
+}
+
+/// Accumulators side by side, an array for each of their scalars, so that neighbours are folded in one operation.
+template <class State, int most>
 class Columns {
  public:
-  /// As many as stay in the nearest cache beside the elements.
-  static constexpr int most =
-      static_cast<int>(std::bit_floor(std::clamp<std::size_t>(2048 / footprintOf<State>().bytes, 32, 512)));
-
   State load(int k) const {
     State state{};
     std::size_t at = 0;
@@ -67,6 +72,11 @@ class Columns {
   void store(int k, State state) {
     std::size_t at = 0;
     visit(state, [&]<class S>(S& scalar) { array<S>(at)[k] = static_cast<Stored<S>>(scalar); });
+  }
+  /// As by =, but a compiler that keeps them in registers goes on to do so.
+  void copy(const Columns& other) {
+    SK_NATIVE_INDEPENDENT
+    for (int k = 0; k < most; ++k) store(k, other.load(k));
   }
 
  private:
@@ -87,6 +97,48 @@ class Columns {
   }
 
   alignas(64) std::byte bytes_[most * footprintOf<State>().bytes];
+};
+
+/// What Runs are, of columns whose leaves come in any order; `leaves` at most.
+template <class Combine, class State, int most, int leaves>
+class ColumnRuns {
+ public:
+  explicit ColumnRuns(const Call& call) : combine_(call) {}
+
+  bool isEmpty() const { return count_ == 0; }
+  /// Adds a leaf, and leaves something else in its place.
+  void add(Columns<State, most>& leaf) {
+    int level = 0;
+    for (; (count_ >> level & 1) != 0; ++level) combine(leaf, levels_[level]);
+    levels_[level].copy(leaf);
+    ++count_;
+  }
+  /// Of all that were added; there is one at least.
+  Columns<State, most>& take() {
+    int level = std::countr_zero(count_);
+    for (int larger = level + 1; count_ >> larger != 0; ++larger) {
+      if ((count_ >> larger & 1) == 0) continue;
+      combine(levels_[larger], levels_[level]);
+      level = larger;
+    }
+    count_ = 0;
+    return levels_[level];
+  }
+
+ private:
+  void combine(Columns<State, most>& columns, const Columns<State, most>& others) {
+    Combine here = combine_;  // which nothing that is stored can change
+    SK_NATIVE_INDEPENDENT
+    for (int k = 0; k < most; ++k) {
+      State state = columns.load(k);
+      here.sk_combine(state, others.load(k));
+      columns.store(k, state);
+    }
+  }
+
+  Combine combine_;
+  Columns<State, most> levels_[std::bit_width(static_cast<unsigned>(leaves))];
+  unsigned count_ = 0;  ///< whose bits tell which of the levels hold a run: of 2^level leaves
 };
 
 /// A run of one element, the current one.

@@ -30,8 +30,10 @@ namespace sk::native {
 /// How the blocks of a reduction's domain are divided: into whole rows, or parts of one.
 class FoldPieces {
  public:
+  /// Elements of one.
+  static constexpr std::int64_t most = 1 << 14;
+
   explicit FoldPieces(const ReduceCall& call) : block_(call.block) {
-    constexpr std::int64_t most = 1 << 14;
     for (std::size_t d = 0; d < 4; ++d) blocks_[d] = call.fold.domain[d] / block_[d];
     rows_ = block_[1] * block_[2] * block_[3];
     width_ = std::min(block_[0], most);
@@ -86,7 +88,8 @@ class PieceFolder {
         fold_(call.fold),
         combine_(call.combine),
         runs_(combine_),
-        longest_(longestChunk(fold_)) {
+        longest_(longestChunk(fold_)),
+        columnRuns_(call.combine) {
     fold_.sk_extent = toIndex(call.fold.domain);
   }
 
@@ -105,7 +108,10 @@ class PieceFolder {
         count -= now;
       }
     });
-    endLeaf();
+    if (folded_ > 0) endLeaf();
+    if constexpr (Fold::sk_isCommutative) {
+      if (!columnRuns_.isEmpty()) runs_.add(gathered(columnRuns_.take(), side));
+    }
     return runs_.take();
   }
   void store(const Extents& block, const State& state) { fold_.sk_store(toIndex(block), state); }
@@ -113,45 +119,76 @@ class PieceFolder {
  private:
   // ---- in any order: each column folds every so many-th element -----------------------------------
 
+  /// As many columns as stay in registers.
+  static constexpr int side = columnsIn<State>(256, 16, 64);
+  using Side = Columns<State, side>;
+
   void foldColumns(std::int32_t x, int count) {
-    Fold here = fold_;  // which nothing that is stored can change
-    for (int first = 0; first < count;) {
-      const int now = std::min(count - first, Columns<State>::most);
-      const int begun = std::min(now, columnsUsed_);
-      SK_NATIVE_INDEPENDENT
-      for (int k = 0; k < begun; ++k) {
-        moveTo(here, x, first + k);
-        State state = columns_.load(k);
-        here.sk_fold(state);
-        columns_.store(k, state);
-      }
-      SK_NATIVE_INDEPENDENT
-      for (int k = begun; k < now; ++k) {
-        moveTo(here, x, first + k);
-        columns_.store(k, started(here));
-      }
-      columnsUsed_ = std::max(columnsUsed_, now);
-      first += now;
-      if (++folded_ == leaf) endLeaf();
+    int first = 0;
+    while (count - first >= side) {
+      const int rounds = std::min((count - first) / side, leaf);
+      foldRounds(x, first, rounds);
+      first += rounds * side;
     }
+    if (first < count) foldRest(x, first, count - first);
   }
 
-  /// The columns become one.
-  State gathered() {
+  /// So many elements for each column, which are a leaf.
+  void foldRounds(std::int32_t x, int first, int rounds) {
+    Fold here = fold_;  // which nothing that is stored can change
+    Side columns;
+    SK_NATIVE_INDEPENDENT
+    for (int k = 0; k < side; ++k) {
+      moveTo(here, x, first + k);
+      columns.store(k, started(here));
+    }
+    for (int round = 1; round < rounds; ++round) {
+      SK_NATIVE_INDEPENDENT
+      for (int k = 0; k < side; ++k) {
+        moveTo(here, x, first + round * side + k);
+        State state = columns.load(k);
+        here.sk_fold(state);
+        columns.store(k, state);
+      }
+    }
+    columnRuns_.add(columns);
+  }
+
+  /// What is left of a row: an element for some of the columns. Those of several rows are a leaf.
+  void foldRest(std::int32_t x, int first, int count) {
+    Fold here = fold_;
+    const int begun = std::min(count, restUsed_);
+    SK_NATIVE_INDEPENDENT
+    for (int k = 0; k < begun; ++k) {
+      moveTo(here, x, first + k);
+      State state = rest_.load(k);
+      here.sk_fold(state);
+      rest_.store(k, state);
+    }
+    SK_NATIVE_INDEPENDENT
+    for (int k = begun; k < count; ++k) {
+      moveTo(here, x, first + k);
+      rest_.store(k, started(here));
+    }
+    restUsed_ = std::max(restUsed_, count);
+    if (++folded_ == leaf) endLeaf();
+  }
+
+  /// Columns become one.
+  State gathered(Side& columns, int count) {
     Combine here = combine_;
-    while (columnsUsed_ > 1) {
-      const int half = (columnsUsed_ + 1) / 2;
-      const int pairs = columnsUsed_ - half;
+    while (count > 1) {
+      const int half = (count + 1) / 2;
+      const int pairs = count - half;
       SK_NATIVE_INDEPENDENT
       for (int k = 0; k < pairs; ++k) {
-        State state = columns_.load(k);
-        here.sk_combine(state, columns_.load(k + half));
-        columns_.store(k, state);
+        State state = columns.load(k);
+        here.sk_combine(state, columns.load(k + half));
+        columns.store(k, state);
       }
-      columnsUsed_ = half;
+      count = half;
     }
-    columnsUsed_ = 0;
-    return columns_.load(0);
+    return columns.load(0);
   }
 
   // ---- in order ----------------------------------------------------------------------------------
@@ -177,10 +214,10 @@ class PieceFolder {
 
   // Seldom enough called to be compiled once, and not in each clone.
   [[gnu::noinline]] void endLeaf() {
-    if (folded_ == 0) return;
     folded_ = 0;
     if constexpr (Fold::sk_isCommutative) {
-      runs_.add(gathered());
+      runs_.add(gathered(rest_, restUsed_));
+      restUsed_ = 0;
     } else {
       runs_.add(state_);
     }
@@ -192,10 +229,11 @@ class PieceFolder {
   Runs<Combine, State> runs_;
   int longest_;
   Scratch scratch_;
-  int folded_ = 0;  ///< elements of the leaf so far, in each column
-  State state_{};  ///< of them, in order
-  Columns<State> columns_;  ///< of them, in any order
-  int columnsUsed_ = 0;
+  int folded_ = 0;  ///< elements of the leaf so far, in order, or of what is left of rows, in each column
+  State state_{};  ///< of those in order
+  Side rest_;  ///< of what is left of rows
+  int restUsed_ = 0;
+  ColumnRuns<Combine, State, side, FoldPieces::most / side> columnRuns_;
 };
 
 /// Folds groups of narrow blocks, and stores their results. It waits for memory, and is compiled once, not in each clone.

@@ -51,7 +51,8 @@ template <class Fold, class Combine>
 class NarrowFolder {
  public:
   using State = typename Fold::sk_State;
-  static constexpr int most = Columns<State>::most;
+  /// As many as stay in the nearest cache beside the elements.
+  static constexpr int most = columnsIn<State>(2048, 32, 512);
 
   explicit NarrowFolder(const ReduceCall& call)
       : block_(call.block), fold_(call.fold), combine_{call.combine}, runs_(combine_) {
@@ -68,7 +69,7 @@ class NarrowFolder {
       for (std::size_t d = 1; d < 4 && ++in[d] == block_[d]; ++d) in[d] = 0;
     }
     if (rounds_ > 0) endLeaf();
-    const Columns<State>& results = runs_.take();
+    const Columns<State, most>& results = runs_.take();
     Extents at = first;
     for (int k = 0; k < count; ++k, ++at[0]) fold_.sk_store(toIndex(at), results.load(k));
   }
@@ -77,7 +78,7 @@ class NarrowFolder {
   /// Combines columns one by one.
   struct CombineColumns {
     explicit CombineColumns(const Call& call) : combine(call) {}
-    void sk_combine(Columns<State>& columns, const Columns<State>& later) {
+    void sk_combine(Columns<State, most>& columns, const Columns<State, most>& later) {
       Combine here = combine;  // which nothing that is stored can change
       const int n = count;
       SK_NATIVE_INDEPENDENT
@@ -130,9 +131,9 @@ class NarrowFolder {
   Extents block_;
   Fold fold_;
   CombineColumns combine_;
-  Runs<CombineColumns, Columns<State>> runs_;
+  Runs<CombineColumns, Columns<State, most>> runs_;
   Scratch scratch_;
-  Columns<State> columns_;
+  Columns<State, most> columns_;
   int rounds_ = 0;  ///< elements of the leaf so far, in each column
 };
 
