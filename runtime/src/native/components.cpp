@@ -102,8 +102,7 @@ Components::Components(const program::Element& element, RealType real,
 
 void Components::allocate(std::int64_t count) {
   for (const ComponentType& type : types_) {
-    arrays_.push_back(
-        std::make_unique_for_overwrite<std::byte[]>(static_cast<std::size_t>(count) * type.storedBytes));
+    arrays_.push_back(allocated(static_cast<std::size_t>(count) * type.storedBytes));
     pointers_.push_back(arrays_.back().get());
   }
 }

@@ -6,10 +6,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "native/memory.hpp"
 #include "sk/program.hpp"
 
 namespace sk {
@@ -67,7 +67,7 @@ class Components {
 
   RealType real_ = RealType::Float;
   std::vector<ComponentType> types_;
-  std::vector<std::unique_ptr<std::byte[]>> arrays_;
+  std::vector<Memory> arrays_;
   std::vector<void*> pointers_;
 };
 

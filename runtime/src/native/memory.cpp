@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "native/memory.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace sk {
+
+namespace {
+
+constexpr std::size_t cacheLine = 64;
+constexpr std::size_t largePage = std::size_t{1} << 21;
+
+/// Where in a large page the next array of this thread begins: sixteen places, of which no two are alike in a small page either.
+std::size_t nextPlace() {
+  thread_local std::size_t number = 0;
+  return number++ % 16 * 5 * cacheLine;
+}
+
+void* aligned(std::size_t alignment, std::size_t bytes) {
+  void* memory = nullptr;
+  if (posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+void Freeing::operator()(std::byte* memory) const { std::free(memory - before); }
+
+Memory allocated(std::size_t bytes) {
+  if (bytes < largePage) {
+    return Memory(static_cast<std::byte*>(aligned(cacheLine, std::max(bytes, cacheLine))));
+  }
+  const std::size_t place = nextPlace();
+  const std::size_t whole = bytes + place;
+  if (whole < bytes) throw std::bad_alloc();
+  void* const memory = aligned(largePage, whole);
+#if defined(__linux__)
+  // The rest has small pages, and so has all of it where the system has no others.
+  madvise(memory, whole / largePage * largePage, MADV_HUGEPAGE);
+#endif
+  return {static_cast<std::byte*>(memory) + place, Freeing{place}};
+}
+
+}  // namespace sk

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: memory begins where a cache line does, large memory at another place in its page each time; all of it can be written;
+// what no machine has throws.
+#include "native/memory.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <set>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+namespace sk {
+namespace {
+
+constexpr std::size_t large = std::size_t{1} << 21;
+
+std::uintptr_t addressOf(const Memory& memory) { return reinterpret_cast<std::uintptr_t>(memory.get()); }
+
+TEST_CASE("memory of any size begins where a cache line does, and all of it is there") {
+  for (const std::size_t bytes :
+       {std::size_t{0}, std::size_t{1}, std::size_t{63}, std::size_t{65}, large - 1, large, 2 * large + 5}) {
+    const Memory memory = allocated(bytes);
+    INFO(bytes << " bytes");
+    REQUIRE(memory != nullptr);
+    CHECK(addressOf(memory) % 64 == 0);
+    for (std::size_t i = 0; i < bytes; ++i) memory[i] = static_cast<std::byte>(i);
+  }
+}
+
+TEST_CASE("large arrays begin at different places in their pages") {
+  std::vector<Memory> arrays;
+  std::set<std::uintptr_t> places;
+  for (int i = 0; i < 16; ++i) {
+    arrays.push_back(allocated(large));
+    places.insert(addressOf(arrays.back()) % 4096);
+  }
+  CHECK(places.size() == arrays.size());
+}
+
+TEST_CASE("more memory than there can be throws") {
+  constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+  for (const std::size_t bytes : {all, all - 1, all - large, all / 2}) {
+    CHECK_THROWS_AS(allocated(bytes), std::bad_alloc);
+  }
+}
+
+}  // namespace
+}  // namespace sk
