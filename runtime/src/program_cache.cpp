@@ -63,8 +63,7 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::s
         chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats);
     auto started = startedKernels_.extract(key);
     kept = makeKernelProgram(kernel, variant,
-                             started.empty() ? begin(assemble::kernelProgram(profile_, kernel, variant))
-                                             : std::move(started.mapped()));
+                             started.empty() ? begin(kernel, variant) : std::move(started.mapped()));
   }
   return *kept;
 }
@@ -78,7 +77,7 @@ bool ProgramCache::startKernelProgram(const program::Kernel& kernel, std::span<c
   if (!startedKernels_.contains(key)) {
     const assemble::Variant variant =
         chooseVariant(kernel, operands, domain, {}, device_.capabilities.filtersFloats);
-    startedKernels_.emplace(key, begin(assemble::kernelProgram(profile_, kernel, variant)));
+    startedKernels_.emplace(key, begin(kernel, variant));
   }
   return true;
 }
@@ -215,9 +214,17 @@ void ProgramCache::bindSamplers(const gl::Program& program, const program::Param
   }
 }
 
-ProgramBuild ProgramCache::begin(std::string source) {
-  const bool isCompute = profile_.stage == assemble::Stage::Compute;
-  return {device_, {isCompute ? std::string() : assemble::vertexProgram(profile_), std::move(source)}};
+ProgramBuild ProgramCache::begin(const program::Kernel& kernel, const assemble::Variant& variant) {
+  return {device_,
+          {isCompute() ? std::string() : assemble::vertexProgram(profile_, kernel, variant),
+           assemble::kernelProgram(profile_, kernel, variant)}};
+}
+
+ProgramBuild ProgramCache::begin(const program::Reduction& reduction,
+                                 const assemble::ReduceVariant& variant) {
+  return {device_,
+          {isCompute() ? std::string() : assemble::vertexProgram(profile_),
+           assemble::reduceProgram(profile_, reduction, variant)}};
 }
 
 void ProgramCache::finish(KernelProgram& made, const program::Kernel& kernel, ProgramBuild&& begun) {
@@ -246,7 +253,7 @@ bool ProgramCache::startReduceProgram(const program::Reduction& reduction,
     return false;
   }
   if (!startedReductions_.contains(key)) {
-    startedReductions_.emplace(key, begin(assemble::reduceProgram(profile_, reduction, variant)));
+    startedReductions_.emplace(key, begin(reduction, variant));
   }
   return true;
 }
@@ -261,9 +268,7 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     const bool isPartial = assemble::isOfPartials(variant.walk);
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
     auto started = startedReductions_.extract(key);
-    finish(made->kernel, kernel,
-           started.empty() ? begin(assemble::reduceProgram(profile_, reduction, variant))
-                           : std::move(started.mapped()));
+    finish(made->kernel, kernel, started.empty() ? begin(reduction, variant) : std::move(started.mapped()));
     made->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials;
     if (variant.walk != assemble::Walk::Nothing) {
       findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);

@@ -118,7 +118,9 @@ class ProgramCache {
   void addDoubles(KernelProgram& made, std::size_t number, const std::string& name,
                   std::span<const program::Field> parts) const;
   void findListUniforms(KernelProgram& made, const program::Parameter& sink);
-  ProgramBuild begin(std::string source);
+  bool isCompute() const { return profile_.stage == assemble::Stage::Compute; }
+  ProgramBuild begin(const program::Kernel& kernel, const assemble::Variant& variant);
+  ProgramBuild begin(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
   /// Throws sk::Error where the driver refuses the program, with its words.
   void finish(KernelProgram& made, const program::Kernel& kernel, ProgramBuild&& begun);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);

@@ -4,6 +4,8 @@
 #include "uniforms.sk.hpp"
 
 #include <array>
+#include <bit>
+#include <cstdint>
 
 #include "support/devices.hpp"
 #include "support/values.hpp"
@@ -83,5 +85,43 @@ TEST_CASE("arrays in uniform structs") {
     filter.count = 1;
     uniforms::filtered(filter, i, r);
     CHECK(r.read() == std::vector<float>{2, 22});
+  });
+}
+
+TEST_CASE("uniforms arrive bit by bit, and again when they change") {
+  onEveryProfile([](sk::Device& device) {
+    auto k = streamOf<int>(device, {2}, {0, 1});
+    auto r = device.stream<sk::int4>({2});
+    auto s = device.stream<sk::int4>({2});
+    auto t = device.stream<sk::uint4>({2});
+    // a NaN with a payload, -0, a denormal and an infinity; then others, of which but one is new
+    for (const int last : {-8388608, 0x7f7fffff}) {
+      const sk::int4 bits = {0x7fc12345, -2147483647 - 1, 1, last};
+      const auto f = [](int of) { return std::bit_cast<float>(of); };
+      const sk::int4 i = {-2147483647 - 1, 2147483646, 16777217, -1};
+      const sk::uint4 u = {4294967295u, 2147483648u, 16777217u, 1u};
+      uniforms::bits(sk::float4{f(bits.x), f(bits.y), f(bits.z), f(bits.w)}, i, u, k, r, s, t);
+      CHECK(r.read() == std::vector<sk::int4>{bits, bits});
+      CHECK(s.read() == std::vector<sk::int4>{i, {-2147483647, 2147483647, 16777218, 0}});
+      CHECK(t.read() == std::vector<sk::uint4>{u, u});
+    }
+  });
+}
+
+TEST_CASE("uniforms of one call may be many") {
+  onEveryProfile([](sk::Device& device) {
+    auto x = streamOf<float>(device, {3}, {0, 1, 2});
+    auto r = device.stream<float>({3});
+    sk::float4x4 a{}, b{};
+    sk::float3x3 c{}, d{};
+    a[3].w = 1;
+    b[3].w = 10;
+    c[2].z = 100;
+    d[2].z = 1000;
+    uniforms::many(a, b, c, d, 1e4f, sk::float2{0, 1e5f}, 1000000, 2000000u, true, x, r);
+    CHECK(r.read() == std::vector<float>{3111111, 3111112, 3111113});
+    a[3].w = 2;
+    uniforms::many(a, b, c, d, 1e4f, sk::float2{0, 1e5f}, 1000001, 2000000u, false, x, r);
+    CHECK(r.read() == std::vector<float>{3111113, 3111113, 3111113});
   });
 }

@@ -47,6 +47,7 @@ struct Profile {
   bool tables = true;  ///< functions that a table may stand for are looked up there
   bool sharesTexels =
       true;  ///< compute programs fetch a texel once for all neighbours in a work group, which pays on GPUs
+  bool relaysValues = false;  ///< what calls change often are uniforms of the vertex program (relayed_values.hpp)
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();
@@ -148,6 +149,7 @@ struct Variant {
 ///   sk_odd sk_even sk_tree_shift   its textures (samplers) and log2 of their width
 ///   sk_levels, sk_rows[l]          the number of levels, and the first row of level l in its texture
 /// Of a function with a table, those of tables.hpp.
+/// Where the profile relays values, some of these are uniforms of the vertex program.
 ///
 /// Indices and extents are below 2^30. Gathers are not empty: the runtime refuses such a call.
 /// Compute programs are of Work::Elements alone.
@@ -161,5 +163,7 @@ std::string bundleName(std::size_t bundle);
 
 /// The vertex program that covers the viewport with one triangle, from gl_VertexID alone.
 std::string vertexProgram(const Profile& profile);
+/// The same for the program of a kernel, to which it hands values on (relayed_values.hpp).
+std::string vertexProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
 
 }  // namespace sk::assemble

@@ -246,6 +246,21 @@ TEST_CASE("glslang accepts kernels that use nothing of the assembler's, and the 
   checkAccepted(programs);
 }
 
+TEST_CASE("glslang accepts values that the vertex program hands on") {
+  Programs programs("relayed");
+  for (Profile profile : profiles()) {
+    if (profile.stage == Stage::Compute) continue;
+    profile.relaysValues = true;
+    for (const auto [domain, view] : domains) {
+      const Variant variant{
+          .domain = domain, .domainView = view, .access = {{}, inputs[2], {Addressing::Plane}, {}}};
+      programs.add(kernelProgram(profile, samples::saxpy, variant));
+      programs.add(vertexProgram(profile, samples::saxpy, variant), "vert");
+    }
+  }
+  checkAccepted(programs);
+}
+
 TEST_CASE("glslang accepts every pass of a reduction") {
   Programs programs("reductions");
   for (const Profile& profile : profiles()) {

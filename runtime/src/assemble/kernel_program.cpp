@@ -14,6 +14,7 @@
 #include "assemble/gather.hpp"
 #include "assemble/planes.hpp"
 #include "assemble/program_text.hpp"
+#include "assemble/relayed_values.hpp"
 #include "assemble/sinks.hpp"
 #include "assemble/storage.hpp"
 
@@ -103,6 +104,7 @@ class KernelText {
 
   std::string write() {
     assert(profile_.stage == Stage::Fragment || variant_.task.work == Work::Elements);
+    program_.relay(relayedValues(profile_, kernel_, variant_));
     if (isList())
       findEntry(program_, domain_, kernel_.parameters[variant_.task.sink], variant_.task.treeLayered);
     if (kernel_.usesLoops && !variant_.domainEven) domain_.leaveOutside();

@@ -89,7 +89,13 @@ constexpr std::string_view esPrecision =
 
 }  // namespace
 
+void ProgramText::relay(std::vector<RelayedValue> values) { relayed_ = std::move(values); }
+
 std::string ProgramText::uniform(std::string_view type, std::string_view name) {
+  if (std::ranges::find(relayed_, name, &RelayedValue::name) != relayed_.end()) {
+    flatInput(type, relayedName(name));
+    return relayedName(name);
+  }
   addOnce(uniforms_, fmt::format("uniform {} {};", type, name));
   return std::string(name);
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "assemble/assemble.hpp"
+#include "assemble/relayed_values.hpp"
 
 namespace sk::assemble {
 
@@ -47,7 +48,9 @@ class ProgramText {
   std::string_view texel() const { return isDrawn() ? "ivec2(gl_FragCoord.xy)" : "sk_pixel"; }
   std::string_view column() const { return isDrawn() ? "int(gl_FragCoord.x)" : "sk_pixel.x"; }
   std::string_view row() const { return isDrawn() ? "int(gl_FragCoord.y)" : "sk_pixel.y"; }
-  /// Declares a uniform unless it is declared, and gives its name.
+  /// From here on, these come from the vertex program.
+  void relay(std::vector<RelayedValue> values);
+  /// Declares a uniform, or what the vertex program hands on of it, unless it is declared, and gives the name.
   std::string uniform(std::string_view type, std::string_view name);
   /// Declares an input that is the same for the whole point or triangle.
   void flatInput(std::string_view type, std::string_view name);
@@ -93,6 +96,7 @@ class ProgramText {
   std::string place_;  ///< storeAt()'s
   bool isArray_ = false;
   std::pair<std::int32_t, std::int32_t> group_{};  ///< for each texel; none: there is an invocation for each
+  std::vector<RelayedValue> relayed_;
   std::vector<std::string> uniforms_;
   std::vector<Output> outputs_;
   std::vector<std::string> variables_;
