@@ -97,7 +97,7 @@ void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect>
     forEachLayer(rect, target.layerRows, [&](const Rect& part, std::int32_t layer, std::int32_t) {
       selectLayer(device, target, layer, row);
       device.bound.viewport(part.x, part.y, part.width, part.height);
-      gl::drawTriangle();
+      gl::drawViewport();
     });
   }
 }

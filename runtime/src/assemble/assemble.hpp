@@ -161,7 +161,7 @@ std::string samplerName(const program::Parameter& parameter, std::size_t plane);
 /// Name of the sampler (sampler2DArray) of a plan's bundle.
 std::string bundleName(std::size_t bundle);
 
-/// The vertex program that covers the viewport with one triangle, from gl_VertexID alone.
+/// The vertex program of a strip of four corners, those of the viewport, from gl_VertexID alone.
 std::string vertexProgram(const Profile& profile);
 /// The same for the program of a kernel, to which it hands values on (relayed_values.hpp).
 std::string vertexProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);

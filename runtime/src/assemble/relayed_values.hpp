@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Values that reach the fragment program of a kernel through its vertex program, the same for the whole triangle:
+// Values that reach the fragment program of a kernel through its vertex program, the same for every fragment:
 //
 //   uniform float sk_arg_k;           // vertex         flat in float sk_flat_arg_k;   // fragment
 //   flat out float sk_flat_arg_k;

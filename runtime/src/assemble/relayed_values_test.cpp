@@ -54,7 +54,7 @@ uniform float sk_arg_a;
 flat out float sk_flat_arg_a;
 void main() {
   sk_flat_arg_a = sk_arg_a;
-  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+  gl_Position = vec4(float(gl_VertexID & 1) * 2.0 - 1.0, float(gl_VertexID & 2) - 1.0, 0.0, 1.0);
 }
 )");
   const std::string program = kernelProgram(relaying("glsl330"), samples::saxpy, aligned);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The vertex program of every pass: one triangle that covers the viewport, without vertex data.
+// The vertex program of every pass: a strip of two triangles with the corners of the viewport, without vertex data. One
+// triangle that covers it would have corners far outside, where software renderers clip it, which takes a third of a small draw's time.
 #include <iterator>
 #include <span>
 
@@ -12,7 +13,7 @@
 namespace sk::assemble {
 namespace {
 
-std::string triangle(const Profile& profile, std::span<const RelayedValue> relayed) {
+std::string corners(const Profile& profile, std::span<const RelayedValue> relayed) {
   std::string declarations, statements;
   for (const auto& [type, name] : relayed) {
     const std::string flat = relayedName(name);
@@ -22,7 +23,7 @@ std::string triangle(const Profile& profile, std::span<const RelayedValue> relay
   }
   return fmt::format(R"({}
 {}void main() {{
-{}  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+{}  gl_Position = vec4(float(gl_VertexID & 1) * 2.0 - 1.0, float(gl_VertexID & 2) - 1.0, 0.0, 1.0);
 }}
 )",
                      profile.version, declarations, statements);
@@ -30,10 +31,10 @@ std::string triangle(const Profile& profile, std::span<const RelayedValue> relay
 
 }  // namespace
 
-std::string vertexProgram(const Profile& profile) { return triangle(profile, {}); }
+std::string vertexProgram(const Profile& profile) { return corners(profile, {}); }
 
 std::string vertexProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant) {
-  return triangle(profile, relayedValues(profile, kernel, variant));
+  return corners(profile, relayedValues(profile, kernel, variant));
 }
 
 }  // namespace sk::assemble

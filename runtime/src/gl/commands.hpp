@@ -7,8 +7,8 @@
 
 namespace sk::gl {
 
-/// Draws the triangle that covers the viewport.
-inline void drawTriangle() { glDrawArrays(GL_TRIANGLES, 0, 3); }
+/// Draws the four corners of the viewport that a vertex program makes of gl_VertexID.
+inline void drawViewport() { glDrawArrays(GL_TRIANGLE_STRIP, 0, 4); }
 
 /// Runs so many work groups of the compute program, then lets everything that follows see what they wrote.
 inline void dispatch(GLsizei groupsInX, GLsizei groupsInY) {
