@@ -40,6 +40,7 @@ assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capab
   }
   profile.sharesTexels = choices.sharesTexels.value_or(!capabilities.isSoftware);
   profile.relaysValues = capabilities.isSoftware && profile.stage == assemble::Stage::Fragment;
+  profile.samples = capabilities.isSoftware;
   return profile;
 }
 

@@ -18,8 +18,8 @@
 #include "framebuffer_cache.hpp"
 #include "gl/bound_state.hpp"
 #include "gl/labels.hpp"
-#include "gl/linear_samplers.hpp"
 #include "gl/open_context.hpp"
+#include "gl/samplers.hpp"
 #include "gl/saved_state.hpp"
 #include "gl/vertex_array.hpp"
 #include "native/rest_threads.hpp"
@@ -126,7 +126,7 @@ class GlDevice final : public DeviceState {
   FramebufferCache framebuffers;
   SurfacePool pool;
   SinkPrograms sinkPrograms;
-  gl::LinearSamplers samplers;
+  gl::Samplers samplers;
   gl::VertexArray vertexArray;
   std::vector<PendingRead*> pendingReads;  ///< those that must be told of the device's end
   gl::Labels labels;

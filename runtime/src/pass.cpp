@@ -66,7 +66,7 @@ int bindOwnPlanes(GlDevice& device, const program::Parameter& parameter, std::sp
 int bindPlanes(GlDevice& device, std::span<Surface> planes, int unit) {
   for (const Surface& plane : planes) {
     device.bound.texture(unit, plane.texture.name(), plane.texture.isLayered());
-    device.bound.sampler(unit++, 0);   // the texture's own settings
+    device.bound.sampler(unit++, device.samplers.nearest());
   }
   return unit;
 }

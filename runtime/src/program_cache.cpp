@@ -92,7 +92,7 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
   findParameters(*made, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
   for (KernelProgram::Read& read : made->reads) {
     const bool isFiltered = variant.access[read.parameter].filtered;
-    read.sampler = isFiltered ? device_.samplers.name(kernel.parameters[read.parameter].boundary) : 0;
+    read.sampler = isFiltered ? device_.samplers.linear(kernel.parameters[read.parameter].boundary) : 0;
   }
   if (variant.task.work == assemble::Work::List) {
     findListUniforms(*made, kernel.parameters[variant.task.sink]);

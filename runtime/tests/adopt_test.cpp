@@ -300,6 +300,24 @@ TEST_CASE("the texture of a stream is one of the application's context") {
   CHECK(texture.internalFormat == GL_RG32F);
 }
 
+TEST_CASE("how the application filters the texture of a stream is nothing to kernels") {
+  static const TestKernel twice("twice", "void twice(float x, out float r) { r = 2.0 * x; }\n",
+                                {input<float>("x"), output<float>("r")});
+  Application application(Application::Kind::Core);
+  Device device = Device::adopt();
+  auto x = device.stream<float>({37, 53});
+  auto r = device.stream<float>({37, 53});
+  std::vector<float> host(x.shape().size());
+  for (std::size_t i = 0; i < host.size(); ++i) host[i] = i % 3 == 0 ? 1e12f : static_cast<float>(i);
+  x.write(host);
+  glBindTexture(GL_TEXTURE_2D, x.texture().name);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  twice(x, r);
+  for (float& value : host) value *= 2;
+  CHECK(r.read() == host);
+}
+
 TEST_CASE("an adopted context that is not current, or gone, or none") {
   CHECK(errorOf([] { Device::adopt(); }) ==
         "there is no context to adopt; make one current on this thread by EGL or GLX first");

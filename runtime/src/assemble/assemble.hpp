@@ -48,6 +48,9 @@ struct Profile {
   bool sharesTexels =
       true;  ///< compute programs fetch a texel once for all neighbours in a work group, which pays on GPUs
   bool relaysValues = false;  ///< what calls change often are uniforms of the vertex program (relayed_values.hpp)
+  bool samples =
+      false;  ///< texels are sampled at their centres, which llvmpipe does faster than it fetches them;
+      ///< the samplers that are bound are the nearest ones, but for filtered gathers
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();

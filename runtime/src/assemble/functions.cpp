@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The GLSL functions that assembled programs share. Integers only, no negative operand of / or %,
+// The GLSL functions that assembled programs share. Indices are integers only, no negative operand of / or %,
 // and no overflow for any index or offset, since indices are not negative and extents below 2^30.
 #include <array>
 #include <utility>
@@ -109,6 +109,20 @@ float sk_to_half(float sk_x) {
     sk_r = floatBitsToUint(roundEven(uintBitsToFloat(sk_m) * 16777216.0) * 5.9604645e-8);
   }
   return uintBitsToFloat((sk_b & 0x80000000u) | sk_r);
+}
+)";
+    case Function::Sampled:
+      return R"(
+// The texel at t of a texture of at most 2^20 texels in each direction, whose sampler takes the nearest.
+vec2 sk_centre(ivec2 sk_t, ivec2 sk_n) { return (vec2(sk_t) + 0.5) / vec2(sk_n); }
+vec4 sk_sampled(sampler2D sk_s, ivec2 sk_t) {
+  return textureLod(sk_s, sk_centre(sk_t, textureSize(sk_s, 0)), 0.0);
+}
+ivec4 sk_sampled(isampler2D sk_s, ivec2 sk_t) {
+  return textureLod(sk_s, sk_centre(sk_t, textureSize(sk_s, 0)), 0.0);
+}
+uvec4 sk_sampled(usampler2D sk_s, ivec2 sk_t) {
+  return textureLod(sk_s, sk_centre(sk_t, textureSize(sk_s, 0)), 0.0);
 }
 )";
   }

@@ -350,8 +350,8 @@ class GatherText {
       lines.push_back(fmt::format("if (sk_d.x != 0) sk_p.x = {};", broughtOnce("sk_p.x", "sk_n.x")));
       lines.push_back(fmt::format("if (sk_d.y != 0) sk_p.y = {};", broughtOnce("sk_p.y", "sk_n.y")));
     }
-    lines.push_back(fmt::format("return texelFetch({}, {}, 0);", samplerName(parameter_, 0),
-                                place(program_, texelAt("sk_p"))));
+    lines.push_back(fmt::format("return {};", texelIn(program_, samplerName(parameter_, 0),
+                                                      place(program_, texelAt("sk_p")), isLayered(access_))));
     program_.function(fmt::format("{} {}({} sk_d)", packedType(parameter_), name, vector()), lines);
     for (int y = -reachInY(); y <= reachInY(); ++y) {
       for (int x = -reachInX(); x <= reachInX(); ++x) {
@@ -422,7 +422,8 @@ class GatherText {
   }
 
   void finish(const std::string& signature, std::vector<std::string>& lines) {
-    const Texel place = texel(lines);
+    Texel place = texel(lines);
+    place.filtered = access_.filtered;
     lines.push_back(fmt::format("return {};", fetch(program_, parameter_, place)));
     program_.function(signature, lines);
   }

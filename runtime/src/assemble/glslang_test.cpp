@@ -118,7 +118,9 @@ void addBoundaries(Programs& programs, const Type& type, int rank, const Place& 
                               .domainView = domain.view,
                               .domainRank = static_cast<std::uint8_t>(rank),
                               .access = {{}, input, with(gather, nearby), {}, {}}};
-        programs.add(profile, kernelProgram(profile, sample.kernel(), variant));
+        Profile sampling = profile;
+        sampling.samples = nearby;
+        programs.add(profile, kernelProgram(sampling, sample.kernel(), variant));
       }
     }
   }

@@ -68,6 +68,26 @@ void main() {
 )");
 }
 
+TEST_CASE("texels are sampled where that is faster, but for layers and filtered gathers") {
+  Profile sampling = glsl;
+  sampling.samples = true;
+  const std::string plane = kernelProgram(sampling, samples::saxpy, {.access = {{}, {}, {}, {}}});
+  CHECK(plane.find("sk_sampled(sk_tex_x, ivec2(gl_FragCoord.xy)).x") != std::string::npos);
+  CHECK(plane.find("texelFetch") == std::string::npos);
+  const std::string layers =
+      kernelProgram(sampling, samples::saxpy,
+                    {.domain = Domain::Linear, .domainLayered = true, .access = {{}, {}, {}, {}}});
+  CHECK(layers.find("texelFetch(sk_tex_x, sk_layered(") != std::string::npos);
+  CHECK(layers.find("sk_sampled") == std::string::npos);
+  const samples::EveryAccess gathers(samples::floatElement, "-1.0", 2, Boundary::Clamp, 1);
+  const auto at = [&](const StreamAccess& access) {
+    const Variant variant = planeVariant(access);
+    return definition(kernelProgram(sampling, gathers.kernel(), variant), "float sk_at_a");
+  };
+  CHECK(at({Addressing::Plane}).find("sk_sampled(") != std::string::npos);
+  CHECK(at({.addressing = Addressing::Plane, .filtered = true}).find("texelFetch(") != std::string::npos);
+}
+
 TEST_CASE("a linearised element-wise kernel has none either") {
   const std::string plane = kernelProgram(glsl, samples::saxpy, {.access = {{}, {}, {}, {}}});
   const std::string linear =

@@ -248,14 +248,23 @@ class FourElements {
   std::array<Element, spellings.size()> elements_;
 };
 
+/// All that a texel of a plane holds.
+std::string fetchWhole(ProgramText& program, const Parameter& parameter, std::size_t plane,
+                       const Texel& texel) {
+  const std::string name = samplerName(parameter, plane);
+  const std::string at = placeOfPlane(program, parameter, plane, texel);
+  const bool isArray = !texel.shift.empty() || layerOf(parameter, plane).bundle >= 0;
+  return texel.filtered ? fmt::format("texelFetch({}, {}, 0)", name, at)
+                        : texelIn(program, name, at, isArray);
+}
+
 std::string fetchPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
                        const Texel& texel) {
   static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
   const Field& field = heldBy(parameter).fields[plane];
   return fetchedValue(program, parameter, field,
-                      fmt::format("texelFetch({}, {}, 0){}", samplerName(parameter, plane),
-                                  placeOfPlane(program, parameter, plane, texel),
-                                  swizzles[static_cast<std::size_t>(texelWidth(field) - 1)]));
+                      fetchWhole(program, parameter, plane, texel) +
+                          std::string(swizzles[static_cast<std::size_t>(texelWidth(field) - 1)]));
 }
 
 /// `value`, of the field's type, as its output's type.
@@ -292,6 +301,12 @@ std::string place(ProgramText& program, const Texel& texel) {
   return fmt::format("sk_layered({}, {})", texel.at, texel.shift);
 }
 
+std::string texelIn(ProgramText& program, std::string_view sampler, const std::string& place, bool isArray) {
+  if (!program.samples() || isArray) return fmt::format("texelFetch({}, {}, 0)", sampler, place);
+  program.require(Function::Sampled);
+  return fmt::format("sk_sampled({}, {})", sampler, place);
+}
+
 std::string samplerType(std::string_view sampler, bool isArray) {
   return isArray ? fmt::format("highp {}Array", sampler) : std::string(sampler);
 }
@@ -316,9 +331,9 @@ std::string fetch(ProgramText& program, const Parameter& parameter, const Texel&
   const Element& element = heldBy(parameter);
   const std::string_view type = parameter.element->glsl;
   if (texel.packed) {
-    const std::string whole =
-        fmt::format("texelFetch({}, {}, 0)", samplerName(parameter, 0),
-                    placeOfPlane(program, parameter, 0, {"ivec2(sk_t.x >> 2, sk_t.y)", texel.shift}));
+    Texel four = texel;
+    four.at = "ivec2(sk_t.x >> 2, sk_t.y)";
+    const std::string whole = fetchWhole(program, parameter, 0, four);
     program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", type, parameter.symbol),
                      {fmt::format("return {};", fetchedComponent(program, parameter, whole, "sk_t.x & 3"))});
     return fmt::format("sk_fetch_{}({})", parameter.symbol, texel.at);
@@ -327,7 +342,9 @@ std::string fetch(ProgramText& program, const Parameter& parameter, const Texel&
   std::vector<std::string> statements = {fmt::format("{} sk_e;", type)};
   for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
     const Field& field = element.fields[plane];
-    const std::string value = fetchPlane(program, parameter, plane, {"sk_t", texel.shift});
+    Texel here = texel;
+    here.at = "sk_t";
+    const std::string value = fetchPlane(program, parameter, plane, here);
     if (isNarrowed(parameter, field)) {
       statements.push_back(fmt::format("{} = {};", partOf("sk_e", field), value));
     } else {
@@ -373,10 +390,10 @@ void copyPlanes(ProgramText& program, const Parameter& parameter, const Texel& t
   declareSamplers(program, parameter, !texel.shift.empty());
   declareOutputs(program, parameter);
   for (std::size_t plane = 0; plane < heldBy(parameter).fields.size(); ++plane) {
-    program.statement(
-        fmt::format("{} = texelFetch({}, {}, 0){};", outputName(parameter, plane),
-                    samplerName(parameter, plane), place(program, texel),
-                    swizzles[static_cast<std::size_t>(texelWidth(heldBy(parameter).fields[plane]))]));
+    program.statement(fmt::format(
+        "{} = {}{};", outputName(parameter, plane),
+        texelIn(program, samplerName(parameter, plane), place(program, texel), !texel.shift.empty()),
+        swizzles[static_cast<std::size_t>(texelWidth(heldBy(parameter).fields[plane]))]));
   }
 }
 

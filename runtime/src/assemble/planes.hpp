@@ -23,10 +23,14 @@ struct Texel {
   std::string at;           ///< an ivec2 expression; where packed, with elements instead of texels in x
   std::string shift = {};   ///< of layered textures, an int expression: log2 of the rows of a layer
   bool packed = false;
+  bool filtered = false;    ///< the sampler that is bound interpolates: only texelFetch() gives texels
 };
 
 /// The texel as texelFetch() takes it: an ivec2 expression, or an ivec3 of a layered texture.
 std::string place(ProgramText& program, const Texel& texel);
+
+/// An expression for the texel at place() in a sampler of 2-D textures, or of array textures.
+std::string texelIn(ProgramText& program, std::string_view sampler, const std::string& place, bool isArray);
 
 /// The type of a sampler of 2-D textures ("isampler2D"), or of array textures.
 std::string samplerType(std::string_view sampler, bool isArray);

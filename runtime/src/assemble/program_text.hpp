@@ -34,16 +34,20 @@ enum class Function : std::uint8_t {
   Mirror,
   MirrorOnce,
   ToHalf,  ///< the nearest half of a float, as a float
+  Sampled,  ///< texel of a 2-D texture, sampled at its centre
 };
 std::string_view text(Function function);
 
 class ProgramText {
  public:
   ProgramText() = default;  ///< of what is drawn
-  explicit ProgramText(const Profile& profile) : stage_(profile.stage), sharesTexels_(profile.sharesTexels) {}
+  explicit ProgramText(const Profile& profile)
+      : stage_(profile.stage), sharesTexels_(profile.sharesTexels), samples_(profile.samples) {}
 
   Stage stage() const { return stage_; }
   bool sharesTexels() const { return sharesTexels_ && stage_ == Stage::Compute; }
+  /// Profile::samples
+  bool samples() const { return samples_; }
   /// The texel that an invocation computes, an ivec2, and its coordinates: expressions.
   std::string_view texel() const { return isDrawn() ? "ivec2(gl_FragCoord.xy)" : "sk_pixel"; }
   std::string_view column() const { return isDrawn() ? "int(gl_FragCoord.x)" : "sk_pixel.x"; }
@@ -93,6 +97,7 @@ class ProgramText {
 
   Stage stage_ = Stage::Fragment;
   bool sharesTexels_ = false;
+  bool samples_ = false;
   std::string place_;  ///< storeAt()'s
   bool isArray_ = false;
   std::pair<std::int32_t, std::int32_t> group_{};  ///< for each texel; none: there is an invocation for each
