@@ -8,7 +8,7 @@ cmake_policy(VERSION 3.25)
 # What the .sk.cpp files are compiled with by GCC and Clang. Native code rounds each operation by itself, as the language says: no
 # fused multiply-add. Nobody looks at errno or at the flags of exceptions, which would keep loops from being vectorised;
 # results are IEEE 754's all the same.
-set(SK_NATIVE_OPTIONS -ffp-contract=off -fno-math-errno -fno-trapping-math $<$<NOT:$<CONFIG:Debug>>:-O3>
+set(SK_NATIVE_OPTIONS -Wno-psabi -ffp-contract=off -fno-math-errno -fno-trapping-math $<$<NOT:$<CONFIG:Debug>>:-O3>
     CACHE INTERNAL "")
 
 # sk_add_kernels(<target> <file.sk>...

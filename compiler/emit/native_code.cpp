@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "emit/cpp_names.hpp"
+#include "emit/lanes_choice.hpp"
+#include "emit/native_lanes.hpp"
 #include "emit/native_stmt.hpp"
 #include "emit/stream_uses.hpp"
 #include "ir/reach.hpp"
@@ -62,9 +64,12 @@ bool hasIdentities(const Kernel& reduce) {
   });
 }
 
+/// Whether a kernel's struct may have its form for lanes, too.
+enum class Lanes : std::uint8_t { No, IfGain };
+
 class KernelWriter {
  public:
-  KernelWriter(const Module& module, const Kernel& kernel, std::string_view name)
+  KernelWriter(const Module& module, const Kernel& kernel, std::string_view name, Lanes lanes = Lanes::No)
       : module_(module),
         kernel_(kernel),
         types_(module),
@@ -72,7 +77,8 @@ class KernelWriter {
         functions_(functionNames(module, kernel, names_)),
         context_{module, types_, names_, kernel, functions_},
         uses_(streamUses(module, kernel)),
-        name_(fmt::format("sk_{}", name)) {}
+        name_(fmt::format("sk_{}", name)),
+        lanes_(lanes) {}
 
   std::string write() {
     text_ = fmt::format("template <class sk_real{}>\nstruct {} {{\n",
@@ -86,6 +92,7 @@ class KernelWriter {
       reduction();
     } else {
       element();
+      if (lanes_ == Lanes::IfGain) lanes();
     }
     return std::move(text_) + "};\n\n";
   }
@@ -207,6 +214,38 @@ class KernelWriter {
     line(1, "}");
   }
 
+  /// The form of native_lanes.hpp.
+  void lanes() {
+    const Divergence divergence(module_, kernel_);
+    if (!hasLanesForm(module_, kernel_, divergence) || !gainsByLanes(module_, kernel_, divergence)) return;
+    const NativeContext context{module_, types_, names_, kernel_, functions_, &divergence};
+    text_ += "\n";
+    for (const FunctionId id : functionsOf(module_, kernel_)) {
+      if (id == kernel_.entry || divergence.of(id).differs()) text_ += lanesFunctionText(context, id) + "\n";
+    }
+    line(1, "void sk_lanes() {");
+    const std::vector<std::uint32_t> outputs = paramsOf(ParamRole::Output);
+    for (const std::uint32_t i : outputs) {
+      line(2,
+           fmt::format("{} sk_value_{}{{}};", lanesType(context, kernel_.params[i].type), names_.symbol(i)));
+    }
+    std::vector<std::string> args;
+    forEachArgument([&](std::uint32_t i) {
+      const ParamRole role = kernel_.params[i].role;
+      const bool isPlaced = role == ParamRole::Input || role == ParamRole::Iterator;
+      const std::string value = isPlaced ? member(i) + ".lanesAt(sk_i)" : elementArgument(i);
+      const bool isSpread = role == ParamRole::Uniform || role == ParamRole::Spec;
+      args.push_back(isSpread && divergence.differs(kernel_.entry, i)
+                         ? fmt::format("native::spread({})", value)
+                         : value);
+    });
+    line(2, fmt::format("{}({});", lanesFunction(context, kernel_.entry), join(args, ", ")));
+    for (const std::uint32_t i : outputs) {
+      line(2, fmt::format("{}.storeLanes(sk_i, sk_value_{});", member(i), names_.symbol(i)));
+    }
+    line(1, "}");
+  }
+
   std::string elementArgument(std::uint32_t i) const {
     switch (kernel_.params[i].role) {
       case ParamRole::Uniform:
@@ -222,14 +261,18 @@ class KernelWriter {
     return {};
   }
 
-  /// argument(i) of every parameter that the entry takes.
+  /// visit(i) for every parameter that the entry takes.
+  template <class Visit>
+  void forEachArgument(Visit&& visit) const {
+    for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
+      const VarRole role = module_.functions[kernel_.entry].variables[i].role;
+      if (role != VarRole::Gather && role != VarRole::Sink) visit(i);
+    }
+  }
   template <class Argument>
   void entryCall(Argument&& argument) {
     std::vector<std::string> args;
-    for (std::uint32_t i = 0; i < kernel_.params.size(); ++i) {
-      const VarRole role = module_.functions[kernel_.entry].variables[i].role;
-      if (role != VarRole::Gather && role != VarRole::Sink) args.push_back(argument(i));
-    }
+    forEachArgument([&](std::uint32_t i) { args.push_back(argument(i)); });
     line(2, fmt::format("{}({});", functions_.at(kernel_.entry), join(args, ", ")));
   }
 
@@ -317,6 +360,7 @@ class KernelWriter {
   NativeContext context_;
   StreamUses uses_;
   std::string name_;
+  Lanes lanes_;
   std::string text_;
 };
 
@@ -431,7 +475,7 @@ std::string nativeListing(const Module& module, const Program& program, Reals re
   std::set<KernelId> combinations;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Kernel& kernel = module.kernels[program.units()[i].id];
-    text += KernelWriter(module, kernel, names[i]).write();
+    text += KernelWriter(module, kernel, names[i], Lanes::IfGain).write();
     if (kernel.reduction && !isUnit(*kernel.reduction->combine)) {
       text += KernelWriter(module, module.kernels[*kernel.reduction->combine], names[i] + "Combine").write();
     }
@@ -455,7 +499,9 @@ std::string nativeKernelDescriptor(const std::string& name, NativeForm form) {
   std::vector<std::string> code;
   for (const std::string_view real : realTypes(form.reals)) {
     const std::string kernel = fmt::format("generated::sk_{}<{}>", name, real);
-    const std::string loop = loops.define(fmt::format("native::runPieces<{}>", kernel), real, text);
+    const std::string by =
+        real == "float" && form.speed != Speed::Any ? fmt::format(", native::bestBy<{}>", kernel) : "";
+    const std::string loop = loops.define(fmt::format("native::runPieces<{}{}>", kernel, by), real, text);
     code.push_back(fmt::format("&native::runKernel<{}, &{}>", kernel, loop));
   }
   if (form.reals == Reals::Single) code.emplace_back("nullptr");

@@ -17,7 +17,8 @@
 //   };
 //
 // Where a gather's neighbours are known to be near, it has a second template parameter, for the elements whose neighbours
-// are all in their own row.
+// are all in their own row. Where its elements are worth computing side by side, it has another form of its functions and of
+// sk_element, sk_lanes (native_lanes.hpp).
 #pragma once
 
 #include <cstddef>

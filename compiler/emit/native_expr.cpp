@@ -103,26 +103,6 @@ bool isBitwise(BinaryOp op) {
   return op == BinaryOp::BitAnd || op == BinaryOp::BitOr || op == BinaryOp::BitXor;
 }
 
-std::string numbers(const std::vector<std::uint8_t>& components) {
-  std::vector<std::string> list;
-  for (const std::uint8_t component : components) list.push_back(std::to_string(component));
-  return join(list, ", ");
-}
-
-/// A swizzle of swizzles as one of what is no swizzle.
-struct Components {
-  const Expr* base;
-  std::vector<std::uint8_t> components;
-};
-Components flattened(const Swizzle& n) {
-  const auto* inner = std::get_if<Swizzle>(&n.base->node);
-  if (inner == nullptr) return {n.base.get(), n.components};
-  Components whole = flattened(*inner);
-  std::vector<std::uint8_t> picked;
-  for (const std::uint8_t component : n.components) picked.push_back(whole.components[component]);
-  return {whole.base, std::move(picked)};
-}
-
 class NativeExpr {
  public:
   NativeExpr(const NativeContext& context, std::optional<FunctionId> function)
@@ -145,7 +125,11 @@ class NativeExpr {
 
  private:
   static Parts print(Type type, const Literal& n) { return {literalText(type, n)}; }
-  Parts print(Type, const VarRef& n) const { return {context_.names.variable(*function_, n.var)}; }
+  Parts print(Type, const VarRef& n) const {
+    const std::string& name = context_.names.variable(*function_, n.var);
+    const bool isOfLanes = context_.divergence != nullptr && context_.divergence->differs(*function_, n.var);
+    return {isOfLanes ? firstLane(name) : name};
+  }
   Parts print(Type, const ConstantRef& n) const { return {nativeConstant(context_, n.constant) + "()"}; }
   Parts print(Type, const Unary& n) const {
     return {std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary), Precedence::Unary};
@@ -190,8 +174,7 @@ class NativeExpr {
     return {fmt::format("{}{}({})", prefix, context_.functions.at(n.callee), join(texts(n.args), ", "))};
   }
   Parts print(Type, const IntrinsicCall& n) const {
-    return {fmt::format("native::{}{}({})", functionName(n.intrinsic),
-                        makesReal(n.intrinsic) ? "<sk_real>" : "", join(texts(n.args), ", "))};
+    return {fmt::format("{}({})", nativeIntrinsic(n.intrinsic), join(texts(n.args), ", "))};
   }
   Parts print(Type, const GatherRead& n) const {
     return {fmt::format("{}.at({})", stream(n.stream), text(*n.index))};
@@ -245,6 +228,25 @@ class NativeExpr {
 };
 
 }  // namespace
+
+std::string numbers(const std::vector<std::uint8_t>& components) {
+  std::vector<std::string> list;
+  for (const std::uint8_t component : components) list.push_back(std::to_string(component));
+  return join(list, ", ");
+}
+
+Components flattened(const Swizzle& n) {
+  const auto* inner = std::get_if<Swizzle>(&n.base->node);
+  if (inner == nullptr) return {n.base.get(), n.components};
+  Components whole = flattened(*inner);
+  std::vector<std::uint8_t> picked;
+  for (const std::uint8_t component : n.components) picked.push_back(whole.components[component]);
+  return {whole.base, std::move(picked)};
+}
+
+std::string nativeIntrinsic(Intrinsic intrinsic) {
+  return fmt::format("native::{}{}", functionName(intrinsic), makesReal(intrinsic) ? "<sk_real>" : "");
+}
 
 std::string nativeType(const Module& module, const TypeNames& types, Type type) {
   switch (type.kind) {

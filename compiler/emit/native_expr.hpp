@@ -7,7 +7,9 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "emit/divergence.hpp"
 #include "emit/kernel_names.hpp"
 #include "emit/type_names.hpp"
 #include "ir/ir.hpp"
@@ -24,7 +26,11 @@ struct NativeContext {
   const std::map<ir::FunctionId, std::string>&
       functions;  ///< their names, each used once: overloads for float
   ///< and double are alike in the reference
+  const Divergence* divergence = nullptr;  ///< in code for lanes, what differs between them
 };
+
+/// What holds an index of the first of all lanes, beside the variable that holds those of all.
+inline std::string firstLane(const std::string& variable) { return "sk_first_" + variable; }
 
 /// "sk_real", "native::Vec<native::Int, 2>", "Hit<sk_real>".
 std::string nativeType(const ir::Module& module, const TypeNames& types, ir::Type type);
@@ -45,6 +51,17 @@ std::string nativeAssignment(const NativeContext& context, ir::FunctionId functi
 /// The same for a value that is text.
 std::string nativeAssignment(const NativeContext& context, ir::FunctionId function, const ir::Expr& place,
                              const std::string& value);
+
+/// "0, 1": the components of a swizzle of swizzles, and what they are of.
+struct Components {
+  const ir::Expr* base;
+  std::vector<std::uint8_t> components;
+};
+Components flattened(const ir::Swizzle& swizzle);
+std::string numbers(const std::vector<std::uint8_t>& components);
+
+/// The name of an intrinsic in sk/native.
+std::string nativeIntrinsic(ir::Intrinsic intrinsic);
 
 /// Whether a place is several components of a vector, which no reference can name.
 bool isSeveralComponents(const ir::Expr& place);

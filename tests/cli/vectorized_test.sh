@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 #
 # The native loops of simple kernels are vectorised, says GCC itself: those around elements (sk/native/run.hpp) and those around
-# what is folded in any order (fold.hpp), in the clone for vectors of 256 bits as in the one for all CPUs.
+# what is folded in any order (fold.hpp), in the clone for vectors of 256 bits as in the one for all CPUs. Kernels with loops or
+# computed gathers are computed by lanes (sk/native/lanes.hpp): that clone multiplies eight at a time.
 # Usage: vectorized_test.sh SKC CXX INCLUDE_FOLDER OPTION...
 set -euo pipefail
 skc=$(realpath "$1") cxx=$2 include=$(realpath "$3")
@@ -42,3 +43,29 @@ kernel void pairs(Pair p<>, out Pair q<>) { q.a = max(p.a, 0.0f); q.b = p.b + in
 vectorised fold.hpp '[[accumulate(tree)]] reduce void sum(float x<>, reduce float total<> = 0) { total += x; }'
 vectorised fold.hpp 'reduce void dots(float x<>, float y<>, reduce float total<>) { total += x * y; }'
 vectorised fold.hpp 'reduce void most(float x<>, reduce float m<>) { m = max(m, x); }'
+
+# byLanes KERNEL: it multiplies vectors of 256 bits, which no loop around its elements does.
+byLanes() {
+  printf '%s\n' "$1" >kernel.sk
+  "$skc" --precision=single -o . kernel.sk
+  "$cxx" -std=c++20 "${options[@]}" -I"$include" -I. -S kernel.sk.cpp -o kernel.s
+  grep -qE 'vmulps[[:space:]].*%ymm' kernel.s || { echo "broken: not computed by lanes: $1"; exit 1; }
+}
+
+byLanes 'kernel void escape(float2 c<>, int most, out int steps<>) {
+  float2 z = 0;
+  steps = 0;
+  while (steps < most && dot(z, z) <= 4) {
+    z = float2(z.x * z.x - z.y * z.y, 2 * z.x * z.y) + c;
+    ++steps;
+  }
+}'
+byLanes 'kernel void multiply(float a[][], float b[][], out float c<>) {
+  int2 p = indexof(c).xy;
+  c = 0;
+  for (int k = 0; k < extentof(a).x; ++k) c += a[p.y][k] * b[k][p.x];
+}'
+byLanes 'kernel void leap(int by, [[wrap]] float a[], out float r<>) {
+  int i = indexof(r).x;
+  r = (i & by) != 0 ? a[i ^ by] * a[i] : 0;
+}'

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
+#include "sk/native/lanes_intrinsics.hpp"
+#include "sk/native/lanes_memory.hpp"
 #include "sk/native/math.hpp"
 #include "sk/native/parallel.hpp"
 #include "sk/native/streams.hpp"
@@ -41,6 +44,9 @@ class Gather : public StreamParameter {
     std::copy(operand().components.begin(), operand().components.end(), arrays_);
     std::copy_n(operand().extent.begin(), N, extent_);
     std::copy_n(operand().stride.begin(), N, stride_);
+    std::int64_t last = 0;
+    for (std::size_t d = 0; d < N; ++d) last += (extent_[d] - 1) * stride_[d];
+    isSmall_ = isGiven() && last <= std::numeric_limits<std::int32_t>::max();
   }
 
   bool isDirect() const { return true; }
@@ -63,6 +69,31 @@ class Gather : public StreamParameter {
     for (std::size_t d = 0; d < N; ++d) index[d] = componentAt(position, d).word();
     return element(index);
   }
+  /// At an index for each lane: Int or Lanes<Int> for each dimension, or a vector of them.
+  template <class... Places>
+    requires(sizeof...(Places) == N && (isLanes<Places> || ...))
+  LanesOf<T> lanesAt(const Places&... places) const {
+    if (!isSmall_) {
+      if (!isGiven()) return spread(T{});
+      return laneByLane([&](auto... index) { return at(Position(index...)); }, places...);
+    }
+    Numbers numbers{first_, false, Int(0), Mask(false)};
+    std::size_t d = 0;
+    (add(numbers, d++, places), ...);
+    if (numbers.areAllOutside) return spread(border_);
+    const LanesOf<T> value = loadAnywhere<T>(arrays_, numbers.first, numbers.further);
+    if constexpr (boundary == Boundary::Border) {
+      return select(numbers.areOutside, spread(border_), value);
+    } else {
+      return value;
+    }
+  }
+  LanesOf<T> lanesAt(const Vec<Lanes<Int>, N>& place) const {
+    return [&]<std::size_t... D>(std::index_sequence<D...>) {
+      return lanesAt(place.components[D]...);
+    }(std::make_index_sequence<N>());
+  }
+
   /// At an offset from element i of the chunk.
   T near(int i, const Position& offset) const {
     if constexpr (reach >= 0) {
@@ -73,6 +104,15 @@ class Gather : public StreamParameter {
       index[0] += i;
       return element(index);
     }
+  }
+
+  /// At an offset from element i and those that follow it.
+  LanesOf<T> lanesNear(int i, const Position& offset) const {
+    const Row row = rowOf(offset);
+    if (row.isOutside) return spread(border_);
+    const std::int64_t x = here_[0] + componentAt(offset, 0).word() + i;
+    if (x >= 0 && x + laneCount <= extent_[0]) return loadNeighbours<T>(arrays_, first_ + row.first + x);
+    return laneByLane([&](Int lane) { return near(i + lane.word(), offset); }, laneNumbers());
   }
 
   /// Linear interpolation in the carrier of T; a neighbour of no weight is not looked at.
@@ -108,6 +148,18 @@ class Gather : public StreamParameter {
     }
   }
 
+  /// Of all dimensions but the first, for lanes; inRow() adds them up itself, or GCC 12 would not vectorise it.
+  Row rowOf(const Position& offset) const {
+    Row whole{0, false};
+    for (std::size_t d = 1; d < N; ++d) {
+      const int away = componentAt(offset, d).word();
+      const Row row = reach >= 0 ? rows_[d][away + reach] : rowAt(d, away);
+      whole.first += row.first;
+      whole.isOutside = whole.isOutside || row.isOutside;
+    }
+    return whole;
+  }
+
   T inRow(int i, const Position& offset) const {
     std::int64_t first = first_;
     bool isOutside = false;
@@ -128,6 +180,44 @@ class Gather : public StreamParameter {
     } else {
       return value;
     }
+  }
+
+  /// Which elements lanes ask for: those that are `further` on than `first`, or the border.
+  struct Numbers {
+    std::int64_t first;
+    bool areAllOutside;
+    Lanes<Int> further;
+    Mask areOutside;
+  };
+
+  /// One dimension's part.
+  void add(Numbers& numbers, std::size_t d, Int place) const {
+    const std::int64_t i = place.word();
+    if constexpr (boundary == Boundary::Border) {
+      if (i < 0 || i >= extent_[d]) {
+        numbers.areAllOutside = true;
+      } else {
+        numbers.first += i * stride_[d];
+      }
+    } else {
+      numbers.first += brought<boundary>(i, extent_[d]) * stride_[d];
+    }
+  }
+  void add(Numbers& numbers, std::size_t d, const Lanes<Int>& place) const {
+    const Int last(extent_[d] - 1);
+    Lanes<Int> i = place;
+    if constexpr (boundary == Boundary::Clamp) {
+      i = minOf(maxOf(place, Lanes<Int>(Int(0))), Lanes<Int>(last));
+    } else {
+      const Mask areWithin = (place >= Int(0)) & (place <= last);
+      if constexpr (boundary == Boundary::Border) {
+        numbers.areOutside = numbers.areOutside | !areWithin;
+        i = select(areWithin, place, Lanes<Int>(Int(0)));
+      } else if (!all(areWithin)) {
+        i = laneByLane([&](Int lane) { return Int(brought<boundary>(lane.word(), extent_[d])); }, place);
+      }
+    }
+    numbers.further = numbers.further + (d == 0 ? i : i * Int(stride_[d]));
   }
 
   T element(Extents index) const {
@@ -163,6 +253,7 @@ class Gather : public StreamParameter {
   std::int64_t first_;
   std::int64_t extent_[N];
   std::int64_t stride_[N];
+  bool isSmall_;  ///< 32 bits number its elements
   Extents here_{};  ///< the chunk's first element
   Row rows_[N][reach < 0 ? 1 : 2 * reach + 1]{};
 };

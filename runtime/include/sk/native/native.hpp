@@ -16,6 +16,9 @@
 #include "sk/native/gather.hpp"
 #include "sk/native/hot.hpp"
 #include "sk/native/intrinsics.hpp"
+#include "sk/native/lanes.hpp"
+#include "sk/native/lanes_intrinsics.hpp"
+#include "sk/native/lanes_memory.hpp"
 #include "sk/native/run.hpp"
 #include "sk/native/streams.hpp"
 

@@ -6,6 +6,7 @@
 //   int sk_i                      its number in the chunk
 //   auto sk_streams()             references to the parameters that are placed at a chunk
 //   void sk_element()             computes the current element
+//   void sk_lanes()               computes it and those that follow it, laneCount together; where runPieces is told so
 //   bool sk_isOrdered             elements are computed one after the other: it pushes or scatters
 //   bool sk_isUneven              elements may take very different times: it has loops
 //
@@ -20,6 +21,7 @@
 
 #include "sk/native/gather.hpp"
 #include "sk/native/hot.hpp"
+#include "sk/native/lanes.hpp"
 #include "sk/native/streams.hpp"
 
 namespace sk::native {
@@ -29,7 +31,9 @@ class Pieces {
  public:
   /// Of kernels with loops, an element may take as long as a thousand others, so that a few are enough for a piece.
   Pieces(const Extents& domain, bool areUneven)
-      : domain_(domain), longest_(areUneven ? 1 << 6 : 1 << 13), perRow_((domain[0] + longest_ - 1) / longest_) {}
+      : domain_(domain),
+        longest_(areUneven ? 1 << 6 : 1 << 13),
+        perRow_((domain[0] + longest_ - 1) / longest_) {}
 
   std::int64_t count() const { return perRow_ * domain_[1] * domain_[2] * domain_[3]; }
   std::int64_t elementsOfOne() const { return std::min(domain_[0], longest_); }
@@ -87,8 +91,15 @@ void moveTo(Kernel& kernel, std::int32_t x, int i) {
   kernel.sk_index.components[0] = Int(x + i);
 }
 
-/// Runs a kernel on chunks.
+/// How elements are computed.
+enum class By : std::uint8_t { Element, Lanes };
+
 template <class Kernel>
+inline constexpr By bestBy =
+    SK_NATIVE_LANES && requires(Kernel& kernel) { kernel.sk_lanes(); } ? By::Lanes : By::Element;
+
+/// Runs a kernel on chunks.
+template <class Kernel, By by>
 class ChunkRunner {
  public:
   explicit ChunkRunner(const Call& call) : kernel_(call), longest_(longestChunk(kernel_)) {
@@ -106,6 +117,12 @@ class ChunkRunner {
     Kernel here = kernel_;  // which nothing that is stored can change
     const auto x = static_cast<std::int32_t>(first[0]);
     for (int part = 0; part < 2; ++part, a = c, b = d) {
+      if constexpr (by == By::Lanes) {
+        for (; b - a >= laneCount; a += laneCount) {
+          moveTo(here, x, a);
+          here.sk_lanes();
+        }
+      }
       if constexpr (Kernel::sk_isOrdered) {
         for (int i = a; i < b; ++i) {
           moveTo(here, x, i);
@@ -142,12 +159,12 @@ Range insideOf(Kernel& kernel, std::int64_t extent) {
 }
 
 /// The elements of some of the domain's Pieces, one after the other.
-template <class Kernel>
+template <class Kernel, By by = By::Element>
 void runPieces(const Call& call, Range pieces) {
-  ChunkRunner<Kernel> whole(call);
+  ChunkRunner<Kernel, by> whole(call);
   const Pieces all(call.domain, Kernel::sk_isUneven);
   if constexpr (HasInside<Kernel>) {
-    ChunkRunner<typename Kernel::sk_Inside> inside(call);
+    ChunkRunner<typename Kernel::sk_Inside, by> inside(call);
     const Range range = insideOf(inside.kernel(), call.domain[0]);
     all.forEachChunk(pieces, whole.longest(), [&](const Extents& first, int count) {
       const int a = static_cast<int>(std::clamp<std::int64_t>(range.begin - first[0], 0, count));

@@ -11,6 +11,7 @@
 #include "sk/native/chunk.hpp"
 #include "sk/native/element.hpp"
 #include "sk/native/hot.hpp"
+#include "sk/native/lanes_memory.hpp"
 #include "sk/native/vector.hpp"
 
 namespace sk::native {
@@ -66,6 +67,10 @@ class Iterator {
       for (std::size_t c = 1; c < widthOf<T>; ++c) componentAt(value, c) = componentOf(c, i);
     }
     return value;
+  }
+  /// Of element i and those that follow it.
+  LanesOf<T> lanesAt(int i) const {
+    return laneByLane([&](Int lane) { return at(i + lane.word()); }, laneNumbers());
   }
 
  private:
@@ -123,6 +128,8 @@ class ComponentArrays {
  public:
   T load(int i) const { return native::load<T>(arrays_, i); }
   void store(int i, const T& value) const { native::store(arrays_, i, value); }
+  LanesOf<T> loadLanes(int i) const { return loadNeighbours<T>(arrays_, i); }
+  void storeLanes(int i, const LanesOf<T>& value) const { storeNeighbours<T>(arrays_, i, value); }
 
   void place(void* const* arrays, std::int64_t first) {
     each([&]<class Stored>(std::size_t c, Stored*) { arrays_[c] = static_cast<Stored*>(arrays[c]) + first; });
@@ -163,6 +170,8 @@ class Input : public StreamParameter {
   }
 
   T at(int i) const { return arrays_.load(i); }
+  /// Element i and those that follow it.
+  LanesOf<T> lanesAt(int i) const { return arrays_.loadLanes(i); }
   /// Of the element of the domain that has this index.
   Index index(const Index& index) const {
     Index own = toIndex(own_);
@@ -171,6 +180,16 @@ class Input : public StreamParameter {
         isSame ? index.components[0]
                : Int(std::int64_t{index.components[0].word()} * operand().multiply[0] / operand().divide[0]);
     return own;
+  }
+  /// Of the element of the domain that has this index, and of those that follow it.
+  Vec<Lanes<Int>, 4> lanesIndex(const Index& first) const {
+    return laneByLane(
+        [&](Int lane) {
+          Index next = first;
+          next.components[0] = next.components[0] + lane;
+          return index(next);
+        },
+        laneNumbers());
   }
 
  private:
@@ -222,6 +241,8 @@ class Output : public StreamParameter {
     }
   }
   void store(int i, const T& value) const { arrays_.store(i, value); }
+  /// Element i and those that follow it.
+  void storeLanes(int i, const LanesOf<T>& value) const { arrays_.storeLanes(i, value); }
 
   /// At any index, whatever the chunk.
   void store(const Index& index, const T& value) const {

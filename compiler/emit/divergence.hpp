@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+//
+// What differs between neighbours along x that are computed side by side, each in a lane: which values, and where only some
+// of the lanes go on. All else is computed once for them all. From the lowest upwards: a value is the same for all lanes until
+// something is found that makes it differ (as in R. Karrenberg and S. Hack, "Whole-function vectorization", 2011).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "ir/ir.hpp"
+
+namespace skc::emit {
+
+struct FunctionDivergence {
+  std::vector<bool> variables;  ///< those that differ
+  bool result = false;  ///< differs
+  bool isCalledApart = false;  ///< where some lanes may wait
+  bool returnsApart = false;  ///< some lanes before others
+
+  /// Whether it is needed for lanes; else it is computed once, as it is.
+  bool differs() const;
+};
+
+class Divergence {
+ public:
+  Divergence(const ir::Module& module, const ir::Kernel& kernel);
+
+  const FunctionDivergence& of(ir::FunctionId function) const { return functions_.at(function); }
+  bool differs(ir::FunctionId function, ir::VarId var) const { return of(function).variables[var]; }
+  bool differs(ir::FunctionId function, const ir::Expr& expr) const;
+
+  /// An If or a Loop where lanes part; a Break, Continue or Return that not all of those take that began with the loop or function.
+  bool isApart(const ir::Stmt& stmt) const { return apart_.contains(&stmt); }
+  /// A loop of whose round some lanes skip the rest.
+  bool skipsApart(const ir::Stmt& loop) const { return skipped_.contains(&loop); }
+  /// An assignment that waiting lanes must not see.
+  bool isBlended(const ir::Stmt& stmt) const { return blended_.contains(&stmt); }
+
+  /// Whether a variable is the element's index, or components of it, and stays that: all but x is the same for all lanes.
+  bool isIndex(ir::FunctionId function, ir::VarId var) const;
+
+ private:
+  friend class DivergenceWalk;
+
+  const ir::Module& module_;
+  std::map<ir::FunctionId, FunctionDivergence> functions_;
+  std::map<ir::FunctionId, std::map<ir::VarId, std::vector<std::uint8_t>>> indices_;  ///< components
+  std::set<const ir::Stmt*> apart_, skipped_, blended_;
+};
+
+}  // namespace skc::emit

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+//
+// Promise: native code that computes neighbours side by side gives every bit of what it gives one element after the other. Rows of
+// one element each have no neighbours, so the same elements go through every kernel in both shapes.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "lanes.sk.hpp"
+#include "sk/native/lanes.hpp"
+#include "sk/sk.hpp"
+
+namespace {
+
+using Limits = std::numeric_limits<float>;
+
+/// Every row length up to two full sets of lanes and one more, and longer ones with a rest.
+std::vector<std::int64_t> lengths() {
+  std::vector<std::int64_t> result(2 * sk::native::laneCount + 1);
+  std::iota(result.begin(), result.end(), 1);
+  result.insert(result.end(), {64, 65, 143, 300});
+  return result;
+}
+
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, const sk::Shape& shape, const std::vector<T>& values) {
+  auto stream = device.stream<T>(shape);
+  stream.write(values);
+  return stream;
+}
+
+/// Bits, of which all that are NaN count as the same.
+template <class T>
+std::vector<std::uint32_t> bitsOf(const std::vector<T>& values) {
+  std::vector<std::uint32_t> bits;
+  const auto add = [&](auto component) {
+    if constexpr (std::is_same_v<decltype(component), float>) {
+      bits.push_back(std::isnan(component) ? 0x7fc00000U : std::bit_cast<std::uint32_t>(component));
+    } else {
+      bits.push_back(static_cast<std::uint32_t>(component));
+    }
+  };
+  for (const T& value : values) {
+    if constexpr (requires { value.w; }) {
+      add(value.x), add(value.y), add(value.z), add(value.w);
+    } else if constexpr (requires { value.y; }) {
+      add(value.x), add(value.y);
+    } else {
+      add(value);
+    }
+  }
+  return bits;
+}
+
+/// run(shape) gives what a kernel computes; `n` elements in one row, and in a row each.
+template <class Run>
+void sameByLanes(std::int64_t n, const Run& run) {
+  INFO(n << " elements");
+  CHECK(run(sk::Shape{n}) == run(sk::Shape{n, 1}));
+}
+
+std::vector<std::uint32_t> together(std::initializer_list<std::vector<std::uint32_t>> parts) {
+  std::vector<std::uint32_t> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+template <class Make>
+auto list(std::int64_t n, Make&& make) {
+  std::vector<decltype(make(0))> values;
+  for (std::int64_t i = 0; i < n; ++i) values.push_back(make(static_cast<int>(i)));
+  return values;
+}
+/// As good as random.
+int scattered(int i) { return static_cast<int>(static_cast<unsigned>(i + 1) * 2654435761U >> 7U); }
+
+template <class Kernel>
+void controlIsTheSame(const Kernel& kernel) {
+  sk::Device device = sk::Device::native();
+  for (const std::int64_t n : lengths()) {
+    for (const int most : {0, 1, 5, 25}) {
+      sameByLanes(n, [&](const sk::Shape& shape) {
+        const auto i = streamOf(device, shape, list(n, [](int k) { return k - 3; }));
+        const auto c = streamOf(device, shape, list(n, [](int k) {
+                                  const int a = scattered(k);
+                                  return sk::float2{static_cast<float>(a % 64) / 32 - 1.5F,
+                                                    static_cast<float>(a / 64 % 64) / 48 - 0.5F};
+                                }));
+        auto result = device.stream<int>(shape);
+        auto sum = device.stream<sk::float2>(shape);
+        kernel(i, c, most, result, sum);
+        return together({bitsOf(result.read()), bitsOf(sum.read())});
+      });
+    }
+  }
+}
+
+TEST_CASE("neighbours part ways in loops, jumps and calls") {
+  controlIsTheSame(lanes::escape);
+  controlIsTheSame(lanes::jumps);
+  controlIsTheSame(lanes::outlives);
+  controlIsTheSame(lanes::calls);
+  controlIsTheSame(lanes::nobody);
+}
+
+TEST_CASE("integers are the same side by side at their extremes, too") {
+  sk::Device device = sk::Device::native();
+  constexpr int least = std::numeric_limits<int>::min(), most = std::numeric_limits<int>::max();
+  const std::vector<int> special{0,  1,  -1,      2,        -2,    7,         -7,  31,
+                                 32, 33, 1000003, -1000003, least, least + 1, most};
+  const auto pick = [&](int k) { return special[static_cast<std::size_t>(k) % special.size()]; };
+  for (const int uniform : {0, -1, 3, least}) {
+    sameByLanes(300, [&](const sk::Shape& shape) {
+      const auto i = streamOf(device, shape, list(300, [](int k) { return k; }));
+      const auto a = streamOf(device, shape, list(300, pick));
+      const auto b = streamOf(device, shape, list(300, [&](int k) { return pick(k / 15 + k % 3); }));
+      const auto u =
+          streamOf(device, shape, list(300, [&](int k) { return static_cast<unsigned>(pick(k / 7)); }));
+      auto r = device.stream<sk::int4>(shape);
+      auto s = device.stream<sk::uint4>(shape);
+      auto flag = device.stream<bool>(shape);
+      lanes::integers(i, a, b, u, uniform, r, s, flag);
+      return together({bitsOf(r.read()), bitsOf(s.read()), bitsOf(flag.read())});
+    });
+  }
+}
+
+template <class Kernel>
+void floatsAreTheSame(const Kernel& kernel) {
+  sk::Device device = sk::Device::native();
+  const std::vector<float> special{0.0F,
+                                   -0.0F,
+                                   0.5F,
+                                   -0.5F,
+                                   1.5F,
+                                   2.5F,
+                                   -2.5F,
+                                   1.0F,
+                                   -1.0F,
+                                   0.3F,
+                                   -0.7F,
+                                   8388607.5F,
+                                   -8388609.0F,
+                                   1e10F,
+                                   -1e10F,
+                                   3e38F,
+                                   1e-40F,
+                                   -1e-40F,
+                                   2147483648.0F,
+                                   4294967296.0F,
+                                   Limits::infinity(),
+                                   -Limits::infinity(),
+                                   Limits::quiet_NaN()};
+  const auto n = static_cast<std::int64_t>(special.size() * special.size());
+  for (const float z : {0.0F, 0.75F, -3.0F, Limits::infinity(), Limits::quiet_NaN()}) {
+    sameByLanes(n, [&](const sk::Shape& shape) {
+      const auto i = streamOf(device, shape, list(n, [](int k) { return k; }));
+      const auto x =
+          streamOf(device, shape,
+                   list(n, [&](int k) { return special[static_cast<std::size_t>(k) % special.size()]; }));
+      const auto y =
+          streamOf(device, shape,
+                   list(n, [&](int k) { return special[static_cast<std::size_t>(k) / special.size()]; }));
+      auto r = device.stream<sk::float4>(shape);
+      auto s = device.stream<sk::float4>(shape);
+      auto t = device.stream<sk::int4>(shape);
+      kernel(i, x, y, z, r, s, t);
+      return together({bitsOf(r.read()), bitsOf(s.read()), bitsOf(t.read())});
+    });
+  }
+}
+
+TEST_CASE("floats are the same side by side at their extremes, too") {
+  floatsAreTheSame(lanes::floats);
+  floatsAreTheSame(lanes::more);
+}
+
+template <class Kernel>
+void gathersAreTheSame(const Kernel& kernel) {
+  sk::Device device = sk::Device::native();
+  const auto a = streamOf(device, {40}, list(40, [](int k) { return static_cast<float>(k * k % 17); }));
+  const auto b = streamOf(device, {6, 35}, list(6 * 35, [](int k) {
+                            return sk::float2{static_cast<float>(k), static_cast<float>(scattered(k) % 100)};
+                          }));
+  const auto c = streamOf(device, {33}, list(33, scattered));
+  // within, around the ends, and far outside
+  for (const int first : {0, -20, 20, 1 << 30, -(1 << 30), std::numeric_limits<int>::max() - 40}) {
+    for (const std::int64_t n : lengths()) {
+      sameByLanes(n, [&](const sk::Shape& shape) {
+        const auto i =
+            streamOf(device, shape, list(n, [&](int k) {
+                       return static_cast<int>(static_cast<unsigned>(first) + static_cast<unsigned>(k));
+                     }));
+        const auto j = streamOf(device, shape, list(n, [&](int k) { return scattered(k) % 60 - 10; }));
+        auto r = device.stream<float>(shape);
+        kernel(i, j, a, b, c, r);
+        return bitsOf(r.read());
+      });
+    }
+  }
+}
+
+TEST_CASE("gathers are the same side by side, with every boundary") {
+  gathersAreTheSame(lanes::clamped);
+  gathersAreTheSame(lanes::wrapped);
+  gathersAreTheSame(lanes::mirrored);
+  gathersAreTheSame(lanes::bordered);
+}
+
+TEST_CASE("gathers in loops are the same side by side") {
+  sk::Device device = sk::Device::native();
+  constexpr int count = 90;
+  const auto next = streamOf(device, {count}, list(count, [](int k) { return scattered(k) % count; }));
+  auto stops = device.stream<bool>({count});
+  stops.write(list(count, [](int k) { return static_cast<std::uint8_t>(k % 13 == 5); }));
+  const auto weights = streamOf(device, {count}, list(count, [](int k) {
+                                  const auto x = static_cast<float>(k);
+                                  return sk::float4{x, 1 / (x + 1), -x, 0.1F * x};
+                                }));
+  for (const std::int64_t n : lengths()) {
+    sameByLanes(n, [&](const sk::Shape& shape) {
+      const auto i = streamOf(device, shape, list(n, [](int k) { return k; }));
+      auto last = device.stream<int>(shape);
+      auto sum = device.stream<sk::float4>(shape);
+      lanes::followed(i, next, stops, weights, 30, last, sum);
+      return together({bitsOf(last.read()), bitsOf(sum.read())});
+    });
+  }
+}
+
+TEST_CASE("elements side by side know where they are, and their neighbours") {
+  sk::Device device = sk::Device::native();
+  constexpr std::int64_t rows = 3;
+  constexpr int reach = 3;
+  for (const std::int64_t columns : lengths()) {
+    INFO(columns << " columns");
+    const sk::Shape shape{rows, columns};
+    const std::vector<int> values = list(rows * columns, [](int k) { return scattered(k) % 1000; });
+    const auto a = streamOf(device, shape, values);
+    auto r = device.stream<int>(shape);
+    auto place = device.stream<sk::int2>(shape);
+    lanes::around(a, reach, r, place);
+    const auto at = [&](std::int64_t y, std::int64_t x) {
+      y = std::clamp<std::int64_t>(y, 0, rows - 1);
+      x = std::clamp<std::int64_t>(x, 0, columns - 1);
+      return values[static_cast<std::size_t>(y * columns + x)];
+    };
+    std::vector<int> sums;
+    std::vector<std::uint32_t> places;
+    for (std::int64_t y = 0; y < rows; ++y) {
+      for (std::int64_t x = 0; x < columns; ++x) {
+        int sum = 0;
+        for (int k = 0; k < reach; ++k) sum += at(y, x - 1) + 10 * at(y + 1, x + 2) + 100 * at(y, x + k);
+        sums.push_back(sum);
+        places.insert(places.end(), {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)});
+      }
+    }
+    CHECK(r.read() == sums);
+    CHECK(bitsOf(place.read()) == places);
+  }
+}
+
+}  // namespace
