@@ -22,6 +22,7 @@ BEST_OF_ALL = ("mandelbrot", ["OpenMP", "PoCL", "OpenCL", "GLSL"], 1.0)
 COMPENSATED = 1.1  # times the plain sum's time, natively and on a GPU
 LINEAR = ["saxpy", "sum", "5-point stencil"]
 EXPONENT = 1.1  # of the size, in the time, from LARGE on: caches end on the way
+GROWS_BESIDE = {"native": "OpenMP", "fragment": "GLSL packed", "compute": "copy"}  # whose exponent is told, too
 
 
 def judge(found):
@@ -86,16 +87,24 @@ def compensated_row(found, ours):
     return [name, needed, worst[1], verdict(round(worst[0], 2) <= COMPENSATED)]
 
 
+def growth(found, program, contender):
+    """The exponent that fits a contender's times from 2^20 elements on, and these; None where there are too few."""
+    points = [(2.0 ** log2, found.seconds((program, log2), contender)) for log2 in large_sizes(found, program)]
+    points = [point for point in points if point[1]]
+    return (results.slope(points), points) if len(points) >= 3 else (None, points)
+
+
 def linear_row(found, program, ours):
     name = f"{program}: {ours}'s cost grows linearly"
     needed = f"as n^{EXPONENT} at most"
-    points = [(2.0 ** log2, found.seconds((program, log2), ours)) for log2 in large_sizes(found, program)]
-    points = [point for point in points if point[1]]
-    if len(points) < 3:
+    exponent, points = growth(found, program, ours)
+    if exponent is None:
         return [name, needed, NOT_MEASURED, ""]
-    exponent = results.slope(points)
+    peer = GROWS_BESIDE[ours]
+    beside, _ = growth(found, program, peer)
     first, last = points[0], points[-1]
     return [name, needed,
             f"n^{exponent:.2f}; {1e9 * first[1] / first[0]:.3g} ns an element of 2^{int(first[0]).bit_length() - 1}, "
-            f"{1e9 * last[1] / last[0]:.3g} of 2^{int(last[0]).bit_length() - 1}",
+            f"{1e9 * last[1] / last[0]:.3g} of 2^{int(last[0]).bit_length() - 1}"
+            + (f"; {peer}: n^{beside:.2f}" if beside is not None else ""),
             verdict(exponent <= EXPONENT)]

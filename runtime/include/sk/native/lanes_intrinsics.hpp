@@ -11,6 +11,9 @@
 #include "sk/native/intrinsics.hpp"
 #include "sk/native/lanes.hpp"
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // as in lanes.hpp
+
 namespace sk::native {
 
 using Floats = Lanes<float>;
@@ -151,3 +154,5 @@ template <OfLanes A, OfLanes B> auto step(const A& edge, const B& a) { return by
 // clang-format on
 
 }  // namespace sk::native
+
+#pragma GCC diagnostic pop

@@ -8,6 +8,9 @@
 #include "sk/native/element.hpp"
 #include "sk/native/lanes.hpp"
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // as in lanes.hpp
+
 namespace sk::native {
 
 /// Whether arrays of T can be read and written by lanes.
@@ -111,3 +114,5 @@ LanesOf<T> loadAnywhere(void* const* arrays, std::int64_t first, const Lanes<Int
 }
 
 }  // namespace sk::native
+
+#pragma GCC diagnostic pop

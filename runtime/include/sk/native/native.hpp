@@ -25,3 +25,8 @@
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
+
+// Vectors of lanes are passed between functions of a stub alone, which become one, so that no ABI has a say in it.
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
