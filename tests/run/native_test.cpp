@@ -131,7 +131,7 @@ TEST_CASE("blocks of every width are folded, each in its order") {
   lines.write(x);
   ints.write(slopes);
   for (const std::size_t blockHeight : {1U, 2U, 36U}) {
-    for (const std::size_t blockWidth : {1U, 2U, 8U, 10U, 600U, 1200U}) {
+    for (const std::size_t blockWidth : {1U, 2U, 8U, 10U, 80U, 150U, 600U, 1200U}) {
       INFO("blocks of " << blockHeight << " rows of " << blockWidth);
       const sk::Shape shape{static_cast<std::int64_t>(height / blockHeight),
                             static_cast<std::int64_t>(width / blockWidth)};

@@ -73,11 +73,6 @@ class Columns {
     std::size_t at = 0;
     visit(state, [&]<class S>(S& scalar) { array<S>(at)[k] = static_cast<Stored<S>>(scalar); });
   }
-  /// As by =, but a compiler that keeps them in registers goes on to do so.
-  void copy(const Columns& other) {
-    SK_NATIVE_INDEPENDENT
-    for (int k = 0; k < most; ++k) store(k, other.load(k));
-  }
 
  private:
   template <class S>
@@ -99,46 +94,53 @@ class Columns {
   alignas(64) std::byte bytes_[most * footprintOf<State>().bytes];
 };
 
-/// What Runs are, of columns whose leaves come in any order; `leaves` at most.
+/// Columns from 0 on are combined with `count` others from `first` on, which come later.
+template <class Combine, class State, int most>
+void combineColumns(const Combine& combine, Columns<State, most>& columns, const Columns<State, most>& others,
+                    int first, int count) {
+  Combine here = combine;  // which nothing that is stored can change
+  SK_NATIVE_INDEPENDENT
+  for (int k = 0; k < count; ++k) {
+    State state = columns.load(k);
+    here.sk_combine(state, others.load(first + k));
+    columns.store(k, state);
+  }
+}
+
+/// What Runs are, of columns; of so many leaves at most.
 template <class Combine, class State, int most, int leaves>
 class ColumnRuns {
  public:
-  explicit ColumnRuns(const Call& call) : combine_(call) {}
+  explicit ColumnRuns(const Combine& combine) : combine_(combine) {}
 
   bool isEmpty() const { return count_ == 0; }
-  /// Adds a leaf, and leaves something else in its place.
-  void add(Columns<State, most>& leaf) {
-    int level = 0;
-    for (; (count_ >> level & 1) != 0; ++level) combine(leaf, levels_[level]);
-    levels_[level].copy(leaf);
-    ++count_;
+  /// Where the next leaf is to be stored,
+  Columns<State, most>& next() { return runs_[count_]; }
+  /// and that it is there.
+  void add() {
+    leaves_[count_++] = 1;
+    while (count_ > 1 && leaves_[count_ - 2] == leaves_[count_ - 1]) merge();
   }
   /// Of all that were added; there is one at least.
   Columns<State, most>& take() {
-    int level = std::countr_zero(count_);
-    for (int larger = level + 1; count_ >> larger != 0; ++larger) {
-      if ((count_ >> larger & 1) == 0) continue;
-      combine(levels_[larger], levels_[level]);
-      level = larger;
-    }
+    while (count_ > 1) merge();
     count_ = 0;
-    return levels_[level];
+    return runs_[0];
   }
 
  private:
-  void combine(Columns<State, most>& columns, const Columns<State, most>& others) {
-    Combine here = combine_;  // which nothing that is stored can change
-    SK_NATIVE_INDEPENDENT
-    for (int k = 0; k < most; ++k) {
-      State state = columns.load(k);
-      here.sk_combine(state, others.load(k));
-      columns.store(k, state);
-    }
+  static constexpr int deepest = std::bit_width(static_cast<unsigned>(leaves)) + 1;
+
+  void merge() {
+    --count_;
+    combineColumns(combine_, runs_[count_ - 1], runs_[count_], 0, most);
+    leaves_[count_ - 1] += leaves_[count_];
   }
 
-  Combine combine_;
-  Columns<State, most> levels_[std::bit_width(static_cast<unsigned>(leaves))];
-  unsigned count_ = 0;  ///< whose bits tell which of the levels hold a run: of 2^level leaves
+  const Combine& combine_;
+  Columns<State, most> runs_[deepest];
+  int leaves_[deepest];
+  int count_ = 0;
 };
 
 /// A run of one element, the current one.

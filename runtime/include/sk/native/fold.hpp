@@ -89,7 +89,7 @@ class PieceFolder {
         combine_(call.combine),
         runs_(combine_),
         longest_(longestChunk(fold_)),
-        columnRuns_(call.combine) {
+        columnRuns_(combine_) {
     fold_.sk_extent = toIndex(call.fold.domain);
   }
 
@@ -108,10 +108,8 @@ class PieceFolder {
         count -= now;
       }
     });
+    if constexpr (Fold::sk_isCommutative) endColumns();
     if (folded_ > 0) endLeaf();
-    if constexpr (Fold::sk_isCommutative) {
-      if (!columnRuns_.isEmpty()) runs_.add(gathered(columnRuns_.take(), side));
-    }
     return runs_.take();
   }
   void store(const Extents& block, const State& state) { fold_.sk_store(toIndex(block), state); }
@@ -133,25 +131,35 @@ class PieceFolder {
     if (first < count) foldRest(x, first, count - first);
   }
 
-  /// So many elements for each column, which are a leaf.
+  /// So many elements for each column, which are a leaf. It is folded in columns that nobody else sees, so that they stay in registers.
   void foldRounds(std::int32_t x, int first, int rounds) {
     Fold here = fold_;  // which nothing that is stored can change
-    Side columns;
+    Side& folded = columnRuns_.next();
+    if (rounds == 1) {
+      startColumns(here, x, first, folded);
+    } else {
+      Side columns;
+      startColumns(here, x, first, columns);
+      for (int round = 1; round < rounds - 1; ++round) foldRound(here, x, first += side, columns, columns);
+      foldRound(here, x, first + side, columns, folded);
+    }
+    columnRuns_.add();
+  }
+  static void startColumns(Fold& here, std::int32_t x, int first, Side& columns) {
     SK_NATIVE_INDEPENDENT
     for (int k = 0; k < side; ++k) {
       moveTo(here, x, first + k);
       columns.store(k, started(here));
     }
-    for (int round = 1; round < rounds; ++round) {
-      SK_NATIVE_INDEPENDENT
-      for (int k = 0; k < side; ++k) {
-        moveTo(here, x, first + round * side + k);
-        State state = columns.load(k);
-        here.sk_fold(state);
-        columns.store(k, state);
-      }
+  }
+  static void foldRound(Fold& here, std::int32_t x, int first, const Side& columns, Side& results) {
+    SK_NATIVE_INDEPENDENT
+    for (int k = 0; k < side; ++k) {
+      moveTo(here, x, first + k);
+      State state = columns.load(k);
+      here.sk_fold(state);
+      results.store(k, state);
     }
-    columnRuns_.add(columns);
   }
 
   /// What is left of a row: an element for some of the columns. Those of several rows are a leaf.
@@ -176,19 +184,21 @@ class PieceFolder {
 
   /// Columns become one.
   State gathered(Side& columns, int count) {
-    Combine here = combine_;
     while (count > 1) {
       const int half = (count + 1) / 2;
-      const int pairs = count - half;
-      SK_NATIVE_INDEPENDENT
-      for (int k = 0; k < pairs; ++k) {
-        State state = columns.load(k);
-        here.sk_combine(state, columns.load(k + half));
-        columns.store(k, state);
-      }
+      combineColumns(combine_, columns, columns, half, count - half);
       count = half;
     }
     return columns.load(0);
+  }
+
+  /// Whole columns become one, with what is left of rows. If there are none, that is a leaf.
+  void endColumns() {
+    if (columnRuns_.isEmpty()) return;
+    Side& columns = columnRuns_.take();
+    combineColumns(combine_, columns, rest_, 0, restUsed_);
+    runs_.add(gathered(columns, side));
+    restUsed_ = folded_ = 0;
   }
 
   // ---- in order ----------------------------------------------------------------------------------

@@ -79,14 +79,7 @@ class NarrowFolder {
   struct CombineColumns {
     explicit CombineColumns(const Call& call) : combine(call) {}
     void sk_combine(Columns<State, most>& columns, const Columns<State, most>& later) {
-      Combine here = combine;  // which nothing that is stored can change
-      const int n = count;
-      SK_NATIVE_INDEPENDENT
-      for (int k = 0; k < n; ++k) {
-        State state = columns.load(k);
-        here.sk_combine(state, later.load(k));
-        columns.store(k, state);
-      }
+      combineColumns(combine, columns, later, 0, count);
     }
     Combine combine;
     int count = 0;
