@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "native/memory.hpp"
 
-#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <new>
 
@@ -22,10 +22,10 @@ std::size_t nextPlace() {
   return number++ % 16 * 5 * cacheLine;
 }
 
-void* aligned(std::size_t alignment, std::size_t bytes) {
+std::byte* aligned(std::size_t alignment, std::size_t bytes) {
   void* memory = nullptr;
   if (posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
-  return memory;
+  return static_cast<std::byte*>(memory);
 }
 
 }  // namespace
@@ -33,18 +33,17 @@ void* aligned(std::size_t alignment, std::size_t bytes) {
 void Freeing::operator()(std::byte* memory) const { std::free(memory - before); }
 
 Memory allocated(std::size_t bytes) {
-  if (bytes < largePage) {
-    return Memory(static_cast<std::byte*>(aligned(cacheLine, std::max(bytes, cacheLine))));
-  }
+  if (bytes < cacheLine) return Memory(aligned(alignof(std::max_align_t), cacheLine));
+  if (bytes < largePage) return Memory(aligned(cacheLine, bytes));
   const std::size_t place = nextPlace();
   const std::size_t whole = bytes + place;
   if (whole < bytes) throw std::bad_alloc();
-  void* const memory = aligned(largePage, whole);
+  std::byte* const memory = aligned(largePage, whole);
 #if defined(__linux__)
   // The rest has small pages, and so has all of it where the system has no others.
   madvise(memory, whole / largePage * largePage, MADV_HUGEPAGE);
 #endif
-  return {static_cast<std::byte*>(memory) + place, Freeing{place}};
+  return {memory + place, Freeing{place}};
 }
 
 }  // namespace sk

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Memory for the arrays of native streams, such that loops through several of them are fast. It begins where a cache line does. Large
-// arrays ask for large pages, as looking up small ones takes a good part of a loop's time, and begin at different places in them:
-// processors take a load for one that waits for a store where the two differ in their pages alone, and keep equal places of all
-// pages in the same few lines of a cache.
+// Memory for the arrays of native streams, such that loops through several of them are fast. What is longer than a cache line begins
+// where one does. Large arrays ask for large pages, as looking up small ones takes a good part of a loop's time, and begin at
+// different places in them: processors take a load for one that waits for a store where the two differ in their pages alone, and
+// keep equal places of all pages in the same few lines of a cache.
 #pragma once
 
 #include <cstddef>

@@ -3,7 +3,7 @@
 // Kernels and reductions on a native device: arguments become the operands of native code. A stream that is
 // read and written is read as it was: what reads it gets a copy, unless each element reads only itself.
 #include <algorithm>
-#include <deque>
+#include <list>
 
 #include "assemble/condition.hpp"
 #include "check.hpp"
@@ -198,10 +198,10 @@ class Operands {
   const assemble::SpecValues specs_;
   Shape domain_;
   std::vector<Operand> list_;
-  std::deque<Components> kept_;
-  std::deque<native::Pushed> pushed_;
-  std::deque<std::pair<const NativeStream*, Components>> copies_;  ///< that are read
-  std::deque<std::pair<NativeStream*, Components>> written_;
+  std::list<Components> kept_;
+  std::list<native::Pushed> pushed_;
+  std::list<std::pair<const NativeStream*, Components>> copies_;  ///< that are read
+  std::list<std::pair<NativeStream*, Components>> written_;
 };
 
 const program::NativeReduction::Code& codeOf(const program::NativeReduction& reduction, RealType real) {
