@@ -39,8 +39,8 @@ assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capab
     profile.doubles = assemble::Doubles::Pairs;
   }
   profile.sharesTexels = choices.sharesTexels.value_or(!capabilities.isSoftware);
-  profile.relaysValues = capabilities.isSoftware && profile.stage == assemble::Stage::Fragment;
   profile.samples = capabilities.isSoftware;
+  profile.relaysUniforms = capabilities.isSoftware && profile.stage == assemble::Stage::Fragment;
   return profile;
 }
 

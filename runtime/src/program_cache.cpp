@@ -215,9 +215,8 @@ void ProgramCache::bindSamplers(const gl::Program& program, const program::Param
 }
 
 ProgramBuild ProgramCache::begin(const program::Kernel& kernel, const assemble::Variant& variant) {
-  return {device_,
-          {isCompute() ? std::string() : assemble::vertexProgram(profile_, kernel, variant),
-           assemble::kernelProgram(profile_, kernel, variant)}};
+  assemble::ProgramPair programs = assemble::kernelPrograms(profile_, kernel, variant);
+  return {device_, {std::move(programs.vertex), std::move(programs.main)}};
 }
 
 ProgramBuild ProgramCache::begin(const program::Reduction& reduction,

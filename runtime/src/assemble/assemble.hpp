@@ -14,6 +14,7 @@
 
 #include "assemble/condition.hpp"
 #include "assemble/placement.hpp"
+#include "assemble/relayed_values.hpp"
 #include "sk/arithmetic.hpp"
 #include "sk/program.hpp"
 
@@ -47,10 +48,10 @@ struct Profile {
   bool tables = true;  ///< functions that a table may stand for are looked up there
   bool sharesTexels =
       true;  ///< compute programs fetch a texel once for all neighbours in a work group, which pays on GPUs
-  bool relaysValues = false;  ///< what calls change often are uniforms of the vertex program (relayed_values.hpp)
   bool samples =
       false;  ///< texels are sampled at their centres, which llvmpipe does faster than it fetches them;
       ///< the samplers that are bound are the nearest ones, but for filtered gathers
+  bool relaysUniforms = false;  ///< they come from the vertex program (relayed_values.hpp), which software renderers like
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();
@@ -152,7 +153,7 @@ struct Variant {
 ///   sk_odd sk_even sk_tree_shift   its textures (samplers) and log2 of their width
 ///   sk_levels, sk_rows[l]          the number of levels, and the first row of level l in its texture
 /// Of a function with a table, those of tables.hpp.
-/// Where the profile relays values, some of these are uniforms of the vertex program.
+/// Where the profile relays uniforms, the vertex program has most of them.
 ///
 /// Indices and extents are below 2^30. Gathers are not empty: the runtime refuses such a call.
 /// Compute programs are of Work::Elements alone.
@@ -164,9 +165,15 @@ std::string samplerName(const program::Parameter& parameter, std::size_t plane);
 /// Name of the sampler (sampler2DArray) of a plan's bundle.
 std::string bundleName(std::size_t bundle);
 
-/// The vertex program of a strip of four corners, those of the viewport, from gl_VertexID alone.
-std::string vertexProgram(const Profile& profile);
-/// The same for the program of a kernel, to which it hands values on (relayed_values.hpp).
-std::string vertexProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
+/// The vertex program of a strip of four corners, those of the viewport, from gl_VertexID alone. It hands these uniforms on.
+std::string vertexProgram(const Profile& profile, std::span<const RelayedValue> relayed = {});
+
+/// What a driver links.
+struct ProgramPair {
+  std::string vertex;  ///< empty where `main` is a compute program
+  std::string main;
+};
+/// That of kernelProgram(), and its vertex program.
+ProgramPair kernelPrograms(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
 
 }  // namespace sk::assemble

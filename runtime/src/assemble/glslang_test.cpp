@@ -252,12 +252,13 @@ TEST_CASE("glslang accepts values that the vertex program hands on") {
   Programs programs("relayed");
   for (Profile profile : profiles()) {
     if (profile.stage == Stage::Compute) continue;
-    profile.relaysValues = true;
+    profile.relaysUniforms = true;
     for (const auto [domain, view] : domains) {
       const Variant variant{
           .domain = domain, .domainView = view, .access = {{}, inputs[2], {Addressing::Plane}, {}}};
-      programs.add(kernelProgram(profile, samples::saxpy, variant));
-      programs.add(vertexProgram(profile, samples::saxpy, variant), "vert");
+      const auto [vertex, main] = kernelPrograms(profile, samples::saxpy, variant);
+      programs.add(main);
+      programs.add(vertex, "vert");
     }
   }
   checkAccepted(programs);

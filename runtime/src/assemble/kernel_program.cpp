@@ -14,7 +14,6 @@
 #include "assemble/gather.hpp"
 #include "assemble/planes.hpp"
 #include "assemble/program_text.hpp"
-#include "assemble/relayed_values.hpp"
 #include "assemble/sinks.hpp"
 #include "assemble/storage.hpp"
 
@@ -104,7 +103,7 @@ class KernelText {
 
   std::string write() {
     assert(profile_.stage == Stage::Fragment || variant_.task.work == Work::Elements);
-    program_.relay(relayedValues(profile_, kernel_, variant_));
+    if (profile_.relaysUniforms && !isList()) relayUniforms();
     if (isList())
       findEntry(program_, domain_, kernel_.parameters[variant_.task.sink], variant_.task.treeLayered);
     if (kernel_.usesLoops && !variant_.domainEven) domain_.leaveOutside();
@@ -127,6 +126,8 @@ class KernelText {
       program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
     return program_.finish(profile_, describe(profile_, kernel_, variant_), kernel_);
   }
+
+  const std::vector<RelayedValue>& relayed() const { return program_.relayed(); }
 
  private:
   struct Result {
@@ -152,6 +153,23 @@ class KernelText {
     for (int lane = 0; lane < lanes; ++lane) {
       if (domain_.usesLane()) program_.statement(fmt::format("sk_lane = {};", lane));
       callWith(std::string_view("xyzw").substr(static_cast<std::size_t>(lane), 1));
+    }
+  }
+
+  /// What calls change most often first, since there is room for so many.
+  void relayUniforms() {
+    program_.relayUniforms();
+    for (const Parameter& parameter : kernel_.parameters) {
+      if (!isNeeded(parameter, variant_.specs)) continue;
+      if (parameter.role == Role::Uniform) {
+        parameterUniform(program_, parameter.element->glsl, "arg", parameter);
+      } else if (parameter.role == Role::Iterator) {
+        parameterUniform(program_, parameter.element->glsl, "begin", parameter);
+        parameterUniform(program_, parameter.element->glsl, "step", parameter);
+      }
+    }
+    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+      if (variant_.access[i].view) parameterUniform(program_, "ivec4", "origin", kernel_.parameters[i]);
     }
   }
 
@@ -293,9 +311,16 @@ bool mayWritePacked(const Kernel& kernel) {
          });
 }
 
-std::string kernelProgram(const Profile& profile, const Kernel& kernel, const Variant& variant) {
+ProgramPair kernelPrograms(const Profile& profile, const Kernel& kernel, const Variant& variant) {
   assert(variant.access.size() == kernel.parameters.size());
-  return KernelText(profile, kernel, variant).write();
+  KernelText text(profile, kernel, variant);
+  ProgramPair programs{.vertex = {}, .main = text.write()};
+  if (profile.stage == Stage::Fragment) programs.vertex = vertexProgram(profile, text.relayed());
+  return programs;
+}
+
+std::string kernelProgram(const Profile& profile, const Kernel& kernel, const Variant& variant) {
+  return kernelPrograms(profile, kernel, variant).main;
 }
 
 }  // namespace sk::assemble

@@ -89,10 +89,8 @@ constexpr std::string_view esPrecision =
 
 }  // namespace
 
-void ProgramText::relay(std::vector<RelayedValue> values) { relayed_ = std::move(values); }
-
 std::string ProgramText::uniform(std::string_view type, std::string_view name) {
-  if (std::ranges::find(relayed_, name, &RelayedValue::name) != relayed_.end()) {
+  if (relaysUniforms_ && relayed_.take(type, name)) {
     flatInput(type, relayedName(name));
     return relayedName(name);
   }

@@ -52,9 +52,10 @@ class ProgramText {
   std::string_view texel() const { return isDrawn() ? "ivec2(gl_FragCoord.xy)" : "sk_pixel"; }
   std::string_view column() const { return isDrawn() ? "int(gl_FragCoord.x)" : "sk_pixel.x"; }
   std::string_view row() const { return isDrawn() ? "int(gl_FragCoord.y)" : "sk_pixel.y"; }
-  /// From here on, these come from the vertex program.
-  void relay(std::vector<RelayedValue> values);
-  /// Declares a uniform, or what the vertex program hands on of it, unless it is declared, and gives the name.
+  /// From here on, uniforms come from the vertex program as far as there is room.
+  void relayUniforms() { relaysUniforms_ = true; }
+  const std::vector<RelayedValue>& relayed() const { return relayed_.all(); }
+  /// Declares a uniform unless it is declared, and gives the name by which the program reads it.
   std::string uniform(std::string_view type, std::string_view name);
   /// Declares an input that is the same for the whole point or triangle.
   void flatInput(std::string_view type, std::string_view name);
@@ -101,7 +102,8 @@ class ProgramText {
   std::string place_;  ///< storeAt()'s
   bool isArray_ = false;
   std::pair<std::int32_t, std::int32_t> group_{};  ///< for each texel; none: there is an invocation for each
-  std::vector<RelayedValue> relayed_;
+  bool relaysUniforms_ = false;
+  RelayedValues relayed_;
   std::vector<std::string> uniforms_;
   std::vector<Output> outputs_;
   std::vector<std::string> variables_;

@@ -3,15 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include <fmt/format.h>
 
 namespace sk::assemble {
 namespace {
-
-using program::Parameter;
-using program::Role;
 
 /// OpenGL 3.3 and OpenGL ES 3.0 guarantee 60 components, and a location has four.
 constexpr int mostLocations = 15;
@@ -25,41 +21,15 @@ int locationsOf(std::string_view type) {
   return std::ranges::find(matrices, type) != matrices.end() ? type.back() - '0' : 0;
 }
 
-class Relay {
- public:
-  void add(std::string_view type, std::string_view kind, std::string_view symbol) {
-    const int locations = locationsOf(type);
-    if (locations == 0 || used_ + locations > mostLocations) return;
-    used_ += locations;
-    values_.push_back({type, fmt::format("sk_{}_{}", kind, symbol)});
-  }
-  std::vector<RelayedValue> take() { return std::move(values_); }
-
- private:
-  int used_ = 0;
-  std::vector<RelayedValue> values_;
-};
-
 }  // namespace
 
-std::vector<RelayedValue> relayedValues(const Profile& profile, const program::Kernel& kernel,
-                                        const Variant& variant) {
-  if (!profile.relaysValues) return {};
-  Relay relay;
-  for (const Parameter& parameter : kernel.parameters) {
-    if (parameter.role == Role::Uniform) relay.add(parameter.element->glsl, "arg", parameter.symbol);
-    if (parameter.role == Role::Iterator) {
-      relay.add(parameter.element->glsl, "begin", parameter.symbol);
-      relay.add(parameter.element->glsl, "step", parameter.symbol);
-    }
-  }
-  if (variant.domainView || variant.domain == Domain::LinearBox) relay.add("ivec4", "domain", "origin");
-  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
-    const Parameter& parameter = kernel.parameters[i];
-    const bool isRead = parameter.role == Role::Input || parameter.role == Role::Gather;
-    if (isRead && variant.access[i].view) relay.add("ivec4", "origin", parameter.symbol);
-  }
-  return relay.take();
+bool RelayedValues::take(std::string_view type, std::string_view name) {
+  if (std::ranges::find(values_, name, &RelayedValue::name) != values_.end()) return true;
+  const int locations = locationsOf(type);
+  if (locations == 0 || locations_ + locations > mostLocations) return false;
+  locations_ += locations;
+  values_.push_back({std::string(type), std::string(name)});
+  return true;
 }
 
 std::string relayedName(std::string_view uniform) {

@@ -8,12 +8,10 @@
 #include <fmt/format.h>
 
 #include "assemble/assemble.hpp"
-#include "assemble/relayed_values.hpp"
 
 namespace sk::assemble {
-namespace {
 
-std::string corners(const Profile& profile, std::span<const RelayedValue> relayed) {
+std::string vertexProgram(const Profile& profile, std::span<const RelayedValue> relayed) {
   std::string declarations, statements;
   for (const auto& [type, name] : relayed) {
     const std::string flat = relayedName(name);
@@ -27,14 +25,6 @@ std::string corners(const Profile& profile, std::span<const RelayedValue> relaye
 }}
 )",
                      profile.version, declarations, statements);
-}
-
-}  // namespace
-
-std::string vertexProgram(const Profile& profile) { return corners(profile, {}); }
-
-std::string vertexProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant) {
-  return corners(profile, relayedValues(profile, kernel, variant));
 }
 
 }  // namespace sk::assemble
