@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+//
+// Which calls of GL a call of a kernel makes: of what the one before has left as it wants it, none. A count instead of a
+// time, so that it fails on any machine once a call costs more.
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <epoxy/gl.h>
+
+#include <catch2/catch.hpp>
+
+#include "sk/sk.hpp"
+#include "test_kernel.hpp"
+
+namespace {
+
+using namespace sk;
+using namespace sk::test;
+using Names = std::vector<std::string>;
+
+/// What has been called, in order.
+Names called;
+
+/// Notes the calls of a function for as long as it lives. `place` is where libepoxy keeps the driver's.
+template <auto* place, class F = std::remove_pointer_t<decltype(place)>>
+class Spy;
+template <auto* place, class R, class... A>
+class Spy<place, R (*)(A...)> {
+ public:
+  explicit Spy(std::string_view name) {
+    name_ = name;
+    driver_ = *place;
+    *place = note;
+  }
+  ~Spy() { *place = driver_; }
+  Spy(const Spy&) = delete;
+  Spy& operator=(const Spy&) = delete;
+
+ private:
+  static R note(A... arguments) {
+    called.emplace_back(name_);
+    return driver_(arguments...);
+  }
+  static inline std::string_view name_;
+  static inline R (*driver_)(A...) = nullptr;
+};
+
+#define SPY(function) \
+  const Spy<&epoxy_##function> function##Spy { #function }
+
+/// What is called when `work` runs, which has run before, so that libepoxy knows where the driver's functions are.
+template <class Work>
+Names callsOf(Work&& work) {
+  SPY(glUseProgram);
+  SPY(glBindVertexArray);
+  SPY(glBindFramebuffer);
+  SPY(glFramebufferTexture2D);
+  SPY(glCheckFramebufferStatus);
+  SPY(glDrawBuffers);
+  SPY(glViewport);
+  SPY(glViewportIndexedf);
+  SPY(glScissor);
+  SPY(glEnable);
+  SPY(glDisable);
+  SPY(glActiveTexture);
+  SPY(glBindTexture);
+  SPY(glBindSampler);
+  SPY(glTexParameteri);
+  SPY(glBindImageTexture);
+  SPY(glUniform1i);
+  SPY(glUniform1iv);
+  SPY(glUniform4iv);
+  SPY(glUniform1f);
+  SPY(glUniform1fv);
+  SPY(glUniform4fv);
+  SPY(glGetUniformLocation);
+  SPY(glGetIntegerv);
+  SPY(glGetError);
+  SPY(glFlush);
+  SPY(glFinish);
+  SPY(glFenceSync);
+  SPY(glDrawArrays);
+  SPY(glDispatchCompute);
+  SPY(glMemoryBarrier);
+  called.clear();
+  work();
+  return called;
+}
+
+const TestKernel& saxpy() {
+  static const TestKernel kernel(
+      "saxpy", "void saxpy(float a, float x, float y, out float r) { r = a * x + y; }\n",
+      {uniform<float>("a"), input<float>("x"), input<float>("y"), output<float>("r")});
+  return kernel;
+}
+
+struct Streams {
+  explicit Streams(Device& device)
+      : x(device.stream<float>({8, 8})),
+        y(device.stream<float>({8, 8})),
+        r(device.stream<float>({8, 8})),
+        s(device.stream<float>({8, 8})) {
+    const std::vector<float> ones(64, 1.0f);
+    for (Stream<float>* stream : {&x, &y, &r, &s}) stream->write(ones);
+    // Everything that is called below, once before, so that all programs and framebuffers are there.
+    saxpy()(1.0f, x, y, s);
+    saxpy()(1.0f, y, x, r);
+    saxpy()(2.0f, x, y, r);
+  }
+  Stream<float> x, y, r, s;
+};
+
+}  // namespace
+
+TEST_CASE("a call draws, and sets what has changed") {
+  for (const std::string& profile : profileNames) {
+    CAPTURE(profile);
+    Device device(DeviceOptions{.profile = profile});
+    Streams of(device);
+    CHECK(callsOf([&] { saxpy()(2.0f, of.x, of.y, of.r); }) == Names{"glDrawArrays"});
+    CHECK(callsOf([&] { saxpy()(3.0f, of.x, of.y, of.r); }) == Names{"glUniform1fv", "glDrawArrays"});
+    CHECK(callsOf([&] { saxpy()(3.0f, of.x, of.x, of.r); }) == Names{"glBindTexture", "glDrawArrays"});
+    CHECK(callsOf([&] { saxpy()(3.0f, of.x, of.x, of.s); }) == Names{"glBindFramebuffer", "glDrawArrays"});
+    CHECK(callsOf([&] { saxpy()(3.0f, of.r, of.x, of.s); }) ==
+          Names{"glActiveTexture", "glBindTexture", "glDrawArrays"});
+  }
+}
+
+TEST_CASE("a call dispatches, and sets what has changed") {
+  Device device(DeviceOptions{.profile = "glsl430"});
+  Streams of(device);
+  CHECK(callsOf([&] { saxpy()(2.0f, of.x, of.y, of.r); }) == Names{"glDispatchCompute", "glMemoryBarrier"});
+  CHECK(callsOf([&] { saxpy()(3.0f, of.x, of.y, of.r); }) ==
+        Names{"glUniform1fv", "glDispatchCompute", "glMemoryBarrier"});
+  CHECK(callsOf([&] { saxpy()(3.0f, of.x, of.y, of.s); }) ==
+        Names{"glBindImageTexture", "glDispatchCompute", "glMemoryBarrier"});
+}
+
+// A renderer in software copies all of its state where a uniform of the fragment program changes.
+TEST_CASE("a renderer in software takes arguments as uniforms of the vertex program") {
+  Device device(DeviceOptions{.profile = "glsl330"});
+  Streams of(device);
+  const std::string_view renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  if (!renderer.starts_with("llvmpipe") || epoxy_gl_version() < 43) return;
+  GLint program = 0;
+  glGetIntegerv(GL_CURRENT_PROGRAM, &program);
+  const GLuint argument = glGetProgramResourceIndex(static_cast<GLuint>(program), GL_UNIFORM, "sk_arg_a");
+  REQUIRE(argument != GL_INVALID_INDEX);
+  const GLenum asked = GL_REFERENCED_BY_FRAGMENT_SHADER;
+  GLint isFragments = -1;
+  glGetProgramResourceiv(static_cast<GLuint>(program), GL_UNIFORM, argument, 1, &asked, 1, nullptr,
+                         &isFragments);
+  CHECK(isFragments == GL_FALSE);
+}
