@@ -88,23 +88,23 @@ def compensated_row(found, ours):
 
 
 def growth(found, program, contender):
-    """The exponent that fits a contender's times from 2^20 elements on, and these; None where there are too few."""
+    """The exponent that fits a contender's times from 2^20 elements on, and these; None where there is one at most."""
     points = [(2.0 ** log2, found.seconds((program, log2), contender)) for log2 in large_sizes(found, program)]
     points = [point for point in points if point[1]]
-    return (results.slope(points), points) if len(points) >= 3 else (None, points)
+    return (results.slope(points), points) if len(points) >= 2 else (None, points)
 
 
 def linear_row(found, program, ours):
     name = f"{program}: {ours}'s cost grows linearly"
     needed = f"as n^{EXPONENT} at most"
     exponent, points = growth(found, program, ours)
-    if exponent is None:
+    if len(points) < 3:
         return [name, needed, NOT_MEASURED, ""]
-    peer = GROWS_BESIDE[ours]
-    beside, _ = growth(found, program, peer)
+    peer = GROWS_BESIDE.get(ours)
+    beside, besides = growth(found, program, peer)
     first, last = points[0], points[-1]
     return [name, needed,
             f"n^{exponent:.2f}; {1e9 * first[1] / first[0]:.3g} ns an element of 2^{int(first[0]).bit_length() - 1}, "
             f"{1e9 * last[1] / last[0]:.3g} of 2^{int(last[0]).bit_length() - 1}"
-            + (f"; {peer}: n^{beside:.2f}" if beside is not None else ""),
+            + (f"; {peer}'s n^{beside:.2f} to 2^{int(besides[-1][0]).bit_length() - 1}" if beside is not None else ""),
             verdict(exponent <= EXPONENT)]

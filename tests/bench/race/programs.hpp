@@ -36,7 +36,7 @@ struct Program {
   const char* name;
   const char* element;  ///< what a size counts
   std::vector<int> sizes;  ///< their logarithms to base 2, where nothing else is asked for
-  std::vector<int> growthSizes;  ///< further ones, where ours show how their cost grows, and OpenMP beside them
+  std::vector<int> ownSizes;  ///< further ones, where only ours show how their cost grows
   Work (*work)(double n);
   Problem (*problem)(int log2);
   Check (*check)(const Problem& problem);

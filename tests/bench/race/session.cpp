@@ -93,7 +93,7 @@ void Session::runProgram(const Program& program) {
     return;
   }
   for (const int log2 : program.sizes) runProblem(program, log2, settings_.withPeers);
-  for (const int log2 : program.growthSizes) runProblem(program, log2, false);
+  for (const int log2 : program.ownSizes) runProblem(program, log2, false);
 }
 
 std::vector<Session::Entry> Session::entriesOf(const Program& program, bool withPeers) const {
