@@ -101,7 +101,7 @@ class ReduceCall {
 
   /// Folds the elements, of which there are some, to the planes of all results.
   void fold(const Index4& blocks, const Placement& result, std::span<Surface* const> targets) {
-    const assemble::ReduceLimits limits{.texture = device_.textureLimits(), .grouped = mayGroup()};
+    const assemble::ReduceLimits limits = limitsOfPasses();
     PlanesLease partials(device_);
     const assemble::Division division{.blocks = blocks,
                                       .byIndex = foldsByIndex(),
@@ -136,6 +136,15 @@ class ReduceCall {
       operands_.push_back(operandOf(i, arguments[i], domain));
     }
     elements_ = placementOfElements(xFirst(domain));
+  }
+
+  /// In software a pass costs as much as some thousand texels, and a few threads have enough to do with few invocations.
+  assemble::ReduceLimits limitsOfPasses() const {
+    assemble::ReduceLimits limits{.texture = device_.textureLimits(), .grouped = mayGroup()};
+    if (device_.capabilities.isSoftware && device_.programs().stage() == assemble::Stage::Fragment) {
+      limits.longRun = 64;
+    }
+    return limits;
   }
 
   /// Whether work groups may fold partial results together: they share an element of each accumulator an invocation.

@@ -327,6 +327,25 @@ void declareOutputs(ProgramText& program, const Parameter& parameter) {
   }
 }
 
+std::vector<Parameter> withPlanes(const std::vector<const Parameter*>& outputs, std::size_t first,
+                                  std::size_t count) {
+  std::vector<Parameter> written;
+  std::size_t before = 0;  // planes of the outputs so far
+  const std::size_t end = count == 0 ? SIZE_MAX : first + count;
+  for (const Parameter* output : outputs) {
+    const std::size_t after = before + output->element->fields.size();
+    const std::size_t from = std::max(first, before);
+    const std::size_t to = std::min(end, after);
+    if (from < to) {
+      written.push_back(*output);
+      written.back().firstPlane = static_cast<std::uint8_t>(from - before);
+      written.back().planeCount = static_cast<std::uint8_t>(to - from);
+    }
+    before = after;
+  }
+  return written;
+}
+
 std::string fetch(ProgramText& program, const Parameter& parameter, const Texel& texel) {
   const Element& element = heldBy(parameter);
   const std::string_view type = parameter.element->glsl;
@@ -410,25 +429,6 @@ void store(ProgramText& program, const Parameter& parameter, std::string_view va
     if (field.scalar == Scalar::Half && parameter.held != nullptr) value = halved(program, field, value);
     program.statement(fmt::format("{} = {};", output, toOutput(field, std::move(value))));
   }
-}
-
-std::vector<Parameter> cutToPlanes(std::span<const Parameter* const> parameters, std::size_t first,
-                                   std::size_t count) {
-  std::vector<Parameter> cut;
-  std::size_t before = 0;  // planes of the parameters so far
-  const std::size_t end = count == 0 ? SIZE_MAX : first + count;
-  for (const Parameter* parameter : parameters) {
-    const std::size_t after = before + parameter->element->fields.size();
-    const std::size_t from = std::max(first, before);
-    const std::size_t to = std::min(end, after);
-    if (from < to) {
-      cut.push_back(*parameter);
-      cut.back().firstPlane = static_cast<std::uint8_t>(from - before);
-      cut.back().planeCount = static_cast<std::uint8_t>(to - from);
-    }
-    before = after;
-  }
-  return cut;
 }
 
 }  // namespace sk::assemble

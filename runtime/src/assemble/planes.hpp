@@ -41,6 +41,11 @@ void declareSamplers(ProgramText& program, const program::Parameter& parameter, 
 /// Declares the outputs of the parameter's planes.
 void declareOutputs(ProgramText& program, const program::Parameter& parameter);
 
+/// Those of the outputs that have some of `count` planes from number `first` on, of the planes of all, and say which. A count
+/// of 0 is all of them.
+std::vector<program::Parameter> withPlanes(const std::vector<const program::Parameter*>& outputs,
+                                           std::size_t first, std::size_t count);
+
 /// An expression for the element at a texel. Structs are fetched by a function, which the first such
 /// expression of a parameter defines.
 std::string fetch(ProgramText& program, const program::Parameter& parameter, const Texel& texel);
@@ -68,10 +73,5 @@ void copyPlanes(ProgramText& program, const program::Parameter& parameter, const
 /// Statements that copy an element-typed variable to the parameter's outputs; none where the
 /// variable is the output.
 void store(ProgramText& program, const program::Parameter& parameter, std::string_view variable);
-
-/// Those of the parameters that have some of `count` planes from `first` on, counted through all of them, cut to these; 0 is
-/// all from there on.
-std::vector<program::Parameter> cutToPlanes(std::span<const program::Parameter* const> parameters,
-                                            std::size_t first, std::size_t count);
 
 }  // namespace sk::assemble

@@ -51,3 +51,33 @@ TEST_CASE("of few elements, programs know of no shape") {
   CHECK(program(1024, 1024).run == 32);
   CHECK(program(1001, 1001).run == 0);
 }
+
+TEST_CASE("a linearised stream is folded by rows where it ends with one, or where order does not count") {
+  const auto first = [](std::int32_t count, bool inAnyOrder) {
+    const Placement line = linearPlacement(count, *linearTexture(count, {1024, mostLayers}));
+    const Division division{.blocks = {1, 1, 1, 1}, .inAnyOrder = inAnyOrder};
+    return planReduction(line, valuePlacement(), {{1024, mostLayers}}, division).front().variant;
+  };
+  CHECK(first(1 << 16, false).walk == Walk::Rows);
+  CHECK(first((1 << 16) - 1, false).walk == Walk::Line);
+  CHECK(first((1 << 16) - 1, true).walk == Walk::Rows);
+  CHECK(first((1 << 16) - 1, true).column);
+}
+
+TEST_CASE("long runs are columns of parts, whose number is known where all have as many") {
+  const auto plan = [](std::int32_t width, std::int32_t height) {
+    const Placement plane{.extent = {width, height, 1, 1}};
+    const Division division{.blocks = {1, 1, 1, 1}, .inAnyOrder = true, .inGroups = true};
+    return planReduction(plane, valuePlacement(), {.texture = {16384, mostLayers}, .longRun = 64}, division);
+  };
+  const std::vector<ReducePass> passes = plan(1024, 1024);
+  REQUIRE(passes.size() == 4);
+  CHECK(passes[0].variant.column);
+  CHECK(int{passes[0].variant.run} == 64);
+  CHECK(int{passes[0].variant.part} == 8);
+  CHECK(passes[0].texture == TextureShape{1024, 16, 0});
+  CHECK(int{plan(1024, 72).front().variant.run} == 36);
+  CHECK(int{plan(1024, 72).front().variant.part} == 4);
+  CHECK(int{plan(1024, 67).front().variant.run} == 0);
+  CHECK(int{plan(1024, 67).front().variant.part} == 8);
+}

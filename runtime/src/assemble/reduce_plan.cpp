@@ -79,9 +79,8 @@ class Planner {
   }
 
   std::vector<ReducePass> plan() {
-    const bool isByRows = !division_.byIndex && blocks_ == 1 && (!input_.linear || isRows());
+    const bool isByRows = findRows();
     if (isByRows) {
-      takeRectangle();
       addRows(Walk::Rows);
     } else {
       addPass(division_.byIndex ? Walk::Index : input_.linear ? Walk::Box : Walk::Plane);
@@ -103,6 +102,32 @@ class Planner {
     std::int32_t width, height;
   };
 
+  /// Whether the elements, of one block, are rows of texels: those of a plane, or of a linearised stream from the beginning
+  /// of a row on. The last of these may be shorter, if there is one above it and order does not count.
+  bool findRows() {
+    if (division_.byIndex || input_.layered || blocks_ > 1) return false;
+    if (!input_.linear) {
+      left2_ = {input_.extent[0], input_.extent[1]};
+      corner_ = input_.origin;
+      return true;
+    }
+    const std::int32_t width = 1 << input_.shift;
+    if (!isLine(collapse(input_, division_.blocks)) || firstNumber() % width != 0) return false;
+    left2_ = left_ < width ? Extent2{left_, 1} : Extent2{width, left_ / width};
+    tail_ = left_ < width ? 0 : left_ % width;
+    corner_ = {0, firstNumber() / width, 0, 0};
+    return tail_ == 0 || division_.inAnyOrder;
+  }
+
+  static bool isLine(const Axes& axes) { return axes.count == 1 && axes.stride[0] == 1; }
+
+  /// Of a linearised stream: the number of the first element.
+  std::int32_t firstNumber() const {
+    std::int32_t number = 0;
+    for (std::size_t d = 0; d < input_.origin.size(); ++d) number += input_.origin[d] * input_.stride[d];
+    return number;
+  }
+
   /// How many texels of a width x height rectangle a run has, `most` at most. In order: a part of a row that divides it,
   /// where there is one, or whole rows. Where order does not count, a part of a column of elements, since neighbouring
   /// invocations then read neighbouring texels, and of partial results a square, which leaves invocations side by side.
@@ -110,18 +135,29 @@ class Planner {
     constexpr std::int32_t side = 8;
     if (division_.inAnyOrder && ofPartials && most >= side && width >= side && height >= most / side)
       return {side, most / side};
-    if (isRagged()) return {1, std::min(height, most)};
     if (division_.inAnyOrder && height >= most) return {1, dividing(height, most)};
     if (width < most && height > 1) return {width, std::min(height, most / width)};
     return {dividing(width, std::min(width, most)), 1};
   }
+
+  /// That of the first pass. A texel below the rows makes the last run of its column longer by one.
+  Extent2 firstRun() const {
+    const auto [width, height] = left2_;
+    const std::int32_t most = division_.byTexel ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
+    if (hasParts() && height >= longestPart)
+      return {1, height >= limits_.longRun ? dividing(height, limits_.longRun) : height};
+    if (tail_ > 0) return {1, std::clamp(height, 1, std::max(most - 1, 1))};
+    return runOf(width, height, most, false);
+  }
+
+  bool hasParts() const { return limits_.longRun > 0 && division_.inAnyOrder && division_.inGroups; }
 
   /// Whether the program that folds these runs first may know their length, which makes it a program of its own: where
   /// all have it and there is enough to fold.
   bool hasKnownRun(const Extent2& run) const {
     constexpr std::int32_t unit = 4;
     const auto [width, height] = left2_;
-    const bool isEven = width % run.width == 0 && height % run.height == 0 && !isRagged();
+    const bool isEven = tail_ == 0 && width % run.width == 0 && height % run.height == 0;
     const bool isLine = run.width == 1 || run.height == 1;
     return isEven && isLine && width * height >= limits_.knownRuns && run.width * run.height % unit == 0;
   }
@@ -137,29 +173,22 @@ class Planner {
   /// A pass over the rectangle of texels or partial results that is left, to a smaller one.
   void addRows(Walk walk) {
     const bool isFirst = walk == Walk::Rows;
-    const bool isOfTexels = isFirst && division_.byTexel;
-    const std::int32_t most = isOfTexels ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
     const auto [width, height] = left2_;  // before the pass
-    const Extent2 run = runOf(width, height, most, !isFirst);
+    const Extent2 run = isFirst ? firstRun() : runOf(width, height, limits_.fanIn, true);
     const bool isGrouped = isFirst && foldsInGroups();
     const std::int32_t side = isGrouped ? groupSide : 1;
     ReducePass pass{};
     pass.variant.grouped = isGrouped;
-    pass.variant.ragged = isRagged();
     pass.variant.walk = walk;
-    pass.variant.packed = isOfTexels;
-    if (isFirst && hasKnownRun(run)) {
-      pass.variant.run = static_cast<std::uint8_t>(run.width * run.height);
-      pass.variant.column = run.width == 1;
-    }
+    pass.variant.packed = isFirst && division_.byTexel;
+    if (isFirst) setRun(pass.variant, run);
     left2_ = {divideUp(width, run.width * side), divideUp(height, run.height * side)};
     left_ = left2_.width * left2_.height;
     pass.toResult = left_ == 1;
     pass.uniforms = {{"sk_item_shape", true, elements_},
-                     {"sk_origin", true, isFirst && !input_.linear ? input_.origin : Index4{}},
-                     {"sk_source", true, {width, height, lastRow_, 0}},
+                     {"sk_origin", true, isFirst ? corner_ : Index4{}},
+                     {"sk_source", true, {width, height, isFirst ? tail_ : 0, 0}},
                      {"sk_run_shape", true, {run.width, run.height, 0, 0}}};
-    lastRow_ = left2_.width;
     Placement partial;
     partial.extent = {left2_.width, left2_.height, 1, 1};
     pass.texture = {left2_.width, left2_.height, 0};
@@ -170,6 +199,18 @@ class Planner {
     passes_.push_back(std::move(pass));
   }
 
+  /// Makes a program for such runs: one that knows their length, where that is worth it.
+  void setRun(ReduceVariant& variant, const Extent2& run) const {
+    const bool isKnown = hasKnownRun(run);
+    const bool isLong = hasParts() && run.width == 1 && run.height >= longestPart;
+    if (isKnown) variant.run = static_cast<std::uint8_t>(run.width * run.height);
+    variant.column = run.width == 1 && (isKnown || isLong || tail_ > 0);
+    if (isLong) {
+      const bool isWhole = !isKnown || run.height % longestPart == 0;
+      variant.part = static_cast<std::uint8_t>(isWhole ? longestPart : longestPart / 2);
+    }
+  }
+
   /// Where a pass by rows or groups writes first. Its program knows of no other domain, so that passes share it.
   static void addTarget(ReducePass& pass) {
     const Rect& drawn = pass.draws.front();
@@ -178,23 +219,6 @@ class Planner {
     pass.variant.domainView = false;
     pass.variant.domainRank = 1;
   }
-
-  /// Whether a linearised stream is folded as the rows of its texture, in any order: squares of it are read faster than lines.
-  bool isRows() const {
-    const Axes axes = collapse(input_, division_.blocks);
-    return foldsInGroups() && isLine(axes) && startOf(input_) == 0 && !input_.layered;
-  }
-
-  /// All elements or texels as a rectangle, of which the last row may be shorter.
-  void takeRectangle() {
-    left2_ = {input_.extent[0], input_.extent[1]};
-    if (input_.linear) {
-      left2_.width = std::min(left_, 1 << input_.shift);
-      left2_.height = divideUp(left_, left2_.width);
-    }
-    lastRow_ = left_ - (left2_.height - 1) * left2_.width;
-  }
-  bool isRagged() const { return lastRow_ != left2_.width; }
 
   /// Whether work groups combine what their invocations have folded of the elements.
   bool foldsInGroups() const { return limits_.grouped && division_.inAnyOrder && division_.inGroups; }
@@ -275,16 +299,9 @@ class Planner {
     return shape;
   }
 
-  static std::int32_t startOf(const Placement& input) {
-    std::int32_t start = 0;
-    for (std::size_t d = 0; d < input.origin.size(); ++d) start += input.origin[d] * input.stride[d];
-    return start;
-  }
-  static bool isLine(const Axes& axes) { return axes.count == 1 && axes.stride[0] == 1; }
-
   void setLinearSource(ReducePass& pass) const {
     const Axes axes = collapse(input_, division_.blocks);
-    pass.uniforms.push_back({"sk_start", false, {startOf(input_)}});
+    pass.uniforms.push_back({"sk_start", false, {firstNumber()}});
     pass.uniforms.push_back({"sk_shift", false, {input_.shift}});
     if (isLine(axes)) {
       pass.variant.walk = Walk::Line;
@@ -319,7 +336,8 @@ class Planner {
   std::int32_t blocks_;
   std::int32_t left_;  ///< elements, texels or partial results of each block
   Extent2 left2_{};  ///< as a rectangle, of passes by rows
-  std::int32_t lastRow_ = 0;  ///< the length of its last row
+  Index4 corner_{};  ///< its first texel, before the first pass
+  std::int32_t tail_ = 0;  ///< texels of one more row, before the first pass
   std::int32_t sourceShift_ = 0;  ///< of the partial results' texture
   std::int32_t sourceWidth_ = 0;  ///< of that in passes by rows or groups
   bool partialsLayered_ = false;  ///< whether it is

@@ -46,9 +46,16 @@ struct ReduceLimits {
   std::int32_t fanIn = program::longestRun;  ///< elements a run, 2 or more
   bool grouped = false;  ///< passes are dispatches, of which a work group may fold partial results together
   std::int32_t knownRuns = 1 << 16;  ///< elements or texels from which on programs know how long runs are
+  /// Texels or elements of a run of parts, where order does not count and a program can combine them: a multiple of
+  /// longestPart. 0: there are no such runs.
+  std::int32_t longRun = 0;
 };
 
-/// Whether a program that folds elements can also combine what its invocations have, each starting from an identity.
+/// Texels or elements of a part of a long run: few, so that an error grows with the parts, and compilers unroll them.
+inline constexpr std::int32_t longestPart = 8;
+
+/// Whether a program that folds elements can also combine what it has folded, by parts or by invocations, each starting from
+/// an identity.
 bool foldsInGroups(const program::Reduction& reduction);
 
 /// Whether a fold asks where its elements are, so that it has to find them by their index.

@@ -134,17 +134,17 @@ class Fragment {
     return rectangle(left, top, width, height);
   }
 
-  /// What is of it in the source, row by row; its last row is shorter only where the program knows it.
+  /// What is of it in the source, row by row.
   Name rectangle(int left, int top, int width, int height) {
     Name total;
-    const Index4& extent = vector("sk_source");
-    if (pass_.variant.ragged && width > 1) throw std::logic_error("a run of rows reaches the shorter one");
-    for (int y = top; y < std::min(top + height, extent[1]); ++y) {
-      const bool isShorter = pass_.variant.ragged && y == extent[1] - 1;
-      for (int x = left; x < std::min(left + width, isShorter ? extent[2] : extent[0]); ++x) {
+    const Index4& end = vector("sk_source");
+    for (int y = top; y < std::min(top + height, end[1]); ++y) {
+      for (int x = left; x < std::min(left + width, end[0]); ++x) {
         total += element(vector("sk_origin")[0] + x, vector("sk_origin")[1] + y);
       }
     }
+    if (top < end[1] && top + height >= end[1] && left < end[2])  // a texel more, below the rows
+      total += element(vector("sk_origin")[0] + left, vector("sk_origin")[1] + end[1]);
     return total;
   }
 
@@ -522,6 +522,21 @@ TEST_CASE("reductions of packed streams keep the order") {
         }
       }
     }
+  }
+}
+
+TEST_CASE("long runs, and rows that end early, fold all") {
+  const auto checkAll = [](const std::optional<Region>& input) {
+    for (const std::int32_t longRun : {0, 16})
+      check(*input, {valuePlacement(), 1, 1}, {{64, mostLayers}, 16, false, 256, longRun}, {1, 1, 1, 1},
+            false, true);
+  };
+  for (const int n : {1, 9, 64, 65, 72, 511, 512, 520, 1000, 1021, 1024, 1025, 2049, 4000}) {
+    for (const int before : {0, 8, 64}) {
+      checkAll(layOut({n, 1, 1, 1}, 1, {before, 0, 0, 0}, none, 64));
+      checkAll(packed({4 * n, 1, 1, 1}, 1, {before, 0, 0, 0}, none, 64));
+    }
+    if (n < 73) checkAll(packed({4 * 5, n, 1, 1}, 2, none, none, 128));
   }
 }
 

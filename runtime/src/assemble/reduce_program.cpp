@@ -58,8 +58,9 @@ class ReductionText {
   std::string write() {
     if (kernel_.usesLoops && !isByRows() && variant_.walk != Walk::GroupedPartials) domain_.leaveOutside();
     if (variant_.walk != Walk::Nothing) defineParameters();
-    if (variant_.grouped) program_.foreign(reduction_.addition);
-    std::vector<Parameter> written = cutToPlanes(accumulators_, variant_.firstPlane, variant_.planeCount);
+    if (variant_.grouped || variant_.part > 0) program_.foreign(reduction_.addition);
+    const std::vector<Parameter> written =
+        withPlanes(accumulators_, variant_.firstPlane, variant_.planeCount);
     for (const Parameter& parameter : written) declareOutputs(program_, parameter);
     if (variant_.walk == Walk::Nothing) {
       startFromIdentities();
@@ -89,7 +90,10 @@ class ReductionText {
 
   /// The variable that holds an accumulator.
   std::string total(const Parameter& accumulator) const {
-    return accumulators_.size() == 1 ? "sk_total" : fmt::format("sk_total_{}", accumulator.symbol);
+    return held(isInPart_ ? "sk_part" : "sk_total", accumulator);
+  }
+  std::string held(std::string_view name, const Parameter& accumulator) const {
+    return accumulators_.size() == 1 ? std::string(name) : fmt::format("{}_{}", name, accumulator.symbol);
   }
 
   /// The index of the element that is folded, among all elements.
@@ -259,10 +263,13 @@ class ReductionText {
       return;
     }
     vectors({"sk_source", "sk_run_shape"});
-    if (variant_.ragged) {
-      statement("int sk_rows = sk_source.y - (sk_corner.x < sk_source.z ? 0 : 1);");
-      statement("int sk_count = clamp(sk_rows - sk_corner.y, 0, sk_run_shape.y);");
+    if (variant_.column) {
       statement("ivec2 sk_p = sk_origin.xy + sk_corner;");
+      statement("int sk_left = sk_source.y - sk_corner.y;");
+      statement(
+          "int sk_count = sk_left > sk_run_shape.y ? sk_run_shape.y : sk_left + int(sk_corner.x < "
+          "sk_source.z);");
+      first_ = {"sk_p"};
       next_ = {"sk_p + ivec2(0, sk_k)"};
       return;
     }
@@ -422,13 +429,10 @@ class ReductionText {
 
   /// The four elements of a packed input at a texel of the walk.
   static std::string lanesOf(const Parameter& input) { return fmt::format("sk_in_{}", input.symbol); }
-  void fetchLanes(const Texel& texel, bool declare) {
+  void fetchLanes(const Texel& texel, std::string_view indent) {
     for (const Parameter* input : inputs_) {
       if (!isNeeded(*input, variant_.specs)) continue;
-      const Parameter four = fourOf(*input);
-      statement(fmt::format("{}{}{} = {};", declare ? "" : "  ",
-                            declare ? fmt::format("{} ", four.element->glsl) : "", lanesOf(*input),
-                            fetch(program_, four, texel)));
+      statement(fmt::format("{}{} = {};", indent, lanesOf(*input), fetch(program_, fourOf(*input), texel)));
     }
   }
   void declareLanes() {
@@ -438,7 +442,7 @@ class ReductionText {
     }
   }
 
-  /// One element, or from component `first` on those of a packed texel.
+  /// An element, or from component `first` on those of a packed texel.
   void foldTexel(std::string_view indent, int first = 0) {
     if (!variant_.packed) return statement(fmt::format("{}{}", indent, foldingNext()));
     for (int lane = first; lane < lanes; ++lane) {
@@ -487,10 +491,10 @@ class ReductionText {
     return isNeeded(input, variant_.specs) ? fmt::format("{}{}", lanesOf(input), lane) : absentElement(input);
   }
 
-  void startFromIdentities() {
+  void startFromIdentities(std::string_view indent = "") {
     for (const Parameter* accumulator : accumulators_) {
-      statement(
-          fmt::format("{} {} = {};", accumulator->element->glsl, total(*accumulator), accumulator->identity));
+      statement(fmt::format("{}{} {} = {};", indent, accumulator->element->glsl, total(*accumulator),
+                            accumulator->identity));
     }
   }
 
@@ -515,19 +519,40 @@ class ReductionText {
     const bool isSeeded = isOfPartials(variant_.walk) || reduction_.seeded;
     const std::string count = variant_.run > 0 ? fmt::format("{}", variant_.run) : "sk_count";
     if (isSeeded) {
-      if (variant_.packed) fetchLanes(first_, true);
+      if (variant_.packed) declareLanes();
+      if (variant_.packed) fetchLanes(first_, "");
       startFromElements();
       if (variant_.packed) foldTexel("", 1);
     } else {
       startFromIdentities();
       if (variant_.packed) declareLanes();
     }
+    if (variant_.part > 0) foldParts();
+    if (variant_.part > 0 && variant_.run > 0) return;
     const std::string_view bound = variant_.grouped ? "sk_isInside && sk_k" : "sk_k";
     statement(fmt::format("for (int sk_k = {}; {} < {}; ++sk_k) {{", isSeeded ? 1 : 0, bound, count));
     if (isSeeded) step();
-    if (variant_.packed) fetchLanes(next_, false);
+    if (variant_.packed) fetchLanes(next_, "  ");
     foldTexel("  ");
     if (!isSeeded) step();
+    statement("}");
+  }
+
+  /// As many parts as a run has. What is left of it is sk_count elements or texels from sk_p on.
+  void foldParts() {
+    const int part = variant_.part;
+    statement(variant_.run > 0 ? fmt::format("for (int sk_i = 0; sk_i < {}; ++sk_i) {{", variant_.run / part)
+                               : fmt::format("for (; sk_count >= {0}; sk_count -= {0}) {{", part));
+    isInPart_ = true;
+    startFromIdentities("  ");
+    statement(fmt::format("  for (int sk_k = 0; sk_k < {}; ++sk_k) {{", part));
+    if (variant_.packed) fetchLanes(next_, "    ");
+    foldTexel("    ");
+    isInPart_ = false;
+    statement("  }");
+    statement("  " + calling(reduction_.combine,
+                             [&](std::size_t, std::size_t k) { return held("sk_part", *accumulators_[k]); }));
+    statement(fmt::format("  sk_p.y += {};", part));
     statement("}");
   }
 
@@ -561,6 +586,7 @@ class ReductionText {
   DomainText domain_;
   Texel first_;  ///< of the run's first element
   Texel next_;  ///< of its element sk_k
+  bool isInPart_ = false;  ///< whether accumulators are those of a part of the run
   std::vector<std::string> step_;  ///< statements that go from one element to the next
 };
 

@@ -20,8 +20,7 @@ enum class Walk : std::uint8_t {
   Plane,     ///< a 2-D texture, a block being a rectangle of it
   Box,       ///< a linearised stream, a block being a box of up to 4 axes
   Index,     ///< elements by their index, wherever each input has its own
-  Rows,  ///< a 2-D texture, of which a run is a rectangle, in order a part of a row or whole rows, or in any order all of
-  ///< a linearised stream's; to one block
+  Rows,  ///< rows of a 2-D texture, of which a run is a rectangle, in order a part of a row or whole rows; to one block
   Partials,  ///< the partial results of the pass before
   PartialRows,  ///< those that lie as Rows has left them
   GroupedPartials,  ///< those again, of any pass to one block, by a work group for each result
@@ -55,9 +54,10 @@ struct ReduceVariant {
   std::uint8_t axes = 1;  ///< Walk::Box and Walk::Index
   std::uint8_t run =
       0;  ///< Walk::Rows: texels of a run, where all have as many, of one row or column; else 0
-  bool column = false;
+  bool column = false;  ///< Walk::Rows: runs are parts of columns, the last of which may have a texel more
+  std::uint8_t part = 0;  ///< Walk::Rows, columns: texels that are folded by themselves, and then combined;
+  ///< a run that is known has a multiple. 0: a run has no parts
   bool grouped = false;  ///< Walk::Rows: a work group combines what its invocations have
-  bool ragged = false;  ///< Walk::Rows, grouped: the last row of what is read is shorter; runs are of columns
   bool strided =
       false;  ///< Walk::GroupedPartials: an invocation takes every groupSize-th, not one after the other
   bool packed = false;  ///< walks of elements: the inputs are packed, and a step is one of whole texels

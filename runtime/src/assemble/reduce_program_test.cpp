@@ -56,6 +56,53 @@ void main() {
 )");
 }
 
+TEST_CASE("a long run is folded part by part, and what is left of it at last") {
+  sk::program::Reduction sum = samples::sum;
+  sum.seeded = false;
+  const ReduceVariant known{.walk = Walk::Rows, .run = 64, .column = true, .part = 8, .packed = true};
+  CHECK(mainOf(sum, known) == R"(void main() {
+  ivec2 sk_corner = (ivec2(gl_FragCoord.xy) - sk_target.xy) * ivec2(1, 64);
+  ivec2 sk_p = sk_origin.xy + sk_corner;
+  float sk_total = 0.0;
+  vec4 sk_in_x;
+  for (int sk_i = 0; sk_i < 8; ++sk_i) {
+    float sk_part = 0.0;
+    for (int sk_k = 0; sk_k < 8; ++sk_k) {
+      sk_in_x = texelFetch(sk_tex_x, sk_p + ivec2(0, sk_k), 0);
+      sum(sk_in_x.x, sk_part);
+      sum(sk_in_x.y, sk_part);
+      sum(sk_in_x.z, sk_part);
+      sum(sk_in_x.w, sk_part);
+    }
+    sum(sk_part, sk_total);
+    sk_p.y += 8;
+  }
+  sk_out_total = sk_total;
+}
+)");
+  const ReduceVariant unknown{.walk = Walk::Rows, .column = true, .part = 8};
+  CHECK(mainOf(sum, unknown) == R"(void main() {
+  ivec2 sk_corner = (ivec2(gl_FragCoord.xy) - sk_target.xy) * sk_run_shape.xy;
+  ivec2 sk_p = sk_origin.xy + sk_corner;
+  int sk_left = sk_source.y - sk_corner.y;
+  int sk_count = sk_left > sk_run_shape.y ? sk_run_shape.y : sk_left + int(sk_corner.x < sk_source.z);
+  float sk_total = 0.0;
+  for (; sk_count >= 8; sk_count -= 8) {
+    float sk_part = 0.0;
+    for (int sk_k = 0; sk_k < 8; ++sk_k) {
+      sum(texelFetch(sk_tex_x, sk_p + ivec2(0, sk_k), 0).x, sk_part);
+    }
+    sum(sk_part, sk_total);
+    sk_p.y += 8;
+  }
+  for (int sk_k = 0; sk_k < sk_count; ++sk_k) {
+    sum(texelFetch(sk_tex_x, sk_p + ivec2(0, sk_k), 0).x, sk_total);
+  }
+  sk_out_total = sk_total;
+}
+)");
+}
+
 TEST_CASE("a plane is walked row by row") {
   CHECK(mainOf(samples::sum, {.walk = Walk::Plane}) == R"(void main() {
   int sk_first = (int(gl_FragCoord.y) << sk_domain_shift | int(gl_FragCoord.x)) * sk_fan;

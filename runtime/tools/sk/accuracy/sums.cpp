@@ -64,9 +64,10 @@ constexpr SumMode modes[] = {
     {"half", {.precision = sk::Precision::Half}, nullptr},
 };
 
-/// Additions that a summand meets at most: each pass of a reduction folds runs of 32, natively fewer.
+/// Additions that a summand meets at most: each pass of a reduction folds runs of 32, natively fewer, and the first may
+/// combine 8 of them.
 double depthOf(std::size_t count) {
-  double depth = 0;
+  double depth = 7;
   for (std::size_t left = count; left > 1; left = (left + 31) / 32) {
     depth += static_cast<double>(std::min<std::size_t>(left, 32) - 1);
   }
