@@ -14,12 +14,14 @@ namespace sk {
 namespace {
 
 constexpr std::size_t cacheLine = 64;
+constexpr std::size_t smallPage = std::size_t{1} << 12;
 constexpr std::size_t largePage = std::size_t{1} << 21;
 
-/// Where in a large page the next array of this thread begins: sixteen places, of which no two are alike in a small page either.
+/// Where in a page the next large array of this thread begins. Of sixteen arrays, each is 1 KiB or more behind all before it: what is
+/// stored to one does not look like what a loop is about to load from another.
 std::size_t nextPlace() {
   thread_local std::size_t number = 0;
-  return number++ % 16 * 5 * cacheLine;
+  return number++ * 21 * cacheLine % smallPage;
 }
 
 std::byte* aligned(std::size_t alignment, std::size_t bytes) {
