@@ -189,7 +189,8 @@ class LanesExpr {
     for (std::size_t i = 0; i < n.args.size(); ++i) {
       args.push_back(divergence.variables[i] ? spread(*n.args[i]) : text(*n.args[i]));
     }
-    return fmt::format("{}({})", lanesFunction(context_, n.callee), join(args, ", "));
+    const std::string call = fmt::format("{}({})", lanesFunction(context_, n.callee), join(args, ", "));
+    return divergence.result ? call : fmt::format("native::spread({})", call);
   }
   std::string print(Type, const IntrinsicCall& n) const {
     if (hasVectors(n.intrinsic)) {
