@@ -220,6 +220,7 @@ class KernelWriter {
     if (!hasLanesForm(module_, kernel_, divergence) || !gainsByLanes(module_, kernel_, divergence)) return;
     const NativeContext context{module_, types_, names_, kernel_, functions_, &divergence};
     text_ += "\n";
+    line(1, "static constexpr bool sk_hasLanes = std::is_same_v<sk_real, float>;\n");
     for (const FunctionId id : functionsOf(module_, kernel_)) {
       if (id == kernel_.entry || divergence.of(id).differs()) text_ += lanesFunctionText(context, id) + "\n";
     }
@@ -499,9 +500,7 @@ std::string nativeKernelDescriptor(const std::string& name, NativeForm form) {
   std::vector<std::string> code;
   for (const std::string_view real : realTypes(form.reals)) {
     const std::string kernel = fmt::format("generated::sk_{}<{}>", name, real);
-    const std::string by =
-        real == "float" && form.speed != Speed::Any ? fmt::format(", native::bestBy<{}>", kernel) : "";
-    const std::string loop = loops.define(fmt::format("native::runPieces<{}{}>", kernel, by), real, text);
+    const std::string loop = loops.define(fmt::format("native::runPieces<{}>", kernel), real, text);
     code.push_back(fmt::format("&native::runKernel<{}, &{}>", kernel, loop));
   }
   if (form.reals == Reals::Single) code.emplace_back("nullptr");

@@ -19,6 +19,15 @@
 #define SK_NATIVE_HOT
 #endif
 
+/// The same for code that makes sense with vectors of 256 bits alone: without a clone for CPUs that have none (isWide()).
+#if defined(SK_NATIVE_PLAIN) || !defined(__GNUC__)
+#define SK_NATIVE_WIDE
+#elif defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define SK_NATIVE_WIDE __attribute__((flatten, target("arch=x86-64-v3")))
+#else
+#define SK_NATIVE_WIDE __attribute__((flatten))
+#endif
+
 /// Without the clones.
 #if defined(__GNUC__) && !defined(SK_NATIVE_PLAIN)
 #define SK_NATIVE_INLINED __attribute__((flatten))
@@ -34,3 +43,16 @@
 #else
 #define SK_NATIVE_INDEPENDENT
 #endif
+
+namespace sk::native {
+
+/// Whether this CPU runs what is marked SK_NATIVE_WIDE.
+inline bool isWide() {
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
+  return __builtin_cpu_supports("x86-64-v3") != 0;
+#else
+  return true;
+#endif
+}
+
+}  // namespace sk::native

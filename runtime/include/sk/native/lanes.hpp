@@ -5,7 +5,7 @@
 // intrinsics, lanes_memory.hpp how values come from arrays and go there.
 //
 // The vectors are GCC's own, of 256 bits, and compiled to what a CPU has: all that takes or gives them is meant to become part of
-// one function (SK_NATIVE_HOT), so that none is ever passed.
+// one function (SK_NATIVE_WIDE), so that none is ever passed.
 #pragma once
 
 #include <bit>
@@ -20,9 +20,9 @@
 
 /// Whether kernels may compute by lanes. Who would rather compile sooner than run faster has no use for them.
 #if defined(SK_NATIVE_PLAIN) || !(defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12))
-#define SK_NATIVE_LANES 0
+#define SK_NATIVE_LANES false
 #else
-#define SK_NATIVE_LANES 1
+#define SK_NATIVE_LANES true
 #endif
 
 // None is passed, and so no warning is due that it would be passed otherwise on another CPU.
@@ -320,10 +320,19 @@ class Collected<Vec<T, N>> {
   Collected<T> components_[N];
 };
 
-/// What `operation` makes of every lane of the arguments; those that are no lanes serve for all.
+/// What `operation` makes of every lane of the arguments; those that are no lanes serve for all. A loop, as operations may be long.
 template <class Operation, class... Arguments>
 auto laneByLane(Operation&& operation, const Arguments&... arguments) {
   Collected<std::remove_cvref_t<decltype(operation(laneOf(arguments, 0)...))>> results;
+#pragma GCC unroll 1
+  for (int lane = 0; lane < laneCount; ++lane) results.set(lane, operation(laneOf(arguments, lane)...));
+  return results.take();
+}
+/// The same of a short operation, without a loop.
+template <class Operation, class... Arguments>
+auto eachLane(Operation&& operation, const Arguments&... arguments) {
+  Collected<std::remove_cvref_t<decltype(operation(laneOf(arguments, 0)...))>> results;
+#pragma GCC unroll 16
   for (int lane = 0; lane < laneCount; ++lane) results.set(lane, operation(laneOf(arguments, lane)...));
   return results.take();
 }

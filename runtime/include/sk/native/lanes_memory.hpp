@@ -109,7 +109,7 @@ LanesOf<T> loadAnywhere(void* const* arrays, std::int64_t first, const Lanes<Int
   if (all(numbers == begin)) return spread(load<T>(arrays, first + begin.word()));
   return eachComponent<T>(arrays, [&](const auto* array) {
     const auto* const from = array + first;
-    return laneByLane([&](Int number) { return static_cast<Component<T>>(from[number.word()]); }, numbers);
+    return eachLane([&](Int number) { return static_cast<Component<T>>(from[number.word()]); }, numbers);
   });
 }
 

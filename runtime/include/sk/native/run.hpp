@@ -6,11 +6,11 @@
 //   int sk_i                      its number in the chunk
 //   auto sk_streams()             references to the parameters that are placed at a chunk
 //   void sk_element()             computes the current element
-//   void sk_lanes()               computes it and those that follow it, laneCount together; where runPieces is told so
 //   bool sk_isOrdered             elements are computed one after the other: it pushes or scatters
 //   bool sk_isUneven              elements may take very different times: it has loops
 //
-// It may have a second form, sk_Inside, which knows that no neighbour lies outside of its row. Rows are divided into pieces, which
+// It may have sk_lanes(), which computes the current element and those that follow it, laneCount together; then sk_hasLanes says for which
+// real type. It may have a second form, sk_Inside, which knows that no neighbour lies outside of its row. Rows are divided into pieces, which
 // threads share out among them.
 #pragma once
 
@@ -94,9 +94,9 @@ void moveTo(Kernel& kernel, std::int32_t x, int i) {
 /// How elements are computed.
 enum class By : std::uint8_t { Element, Lanes };
 
+/// Whether a kernel may be computed by lanes.
 template <class Kernel>
-inline constexpr By bestBy =
-    SK_NATIVE_LANES && requires(Kernel& kernel) { kernel.sk_lanes(); } ? By::Lanes : By::Element;
+concept HasLanes = SK_NATIVE_LANES && requires { requires Kernel::sk_hasLanes; };
 
 /// Runs a kernel on chunks.
 template <class Kernel, By by>
@@ -178,17 +178,26 @@ void runPieces(const Call& call, Range pieces) {
   }
 }
 
+template <class Kernel>
+SK_NATIVE_WIDE void runPiecesByLanes(const Call& call, Range pieces) {
+  runPieces<Kernel, By::Lanes>(call, pieces);
+}
+
 /// A kernel over the domain; `hot` is runPieces of it.
 template <class Kernel, auto hot>
 void runKernel(const Call& call) {
   const Pieces pieces(call.domain, Kernel::sk_isUneven);
   if (pieces.count() == 0) return;
+  void (*run)(const Call&, Range) = hot;
+  if constexpr (HasLanes<Kernel>) {
+    if (isWide()) run = &runPiecesByLanes<Kernel>;
+  }
   if constexpr (Kernel::sk_isOrdered) {
-    hot(call, {0, pieces.count()});
+    run(call, {0, pieces.count()});
   } else {
     constexpr std::int64_t costOfElement = Kernel::sk_isUneven ? 1 << 6 : 1;
     inParallel(pieces.count(), pieces.elementsOfOne() * costOfElement,
-               Kernel::sk_isUneven ? Deal::AsTheyCome : Deal::Evenly, [&](Range range) { hot(call, range); });
+               Kernel::sk_isUneven ? Deal::AsTheyCome : Deal::Evenly, [&](Range range) { run(call, range); });
   }
 }
 
