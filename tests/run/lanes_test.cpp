@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // Promise: native code that computes neighbours side by side gives every bit of what it gives one element after the other. Rows of
-// one element each have no neighbours, so the same elements go through every kernel in both shapes.
+// one element each have no neighbours, so the same elements go through every kernel in both shapes; columns of a wider stream, since
+// the runtime makes one row of rows that follow each other.
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <vector>
 
@@ -35,6 +37,31 @@ sk::Stream<T> streamOf(sk::Device& device, const sk::Shape& shape, const std::ve
   return stream;
 }
 
+/// Where the elements of a call lie: in one row, or in a column of wider streams, which it keeps.
+class Place {
+ public:
+  Place(std::int64_t count, bool isColumn) : count_(count), isColumn_(isColumn) {}
+
+  template <class T>
+  sk::View<T> make(sk::Device& device) {
+    auto whole = std::make_shared<sk::Stream<T>>(
+        device.stream<T>(isColumn_ ? sk::Shape{count_, 3} : sk::Shape{count_}));
+    streams_.push_back(whole);
+    return isColumn_ ? whole->domain({0, 1}, {count_, 2}) : whole->domain({0}, {count_});
+  }
+  template <class T>
+  sk::View<T> of(sk::Device& device, const std::vector<T>& values) {
+    sk::View<T> view = make<T>(device);
+    view.write(values);
+    return view;
+  }
+
+ private:
+  std::int64_t count_;
+  bool isColumn_;
+  std::vector<std::shared_ptr<void>> streams_;
+};
+
 /// Bits, of which all that are NaN count as the same.
 template <class T>
 std::vector<std::uint32_t> bitsOf(const std::vector<T>& values) {
@@ -58,11 +85,12 @@ std::vector<std::uint32_t> bitsOf(const std::vector<T>& values) {
   return bits;
 }
 
-/// run(shape) gives what a kernel computes; `n` elements in one row, and in a row each.
+/// run(place) gives what a kernel computes there.
 template <class Run>
 void sameByLanes(std::int64_t n, const Run& run) {
   INFO(n << " elements");
-  CHECK(run(sk::Shape{n}) == run(sk::Shape{n, 1}));
+  Place row(n, false), column(n, true);
+  CHECK(run(row) == run(column));
 }
 
 std::vector<std::uint32_t> together(std::initializer_list<std::vector<std::uint32_t>> parts) {
@@ -85,15 +113,15 @@ void controlIsTheSame(const Kernel& kernel) {
   sk::Device device = sk::Device::native();
   for (const std::int64_t n : lengths()) {
     for (const int most : {0, 1, 5, 25}) {
-      sameByLanes(n, [&](const sk::Shape& shape) {
-        const auto i = streamOf(device, shape, list(n, [](int k) { return k - 3; }));
-        const auto c = streamOf(device, shape, list(n, [](int k) {
+      sameByLanes(n, [&](Place& place) {
+        const auto i = place.of(device, list(n, [](int k) { return k - 3; }));
+        const auto c = place.of(device, list(n, [](int k) {
                                   const int a = scattered(k);
                                   return sk::float2{static_cast<float>(a % 64) / 32 - 1.5F,
                                                     static_cast<float>(a / 64 % 64) / 48 - 0.5F};
                                 }));
-        auto result = device.stream<int>(shape);
-        auto sum = device.stream<sk::float2>(shape);
+        auto result = place.make<int>(device);
+        auto sum = place.make<sk::float2>(device);
         kernel(i, c, most, result, sum);
         return together({bitsOf(result.read()), bitsOf(sum.read())});
       });
@@ -116,15 +144,14 @@ TEST_CASE("integers are the same side by side at their extremes, too") {
                                  32, 33, 1000003, -1000003, least, least + 1, most};
   const auto pick = [&](int k) { return special[static_cast<std::size_t>(k) % special.size()]; };
   for (const int uniform : {0, -1, 3, least}) {
-    sameByLanes(300, [&](const sk::Shape& shape) {
-      const auto i = streamOf(device, shape, list(300, [](int k) { return k; }));
-      const auto a = streamOf(device, shape, list(300, pick));
-      const auto b = streamOf(device, shape, list(300, [&](int k) { return pick(k / 15 + k % 3); }));
-      const auto u =
-          streamOf(device, shape, list(300, [&](int k) { return static_cast<unsigned>(pick(k / 7)); }));
-      auto r = device.stream<sk::int4>(shape);
-      auto s = device.stream<sk::uint4>(shape);
-      auto flag = device.stream<bool>(shape);
+    sameByLanes(300, [&](Place& place) {
+      const auto i = place.of(device, list(300, [](int k) { return k; }));
+      const auto a = place.of(device, list(300, pick));
+      const auto b = place.of(device, list(300, [&](int k) { return pick(k / 15 + k % 3); }));
+      const auto u = place.of(device, list(300, [&](int k) { return static_cast<unsigned>(pick(k / 7)); }));
+      auto r = place.make<sk::int4>(device);
+      auto s = place.make<sk::uint4>(device);
+      auto flag = place.make<bool>(device);
       lanes::integers(i, a, b, u, uniform, r, s, flag);
       return together({bitsOf(r.read()), bitsOf(s.read()), bitsOf(flag.read())});
     });
@@ -159,17 +186,15 @@ void floatsAreTheSame(const Kernel& kernel) {
                                    Limits::quiet_NaN()};
   const auto n = static_cast<std::int64_t>(special.size() * special.size());
   for (const float z : {0.0F, 0.75F, -3.0F, Limits::infinity(), Limits::quiet_NaN()}) {
-    sameByLanes(n, [&](const sk::Shape& shape) {
-      const auto i = streamOf(device, shape, list(n, [](int k) { return k; }));
-      const auto x =
-          streamOf(device, shape,
-                   list(n, [&](int k) { return special[static_cast<std::size_t>(k) % special.size()]; }));
-      const auto y =
-          streamOf(device, shape,
-                   list(n, [&](int k) { return special[static_cast<std::size_t>(k) / special.size()]; }));
-      auto r = device.stream<sk::float4>(shape);
-      auto s = device.stream<sk::float4>(shape);
-      auto t = device.stream<sk::int4>(shape);
+    sameByLanes(n, [&](Place& place) {
+      const auto i = place.of(device, list(n, [](int k) { return k; }));
+      const auto x = place.of(
+          device, list(n, [&](int k) { return special[static_cast<std::size_t>(k) % special.size()]; }));
+      const auto y = place.of(
+          device, list(n, [&](int k) { return special[static_cast<std::size_t>(k) / special.size()]; }));
+      auto r = place.make<sk::float4>(device);
+      auto s = place.make<sk::float4>(device);
+      auto t = place.make<sk::int4>(device);
       kernel(i, x, y, z, r, s, t);
       return together({bitsOf(r.read()), bitsOf(s.read()), bitsOf(t.read())});
     });
@@ -192,13 +217,13 @@ void gathersAreTheSame(const Kernel& kernel) {
   // within, around the ends, and far outside
   for (const int first : {0, -20, 20, 1 << 30, -(1 << 30), std::numeric_limits<int>::max() - 40}) {
     for (const std::int64_t n : lengths()) {
-      sameByLanes(n, [&](const sk::Shape& shape) {
+      sameByLanes(n, [&](Place& place) {
         const auto i =
-            streamOf(device, shape, list(n, [&](int k) {
+            place.of(device, list(n, [&](int k) {
                        return static_cast<int>(static_cast<unsigned>(first) + static_cast<unsigned>(k));
                      }));
-        const auto j = streamOf(device, shape, list(n, [&](int k) { return scattered(k) % 60 - 10; }));
-        auto r = device.stream<float>(shape);
+        const auto j = place.of(device, list(n, [&](int k) { return scattered(k) % 60 - 10; }));
+        auto r = place.make<float>(device);
         kernel(i, j, a, b, c, r);
         return bitsOf(r.read());
       });
@@ -224,10 +249,10 @@ TEST_CASE("gathers in loops are the same side by side") {
                                   return sk::float4{x, 1 / (x + 1), -x, 0.1F * x};
                                 }));
   for (const std::int64_t n : lengths()) {
-    sameByLanes(n, [&](const sk::Shape& shape) {
-      const auto i = streamOf(device, shape, list(n, [](int k) { return k; }));
-      auto last = device.stream<int>(shape);
-      auto sum = device.stream<sk::float4>(shape);
+    sameByLanes(n, [&](Place& place) {
+      const auto i = place.of(device, list(n, [](int k) { return k; }));
+      auto last = place.make<int>(device);
+      auto sum = place.make<sk::float4>(device);
       lanes::followed(i, next, stops, weights, 30, last, sum);
       return together({bitsOf(last.read()), bitsOf(sum.read())});
     });
