@@ -106,7 +106,8 @@ void BufferedRead::take(std::size_t part, std::byte* elements) {
   bound.unmap();
 }
 
-void BufferedRead::unpack(const Part& part, const Block& block, const std::byte* texels, std::byte* elements) {
+void BufferedRead::unpack(const Part& part, const Block& block, const std::byte* texels,
+                          std::byte* elements) {
   const Element& element = *part.element;
   const std::size_t count = texelsOf(block.rect);
   std::vector<std::byte> narrowed;
@@ -135,8 +136,8 @@ void BufferedRead::unpack(const Part& part, const Block& block, const std::byte*
   }
 }
 
-void writeBuffered(GlDevice& device, const Element& element, std::span<Surface> planes, const Placement& region,
-                 const std::byte* elements) {
+void writeBuffered(GlDevice& device, const Element& element, std::span<Surface> planes,
+                   const Placement& region, const std::byte* elements) {
   const auto count = static_cast<std::size_t>(assemble::elements(region.extent));
   std::size_t bytes = 0;
   for (const Surface& plane : planes) bytes += aligned(count * plane.texture.format().texelBytes());

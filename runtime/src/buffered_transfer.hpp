@@ -80,6 +80,6 @@ class BufferedRead {
 /// Copies all elements of a region, row-major in host memory, to its planes. The memory may be reused at once; nobody
 /// waits for the device. Throws sk::Error where there is no memory.
 void writeBuffered(GlDevice& device, const program::Element& element, std::span<Surface> planes,
-                 const assemble::Placement& region, const std::byte* elements);
+                   const assemble::Placement& region, const std::byte* elements);
 
 }  // namespace sk

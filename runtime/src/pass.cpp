@@ -180,8 +180,7 @@ void copyRegion(GlDevice& device, const program::Element& element, std::span<Sur
   for (std::size_t plane = 0; plane < from.size(); ++plane) {
     if (!source.linear && !target.linear && source.packed == target.packed) {
       const assemble::Rect rect{target.origin[0], target.origin[1], target.extent[0], target.extent[1]};
-      const PassScope traced(device, {"copy", {}, "blit"}, rect,
-                             to[plane].texture.format().texelBytes());
+      const PassScope traced(device, {"copy", {}, "blit"}, rect, to[plane].texture.format().texelBytes());
       blit(device, from[plane], source, to[plane], target);
       continue;
     }

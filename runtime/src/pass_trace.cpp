@@ -160,15 +160,21 @@ PassRecord recordOf(const PassName& name, std::int64_t bytesRead, std::span<cons
                     std::size_t texelBytes, int elementsOfTexel) {
   const std::int64_t texels = texelsOf(rects);
   const bool isBox = rects.size() == 1 && rects.front().height > 1;
-  std::string domain = isBox ? fmt::format("{{{}, {}}}", rects.front().height, rects.front().width * elementsOfTexel)
-                             : fmt::format("{{{}}}", texels * elementsOfTexel);
-  return {std::string(name.kernel),  std::string(name.step), name.kind, std::move(domain), bytesRead,
+  std::string domain =
+      isBox ? fmt::format("{{{}, {}}}", rects.front().height, rects.front().width * elementsOfTexel)
+            : fmt::format("{{{}}}", texels * elementsOfTexel);
+  return {std::string(name.kernel),
+          std::string(name.step),
+          name.kind,
+          std::move(domain),
+          bytesRead,
           texels * static_cast<std::int64_t>(texelBytes)};
 }
 
 PassRecord recordOf(const PassName& name, const KernelProgram& program, std::span<const Operand> operands,
                     std::span<const Rect> rects, std::size_t texelBytes) {
-  return recordOf(name, bytesRead(program, operands), rects, texelBytes, program.isPacked ? assemble::lanes : 1);
+  return recordOf(name, bytesRead(program, operands), rects, texelBytes,
+                  program.isPacked ? assemble::lanes : 1);
 }
 
 PassRecord recordOf(const PassName& name, std::span<const Surface> planes, std::span<const Rect> rects,

@@ -308,7 +308,7 @@ struct Reduction {
       ///< argument it gets; nobody looks at those of Inputs and Accumulators
   std::string_view addition =
       {};  ///< functions that `fold.body` lacks in order to call the entry of `combine`, too;
-      ///< empty where they are the same, or no program can hold both
+  ///< empty where they are the same, or no program can hold both
   bool seeded;  ///< a run may start from its first elements, taken as the accumulators
       ///< (they have the same types); else it starts from the identities, which
       ///< then all exist

@@ -50,8 +50,9 @@ struct Profile {
       true;  ///< compute programs fetch a texel once for all neighbours in a work group, which pays on GPUs
   bool samples =
       false;  ///< texels are sampled at their centres, which llvmpipe does faster than it fetches them;
-      ///< the samplers that are bound are the nearest ones, but for filtered gathers
-  bool relaysUniforms = false;  ///< they come from the vertex program (relayed_values.hpp), which software renderers like
+  ///< the samplers that are bound are the nearest ones, but for filtered gathers
+  bool relaysUniforms =
+      false;  ///< they come from the vertex program (relayed_values.hpp), which software renderers like
 };
 const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();

@@ -15,8 +15,8 @@
 
 namespace sk::assemble {
 
-/// Invocations of a work group that shares nothing but texels of 16 bytes. Texels lie in squares in memory, and groups that
-/// cover some of these whole are fastest, in columns; of squares of 8 an H200 starts too few in time.
+/// Invocations of a work group where each stores a texel of 16 bytes. Texels lie in squares in memory, and groups that cover some
+/// of these whole are fastest, in columns; smaller groups take a large GPU longer to start than to run.
 inline constexpr std::pair<int, int> groupOfWideTexels{8, 16};
 /// Bytes that a work group may share, on any device.
 inline constexpr std::size_t groupBytes = 32768;

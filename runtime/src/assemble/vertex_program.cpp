@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The vertex program of every pass: a strip of two triangles with the corners of the viewport, without vertex data. One
-// triangle that covers it would have corners far outside, where software renderers clip it, which takes a third of a small draw's time.
+// triangle that covers it would have corners far outside, where software renderers clip it, which takes a good part of a small draw's time.
 #include <iterator>
 #include <span>
 

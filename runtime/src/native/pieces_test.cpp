@@ -32,7 +32,8 @@ std::vector<std::int64_t> visited(const Extents& domain, bool areUneven, std::in
 }  // namespace
 
 TEST_CASE("pieces are all elements, once and in order") {
-  for (const Extents& domain : {Extents{1, 1, 1, 1}, Extents{100, 3, 1, 1}, Extents{20000, 2, 2, 1}, Extents{65, 1, 2, 3}}) {
+  for (const Extents& domain :
+       {Extents{1, 1, 1, 1}, Extents{100, 3, 1, 1}, Extents{20000, 2, 2, 1}, Extents{65, 1, 2, 3}}) {
     for (const bool areUneven : {false, true}) {
       for (const std::int64_t inRange : {1, 3, 1000}) {
         for (const int most : {7, 1 << 20}) {

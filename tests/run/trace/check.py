@@ -120,9 +120,10 @@ def main():
             check("calls end, timed by queries", ended)
             check_calls(events, "GL timer query")
             check_nesting(events)
-            events, ended = run(folder, "shapes")
+            # As what is drawn, whatever a trial would choose: a fold, in software one of long columns, and what combines.
+            events, ended = run(folder, "shapes", SK_PROFILE="glsl330")
             programs = [len(slices(events, "program", name)) for name in ("saxpy", "total")]
-            check("no shape makes a program", ended and programs == [1, 2], programs)
+            check("no shape makes a program", ended and programs[0] == 1 and programs[1] in (2, 3), programs)
         events, ended = run(folder, "exit")
         check("what was before an exit", ended and len(slices(events, "call", "saxpy")) == 1, events)
         events, ended = run(folder, "throw")
