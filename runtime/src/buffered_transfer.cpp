@@ -136,6 +136,35 @@ void BufferedRead::unpack(const Part& part, const Block& block, const std::byte*
   }
 }
 
+void readToBuffer(GlDevice& device, Surface& plane, const Placement& region, GLuint buffer,
+                  std::size_t offset) {
+  const gl::Transfer transfer = plane.texture.format().tight;
+  if (!(readTransferOf(device, plane) == transfer)) {
+    throw Error(
+        fmt::format("fillBuffer: '{}' does not read texels of {} as they are; use a stream of vectors of 4",
+                    device.name(), plane.texture.format().name));
+  }
+  const gl::BoundPixels bound(buffer, gl::BoundPixels::Way::Read);
+  const std::size_t texelBytes = transfer.texelBytes();
+  const std::size_t needed =
+      offset + static_cast<std::size_t>(assemble::elements(region.extent)) * texelBytes;
+  if (bound.size() < needed) {
+    throw Error(fmt::format(
+        "fillBuffer: the buffer {} has {} bytes, but {} are needed; allocate it by glBufferData first",
+        buffer, bound.size(), needed));
+  }
+  gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound);
+  forEachTexelRun(region, [&](const TexelRun& run) {
+    const std::size_t from = offset + static_cast<std::size_t>(run.first) * texelBytes;
+    const std::size_t rowBytes = static_cast<std::size_t>(run.rect.width) * texelBytes;
+    forEachLayer(run.rect, layerRows(plane), [&](const Rect& part, std::int32_t layer, std::int32_t row) {
+      if (plane.texture.isLayered()) framebuffer.selectLayer(device.bound, layer);
+      framebuffer.read(device.bound, transfer, part.x, part.y, part.width, part.height,
+                       atOffset(from + static_cast<std::size_t>(row) * rowBytes));
+    });
+  });
+}
+
 void writeBuffered(GlDevice& device, const Element& element, std::span<Surface> planes,
                    const Placement& region, const std::byte* elements) {
   const auto count = static_cast<std::size_t>(assemble::elements(region.extent));

@@ -77,6 +77,11 @@ class BufferedRead {
   std::size_t bytes_ = 0;
 };
 
+/// Copies all texels of a region of a plane, row-major, to a GL buffer of the application's, from a byte on. Throws sk::Error
+/// where the buffer is too small, or the driver reads such texels in another form only.
+void readToBuffer(GlDevice& device, Surface& plane, const assemble::Placement& region, GLuint buffer,
+                  std::size_t offset);
+
 /// Copies all elements of a region, row-major in host memory, to its planes. The memory may be reused at once; nobody
 /// waits for the device. Throws sk::Error where there is no memory.
 void writeBuffered(GlDevice& device, const program::Element& element, std::span<Surface> planes,

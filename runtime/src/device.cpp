@@ -99,10 +99,10 @@ std::optional<Barrier> barrierOf(const std::string& name) {
 }
 
 DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles,
-                        const std::string& barrier, const std::string& profile) {
+                        const std::string& barrier, const std::string& profile, bool sharesContext) {
   const bool guaranteedLimits = wantsGuaranteed(limits);
-  return {textureLimitOf(textureLimit), guaranteedLimits, wantsPairs(doubles, guaranteedLimits),
-          barrierOf(barrier), targetOf(profile)};
+  return {textureLimitOf(textureLimit), guaranteedLimits,  wantsPairs(doubles, guaranteedLimits),
+          barrierOf(barrier),           targetOf(profile), sharesContext};
 }
 
 /// A device with the choices of a file and with a trace, if they are named.
@@ -124,9 +124,9 @@ std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
   }
   const std::string profile = chosen(options.profile, "SK_PROFILE");
   const gl::OpenRequest request{device, apiOf(profile)};
-  const DeviceChoices choices =
-      choicesOf(options.textureLimit, chosen(options.limits, "SK_LIMITS"),
-                chosen(options.doubles, "SK_DOUBLES"), chosen(options.barrier, "SK_BARRIER"), profile);
+  const DeviceChoices choices = choicesOf(
+      options.textureLimit, chosen(options.limits, "SK_LIMITS"), chosen(options.doubles, "SK_DOUBLES"),
+      chosen(options.barrier, "SK_BARRIER"), profile, options.sharesContext);
   return configured(std::make_unique<GlDevice>(gl::openContext(request), choices), options.configuration);
 }
 
@@ -141,8 +141,8 @@ Device::Device(Device&& other) noexcept = default;
 Device& Device::operator=(Device&& other) noexcept = default;
 
 Device Device::adopt(const DeviceOptions& options) {
-  const DeviceChoices choices =
-      choicesOf(options.textureLimit, options.limits, options.doubles, options.barrier, options.profile);
+  const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles,
+                                          options.barrier, options.profile, true);
   return Device(configured(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices),
                            options.configuration));
 }
@@ -190,5 +190,14 @@ void Device::finish() {
   state().finish();
 }
 void Device::release() { state().release(); }
+void Device::makeCurrent() { state().makeCurrent(); }
+
+void Device::countPasses(bool on) {
+  state().passCount = on ? std::optional<PassCount>(PassCount{}) : std::nullopt;
+}
+PassCount Device::passCount() const {
+  if (!state().passCount) throw Error("nobody counts the device's passes; call countPasses(true) first");
+  return *state().passCount;
+}
 
 }  // namespace sk

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -52,6 +53,7 @@ class DeviceState {
   virtual void startTrace(const std::string& file) = 0;
   virtual void finish() = 0;
   virtual void release() = 0;
+  virtual void makeCurrent() = 0;
 
   /// Only variable outputs may lack elements: they become empty.
   virtual void run(const program::Kernel& kernel, std::span<const Argument> arguments,
@@ -66,6 +68,7 @@ class DeviceState {
   DeviceLimits limits;
   Configuration configuration;
   FunctionTables tables;
+  std::optional<PassCount> passCount;  ///< none where nobody counts
   std::unique_ptr<Trace> trace;  ///< null where SK_TRACE names no file
 
  protected:

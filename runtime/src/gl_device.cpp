@@ -66,7 +66,8 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       framebuffers(bound),
       pool(bound, framebuffers),
       sinkPrograms(*this),
-      binaries(capabilities, driverKey(name(), driver(), profileName())) {
+      binaries(capabilities, driverKey(name(), driver(), profileName())),
+      sharesContext_(choices.sharesContext) {
   if (target == Target::Compute && !capabilities.hasCompute) {
     throw Error(
         fmt::format("'{}' runs no compute programs, which take OpenGL 4.3; leave profile glsl430 (option or "
@@ -92,7 +93,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
   }
   const gl::CurrentScope current(context);
   vertexArray = gl::VertexArray::create();
-  if (!context.isAdopted()) {
+  if (!isGuest()) {
     gl::setPassState(capabilities);
   }
   if (capabilities.hasLabels && capabilities.isDebugged) labels.turnOn();
@@ -180,7 +181,9 @@ assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, KernelClass ker
 assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
   std::optional<assemble::Stage>& known = faster_[static_cast<std::size_t>(kernels)];
   if (!known) {
+    const std::optional<PassCount> counted = passCount;
     const std::optional<double> ratio = computeOverFragment(*this, kernels);
+    passCount = counted;
     const double worth = capabilities.isSoftware ? worthDispatchingInSoftware : worthDispatching;
     known = ratio.value_or(1) < worth ? assemble::Stage::Compute : assemble::Stage::Fragment;
   }
@@ -402,11 +405,16 @@ void GlDevice::giveTransferBuffer(TransferBuffer&& buffer) noexcept {
   }
 }
 
-// An application's own mistakes in an adopted context are not ours to report.
+// An adopted context is current already, or cannot be made so.
+void GlDevice::makeCurrent() {
+  if (!context.isCurrent()) context.makeCurrent();
+}
+
+// An application's own mistakes in a context that it draws in are not ours to report.
 void GlDevice::throwPendingError() {
   if (passes) passes->collect();
   const GLenum error = gl::takeError();
-  const bool isOurs = !context.isAdopted() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
+  const bool isOurs = !isGuest() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
   if (error != GL_NO_ERROR && isOurs) {
     throw Error(fmt::format("the driver of '{}' reports {}; what the device's streams hold is undefined",
                             capabilities.renderer, gl::errorName(error)));

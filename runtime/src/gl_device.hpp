@@ -42,6 +42,7 @@ struct DeviceChoices {
   bool pairs = false;               ///< doubles are pairs of floats even where GLSL has double
   std::optional<Barrier> barrier = {};  ///< none: the one that proves itself
   Target target = Target::Default;  ///< Fragment, Compute, or what is faster
+  bool sharesContext = false;  ///< the application draws in the device's own context
   std::optional<bool> sharesTexels = {};  ///< assemble::Profile::sharesTexels; none: on hardware
 };
 
@@ -78,6 +79,7 @@ class GlDevice final : public DeviceState {
   void startTrace(const std::string& file) override;
   void finish() override;
   void release() override { context.release(); }
+  void makeCurrent() override;
   void run(const program::Kernel& kernel, std::span<const Argument> arguments,
            const CallOptions& options) override;
   void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
@@ -90,6 +92,9 @@ class GlDevice final : public DeviceState {
   std::vector<Surface> takePlanes(const program::Element& element, const assemble::TextureShape& shape,
                                   std::string_view whatFor);
   void givePlanes(std::vector<Surface>& planes) noexcept;
+
+  /// Whether the application draws in the context, too, so that each call puts its state back.
+  bool isGuest() const { return context.isAdopted() || sharesContext_; }
 
   assemble::TextureLimits textureLimits() const { return {limits.textureSize, limits.textureLayers}; }
 
@@ -148,6 +153,7 @@ class GlDevice final : public DeviceState {
   }
   void needExactSums(const program::Kernel& kernel);
 
+  const bool sharesContext_;
   std::map<ProgramChoice, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
   std::vector<TransferBuffer> transferBuffers_;  ///< idle ones
@@ -161,7 +167,7 @@ class GlDevice final : public DeviceState {
 class DeviceScope {
  public:
   explicit DeviceScope(GlDevice& device) : current_(device.context) {
-    if (device.context.isAdopted()) {
+    if (device.isGuest()) {
       saved_.emplace(device.capabilities, device.bound);
     }
     device.pool.trim();

@@ -210,4 +210,11 @@ StreamTexture GlStream::texture(int plane) {
           extents.layers};
 }
 
+void GlStream::fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) {
+  const DeviceScope scope(owner());
+  const Travelling what = travelling({this, {}, shape});
+  readToBuffer(owner(), planes[static_cast<std::size_t>(plane)], what.place, buffer,
+               static_cast<std::size_t>(byteOffset));
+}
+
 }  // namespace sk

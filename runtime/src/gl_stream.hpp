@@ -31,6 +31,7 @@ class GlStream final : public StreamState {
   void readReals(const StreamRegion& region, double* values) override;
   void writeReals(const StreamRegion& region, const double* values) override;
   StreamTexture texture(int plane) override;
+  void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
   void setName(std::string_view given) override;
 
   /// What the planes hold: the element, or another for it.

@@ -8,6 +8,7 @@
 #include <deque>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "assemble/placement.hpp"
@@ -81,13 +82,16 @@ PassName nameOf(std::string_view kernel, std::string_view step, const KernelProg
 /// What a kernel does in a pass, where that is not all of it.
 std::string_view stepOf(const assemble::Task& task);
 
-/// A pass for as long as this lives; nothing where the device has no trace. Two do not overlap. After the name come what
-/// recordOf() takes.
+/// A pass for as long as this lives, traced and counted; nothing where the device does neither. Two do not overlap. After the
+/// name come what recordOf() takes.
 class PassScope {
  public:
   template <class... What>
   PassScope(GlDevice& device, const PassName& name, const What&... what) : trace_(device.passes.get()) {
-    if (trace_ != nullptr) trace_->begin(recordOf(name, what...));
+    if (trace_ == nullptr && !device.passCount) return;
+    PassRecord record = recordOf(name, what...);
+    if (device.passCount) record.addTo(*device.passCount);
+    if (trace_ != nullptr) trace_->begin(std::move(record));
   }
   ~PassScope() {
     if (trace_ != nullptr) trace_->end();

@@ -131,7 +131,7 @@ class Scatterer {
     program.set("sk_first", first);
     program.set("sk_size", gl::Int4{shape.width, shape.height, 0, 0});
     device_.bound.vertexArray(device_.vertexArray.name());
-    const gl::Blending blending(device_.capabilities, blend, device_.context.isAdopted());
+    const gl::Blending blending(device_.capabilities, blend, device_.isGuest());
     const assemble::Rect whole{0, 0, shape.width, texture.rows()};
     const assemble::Rect written{0, 0, count, 1};
     const PassScope traced(device_, {sink_.name, "scatter"}, std::span<const Surface>(list_),

@@ -222,14 +222,34 @@ std::vector<double> detail::readReals(const StreamRegion& region) {
   return values;
 }
 
-StreamTexture detail::textureOf(StreamState* state, int plane) {
-  StreamState& stream = liveStream({state, {}, {}}, "texture");
+namespace {
+
+void checkPlane(const StreamState& stream, int plane, std::string_view what) {
   const auto count = static_cast<int>(stream.element->fields.size());
   if (plane < 0 || plane >= count) {
     throw Error(
-        fmt::format("texture: there is no plane {}; {} has {}, from 0", plane, stream.element->name, count));
+        fmt::format("{}: there is no plane {}; {} has {}, from 0", what, plane, stream.element->name, count));
   }
+}
+
+}  // namespace
+
+StreamTexture detail::textureOf(StreamState* state, int plane) {
+  StreamState& stream = liveStream({state, {}, {}}, "texture");
+  checkPlane(stream, plane, "texture");
   return stream.texture(plane);
+}
+
+void detail::fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t byteOffset, int plane) {
+  StreamState& stream = liveStream({state, {}, {}}, "fillBuffer");
+  checkPlane(stream, plane, "fillBuffer");
+  if (byteOffset < 0 || byteOffset % 4 != 0) {
+    throw Error(fmt::format("fillBuffer: the offset {} is no multiple of 4 from 0 on", byteOffset));
+  }
+  if (stream.shape.size() == 0) return;
+  const TraceScope traced(stream.device->trace.get(), "transfer", "fillBuffer");
+  traced.add("stream", stream.name);
+  stream.fillBuffer(buffer, byteOffset, plane);
 }
 
 }  // namespace sk

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -39,6 +40,8 @@ class StreamState {
   virtual void writeReals(const StreamRegion& region, const double* values) = 0;
   /// Throws sk::Error where the device has no textures.
   virtual StreamTexture texture(int plane) = 0;
+  /// The plane exists, the offset is good for it, and the stream has an element. Throws sk::Error where the device has no buffers.
+  virtual void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) = 0;
 
   /// What debuggers and the trace call it.
   virtual void setName(std::string_view given) { name = given; }

@@ -36,6 +36,12 @@ std::string argumentsOf(const PassRecord& pass) {
 
 }  // namespace
 
+void PassRecord::addTo(PassCount& count) const {
+  ++count.passes;
+  count.bytesRead += bytesRead;
+  count.bytesWritten += bytesWritten;
+}
+
 Trace::Time Trace::now() {
   const auto since = std::chrono::steady_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(since).count();

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sk/device.hpp"
 #include "sk/shape.hpp"
 #include "trace_file.hpp"
 
@@ -24,6 +25,8 @@ struct PassRecord {
   std::string domain;  ///< how many elements, or texels, in each direction
   std::int64_t bytesRead = 0;  ///< each texel of the inputs once
   std::int64_t bytesWritten = 0;
+
+  void addTo(PassCount& count) const;
 };
 
 class Trace {

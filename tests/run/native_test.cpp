@@ -44,6 +44,19 @@ TEST_CASE("the native device says what it is") {
   CHECK_THROWS_WITH(stream.texture(), Catch::Contains("no textures") && Catch::Contains("read()"));
 }
 
+TEST_CASE("native passes are counted, too") {
+  sk::Device device = sk::Device::native();
+  const auto in = streamOf<float>(device, std::vector<float>(64, 1.0F));
+  auto r = device.stream<float>({64});
+  device.countPasses(true);
+  cancel(in, r);
+  CHECK(sum(r) >= 0);
+  const sk::PassCount count = device.passCount();
+  CHECK(count.passes == 2);
+  CHECK(count.bytesRead == 2 * 64 * 4);
+  CHECK(count.bytesWritten == 64 * 4);
+}
+
 TEST_CASE("the reference computes in double, of the floats that it is given") {
   sk::Device device = sk::Device::reference();
   const std::vector<float> x{0.1F, 3.0F, 1e6F};

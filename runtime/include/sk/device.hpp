@@ -47,6 +47,9 @@ struct DeviceOptions {
   /// "precise", "xor" or "none": the Barrier of the device's programs, taken without a trial. Empty: environment
   /// variable SK_BARRIER, and without it the first of precise and xor that proves itself (Device::arithmetic).
   std::string barrier = {};
+  /// The application draws in the device's own context, too, off screen: the context is current after makeCurrent(), and every
+  /// call puts back the GL state that it changes, as in an adopted one. Devices without GL ignore it.
+  bool sharesContext = false;
 };
 
 struct DeviceLimits {
@@ -61,6 +64,14 @@ struct DeviceLimits {
 struct TargetTrial {
   std::string_view kernels;  ///< "elements", "neighbours", "gathers", "loops" or "reduces"
   double computeOverFragment;  ///< the time that compute programs take over that of fragment programs
+};
+
+/// What kernels and reduces have done on a device.
+struct PassCount {
+  std::int64_t passes =
+      0;  ///< draws, dispatches and native loop nests, those of reductions and of copies included
+  std::int64_t bytesRead = 0;  ///< of their operands: each texel of an input or gather once a pass
+  std::int64_t bytesWritten = 0;
 };
 
 /// What the reference computes with: doubles, of 53 bits, or __float128, of 113, which is software.
@@ -129,6 +140,15 @@ class Device {
   /// The tables that stand for functions of kernels which have run on the device, by the functions' names.
   std::vector<TableReport> tables() const;
 
+  /// Begins to count passes at 0, or ends it. Counting costs each pass about a microsecond of the host's time.
+  void countPasses(bool on);
+  /// Since they are counted. Passes by which the runtime finds out about the device are left out. Throws sk::Error where
+  /// nothing is counted.
+  PassCount passCount() const;
+
+  /// Makes the device's own context current on the calling thread, and leaves it so: for applications that draw in it
+  /// (DeviceOptions::sharesContext). Throws sk::Error where the device has no context of its own.
+  void makeCurrent();
   /// Waits until everything that was asked of the device is done.
   void finish();
   /// Lets go of the calling thread, so that another may use the device.

@@ -71,6 +71,7 @@ void writeAsync(const StreamRegion& region, const void* elements, std::size_t co
 std::vector<double> readReals(const StreamRegion& region);
 void writeReals(const StreamRegion& region, std::span<const double> values);
 StreamTexture textureOf(StreamState* state, int plane);
+void fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t byteOffset, int plane);
 
 }  // namespace detail
 
@@ -234,6 +235,14 @@ class Stream {
   /// The texture of a plane, for drawing from it in the same context (an adopted one). It is good
   /// until a kernel next writes the stream: a call that reads and writes it puts another in its place.
   StreamTexture texture(int plane = 0) const { return detail::textureOf(state_.get(), plane); }
+
+  /// Copies a plane's elements, row-major and without gaps, to a GL buffer of the device's context from `byteOffset` (a
+  /// multiple of 4) on, without a trip through host memory: attributes of vertices, for one. They are as the texture has them, so that
+  /// three components take the room of four, and of halves there are halves. Throws sk::Error where the buffer is too small, or
+  /// the device has no GL.
+  void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset = 0, int plane = 0) const {
+    detail::fillBuffer(state_.get(), buffer, byteOffset, plane);
+  }
 
  private:
   friend class Device;

@@ -85,23 +85,31 @@ void Context::release() const noexcept {
   }
 }
 
-void CurrentScope::enter(const Context& context) {
-  if (context.isAdopted()) {
+void Context::makeCurrent() const {
+  if (isAdopted()) {
     throw Error(
         "the context that the device adopted is not current on this thread; make it current before "
         "you use the device or its streams");
   }
+  const bool hadNone = eglGetCurrentContext() == EGL_NO_CONTEXT;
+  if (!becomeCurrent()) {
+    const EGLint error = eglGetError();
+    throw Error(whyNotCurrent(error, hadNone && current().has_value()));
+  }
+}
+
+void CurrentScope::enter(const Context& context) {
   previous_ = eglGetCurrentContext();
   if (previous_ != EGL_NO_CONTEXT) {
     display_ = eglGetCurrentDisplay();
     draw_ = eglGetCurrentSurface(EGL_DRAW);
     read_ = eglGetCurrentSurface(EGL_READ);
   }
-  if (!context.makeCurrent()) {
-    const EGLint error = eglGetError();
-    const bool isGlxCurrent = previous_ == EGL_NO_CONTEXT && Context::current().has_value();
+  try {
+    context.makeCurrent();
+  } catch (const Error&) {
     previous_ = EGL_NO_CONTEXT;
-    throw Error(whyNotCurrent(error, isGlxCurrent));
+    throw;
   }
 }
 

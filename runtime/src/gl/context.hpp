@@ -24,13 +24,15 @@ class Context {
 
   bool isAdopted() const { return display_ == EGL_NO_DISPLAY; }
   bool isCurrent() const { return getCurrent_() == handle_; }
+  /// Makes it current, for longer than a CurrentScope does. Throws as that.
+  void makeCurrent() const;
   /// Makes no context current where this one is.
   void release() const noexcept;
 
  private:
   friend class CurrentScope;
   Context() = default;
-  bool makeCurrent() const noexcept {
+  bool becomeCurrent() const noexcept {
     return eglMakeCurrent(display_, surface_, surface_, handle_) == EGL_TRUE;
   }
 

@@ -18,4 +18,11 @@ std::byte* BoundPixels::map(std::size_t bytes) const {
   return static_cast<std::byte*>(glMapBufferRange(target_, 0, static_cast<GLsizeiptr>(bytes), access));
 }
 
+std::size_t BoundPixels::size() const {
+  GLint64 bytes = 0;
+  dropErrors();
+  glGetBufferParameteri64v(target_, GL_BUFFER_SIZE, &bytes);
+  return takeError() == GL_NO_ERROR ? static_cast<std::size_t>(bytes) : 0;
+}
+
 }  // namespace sk::gl

@@ -36,9 +36,8 @@ class BoundPixels {
  public:
   enum class Way : GLenum { Read = GL_PIXEL_PACK_BUFFER, Write = GL_PIXEL_UNPACK_BUFFER };
 
-  BoundPixels(const PixelBuffer& buffer, Way way) : target_(static_cast<GLenum>(way)) {
-    glBindBuffer(target_, buffer.name());
-  }
+  BoundPixels(const PixelBuffer& buffer, Way way) : BoundPixels(buffer.name(), way) {}
+  BoundPixels(GLuint buffer, Way way) : target_(static_cast<GLenum>(way)) { glBindBuffer(target_, buffer); }
   ~BoundPixels() { glBindBuffer(target_, 0); }
   BoundPixels(const BoundPixels&) = delete;
   BoundPixels& operator=(const BoundPixels&) = delete;
@@ -48,6 +47,8 @@ class BoundPixels {
   /// The address of all of them, until unmap(): after a read for reading, else for writing everything. Null where the
   /// driver fails.
   std::byte* map(std::size_t bytes) const;
+  /// Bytes that it has; 0 where there is no such buffer.
+  std::size_t size() const;
   /// False where the driver has lost what was written.
   bool unmap() const { return glUnmapBuffer(target_) == GL_TRUE; }
 

@@ -285,7 +285,7 @@ void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments
   const RealType real = realOf(options);
   Operands operands(real, kernel, arguments, domain, tablesOf(kernel, real, options));
   {
-    const NativePass traced(trace.get(), kernel, {}, arguments, domain);
+    const NativePass traced(*this, kernel, {}, arguments, domain);
     codeOf(*kernel.native, real)(operands.call());
   }
   operands.settle();
@@ -306,7 +306,7 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
     folding.fold.list()[i] = {.components = value.arrays(), .stride = {1, 1, 1, 1}};
     values.emplace_back(parameter.element, &value);
   }
-  const NativePass traced(trace.get(), reduction.fold, "fold", arguments, domain);
+  const NativePass traced(*this, reduction.fold, "fold", arguments, domain);
   if (domain.size() == 0) {
     folding.storeIdentity();
   } else {
@@ -335,7 +335,7 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
     Extents block = fastestFirst(domain);
     for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
     {
-      const NativePass traced(trace.get(), reduction.fold, "fold", arguments, domain);
+      const NativePass traced(*this, reduction.fold, "fold", arguments, domain);
       folding.run(block);
     }
     folding.fold.settle();

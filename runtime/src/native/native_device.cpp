@@ -34,6 +34,10 @@ NativeDevice::NativeDevice(RealType real)
             .uniformComponents = unlimited};
 }
 
+void NativeDevice::makeCurrent() {
+  throw Error(fmt::format("'{}' has no GL context to make current; draw in that of a GL device", name_));
+}
+
 NativeDevice::~NativeDevice() {
   while (firstStream() != nullptr) {
     auto& stream = static_cast<NativeStream&>(*firstStream());

@@ -37,6 +37,7 @@ class NativeDevice final : public DeviceState {
   void startTrace(const std::string& file) override;
   void finish() override {}
   void release() override {}
+  void makeCurrent() override;
   void run(const program::Kernel& kernel, std::span<const Argument> arguments,
            const CallOptions& options) override;
   void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,

@@ -113,6 +113,11 @@ StreamTexture NativeStream::texture(int) {
       fmt::format("texture: '{}' has no textures; read() the stream, or use a GL device", owner().name()));
 }
 
+void NativeStream::fillBuffer(std::uint32_t, std::int64_t, int) {
+  throw Error(fmt::format("fillBuffer: '{}' has no GL; read() the stream and upload it, or use a GL device",
+                          owner().name()));
+}
+
 void NativeStream::become(const native::Pushed& pushed, RealType real) {
   const std::size_t bytes = componentsOf(*element, real)[0].storedBytes;
   const auto count = static_cast<std::int64_t>(pushed[0].size() / bytes);

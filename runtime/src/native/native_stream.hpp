@@ -24,6 +24,7 @@ class NativeStream final : public StreamState {
   void readReals(const StreamRegion& region, double* values) override;
   void writeReals(const StreamRegion& region, const double* values) override;
   StreamTexture texture(int plane) override;
+  void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
 
   /// Takes what a kernel has pushed for its elements, which has floats as `real`.
   void become(const native::Pushed& pushed, RealType real);

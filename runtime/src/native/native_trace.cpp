@@ -21,7 +21,7 @@ std::int64_t bytesOf(const StreamRegion& region) {
 
 }  // namespace
 
-void NativePass::begin(const program::Kernel& kernel, std::string_view step,
+void NativePass::begin(DeviceState& device, const program::Kernel& kernel, std::string_view step,
                        std::span<const Argument> arguments, const Shape& domain) {
   record_ = {std::string(kernel.name), std::string(step), "native", toString(domain), 0, 0};
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -30,6 +30,7 @@ void NativePass::begin(const program::Kernel& kernel, std::string_view step,
     const bool isRead = role == program::Role::Input || role == program::Role::Gather;
     (isRead ? record_.bytesRead : record_.bytesWritten) += bytesOf(arguments[i].region);
   }
+  if (device.passCount) record_.addTo(*device.passCount);
   begin_ = Trace::now();
 }
 

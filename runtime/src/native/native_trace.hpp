@@ -6,18 +6,19 @@
 
 #include <span>
 
+#include "device_state.hpp"
 #include "sk/call.hpp"
 #include "trace.hpp"
 
 namespace sk {
 
-/// One loop nest for as long as this lives; nothing where `trace` is null.
+/// One loop nest for as long as this lives, traced and counted; nothing where the device does neither.
 class NativePass {
  public:
-  NativePass(Trace* trace, const program::Kernel& kernel, std::string_view step,
+  NativePass(DeviceState& device, const program::Kernel& kernel, std::string_view step,
              std::span<const Argument> arguments, const Shape& domain)
-      : trace_(trace) {
-    if (trace_ != nullptr) begin(kernel, step, arguments, domain);
+      : trace_(device.trace.get()) {
+    if (trace_ != nullptr || device.passCount) begin(device, kernel, step, arguments, domain);
   }
   ~NativePass() {
     if (trace_ != nullptr) end();
@@ -26,8 +27,8 @@ class NativePass {
   NativePass& operator=(const NativePass&) = delete;
 
  private:
-  void begin(const program::Kernel& kernel, std::string_view step, std::span<const Argument> arguments,
-             const Shape& domain);
+  void begin(DeviceState& device, const program::Kernel& kernel, std::string_view step,
+             std::span<const Argument> arguments, const Shape& domain);
   void end() noexcept;
 
   Trace* trace_;
