@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+//
+// Pictures with a title above, a line below, and a bar that says what colours mean.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sk/types.hpp>
+
+#include "support/image.hpp"
+
+namespace examples {
+
+struct Caption {
+  std::string title;     ///< bold, above; empty: none
+  std::string subtitle;  ///< beneath it: what is shown
+  std::string footnote;  ///< below, small: parameters, step, time
+};
+
+/// A scale of values: colours from `low` to `high`, sRGB-encoded.
+struct ColourBar {
+  std::vector<sk::float3> colours;
+  double low = 0;
+  double high = 1;
+  std::string label;
+};
+
+/// The plot between its texts, on a dark ground. Sizes of letters go with the plot's, and the result is even in width and
+/// height, as films want it.
+Image figure(const Image& plot, const Caption& caption, const std::optional<ColourBar>& bar = std::nullopt);
+
+/// Round numbers from low to high, some `count` of them, and how they are written.
+struct Tick {
+  double value;
+  std::string text;
+};
+std::vector<Tick> ticksBetween(double low, double high, int count);
+
+}  // namespace examples

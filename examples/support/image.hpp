@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+//
+// Pixels as screens and films want them. It knows nothing of files but PNG, and nothing of devices.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include <sk/types.hpp>
+
+namespace examples {
+
+/// 8 bits each of red, green and blue, sRGB-encoded, row by row from the top.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;  ///< width * height * 3
+
+  std::uint8_t* pixel(int x, int y) {
+    return rgb.data() + (std::size_t(y) * std::size_t(width) + std::size_t(x)) * 3;
+  }
+  const std::uint8_t* pixel(int x, int y) const {
+    return rgb.data() + (std::size_t(y) * std::size_t(width) + std::size_t(x)) * 3;
+  }
+};
+
+/// One colour everywhere; components are sRGB-encoded, in [0, 1].
+Image plainImage(int width, int height, const sk::float3& colour);
+/// Of width * height pixels in [0, 1] that are sRGB-encoded already (what is outside is clamped, NaN is black).
+Image imageOf(int width, int height, std::span<const sk::float3> pixels);
+/// Each pixel the mean of factor x factor ones, as light: the second half of supersampling. Sizes are multiples of the factor.
+Image reduced(const Image& image, int factor);
+/// Each pixel factor x factor times.
+Image magnified(const Image& image, int factor);
+/// Copies `part` into `image`, its upper left corner at (x, y); what is outside is dropped.
+void paste(Image& image, const Image& part, int x, int y);
+/// Mixes a colour into a pixel, `share` of it (in [0, 1]); a pixel outside is nothing.
+void blend(Image& image, int x, int y, const sk::float3& colour, float share);
+
+/// Creates the file's folder. Throws std::runtime_error where the file cannot be written.
+void savePng(const std::filesystem::path& file, const Image& image);
+
+}  // namespace examples

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+//
+// A window with an OpenGL context that is current while it lives, by GLFW; sk::Device::adopt() makes a device of it. It
+// draws nothing itself.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+struct GLFWwindow;
+
+namespace examples {
+
+/// What a person does in a window, since it was last asked.
+struct Input {
+  std::string typed;  ///< characters, in order; Escape is \x1b
+  bool isDragged = false;  ///< with the left button
+  double dragX = 0, dragY = 0;  ///< pixels that the mouse was dragged
+  double wheel = 0;  ///< notches, away from oneself is positive
+};
+
+class Window {
+ public:
+  /// Opens a window of this size in screen coordinates, OpenGL 3.3 core (or 4.x, where there is that), 4 samples a pixel.
+  /// Throws std::runtime_error where there is no display, or none that has OpenGL.
+  Window(const std::string& title, int width, int height);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  /// Until somebody closes it.
+  bool isOpen() const;
+  void close();
+  /// Shows what was drawn, waits for the screen, and looks what was done meanwhile.
+  Input show();
+  void setTitle(const std::string& title);
+
+  struct Size {
+    int width, height;
+  };
+  /// Of what is drawn to, in pixels; changes with the window.
+  Size size() const;
+
+ private:
+  struct Library {  ///< GLFW itself
+    Library();
+    ~Library();
+  };
+
+  Library library_;
+  Input input_;
+  std::optional<std::pair<double, double>> dragFrom_;
+  struct Closer {
+    void operator()(GLFWwindow* window) const noexcept;
+  };
+  std::unique_ptr<GLFWwindow, Closer> window_;
+};
+
+}  // namespace examples
