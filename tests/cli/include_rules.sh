@@ -22,7 +22,7 @@ runtime/tools         sk
 runtime/tests         sk assemble gl epoxy
 runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/scalar_bytes.hpp assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
-examples              sk
+examples              sk epoxy
 tests                 sk
 tests/bench           sk epoxy
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
