@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+#include "lattice.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "flow.sk.hpp"
+#include "heat.sk.hpp"
+#include "observe.sk.hpp"
+#include "reaction.sk.hpp"
+
+namespace examples {
+namespace {
+
+sk::Storage storageFor(sk::Precision precision) {
+  switch (precision) {
+    case sk::Precision::Default:
+    case sk::Precision::Single: return sk::Storage::Single;
+    case sk::Precision::Half: return sk::Storage::Half;
+    case sk::Precision::Extended: return sk::Storage::Extended;
+    case sk::Precision::Double: return sk::Storage::Double;
+  }
+  return sk::Storage::Single;
+}
+
+unsigned code(Edge edge) { return static_cast<unsigned>(edge); }
+
+sk::Shape shapeOf(const Grid& grid) {
+  if (grid.isSpace()) return {grid.depth, grid.height, grid.width};
+  return {grid.height, grid.width};
+}
+
+}  // namespace
+
+Lattice::Lattice(sk::Device& device, const Model& model)
+    : device_(device), model_(model), c_(coefficientsOf(model)), options_{.precision = model.precision} {
+  allocate(now_);
+  if (model.latentHeat) warmed_.emplace(makeStream());
+}
+
+sk::Stream<float> Lattice::makeStream() {
+  auto stream = device_.stream<float>(shapeOf(model_.grid), storageFor(model_.precision));
+  stream.writeReals(std::vector<double>(static_cast<std::size_t>(model_.grid.cells()), 0.0));
+  return stream;
+}
+
+void Lattice::allocate(Fields& fields) {
+  for (const Field field : fieldsOf(model_)) {
+    auto& place = fields[placeOf(field)];
+    if (!place) place.emplace(makeStream());
+  }
+}
+
+sk::Stream<float>& Lattice::stream(Field field) {
+  auto& place = now_[placeOf(field)];
+  if (!place) throw std::logic_error(fmt::format("the scene has no field '{}'", nameOf(field)));
+  return *place;
+}
+
+void Lattice::write(Field field, std::span<const double> values) { stream(field).writeReals(values); }
+std::vector<double> Lattice::read(Field field) { return stream(field).readReals(); }
+
+void Lattice::advance(std::int64_t steps) {
+  for (std::int64_t i = 0; i < steps; ++i) step(now_, now_);
+}
+
+double Lattice::advanceAndMeasure() {
+  allocate(next_);
+  step(now_, next_);
+  double most = 0.0;
+  for (const Field field : fieldsOf(model_)) {
+    if (field == Field::Pressure) continue;
+    most = std::max<double>(most, lattice::change.with(options_)(in(now_, field), in(next_, field)));
+  }
+  std::swap(now_, next_);
+  return most;
+}
+
+void Lattice::step(Fields& from, Fields& to) {
+  if (model_.flow) stepFlow(from, to);
+  if (model_.hasTemperature()) stepTemperature(from, to);
+  if (model_.reaction) stepReaction(from, to);
+}
+
+void Lattice::stepFlow(Fields& from, Fields& to) {
+  const Boundary& b = model_.boundary;
+  const lattice::Fluid fluid{c_.carry, c_.viscosity, c_.lift, c_.rest, c_.slope};
+  lattice::push.with(options_)(b.closedX(), b.closedY(), model_.flow->slip, fluid, in(from, Field::VelocityX),
+                               in(from, Field::VelocityY), in(from, Field::Pressure),
+                               in(from, Field::Temperature), in(to, Field::VelocityX),
+                               in(to, Field::VelocityY));
+}
+
+void Lattice::stepTemperature(Fields& from, Fields& to) {
+  sk::Stream<float>& before = in(from, Field::Temperature);
+  sk::Stream<float>& after = in(to, Field::Temperature);
+  sk::Stream<float>& warmed = warmed_ ? *warmed_ : after;
+  sk::Stream<float>* current = &before;
+  if (model_.flow) {
+    const auto& [edges, t, closedZ] = model_.boundary;
+    lattice::convect.with(options_)(code(edges[0]), code(edges[1]), code(edges[2]), code(edges[3]), walls(),
+                                    c_.spread, c_.carry, c_.stiffness, before, in(to, Field::VelocityX),
+                                    in(to, Field::VelocityY), in(from, Field::Pressure), warmed,
+                                    in(to, Field::Pressure));
+    current = &warmed;
+  } else if (model_.diffusion) {
+    diffuse(before, warmed);
+    current = &warmed;
+  }
+  if (model_.buoyancy) {
+    rise(*current, warmed);
+    current = &warmed;
+  }
+  if (model_.latentHeat) exchange(before, *current, after);
+}
+
+sk::float4 Lattice::walls() const {
+  const auto& t = model_.boundary.temperatures;
+  return {static_cast<float>(t[0]), static_cast<float>(t[1]), static_cast<float>(t[2]),
+          static_cast<float>(t[3])};
+}
+
+void Lattice::diffuse(sk::Stream<float>& from, sk::Stream<float>& to) {
+  const Boundary& b = model_.boundary;
+  const auto& edges = b.edges;
+  const sk::float4 at = walls();
+  if (model_.grid.isSpace()) {
+    lattice::diffuse3.with(options_)(b.closedX(), code(edges[2]), code(edges[3]), b.closedZ, {at.z, at.w},
+                                     c_.spread, from, to);
+  } else {
+    lattice::diffuse.with(options_)(code(edges[0]), code(edges[1]), code(edges[2]), code(edges[3]), at,
+                                    c_.spread, from, to);
+  }
+}
+
+void Lattice::rise(sk::Stream<float>& from, sk::Stream<float>& to) {
+  const auto& edges = model_.boundary.edges;
+  const sk::float4 at = walls();
+  const auto density = static_cast<unsigned>(model_.buoyancy->density);
+  const lattice::Boiling b{c_.point, c_.alpha, c_.sigma, c_.latent};
+  if (model_.grid.isSpace()) {
+    lattice::rise3.with(options_)(code(edges[2]), code(edges[3]), density, {at.z, at.w}, b, from, to);
+  } else {
+    lattice::rise.with(options_)(code(edges[2]), code(edges[3]), density, {at.z, at.w}, b, from, to);
+  }
+}
+
+void Lattice::exchange(sk::Stream<float>& before, sk::Stream<float>& after, sk::Stream<float>& to) {
+  const Boundary& b = model_.boundary;
+  const lattice::Boiling boiling{c_.point, c_.alpha, c_.sigma, c_.latent};
+  if (model_.grid.isSpace()) {
+    lattice::exchange3.with(options_)(b.closedX(), b.closedY(), b.closedZ, boiling, before, after, to);
+  } else {
+    lattice::exchange.with(options_)(b.closedX(), b.closedY(), boiling, before, after, to);
+  }
+}
+
+void Lattice::stepReaction(Fields& from, Fields& to) {
+  const Boundary& b = model_.boundary;
+  const lattice::Medium medium{c_.feed, c_.kill, c_.spreadU, c_.spreadV, c_.reactionStep};
+  if (model_.flow) {
+    lattice::reactStirred.with(options_)(b.closedX(), b.closedY(), medium, c_.stirring, in(from, Field::U),
+                                         in(from, Field::V), in(to, Field::VelocityX),
+                                         in(to, Field::VelocityY), in(to, Field::U), in(to, Field::V));
+  } else {
+    lattice::react.with(options_)(b.closedX(), b.closedY(), medium, in(from, Field::U), in(from, Field::V),
+                                  in(to, Field::U), in(to, Field::V));
+  }
+}
+
+Observation Lattice::observe(Field field) {
+  const auto [least, most, total, broken] = lattice::observe.with(options_)(stream(field));
+  const auto cells = static_cast<double>(model_.grid.cells());
+  return {least, most, total / cells, broken == std::numeric_limits<int>::max() ? -1 : broken};
+}
+
+double Lattice::nusselt() {
+  const auto& [edges, temperatures, closedZ] = model_.boundary;
+  const Grid& g = model_.grid;
+  sk::Stream<float>& t = stream(Field::Temperature);
+  const auto isWall = [&](Boundary::Side side) { return edges[side] == Edge::Wall; };
+  const bool upright = isWall(Boundary::Bottom) && isWall(Boundary::Top);
+  const Boundary::Side first = upright ? Boundary::Bottom : Boundary::Left;
+  const Boundary::Side second = upright ? Boundary::Top : Boundary::Right;
+  if (!isWall(first) || !isWall(second)) return 0.0;
+  const bool isFirst = temperatures[first] >= temperatures[second];
+  const std::int64_t cells = upright ? g.height : g.width, along = upright ? g.width : g.height;
+  const std::int64_t place = isFirst ? 0 : cells - 1;
+  const auto row =
+      upright ? t.domain({place, 0}, {place + 1, along}) : t.domain({0, place}, {along, place + 1});
+  const double beside = lattice::sum.with(options_)(row) / static_cast<double>(along);
+  const double wall = temperatures[isFirst ? first : second];
+  const double other = temperatures[isFirst ? second : first];
+  return 2.0 * static_cast<double>(cells) * (wall - beside) / (wall - other);
+}
+
+double Lattice::kineticEnergy() {
+  const double total = lattice::energy.with(options_)(stream(Field::VelocityX), stream(Field::VelocityY));
+  return 0.5 * total / static_cast<double>(model_.grid.cells());
+}
+
+double Lattice::vapour() {
+  const int count = lattice::above.with(options_)(c_.point, stream(Field::Temperature));
+  return count / static_cast<double>(model_.grid.cells());
+}
+
+int Lattice::streams() const {
+  const auto count = [](const Fields& fields) {
+    return std::count_if(fields.begin(), fields.end(), [](const auto& field) { return field.has_value(); });
+  };
+  return static_cast<int>(count(now_) + count(next_)) + static_cast<int>(warmed_.has_value());
+}
+
+int Lattice::passes() const {
+  return static_cast<int>(model_.flow.has_value()) + static_cast<int>(model_.flow || model_.diffusion) +
+         static_cast<int>(model_.buoyancy.has_value()) + static_cast<int>(model_.latentHeat.has_value()) +
+         static_cast<int>(model_.reaction.has_value());
+}
+
+}  // namespace examples

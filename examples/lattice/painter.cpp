@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "painter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "flow.sk.hpp"
+#include "observe.sk.hpp"
+#include "support/colormap.hpp"
+#include "view.sk.hpp"
+
+namespace examples {
+namespace {
+
+int zoomFor(const Scene& scene) {
+  if (scene.view.zoom > 0) return scene.view.zoom;
+  const std::int64_t side = std::max(scene.model.grid.width, scene.model.grid.height);
+  return static_cast<int>(std::clamp<std::int64_t>(1024 / side, 1, 64));
+}
+
+struct Camera {
+  lattice::Camera rays;
+  std::int64_t width, height;  ///< pixels
+};
+
+/// From a little above, turned by a third of a right angle, all of the lattice in the picture.
+Camera cameraFor(const Grid& g) {
+  constexpr double turn = 0.55, tilt = 0.32;
+  const auto w = static_cast<double>(g.width), h = static_cast<double>(g.height),
+             d = static_cast<double>(g.depth);
+  const std::array<double, 3> right = {std::cos(turn), 0.0, std::sin(turn)};
+  const std::array<double, 3> ahead = {-std::sin(turn) * std::cos(tilt), -std::sin(tilt),
+                                       std::cos(turn) * std::cos(tilt)};
+  const std::array<double, 3> up = {-std::sin(turn) * std::sin(tilt), std::cos(tilt),
+                                    std::cos(turn) * std::sin(tilt)};
+  const auto reach = [&](const std::array<double, 3>& axis) {
+    return 0.52 * (w * std::abs(axis[0]) + h * std::abs(axis[1]) + d * std::abs(axis[2]));
+  };
+  const auto vector = [](const std::array<double, 3>& axis, double length) {
+    return sk::float3{static_cast<float>(axis[0] * length), static_cast<float>(axis[1] * length),
+                      static_cast<float>(axis[2] * length)};
+  };
+  const double across = reach(right), along = reach(up);
+  constexpr double pixels = 960;
+  const auto height = static_cast<std::int64_t>(std::lround(pixels * std::min(along / across, 2.0)));
+  const sk::float3 middle = {static_cast<float>(0.5 * (w - 1)), static_cast<float>(0.5 * (h - 1)),
+                             static_cast<float>(0.5 * (d - 1))};
+  return {{middle, vector(right, across), vector(up, along), vector(ahead, 1.0)},
+          static_cast<std::int64_t>(pixels),
+          height};
+}
+
+}  // namespace
+
+Painter::Painter(sk::Device& device, const Scene& scene)
+    : device_(device),
+      scene_(scene),
+      colours_(colormap(scene.view.colours, 256)),
+      palette_(device.stream<sk::float3>({256})) {
+  if (scene.view.mirror) std::reverse(colours_.begin(), colours_.end());
+  palette_.write(colours_);
+}
+
+sk::Stream<float>& Painter::shown(Lattice& lattice) {
+  const auto derive = [&](const auto& kernel) -> sk::Stream<float>& {
+    const Grid& g = scene_.model.grid;
+    if (!derived_) derived_.emplace(device_.stream<float>({g.height, g.width}));
+    kernel(lattice.stream(Field::VelocityX), lattice.stream(Field::VelocityY), *derived_);
+    return *derived_;
+  };
+  switch (scene_.view.shown) {
+    case Shown::Temperature:
+    case Shown::Bubbles: return lattice.stream(Field::Temperature);
+    case Shown::U: return lattice.stream(Field::U);
+    case Shown::V: return lattice.stream(Field::V);
+    case Shown::Pressure: return lattice.stream(Field::Pressure);
+    case Shown::Speed: return derive(lattice::speedOf);
+    case Shown::Vorticity: return derive(lattice::curlOf);
+  }
+  return lattice.stream(Field::Temperature);
+}
+
+Painter::Values Painter::range(sk::Stream<float>& field) const {
+  const auto [least, most, total, broken] = lattice::observe(field);
+  Values v{scene_.view.low.value_or(least), scene_.view.high.value_or(most)};
+  if (scene_.view.shown == Shown::Vorticity && !scene_.view.low && !scene_.view.high) {
+    v.high = std::max(std::abs(v.low), std::abs(v.high));
+    v.low = -v.high;
+  }
+  if (!(v.high > v.low)) v.high = v.low + std::max(1e-6, 1e-3 * std::abs(v.low));
+  return v;
+}
+
+sk::Stream<sk::float3> Painter::plane(sk::Stream<float>& field, Values values) {
+  const Grid& g = scene_.model.grid;
+  const int zoom = zoomFor(scene_);
+  auto colour = device_.stream<sk::float3>({g.height * zoom, g.width * zoom});
+  const auto low = static_cast<float>(values.low), high = static_cast<float>(values.high);
+  const auto relief = static_cast<float>(scene_.view.relief);
+  lattice::paint(relief > 0.0f, palette_, low, high, relief, 1.0f / static_cast<float>(zoom), field, colour);
+  return colour;
+}
+
+sk::Stream<sk::float3> Painter::bubbles(Lattice& lattice, Values values) {
+  const Camera camera = cameraFor(scene_.model.grid);
+  auto colour = device_.stream<sk::float3>({camera.height, camera.width});
+  lattice::march(palette_, static_cast<float>(values.low), static_cast<float>(values.high),
+                 static_cast<float>(scene_.model.boilingPoint), camera.rays,
+                 lattice.stream(Field::Temperature), colour);
+  return colour;
+}
+
+Image Painter::plot(Lattice& lattice) {
+  sk::Stream<float>& field = shown(lattice);
+  last_ = range(field);
+  const auto colour = scene_.view.shown == Shown::Bubbles ? bubbles(lattice, last_) : plane(field, last_);
+  return imageOf(static_cast<int>(colour.shape()[1]), static_cast<int>(colour.shape()[0]), colour.read());
+}
+
+Image Painter::paint(Lattice& lattice, const std::string& moment) {
+  const Image image = plot(lattice);
+  return figure(image, {scene_.title, "", moment},
+                ColourBar{colours_, last_.low, last_.high, std::string(nameOf(scene_.view.shown))});
+}
+
+}  // namespace examples

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// Pictures of a lattice: computed on its device, titled on the host.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lattice.hpp"
+#include "scene.hpp"
+#include "support/figure.hpp"
+#include "support/image.hpp"
+
+namespace examples {
+
+class Painter {
+ public:
+  Painter(sk::Device& device, const Scene& scene);
+
+  /// The field as it is now, with a title and a bar of its colours; `moment` stands below it.
+  Image paint(Lattice& lattice, const std::string& moment);
+  /// The field alone.
+  Image plot(Lattice& lattice);
+
+ private:
+  struct Values {
+    double low, high;
+  };
+  sk::Stream<float>& shown(Lattice& lattice);
+  Values range(sk::Stream<float>& field) const;
+  sk::Stream<sk::float3> plane(sk::Stream<float>& field, Values values);
+  sk::Stream<sk::float3> bubbles(Lattice& lattice, Values values);
+
+  sk::Device& device_;
+  Scene scene_;
+  std::vector<sk::float3> colours_;
+  sk::Stream<sk::float3> palette_;
+  std::optional<sk::Stream<float>> derived_;
+  Values last_ = {0.0, 1.0};
+};
+
+}  // namespace examples

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// A scene from its first step to its last: pictures, numbers, the watch for what is not finite, and the end where nothing
+// changes any more.
+#pragma once
+
+#include <string>
+
+#include <sk/sk.hpp>
+
+#include "lattice.hpp"
+#include "reference.hpp"
+#include "scene.hpp"
+
+namespace examples {
+
+struct Outcome {
+  std::int64_t steps = 0;
+  double milliseconds = 0.0;  ///< of the steps, without pictures and numbers
+  bool settled = false;
+  double change = 0.0;  ///< the last that was measured
+  std::int64_t checks = 0;  ///< how often it was
+  int frames = 0;
+  State beforeLast, last;  ///< the fields one step before the end, and at the end
+};
+
+/// Runs the scene. Throws std::runtime_error, naming step, field and cell, where a number is not finite; pictures that
+/// were made before stay.
+Outcome runScene(sk::Device& device, const Scene& scene, Lattice& lattice);
+
+/// Throws where a field has a number that is not finite.
+void requireFinite(Lattice& lattice, std::int64_t step);
+
+}  // namespace examples

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: MIT
+#include "scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "gray_scott/model.hpp"
+#include "limits.hpp"
+#include "support/scene_file.hpp"
+
+namespace examples {
+namespace {
+
+constexpr Range positive{1e-12, 1e12};
+constexpr Range fromZero{0.0, 1e12};
+constexpr Range anything{-1e12, 1e12};
+
+constexpr std::array<std::string_view, 3> edgeNames = {"wrap", "insulated", "wall"};
+constexpr std::array<std::string_view, 3> densityNames = {"computed", "linear", "cubic"};
+constexpr std::array<std::string_view, 2> profileNames = {"uniform", "conduction"};
+constexpr std::array<std::string_view, 7> shownNames = {"temperature", "u",        "v",      "speed",
+                                                        "vorticity",   "pressure", "bubbles"};
+constexpr std::array<std::string_view, 4> precisionNames = {"half", "single", "extended", "double"};
+constexpr std::array<sk::Precision, 4> precisions = {sk::Precision::Half, sk::Precision::Single,
+                                                     sk::Precision::Extended, sk::Precision::Double};
+
+/// What is wrong with a key, or with its absence, as a sentence that begins with its name.
+[[noreturn]] void refuse(const SceneTable& table, std::string_view key, std::string_view what) {
+  table.fail(key, fmt::format("'{}' {}", key, what));
+}
+
+Grid readGrid(const SceneTable& table, const Overrides& overrides) {
+  Grid grid;
+  if (const auto size = table.numbers("size", -1)) {
+    if (size->empty() || size->size() > 3) refuse(table, "size", "is width, height and, in space, depth");
+    const std::array<std::int64_t*, 3> extents = {&grid.width, &grid.height, &grid.depth};
+    for (std::size_t i = 0; i < size->size(); ++i) {
+      const double n = (*size)[i];
+      if (n < 1 || n > 32768 || n != std::floor(n))
+        refuse(table, "size", "takes whole numbers from 1 to 32768");
+      *extents[i] = static_cast<std::int64_t>(n);
+    }
+  }
+  if (!overrides.size.empty()) grid.width = overrides.size[0];
+  if (overrides.size.size() > 1) grid.height = overrides.size[1];
+  if (overrides.size.size() > 2) grid.depth = overrides.size[2];
+  if (grid.cells() > std::int64_t{1} << 28) refuse(table, "size", "makes more than 2^28 cells; take fewer");
+  grid.spacing = table.number("spacing", positive).value_or(1.0);
+  return grid;
+}
+
+Boundary readBoundary(const SceneTable& table, bool isSpace) {
+  Boundary b;
+  const auto edge = [&](std::string_view key, Edge otherwise) {
+    const auto choice = table.choice(key, edgeNames);
+    return choice ? static_cast<Edge>(*choice) : otherwise;
+  };
+  const Edge sides = edge("sides", Edge::Wrap);
+  const std::array<std::string_view, 4> keys = {"left", "right", "bottom", "top"};
+  const std::array<std::string_view, 4> warmths = {"left_temperature", "right_temperature",
+                                                   "bottom_temperature", "top_temperature"};
+  for (std::size_t side = 0; side < 4; ++side) {
+    b.edges[side] = edge(keys[side], side < 2 ? sides : Edge::Wrap);
+    const auto temperature = table.number(warmths[side], anything);
+    if (temperature && b.edges[side] != Edge::Wall) {
+      refuse(table, warmths[side], fmt::format("is only for a wall; say {} = \"wall\"", keys[side]));
+    }
+    if (!temperature && b.edges[side] == Edge::Wall) {
+      refuse(table, keys[side], fmt::format("is a wall without a temperature; give {}", warmths[side]));
+    }
+    b.temperatures[side] = temperature.value_or(0.0);
+  }
+  const auto together = [&](std::size_t one, std::size_t other) {
+    if ((b.edges[one] == Edge::Wrap) != (b.edges[other] == Edge::Wrap)) {
+      refuse(table, keys[b.edges[one] == Edge::Wrap ? other : one],
+             fmt::format("is closed, but {} wraps; both sides wrap or none does",
+                         keys[b.edges[one] == Edge::Wrap ? one : other]));
+    }
+  };
+  together(Boundary::Left, Boundary::Right);
+  together(Boundary::Bottom, Boundary::Top);
+  if (isSpace) {
+    if (b.edges[Boundary::Left] == Edge::Wall || b.edges[Boundary::Right] == Edge::Wall)
+      refuse(table, "sides",
+             "has walls, which a lattice in space has at the bottom and top only; insulate it");
+    if (b.edges[Boundary::Left] != b.edges[Boundary::Right])
+      refuse(table, "left", "differs from right; in space, both are alike");
+    b.closedZ = b.closedX();
+  }
+  return b;
+}
+
+Diffusion readDiffusion(const SceneTable& table, const Model& model) {
+  const auto rate = table.number("rate", fromZero);
+  const auto epsilon = table.number("epsilon", Range{0.0, 1e6});
+  if (rate && epsilon) refuse(table, "epsilon", "says the same as rate; give one of them");
+  if (!rate && !epsilon)
+    refuse(table, "rate", "is missing; give rate, or epsilon, the part of a cell that a step mixes");
+  const double h = model.grid.spacing;
+  const double neighbours = model.grid.isSpace() ? 6.0 : 4.0;
+  return {rate ? *rate : *epsilon * h * h / (neighbours * model.timeStep)};
+}
+
+Buoyancy readBuoyancy(const SceneTable& table) {
+  Buoyancy b;
+  b.sigma = table.number("sigma", Range{-1.0, 1.0}).value_or(0.1);
+  b.alpha = table.number("alpha", Range{-1e6, 1e6}).value_or(1.0);
+  if (const auto how = table.choice("tanh", densityNames)) b.density = static_cast<Density>(*how);
+  return b;
+}
+
+Reaction readReaction(const SceneTable& table) {
+  Reaction r;
+  const auto feed = table.number("feed", Range{0.0, 1.0}), kill = table.number("kill", Range{0.0, 1.0});
+  if (const auto name = table.text("class")) {
+    if (feed || kill) refuse(table, "class", "sets feed and kill; give either it or them");
+    try {
+      const Pattern& pattern = findPattern(*name);
+      r.feed = pattern.feed;
+      r.kill = pattern.kill;
+    } catch (const std::exception& error) {
+      table.fail("class", error.what());
+    }
+  } else {
+    if (!feed) refuse(table, "feed", "is missing; give feed and kill, or a class of patterns");
+    if (!kill) refuse(table, "kill", "is missing; give feed and kill, or a class of patterns");
+    r.feed = *feed;
+    r.kill = *kill;
+  }
+  r.diffusionU = table.number("diffusion_u", fromZero).value_or(r.diffusionU);
+  r.diffusionV = table.number("diffusion_v", fromZero).value_or(r.diffusionV);
+  r.spacing = table.number("spacing", positive).value_or(r.spacing);
+  r.timeStep = table.number("time_step", fromZero).value_or(r.timeStep);
+  r.stirring = table.number("stirring", anything).value_or(r.stirring);
+  return r;
+}
+
+void readFlow(const SceneTable& table, Model& model) {
+  if (model.grid.isSpace())
+    refuse(table, "rayleigh", "is of a flow, which only a plane lattice has; give two extents");
+  const auto rayleigh = table.number("rayleigh", Range{1e-6, 1e12});
+  if (!rayleigh)
+    refuse(table, "rayleigh", "is missing: buoyancy over friction and conduction; 1708 is where rolls begin");
+  const double prandtl = table.number("prandtl", Range{1e-3, 1e4}).value_or(0.71);
+  const double sound = table.number("sound", Range{1e-3, 1e6}).value_or(3.0);
+  const bool slip = table.flag("slip").value_or(false);
+  const auto wall = [&](Boundary::Side side) { return model.boundary.edges[side] == Edge::Wall; };
+  if (!(wall(Boundary::Bottom) && wall(Boundary::Top)) && !(wall(Boundary::Left) && wall(Boundary::Right)))
+    refuse(table, "rayleigh", "needs two walls that face each other; give bottom and top, or left and right");
+  if (!model.boundary.closedY()) refuse(table, "rayleigh", "needs a floor; close bottom and top");
+  setConvection(model, *rayleigh, prandtl, sound, slip);
+}
+
+Initial readInitial(const SceneTable& table) {
+  Initial i;
+  if (const auto profile = table.choice("profile", profileNames)) i.profile = static_cast<Profile>(*profile);
+  i.temperature = table.number("temperature", anything).value_or(0.0);
+  i.noise = table.number("noise", fromZero).value_or(0.0);
+  i.rolls = table.number("rolls", Range{0.0, 1e4}).value_or(0.0);
+  i.seeds = static_cast<int>(table.integer("seeds", Range{0, 1e6}).value_or(1));
+  i.seedSide = static_cast<int>(table.integer("seed_side", Range{1, 1e4}).value_or(20));
+  i.random = static_cast<std::uint32_t>(table.integer("random", Range{0, 4294967295.0}).value_or(1));
+  return i;
+}
+
+Settling readSettling(const SceneTable& table) {
+  Settling s;
+  s.tolerance = table.number("tolerance", fromZero).value_or(s.tolerance);
+  s.every = table.integer("every", Range{1, 1e9}).value_or(s.every);
+  return s;
+}
+
+Record readRecord(const SceneTable& table, const std::string& name) {
+  Record r;
+  r.output = table.text("output").value_or(name + ".png");
+  r.frames = static_cast<int>(table.integer("frames", Range{1, 99999}).value_or(1));
+  r.framesPerSecond = static_cast<int>(table.integer("frames_per_second", Range{1, 120}).value_or(25));
+  r.csv = table.text("csv").value_or("");
+  r.every = table.integer("every", Range{1, 1e12}).value_or(0);
+  return r;
+}
+
+bool has(const Model& model, Shown shown) {
+  switch (shown) {
+    case Shown::Temperature: return model.hasTemperature();
+    case Shown::Bubbles: return model.hasTemperature() && model.grid.isSpace();
+    case Shown::U:
+    case Shown::V: return model.reaction.has_value();
+    case Shown::Speed:
+    case Shown::Vorticity:
+    case Shown::Pressure: return model.flow.has_value();
+  }
+  return false;
+}
+
+View readView(const SceneTable& table, const Model& model) {
+  View v;
+  v.shown = model.reaction ? Shown::V : model.grid.isSpace() ? Shown::Bubbles : Shown::Temperature;
+  if (const auto shown = table.choice("field", shownNames)) v.shown = static_cast<Shown>(*shown);
+  if (!has(model, v.shown)) {
+    refuse(table, "field",
+           fmt::format("'{}' is not in this scene, whose operators do not make it",
+                       shownNames[static_cast<std::size_t>(v.shown)]));
+  }
+  v.colours = table.text("colours").value_or(v.colours);
+  v.low = table.number("low", anything);
+  v.high = table.number("high", anything);
+  if (v.low && v.high && *v.low >= *v.high) refuse(table, "high", "is not above low");
+  v.relief = table.number("relief", Range{0.0, 1000.0}).value_or(0.0);
+  v.zoom = static_cast<int>(table.integer("zoom", Range{1, 64}).value_or(0));
+  v.mirror = table.flag("mirror").value_or(false);
+  return v;
+}
+
+void refuseUnstable(const SceneTable& run, const Model& model) {
+  for (const Limit& limit : limitsOf(model)) {
+    if (limit.holds()) continue;
+    refuse(run, "time_step",
+           fmt::format("{:g} is not stable: {} allows {:.6g} ({}); take a smaller one", limit.chosen,
+                       limit.of, limit.largest, limit.formula));
+  }
+}
+
+}  // namespace
+
+std::string_view nameOf(sk::Precision precision) {
+  const auto place = std::find(precisions.begin(), precisions.end(), precision);
+  return place == precisions.end() ? "single"
+                                   : precisionNames[static_cast<std::size_t>(place - precisions.begin())];
+}
+
+std::string_view nameOf(Shown shown) { return shownNames[static_cast<std::size_t>(shown)]; }
+
+Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
+  const SceneTable table = loadScene(file);
+  Scene scene;
+  Model& model = scene.model;
+  scene.name = file.stem().string();
+  scene.title = table.text("title").value_or(scene.name);
+  if (const auto grid = table.table("grid"))
+    model.grid = readGrid(*grid, overrides);
+  else
+    refuse(table, "grid", "is missing: the table [grid] has the size");
+  if (const auto boundary = table.table("boundary"))
+    model.boundary = readBoundary(*boundary, model.grid.isSpace());
+
+  const auto run = table.table("run");
+  if (!run) refuse(table, "run", "is missing: the table [run] has the steps");
+  scene.steps = run->integer("steps", Range{1, 1e12}).value_or(scene.steps);
+  if (overrides.steps) scene.steps = *overrides.steps;
+  const auto timeStep = run->number("time_step", fromZero);
+  model.timeStep = timeStep.value_or(1.0);
+  if (const auto precision = run->choice("precision", precisionNames))
+    model.precision = precisions[*precision];
+  if (overrides.precision) model.precision = *overrides.precision;
+  if (const auto settling = run->table("until_settled")) scene.settling = readSettling(*settling);
+  if (overrides.settle) {
+    if (!scene.settling) scene.settling.emplace();
+    scene.settling->tolerance = *overrides.settle;
+  }
+
+  if (const auto t = table.table("diffusion")) model.diffusion = readDiffusion(*t, model);
+  model.boilingPoint = table.number("boiling_point", anything).value_or(0.0);
+  if (const auto t = table.table("buoyancy")) model.buoyancy = readBuoyancy(*t);
+  if (const auto t = table.table("latent_heat")) {
+    model.latentHeat = LatentHeat{t->number("eta", anything).value_or(0.0)};
+  }
+  if (const auto t = table.table("reaction")) model.reaction = readReaction(*t);
+  if (model.reaction && model.grid.isSpace())
+    refuse(table, "reaction", "is for a plane lattice; give two extents");
+  if (const auto t = table.table("flow")) {
+    if (model.diffusion) refuse(table, "diffusion", "follows from the numbers of the flow; leave it out");
+    readFlow(*t, model);
+    if (!timeStep) {
+      for (const Limit& limit : limitsOf(model))
+        if (limit.of != "reaction") model.timeStep = std::min(model.timeStep, 0.8 * limit.largest);
+    }
+  }
+  if (fieldsOf(model).empty()) {
+    refuse(table, "grid",
+           "has no operator to step it; add [diffusion], [buoyancy], [latent_heat], [reaction] or [flow]");
+  }
+  refuseUnstable(*run, model);
+
+  if (const auto t = table.table("initial")) scene.initial = readInitial(*t);
+  if (const auto t = table.table("record"))
+    scene.record = readRecord(*t, scene.name);
+  else
+    scene.record.output = scene.name + ".png";
+  if (const auto t = table.table("view"))
+    scene.view = readView(*t, model);
+  else
+    scene.view.shown = model.reaction ? Shown::V : model.grid.isSpace() ? Shown::Bubbles : Shown::Temperature;
+  return scene;
+}
+
+}  // namespace examples

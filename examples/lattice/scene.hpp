@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+//
+// A scene file: the model that it makes, how it begins, how long it runs, what is recorded and what is looked at. It
+// refuses what it does not know, and steps of time that would not be stable.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model.hpp"
+
+namespace examples {
+
+/// How the temperature begins.
+enum class Profile : std::uint8_t { Uniform, Conduction };
+
+struct Initial {
+  Profile profile = Profile::Uniform;
+  double temperature = 0.0;  ///< of the uniform profile
+  double noise = 0.0;  ///< evenly spread in +- this much, in each cell
+  double rolls = 0.0;  ///< pairs of rolls across the width, as a wave of the amplitude `noise` in place of it
+  int seeds = 1;  ///< squares of (1/2, 1/4) for a reaction; 1 stands in the middle
+  int seedSide = 20;
+  std::uint32_t random = 1;
+};
+
+/// The run ends early when no field changes by more than `tolerance` in a step, asked every `every` steps.
+struct Settling {
+  double tolerance = 1e-6;
+  std::int64_t every = 32;
+};
+
+struct Record {
+  std::filesystem::path output;  ///< a picture, or a film where there are several frames
+  int frames = 1;
+  int framesPerSecond = 25;
+  std::filesystem::path csv;
+  std::int64_t every = 0;  ///< steps from one row of numbers to the next; 0: a hundredth of the run
+};
+
+/// What a picture shows: a field, or what is made of some.
+enum class Shown : std::uint8_t { Temperature, U, V, Speed, Vorticity, Pressure, Bubbles };
+
+struct View {
+  Shown shown = Shown::Temperature;
+  std::string colours = "ember";
+  std::optional<double> low, high;  ///< else what the field has
+  double relief = 0.0;
+  int zoom = 0;  ///< pixels a cell; 0: as many as make a picture of a thousand
+  bool mirror = false;  ///< the colours from the high end to the low one
+};
+
+struct Scene {
+  std::string name;  ///< of the file, without its ending
+  std::string title;
+  Model model;
+  Initial initial;
+  std::int64_t steps = 1000;
+  std::optional<Settling> settling;
+  Record record;
+  View view;
+};
+
+/// What the command line says in place of the file.
+struct Overrides {
+  std::vector<std::int64_t> size;  ///< width, height and depth, as many as are given
+  std::optional<std::int64_t> steps;
+  std::optional<double> settle;
+  std::optional<sk::Precision> precision;
+};
+
+/// Throws std::runtime_error, "FILE:LINE:COLUMN: what is wrong and the way out".
+Scene readScene(const std::filesystem::path& file, const Overrides& overrides);
+
+/// As scenes write them: "single", "double" ...; "temperature", "u" ...
+std::string_view nameOf(sk::Precision precision);
+std::string_view nameOf(Shown shown);
+
+}  // namespace examples
