@@ -169,6 +169,33 @@ TEST_CASE("a stream that is read at other places is read as it was") {
   CHECK(a.read() == std::vector<float>{2.5F, 3.5F, 4.5F, 1.5F});
 }
 
+// Whole streams take other arrays for what is written, parts of them are read from a copy: one after the other, and of all lengths.
+TEST_CASE("streams that are read while they are written are right step after step, whole and in part") {
+  sk::Device device = sk::Device::native();
+  for (const std::int64_t n : {1, 5, 1000, 1 << 17}) {
+    INFO(n << " elements");
+    std::vector<float> expected(static_cast<std::size_t>(n));
+    for (std::size_t i = 0; i < expected.size(); ++i) expected[i] = static_cast<float>(i % 97);
+    auto a = streamOf(device, expected);
+    const auto step = [&](std::int64_t begin, std::int64_t count) {
+      const std::vector<float> old = expected;
+      for (std::int64_t i = 0; i < count; ++i) {
+        expected[static_cast<std::size_t>(begin + i)] = old[static_cast<std::size_t>((i + 1) % n)] + 0.5F;
+      }
+    };
+    for (int round = 0; round < 3; ++round) {
+      shift(a, 0.5F, a);
+      step(0, n);
+      const std::int64_t begin = n / 3, count = n - 2 * begin;
+      shift(a, 0.5F, a.domain({begin}, {begin + count}));
+      step(begin, count);
+      shift.with({.precision = sk::Precision::Extended})(a, 0.5F, a);
+      step(0, n);
+      CHECK(a.read() == expected);
+    }
+  }
+}
+
 TEST_CASE("reals are read of floats alone") {
   sk::Device device = sk::Device::native();
   auto ints = device.stream<std::int32_t>({2});

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "sk/narrow.hpp"
+#include "sk/native/parallel.hpp"
 #include "sk/native/quad_type.hpp"
 #include "sk/scalar_bytes.hpp"
 
@@ -47,6 +48,10 @@ void convertFrom(const std::byte* from, std::size_t fromStride, std::byte* to, s
 /// Copies values, or, where they differ in size, converts real ones.
 void move(const Values<const std::byte>& from, const Values<std::byte>& to, std::int64_t count) {
   if (from.bytes == to.bytes) {
+    if (from.stride == from.bytes && to.stride == to.bytes) {
+      if (count > 0) std::memcpy(to.first, from.first, static_cast<std::size_t>(count) * from.bytes);
+      return;
+    }
     switch (from.bytes) {
       case 1: return copyStrided<1>(from.first, from.stride, to.first, to.stride, count);
       case 2: return copyStrided<2>(from.first, from.stride, to.first, to.stride, count);
@@ -118,7 +123,11 @@ Components Components::clone(std::int64_t count, RealType real) const {
 }
 
 void Components::assign(const Components& from, std::int64_t count) {
-  for (std::size_t c = 0; c < types_.size(); ++c) move(from.valuesFrom(c, 0), valuesFrom(c, 0), count);
+  for (std::size_t c = 0; c < types_.size(); ++c) {
+    native::inParallel(count, 1, native::Deal::Evenly, [&](native::Range part) {
+      move(from.valuesFrom(c, part.begin), valuesFrom(c, part.begin), part.end - part.begin);
+    });
+  }
 }
 
 Values<std::byte> Components::valuesFrom(std::size_t component, std::int64_t first) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Kernels and reductions on a native device: arguments become the operands of native code. A stream that is
-// read and written is read as it was: what reads it gets a copy, unless each element reads only itself.
+// read and written is read as it was, unless each element reads only itself: where all of it is written, it takes other arrays for
+// that, which become its own afterwards; else what reads it gets a copy.
 #include <algorithm>
 #include <list>
 
@@ -100,6 +101,10 @@ class Operands {
     }
     for (const auto& [stream, copy] : written_) stream->components.assign(copy, stream->shape.size());
     for (std::size_t i = 0; i < list_.size(); ++i) {
+      const StreamRegion& region = arguments_[i].region;
+      if (region.stream != nullptr && isOutputOfAll(i) && isReplaced(region)) nativeStream(region).exchange();
+    }
+    for (std::size_t i = 0; i < list_.size(); ++i) {
       if (isWritten(kernel_.parameters[i].role) && arguments_[i].region.stream != nullptr) {
         nativeStream(arguments_[i].region).keepStorage();
       }
@@ -142,7 +147,9 @@ class Operands {
     if (argument.region.stream == nullptr || !assemble::isNeeded(parameter, specs_)) return {};
     Operand operand = operandOf(argument.region);
     NativeStream& stream = nativeStream(argument.region);
-    if (isWritten(parameter.role)) {
+    if (isReplaced(argument.region)) {
+      operand.components = (isWritten(parameter.role) ? stream.spare() : stream.components).arrays();
+    } else if (isWritten(parameter.role)) {
       operand.components = arraysToWrite(stream);
     } else {
       operand.holdsFloats = parameter.role == Role::Input && areWidened(stream) && !isReadWhileWritten(i);
@@ -183,12 +190,38 @@ class Operands {
     return false;
   }
 
-  /// A stream that several parameters read is copied once.
-  const Components& copyOf(const NativeStream& stream) {
-    for (const auto& [source, copy] : copies_) {
-      if (source == &stream) return copy;
+  /// Whether an output takes all of a stream that is read elsewhere, too: it is written to the spare arrays.
+  bool isReplaced(const StreamRegion& region) const {
+    bool isWhole = false, isRead = false;
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      const StreamRegion& other = arguments_[i].region;
+      if (other.stream != region.stream) continue;
+      isWhole = isWhole || isOutputOfAll(i);
+      isRead = isRead || isReadWhileWritten(i);
     }
-    return copies_.emplace_back(&stream, stream.components.clone(stream.shape.size(), real_)).second;
+    return isWhole && isRead;
+  }
+  bool isOutputOfAll(std::size_t i) const {
+    const Parameter& parameter = kernel_.parameters[i];
+    const StreamRegion& region = arguments_[i].region;
+    return parameter.role == Role::Output && assemble::isNeeded(parameter, specs_) &&
+           region.shape == region.stream->shape && nativeStream(region).components.real() == real_;
+  }
+
+  /// A stream that several parameters read is copied once.
+  const Components& copyOf(NativeStream& stream) {
+    for (const auto& [source, copy] : copies_) {
+      if (source == &stream) return *copy;
+    }
+    Components* copy = nullptr;
+    if (stream.components.real() == real_) {
+      copy = &stream.spare();
+      copy->assign(stream.components, stream.shape.size());
+    } else {
+      copy = &kept_.emplace_back(stream.components.clone(stream.shape.size(), real_));
+    }
+    copies_.emplace_back(&stream, copy);
+    return *copy;
   }
 
   RealType real_;
@@ -200,7 +233,7 @@ class Operands {
   std::vector<Operand> list_;
   std::list<Components> kept_;
   std::list<native::Pushed> pushed_;
-  std::list<std::pair<const NativeStream*, Components>> copies_;  ///< that are read
+  std::vector<std::pair<const NativeStream*, const Components*>> copies_;  ///< that are read
   std::list<std::pair<NativeStream*, Components>> written_;
 };
 

@@ -42,7 +42,7 @@ NativeDevice::~NativeDevice() {
   while (firstStream() != nullptr) {
     auto& stream = static_cast<NativeStream&>(*firstStream());
     stream.leave();
-    stream.components = {};
+    stream.empty();
   }
 }
 

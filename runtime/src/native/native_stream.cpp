@@ -64,8 +64,10 @@ NativeStream::~NativeStream() {
 void NativeStream::countBytes() noexcept {
   const std::int64_t before = bytes_;
   bytes_ = 0;
-  for (const ComponentType& component : components.types()) {
-    bytes_ += shape.size() * static_cast<std::int64_t>(component.storedBytes);
+  for (const Components* all : {&components, &spare_}) {
+    for (const ComponentType& component : all->types()) {
+      bytes_ += shape.size() * static_cast<std::int64_t>(component.storedBytes);
+    }
   }
   owner().countBytes(bytes_ - before);
 }
@@ -108,6 +110,14 @@ void NativeStream::keepStorage() {
   }
 }
 
+Components& NativeStream::spare() {
+  if (spare_.arrays().empty()) {
+    spare_ = Components(*element, components.real(), shape.size());
+    countBytes();
+  }
+  return spare_;
+}
+
 StreamTexture NativeStream::texture(int) {
   throw Error(
       fmt::format("texture: '{}' has no textures; read() the stream, or use a GL device", owner().name()));
@@ -123,6 +133,7 @@ void NativeStream::become(const native::Pushed& pushed, RealType real) {
   const auto count = static_cast<std::int64_t>(pushed[0].size() / bytes);
   Components given(*element, real, pushed);
   components = real == components.real() ? std::move(given) : given.clone(count, components.real());
+  spare_ = {};
   shape = Shape(count);
   countBytes();
 }

@@ -3,6 +3,8 @@
 // A stream in host memory.
 #pragma once
 
+#include <utility>
+
 #include "native/components.hpp"
 #include "sk/native/call.hpp"
 #include "stream_state.hpp"
@@ -32,12 +34,24 @@ class NativeStream final : public StreamState {
   /// After kernels have written to it: floats that are held as halves are rounded to these.
   void keepStorage();
 
+  /// Arrays for what a call writes while it reads the stream's own, uninitialised when they are asked for first. They stay for the
+  /// calls to come.
+  Components& spare();
+  /// The spare arrays become the stream's own, and those the spare ones.
+  void exchange() { std::swap(components, spare_); }
+  /// Frees all arrays.
+  void empty() {
+    components = {};
+    spare_ = {};
+  }
+
   Components components;
 
  private:
   NativeDevice& owner() const;
   void countBytes() noexcept;
 
+  Components spare_;
   std::int64_t bytes_ = 0;  ///< as the trace knows them
 };
 
