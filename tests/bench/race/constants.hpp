@@ -26,6 +26,14 @@ constexpr float reactionKill = 0.06f;
 constexpr float reactionSpreadU = 0.16f;
 constexpr float reactionSpreadV = 0.08f;
 
+// A step of the boiling lattice: temperatures, and how strongly things happen.
+constexpr float boilingPoint = 10, boilingBottom = 10.5f, boilingTop = 9.5f;
+constexpr float boilingSpread = 0.125f, boilingAlpha = 10, boilingSigma = 0.05f, boilingLatent = 0.1f;
+
+// One of the convecting lattice.
+constexpr float flowCarry = 0.05f, flowViscosity = 0.1f, flowLift = 0.02f, flowRest = 1;
+constexpr float flowSpread = 0.12f, flowStiffness = 0.2f;
+
 /// Entries in a row of the sparse matrix, on average.
 constexpr int sparseRow = 16;
 

@@ -59,6 +59,16 @@ Problem reactionProblem(int log2);
 Check reactionCheck(const Problem& problem);
 RACE_OURS(reaction);
 
+Problem boilingProblem(int log2);
+Check boilingCheck(const Problem& problem);
+RACE_OURS(boiling);
+Problem convectionProblem(int log2);
+Check convectionCheck(const Problem& problem);
+RACE_OURS(convection);
+Problem reactionStepProblem(int log2);
+Check reactionStepCheck(const Problem& problem);
+RACE_OURS(reactionStep);
+
 Problem sparseProblem(int log2);
 Check sparseCheck(const Problem& problem);
 RACE_OURS(sparse);

@@ -22,6 +22,9 @@ void sortOpenMp(const Problem& p, float* sorted);
 void bodiesOpenMp(const Problem& p, float* accelerations);
 std::unique_ptr<Task> fourierOpenMp(const Problem& p);
 std::unique_ptr<Task> reactionOpenMp(const Problem& p);
+std::unique_ptr<Task> boilingOpenMp(const Problem& p);
+std::unique_ptr<Task> convectionOpenMp(const Problem& p);
+std::unique_ptr<Task> reactionStepOpenMp(const Problem& p);
 void sparseOpenMp(const Problem& p, float* y);
 
 }  // namespace race

@@ -23,5 +23,8 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   add("n-body", [](const Problem& p) { return 3 * p.size(); }, bodiesOpenMp);
   contenders.push_back({"fft", "OpenMP", fourierOpenMp});
   contenders.push_back({"gray-scott", "OpenMP", reactionOpenMp});
+  contenders.push_back({"boiling step", "OpenMP", boilingOpenMp});
+  contenders.push_back({"convection step", "OpenMP", convectionOpenMp});
+  contenders.push_back({"reaction step", "OpenMP", reactionStepOpenMp});
   add("sparse matrix", asMany, sparseOpenMp);
 }
