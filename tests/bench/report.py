@@ -45,6 +45,9 @@ def main():
 
 
 def print_tables(found):
+    head, rows = results.steps_table(found)
+    if rows:
+        print("\n" + results.plain(head, rows))
     for ours in found.ours():
         head, rows = results.table_of(found, ours)
         print(f"\n{ours}: its time, and the peers' over that (above 1: {ours} is faster)\n")
@@ -52,7 +55,7 @@ def print_tables(found):
 
 
 def update(path, machine, found, held):
-    """Replaces what is between the marks; a mark names a table: `bars`, `machine`, or one of our contenders, behind the name
+    """Replaces what is between the marks; a mark names a table: `bars`, `machine`, `steps`, or one of our contenders, behind the name
     of another machine if that is given."""
     with open(path, encoding="utf-8") as file:
         text = file.read()
@@ -66,6 +69,8 @@ def update(path, machine, found, held):
             body = results.markdown(bars.head, held)
         elif name == "machine":
             body = found.machine_text() + "\n"
+        elif name == "steps":
+            body = results.markdown(*results.steps_table(found))
         elif name in found.ours():
             body = results.markdown(*results.table_of(found, name, largest_only=True))
         else:

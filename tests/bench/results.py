@@ -115,6 +115,29 @@ def table_of(found, ours, largest_only=False):
     return ["program", "size", ours, "rate"] + peers, rows
 
 
+def steps_table(found):
+    """Of programs that are a step of something: how many of them a second, on a grid of so many cells a side."""
+    contenders = found.ours() + [peer for peer in found.peers()
+                                 if any(peer in runs for (program, _), runs in found.problems.items() if is_step(program))]
+    rows = []
+    for program in filter(is_step, found.programs()):
+        for log2 in found.sizes(program):
+            seconds = [found.seconds((program, log2), name) for name in contenders]
+            mine = [name for name in found.ours() if found.seconds((program, log2), name)]
+            if not mine:
+                continue
+            best = min(mine, key=lambda name: found.seconds((program, log2), name))
+            ratios = [found.ratios((program, log2), best, peer) for peer in contenders if peer not in found.ours()]
+            rows.append([program.removesuffix(" step"), f"{2 ** (log2 // 2)} x {2 ** (log2 - log2 // 2)}"]
+                        + [f"{1 / s:.3g}" if s else "" for s in seconds]
+                        + [f"{best}: " + ", ".join(ratio_text(r[1]) for r in ratios if r)])
+    return ["steps of", "cells"] + [f"{name}, a second" for name in contenders] + ["our best over the peer's"], rows
+
+
+def is_step(program):
+    return program.endswith(" step")
+
+
 def plain(head, rows):
     """A table for a terminal."""
     widths = [max(len(row[i]) for row in [head] + rows) for i in range(len(head))]
