@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+//
+// cloth: a scene of cloth, bodies and wind from a file; its run in numbers, pictures, a film or a window.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <sk/sk.hpp>
+
+#include "checks.hpp"
+#include "cost.hpp"
+#include "obj.hpp"
+#include "run.hpp"
+#include "scene.hpp"
+#include "simulation.hpp"
+#include "support/application.hpp"
+#include "table_file.hpp"
+
+namespace {
+
+struct Settings {
+  std::filesystem::path scene;
+  std::string precision = "single";
+  std::optional<std::int64_t> steps;
+  std::vector<int> points;
+  std::string csv;
+  std::string obj;
+  std::int64_t checkedSteps = 100;
+  bool compares = true;
+};
+
+void addOptions(CLI::App& cli, Settings& s) {
+  cli.add_option("scene", s.scene, "a scene, as those in examples/cloth/scenes");
+  cli.add_option("--precision", s.precision,
+                 "what steps are computed in: single, extended or double (default: single)")
+      ->check(CLI::IsMember({"single", "extended", "double"}));
+  cli.add_option("--steps", s.steps, "in place of the scene's")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 50));
+  cli.add_option("--points", s.points, "columns and rows of points, in place of the scene's")
+      ->expected(2)
+      ->check(CLI::Range(1, 1 << 13));
+  cli.add_option("--csv", s.csv, "file for energies, strain and height at each frame");
+  cli.add_option("--obj", s.obj, "file for the cloth at the end");
+  cli.add_option("--check", s.checkedSteps,
+                 "steps to compare with double loops (default: 100, fewer of large cloths)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40));
+  cli.add_flag("--compare,!--no-compare", s.compares,
+               "measure the full model beside the scene's (the default)");
+}
+
+sk::Precision precisionOf(const std::string& name) {
+  if (name == "extended") return sk::Precision::Extended;
+  return name == "double" ? sk::Precision::Double : sk::Precision::Single;
+}
+
+examples::Scene sceneOf(const Settings& s) {
+  if (s.scene.empty())
+    throw std::runtime_error("which scene? Name a file, one of examples/cloth/scenes for instance");
+  std::optional<examples::Points> points;
+  if (!s.points.empty()) points = examples::Points{s.points[0], s.points[1]};
+  examples::Scene scene = examples::readScene(s.scene, points);
+  if (s.steps) scene.run.steps = *s.steps;
+  if (!s.csv.empty()) scene.record.csv = s.csv;
+  if (!s.obj.empty()) scene.record.obj = s.obj;
+  return scene;
+}
+
+/// Fewer steps than were asked for, where loops would take many seconds.
+std::int64_t stepsToCheck(const examples::Scene& scene, const Settings& s) {
+  const double each = static_cast<double>(scene.points()) * (1 + scene.links.iterations);
+  const auto affordable = std::max<std::int64_t>(1, static_cast<std::int64_t>(4e6 / each));
+  return std::min({s.checkedSteps, scene.run.steps, affordable});
+}
+
+void runScene(examples::Application& app, const Settings& s) {
+  const examples::Scene scene = sceneOf(s);
+  const sk::Precision precision = precisionOf(s.precision);
+  sk::Device device(app.device());
+
+  examples::Simulation simulation(device, scene, examples::Features::of(scene), precision);
+  std::optional<examples::TableFile> csv;
+  if (!scene.record.csv.empty()) csv.emplace(scene.record.csv);
+  const examples::Outcome outcome = examples::run(simulation, scene, [&](int) {
+    if (csv) csv->add(simulation, scene);
+  });
+  if (csv) csv->finish();
+  if (!scene.record.obj.empty()) {
+    simulation.dress();
+    examples::saveObj(scene.record.obj, scene.cloth.columns, scene.cloth.rows,
+                      simulation.dressedPositions().read(), simulation.dressedNormals().read());
+  }
+
+  app.report(fmt::format("{}, {} x {} points, {} steps in {} precision", scene.title, scene.cloth.columns,
+                         scene.cloth.rows, outcome.steps, s.precision),
+             device.name(), simulation.milliseconds());
+  const examples::Observation end = simulation.observe();
+  fmt::print("{:.3g} ms a step; {}mean strain {:.3g}, largest {:.3g}, fastest point {:.3g} m/s\n",
+             simulation.milliseconds() / static_cast<double>(std::max<std::int64_t>(1, outcome.steps)),
+             outcome.settled ? "settled; " : "", end.strain, end.largest, outcome.fastest);
+  if (s.compares)
+    fmt::print("{}", examples::tableOf(
+                         examples::compareWithFull(device, scene, precision, simulation.state()), scene));
+
+  const std::int64_t checked = stepsToCheck(scene, s);
+  examples::Simulation again(device, scene, examples::Features::of(scene), precision);
+  again.advance(checked);
+  app.verified(examples::checkSteps(scene, checked, again.positions(), precision));
+  app.verified(examples::checkObservation(scene, end, simulation.positions()));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  examples::Application app("cloth", "Cloth that hangs, falls, flutters and tears: a scene from a file.");
+  addOptions(app.options(), settings);
+  return app.run(argc, argv, [&] { runScene(app, settings); });
+}

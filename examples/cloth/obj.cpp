@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "obj.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace examples {
+namespace {
+
+/// Indices of OBJ count from 1; position, texture coordinate and normal of a corner have the same.
+void addFace(std::string& text, std::int64_t a, std::int64_t b, std::int64_t c) {
+  fmt::format_to(std::back_inserter(text), "f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", a + 1, b + 1, c + 1);
+}
+
+std::string objOf(int columns, int rows, std::span<const sk::float4> positions,
+                  std::span<const sk::float4> normals) {
+  std::string text = fmt::format("# a cloth of {} x {} points\n", columns, rows);
+  const auto out = std::back_inserter(text);
+  for (const sk::float4& p : positions) fmt::format_to(out, "v {} {} {}\n", p.x, p.y, p.z);
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      fmt::format_to(out, "vt {} {}\n", columns > 1 ? float(x) / float(columns - 1) : 0.0f,
+                     rows > 1 ? 1.0f - float(y) / float(rows - 1) : 0.0f);
+    }
+  }
+  for (const sk::float4& n : normals) fmt::format_to(out, "vn {} {} {}\n", n.x, n.y, n.z);
+  for (int y = 0; y + 1 < rows; ++y) {
+    for (int x = 0; x + 1 < columns; ++x) {
+      const std::int64_t here = std::int64_t{y} * columns + x;
+      const int whole = static_cast<int>(normals[static_cast<std::size_t>(here)].w);
+      if (whole & 1) addFace(text, here, here + columns, here + 1);
+      if (whole & 2) addFace(text, here + 1, here + columns, here + columns + 1);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+void saveObj(const std::filesystem::path& file, int columns, int rows, std::span<const sk::float4> positions,
+             std::span<const sk::float4> normals) {
+  std::error_code ignored;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+  std::ofstream stream(file, std::ios::binary);
+  stream << objOf(columns, rows, positions, normals);
+  if (!stream.flush()) throw std::runtime_error(fmt::format("cannot write '{}'", file.string()));
+}
+
+}  // namespace examples

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "run.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "support/progress.hpp"
+
+namespace examples {
+namespace {
+
+[[noreturn]] void failBroken(const Scene& scene, std::int64_t step, const Census& census) {
+  throw std::runtime_error(
+      fmt::format("step {}: the point in column {}, row {} is no finite number any more ({} of {} points); "
+                  "take a smaller "
+                  "dt, stiffness or relaxation",
+                  step, census.first % scene.cloth.columns, census.first / scene.cloth.columns, census.broken,
+                  scene.points()));
+}
+
+/// Goes from the last sound state step by step to the first that is not.
+[[noreturn]] void findBreak(Simulation& simulation, const Scene& scene, const State& sound, std::int64_t end,
+                            const Census& atEnd) {
+  simulation.restore(sound);
+  while (simulation.step() < end) {
+    simulation.advance(1);
+    if (const Census census = simulation.census(); census.broken > 0)
+      failBroken(scene, simulation.step(), census);
+  }
+  failBroken(scene, end, atEnd);
+}
+
+}  // namespace
+
+Outcome run(Simulation& simulation, const Scene& scene, const std::function<void(int)>& onFrame) {
+  const std::int64_t steps = scene.run.steps;
+  Progress progress(scene.title, steps);
+  Outcome outcome;
+  State sound = simulation.state();
+  if (const Census census = simulation.census(); census.broken > 0) failBroken(scene, 0, census);
+  onFrame(0);
+  for (int frame = 1; outcome.steps < steps && !outcome.settled;) {
+    const std::int64_t nextFrame =
+        std::max(outcome.steps + 1, steps / scene.record.frames * frame +
+                                        steps % scene.record.frames * frame / scene.record.frames);
+    const std::int64_t end = std::min({outcome.steps + scene.run.checkEvery, nextFrame, steps});
+    simulation.advance(end - outcome.steps);
+    simulation.finish();
+    outcome.steps = end;
+    const Census census = simulation.census();
+    if (census.broken > 0) findBreak(simulation, scene, sound, end, census);
+    sound = simulation.state();
+    outcome.fastest = census.fastest;
+    outcome.settled = scene.run.untilSettled && census.fastest <= *scene.run.untilSettled;
+    if (end == nextFrame || outcome.settled) {
+      progress.clear();
+      onFrame(frame++);
+    }
+    progress.update(end);
+  }
+  return outcome;
+}
+
+}  // namespace examples

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+//
+// The parts of a scene that there may be any number of, pins and bodies, and what of their tables others use, too.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "scene.hpp"
+#include "support/scene_file.hpp"
+
+namespace examples {
+
+std::optional<Vector> vectorOf(const SceneTable& table, std::string_view key);
+/// Of unit length. Throws where it is zero.
+std::optional<Vector> directionOf(const SceneTable& table, std::string_view key);
+/// Red, green and blue from 0 to 1, sRGB-encoded.
+std::optional<Vector> colourOf(const SceneTable& table, std::string_view key);
+
+/// Of a table [[pin]].
+Pin pinOf(const SceneTable& table, const Cloth& cloth);
+/// Of all tables [[sphere]], [[plane]], [[capsule]] and [[box]].
+std::vector<Body> bodiesOf(const SceneTable& scene);
+
+}  // namespace examples

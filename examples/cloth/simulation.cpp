@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cloth.sk.hpp"
+#include "support/stopwatch.hpp"
+
+namespace examples {
+namespace {
+
+sk::Storage storageFor(sk::Precision precision) {
+  switch (precision) {
+    case sk::Precision::Extended: return sk::Storage::Extended;
+    case sk::Precision::Double: return sk::Storage::Double;
+    case sk::Precision::Default:
+    case sk::Precision::Half:
+    case sk::Precision::Single: break;
+  }
+  return sk::Storage::Single;
+}
+
+cloth::Links linksOf(const LinkConstants& k) {
+  return {k.right, k.down, k.diagonal, k.structural, k.shear, k.bend};
+}
+
+cloth::Wind windOf(const WindConstants& w, float phase) {
+  return {w.velocity, w.across, w.along, w.gust, w.swirl, phase, w.wave};
+}
+
+/// The stream, or sk::none where the scene has it not.
+template <class Parameter, class T>
+sk::Optional<Parameter> given(const std::optional<sk::Stream<T>>& stream) {
+  if (!stream) return sk::none;
+  return *stream;
+}
+
+// Bodies that touch nothing, for the model that has everything.
+constexpr float never = -1e30f;
+constexpr cloth::Sphere noSphere{{0, 0, 0}, never, {0, 0, 0}, 0};
+constexpr cloth::Plane noPlane{{0, never, 0}, 0, {0, 1, 0}, {0, 0, 0}};
+constexpr cloth::Capsule noCapsule{{0, 0, 0}, never, {0, 0, 0}, 0, {0, 0, 0}};
+constexpr cloth::Box noBox{{0, never, 0}, 0, {0, 0, 0}, {0, 0, 0, 1}, {0, 0, 0}};
+
+/// Puts the bodies of a kind in its stream, the neutral one where the scene has none.
+template <class T, class Make>
+void placeKind(sk::Device& device, bool wanted, const Scene& scene, Kind kind, const Moment& moment,
+               const T& none, std::optional<sk::Stream<T>>& stream, const Make& make) {
+  if (!wanted) return;
+  std::vector<T> bodies;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].kind == kind) bodies.push_back(make(scene.bodies[i], moment.bodies[i]));
+  }
+  if (bodies.empty()) bodies.push_back(none);
+  if (!stream) stream = device.stream<T>({static_cast<std::int64_t>(bodies.size())});
+  stream->writeAsync(bodies);
+}
+
+}  // namespace
+
+/// The streams of each kind of bodies, where there are any.
+struct Simulation::Bodies {
+  std::optional<sk::Stream<cloth::Sphere>> spheres;
+  std::optional<sk::Stream<cloth::Plane>> planes;
+  std::optional<sk::Stream<cloth::Capsule>> capsules;
+  std::optional<sk::Stream<cloth::Box>> boxes;
+};
+
+Simulation::Simulation(sk::Device& device, const Scene& scene, const Features& features,
+                       sk::Precision precision)
+    : device_(&device),
+      scene_(scene),
+      features_(features),
+      constants_(constantsOf(scene)),
+      options_{.precision = precision},
+      p_(device.stream<sk::float4>({scene.cloth.rows, scene.cloth.columns}, storageFor(precision))),
+      d_(device.stream<sk::float3>({scene.cloth.rows, scene.cloth.columns}, storageFor(precision))),
+      bodies_(std::make_unique<Bodies>()) {
+  const FirstState first = firstState(scene, constants_);
+  p_.write(first.positions);
+  d_.write(first.displacements);
+  if (features_.tearing) {
+    alive_ = device.stream<int>(p_.shape());
+    alive_->write(first.alive);
+  }
+  if (features_.carried) {
+    pin_ = device.stream<int>(p_.shape());
+    pin_->write(first.pin);
+    carry_ =
+        device.stream<sk::float3>({std::max<std::int64_t>(1, static_cast<std::int64_t>(scene.pins.size()))});
+    if (scene.pins.empty()) carry_->write(std::vector<sk::float3>(1));
+  }
+  place(momentAt(scene_, 0));
+}
+
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+void Simulation::place(const Moment& moment) {
+  const auto friction = [](const Body& b) { return static_cast<float>(b.friction); };
+  placeKind(*device_, features_.spheres, scene_, Kind::Sphere, moment, noSphere, bodies_->spheres,
+            [&](const Body& b, const Placed& now) {
+              return cloth::Sphere{now.at, static_cast<float>(b.size.x), now.moved, friction(b)};
+            });
+  placeKind(*device_, features_.planes, scene_, Kind::Plane, moment, noPlane, bodies_->planes,
+            [&](const Body& b, const Placed& now) {
+              return cloth::Plane{now.at, friction(b), toFloat3(b.along), now.moved};
+            });
+  placeKind(*device_, features_.capsules, scene_, Kind::Capsule, moment, noCapsule, bodies_->capsules,
+            [&](const Body& b, const Placed& now) {
+              return cloth::Capsule{now.at, static_cast<float>(b.size.x), toFloat3(b.along), friction(b),
+                                    now.moved};
+            });
+  placeKind(*device_, features_.boxes, scene_, Kind::Box, moment, noBox, bodies_->boxes,
+            [&](const Body& b, const Placed& now) {
+              const sk::float3 axis = toFloat3(b.axis);
+              return cloth::Box{now.at,
+                                friction(b),
+                                toFloat3(b.size),
+                                {axis.x, axis.y, axis.z, static_cast<float>(b.turn)},
+                                now.moved};
+            });
+}
+
+void Simulation::integrate(const Moment& moment) {
+  if (carry_ && !moment.carry.empty()) carry_->writeAsync(moment.carry);
+  const LinkKinds& kinds = features_.springs;
+  cloth::integrate.with(options_)(
+      kinds.structural, kinds.shear, kinds.bend, features_.tearing, static_cast<unsigned>(features_.law),
+      features_.windy, features_.carried, static_cast<unsigned>(features_.verlet),
+      {constants_.gravity, constants_.keep}, linksOf(constants_.springs),
+      windOf(constants_.wind, moment.windPhase), p_, d_, given<sk::ElementIn<int>>(alive_),
+      given<sk::ElementIn<int>>(pin_), given<sk::In<sk::float3>>(carry_), p_, d_);
+}
+
+void Simulation::relax() {
+  const LinkKinds& kinds = features_.relaxed;
+  const auto verlet = static_cast<unsigned>(features_.verlet);
+  const auto law = static_cast<unsigned>(features_.law);
+  const cloth::Links links = linksOf(constants_.relaxed);
+  const auto alive = given<sk::ElementIn<int>>(alive_);
+  const auto call = cloth::relax.with(options_);
+  if (features_.verlet == Verlet::Displacements) {
+    call(kinds.structural, kinds.shear, kinds.bend, features_.tearing, law, verlet, links, p_, d_, alive, p_,
+         d_);
+  } else {
+    call(kinds.structural, kinds.shear, kinds.bend, features_.tearing, law, verlet, links, p_, sk::none,
+         alive, p_, sk::none);
+  }
+}
+
+void Simulation::collide(const Moment& moment) {
+  if (bodiesMove(scene_)) place(moment);
+  cloth::collide.with(options_)(
+      features_.spheres, features_.planes, features_.capsules, features_.boxes, constants_.thickness, p_, d_,
+      given<sk::In<cloth::Sphere>>(bodies_->spheres), given<sk::In<cloth::Plane>>(bodies_->planes),
+      given<sk::In<cloth::Capsule>>(bodies_->capsules), given<sk::In<cloth::Box>>(bodies_->boxes), p_, d_);
+}
+
+void Simulation::tear() {
+  const bool shear = features_.relaxed.shear || features_.springs.shear;
+  const bool bend = features_.relaxed.bend || features_.springs.bend;
+  cloth::tear.with(options_)(shear, bend, constants_.longest, linksOf(constants_.relaxed), p_, *alive_,
+                             *alive_);
+}
+
+void Simulation::advance(std::int64_t steps) {
+  const Stopwatch stopwatch;
+  for (; steps > 0; --steps, ++step_) {
+    const Moment moment = momentAt(scene_, step_);
+    integrate(moment);
+    if (features_.relaxed.any()) {
+      for (int round = 0; round < constants_.iterations; ++round) relax();
+    }
+    if (features_.touches()) collide(moment);
+    if (features_.tearing) tear();
+  }
+  milliseconds_ += stopwatch.milliseconds();
+}
+
+void Simulation::finish() {
+  const Stopwatch stopwatch;
+  device_->finish();
+  milliseconds_ += stopwatch.milliseconds();
+}
+
+Census Simulation::census() const {
+  const auto [broken, first, fastest] =
+      cloth::census.with(options_)(static_cast<unsigned>(features_.verlet), p_, d_);
+  return {broken, first, fastest / scene_.run.dt};
+}
+
+Observation Simulation::observe() const {
+  const bool springs = scene_.links.springs;
+  const LinkConstants& k = springs ? constants_.springs : constants_.relaxed;
+  const cloth::Observed o = cloth::observe.with(options_)(
+      scene_.links.shear.has_value(), scene_.links.bend.has_value(), springs,
+      static_cast<unsigned>(features_.verlet), constants_.gravity, linksOf(k), p_, p_, d_);
+  const double joule = constants_.pointMass / (scene_.run.dt * scene_.run.dt);
+  const double mass = std::max(1.0, static_cast<double>(o.energy.w));
+  Observation result;
+  result.kinetic = o.energy.x * joule;
+  result.elastic = o.energy.y * joule;
+  result.potential = -o.energy.z * joule;
+  result.strain = o.strain / std::max(1, o.links);
+  result.largest = o.links > 0 ? o.largest : 0.0;
+  result.centre = (1.0 / mass) * vecOf<double>(o.centre);
+  const Vector square = (1.0 / mass) * vecOf<double>(o.square);
+  const auto deviation = [](double mean, double meanSquare) {
+    return std::sqrt(std::max(0.0, meanSquare - mean * mean));
+  };
+  result.spread = {deviation(result.centre.x, square.x), deviation(result.centre.y, square.y),
+                   deviation(result.centre.z, square.z)};
+  return result;
+}
+
+std::int64_t Simulation::links() const { return alive_ ? cloth::countLinks(*alive_) : 0; }
+
+State Simulation::state() const {
+  State s{step_, p_.readReals(), d_.readReals(), {}};
+  if (alive_) s.alive = alive_->read();
+  return s;
+}
+
+void Simulation::restore(const State& state) {
+  step_ = state.step;
+  p_.writeReals(state.positions);
+  d_.writeReals(state.displacements);
+  if (alive_ && !state.alive.empty()) alive_->write(state.alive);
+}
+
+void Simulation::dress() {
+  if (!normals_) {
+    shown_ = device_->stream<sk::float4>(p_.shape());
+    normals_ = device_->stream<sk::float4>(p_.shape());
+  }
+  cloth::dress.with(options_)(features_.tearing, p_, given<sk::In<int>>(alive_), *shown_, *normals_);
+}
+
+int Simulation::streams() const {
+  return 2 + alive_.has_value() + pin_.has_value() + carry_.has_value() + bodies_->spheres.has_value() +
+         bodies_->planes.has_value() + bodies_->capsules.has_value() + bodies_->boxes.has_value();
+}
+
+}  // namespace examples
