@@ -3,6 +3,7 @@
 // cloth: a scene of cloth, bodies and wind from a file; its run in numbers, pictures, a film or a window.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -16,6 +17,8 @@
 
 #include "checks.hpp"
 #include "cost.hpp"
+#include "filming.hpp"
+#include "live.hpp"
 #include "obj.hpp"
 #include "run.hpp"
 #include "scene.hpp"
@@ -30,8 +33,13 @@ struct Settings {
   std::string precision = "single";
   std::optional<std::int64_t> steps;
   std::vector<int> points;
+  std::optional<int> frames;
+  std::string size = "1280x720";
+  int samples = 2;
+  std::string output;
   std::string csv;
   std::string obj;
+  bool window = false;
   std::int64_t checkedSteps = 100;
   bool compares = true;
 };
@@ -46,6 +54,15 @@ void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("--points", s.points, "columns and rows of points, in place of the scene's")
       ->expected(2)
       ->check(CLI::Range(1, 1 << 13));
+  cli.add_option("--size", s.size, "of pictures, WIDTHxHEIGHT in pixels (default: 1280x720)");
+  cli.add_option("--samples", s.samples, "N x N to a pixel (default: 2)")->check(CLI::Range(1, 8));
+  cli.add_option("--frames", s.frames, "in place of the scene's; 1 is a picture of the end")
+      ->check(CLI::Range(1, 1'000'000));
+  cli.add_option("-o,--output", s.output,
+                 "picture or film: .png (numbered where there are many frames), .apng, .gif, .mp4 or .webm");
+  cli.add_flag(
+      "--window", s.window,
+      "show it live: drag to turn, wheel to come nearer, space to stop, W for wind, R to begin anew");
   cli.add_option("--csv", s.csv, "file for energies, strain and height at each frame");
   cli.add_option("--obj", s.obj, "file for the cloth at the end");
   cli.add_option("--check", s.checkedSteps,
@@ -67,6 +84,8 @@ examples::Scene sceneOf(const Settings& s) {
   if (!s.points.empty()) points = examples::Points{s.points[0], s.points[1]};
   examples::Scene scene = examples::readScene(s.scene, points);
   if (s.steps) scene.run.steps = *s.steps;
+  if (s.frames) scene.record.frames = *s.frames;
+  if (!s.output.empty()) scene.record.film = s.output;
   if (!s.csv.empty()) scene.record.csv = s.csv;
   if (!s.obj.empty()) scene.record.obj = s.obj;
   return scene;
@@ -79,18 +98,35 @@ std::int64_t stepsToCheck(const examples::Scene& scene, const Settings& s) {
   return std::min({s.checkedSteps, scene.run.steps, affordable});
 }
 
+examples::PictureSize sizeOf(const std::string& text) {
+  int width = 0, height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 || height < 16 ||
+      width > 8192 || height > 8192) {
+    throw std::runtime_error(
+        fmt::format("--size: '{}' is no size; write 1280x720, 16 to 8192 pixels each", text));
+  }
+  return {width, height};
+}
+
 void runScene(examples::Application& app, const Settings& s) {
   const examples::Scene scene = sceneOf(s);
   const sk::Precision precision = precisionOf(s.precision);
-  sk::Device device(app.device());
+  const examples::PictureSize size = sizeOf(s.size);
+  if (s.window) return examples::runLive(scene, precision, app.device(), size);
+  sk::Device device({.device = app.device(), .sharesContext = !scene.record.film.empty()});
 
   examples::Simulation simulation(device, scene, examples::Features::of(scene), precision);
+  std::optional<examples::Filming> filming;
+  if (!scene.record.film.empty()) filming.emplace(device, scene, size, s.samples, s.precision);
   std::optional<examples::TableFile> csv;
   if (!scene.record.csv.empty()) csv.emplace(scene.record.csv);
   const examples::Outcome outcome = examples::run(simulation, scene, [&](int) {
     if (csv) csv->add(simulation, scene);
+    if (filming) filming->add(simulation);
   });
   if (csv) csv->finish();
+  if (filming) filming->finish(simulation);
   if (!scene.record.obj.empty()) {
     simulation.dress();
     examples::saveObj(scene.record.obj, scene.cloth.columns, scene.cloth.rows,
@@ -104,6 +140,7 @@ void runScene(examples::Application& app, const Settings& s) {
   fmt::print("{:.3g} ms a step; {}mean strain {:.3g}, largest {:.3g}, fastest point {:.3g} m/s\n",
              simulation.milliseconds() / static_cast<double>(std::max<std::int64_t>(1, outcome.steps)),
              outcome.settled ? "settled; " : "", end.strain, end.largest, outcome.fastest);
+  if (filming) fmt::print("{}\n", filming->report());
   if (s.compares)
     fmt::print("{}", examples::tableOf(
                          examples::compareWithFull(device, scene, precision, simulation.state()), scene));
