@@ -34,6 +34,26 @@ constexpr float boilingSpread = 0.125f, boilingAlpha = 10, boilingSigma = 0.05f,
 constexpr float flowCarry = 0.05f, flowViscosity = 0.1f, flowLift = 0.02f, flowRest = 1;
 constexpr float flowSpread = 0.12f, flowStiffness = 0.2f;
 
+// A step of the cloth: cells of a length, falling by a length, links that lose a part of their excess, and the ball.
+constexpr float clothCell = 0.01f, clothDiagonal = 0.014142136f, clothHeight = 0.3f, clothThickness = 0.005f;
+constexpr float clothFall = -1e-5f, clothKeep = 0.999f;
+constexpr float clothStructural = 0.2f, clothShear = 0.12f, clothBend = 0.03f;
+constexpr int clothRounds = 2;
+constexpr float clothBall[4] = {0.1f, 0.1f, 0.05f, 0.2f};  // centre and radius
+
+struct ClothLink {
+  int x, y;
+  float rest, factor;
+};
+constexpr ClothLink clothLinks[12] = {
+    {1, 0, clothCell, clothStructural}, {-1, 0, clothCell, clothStructural},
+    {0, 1, clothCell, clothStructural}, {0, -1, clothCell, clothStructural},
+    {1, 1, clothDiagonal, clothShear},  {-1, -1, clothDiagonal, clothShear},
+    {-1, 1, clothDiagonal, clothShear}, {1, -1, clothDiagonal, clothShear},
+    {2, 0, 2 * clothCell, clothBend},   {-2, 0, 2 * clothCell, clothBend},
+    {0, 2, 2 * clothCell, clothBend},   {0, -2, 2 * clothCell, clothBend},
+};
+
 /// Entries in a row of the sparse matrix, on average.
 constexpr int sparseRow = 16;
 

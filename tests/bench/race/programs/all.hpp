@@ -69,6 +69,10 @@ Problem reactionStepProblem(int log2);
 Check reactionStepCheck(const Problem& problem);
 RACE_OURS(reactionStep);
 
+Problem clothProblem(int log2);
+Check clothCheck(const Problem& problem);
+RACE_OURS(cloth);
+
 Problem sparseProblem(int log2);
 Check sparseCheck(const Problem& problem);
 RACE_OURS(sparse);

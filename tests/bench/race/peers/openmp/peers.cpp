@@ -26,5 +26,6 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   contenders.push_back({"boiling step", "OpenMP", boilingOpenMp});
   contenders.push_back({"convection step", "OpenMP", convectionOpenMp});
   contenders.push_back({"reaction step", "OpenMP", reactionStepOpenMp});
+  contenders.push_back({"cloth step", "OpenMP", clothOpenMp});
   add("sparse matrix", asMany, sparseOpenMp);
 }
