@@ -33,7 +33,7 @@ std::int64_t brought(std::int64_t i, std::int64_t n) {
 }
 
 /// `T a[]` of rank N. `reach` is the most that near() is asked for, in either direction, -1 where that is not known or much; where
-/// `isInside`, no element asks for what lies before or behind its row.
+/// `isInside`, no element asks for what lies before or behind its row, nor for a row that has borders.
 template <class T, std::size_t N, Boundary boundary, int reach = -1, bool isInside = false>
 class Gather : public StreamParameter {
  public:
@@ -58,10 +58,15 @@ class Gather : public StreamParameter {
       }
     }
   }
-  /// The part of a row of the domain where near() stays in the row.
-  void narrow(Range& inside) const {
+  /// The part of the row of the domain that `first` is in where near() stays in rows, and finds no border.
+  void narrow(Range& inside, const Extents& first) const {
     inside.begin = std::max<std::int64_t>(inside.begin, reach);
     inside.end = std::min(inside.end, extent_[0] - reach);
+    if constexpr (boundary == Boundary::Border) {
+      for (std::size_t d = 1; d < N; ++d) {
+        if (first[d] < reach || first[d] + reach >= extent_[d]) inside.end = inside.begin;
+      }
+    }
   }
 
   T at(const Position& position) const {
@@ -175,7 +180,7 @@ class Gather : public StreamParameter {
       x = brought<boundary>(x, extent_[0]);
     }
     const T value = load<T>(arrays_, first + x);
-    if constexpr (boundary == Boundary::Border) {
+    if constexpr (!isInside && boundary == Boundary::Border) {
       return isOutside ? border_ : value;
     } else {
       return value;

@@ -10,8 +10,8 @@
 //   bool sk_isUneven              elements may take very different times: it has loops
 //
 // It may have sk_lanes(), which computes the current element and those that follow it, laneCount together; then sk_hasLanes says for which
-// real type. It may have a second form, sk_Inside, which knows that no neighbour lies outside of its row. Rows are divided into pieces, which
-// threads share out among them.
+// real type. It may have a second form, sk_Inside, which knows that no neighbour lies outside of its row, and that none is a border. Rows are
+// divided into pieces, which threads share out among them.
 #pragma once
 
 #include <algorithm>
@@ -147,12 +147,12 @@ class ChunkRunner {
 template <class Kernel>
 concept HasInside = requires { typename Kernel::sk_Inside; };
 
-/// The part of each row where no neighbour is outside of it.
+/// The part of a row, of `extent` elements, where the kernel's form for the inside can be used.
 template <class Kernel>
-Range insideOf(Kernel& kernel, std::int64_t extent) {
+Range insideOf(Kernel& kernel, const Extents& row, std::int64_t extent) {
   Range inside{0, extent};
   const auto narrow = [&](auto& stream) {
-    if constexpr (requires { stream.narrow(inside); }) stream.narrow(inside);
+    if constexpr (requires { stream.narrow(inside, row); }) stream.narrow(inside, row);
   };
   std::apply([&](auto&... stream) { (narrow(stream), ...); }, kernel.sk_streams());
   return inside;
@@ -165,8 +165,8 @@ void runPieces(const Call& call, Range pieces) {
   const Pieces all(call.domain, Kernel::sk_isUneven);
   if constexpr (HasInside<Kernel>) {
     ChunkRunner<typename Kernel::sk_Inside, by> inside(call);
-    const Range range = insideOf(inside.kernel(), call.domain[0]);
     all.forEachChunk(pieces, whole.longest(), [&](const Extents& first, int count) {
+      const Range range = insideOf(inside.kernel(), first, call.domain[0]);
       const int a = static_cast<int>(std::clamp<std::int64_t>(range.begin - first[0], 0, count));
       const int b = static_cast<int>(std::clamp<std::int64_t>(range.end - first[0], a, count));
       if (a < b) inside.run(first, count, a, b);
