@@ -83,6 +83,44 @@ bool Divergence::isIndex(FunctionId function, VarId var) const {
   return found != indices_.end() && found->second.contains(var);
 }
 
+/// Whether a component of a vector is x of the domain's index. That of an input may be another one, and repeat.
+bool Divergence::isFirstComponent(FunctionId function, const Expr& vector, std::uint8_t component) const {
+  if (const auto* n = std::get_if<IndexOf>(&vector.node)) {
+    const bool isOfInput = n->stream.space == StreamRef::Space::KernelParameter &&
+                           kernel_.params[n->stream.id].role == ParamRole::Input;
+    return component == 0 && !isOfInput;
+  }
+  const auto* n = std::get_if<VarRef>(&vector.node);
+  if (n == nullptr || !isIndex(function, n->var)) return false;
+  const Expr* init = constant_.at(function).at(n->var);
+  if (const auto* swizzle = std::get_if<Swizzle>(&init->node)) init = swizzle->base.get();
+  return isFirstComponent(function, *init, indices_.at(function).at(n->var)[component]);
+}
+
+bool Divergence::isRamp(FunctionId function, VarId var) const {
+  const auto constants = constant_.find(function);
+  if (constants == constant_.end()) return false;
+  const auto found = constants->second.find(var);
+  return found != constants->second.end() && isRamp(function, *found->second);
+}
+
+bool Divergence::isRamp(FunctionId function, const Expr& expr) const {
+  if (expr.type != Type::of(Scalar::Int)) return false;
+  if (const auto* n = std::get_if<VarRef>(&expr.node)) return isRamp(function, n->var);
+  if (const auto* n = std::get_if<Swizzle>(&expr.node)) {
+    return isFirstComponent(function, *n->base, n->components[0]);
+  }
+  if (const auto* n = std::get_if<Index>(&expr.node)) {
+    const std::optional<std::uint8_t> component = literalComponent(*n->index);
+    return component && n->base->type.isVector() && *component < n->base->type.width &&
+           isFirstComponent(function, *n->base, *component);
+  }
+  const auto* n = std::get_if<Binary>(&expr.node);
+  if (n == nullptr || (n->op != BinaryOp::Add && n->op != BinaryOp::Sub)) return false;
+  if (isRamp(function, *n->lhs)) return !differs(function, *n->rhs);
+  return n->op == BinaryOp::Add && !differs(function, *n->lhs) && isRamp(function, *n->rhs);
+}
+
 bool Divergence::differs(FunctionId function, const Expr& expr) const {
   const auto any = [&] {
     bool found = false;
@@ -231,6 +269,7 @@ class DivergenceWalk {
   void visit(const Stmt&, const Declare& n) {
     declared_[n.var] = {frames_.size(), loops_.size(), false};
     if (!n.init) return;
+    if (!order_.assigned.contains(n.var)) whole_.constant_[id_][n.var] = n.init.get();
     const Expr* init = n.init.get();
     std::vector<std::uint8_t> components = {0, 1, 2, 3};
     if (const auto* swizzle = std::get_if<Swizzle>(&init->node)) {
@@ -333,7 +372,7 @@ class DivergenceWalk {
   bool isNew_ = false;
 };
 
-Divergence::Divergence(const Module& module, const Kernel& kernel) : module_(module) {
+Divergence::Divergence(const Module& module, const Kernel& kernel) : module_(module), kernel_(kernel) {
   const std::vector<FunctionId> functions = functionsOf(module, kernel);
   for (const FunctionId id : functions) {
     functions_[id].variables.assign(module.functions[id].variables.size(), false);

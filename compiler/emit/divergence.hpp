@@ -41,13 +41,22 @@ class Divergence {
 
   /// Whether a variable is the element's index, or components of it, and stays that: all but x is the same for all lanes.
   bool isIndex(ir::FunctionId function, ir::VarId var) const;
+  /// Whether each lane's int is greater by 1 than that of the lane before: x of the element's index, and what is the same for all
+  /// lanes more or less.
+  bool isRamp(ir::FunctionId function, const ir::Expr& expr) const;
+  bool isRamp(ir::FunctionId function, ir::VarId var) const;
 
  private:
   friend class DivergenceWalk;
 
+  bool isFirstComponent(ir::FunctionId function, const ir::Expr& vector, std::uint8_t component) const;
+
   const ir::Module& module_;
+  const ir::Kernel& kernel_;
   std::map<ir::FunctionId, FunctionDivergence> functions_;
   std::map<ir::FunctionId, std::map<ir::VarId, std::vector<std::uint8_t>>> indices_;  ///< components
+  std::map<ir::FunctionId, std::map<ir::VarId, const ir::Expr*>>
+      constant_;  ///< variables that stay what they are declared to be
   std::set<const ir::Stmt*> apart_, skipped_, blended_;
 };
 

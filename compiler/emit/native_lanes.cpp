@@ -74,7 +74,7 @@ class LanesWriter {
 
   void write(const Stmt&, const Declare& n, int depth) {
     const Type declared = function_.variables[n.var].type;
-    if (divergence_.isIndex(id_, n.var)) {
+    if (divergence_.isIndex(id_, n.var) || divergence_.isRamp(id_, n.var)) {
       line(depth, fmt::format("[[maybe_unused]] const {} {} = {};",
                               nativeType(context_.module, context_.types, declared), firstLane(name(n.var)),
                               nativeExpr(context_, id_, *n.init)));

@@ -204,6 +204,15 @@ class LanesExpr {
   std::string print(Type, const GatherRead& n) const {
     const auto* construct = std::get_if<Construct>(&n.index->node);
     const bool isApart = construct != nullptr && construct->args.size() == n.index->type.width;
+    const Expr& x = isApart ? *construct->args[0] : *n.index;
+    const bool isRow = !isApart || std::none_of(construct->args.begin() + 1, construct->args.end(),
+                                                [&](const ExprPtr& arg) { return differs(*arg); });
+    if (isRow && context_.divergence->isRamp(function_, x)) {
+      std::vector<std::string> first = {uniform(x)};
+      for (std::size_t d = 1; isApart && d < construct->args.size(); ++d)
+        first.push_back(uniform(*construct->args[d]));
+      return fmt::format("{}.lanesFrom({})", stream(n.stream), join(first, ", "));
+    }
     return fmt::format("{}.lanesAt({})", stream(n.stream),
                        isApart ? join(texts(construct->args), ", ") : text(*n.index));
   }

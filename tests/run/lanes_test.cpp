@@ -291,4 +291,45 @@ TEST_CASE("elements side by side know where they are, and their neighbours") {
   }
 }
 
+TEST_CASE("gathers that follow the element's index are right side by side, with every boundary") {
+  sk::Device device = sk::Device::native();
+  constexpr int rows = 3;
+  const auto wrapped = [](int i, int n) { return (i % n + n) % n; };
+  for (const std::int64_t length : lengths()) {
+    const int columns = static_cast<int>(length);
+    const sk::Shape shape{rows, columns};
+    const std::vector<int> values = list(rows * columns, [](int k) { return scattered(k) % 1000; });
+    const auto a = streamOf(device, shape, values);
+    const auto line = streamOf(device, {columns}, std::vector<int>(values.begin(), values.begin() + columns));
+    const auto wide =
+        streamOf(device, {rows, 2 * columns}, list(rows * 2 * columns, [](int k) { return k; }));
+    auto r = device.stream<sk::int4>(shape);
+    auto own = device.stream<int>(shape);
+    const auto at = [&](int y, int x) { return values[static_cast<std::size_t>(y * columns + x)]; };
+    for (const int by : {0, 1, -3, 20}) {
+      INFO(columns << " columns, by " << by);
+      lanes::follows(a, a, line, a, by, sk::stride(wide), r, own);
+      std::vector<std::uint32_t> expected;
+      std::vector<int> owns;
+      for (int y = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x) {
+          int sums[4] = {};
+          for (int k = 0; k < 2; ++k) {
+            sums[0] += at(std::min(y + k, rows - 1), std::clamp(x + by - 2 * k, 0, columns - 1));
+            sums[1] += at(wrapped(y - by, rows), wrapped(x - by, columns));
+            const int mirrored = wrapped(k + x + by, 2 * columns);
+            sums[2] += at(0, std::min(mirrored, 2 * columns - 1 - mirrored));
+            const bool isInside = k + by >= 0 && k + by < rows && x + by >= 0 && x + by < columns;
+            sums[3] += isInside ? at(k + by, x + by) : -7;
+          }
+          for (const int sum : sums) expected.push_back(static_cast<std::uint32_t>(sum));
+          owns.push_back(y * 2 * columns + 2 * x + at(y, wrapped(2 * x, columns)));
+        }
+      }
+      CHECK(bitsOf(r.read()) == expected);
+      CHECK(own.read() == owns);
+    }
+  }
+}
+
 }  // namespace

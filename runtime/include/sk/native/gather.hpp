@@ -93,6 +93,19 @@ class Gather : public StreamParameter {
       return value;
     }
   }
+  /// At an index, and at those that follow it along x.
+  template <class... Others>
+    requires(sizeof...(Others) + 1 == N)
+  LanesOf<T> lanesFrom(Int x, Others... others) const {
+    if (!isGiven()) return spread(T{});
+    if (x.word() < 0 || x.word() + std::int64_t{laneCount} > extent_[0]) {
+      return laneByLane([&](Int lane) { return at(Position(x + lane, others...)); }, laneNumbers());
+    }
+    Numbers numbers{first_ + x.word(), false, Int(0), Mask(false)};
+    std::size_t d = 1;
+    (add(numbers, d++, others), ...);
+    return numbers.areAllOutside ? spread(border_) : loadNeighbours<T>(arrays_, numbers.first);
+  }
   LanesOf<T> lanesAt(const Vec<Lanes<Int>, N>& place) const {
     return [&]<std::size_t... D>(std::index_sequence<D...>) {
       return lanesAt(place.components[D]...);
