@@ -83,6 +83,11 @@ bool Divergence::isIndex(FunctionId function, VarId var) const {
   return found != indices_.end() && found->second.contains(var);
 }
 
+bool Divergence::isInStep(FunctionId function, VarId var) const {
+  const auto found = inStep_.find(function);
+  return found != inStep_.end() && found->second.contains(var);
+}
+
 /// Whether a component of a vector is x of the domain's index. That of an input may be another one, and repeat.
 bool Divergence::isFirstComponent(FunctionId function, const Expr& vector, std::uint8_t component) const {
   if (const auto* n = std::get_if<IndexOf>(&vector.node)) {
@@ -136,7 +141,10 @@ bool Divergence::differs(FunctionId function, const Expr& expr) const {
     const std::vector<std::uint8_t>& own = indices_.at(function).at(n->var);
     return std::ranges::none_of(components, [&](std::uint8_t c) { return own[c] == 0; });
   };
-  if (const auto* n = std::get_if<VarRef>(&expr.node)) return differs(function, n->var);
+  if (const auto* n = std::get_if<VarRef>(&expr.node)) {
+    const bool isSame = isInStep(function, n->var) && inStep_.at(function).at(n->var).reads.contains(&expr);
+    return !isSame && differs(function, n->var);
+  }
   if (const auto* n = std::get_if<Swizzle>(&expr.node)) {
     return !areUniform(*n->base, n->components) && differs(function, *n->base);
   }
@@ -170,7 +178,11 @@ class DivergenceWalk {
     }
     for (VarId i = 0; id == kernel.entry && i < kernel.params.size(); ++i) {
       const ParamRole role = kernel.params[i].role;
-      if (role == ParamRole::Input || role == ParamRole::Output || role == ParamRole::Iterator) mark(i);
+      if (role == ParamRole::Output) {
+        differ(i);
+        isOutput_.insert(i);
+      }
+      if (role == ParamRole::Input || role == ParamRole::Iterator) mark(i);
     }
   }
 
@@ -198,10 +210,19 @@ class DivergenceWalk {
   void insert(std::set<const Stmt*>& where, const Stmt& stmt) {
     if (where.insert(&stmt).second) isNew_ = true;
   }
-  void mark(VarId var) {
+  void differ(VarId var) {
     if (own_.variables[var]) return;
     own_.variables[var] = true;
     isNew_ = true;
+  }
+  void leaveStep(VarId var) {
+    if (!whole_.outOfStep_[id_].insert(var).second) return;
+    whole_.inStep_[id_].erase(var);
+    isNew_ = true;
+  }
+  void mark(VarId var) {
+    leaveStep(var);
+    differ(var);
   }
   bool differs(const Expr& expr) const { return whole_.differs(id_, expr); }
 
@@ -217,6 +238,35 @@ class DivergenceWalk {
                        });
   }
 
+  /// The loop that some lanes have left where this variable is assigned to, while all that are in it go on in step; none where there
+  /// is more to it.
+  const Stmt* loopInStep(VarId var) const {
+    const Declared& declared = declared_[var];
+    const Type type = function_.variables[var].type;
+    const bool isOwn = var >= function_.parameterCount || isOutput_.contains(var);
+    if (!isOwn || !type.isScalar() || !type.isArithmetic() || frames_.size() != declared.frames + 1)
+      return nullptr;
+    const Frame& frame = frames_.back();
+    if (frame.kind != Frame::Exit || loops_[declared.loops] != frame.loop) return nullptr;
+    if (whole_.outOfStep_[id_].contains(var)) return nullptr;
+    const bool isOfOther = whole_.isInStep(id_, var) && whole_.inStep_.at(id_).at(var).loop != frame.loop;
+    return isOfOther ? nullptr : frame.loop;
+  }
+  void keepInStep(VarId var, const Stmt& stmt) {
+    if (whole_.isInStep(id_, var)) return;
+    const Loop& loop = std::get<Loop>(stmt.node);
+    Divergence::InStep& own = whole_.inStep_[id_][var];
+    own.loop = &stmt;
+    const auto add = [&](const Expr& expr) {
+      const auto* n = std::get_if<VarRef>(&expr.node);
+      if (n != nullptr && n->var == var) own.reads.insert(&expr);
+    };
+    if (loop.cond) walkExprs(static_cast<const Expr&>(*loop.cond), add);
+    walkExprs(loop.body, add);
+    walkExprs(loop.step, add);
+    isNew_ = true;
+  }
+
   void assigned(const Stmt& stmt, const Expr& place, bool valueDiffers) {
     const VarId var = rootOf(place);
     bool indexDiffers = false;
@@ -226,7 +276,12 @@ class DivergenceWalk {
     });
     const bool isSeen = seenByOthers(var);
     if (isSeen) insert(whole_.blended_, stmt);
-    if (isSeen || valueDiffers || indexDiffers) mark(var);
+    if (valueDiffers || indexDiffers) return mark(var);
+    if (!isSeen) return;
+    const Stmt* const loop = loopInStep(var);
+    if (loop == nullptr) return mark(var);
+    keepInStep(var, *loop);
+    differ(var);
   }
 
   void block(const Block& statements) {
@@ -292,6 +347,7 @@ class DivergenceWalk {
       argumentDiffers = argumentDiffers || differ;
       if (called.variables[i].role == VarRole::InOut) {
         const VarId root = rootOf(*n.args[i]);
+        leaveStep(root);
         if (callee.variables[i] || seenByOthers(root)) mark(root);
         if (own_.variables[root]) markArgument(callee, i);
       } else if (differ) {
@@ -299,6 +355,7 @@ class DivergenceWalk {
       }
     }
     if (!frames_.empty()) set(callee.isCalledApart);
+    if (n.result) leaveStep(rootOf(*n.result));
     if (n.result) assigned(stmt, *n.result, callee.result || argumentDiffers);
   }
   void visit(const Stmt& stmt, const If& n) {
@@ -369,6 +426,7 @@ class DivergenceWalk {
   std::vector<Frame> frames_;
   std::vector<const Stmt*> loops_;
   std::vector<std::size_t> entered_;  ///< frames around each of the loops
+  std::set<VarId> isOutput_;  ///< of the kernel, each of which begins as 0
   bool isNew_ = false;
 };
 

@@ -45,6 +45,8 @@ class Divergence {
   /// lanes more or less.
   bool isRamp(ir::FunctionId function, const ir::Expr& expr) const;
   bool isRamp(ir::FunctionId function, ir::VarId var) const;
+  /// Whether a number differs only since lanes have left a loop at different times: for those in it, all reads there give the same.
+  bool isInStep(ir::FunctionId function, ir::VarId var) const;
 
  private:
   friend class DivergenceWalk;
@@ -57,6 +59,13 @@ class Divergence {
   std::map<ir::FunctionId, std::map<ir::VarId, std::vector<std::uint8_t>>> indices_;  ///< components
   std::map<ir::FunctionId, std::map<ir::VarId, const ir::Expr*>>
       constant_;  ///< variables that stay what they are declared to be
+  /// Of numbers in step: the loop, and what reads them there. Those that were found to differ in their loop, too.
+  struct InStep {
+    const ir::Stmt* loop;
+    std::set<const ir::Expr*> reads;
+  };
+  std::map<ir::FunctionId, std::map<ir::VarId, InStep>> inStep_;
+  std::map<ir::FunctionId, std::set<ir::VarId>> outOfStep_;
   std::set<const ir::Stmt*> apart_, skipped_, blended_;
 };
 

@@ -29,7 +29,8 @@ struct NativeContext {
   const Divergence* divergence = nullptr;  ///< in code for lanes, what differs between them
 };
 
-/// What holds an index of the first of all lanes, beside the variable that holds those of all.
+/// Beside the variable that holds the values of all lanes: an index of the first of them, or a number that those in a loop have in
+/// common (Divergence::isInStep).
 inline std::string firstLane(const std::string& variable) { return "sk_first_" + variable; }
 
 /// "sk_real", "native::Vec<native::Int, 2>", "Hit<sk_real>".

@@ -31,6 +31,10 @@ class LanesWriter {
     line(1, head() + " {");
     if (own_.returnsApart && !own_.isCalledApart) line(2, "native::Mask sk_on(true);");
     if (own_.returnsApart && !function_.result.isVoid()) line(2, resultType() + " sk_result{};");
+    for (VarId i = 0; i < function_.parameterCount; ++i) {
+      if (divergence_.isInStep(id_, i))
+        line(2, "[[maybe_unused]] " + scalarType(i) + " " + firstLane(name(i)) + "{};");
+    }
     if (own_.returnsApart || own_.isCalledApart) masks_.push_back({"sk_on", Mask::Function, nullptr});
     block(function_.body, 2);
     if (own_.returnsApart && !function_.result.isVoid()) line(2, "return sk_result;");
@@ -73,16 +77,18 @@ class LanesWriter {
   }
 
   void write(const Stmt&, const Declare& n, int depth) {
-    const Type declared = function_.variables[n.var].type;
-    if (divergence_.isIndex(id_, n.var) || divergence_.isRamp(id_, n.var)) {
-      line(depth, fmt::format("[[maybe_unused]] const {} {} = {};",
-                              nativeType(context_.module, context_.types, declared), firstLane(name(n.var)),
-                              nativeExpr(context_, id_, *n.init)));
+    const bool isInStep = divergence_.isInStep(id_, n.var);
+    if (isInStep || divergence_.isIndex(id_, n.var) || divergence_.isRamp(id_, n.var)) {
+      line(depth,
+           fmt::format("[[maybe_unused]] {}{} {}{};", isInStep ? "" : "const ", scalarType(n.var),
+                       firstLane(name(n.var)), n.init ? " = " + nativeExpr(context_, id_, *n.init) : "{}"));
     }
     const std::string init = n.init ? " = " + value(n.var, *n.init) : "{}";
     line(depth, fmt::format("[[maybe_unused]] {} {}{};", type(n.var), name(n.var), init));
   }
   void write(const Stmt& stmt, const Assign& n, int depth) {
+    const auto* var = std::get_if<VarRef>(&n.place->node);
+    if (var != nullptr && divergence_.isInStep(id_, var->var)) return assignInStep(stmt, n, var->var, depth);
     if (!differs(*n.place) && !differsAtRoot(*n.place)) {
       return line(depth, nativeAssignment(context_, id_, *n.place, n.op, *n.value) + ";");
     }
@@ -92,6 +98,21 @@ class LanesWriter {
                              isOperation(*n.value) ? "(" + text(*n.value) + ")" : text(*n.value));
     }
     assign(*n.place, assigned, divergence_.isBlended(stmt), depth);
+  }
+
+  /// A number that is the same for all lanes in a loop is computed once, and those that are in it take it.
+  void assignInStep(const Stmt& stmt, const Assign& n, VarId var, int depth) {
+    line(depth, nativeAssignment(context_, id_, *n.place, n.op, *n.value) + ";");
+    const auto* by = std::get_if<Literal>(&n.value->node);
+    const bool isCount = n.op == BinaryOp::Add && by != nullptr && by->bits == 1 && n.value->type.isInteger();
+    if (!divergence_.isBlended(stmt)) {
+      line(depth, fmt::format("{} = native::spread({});", name(var), firstLane(name(var))));
+    } else if (isCount) {
+      line(depth, fmt::format("native::count({}, {});", on(), name(var)));
+    } else {
+      line(depth,
+           fmt::format("native::put({}, {}, native::spread({}));", on(), name(var), firstLane(name(var))));
+    }
   }
 
   void assign(const Expr& place, const std::string& assigned, bool isBlended, int depth) {
@@ -219,17 +240,29 @@ class LanesWriter {
   }
 
   void condition(const Stmt& stmt, const Loop& n, int depth) {
-    if (n.cond && !differs(*n.cond)) {
-      const auto* always = std::get_if<Literal>(&n.cond->node);
-      if (always == nullptr || always->bits == 0)
-        line(depth, fmt::format("if (!({})) break;", text(*n.cond)));
+    const Expr* cond = n.cond.get();
+    if (cond != nullptr && !differs(*cond)) {
+      const auto* always = std::get_if<Literal>(&cond->node);
+      if (always == nullptr || always->bits == 0) line(depth, fmt::format("if (!({})) break;", text(*cond)));
+      cond = nullptr;
+    }
+    // what holds for all lanes or none is asked first, and once
+    for (const auto* both = conjunction(cond); both != nullptr && !differs(*both->lhs);
+         both = conjunction(cond)) {
+      line(depth, fmt::format("if (!({})) break;", text(*both->lhs)));
+      cond = both->rhs.get();
     }
     if (!divergence_.isApart(stmt)) return;
-    if (n.cond && differs(*n.cond)) {
-      const std::string inside = isOperation(*n.cond) ? "(" + text(*n.cond) + ")" : text(*n.cond);
+    if (cond != nullptr) {
+      const std::string inside = isOperation(*cond) ? "(" + text(*cond) + ")" : text(*cond);
       line(depth, fmt::format("{} = {} & {};", on(), on(), inside));
     }
     line(depth, fmt::format("if (!native::any({})) break;", on()));
+  }
+
+  static const Binary* conjunction(const Expr* cond) {
+    const auto* n = cond == nullptr ? nullptr : std::get_if<Binary>(&cond->node);
+    return n != nullptr && n->op == BinaryOp::LogicalAnd ? n : nullptr;
   }
 
   void round(const Stmt& stmt, const Block& body, int depth) {
@@ -325,9 +358,11 @@ class LanesWriter {
     return divergence_.differs(id_, var) ? spread(expr) : text(expr);
   }
   std::string type(VarId var) const {
-    const Type type = function_.variables[var].type;
-    return divergence_.differs(id_, var) ? lanesType(context_, type)
-                                         : nativeType(context_.module, context_.types, type);
+    return divergence_.differs(id_, var) ? lanesType(context_, function_.variables[var].type)
+                                         : scalarType(var);
+  }
+  std::string scalarType(VarId var) const {
+    return nativeType(context_.module, context_.types, function_.variables[var].type);
   }
   const std::string& name(VarId var) const { return context_.names.variable(id_, var); }
 

@@ -133,6 +133,7 @@ TEST_CASE("neighbours part ways in loops, jumps and calls") {
   controlIsTheSame(lanes::escape);
   controlIsTheSame(lanes::jumps);
   controlIsTheSame(lanes::outlives);
+  controlIsTheSame(lanes::counts);
   controlIsTheSame(lanes::calls);
   controlIsTheSame(lanes::nobody);
 }

@@ -211,6 +211,13 @@ void put(const Mask& mask, T& place, const std::type_identity_t<T>& value) {
   place = select(mask, value, place);
 }
 
+/// `++place` for the lanes that take part.
+template <class Word>
+void count(const Mask& mask, Lanes<Integer<Word>>& place) {
+  place = Lanes<Integer<Word>>::byPart([](const auto& x, const Truth& on) { return plain(x) - (Bits)on; },
+                                       place, mask);
+}
+
 /// What `yes` gives to those lanes of `on` that fulfil a condition, and `no` to the others; neither is called for none.
 template <class Yes, class No>
 auto choose(const Mask& on, const Mask& condition, Yes&& yes, No&& no) {
