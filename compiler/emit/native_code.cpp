@@ -82,7 +82,10 @@ class KernelWriter {
 
   std::string write() {
     text_ = fmt::format("template <class sk_real{}>\nstruct {} {{\n",
-                        hasInside() ? ", bool sk_isInside = false" : "", name_);
+                        hasInside()       ? ", bool sk_isInside = false"
+                        : !term().empty() ? ", bool sk_isOfFloats = false"
+                                          : "",
+                        name_);
     members();
     forLoops();
     for (const ConstantId id : constantsOf(module_, kernel_)) constant(id);
@@ -126,7 +129,8 @@ class KernelWriter {
     switch (param.role) {
       case ParamRole::Uniform:
       case ParamRole::Spec: return fmt::format("native::Uniform<{}>", element);
-      case ParamRole::Input: return fmt::format("native::Input<{}>", element);
+      case ParamRole::Input:
+        return fmt::format("native::Input<{}{}>", element, !term().empty() ? ", sk_isOfFloats" : "");
       case ParamRole::Output:
       case ParamRole::Accumulator: return fmt::format("native::Output<{}>", element);
       case ParamRole::Gather:
@@ -151,6 +155,7 @@ class KernelWriter {
       line(1, fmt::format("static constexpr bool sk_isOrdered = {};", isOrdered));
     } else {
       line(1, fmt::format("static constexpr bool sk_isCommutative = {};", kernel_.reduction->commutative));
+      if (!term().empty()) sumsOfFloats();
     }
     line(1, fmt::format("static constexpr bool sk_isUneven = {};", uses_.loops));
     std::vector<std::string> placed;
@@ -168,6 +173,20 @@ class KernelWriter {
       }
     }
     line(1, fmt::format("auto sk_streams() {{ return std::tie({}); }}\n", join(placed, ", ")));
+  }
+
+  /// What an element adds where it does no more: one input, or the product of two.
+  std::vector<VarId> term() const {
+    const bool isSum = kernel_.reduction && kernel_.reduction->compensated;
+    return isSum ? kernel_.reduction->compensated->term : std::vector<VarId>();
+  }
+  /// The form that sums what streams of floats hold in doubles.
+  void sumsOfFloats() {
+    line(1, "static constexpr bool sk_sumsFloats = std::is_same_v<sk_real, double>;");
+    line(1, "static constexpr bool sk_readsFloats = sk_isOfFloats;");
+    line(1, fmt::format("using sk_OfFloats = {}<sk_real, true>;", name_));
+    line(1, fmt::format("auto sk_term() {{ return std::tie({}); }}",
+                        list(term(), [&](VarId i) { return member(i); })));
   }
 
   /// Whether a gather's neighbours are so near that most elements have them in their own row.

@@ -232,7 +232,8 @@ class Builder {
     }
     sk::program::CompensatedReduction& made =
         storage_.compensated.emplace_back(sk::program::CompensatedReduction{
-            reduction(fold, describe(fold)), whole(module_.kernels[plain.compensated->finish]), sums});
+            reduction(fold, describe(fold)), whole(module_.kernels[plain.compensated->finish]), sums,
+            !plain.compensated->term.empty()});
     made.reduction.commutative = plain.commutative;
     return &made;
   }

@@ -177,16 +177,17 @@ class SourceWriter {
     const CompensatedNames names(name);
     kernel(made.reduction.combine, module_.kernels[*fold.reduction->combine], names.combine, {});
     kernel(made.reduction.fold, fold, names.fold, {});
-    reduction(made.reduction, fold, names.fold, names.combine, inAnyReal(Speed::OfFloats));
+    const Speed speed = made.inDoubles ? Speed::Any : Speed::OfFloats;  // seldom run, where doubles serve
+    reduction(made.reduction, fold, names.fold, names.combine, inAnyReal(speed));
     kernel(made.finish, module_.kernels[second.finish], names.finish, inAnyReal(Speed::Any));
     std::vector<std::string> sums;
     for (const auto& [accumulator, offset] : made.sums) {
       sums.push_back(fmt::format("{{{}, {}}}", accumulator, offset));
     }
     list("CompensatedSum", name + "Sums", sums);
-    text_ +=
-        fmt::format("constexpr CompensatedReduction {}Compensated = {{{}Reduction, {}Kernel, {}Sums}};\n\n",
-                    name, names.fold, names.finish, name);
+    text_ += fmt::format(
+        "constexpr CompensatedReduction {}Compensated = {{{}Reduction, {}Kernel, {}Sums, {}}};\n\n", name,
+        names.fold, names.finish, name, made.inDoubles);
   }
 
   /// The constant NAMEExact.

@@ -247,6 +247,8 @@ struct CompensatedSum {
 struct Compensated {
   KernelId fold, finish;
   std::vector<CompensatedSum> sums;
+  /// Where an element adds one input, or the product of two, and does no more: these.
+  std::vector<VarId> term = {};
 };
 
 /// A scalar sum of floats of a reduce, set by sum-exactly: the reduce `fold` has, after all parameters but accumulators, those

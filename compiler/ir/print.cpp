@@ -150,8 +150,8 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
   if (kernel.reduction && kernel.reduction->seeded) text += ", seeded";
   if (kernel.reduction && kernel.reduction->compensated) {
     const Compensated& second = *kernel.reduction->compensated;
-    text += fmt::format(", compensated by @{}, @{}", module.kernels[second.fold].entry,
-                        module.kernels[second.finish].entry);
+    text += fmt::format(", compensated by @{}, @{}{}", module.kernels[second.fold].entry,
+                        module.kernels[second.finish].entry, second.term.empty() ? "" : " or in doubles");
   }
   if (kernel.reduction && kernel.reduction->finish) {
     text += fmt::format(", finished by @{}", module.kernels[*kernel.reduction->finish].entry);

@@ -109,7 +109,8 @@ class Maker {
   void make() {
     const KernelId fold = makeFold(makeCombination());
     const KernelId finish = makeFinish();
-    Compensated made{fold, finish, {}};
+    Compensated made{fold, finish, {}, {}};
+    if (kernel().reduction->commutative) made.term = onlyTerm(module_, kernel());
     for (const FloatSum& sum : sums_) made.sums.push_back({sum.accumulator, sum.members});
     module_.kernels[fold].reduction->commutative = module_.kernels[id_].reduction->commutative;
     module_.kernels[id_].reduction->compensated = std::move(made);

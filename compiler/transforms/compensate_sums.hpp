@@ -24,7 +24,8 @@
 // Math. 18, 1971), so that a sum of n terms (sum_terms.hpp) has one rounding of its own and some (log n)^2 u^2 of the
 // sum of magnitudes: Sum2 and Dot2 of Ogita, Rump and Oishi (SIAM J. Sci. Comput. 26, 2005) over a tree. Which
 // accumulators and members are such sums, float_sums.hpp says; all others are folded and combined as before, be it by the
-// author's own reduce. A reduce that has no identities has no second form.
+// author's own reduce. A reduce that has no identities has no second form. Where an element adds no more than one input or the
+// product of two, doubles hold that, and native code sums in them instead.
 #pragma once
 
 #include "ir/ir.hpp"

@@ -90,6 +90,31 @@ TEST_CASE("vectors of floats are summed so, too") {
   CHECK(second(module) != nullptr);
 }
 
+TEST_CASE("an element that adds one input, or the product of two, tells these") {
+  const auto termOf = [](auto&& value) {
+    Module module = testModule();
+    KernelMaker maker(module, "r");
+    const VarId x = maker.input("x", floatType);
+    const VarId y = maker.input("y", floatType);
+    const VarId total = maker.accumulator("total", floatType);
+    maker.finish(block(assign(maker.ref(total), BinaryOp::Add, value(maker.ref(x), maker.ref(y)))));
+    transform(module);
+    REQUIRE(second(module) != nullptr);
+    return second(module)->term;
+  };
+  const auto with = [](BinaryOp op) {
+    return [op](ExprPtr x, ExprPtr y) { return binary(op, std::move(x), std::move(y)); };
+  };
+  using Inputs = std::vector<VarId>;
+  CHECK(termOf([](ExprPtr x, ExprPtr) { return x; }) == Inputs{0});
+  CHECK(termOf(with(BinaryOp::Mul)) == Inputs{0, 1});
+  CHECK(termOf(with(BinaryOp::Sub)).empty());
+  CHECK(termOf(with(BinaryOp::Div)).empty());
+  CHECK(termOf([](ExprPtr x, ExprPtr) { return unary(UnaryOp::Negate, std::move(x)); }).empty());
+  CHECK(
+      termOf([](ExprPtr x, ExprPtr) { return binary(BinaryOp::Mul, std::move(x), literal(2.0F)); }).empty());
+}
+
 /// struct Stats { float sum; float3 v; int count; };
 Type addStats(Module& module) {
   const Type vector = Type::of(Scalar::Float, 3);

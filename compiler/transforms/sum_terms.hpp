@@ -20,6 +20,9 @@ struct Term {
 /// a vector of products, or a choice of some, is a product of what is made of their factors.
 std::vector<Term> termsOf(const ir::Assign& fold);
 
+/// Where all that an element does is to add itself to one float, or the product of two: those inputs. Nothing of others.
+std::vector<ir::VarId> onlyTerm(const ir::Module& module, const ir::Kernel& reduce);
+
 /// The value itself, or a vector of this type with a scalar in each component: so scalars are added to vectors.
 ir::ExprPtr ofType(ir::Type type, ir::ExprPtr value);
 

@@ -99,6 +99,20 @@ bool isExact(const CheckedReduction& checked, const CallOptions& options) {
          checked.domain.size() != 0;
 }
 
+/// Whether the plain form in doubles serves for the compensated one: a kernel of floats sees no bits that a stream has beyond them.
+bool isInDoubles(const CompensatedReduction& second, const CheckedReduction& checked,
+                 std::span<const Argument> arguments) {
+  return second.inDoubles && checked.device.sumsInDoubles() &&
+         std::ranges::none_of(arguments, [](const Argument& argument) {
+           return argument.region.stream != nullptr && argument.region.stream->storage >= Storage::Extended;
+         });
+}
+
+CallOptions inDoubles(CallOptions options) {
+  options.accumulate = Accumulate::Extended;
+  return options;
+}
+
 /// With what a file or the declaration chooses; a file's choice for all reduces is one for those that sum floats.
 CallOptions resolved(const CheckedReduction& checked, const Reduction& reduction, const CallOptions& call) {
   CallOptions options = checked.device.configuration.resolve(reduction.fold, call);
@@ -169,6 +183,10 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
     checked.device.reduce(reduction, arguments, checked.domain, results, options);
     return;
   }
+  if (isInDoubles(*second, checked, arguments)) {
+    reduceInForm(checked, reduction, arguments, results, inDoubles(options));
+    return;
+  }
   std::vector<Argument> all(arguments.begin(), arguments.end());
   std::vector<void*> places(results.begin(), results.end());
   std::deque<std::vector<std::byte>> lost;
@@ -209,6 +227,10 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
   }
   if (second == nullptr) {
     checked.device.reduce(reduction, arguments, checked.domain, checked.blocks, options);
+    return;
+  }
+  if (isInDoubles(*second, checked, arguments)) {
+    reduceInForm(checked, reduction, arguments, inDoubles(options));
     return;
   }
   // the sums go where the results will be, what they lose to streams beside them

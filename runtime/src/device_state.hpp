@@ -40,6 +40,8 @@ class DeviceState {
   virtual bool combinesScattered() const = 0;
   /// Whether precisions other than float's are forms of a kernel: native code computes in any real type.
   virtual bool takesForms() const = 0;
+  /// Whether doubles are cheaper to sum in than floats with what they lose.
+  virtual bool sumsInDoubles() const { return false; }
   /// Whether it computes in double where kernels say float.
   virtual bool isReference() const { return false; }
   /// Throws sk::Error where this device has no program for the kernel.

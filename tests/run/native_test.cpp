@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -102,6 +103,59 @@ TEST_CASE("results have the same bits on one thread as on many") {
     if (range.begin == 0) onOne = sums();  // a thread of several starts no others
   });
   CHECK(onOne == onMany);
+}
+
+TEST_CASE("sums of floats in doubles are the same whether streams are read where they lie or laid out") {
+  constexpr std::size_t n = (1 << 17) + 77;
+  std::vector<float> x(n);
+  std::vector<float> y(2 * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] = std::sin(static_cast<float>(i)) * std::ldexp(1.0F, static_cast<int>(i % 40));
+    y[2 * i] = std::cos(static_cast<float>(3 * i));
+  }
+  double expected = 0;
+  double magnitude = 0;
+  std::vector<float> dense(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    dense[i] = y[2 * i];
+    const double product = double{x[i]} * double{dense[i]};  // exact
+    expected += product;
+    magnitude += std::fabs(product);
+  }
+  sk::Device device = sk::Device::native();
+  const auto column = [&](const std::vector<float>& values, std::int64_t columns) {
+    auto stream = device.stream<float>({static_cast<std::int64_t>(n), columns});
+    stream.write(values);
+    return stream;
+  };
+  const auto a = column(x, 1);
+  const auto b = column(dense, 1);
+  const auto whole = column(y, 2);
+  const auto compensated = dot.with({.accumulate = sk::Accumulate::Compensated});
+  const float total = compensated(a, b);
+  CHECK(compensated(a, whole.domain({0, 0}, {static_cast<std::int64_t>(n), 1})) == total);
+  CHECK(dot(a, b) == total);
+  // in doubles: a rounding of the result, and n of the loop above
+  CHECK(std::fabs(total - expected) <= 0x1p-24 * std::fabs(expected) + 0x1p-53 * n * magnitude);
+}
+
+TEST_CASE("partial sums of floats do not overflow where doubles hold them") {
+  sk::Device device = sk::Device::native();
+  std::vector<float> x(1000, 3e38F);
+  std::fill(x.begin() + 500, x.end(), -3e38F);
+  x.push_back(0x1p100F);
+  CHECK(sum(streamOf(device, x)) == 0x1p100F);
+  CHECK(std::isinf(
+      sum.with({.accumulate = sk::Accumulate::Tree})(streamOf(device, std::vector<float>(2, 3e38F)))));
+  CHECK(sum(streamOf(device, std::vector<float>(2, -3e38F))) == -std::numeric_limits<float>::infinity());
+}
+
+TEST_CASE("a sum of floats sees no bits beyond them") {
+  sk::Device device = sk::Device::native();
+  auto x = device.stream<float>({1000}, sk::Storage::Double);
+  x.writeReals(std::vector<double>(1000, 1 + 0x1p-25));
+  CHECK(sum.with({.accumulate = sk::Accumulate::Compensated})(x) == 1000.0F);
+  CHECK(sum.with({.precision = sk::Precision::Double})(x) == static_cast<float>(1000 * (1 + 0x1p-25)));
 }
 
 /// What each block of a stream of {height, width} folds to, by a loop: add() of the slopes, and compose().

@@ -340,6 +340,8 @@ struct CompensatedReduction {
   Reduction reduction;
   Kernel finish;
   std::span<const CompensatedSum> sums;
+  bool inDoubles =
+      false;  ///< the plain form in doubles serves, too: they hold its terms, each an input or a product of two
 };
 
 /// A form of a reduction that adds without rounding what one scalar of an accumulator sums. The fold of `reduction` has all

@@ -29,6 +29,7 @@ class NativeDevice final : public DeviceState {
   const Arithmetic& arithmetic() override { return arithmetic_; }
   bool combinesScattered() const override { return true; }
   bool takesForms() const override { return false; }
+  bool sumsInDoubles() const override { return real_ == RealType::Float; }
   bool isReference() const override { return real_ != RealType::Float; }
   void checkProgram(const program::Kernel& kernel) override;
   void checkProgram(const program::Reduction& reduction) override;

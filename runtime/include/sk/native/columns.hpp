@@ -74,6 +74,12 @@ class Columns {
     visit(state, [&]<class S>(S& scalar) { array<S>(at)[k] = static_cast<Stored<S>>(scalar); });
   }
 
+  /// The columns of the only scalar, or of the first.
+  template <class S>
+  S* first() {
+    return reinterpret_cast<S*>(bytes_);
+  }
+
  private:
   template <class S>
   using Stored = typename StoredOf<S>::Type;

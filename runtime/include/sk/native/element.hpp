@@ -102,16 +102,16 @@ T load(void* const* components, std::int64_t element) {
   return value;
 }
 
+/// What an array of a component holds; or one that holds floats where the component has another real type.
+template <class S, bool isFloats>
+using HeldAs = std::conditional_t<isFloats && std::is_floating_point_v<S>, float, typename StoredOf<S>::Type>;
+
 /// Of arrays that hold floats where T has another real type.
 template <class T>
 T loadFloats(void* const* components, std::int64_t element) {
   T value{};
   Cursor cursor{components, element};
-  visit(value, [&]<class S>(S& scalar) {
-    using Stored = typename StoredOf<S>::Type;
-    using Held = std::conditional_t<std::is_floating_point_v<Stored>, float, Stored>;
-    scalar = static_cast<S>(cursor.next<Held>());
-  });
+  visit(value, [&]<class S>(S& scalar) { scalar = static_cast<S>(cursor.next<HeldAs<S, true>>()); });
   return value;
 }
 

@@ -10,6 +10,9 @@
 //   void sk_store(Index, State)     writes the results
 //   bool sk_isCommutative           runs may be combined in any order
 //
+// One that only sums floats, or products of two, tells which by sk_term(), and has, for doubles (sk_sumsFloats), a form that
+// reads floats (sk_readsFloats), sk_OfFloats.
+//
 // A block of the domain is divided into pieces, which are folded by themselves and then combined in order. What a piece is does not
 // depend on how many threads there are, and so neither do the results.
 #pragma once
@@ -24,6 +27,7 @@
 #include "sk/native/fold_narrow.hpp"
 #include "sk/native/hot.hpp"
 #include "sk/native/run.hpp"
+#include "sk/native/term_sums.hpp"
 
 namespace sk::native {
 
@@ -76,6 +80,10 @@ class FoldPieces {
   std::int64_t perRow_;
   std::int64_t height_;  ///< rows of a piece
 };
+
+/// Whether a kernel has a form that reads floats and sums in doubles.
+template <class Fold>
+concept SumsFloats = requires { requires Fold::sk_sumsFloats; };
 
 /// Folds pieces of blocks, one after the other.
 template <class Fold, class Combine>
@@ -135,7 +143,14 @@ class PieceFolder {
   void foldRounds(std::int32_t x, int first, int rounds) {
     Fold here = fold_;  // which nothing that is stored can change
     Side& folded = columnRuns_.next();
-    if (rounds == 1) {
+    if constexpr (SumsTerm<Fold>) {
+      const double start = Fold::sk_isSeeded ? -0.0 : std::get<0>(here.sk_identity());
+      std::apply(
+          [&](auto&... factor) {
+            sumTerms<side>(folded.template first<double>(), start, rounds, factor.floats(first)...);
+          },
+          here.sk_term());
+    } else if (rounds == 1) {
       startColumns(here, x, first, folded);
     } else {
       Side columns;
@@ -274,6 +289,22 @@ void foldPieces(const ReduceCall& call, Range range, typename Fold::sk_State* st
   }
 }
 
+template <class Fold, class Combine>
+SK_NATIVE_WIDE void foldPiecesOfFloats(const ReduceCall& call, Range range, typename Fold::sk_State* states) {
+  foldPieces<Fold, Combine>(call, range, states);
+}
+
+/// How pieces are folded: by `hot`, unless the streams lie so that the form of doubles can read floats.
+template <class Fold, class Combine, auto hot>
+auto pieceFolding(const ReduceCall& call) {
+  void (*folding)(const ReduceCall&, Range, typename Fold::sk_State*) = hot;
+  if constexpr (SK_NATIVE_FUSES && SumsFloats<Fold>) {
+    typename Fold::sk_OfFloats ofFloats(call.fold);
+    if (isWide() && isDirect(ofFloats)) folding = &foldPiecesOfFloats<typename Fold::sk_OfFloats, Combine>;
+  }
+  return folding;
+}
+
 /// Each block of the domain to one element of the results; `hot` is foldPieces. No block is empty.
 template <class Fold, class Combine, auto hot>
 void runReduction(const ReduceCall& call) {
@@ -291,7 +322,9 @@ void runReduction(const ReduceCall& call) {
   const std::int64_t ofBlock = pieces.ofBlock();
   std::vector<State> states(static_cast<std::size_t>(ofBlock == 1 ? 0 : pieces.count()));
   State* const results = ofBlock == 1 ? nullptr : states.data();
-  inParallel(pieces.count(), pieces.elementsOfOne(), deal, [&](Range range) { hot(call, range, results); });
+  const auto folding = pieceFolding<Fold, Combine, hot>(call);
+  inParallel(pieces.count(), pieces.elementsOfOne(), deal,
+             [&](Range range) { folding(call, range, results); });
   if (results == nullptr) return;
   const Fold fold(call.fold);
   Combine combine(call.combine);

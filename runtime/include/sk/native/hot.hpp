@@ -28,6 +28,15 @@
 #define SK_NATIVE_WIDE __attribute__((flatten))
 #endif
 
+/// Whether what is marked SK_NATIVE_WIDE multiplies and adds in one operation, where this CPU runs it.
+#if defined(__FMA__) || defined(__ARM_FEATURE_FMA) ||                                               \
+    (!defined(SK_NATIVE_PLAIN) && defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && \
+     !defined(__clang__) && !defined(__SANITIZE_ADDRESS__))
+#define SK_NATIVE_FUSES true
+#else
+#define SK_NATIVE_FUSES false
+#endif
+
 /// Without the clones.
 #if defined(__GNUC__) && !defined(SK_NATIVE_PLAIN)
 #define SK_NATIVE_INLINED __attribute__((flatten))

@@ -122,54 +122,70 @@ class StreamParameter {
   const Operand* operand_;
 };
 
-/// The arrays of an element's components, from the chunk's first element on.
-template <class T>
+/// The arrays of an element's components, from the chunk's first element on. They may hold floats where T has another real type.
+template <class T, bool holdFloats = false>
 class ComponentArrays {
  public:
-  T load(int i) const { return native::load<T>(arrays_, i); }
+  T load(int i) const {
+    if constexpr (holdFloats) {
+      return loadFloats<T>(arrays_, i);
+    } else {
+      return native::load<T>(arrays_, i);
+    }
+  }
   void store(int i, const T& value) const { native::store(arrays_, i, value); }
   LanesOf<T> loadLanes(int i) const { return loadNeighbours<T>(arrays_, i); }
   void storeLanes(int i, const LanesOf<T>& value) const { storeNeighbours<T>(arrays_, i, value); }
 
   void place(void* const* arrays, std::int64_t first) {
-    each([&]<class Stored>(std::size_t c, Stored*) { arrays_[c] = static_cast<Stored*>(arrays[c]) + first; });
+    each([&]<class Held>(std::size_t c, Held*) { arrays_[c] = static_cast<Held*>(arrays[c]) + first; });
   }
   /// In memory of its own, uninitialised.
   void place(Scratch& scratch, int count) {
-    each([&]<class Stored>(std::size_t c, Stored*) {
-      arrays_[c] = scratch.take(static_cast<std::size_t>(count) * sizeof(Stored));
+    each([&]<class Held>(std::size_t c, Held*) {
+      arrays_[c] = scratch.take(static_cast<std::size_t>(count) * sizeof(Held));
     });
+  }
+  template <class Held>
+  const Held* first() const {
+    return static_cast<const Held*>(arrays_[0]);
   }
 
  private:
   void each(auto&& component) const {
     T value{};
     std::size_t c = 0;
-    visit(value, [&]<class S>(S&) { component(c++, static_cast<typename StoredOf<S>::Type*>(nullptr)); });
+    visit(value, [&]<class S>(S&) { component(c++, static_cast<HeldAs<S, holdFloats>*>(nullptr)); });
   }
 
   void* arrays_[footprintOf<T>().scalars]{};
 };
 
-/// `T x<>`. A stream that is left out has zeros, which nobody looks at.
-template <class T>
+/// `T x<>`. A stream that is left out has zeros, which nobody looks at. One of floats for doubles serves where it is direct.
+template <class T, bool isOfFloats = false>
 class Input : public StreamParameter {
  public:
   using StreamParameter::StreamParameter;
 
   /// Whether its elements lie as the domain's do along x.
-  bool isDirect() const { return isGiven() && isDense() && !operand().holdsFloats; }
+  bool isDirect() const { return isGiven() && isDense() && holdsItsReals(); }
   void place(const Chunk& chunk) {
     for (std::size_t d = 0; d < 4; ++d)
       own_[d] = chunk.first[d] * operand().multiply[d] / operand().divide[d];
-    if (isDirect() || (chunk.count == 1 && isGiven() && !operand().holdsFloats)) {
+    if (isDirect() || (chunk.count == 1 && isGiven() && holdsItsReals())) {
       arrays_.place(operand().components.data(), number(own_));
-    } else {
+    } else if constexpr (!isOfFloats) {
       layOut(chunk);
     }
   }
 
   T at(int i) const { return arrays_.load(i); }
+  /// Where element i and those that follow it are, which are floats.
+  const float* floats(int i) const
+    requires isOfFloats
+  {
+    return arrays_.template first<float>() + i;
+  }
   /// Element i and those that follow it.
   LanesOf<T> lanesAt(int i) const { return arrays_.loadLanes(i); }
   /// Of the element of the domain that has this index.
@@ -193,6 +209,7 @@ class Input : public StreamParameter {
   }
 
  private:
+  bool holdsItsReals() const { return operand().holdsFloats == isOfFloats; }
   bool isDense() const {
     return operand().multiply[0] == 1 && operand().divide[0] == 1 && operand().stride[0] == 1;
   }
@@ -223,7 +240,7 @@ class Input : public StreamParameter {
   }
 
   Extents own_{};  ///< where the chunk begins here
-  ComponentArrays<T> arrays_;
+  ComponentArrays<T, isOfFloats> arrays_;
 };
 
 /// `out T r<>`. What is stored to one that is left out is lost.
