@@ -80,6 +80,12 @@ class KernelWriter {
         name_(fmt::format("sk_{}", name)),
         lanes_(lanes) {}
 
+  /// Of a reduce that sums exactly: what an element adds where it does no more, one input or the product of two.
+  KernelWriter& withExactTerm(std::vector<VarId> inputs) {
+    exactTerm_ = std::move(inputs);
+    return *this;
+  }
+
   std::string write() {
     text_ = fmt::format("template <class sk_real{}>\nstruct {} {{\n",
                         hasInside()       ? ", bool sk_isInside = false"
@@ -156,6 +162,7 @@ class KernelWriter {
     } else {
       line(1, fmt::format("static constexpr bool sk_isCommutative = {};", kernel_.reduction->commutative));
       if (!term().empty()) sumsOfFloats();
+      if (!exactTerm_.empty()) sumsExactly();
     }
     line(1, fmt::format("static constexpr bool sk_isUneven = {};", uses_.loops));
     std::vector<std::string> placed;
@@ -185,8 +192,15 @@ class KernelWriter {
     line(1, "static constexpr bool sk_sumsFloats = std::is_same_v<sk_real, double>;");
     line(1, "static constexpr bool sk_readsFloats = sk_isOfFloats;");
     line(1, fmt::format("using sk_OfFloats = {}<sk_real, true>;", name_));
+    termLine(term());
+  }
+  void sumsExactly() {
+    line(1, "static constexpr bool sk_sumsExactly = std::is_same_v<sk_real, float>;");
+    termLine(exactTerm_);
+  }
+  void termLine(const std::vector<VarId>& inputs) {
     line(1, fmt::format("auto sk_term() {{ return std::tie({}); }}",
-                        list(term(), [&](VarId i) { return member(i); })));
+                        list(inputs, [&](VarId i) { return member(i); })));
   }
 
   /// Whether a gather's neighbours are so near that most elements have them in their own row.
@@ -276,7 +290,7 @@ class KernelWriter {
       case ParamRole::Gather:
       case ParamRole::VariableOutput:
       case ParamRole::Scatter:
-      case ParamRole::Accumulator: break;   // no arguments, or not of a kernel
+      case ParamRole::Accumulator: break;  // no arguments, or not of a kernel
     }
     return {};
   }
@@ -381,6 +395,7 @@ class KernelWriter {
   StreamUses uses_;
   std::string name_;
   Lanes lanes_;
+  std::vector<VarId> exactTerm_;
   std::string text_;
 };
 
@@ -457,9 +472,21 @@ std::string halfForm(const Module& module, const Kernel& kernel, const std::stri
   return text;
 }
 
+/// A reduce's term (Compensated), by the parameters of its exact form, which has none of its accumulators.
+std::vector<VarId> exactTerm(const Kernel& reduce) {
+  std::vector<VarId> inputs;
+  if (reduce.reduction->compensated) inputs = reduce.reduction->compensated->term;
+  for (VarId& input : inputs) {
+    input -= static_cast<VarId>(std::ranges::count(reduce.params.begin(), reduce.params.begin() + input,
+                                                   ParamRole::Accumulator, &KernelParam::role));
+  }
+  return inputs;
+}
+
 /// The kernels of a reduce's exact sums, and what combines them, unless that is among `combinations` already.
-std::string exactSums(const Module& module, const Reduction& reduction, const std::string& name,
+std::string exactSums(const Module& module, const Kernel& reduce, const std::string& name,
                       std::set<KernelId>& combinations) {
+  const Reduction& reduction = *reduce.reduction;
   std::string text;
   for (std::size_t k = 0; k < reduction.exact.size(); ++k) {
     const Kernel& fold = module.kernels[reduction.exact[k].fold];
@@ -469,7 +496,7 @@ std::string exactSums(const Module& module, const Reduction& reduction, const st
       const Kernel& kernel = module.kernels[combine];
       text += KernelWriter(module, kernel, exactCombinationName(kernel)).write();
     }
-    text += KernelWriter(module, fold, made.fold).write();
+    text += KernelWriter(module, fold, made.fold).withExactTerm(exactTerm(reduce)).write();
     text += KernelWriter(module, module.kernels[reduction.exact[k].finish], made.finish).write();
   }
   return text;
@@ -508,7 +535,7 @@ std::string nativeListing(const Module& module, const Program& program, Reals re
       text += KernelWriter(module, module.kernels[second.finish], made.finish).write();
     }
     text += halfForm(module, kernel, names[i]);
-    if (kernel.reduction) text += exactSums(module, *kernel.reduction, names[i], combinations);
+    if (kernel.reduction) text += exactSums(module, kernel, names[i], combinations);
   }
   return text + "}  // namespace\n}  // namespace sk::generated\n";
 }

@@ -111,6 +111,39 @@ TEST_CASE("small sums, where the denormals are, and ties") {  // R8
   onEveryProfile([&](sk::Device& device) { CHECK(bits(exactSum(device, many)) == bits(trueSum(many))); });
 }
 
+TEST_CASE("long sums of zeros, and what is not finite among many") {  // R5, R6, R10
+  for (const std::size_t n : {15U, 16U, 1024U, 5003U}) {
+    std::vector<float> x(n, -0.0F);
+    const auto sumOf = [&] { return bits(exactSum(run_tests::device("native"), x)); };
+    CHECK(sumOf() == bits(-0.0F));
+    x[n / 2] = 0.0F;
+    CHECK(sumOf() == 0);
+    x[n / 3] = -denormal;
+    CHECK(sumOf() == bits(-denormal));
+    x[n - 1] = 3e38F;
+    CHECK(sumOf() == bits(3e38F));
+    x[n / 4] = -inf;
+    CHECK(sumOf() == bits(-inf));
+    x[0] = inf;
+    CHECK(sumOf() == 0x7fc00000U);
+    x[0] = nan;
+    CHECK(sumOf() == 0x7fc00000U);
+  }
+}
+
+TEST_CASE("magnitudes that are near each other and far apart") {
+  std::mt19937 random(17);
+  for (const int spread : {0, 18, 40, 62, 90, 200}) {
+    std::vector<float> x(40'000);
+    for (float& v : x) {
+      const auto exponent = static_cast<int>(random() % static_cast<unsigned>(spread + 1)) - spread / 2;
+      v = std::ldexp(1 + static_cast<float>(random() % (1U << 23U)) * 0x1p-23F, exponent);
+      if ((random() & 1U) != 0) v = -v;
+    }
+    CHECK(bits(exactSum(run_tests::device("native"), x)) == bits(trueSum(x)));
+  }
+}
+
 TEST_CASE("order and shape change no bit") {  // R12, R13
   std::vector<float> x = illConditionedSum(5040, 1e20, 5);
   const std::uint32_t expected = bits(trueSum(x));

@@ -11,7 +11,7 @@
 //   bool sk_isCommutative           runs may be combined in any order
 //
 // One that only sums floats, or products of two, tells which by sk_term(), and has, for doubles (sk_sumsFloats), a form that
-// reads floats (sk_readsFloats), sk_OfFloats.
+// reads floats (sk_readsFloats), sk_OfFloats; or it sums them exactly (sk_sumsExactly).
 //
 // A block of the domain is divided into pieces, which are folded by themselves and then combined in order. What a piece is does not
 // depend on how many threads there are, and so neither do the results.
@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "sk/native/columns.hpp"
+#include "sk/native/exact_terms.hpp"
 #include "sk/native/fold_narrow.hpp"
 #include "sk/native/hot.hpp"
 #include "sk/native/run.hpp"
@@ -294,6 +295,30 @@ SK_NATIVE_WIDE void foldPiecesOfFloats(const ReduceCall& call, Range range, type
   foldPieces<Fold, Combine>(call, range, states);
 }
 
+/// The same of a kernel that sums its term exactly, whose streams lie as the domain does.
+template <class Fold, class Combine>
+void sumPiecesExactly(const ReduceCall& call, Range range, typename Fold::sk_State* states) {
+  const FoldPieces pieces(call);
+  const std::int64_t ofBlock = pieces.ofBlock();
+  Fold fold(call.fold);
+  fold.sk_extent = toIndex(call.fold.domain);
+  Scratch scratch;
+  for (std::int64_t piece = range.begin; piece < range.end; ++piece) {
+    const Extents block = pieces.blockAt(piece / ofBlock);
+    ExactTerms<std::tuple_size_v<decltype(fold.sk_term())>> sum;
+    pieces.forEachRow(block, piece % ofBlock, [&](const Extents& first, int count) {
+      place(fold, {first, count, scratch});
+      std::apply([&](auto&... factor) { sum.add(count, factor.floats(0)...); }, fold.sk_term());
+    });
+    const auto state = sum.template state<typename Fold::sk_State>();
+    if (states != nullptr) {
+      states[piece] = state;
+    } else {
+      fold.sk_store(toIndex(block), state);
+    }
+  }
+}
+
 /// How pieces are folded: by `hot`, unless the streams lie so that the form of doubles can read floats.
 template <class Fold, class Combine, auto hot>
 auto pieceFolding(const ReduceCall& call) {
@@ -301,6 +326,9 @@ auto pieceFolding(const ReduceCall& call) {
   if constexpr (SK_NATIVE_FUSES && SumsFloats<Fold>) {
     typename Fold::sk_OfFloats ofFloats(call.fold);
     if (isWide() && isDirect(ofFloats)) folding = &foldPiecesOfFloats<typename Fold::sk_OfFloats, Combine>;
+  } else if constexpr (SumsExactly<Fold>) {
+    Fold fold(call.fold);
+    if (isWide() && isDirect(fold)) folding = &sumPiecesExactly<Fold, Combine>;
   }
   return folding;
 }

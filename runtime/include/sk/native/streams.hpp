@@ -182,7 +182,7 @@ class Input : public StreamParameter {
   T at(int i) const { return arrays_.load(i); }
   /// Where element i and those that follow it are, which are floats.
   const float* floats(int i) const
-    requires isOfFloats
+    requires(isOfFloats || std::is_same_v<T, float>)
   {
     return arrays_.template first<float>() + i;
   }
