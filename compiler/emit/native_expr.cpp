@@ -142,6 +142,12 @@ class NativeExpr {
             Precedence::Conditional};
   }
   Parts print(Type type, const Convert& n) const {
+    // to half and back in one go: loops have vectors for what never is a half
+    const auto* inner = std::get_if<Convert>(&n.operand->node);
+    if (inner != nullptr && n.operand->type.scalar == Scalar::Half && type.isFloat() &&
+        inner->operand->type == type) {
+      return {fmt::format("native::roundedToHalf({})", text(*inner->operand))};
+    }
     return {fmt::format("native::convert<{}>({})", typeText(type), text(*n.operand))};
   }
   Parts print(Type type, const Construct& n) const {

@@ -113,7 +113,7 @@ class SourceWriter {
   /// Those of a reduction: NAMEHalfReduction and NAMEWide.
   void forms(const sk::program::Reduction& made, const Kernel& declared, const std::string& name) {
     if (made.half != nullptr)
-      reductionForm(*made.half, *declared.forms.half, name + "Half", ofFloats(Speed::Any));
+      reductionForm(*made.half, *declared.forms.half, name + "Half", ofFloats(Speed::OfFloats));
     if (made.wide == nullptr) return;
     reductionForm(made.wide->reduction, *declared.forms.wide, name + "Wide", {});
     const KernelId finish = *module_.kernels[*declared.forms.wide].reduction->finish;

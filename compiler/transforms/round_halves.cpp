@@ -157,7 +157,10 @@ KernelId roundKernel(Module& module, KernelId id) {
   made.signature = kernel.signature;
   made.entry = entry;
   for (const KernelParam& param : kernel.params) made.params.push_back(clone(param));
-  if (kernel.reduction) made.reduction = Reduction{{}, kernel.reduction->operands, kernel.reduction->seeded};
+  if (kernel.reduction) {
+    made.reduction = Reduction{{}, kernel.reduction->operands, kernel.reduction->seeded};
+    made.reduction->commutative = kernel.reduction->commutative;
+  }
   for (const auto& [from, to] : copies) Rounder(module, to == entry ? &made : nullptr).run(to);
   module.kernels.push_back(std::move(made));
   return static_cast<KernelId>(module.kernels.size() - 1);

@@ -3,6 +3,7 @@
 // Promises: native code needs no GL; the reference computes in double and takes the same calls. What arithmetic
 // gives at its extremes is the business of tests/numerics.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -13,6 +14,7 @@
 
 #include "native.sk.hpp"
 #include "sk/native/parallel.hpp"
+#include "sk/native/scalar.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
 
@@ -156,6 +158,20 @@ TEST_CASE("a sum of floats sees no bits beyond them") {
   x.writeReals(std::vector<double>(1000, 1 + 0x1p-25));
   CHECK(sum.with({.accumulate = sk::Accumulate::Compensated})(x) == 1000.0F);
   CHECK(sum.with({.precision = sk::Precision::Double})(x) == static_cast<float>(1000 * (1 + 0x1p-25)));
+}
+
+TEST_CASE("floats are rounded to halves as the host does it") {
+  const auto isSame = [](std::uint32_t bits) {
+    const auto x = std::bit_cast<float>(bits);
+    return std::bit_cast<std::uint32_t>(sk::native::halfRounded(x)) ==
+           std::bit_cast<std::uint32_t>(static_cast<float>(sk::half(x)));
+  };
+  std::uint32_t wrong = 0;
+  for (std::uint64_t bits = 0; bits < 1ULL << 32U; bits += 0x1000) {  // all halves, and what is between two
+    for (const int beside : {-1, 0, 1, 77})
+      wrong += isSame(static_cast<std::uint32_t>(bits + beside)) ? 0 : 1;
+  }
+  CHECK(wrong == 0);
 }
 
 /// What each block of a stream of {height, width} folds to, by a loop: add() of the slopes, and compose().

@@ -131,6 +131,7 @@ template <class T> T mantissaOf(T x) {
 template <class A> auto frexpExponent(const A& a) { return byComponent([](auto x) { return exponentOf(x); }, a); }
 SK_NATIVE_1(frexpMantissa, mantissaOf(x))
 SK_NATIVE_1(modfFraction, Math<decltype(x)>::copysign(Math<decltype(x)>::isinf(x) ? decltype(x)(0) : x - Math<decltype(x)>::trunc(x), x))
+SK_NATIVE_1(roundedToHalf, halfRounded(static_cast<float>(x)))
 template <class A> auto nearest(const A& a) { return byComponent([](auto x) { return wholeIndex(Math<decltype(x)>::floor(x + decltype(x)(0.5))); }, a); }
 
 // what a rounding loses: IEEE 754's arithmetic leaves it a float (Knuth, TAOCP 2, 4.2.2; Dekker,

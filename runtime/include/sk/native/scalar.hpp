@@ -4,6 +4,7 @@
 // their real type, so that one text computes in float or, as its own reference, in double.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "sk/narrow.hpp"
@@ -68,6 +69,21 @@ template <class T>
 inline constexpr bool isNarrow = false;
 template <class Host, class Carrier>
 inline constexpr bool isNarrow<Narrow<Host, Carrier>> = true;
+
+/// The float that the half becomes which a float becomes (sk::half): without a branch, so that loops have vectors of it.
+inline float halfRounded(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const std::uint32_t sign = bits & 0x80000000U;
+  const std::uint32_t magnitude = bits ^ sign;
+  const std::uint32_t normal = (magnitude + 0xfffU + (magnitude >> 13 & 1U)) & ~0x1fffU;
+  // the unit of a float at 1/2 is that of denormal halves, 2^-24
+  const auto denormal = std::bit_cast<std::uint32_t>((std::bit_cast<float>(magnitude) + 0.5F) - 0.5F);
+  const std::uint32_t nan = (magnitude | 0x7fc00000U) & ~0x1fffU;
+  std::uint32_t rounded = normal > 0x477fe000U ? 0x7f800000U : normal;  // beyond 65504
+  rounded = magnitude < 0x38800000U ? denormal : rounded;
+  rounded = magnitude > 0x7f800000U ? nan : rounded;
+  return std::bit_cast<float>(rounded | sign);
+}
 
 /// The language's conversion of a scalar, or of the components of a vector.
 template <class To, class From>
