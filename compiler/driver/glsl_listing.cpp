@@ -172,8 +172,10 @@ std::string formListing(const Profile& profile, const sk::program::Reduction& re
   input.extent = {1024, 1024, 1, 1};
   const bool byIndex = sk::assemble::asksForPlace(reduction.fold);
   input.packed = !byIndex && readsScalars(reduction.fold);
+  const bool isCompute = profile.stage == sk::assemble::Stage::Compute;
   const sk::assemble::ReduceLimits limits{.texture = {16384, 256},
-                                          .grouped = profile.stage == sk::assemble::Stage::Compute};
+                                          .grouped = isCompute,
+                                          .toBuffer = isCompute && sk::assemble::mayEndInBuffer(reduction)};
   const sk::assemble::Division division{.blocks = {1, 1, 1, 1},
                                         .byIndex = byIndex,
                                         .byTexel = input.packed,

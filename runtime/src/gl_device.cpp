@@ -125,6 +125,7 @@ GlDevice::~GlDevice() {
     sinkPrograms.clear();
     tableTextures_.clear();
     samplers.clear();
+    values.clear();
     transferBuffers_.clear();
     vertexArray = {};
   }
@@ -147,6 +148,7 @@ void GlDevice::forgetObjects() noexcept {
   sinkPrograms.forget();
   for (auto& [table, texture] : tableTextures_) texture.forget();
   samplers.forget();
+  values.forget();
   vertexArray.forget();
 }
 

@@ -21,6 +21,7 @@
 #include "gl/open_context.hpp"
 #include "gl/samplers.hpp"
 #include "gl/saved_state.hpp"
+#include "gl/value_buffer.hpp"
 #include "gl/vertex_array.hpp"
 #include "native/rest_threads.hpp"
 #include "program_build.hpp"
@@ -132,6 +133,7 @@ class GlDevice final : public DeviceState {
   SurfacePool pool;
   SinkPrograms sinkPrograms;
   gl::Samplers samplers;
+  gl::ValueBuffer values;
   gl::VertexArray vertexArray;
   std::vector<PendingRead*> pendingReads;  ///< those that must be told of the device's end
   gl::Labels labels;

@@ -3,6 +3,7 @@
 // sk::reduce: runs the assembler's schedule, from the inputs' planes through temporary ones to the
 // results'.
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "assemble/reduce_plan.hpp"
 #include "buffered_transfer.hpp"
 #include "check_reduction.hpp"
+#include "element_packing.hpp"
 #include "gl_device.hpp"
 #include "gl_stream.hpp"
 #include "output_targets.hpp"
@@ -43,6 +45,15 @@ void forEachAccumulator(const Kernel& fold, std::span<Plane> planes, Fn&& fn) {
       planes = planes.subspan(count);
     }
   }
+}
+
+/// Those of all accumulators.
+std::size_t planesOf(const Kernel& fold) {
+  std::size_t planes = 0;
+  for (const Parameter& parameter : fold.parameters) {
+    if (parameter.role == Role::Accumulator) planes += parameter.element->fields.size();
+  }
+  return planes;
 }
 
 /// New planes of all accumulators, in their order.
@@ -99,9 +110,16 @@ class ReduceCall {
 
   std::span<const Operand> operands() const { return operands_; }
 
-  /// Folds the elements, of which there are some, to the planes of all results.
+  /// Whether the value that is left of some elements may stay in the device's buffer of values.
+  bool mayEndInBuffer() const {
+    return device_.programs().stage() == assemble::Stage::Compute && assemble::mayEndInBuffer(reduction_);
+  }
+
+  /// Folds the elements, of which there are some, to the planes of all results. Without targets, there is a value, which goes
+  /// to the device's buffer of values.
   void fold(const Index4& blocks, const Placement& result, std::span<Surface* const> targets) {
-    const assemble::ReduceLimits limits = limitsOfPasses();
+    assemble::ReduceLimits limits = limitsOfPasses();
+    limits.toBuffer = targets.empty();
     PlanesLease partials(device_);
     const assemble::Division division{.blocks = blocks,
                                       .byIndex = foldsByIndex(),
@@ -110,7 +128,7 @@ class ReduceCall {
                                       .inGroups = assemble::foldsInGroups(reduction_)};
     const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
     for (const ReducePass& pass : passes) {
-      if (!start(pass, targets.size())) break;  // nor are the others new
+      if (!start(pass)) break;  // nor are the others new
     }
     for (const ReducePass& pass : passes) {
       if (pass.toResult) {
@@ -150,10 +168,7 @@ class ReduceCall {
   /// Whether work groups may fold partial results together: they share an element of each accumulator an invocation.
   bool mayGroup() const {
     constexpr std::size_t planeBytes = 4 * sizeof(float);  // at most: four components, or two doubles
-    std::size_t planes = 0;
-    for (const Parameter& parameter : reduction_.fold.parameters) {
-      if (parameter.role == Role::Accumulator) planes += parameter.element->fields.size();
-    }
+    const std::size_t planes = planesOf(reduction_.fold);
     return device_.programs().stage() == assemble::Stage::Compute &&
            planes * planeBytes * assemble::groupSize <= assemble::groupBytes &&
            planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
@@ -235,27 +250,29 @@ class ReduceCall {
     const bool isPartial = assemble::isOfPartials(pass.variant.walk);
     const Kernel& kernel = isPartial ? reduction_.combine : reduction_.fold;
     const std::vector<Operand> operands = isPartial ? operandsOfCombine(partials) : operands_;
-    forEachPart(pass, operands, targets.size(),
-                [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
-                  ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
-                  const std::span<Surface* const> planes = targets.subspan(first, count);
-                  const PassScope traced(device_,
-                                         nameOf(reduction_.fold.name, stepOf(variant.walk), program.kernel),
-                                         program.kernel, operands, pass.draws, texelBytesOf(planes));
-                  device_.bound.program(program.kernel.program.name());
-                  bindOperands(device_, program.kernel, kernel, operands);
-                  for (const assemble::UniformValue& value : pass.uniforms) {
-                    program.uniform(value).set(value.value);
-                  }
-                  writeRects(device_, program.kernel, planes, pass.draws);
-                });
+    if (pass.variant.toBuffer) device_.values.bind(device_.bound);
+    forEachPart(
+        pass, operands, [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
+          ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
+          const bool isInBuffer = variant.toBuffer;
+          const auto planes = isInBuffer ? targets : targets.subspan(first, count);
+          const std::size_t bytes = isInBuffer ? count * gl::ValueBuffer::planeBytes : texelBytesOf(planes);
+          const PassScope traced(device_, nameOf(reduction_.fold.name, stepOf(variant.walk), program.kernel),
+                                 program.kernel, operands, pass.draws, bytes);
+          device_.bound.program(program.kernel.program.name());
+          bindOperands(device_, program.kernel, kernel, operands);
+          for (const assemble::UniformValue& value : pass.uniforms) {
+            program.uniform(value).set(value.value);
+          }
+          writeRects(device_, program.kernel, planes, pass.draws);
+        });
   }
 
   /// Lets the driver begin with the programs of a pass. False where they are there already.
-  bool start(const ReducePass& pass, std::size_t planes) {
+  bool start(const ReducePass& pass) {
     bool isNew = false;
     const bool isPartial = assemble::isOfPartials(pass.variant.walk);
-    forEachPart(pass, isPartial ? operandsOfCombine({}) : operands_, planes,
+    forEachPart(pass, isPartial ? operandsOfCombine({}) : operands_,
                 [&](const assemble::ReduceVariant& variant, std::size_t, std::size_t) {
                   isNew = device_.programs().startReduceProgram(reduction_, variant) || isNew;
                 });
@@ -264,14 +281,14 @@ class ReduceCall {
 
   /// visit(variant, first, count) for as many of the planes at a time as the device draws to.
   template <class Visit>
-  void forEachPart(const ReducePass& pass, std::span<const Operand> operands, std::size_t planes,
-                   Visit&& visit) const {
+  void forEachPart(const ReducePass& pass, std::span<const Operand> operands, Visit&& visit) const {
     assemble::ReduceVariant variant = pass.variant;
     if (variant.walk != Walk::Nothing) {
       addAccess(variant, assemble::isOfPartials(variant.walk) ? reduction_.combine : reduction_.fold,
                 operands);
     }
     const auto most = static_cast<std::size_t>(device_.limits.drawBuffers);
+    const std::size_t planes = planesOf(reduction_.fold);
     for (std::size_t first = 0; first < planes; first += most) {
       const std::size_t count = std::min(most, planes - first);
       if (planes > most) {
@@ -329,6 +346,23 @@ void readValues(GlDevice& device, const Kernel& fold, std::span<Surface> values,
   device.throwPendingError();
 }
 
+/// Takes what a fold has left in the device's buffer of values, whose texels are wide.
+void takeValues(GlDevice& device, const Kernel& fold, std::span<void* const> results) {
+  std::array<std::byte, gl::ValueBuffer::bytes> texels;
+  device.values.read(device.bound, std::span(texels).first(planesOf(fold) * gl::ValueBuffer::planeBytes));
+  device.throwPendingError();
+  const std::byte* texel = texels.data();
+  auto result = results.begin();
+  for (const Parameter& parameter : fold.parameters) {
+    if (parameter.role != Role::Accumulator) continue;
+    auto* const value = static_cast<std::byte*>(*result++);
+    for (const program::Field& field : parameter.element->fields) {
+      unpackTexels(*parameter.element, field, texel, 1, value);
+      texel += gl::ValueBuffer::planeBytes;
+    }
+  }
+}
+
 }  // namespace
 
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
@@ -340,9 +374,14 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
   const gl::LabelGroup group(labels, reduction.fold.name);
   choose(options, stage);
   const Placement placement = assemble::valuePlacement();
+  ReduceCall call(*this, reduction, arguments, domain, placement.extent);
+  if (domain.size() > 0 && call.mayEndInBuffer()) {
+    call.fold(placement.extent, placement, {});
+    const TraceScope traced(trace.get(), "transfer", "read value");
+    return takeValues(*this, reduction.fold, results);
+  }
   PlanesLease value(*this);
   takeAccumulators(*this, reduction.fold, {1, 1}, "the result of a reduction", value);
-  ReduceCall call(*this, reduction, arguments, domain, placement.extent);
   if (domain.size() == 0) {
     call.fill(placement, pointersTo(value.planes));
   } else {

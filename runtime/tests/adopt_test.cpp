@@ -258,6 +258,37 @@ TEST_CASE("a device on the application's context works in any state and puts it 
   CHECK(glGetError() == GL_NO_ERROR);
 }
 
+TEST_CASE("the buffers of the application's programs are theirs again after a reduction") {
+  Application application(Application::Kind::Core);
+  GLuint buffers[2] = {};
+  glGenBuffers(2, buffers);
+  for (const GLuint buffer : buffers) {
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+    glBufferData(GL_SHADER_STORAGE_BUFFER, 1024, nullptr, GL_STATIC_DRAW);
+  }
+  const bool isPart = GENERATE(false, true);
+  if (isPart) {
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, buffers[0], 256, 512);
+  } else {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffers[0]);
+  }
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers[1]);
+  Device device = Device::adopt({.profile = "glsl430"});
+  auto ones = device.stream<float>({100, 7});
+  ones.write(std::vector<float>(700, 1.0f));
+  CHECK(sum().value<float>(ones) == 700);
+  GLint first = 0;
+  GLint64 start = 0, size = 0;
+  glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, 0, &first);
+  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, 0, &start);
+  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, 0, &size);
+  CHECK(first == static_cast<GLint>(buffers[0]));
+  CHECK(start == (isPart ? 256 : 0));
+  CHECK(size == (isPart ? 512 : 0));
+  CHECK(integerOf(GL_SHADER_STORAGE_BUFFER_BINDING) == static_cast<GLint>(buffers[1]));
+  CHECK(glGetError() == GL_NO_ERROR);
+}
+
 TEST_CASE("transform feedback of the application is paused, not disturbed") {
   Application application(Application::Kind::Es);
   const char* varyings[] = {"v"};

@@ -84,6 +84,10 @@ Names callsOf(Work&& work) {
   SPY(glDrawArrays);
   SPY(glDispatchCompute);
   SPY(glMemoryBarrier);
+  SPY(glReadPixels);
+  SPY(glBindBufferBase);
+  SPY(glBufferData);
+  SPY(glGetBufferSubData);
   called.clear();
   work();
   return called;
@@ -136,6 +140,21 @@ TEST_CASE("a call dispatches, and sets what has changed") {
         Names{"glUniform1fv", "glDispatchCompute", "glMemoryBarrier"});
   CHECK(callsOf([&] { saxpy()(3.0f, of.x, of.y, of.s); }) ==
         Names{"glBindImageTexture", "glDispatchCompute", "glMemoryBarrier"});
+}
+
+// A GPU takes longer to read a texel than all of a small sum.
+TEST_CASE("the value of a dispatched reduction comes through a buffer") {
+  Device device(DeviceOptions{.profile = "glsl430"});
+  const TestReduction sum("sum", "void sum(float x, inout float total) { total += x; }\n",
+                          {input<float>("x"), accumulator<float>("total", "0.0")}, true);
+  auto x = device.stream<float>({8, 8});
+  x.write(std::vector<float>(64, 1.0f));
+  CHECK(sum.value<float>(x) == 64);
+  CHECK(callsOf([&] { CHECK(sum.value<float>(x) == 64); }) ==
+        Names{"glUseProgram", "glBindTexture", "glDispatchCompute", "glMemoryBarrier",  // the elements
+              "glUseProgram", "glBindTexture", "glDispatchCompute",
+              "glMemoryBarrier",  // what groups have left
+              "glMemoryBarrier", "glGetBufferSubData", "glGetError"});
 }
 
 // A renderer in software copies all of its state where a uniform of the fragment program changes.

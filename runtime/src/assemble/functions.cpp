@@ -111,6 +111,14 @@ float sk_to_half(float sk_x) {
   return uintBitsToFloat((sk_b & 0x80000000u) | sk_r);
 }
 )";
+    case Function::Local:
+      return R"(
+// Where the invocation is in its work group of 8 x 16: eight after one another fetch a line of the cache, 2 x 4 texels.
+ivec2 sk_local() {
+  int sk_i = int(gl_LocalInvocationIndex);
+  return ivec2((sk_i & 1) | (sk_i >> 2 & 6), (sk_i >> 1 & 3) | (sk_i >> 5 << 2));
+}
+)";
     case Function::Sampled:
       return R"(
 // The texel at t of a texture of at most 2^20 texels in each direction, whose sampler takes the nearest.

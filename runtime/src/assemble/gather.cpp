@@ -305,29 +305,34 @@ class GatherText {
   int tileHeight() const { return groupOfWideTexels.second + 2 * reachInY(); }
   std::size_t tileTexels() const { return static_cast<std::size_t>(tileWidth() * tileHeight()); }
 
-  /// Each invocation fetches the texel of its own, and the first ones another of those around. `at` is the function that
-  /// fetches one.
+  /// Each invocation fetches the texel of its own, and the first ones another of those around, before it waits for either. `at`
+  /// is the function that fetches one.
   void fillTile(std::string_view at) {
     const auto [width, height] = groupOfWideTexels;
     const int inRows = tileWidth() * 2 * reachInY();  // of those around, above and below
     const int around = static_cast<int>(tileTexels()) - width * height;
     assert(reachInX() == 1 && around <= width * height);
+    const std::string_view symbol = parameter_.symbol;
+    const std::string isFirst = fmt::format("if (gl_LocalInvocationIndex < {}u) ", around);
     program_.variable(fmt::format("shared {}", packedType(parameter_)),
-                      fmt::format("sk_tile_{}[{}][{}]", parameter_.symbol, tileHeight(), tileWidth()));
-    constexpr std::string_view local = "ivec2 sk_local()";
-    if (!program_.isDefined(local)) program_.function(local, {"return ivec2(gl_LocalInvocationID.xy);"});
+                      fmt::format("sk_tile_{}[{}][{}]", symbol, tileHeight(), tileWidth()));
     program_.together(fmt::format("{} = {}(ivec2(0, 0));", texelName(0, 0), at));
-    program_.together(fmt::format("{} = {};", texelOfTile(0, 0), texelName(0, 0)));
-    program_.together(fmt::format("if (gl_LocalInvocationIndex < {}u) {{", around));
+    program_.together(fmt::format("ivec2 sk_place_{};", symbol));
+    program_.together(fmt::format("{} sk_around_{};", packedType(parameter_), symbol));
+    program_.together(isFirst + "{");
     program_.together("  int sk_k = int(gl_LocalInvocationIndex);");
     program_.together(fmt::format("  ivec2 sk_t = ivec2(sk_k % {0}, sk_k / {0} + (sk_k < {1} ? 0 : {2}));",
                                   tileWidth(), inRows / 2, height));
     program_.together(
-        fmt::format("  if (sk_k >= {0}) sk_t = ivec2((sk_k - {0}) % 2 * {1}, (sk_k - {0}) / 2 + {2});",
-                    inRows, width + 1, reachInY()));
-    program_.together(fmt::format("  sk_tile_{}[sk_t.y][sk_t.x] = {}(sk_t - ivec2({}, {}) - sk_local());",
-                                  parameter_.symbol, at, reachInX(), reachInY()));
+        fmt::format("  if (sk_k >= {0}) sk_t = ivec2((sk_k - {0}) / {1} * {2}, (sk_k - {0}) % {1} + {3});",
+                    inRows, height, width + 1, reachInY()));
+    program_.together(fmt::format("  sk_place_{} = sk_t;", symbol));
+    program_.together(fmt::format("  sk_around_{} = {}(sk_t - ivec2({}, {}) - sk_local());", symbol, at,
+                                  reachInX(), reachInY()));
     program_.together("}");
+    program_.keepTogether(fmt::format("{} = {};", texelOfTile(0, 0), texelName(0, 0)));
+    program_.keepTogether(
+        fmt::format("{0}sk_tile_{1}[sk_place_{1}.y][sk_place_{1}.x] = sk_around_{1};", isFirst, symbol));
   }
   std::string texelOfTile(int x, int y) const {
     return fmt::format("sk_tile_{}[sk_local().y + {}][sk_local().x + {}]", parameter_.symbol, y + reachInY(),

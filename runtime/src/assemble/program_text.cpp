@@ -63,15 +63,17 @@ std::string_view imageType(std::string_view texel, bool isArray) {
   }
 }
 
+std::string_view vectorOf(std::string_view texel) {
+  return texel.front() == 'i' ? "ivec4" : texel.front() == 'u' ? "uvec4" : "vec4";
+}
+
 /// Four components, as imageStore() takes them; those that the image has not are ignored.
 std::string wholeTexel(std::string_view type, std::string_view value) {
   const int components = componentsOf(type);
   if (components == 4) return std::string(value);
-  const bool isSigned = type.front() == 'i';
-  const bool isUnsigned = type.front() == 'u';
-  const std::string_view vector = isSigned ? "ivec4" : isUnsigned ? "uvec4" : "vec4";
+  const std::string_view vector = vectorOf(type);
   if (components == 1) return fmt::format("{}({})", vector, value);
-  const std::string_view zero = isSigned ? "0" : isUnsigned ? "0u" : "0.0";
+  const std::string_view zero = vector == "ivec4" ? "0" : vector == "uvec4" ? "0u" : "0.0";
   return fmt::format("{}({}, {}, {})", vector, value, zero, zero);
 }
 
@@ -111,6 +113,8 @@ void ProgramText::storeAt(std::string_view place, bool isArray) {
   isArray_ = isArray;
 }
 
+void ProgramText::storeInBuffer() { isInBuffer_ = true; }
+
 void ProgramText::dispatchGroups(std::int32_t width, std::int32_t height) { group_ = {width, height}; }
 
 void ProgramText::variable(std::string_view type, std::string_view name) {
@@ -140,7 +144,12 @@ void ProgramText::prologue(std::string_view line) {
 }
 
 void ProgramText::together(std::string_view line) {
+  require(Function::Local);
   fmt::format_to(std::back_inserter(together_), "  {}\n", line);
+}
+
+void ProgramText::keepTogether(std::string_view line) {
+  fmt::format_to(std::back_inserter(keptTogether_), "  {}\n", line);
 }
 
 bool ProgramText::takeShared(std::size_t bytes) {
@@ -180,20 +189,29 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   return program + mainOf(prologue_ + main_);
 }
 
-/// Outputs are variables in either stage; those of a compute program are copied to images.
+/// Outputs are variables in either stage; those of a compute program are copied to images, or to a buffer.
 std::string ProgramText::declarationOfOutputs() const {
-  std::string text;
+  std::string text = isInBuffer_ ? declarationOfBuffer() : std::string();
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const auto& [type, name] = outputs_[i];
     if (isDrawn()) {
       fmt::format_to(std::back_inserter(text), "layout(location = {}) out {} {};\n", i, type, name);
     } else {
-      fmt::format_to(std::back_inserter(text),
-                     "layout(binding = {}) writeonly uniform {} sk_image{};\n{} {};\n", i,
-                     imageType(type, isArray_), i, type, name);
+      if (!isInBuffer_)
+        fmt::format_to(std::back_inserter(text), "layout(binding = {}) writeonly uniform {} sk_image{};\n", i,
+                       imageType(type, isArray_), i);
+      fmt::format_to(std::back_inserter(text), "{} {};\n", type, name);
     }
   }
   return text;
+}
+
+std::string ProgramText::declarationOfBuffer() const {
+  std::string text = "layout(std430, binding = 0) writeonly buffer sk_values {\n";
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    fmt::format_to(std::back_inserter(text), "  {} sk_value{};\n", vectorOf(outputs_[i].type), i);
+  }
+  return text + "};\n";
 }
 
 /// Invocations beside the rectangle, which fill its last work groups, leave at once.
@@ -207,15 +225,23 @@ std::string ProgramText::mainOf(const std::string& body) const {
   if (isGrouped) {
     text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body +
             "  if (gl_LocalInvocationIndex != 0u) return;\n";
-  } else {
-    text += "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n" + together_;
-    if (!together_.empty()) text += "  memoryBarrierShared();\n  barrier();\n";
+  } else if (together_.empty()) {
+    text += "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n";
     text += "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n" + body;
+  } else {
+    text += fmt::format("  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy) * ivec2({}, {}) + sk_local();\n",
+                        width, height);
+    text += together_ + keptTogether_ + "  memoryBarrierShared();\n  barrier();\n";
+    text += "  if (any(greaterThanEqual(sk_pixel - sk_rect.xy, sk_rect.zw))) return;\n" + body;
   }
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const auto& [type, name] = outputs_[i];
-    fmt::format_to(std::back_inserter(text), "  imageStore(sk_image{}, {}, {});\n", i, place_,
-                   wholeTexel(type, name));
+    if (isInBuffer_) {
+      fmt::format_to(std::back_inserter(text), "  sk_value{} = {};\n", i, wholeTexel(type, name));
+    } else {
+      fmt::format_to(std::back_inserter(text), "  imageStore(sk_image{}, {}, {});\n", i, place_,
+                     wholeTexel(type, name));
+    }
   }
   return text + "}\n";
 }

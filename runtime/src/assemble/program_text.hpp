@@ -34,6 +34,7 @@ enum class Function : std::uint8_t {
   Mirror,
   MirrorOnce,
   ToHalf,  ///< the nearest half of a float, as a float
+  Local,  ///< where an invocation is in its group, groupOfWideTexels
   Sampled,  ///< texel of a 2-D texture, sampled at its centre
 };
 std::string_view text(Function function);
@@ -63,6 +64,8 @@ class ProgramText {
   void output(std::string_view type, std::string_view name);
   /// Where a compute program stores its outputs at the end of main(): an ivec2, or in array textures an ivec3.
   void storeAt(std::string_view place, bool isArray);
+  /// It stores them in the buffer of binding 0 instead: each in 16 bytes, as four components.
+  void storeInBuffer();
   /// Of a compute program: a work group of so many invocations computes a texel, and the first of them stores it.
   void dispatchGroups(std::int32_t width, std::int32_t height);
   /// Declares a global variable.
@@ -77,8 +80,10 @@ class ProgramText {
   /// Adds a line to main() before every line that statement() has added and adds.
   void prologue(std::string_view line);
   /// Adds a line to main() of a compute program before all of these, which every invocation of a work group runs, those
-  /// beside the domain, too. All have run these lines before any goes on.
+  /// beside the domain, too. All have run these lines before any goes on. Then invocations are where Function::Local says.
   void together(std::string_view line);
+  /// Adds a line behind all of together(): so that a group has everything fetched on its way before it keeps what has come.
+  void keepTogether(std::string_view line);
   /// Takes bytes of the memory that a work group shares; false where there are not as many left.
   bool takeShared(std::size_t bytes);
   /// Adds text of skc's behind the kernel's own.
@@ -94,6 +99,7 @@ class ProgramText {
 
   bool isDrawn() const { return stage_ == Stage::Fragment; }
   std::string declarationOfOutputs() const;
+  std::string declarationOfBuffer() const;
   std::string mainOf(const std::string& body) const;
 
   Stage stage_ = Stage::Fragment;
@@ -101,6 +107,7 @@ class ProgramText {
   bool samples_ = false;
   std::string place_;  ///< storeAt()'s
   bool isArray_ = false;
+  bool isInBuffer_ = false;  ///< storeInBuffer()
   std::pair<std::int32_t, std::int32_t> group_{};  ///< for each texel; none: there is an invocation for each
   bool relaysUniforms_ = false;
   RelayedValues relayed_;
@@ -111,6 +118,7 @@ class ProgramText {
   std::uint32_t used_ = 0;  ///< bits of Function
   std::string functions_;
   std::string together_;
+  std::string keptTogether_;
   std::string prologue_;
   std::string main_;
   std::string foreign_;

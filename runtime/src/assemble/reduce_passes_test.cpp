@@ -8,6 +8,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "assemble/sample_kernels.hpp"
+
 using namespace sk::assemble;
 
 namespace {
@@ -80,4 +82,19 @@ TEST_CASE("long runs are columns of parts, whose number is known where all have 
   CHECK(int{plan(1024, 72).front().variant.part} == 4);
   CHECK(int{plan(1024, 67).front().variant.run} == 0);
   CHECK(int{plan(1024, 67).front().variant.part} == 8);
+}
+
+TEST_CASE("of a dispatched reduction to a value, the last pass alone writes to a buffer") {
+  const Placement plane{.extent = {1024, 1024, 1, 1}};
+  const Division division{.blocks = {1, 1, 1, 1}, .inAnyOrder = true, .inGroups = true};
+  const ReduceLimits limits{.texture = {16384, mostLayers}, .grouped = true, .toBuffer = true};
+  const std::vector<ReducePass> passes = planReduction(plane, valuePlacement(), limits, division);
+  REQUIRE(passes.size() == 2);
+  CHECK_FALSE(passes[0].variant.toBuffer);
+  CHECK(passes[1].variant.toBuffer);
+}
+
+TEST_CASE("values of components of 32 bits may end in a buffer") {
+  CHECK(mayEndInBuffer(samples::sum));
+  CHECK_FALSE(mayEndInBuffer(samples::weigh));  // its best has a bool
 }

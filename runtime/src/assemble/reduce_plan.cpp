@@ -9,6 +9,8 @@
 #include <cassert>
 #include <utility>
 
+#include "sk/scalar_bytes.hpp"
+
 namespace sk::assemble {
 namespace {
 
@@ -94,6 +96,7 @@ class Planner {
         addPass(Walk::Partials);
       }
     }
+    passes_.back().variant.toBuffer = limits_.toBuffer;
     return std::move(passes_);
   }
 
@@ -350,6 +353,21 @@ bool foldsInGroups(const program::Reduction& reduction) {
   const bool foldCombines =
       reduction.combine.entry == reduction.fold.entry && reduction.combine.body == reduction.fold.body;
   return !reduction.seeded && (foldCombines || !reduction.addition.empty());
+}
+
+bool mayEndInBuffer(const program::Reduction& reduction) {
+  constexpr std::size_t mostPlanes = 8;
+  std::size_t planes = 0;
+  for (const program::Parameter& parameter : reduction.fold.parameters) {
+    if (parameter.role != program::Role::Accumulator) continue;
+    const auto& fields = parameter.element->fields;
+    planes += fields.size();
+    if (std::ranges::any_of(fields, [](const program::Field& field) {
+          return program::hostBytes(field.scalar) < sizeof(std::uint32_t);
+        }))
+      return false;
+  }
+  return planes <= mostPlanes;
 }
 
 bool asksForPlace(const program::Kernel& fold) {

@@ -49,6 +49,7 @@ struct ReduceLimits {
   /// Texels or elements of a run of parts, where order does not count and a program can combine them: a multiple of
   /// longestPart. 0: there are no such runs.
   std::int32_t longRun = 0;
+  bool toBuffer = false;  ///< the result is a value, and goes to a buffer (ReduceVariant::toBuffer)
 };
 
 /// Texels or elements of a part of a long run: few, so that an error grows with the parts, and compilers unroll them.
@@ -57,6 +58,10 @@ inline constexpr std::int32_t longestPart = 8;
 /// Whether a program that folds elements can also combine what it has folded, by parts or by invocations, each starting from
 /// an identity.
 bool foldsInGroups(const program::Reduction& reduction);
+
+/// Whether a dispatch may leave a value of this reduction in a buffer: components of 32 bits, of as many planes as any device
+/// writes at once.
+bool mayEndInBuffer(const program::Reduction& reduction);
 
 /// Whether a fold asks where its elements are, so that it has to find them by their index.
 bool asksForPlace(const program::Kernel& fold);

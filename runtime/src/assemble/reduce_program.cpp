@@ -75,6 +75,7 @@ class ReductionText {
     for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
     if (profile_.stage == Stage::Compute)
       program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
+    if (variant_.toBuffer) program_.storeInBuffer();
     const std::string comment =
         fmt::format("{} for {}: {}{}, {}", reduction_.fold.name, profile_.name,
                     variant_.packed ? "packed " : "", nameOf(variant_.walk), nameOf(variant_.runs));

@@ -60,6 +60,7 @@ struct ReduceVariant {
   bool grouped = false;  ///< Walk::Rows: a work group combines what its invocations have
   bool strided =
       false;  ///< Walk::GroupedPartials: an invocation takes every groupSize-th, not one after the other
+  bool toBuffer = false;  ///< the result is one element, and goes to a buffer (ProgramText::storeInBuffer())
   bool packed = false;  ///< walks of elements: the inputs are packed, and a step is one of whole texels
   bool sourceLayered = false;  ///< what is read, but for Walk::Index
   bool domainLayered = false;
@@ -73,7 +74,8 @@ struct ReduceVariant {
 };
 
 /// The fragment program. Its samplers are samplerName() of the inputs of `fold`, for partial results of
-/// `combine`, and of gathers; its outputs the accumulators' planes, in their order, from location 0. The
+/// `combine`, and of gathers; its outputs the accumulators' planes, in their order, from location 0, or from the beginning of the
+/// buffer of binding 0, 16 bytes each. The
 /// names of its integer uniforms are those that the plan gives values for; all that belong to a parameter
 /// are those of a kernel's program (assemble.hpp).
 std::string reduceProgram(const Profile& profile, const program::Reduction& reduction,

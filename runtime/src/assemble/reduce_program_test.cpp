@@ -257,3 +257,27 @@ TEST_CASE("where there is no element, the identities are written without the ker
 }
 )");
 }
+
+TEST_CASE("a dispatch leaves a value in a buffer, a plane in 16 bytes") {
+  const Profile& compute = *findProfile("glsl430");
+  const std::string text =
+      reduceProgram(compute, samples::weigh, {.walk = Walk::GroupedPartials, .toBuffer = true});
+  CHECK(text.find("image") == std::string::npos);
+  CHECK(text.find(R"(layout(std430, binding = 0) writeonly buffer sk_values {
+  vec4 sk_value0;
+  vec4 sk_value1;
+  vec4 sk_value2;
+  uvec4 sk_value3;
+  ivec4 sk_value4;
+};
+)") != std::string::npos);
+  CHECK(text.substr(text.find("  if (gl_LocalInvocationIndex != 0u)")) ==
+        R"(  if (gl_LocalInvocationIndex != 0u) return;
+  sk_value0 = vec4(sk_out_total);
+  sk_value1 = vec4(sk_out0_best);
+  sk_value2 = sk_out1_best;
+  sk_value3 = uvec4(sk_out2_best);
+  sk_value4 = ivec4(sk_out3_best);
+}
+)");
+}

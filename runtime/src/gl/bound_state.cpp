@@ -30,6 +30,7 @@ void BoundState::forget() {
   activeUnit_ = -1;
   textures_ = arrayTextures_ = samplers_ = unknownUnits();
   images_ = unknownUnits<maxImageUnits>();
+  storage_ = unknown;
 }
 
 void BoundState::bindImage(int unit, GLuint name, GLenum format) {
@@ -53,6 +54,40 @@ void BoundState::keepImage(std::size_t unit) {
   glGetIntegeri_v(GL_IMAGE_BINDING_ACCESS, index, &kept.access);
   glGetIntegeri_v(GL_IMAGE_BINDING_FORMAT, index, &kept.format);
   kept.kept = true;
+}
+
+void BoundState::bindStorage(GLuint name) {
+  keepStorage();
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, name);
+  storage_ = name;
+}
+
+/// In an application's context: what binding 0 is, and the buffer that calls without a binding's number mean.
+void BoundState::keepStorage() {
+  if (!isApplications_ || keptStorage_.kept) {
+    return;
+  }
+  glGetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &keptStorage_.selected);
+  glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, 0, &keptStorage_.name);
+  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, 0, &keptStorage_.start);
+  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, 0, &keptStorage_.size);
+  keptStorage_.kept = true;
+}
+
+/// A size of 0 is that of a whole buffer.
+void BoundState::restoreStorage() {
+  if (!keptStorage_.kept) {
+    return;
+  }
+  const auto name = static_cast<GLuint>(keptStorage_.name);
+  if (keptStorage_.size == 0) {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, name);
+  } else {
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, name, static_cast<GLintptr>(keptStorage_.start),
+                      static_cast<GLsizeiptr>(keptStorage_.size));
+  }
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(keptStorage_.selected));
+  keptStorage_ = {};
 }
 
 void BoundState::bindTexture(int unit, GLuint name, bool isArray) {
@@ -117,6 +152,7 @@ void BoundState::leaveApplication(GLint activeUnit) {
       kept = {};
     }
   }
+  restoreStorage();
   glActiveTexture(static_cast<GLenum>(activeUnit));
   isApplications_ = hasManyViewports_ = false;
   forget();

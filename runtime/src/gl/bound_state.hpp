@@ -48,6 +48,12 @@ class BoundState {
       bindImage(unit, name, format);
     }
   }
+  /// The buffer that programs write, at binding 0; also where its bytes are read.
+  void storage(GLuint name) {
+    if (storage_ != name) {
+      bindStorage(name);
+    }
+  }
   /// Binds a texture where glTexImage2D and the like change it: to unit 0, which is then the active one.
   void textureToChange(GLuint name, bool isArray) {
     activateUnit(0);
@@ -84,6 +90,9 @@ class BoundState {
   void bindSampler(int unit, GLuint name);
   void bindImage(int unit, GLuint name, GLenum format);
   void keepImage(std::size_t unit);
+  void bindStorage(GLuint name);
+  void keepStorage();
+  void restoreStorage();
   void activateUnit(int unit);
   void keepUnit(std::size_t unit);
   void setViewport(const std::array<GLint, 4>& rectangle) const;
@@ -97,6 +106,11 @@ class BoundState {
   struct KeptImage {
     bool kept = false;
     GLint name = 0, level = 0, isLayered = 0, layer = 0, access = 0, format = 0;
+  };
+  struct KeptStorage {
+    bool kept = false;
+    GLint name = 0, selected = 0;
+    GLint64 start = 0, size = 0;
   };
   // No object has this name, so that whatever is bound next is bound.
   static constexpr GLuint unknown = ~GLuint{0};
@@ -117,10 +131,12 @@ class BoundState {
   std::array<GLuint, maxTextureUnits> arrayTextures_ = unknownUnits();
   std::array<GLuint, maxTextureUnits> samplers_ = unknownUnits();
   std::array<GLuint, maxImageUnits> images_ = unknownUnits<maxImageUnits>();
+  GLuint storage_ = unknown;
   bool isApplications_ = false;
   bool hasManyViewports_ = false;
   std::array<KeptUnit, maxTextureUnits> keptUnits_{};
   std::array<KeptImage, maxImageUnits> keptImages_{};
+  KeptStorage keptStorage_;
 };
 
 }  // namespace sk::gl

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// The buffer in which a dispatch leaves a value that the host waits for. A GPU hands over bytes of a buffer in a fraction of the time
+// that a texel takes, which is read by the half of it that draws.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "gl/bound_state.hpp"
+#include "gl/object_name.hpp"
+#include "gl/pixel_buffer.hpp"
+
+namespace sk::gl {
+
+class ValueBuffer {
+ public:
+  /// Of a plane: four components of 32 bits.
+  static constexpr std::size_t planeBytes = 16;
+  static constexpr std::size_t bytes = planeBytes * maxImageUnits;
+
+  /// Makes it what programs write, its binding 0. The context must be current.
+  void bind(BoundState& bound);
+  /// What programs have left at its beginning, of its bytes at most; waits for them.
+  void read(BoundState& bound, std::span<std::byte> values) const;
+  void clear() { name_ = {}; }
+  void forget() noexcept { name_.forget(); }
+
+ private:
+  ObjectName<deleteBuffer> name_;  ///< made when first needed
+};
+
+}  // namespace sk::gl
