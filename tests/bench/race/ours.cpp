@@ -24,16 +24,15 @@ const Row rows[] = {
 
 OurDevices::OurDevices(const std::string& gl) {
   sk::Device* native = &devices_.emplace_back("native");
-  sk::Device* other = nullptr;
   std::string why;
   try {
-    other = &devices_.emplace_back(gl);
-    renderer_ = other->name();
+    gl_ = &devices_.emplace_back(gl);
+    renderer_ = gl_->name();
   } catch (const sk::Error& error) {
     why = error.what();
   }
   for (const Row& row : rows) {
-    sk::Device* device = row.kind == Kind::Native ? native : other;
+    sk::Device* device = row.kind == Kind::Native ? native : gl_;
     if (device != nullptr) {
       contenders_.push_back({row.name, device, row.options});
     } else {

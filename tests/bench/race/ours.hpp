@@ -24,6 +24,8 @@ class OurDevices {
   explicit OurDevices(const std::string& gl);
 
   const std::vector<Ours>& contenders() const { return contenders_; }
+  /// The device of the GL contenders; null where there is none.
+  sk::Device* gl() const { return gl_; }
   /// The renderer of the GL contenders; empty where there is none.
   const std::string& renderer() const { return renderer_; }
   /// Who cannot take part, and why.
@@ -32,6 +34,7 @@ class OurDevices {
  private:
   std::deque<sk::Device> devices_;  // which stay where they are
   std::vector<Ours> contenders_;
+  sk::Device* gl_ = nullptr;
   std::string renderer_;
   std::vector<std::string> absent_;
 };

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
 // How contenders are timed: round after round, each once a round, and another one first in each round, so that a machine
-// that slows down slows all of them. Google Benchmark runs and counts; the time is the wall clock around Task::run().
+// that slows down slows all of them. A GPU has work before each of them. Google Benchmark runs and counts; the time is the wall clock around Task::run().
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "awake.hpp"
 #include "contender.hpp"
 
 namespace race {
@@ -23,6 +24,7 @@ struct Patience {
 };
 
 /// Seconds that each runner takes for doing it once, round by round. All have run before.
-std::vector<std::vector<double>> race(const std::vector<Runner>& runners, const Patience& patience);
+std::vector<std::vector<double>> race(const std::vector<Runner>& runners, const Patience& patience,
+                                      const Awake& awake);
 
 }  // namespace race

@@ -169,7 +169,7 @@ void Session::runProblem(const Program& program, int log2, bool withPeers) {
       tasks.push_back(std::move(task));
     }
   }
-  const auto seconds = race(runners, settings_.patience);
+  const auto seconds = race(runners, settings_.patience, awake_);
   const Work work = program.work(sizeOf(log2));
   for (std::size_t i = 0; i < runs.size(); ++i) {
     runs[i].seconds = seconds[i];

@@ -47,7 +47,7 @@ struct Absence {
 class Session {
  public:
   Session(const Settings& settings, const OurDevices& devices, const std::vector<Contender>& peers)
-      : settings_(settings), devices_(devices), peers_(peers) {}
+      : settings_(settings), devices_(devices), peers_(peers), awake_(devices.gl()) {}
 
   /// Prints the times of each problem as it goes, and calls `keep` after each program.
   void runAll(const std::function<void()>& keep);
@@ -72,6 +72,7 @@ class Session {
   const Settings& settings_;
   const OurDevices& devices_;
   const std::vector<Contender>& peers_;
+  const Awake awake_;
   std::map<std::pair<std::string, std::string>, double>
       secondsPerWork_;  ///< of (program, contender), last seen
   std::vector<Run> runs_;
