@@ -88,7 +88,7 @@ void Lattice::step(Fields& from, Fields& to) {
 
 void Lattice::stepFlow(Fields& from, Fields& to) {
   const Boundary& b = model_.boundary;
-  const lattice::Fluid fluid{c_.carry, c_.viscosity, c_.lift, c_.rest, c_.slope};
+  const lattice::Fluid fluid{c_.carry, c_.viscosity, c_.damping, c_.lift, c_.rest, c_.slope};
   lattice::push.with(options_)(b.closedX(), b.closedY(), model_.flow->slip, fluid, in(from, Field::VelocityX),
                                in(from, Field::VelocityY), in(from, Field::Pressure),
                                in(from, Field::Temperature), in(to, Field::VelocityX),
@@ -138,14 +138,13 @@ void Lattice::diffuse(sk::Stream<float>& from, sk::Stream<float>& to) {
 }
 
 void Lattice::rise(sk::Stream<float>& from, sk::Stream<float>& to) {
-  const auto& edges = model_.boundary.edges;
-  const sk::float4 at = walls();
+  const bool closed = model_.boundary.closedY();
   const auto density = static_cast<unsigned>(model_.buoyancy->density);
   const lattice::Boiling b{c_.point, c_.alpha, c_.sigma, c_.latent};
   if (model_.grid.isSpace()) {
-    lattice::rise3.with(options_)(code(edges[2]), code(edges[3]), density, {at.z, at.w}, b, from, to);
+    lattice::rise3.with(options_)(closed, density, b, from, to);
   } else {
-    lattice::rise.with(options_)(code(edges[2]), code(edges[3]), density, {at.z, at.w}, b, from, to);
+    lattice::rise.with(options_)(closed, density, b, from, to);
   }
 }
 
@@ -219,6 +218,15 @@ int Lattice::passes() const {
   return static_cast<int>(model_.flow.has_value()) + static_cast<int>(model_.flow || model_.diffusion) +
          static_cast<int>(model_.buoyancy.has_value()) + static_cast<int>(model_.latentHeat.has_value()) +
          static_cast<int>(model_.reaction.has_value());
+}
+
+std::vector<sk::TableReport> tablesOf(const Model& model, const sk::Device& device) {
+  if (!model.buoyancy || model.buoyancy->density == Density::Computed) return {};
+  std::vector<sk::TableReport> tables = device.tables();
+  const bool isLinear = model.buoyancy->density == Density::Linear;
+  const std::string_view name = isLinear ? "lattice::linearTanh" : "lattice::cubicTanh";
+  std::erase_if(tables, [&](const sk::TableReport& table) { return table.function != name; });
+  return tables;
 }
 
 }  // namespace examples

@@ -77,4 +77,7 @@ class Lattice {
   std::optional<sk::Stream<float>> warmed_;
 };
 
+/// Of the tables that a device has, the one that the model's density is looked up in.
+std::vector<sk::TableReport> tablesOf(const Model& model, const sk::Device& device);
+
 }  // namespace examples

@@ -23,7 +23,8 @@ double reactionLimit(const Reaction& r, int dimensions) {
 }
 
 double soundLimit(const Flow& flow, double spacing) {
-  const double c2 = flow.sound * flow.sound, nu = flow.viscosity, h2 = spacing * spacing;
+  const double c2 = flow.sound * flow.sound, h2 = spacing * spacing;
+  const double nu = flow.viscosity + flow.damping * flow.sound * spacing;
   if (c2 == 0.0) return diffusionLimit(nu, spacing, 2);
   return (std::sqrt(4.0 * nu * nu + 2.0 * c2 * h2) - 2.0 * nu) / (2.0 * c2);
 }
@@ -41,8 +42,8 @@ std::vector<Limit> limitsOf(const Model& model) {
                       diffusionLimit(model.diffusion->rate, model.grid.spacing, dimensions), model.timeStep});
   }
   if (model.flow) {
-    limits.push_back(
-        {"flow", "2 c^2 dt^2 + 4 nu dt = h^2", soundLimit(*model.flow, model.grid.spacing), model.timeStep});
+    limits.push_back({"flow", "2 c^2 dt^2 + 4 (nu + lambda) dt = h^2",
+                      soundLimit(*model.flow, model.grid.spacing), model.timeStep});
   }
   if (model.reaction) {
     limits.push_back({"reaction", fmt::format("2 / ({} Du / h^2 + F)", 4 * dimensions),

@@ -25,9 +25,9 @@ double diffusionLimit(double rate, double spacing, int dimensions);
 /// That of Gray-Scott about u = 1, v = 0, where u decays by F beside diffusing.
 double reactionLimit(const Reaction& reaction, int dimensions);
 
-/// That of velocity and pressure, at rest, in the plane: of a wave whose differences are the largest, eigenvalues l obey
-/// l^2 - (2 - a - s) l + 1 - a = 0, a = 8 nu dt / h^2, s = 8 c^2 dt^2 / h^2, which stay in the unit circle while
-/// 2 c^2 dt^2 + 4 nu dt <= h^2.
+/// That of velocity and pressure, at rest, in the plane: of a wave of sound whose differences are the largest, eigenvalues l obey
+/// l^2 - (2 - a - s) l + 1 - a = 0, a = 8 (nu + lambda) dt / h^2, s = 8 c^2 dt^2 / h^2, which stay in the unit circle
+/// while 2 c^2 dt^2 + 4 (nu + lambda) dt <= h^2. A wind u needs u^2 dt < 2 nu beside it.
 double soundLimit(const Flow& flow, double spacing);
 
 /// Dimensions in which there is more than one cell: a difference to oneself is none.

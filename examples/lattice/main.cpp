@@ -17,7 +17,9 @@
 #include "limits.hpp"
 #include "run.hpp"
 #include "scene.hpp"
+#include "study.hpp"
 #include "support/application.hpp"
+#include "support/stopwatch.hpp"
 
 namespace {
 
@@ -32,10 +34,16 @@ struct Settings {
   std::filesystem::path csv;
   std::optional<int> frames;
   bool account = true;
+  bool small = false;
 };
 
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "what to run: a TOML file, as in examples/lattice/scenes");
+  std::string studies = "measure the numerics, and print a table:";
+  for (const examples::Study& study : examples::studies())
+    studies += fmt::format("\n  {:<13} {}", study.name, study.asks);
+  cli.add_option("--study", s.study, studies);
+  cli.add_flag("--small", s.small, "a study in seconds, coarser");
   cli.add_option("--size", s.size, "cells, WxH or WxHxD, in place of the scene's");
   cli.add_option("--steps", s.steps, "steps, in place of the scene's")->check(CLI::Range(1, 1'000'000'000));
   cli.add_option("--until-settled", s.settle, "end when no field changes by more than this in a step")
@@ -91,6 +99,22 @@ std::string sizeText(const examples::Grid& g) {
                      : fmt::format("{} x {}", g.width, g.height);
 }
 
+void study(examples::Application& app, const Settings& s) {
+  std::string names;
+  for (const examples::Study& study : examples::studies()) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", study.name);
+    if (study.name != s.study) continue;
+    sk::Device device(app.device());
+    const examples::Stopwatch stopwatch;
+    const examples::Findings findings = study.run(device, s.small);
+    app.report(fmt::format("{}: {}", study.name, study.asks), device.name(), stopwatch.milliseconds());
+    fmt::print("\n{}\n", findings.table);
+    for (const examples::Verification& verification : findings.verifications) app.verified(verification);
+    return;
+  }
+  throw std::runtime_error(fmt::format("no study is called '{}'; there are {}", s.study, names));
+}
+
 void simulate(examples::Application& app, const Settings& s) {
   const examples::Scene scene = sceneOf(s);
   sk::Device device(app.device());
@@ -109,7 +133,7 @@ void simulate(examples::Application& app, const Settings& s) {
                100.0 * limit.chosen / limit.largest, limit.of, limit.largest, limit.formula);
   }
   double tableError = 0.0;
-  for (const sk::TableReport& table : device.tables()) {
+  for (const sk::TableReport& table : examples::tablesOf(scene.model, device)) {
     fmt::print("table of {}: error {:.2g} predicted, {:.2g} measured\n", table.function, table.predicted,
                table.measured);
     tableError = std::max(tableError, table.predicted);
@@ -131,6 +155,7 @@ int main(int argc, char** argv) {
       "lattice", "Boiling, convection, reaction with diffusion: coupled map lattices from scene files.");
   addOptions(app.options(), settings);
   return app.run(argc, argv, [&] {
+    if (!settings.study.empty()) return study(app, settings);
     if (settings.scene.empty())
       throw std::runtime_error("no scene is named; try examples/lattice/scenes/boiling.toml");
     simulate(app, settings);

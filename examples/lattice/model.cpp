@@ -8,7 +8,13 @@ namespace examples {
 void setConvection(Model& model, double rayleigh, double prandtl, double sound, bool slip) {
   model.grid.spacing = 1.0 / static_cast<double>(model.grid.height);
   model.diffusion = Diffusion{1.0 / std::sqrt(rayleigh * prandtl)};
-  model.flow = Flow{std::sqrt(prandtl / rayleigh), 1.0, sound, slip, rayleigh, prandtl};
+  model.flow = Flow{.viscosity = std::sqrt(prandtl / rayleigh),
+                    .lift = 1.0,
+                    .sound = sound,
+                    .damping = 0.2,
+                    .slip = slip,
+                    .rayleigh = rayleigh,
+                    .prandtl = prandtl};
 }
 
 Coefficients coefficientsOf(const Model& model) {
@@ -37,6 +43,7 @@ Coefficients coefficientsOf(const Model& model) {
     c.carry = static_cast<float>(dt / h);
     c.stiffness = static_cast<float>(f.sound * f.sound * dt / h);
     c.viscosity = static_cast<float>(f.viscosity * dt / (h * h));
+    c.damping = static_cast<float>(f.damping * f.sound * dt / h);
     c.lift = static_cast<float>(f.lift * dt);
     // Between plates, what conduction alone would make of the temperature; else the mean of the walls at the sides.
     const bool plates = edges[Boundary::Bottom] == Edge::Wall && edges[Boundary::Top] == Edge::Wall;

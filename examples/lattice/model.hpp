@@ -66,6 +66,7 @@ struct Flow {
   double viscosity = 0.0;
   double lift = 0.0;  ///< acceleration by a degree of warmth
   double sound = 0.0;
+  double damping = 0.0;  ///< of sound: a viscosity for it alone of this times sound * h
   bool slip = false;  ///< walls without friction
   double rayleigh = 0.0, prandtl = 0.0;  ///< that it was made of
 };
@@ -88,7 +89,7 @@ struct Model {
 
 /// Convection between walls at the temperatures of `model`, in units of its height H, the difference of the walls'
 /// temperatures and the time of a free fall over H: viscosity sqrt(Pr / Ra), diffusivity 1 / sqrt(Ra Pr), lift 1. Sets the
-/// grid's spacing (1 / cells of the height), the diffusion and the flow.
+/// grid's spacing (1 / cells of the height), the diffusion and the flow, whose sound is damped by 0.2.
 void setConvection(Model& model, double rayleigh, double prandtl, double sound, bool slip);
 
 /// What kernels are called with, rounded to floats as they are.
@@ -97,6 +98,7 @@ struct Coefficients {
   float carry = 0;  ///< dt / h
   float stiffness = 0;  ///< c^2 dt / h
   float viscosity = 0;  ///< nu dt / h^2
+  float damping = 0;  ///< lambda dt / h^2
   float lift = 0;  ///< dt times lift
   float rest = 0, slope = 0;  ///< the temperature that does not rise: at the bottom, and more a row
   float point = 0, alpha = 0, sigma = 0, latent = 0;  ///< as phase.sk's Boiling

@@ -80,10 +80,12 @@ class HostStep {
   }
 
   Values risen(const Values& t) const {
-    const auto density = [&](double value) { return std::tanh(c_.alpha * (value - c_.point)); };
+    const auto density = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+      if (m_.boundary.closedY()) y = std::clamp<std::int64_t>(y, 0, ny_ - 1);
+      return std::tanh(c_.alpha * (t[at(x, y, z)] - c_.point));
+    };
     return map([&](std::int64_t x, std::int64_t y, std::int64_t z) {
-      const double change = density(warmth(t, x, y, z, 0, 1, 0)) - density(warmth(t, x, y, z, 0, -1, 0));
-      return t[at(x, y, z)] * (1.0 - 0.5 * c_.sigma * change);
+      return t[at(x, y, z)] * (1.0 - 0.5 * c_.sigma * (density(x, y + 1, z) - density(x, y - 1, z)));
     });
   }
 
@@ -124,6 +126,9 @@ class HostStep {
     const auto v = [&](std::int64_t x, std::int64_t y) { return vy[at(x, y)]; };
     const auto mean = [](double a, double b) { return 0.5 * (a + b); };
     const auto square = [](double a) { return a * a; };
+    const auto divergence = [&](std::int64_t x, std::int64_t y) {
+      return u(x + 1, y) - u(x, y) + v(x, y + 1) - v(x, y);
+    };
     after[Field::VelocityX] = map([&](std::int64_t x, std::int64_t y, std::int64_t) {
       if (closedX && x == 0) return 0.0;
       const double below = closedY && y == 0 ? mirrored * u(x, y) : u(x, y - 1);
@@ -132,7 +137,8 @@ class HostStep {
                            mean(u(x, y), u(x, y + 1)) * mean(v(x - 1, y + 1), v(x, y + 1)) -
                            mean(u(x, y - 1), u(x, y)) * mean(v(x - 1, y), v(x, y));
       return u(x, y) - c_.carry * (moved + p[at(x, y)] - p[at(x - 1, y)]) +
-             c_.viscosity * (u(x - 1, y) + u(x + 1, y) + below + above - 4.0 * u(x, y));
+             c_.viscosity * (u(x - 1, y) + u(x + 1, y) + below + above - 4.0 * u(x, y)) +
+             c_.damping * (divergence(x, y) - divergence(x - 1, y));
     });
     after[Field::VelocityY] = map([&](std::int64_t x, std::int64_t y, std::int64_t) {
       if (closedY && y == 0) return 0.0;
@@ -144,7 +150,8 @@ class HostStep {
       const double warm = mean(t[at(x, y)], t[at(x, y - 1)]) -
                           (c_.rest + static_cast<double>(c_.slope) * static_cast<double>(y));
       return v(x, y) - c_.carry * (moved + p[at(x, y)] - p[at(x, y - 1)]) +
-             c_.viscosity * (left + right + v(x, y - 1) + v(x, y + 1) - 4.0 * v(x, y)) + c_.lift * warm;
+             c_.viscosity * (left + right + v(x, y - 1) + v(x, y + 1) - 4.0 * v(x, y)) +
+             c_.damping * (divergence(x, y) - divergence(x, y - 1)) + c_.lift * warm;
     });
   }
 

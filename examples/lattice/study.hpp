@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// The studies of `lattice --study NAME`: each measures one thing about the numerics and sets it against what theory says,
+// in a table of Markdown, which the documentation shows.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sk/sk.hpp>
+
+#include "support/verification.hpp"
+
+namespace examples {
+
+/// A table in Markdown. Cells of rows, as many as heads.
+class MarkdownTable {
+ public:
+  explicit MarkdownTable(const std::vector<std::string>& heads);
+  void add(const std::vector<std::string>& cells);
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+struct Findings {
+  std::string table;
+  std::vector<Verification> verifications;
+};
+
+struct Study {
+  std::string_view name;
+  std::string_view asks;  ///< what it finds out
+  Findings (*run)(sk::Device& device, bool small);  ///< small: for tests, coarse and quick
+};
+
+std::span<const Study> studies();
+
+Findings studyStability(sk::Device& device, bool small);
+Findings studyOnset(sk::Device& device, bool small);
+Findings studyCavity(sk::Device& device, bool small);
+Findings studyConservation(sk::Device& device, bool small);
+Findings studyGrowth(sk::Device& device, bool small);
+Findings studyStopping(sk::Device& device, bool small);
+Findings studyTables(sk::Device& device, bool small);
+Findings studyBroken(sk::Device& device, bool small);
+
+}  // namespace examples
