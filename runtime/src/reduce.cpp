@@ -159,10 +159,18 @@ class ReduceCall {
   /// In software a pass costs as much as some thousand texels, and a few threads have enough to do with few invocations.
   assemble::ReduceLimits limitsOfPasses() const {
     assemble::ReduceLimits limits{.texture = device_.textureLimits(), .grouped = mayGroup()};
-    if (device_.capabilities.isSoftware && device_.programs().stage() == assemble::Stage::Fragment) {
+    if (device_.programs().stage() == assemble::Stage::Compute) {
+      limits.longRun = longRunOfGroups();
+    } else if (device_.capabilities.isSoftware) {
       limits.longRun = 64;
     }
     return limits;
+  }
+
+  /// Of so many texels that a large GPU has enough work groups anyway, longer runs leave less to the passes behind.
+  std::int32_t longRunOfGroups() const {
+    const std::int64_t texels = assemble::elements(elements_.extent) / (byTexel_ ? assemble::lanes : 1);
+    return texels >= 1 << 26 ? 32 : texels >= 1 << 24 ? 16 : 0;
   }
 
   /// Whether work groups may fold partial results together: they share an element of each accumulator an invocation.

@@ -99,29 +99,16 @@ class GatherText {
     defineTexels(extents, here);
     std::vector<std::string> lines = {
         fmt::format("int sk_x = {} + {}, sk_c = sk_x >> 2;", domain.lane(), isRow ? "sk_d" : "sk_d.x")};
-    const auto component = [&](std::string_view number) {
-      return fetchedComponent(program_, parameter_, "sk_v", number);
-    };
-    const bool looksOut = parameter_.boundary != Boundary::Wrap;
-    if (looksOut) {
+    if (parameter_.boundary == Boundary::Border) {
       lines.push_back(extents);
       lines.push_back(isRow ? fmt::format("int sk_p = {} + sk_c;", here)
                             : fmt::format("ivec2 sk_p = {} + ivec2(sk_c, sk_d.y);", here));
-    }
-    if (parameter_.boundary == Boundary::Border) {
       lines.push_back(fmt::format("bool sk_out = sk_c != 0 && uint({}) >= uint({});", p, n));
       if (!isRow) lines.emplace_back("sk_out = sk_out || (sk_d.y != 0 && uint(sk_p.y) >= uint(sk_n.y));");
       lines.push_back(fmt::format("if (sk_out) return {};", parameter_.border));
     }
     chooseTexel(lines);
-    if (parameter_.boundary == Boundary::Clamp) {
-      lines.push_back(fmt::format("if (sk_c != 0 && {} < 0) return {};", p, component("0")));
-      lines.push_back(fmt::format("if (sk_c != 0 && {} >= {}) return {};", p, n, component("3")));
-    } else if (parameter_.boundary == Boundary::Mirror) {
-      lines.push_back(fmt::format("if (sk_c != 0 && uint({}) >= uint({})) return {};", p, n,
-                                  component("3 - (sk_x & 3)")));
-    }
-    lines.push_back(fmt::format("return {};", component("sk_x & 3")));
+    lines.push_back(fmt::format("return {};", fetchedComponent(program_, parameter_, "sk_v", "sk_x & 3")));
     program_.function(
         fmt::format("{} sk_near_{}({} sk_d)", parameter_.element->glsl, parameter_.symbol, vector()), lines);
   }
@@ -346,6 +333,8 @@ class GatherText {
     const std::string name = fmt::format("sk_texel_at_{}", parameter_.symbol);
     std::vector<std::string> lines = {extents, isRow ? fmt::format("int sk_p = {} + sk_d;", here)
                                                      : fmt::format("ivec2 sk_p = {} + sk_d;", here)};
+    const bool endsRows = parameter_.boundary == Boundary::Clamp || parameter_.boundary == Boundary::Mirror;
+    if (endsRows) lines.emplace_back(isRow ? "int sk_x = sk_p;" : "int sk_x = sk_p.x;");
     if (isRow) {
       lines.push_back(fmt::format("if (sk_d != 0) sk_p = {};", broughtOnce("sk_p", "sk_n")));
     } else if (isTiled) {  // for invocations beside the domain, too, whose texels are neighbours
@@ -355,8 +344,14 @@ class GatherText {
       lines.push_back(fmt::format("if (sk_d.x != 0) sk_p.x = {};", broughtOnce("sk_p.x", "sk_n.x")));
       lines.push_back(fmt::format("if (sk_d.y != 0) sk_p.y = {};", broughtOnce("sk_p.y", "sk_n.y")));
     }
-    lines.push_back(fmt::format("return {};", texelIn(program_, samplerName(parameter_, 0),
-                                                      place(program_, texelAt("sk_p")), isLayered(access_))));
+    const std::string texel =
+        texelIn(program_, samplerName(parameter_, 0), place(program_, texelAt("sk_p")), isLayered(access_));
+    if (endsRows) {
+      lines.push_back(fmt::format("{} sk_v = {};", packedType(parameter_), texel));
+      lines.push_back(fmt::format("return {};", arranged(isRow, isTiled)));
+    } else {
+      lines.push_back(fmt::format("return {};", texel));
+    }
     program_.function(fmt::format("{} {}({} sk_d)", packedType(parameter_), name, vector()), lines);
     for (int y = -reachInY(); y <= reachInY(); ++y) {
       for (int x = -reachInX(); x <= reachInX(); ++x) {
@@ -368,6 +363,16 @@ class GatherText {
       }
     }
     if (isTiled) fillTile(name);
+  }
+
+  /// Of Clamp or Mirror: sk_v, fetched for a texel at sk_x, which may be beside its row; then with the elements that the boundary
+  /// gives there. In a column none is, but for a tile's, which has texels of invocations beside the domain.
+  std::string arranged(bool isRow, bool isTiled) const {
+    const std::string_view inColumn = isTiled ? "" : isRow ? "sk_d == 0 || " : "sk_d.x == 0 || ";
+    const std::string isInside = fmt::format("{}uint(sk_x) < uint({})", inColumn, isRow ? "sk_n" : "sk_n.x");
+    return parameter_.boundary == Boundary::Clamp
+               ? fmt::format("{} ? sk_v : sk_x < 0 ? sk_v.xxxx : sk_v.wwww", isInside)
+               : fmt::format("{} ? sk_v : sk_v.wzyx", isInside);
   }
 
   /// Makes sk_v that of them which is sk_c texels to the right and sk_d.y below.

@@ -84,6 +84,22 @@ TEST_CASE("long runs are columns of parts, whose number is known where all have 
   CHECK(int{plan(1024, 67).front().variant.part} == 8);
 }
 
+TEST_CASE("work groups fold long runs part by part, whether all are as long or not") {
+  const auto first = [](std::int32_t width, std::int32_t height) {
+    const Placement plane{.extent = {width, height, 1, 1}};
+    const Division division{.blocks = {1, 1, 1, 1}, .inAnyOrder = true, .inGroups = true};
+    const ReduceLimits limits{.texture = {32768, mostLayers}, .grouped = true, .longRun = 16};
+    return planReduction(plane, valuePlacement(), limits, division).front();
+  };
+  CHECK(first(4096, 4096).variant.grouped);
+  CHECK(int{first(4096, 4096).variant.run} == 16);
+  CHECK(int{first(4096, 4096).variant.part} == 8);
+  CHECK(first(4096, 4096).texture == TextureShape{256, 16, 0});
+  CHECK(int{first(1025, 16411).variant.run} == 0);
+  CHECK(int{first(1025, 16411).variant.part} == 8);
+  CHECK(first(1025, 16411).texture == TextureShape{65, 65, 0});
+}
+
 TEST_CASE("of a dispatched reduction to a value, the last pass alone writes to a buffer") {
   const Placement plane{.extent = {1024, 1024, 1, 1}};
   const Division division{.blocks = {1, 1, 1, 1}, .inAnyOrder = true, .inGroups = true};

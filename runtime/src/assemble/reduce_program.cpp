@@ -282,8 +282,7 @@ class ReductionText {
     first_ = next_ = {"sk_p"};
   }
 
-  /// An invocation folds some partial results, and then the group what its invocations have, in their order. Those of a last
-  /// group may have none.
+  /// An invocation folds some partial results, in a last group maybe none, and then the group what these have, in their order.
   void foldGroup() {
     integers({"sk_fan", "sk_block_length", "sk_source_width"});
     declareShared();
@@ -334,8 +333,7 @@ class ReductionText {
   /// Invocations without elements have the identities.
   void combineInGroup() {
     declareShared();
-    statement("int sk_i = int(gl_LocalInvocationIndex);");
-    statement(fmt::format("int sk_runs = {};", groupSize));
+    statement(fmt::format("int sk_i = int(gl_LocalInvocationIndex), sk_runs = {};", groupSize));
     foldShared();
   }
 
@@ -542,8 +540,10 @@ class ReductionText {
   /// As many parts as a run has. What is left of it is sk_count elements or texels from sk_p on.
   void foldParts() {
     const int part = variant_.part;
-    statement(variant_.run > 0 ? fmt::format("for (int sk_i = 0; sk_i < {}; ++sk_i) {{", variant_.run / part)
-                               : fmt::format("for (; sk_count >= {0}; sk_count -= {0}) {{", part));
+    const std::string loop =
+        variant_.run > 0 ? fmt::format("for (int sk_i = 0; sk_i < {}; ++sk_i) {{", variant_.run / part)
+                         : fmt::format("for (; sk_count >= {0}; sk_count -= {0}) {{", part);
+    statement((variant_.grouped ? "if (sk_isInside) " : "") + loop);
     isInPart_ = true;
     startFromIdentities("  ");
     statement(fmt::format("  for (int sk_k = 0; sk_k < {}; ++sk_k) {{", part));

@@ -281,3 +281,16 @@ TEST_CASE("a dispatch leaves a value in a buffer, a plane in 16 bytes") {
 }
 )");
 }
+
+TEST_CASE("invocations beside the elements fold no part of a run") {
+  sk::program::Reduction sum = samples::sum;
+  sum.seeded = false;
+  ReduceVariant variant{
+      .walk = Walk::Rows, .run = 32, .column = true, .part = 8, .grouped = true, .packed = true};
+  const auto mainOfGroup = [&] { return reduceProgram(*findProfile("glsl430"), sum, variant); };
+  CHECK(mainOfGroup().find("  if (sk_isInside) for (int sk_i = 0; sk_i < 4; ++sk_i) {\n") !=
+        std::string::npos);
+  variant.run = 0;
+  CHECK(mainOfGroup().find("  if (sk_isInside) for (; sk_count >= 8; sk_count -= 8) {\n") !=
+        std::string::npos);
+}
