@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Keeps a GPU awake. It lowers its clock while it has little to do, as when others are measured on the processor, and raises
-// it again step by step, in about half a second: a contender on it would be timed at some clock in between.
+// it again step by step: a contender on it would be timed at some clock in between.
 #pragma once
 
 #include <memory>
