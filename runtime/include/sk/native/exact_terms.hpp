@@ -136,6 +136,14 @@ class ExactTerms {
     return rest - cut(rest, lower);
   }
 
+  SK_NATIVE_VECTORS static void termsAt(int i, Doubles& terms, const float* x) { widen(x + i, terms); }
+  SK_NATIVE_VECTORS static void termsAt(int i, Doubles& terms, const float* x, const float* y) {
+    Doubles others;
+    widen(x + i, terms);
+    widen(y + i, others);
+    terms *= others;
+  }
+
   /// Adds up both parts of each term; false if there is more than these.
   template <class... Factors>
   SK_NATIVE_VECTORS static bool addParts(int count, double upper, double lower, double (&sums)[2],
@@ -149,7 +157,8 @@ class ExactTerms {
     for (int i = 0; i < count; i += together) {
 #pragma GCC unroll 4
       for (int v = 0; v < vectors; ++v) {
-        const Doubles term = (widened(x + i + v * doublesOfVector) * ...);
+        Doubles term;
+        termsAt(i + v * doublesOfVector, term, x...);
         const Doubles high = (term + one) - one;
         const Doubles rest = term - high;
         const Doubles low = (rest + two) - two;

@@ -29,34 +29,39 @@ inline constexpr int doublesOfVector = 4;
 #define SK_NATIVE_VECTORS
 #endif
 
-SK_NATIVE_VECTORS inline Doubles widened(const float* at) {
+// No vector is handed over by value, of which compilers for other CPUs would warn.
+
+SK_NATIVE_VECTORS inline void widen(const float* at, Doubles& wide) {
   using Floats [[gnu::vector_size(16)]] = float;
   Floats floats;
   std::memcpy(&floats, at, sizeof floats);
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-  return __builtin_ia32_cvtps2pd256(floats);  // which GCC 12 makes of no __builtin_convertvector
+  wide = __builtin_ia32_cvtps2pd256(floats);  // which GCC 12 makes of no __builtin_convertvector
 #else
-  return __builtin_convertvector(floats, Doubles);
+  wide = __builtin_convertvector(floats, Doubles);
 #endif
 }
 
-/// sum + x * y, where the product is exact. In one operation it takes the place of additions on CPUs that convert to doubles where
+/// sum += x * y, where the product is exact. In one operation it takes the place of additions on CPUs that convert to doubles where
 /// they add.
-SK_NATIVE_VECTORS inline Doubles fused(const Doubles& x, const Doubles& y, const Doubles& sum) {
+SK_NATIVE_VECTORS inline void addProduct(const Doubles& x, const Doubles& y, Doubles& sum) {
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-  return __builtin_ia32_vfmaddpd256(x, y, sum);
+  sum = __builtin_ia32_vfmaddpd256(x, y, sum);
 #else
-  Doubles result;
-  for (int k = 0; k < doublesOfVector; ++k) result[k] = __builtin_fma(x[k], y[k], sum[k]);
-  return result;
+  for (int k = 0; k < doublesOfVector; ++k) sum[k] = __builtin_fma(x[k], y[k], sum[k]);
 #endif
 }
 
 SK_NATIVE_VECTORS inline void addTerm(Doubles& sum, int element, const float* x) {
-  sum = fused(widened(x + element), Doubles{1, 1, 1, 1}, sum);
+  Doubles wide;
+  widen(x + element, wide);
+  addProduct(wide, Doubles{1, 1, 1, 1}, sum);
 }
 SK_NATIVE_VECTORS inline void addTerm(Doubles& sum, int element, const float* x, const float* y) {
-  sum = fused(widened(x + element), widened(y + element), sum);
+  Doubles first, second;
+  widen(x + element, first);
+  widen(y + element, second);
+  addProduct(first, second, sum);
 }
 
 /// Elements that are fetched before they are needed: converting them takes so many operations that few loads are under way at once.
