@@ -52,7 +52,7 @@ std::vector<double> firstTemperature(const Model& model, const Initial& initial,
   return values;
 }
 
-/// u = 1, v = 0 with squares of (1/2, 1/4), disturbed by 1 %: Pearson's first state, or many of it.
+/// u = 1, v = 0 with squares of others, disturbed by 1 %: Pearson's first state, or many of it.
 void writeSeeds(const Model& model, const Initial& initial, Noise& noise, Lattice& lattice) {
   const Grid& g = model.grid;
   const auto cells = static_cast<std::size_t>(g.cells());
@@ -65,8 +65,8 @@ void writeSeeds(const Model& model, const Initial& initial, Noise& noise, Lattic
     for (std::int64_t y = low; y < low + side; ++y) {
       for (std::int64_t x = left; x < left + side; ++x) {
         const auto i = static_cast<std::size_t>((y % g.height) * g.width + x % g.width);
-        u[i] = 0.5 * (1.0 + 0.01 * noise.symmetric());
-        v[i] = 0.25 * (1.0 + 0.01 * noise.symmetric());
+        u[i] = initial.u * (1.0 + 0.01 * noise.symmetric());
+        v[i] = initial.v * (1.0 + 0.01 * noise.symmetric());
       }
     }
   }

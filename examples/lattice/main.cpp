@@ -15,6 +15,7 @@
 #include "initial.hpp"
 #include "lattice.hpp"
 #include "limits.hpp"
+#include "live.hpp"
 #include "run.hpp"
 #include "scene.hpp"
 #include "study.hpp"
@@ -35,6 +36,7 @@ struct Settings {
   std::optional<int> frames;
   bool account = true;
   bool small = false;
+  bool window = false;
 };
 
 void addOptions(CLI::App& cli, Settings& s) {
@@ -54,6 +56,7 @@ void addOptions(CLI::App& cli, Settings& s) {
                  "a picture (.png), an animation (.apng) or a film (.gif, .mp4, .webm)");
   cli.add_option("--frames", s.frames, "pictures, evenly spaced in time")->check(CLI::Range(1, 99999));
   cli.add_option("--csv", s.csv, "a file for means, extremes, Nusselt number ... while it runs");
+  cli.add_flag("--window", s.window, "show it in a window while it runs: space, s, f, +, -, r, q");
   cli.add_flag("!--no-account", s.account, "leave out what the full model would have cost");
 }
 
@@ -117,6 +120,7 @@ void study(examples::Application& app, const Settings& s) {
 
 void simulate(examples::Application& app, const Settings& s) {
   const examples::Scene scene = sceneOf(s);
+  if (s.window) return examples::runLive(scene, app.device());
   sk::Device device(app.device());
   examples::Lattice lattice(device, scene.model);
   examples::writeInitial(scene.model, scene.initial, lattice);

@@ -120,6 +120,14 @@ Image Painter::plot(Lattice& lattice) {
   return imageOf(static_cast<int>(colour.shape()[1]), static_cast<int>(colour.shape()[0]), colour.read());
 }
 
+Painter::Texture Painter::texture(Lattice& lattice) {
+  sk::Stream<float>& field = shown(lattice);
+  last_ = range(field);
+  if (scene_.view.shown != Shown::Bubbles) return {field.texture(), false, last_.low, last_.high};
+  seen_.emplace(bubbles(lattice, last_));
+  return {seen_->texture(), true, last_.low, last_.high};
+}
+
 Image Painter::paint(Lattice& lattice, const std::string& moment) {
   const Image image = plot(lattice);
   return figure(image, {scene_.title, "", moment},

@@ -22,6 +22,14 @@ class Painter {
   /// The field alone.
   Image plot(Lattice& lattice);
 
+  /// The texture of what is shown, until the lattice's next step: the field itself, or colours where it is seen in space.
+  struct Texture {
+    sk::StreamTexture texture;
+    bool isColour = false;
+    double low = 0.0, high = 1.0;
+  };
+  Texture texture(Lattice& lattice);
+
  private:
   struct Values {
     double low, high;
@@ -36,6 +44,7 @@ class Painter {
   std::vector<sk::float3> colours_;
   sk::Stream<sk::float3> palette_;
   std::optional<sk::Stream<float>> derived_;
+  std::optional<sk::Stream<sk::float3>> seen_;
   Values last_ = {0.0, 1.0};
 };
 

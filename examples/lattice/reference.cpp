@@ -256,6 +256,11 @@ Verification checkStep(const Model& model, const State& before, const State& aft
     // Pressure is c^2 times a sum of velocities, whose roundings it has.
     if (field == Field::Pressure)
       scale = std::max(scale, static_cast<double>(c.stiffness) * largestOf(before.at(Field::VelocityX)));
+    // Velocities are sums of pressures and of what lifts, and have the roundings of those.
+    if (field == Field::VelocityX || field == Field::VelocityY) {
+      scale = std::max({scale, static_cast<double>(c.carry) * largestOf(before.at(Field::Pressure)),
+                        static_cast<double>(c.lift) * largestOf(before.at(Field::Temperature))});
+    }
     if (scale == 0.0) scale = 1.0;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (field == Field::Temperature && exact.doubtful[i]) continue;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr Range positive{1e-12, 1e12};
 constexpr Range fromZero{0.0, 1e12};
-constexpr Range anything{-1e12, 1e12};
+constexpr Range anything{-1e30, 1e30};
 
 constexpr std::array<std::string_view, 3> edgeNames = {"wrap", "insulated", "wall"};
 constexpr std::array<std::string_view, 3> densityNames = {"computed", "linear", "cubic"};
@@ -163,6 +163,8 @@ Initial readInitial(const SceneTable& table) {
   i.rolls = table.number("rolls", Range{0.0, 1e4}).value_or(0.0);
   i.seeds = static_cast<int>(table.integer("seeds", Range{0, 1e6}).value_or(1));
   i.seedSide = static_cast<int>(table.integer("seed_side", Range{1, 1e4}).value_or(20));
+  i.u = table.number("u", anything).value_or(i.u);
+  i.v = table.number("v", anything).value_or(i.v);
   i.random = static_cast<std::uint32_t>(table.integer("random", Range{0, 4294967295.0}).value_or(1));
   return i;
 }
@@ -182,19 +184,6 @@ Record readRecord(const SceneTable& table, const std::string& name) {
   r.csv = table.text("csv").value_or("");
   r.every = table.integer("every", Range{1, 1e12}).value_or(0);
   return r;
-}
-
-bool has(const Model& model, Shown shown) {
-  switch (shown) {
-    case Shown::Temperature: return model.hasTemperature();
-    case Shown::Bubbles: return model.hasTemperature() && model.grid.isSpace();
-    case Shown::U:
-    case Shown::V: return model.reaction.has_value();
-    case Shown::Speed:
-    case Shown::Vorticity:
-    case Shown::Pressure: return model.flow.has_value();
-  }
-  return false;
 }
 
 View readView(const SceneTable& table, const Model& model) {
@@ -226,6 +215,19 @@ void refuseUnstable(const SceneTable& run, const Model& model) {
 }
 
 }  // namespace
+
+bool has(const Model& model, Shown shown) {
+  switch (shown) {
+    case Shown::Temperature: return model.hasTemperature();
+    case Shown::Bubbles: return model.hasTemperature() && model.grid.isSpace();
+    case Shown::U:
+    case Shown::V: return model.reaction.has_value();
+    case Shown::Speed:
+    case Shown::Vorticity:
+    case Shown::Pressure: return model.flow.has_value();
+  }
+  return false;
+}
 
 std::string_view nameOf(sk::Precision precision) {
   const auto place = std::find(precisions.begin(), precisions.end(), precision);
@@ -295,6 +297,7 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides) {
     scene.view = readView(*t, model);
   else
     scene.view.shown = model.reaction ? Shown::V : model.grid.isSpace() ? Shown::Bubbles : Shown::Temperature;
+  table.finish();
   return scene;
 }
 

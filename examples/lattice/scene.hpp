@@ -22,8 +22,9 @@ struct Initial {
   double temperature = 0.0;  ///< of the uniform profile
   double noise = 0.0;  ///< evenly spread in +- this much, in each cell
   double rolls = 0.0;  ///< pairs of rolls across the width, as a wave of the amplitude `noise` in place of it
-  int seeds = 1;  ///< squares of (1/2, 1/4) for a reaction; 1 stands in the middle
+  int seeds = 1;  ///< squares of (u, v) for a reaction; 1 stands in the middle
   int seedSide = 20;
+  double u = 0.5, v = 0.25;  ///< in the squares
   std::uint32_t random = 1;
 };
 
@@ -78,5 +79,8 @@ Scene readScene(const std::filesystem::path& file, const Overrides& overrides);
 /// As scenes write them: "single", "double" ...; "temperature", "u" ...
 std::string_view nameOf(sk::Precision precision);
 std::string_view nameOf(Shown shown);
+
+/// Whether a model's operators make it.
+bool has(const Model& model, Shown shown);
 
 }  // namespace examples

@@ -127,7 +127,7 @@ std::string_view nameOf(Kind kind) {
 }
 
 Kind kindOf(const PlaneField& f) {
-  constexpr double round = 2.2;
+  constexpr double round = 1.7;
   const auto [low, high] = std::minmax_element(f.values.begin(), f.values.end());
   if (!(*high - *low >= 0.02)) return Kind::Homogeneous;
   const double middle = 0.5 * (*low + *high);
@@ -137,8 +137,8 @@ Kind kindOf(const PlaneField& f) {
   const Islands islands = islandsOf(f.width, f.height, above);
   const double all = std::accumulate(islands.areas.begin(), islands.areas.end(), 0.0);
   const double largest = *std::max_element(islands.areas.begin(), islands.areas.end());
-  if (largest <= 0.5 * all) return stretchOf(islands) < round ? Kind::Spots : Kind::Worms;
-  if (islands.areas.size() == 1 && stretchOf(islands) < round) return Kind::Spots;
+  const bool isOne = islands.areas.size() == 1 && all < 0.25 * static_cast<double>(f.values.size());
+  if (isOne || largest <= 0.5 * all) return stretchOf(islands) < round ? Kind::Spots : Kind::Worms;
   above.flip();
   const Islands lakes = islandsOf(f.width, f.height, above);
   const double sea = static_cast<double>(f.values.size()) - all;

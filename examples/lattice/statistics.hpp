@@ -28,12 +28,12 @@ enum class Kind : std::uint8_t {
   Homogeneous,  ///< varies by less than 0.02
   Spots,  ///< islands above the middle of the range, round
   Worms,  ///< islands, long
-  Network,  ///< one island has more than half of all that is above the middle
+  Network,  ///< one island has more than half of all that is above the middle, and more than a quarter of the plane
   Holes,  ///< islands below the middle of the range, round, in a sea above
 };
 std::string_view nameOf(Kind kind);
 
-/// Islands are cells that share an edge; one is round where its outline squared is below 2.2 times that of a disc of
+/// Islands are cells that share an edge; one is round where its outline squared is below 1.7 times that of a disc of
 /// its area (whose outline along cells' edges is 4 / pi as long as it is).
 Kind kindOf(const PlaneField& field);
 

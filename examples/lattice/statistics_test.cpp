@@ -48,7 +48,8 @@ TEST_CASE("kinds of patterns") {
   CHECK(kind([&](double x, double y) { return std::exp(2.0 * dots(x, y)); }) == Kind::Spots);
   CHECK(kind([&](double x, double y) { return -std::exp(-2.0 * dots(x, y)); }) == Kind::Holes);
   CHECK(kind([](double x, double) { return wave(x, 12); }) == Kind::Worms);
-  CHECK(kind([](double x, double y) { return std::max(wave(x, 32), wave(y, 32)); }) == Kind::Network);
+  CHECK(kind([](double x, double y) { return y < 4 ? 1.0 : wave(x, 12); }) == Kind::Network);
+  CHECK(kind([](double x, double y) { return std::hypot(x - 30, y - 30) < 9 ? 1.0 : 0.0; }) == Kind::Spots);
 }
 
 }  // namespace

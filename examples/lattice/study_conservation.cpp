@@ -95,7 +95,7 @@ Findings studyConservation(sk::Device& device, bool small) {
   flow.boundary.edges.fill(Edge::Insulated);
   flow.diffusion = Diffusion{1e-3};
   flow.flow = Flow{.viscosity = 1e-3, .lift = 1.0, .sound = 3.0, .damping = 0.2};
-  flow.timeStep = 0.2 / static_cast<double>(n);
+  flow.timeStep = 0.15 / static_cast<double>(n);
   add("insulated, the disc rising in a flow", flow);
   return {table.text(), {verification}};
 }

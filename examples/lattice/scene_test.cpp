@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "scene.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace examples {
+namespace {
+
+/// A scene that goes when the test does.
+class Written {
+ public:
+  explicit Written(const std::string& text) { std::ofstream(path_) << text; }
+  ~Written() { std::filesystem::remove(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_ = "written_scene.toml";
+};
+
+Scene read(const std::string& text, const Overrides& overrides = {}) {
+  return readScene(Written(text).path(), overrides);
+}
+
+std::string messageOf(const std::string& text) {
+  try {
+    read(text);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+const std::string plane = "[grid]\nsize = [32, 16]\n[run]\nsteps = 5\n";
+
+TEST_CASE("a table switches its operator on, and nothing else is there") {
+  const Scene scene = read(plane + "[reaction]\nclass = \"theta\"\n");
+  CHECK(scene.model.reaction->feed == 0.03);
+  CHECK_FALSE(scene.model.hasTemperature());
+  CHECK(scene.view.shown == Shown::V);
+  CHECK(fieldsOf(scene.model) == std::vector<Field>{Field::U, Field::V});
+  CHECK(scene.steps == 5);
+  CHECK(scene.record.output == "written_scene.png");
+}
+
+TEST_CASE("the command line goes before the file") {
+  const Scene scene = read(plane + "[diffusion]\nepsilon = 0.5\n",
+                           {.size = {8, 4}, .steps = 2, .settle = 0.5, .precision = sk::Precision::Double});
+  CHECK(scene.model.grid.width == 8);
+  CHECK(scene.model.grid.height == 4);
+  CHECK(scene.steps == 2);
+  CHECK(scene.settling->tolerance == 0.5);
+  CHECK(scene.model.precision == sk::Precision::Double);
+  CHECK(scene.model.diffusion->rate == 0.125);
+}
+
+TEST_CASE("a flow has its numbers from Rayleigh's and Prandtl's, and a step that is stable") {
+  const std::string walls =
+      "[boundary]\nbottom = \"wall\"\nbottom_temperature = 1\ntop = \"wall\"\ntop_temperature = 0\n";
+  const Scene scene = read(plane + walls + "[flow]\nrayleigh = 1e4\nprandtl = 1.0\n");
+  CHECK(scene.model.flow->viscosity == Approx(0.01));
+  CHECK(scene.model.diffusion->rate == Approx(0.01));
+  CHECK(scene.model.grid.spacing == 1.0 / 16);
+  CHECK_THAT(messageOf(plane + "[flow]\nrayleigh = 1e4\n"),
+             Catch::Contains("'rayleigh' needs two walls that face each other"));
+  CHECK_THAT(messageOf(plane + walls + "[flow]\nrayleigh = 1e4\n[diffusion]\nrate = 1\n"),
+             Catch::Contains("'diffusion' follows from the numbers of the flow"));
+}
+
+TEST_CASE("what is wrong with a scene is told at its place") {
+  CHECK_THAT(messageOf(""), Catch::Contains("'grid' is missing"));
+  CHECK_THAT(messageOf("[grid]\nsize = [4, 4]\n"), Catch::Contains("'run' is missing"));
+  CHECK_THAT(messageOf(plane), Catch::Contains("has no operator to step it; add [diffusion]"));
+  CHECK_THAT(messageOf("[grid]\nsize = [4, 0]\n[run]\n"),
+             Catch::Contains("written_scene.toml:2:8: 'size' takes whole numbers"));
+  CHECK_THAT(messageOf("[grid]\nsize = [4, 4, 4, 4]\n[run]\n"), Catch::Contains("'size' is width, height"));
+  CHECK_THAT(messageOf(plane + "[difusion]\nrate = 1\n[reaction]\nclass = \"mu\"\n"),
+             Catch::Contains("nobody knows 'difusion' here; did you mean 'diffusion'?"));
+  CHECK_THAT(messageOf(plane + "[diffusion]\nrate = \"fast\"\n"),
+             Catch::Contains("'rate' is a text here, but must be a number"));
+  CHECK_THAT(messageOf(plane + "[diffusion]\nrate = nan\n"), Catch::Contains("must be finite"));
+  CHECK_THAT(messageOf(plane + "[diffusion]\nrate = 1.0\n"),
+             Catch::Contains("not stable: diffusion allows 0.25 (h^2 / 4D)"));
+  CHECK_THAT(messageOf(plane + "[reaction]\nclass = \"omega\"\n"),
+             Catch::Contains("no pattern is called 'omega'; there are alpha"));
+  CHECK_THAT(messageOf(plane + "[reaction]\nclass = \"mu\"\nfeed = 0.1\n"),
+             Catch::Contains("'class' sets feed and kill"));
+  CHECK_THAT(messageOf(plane + "[diffusion]\nrate = 0.1\n[boundary]\nbottom = \"wall\"\n"),
+             Catch::Contains("give bottom_temperature"));
+  CHECK_THAT(messageOf(plane + "[diffusion]\nrate = 0.1\n[boundary]\nbottom = \"insulated\"\n"),
+             Catch::Contains("'bottom' is closed, but top wraps"));
+  CHECK_THAT(messageOf(plane + "[diffusion]\nrate = 0.1\n[view]\nfield = \"speed\"\n"),
+             Catch::Contains("'speed' is not in this scene"));
+  CHECK_THAT(messageOf(plane + "[diffusion]\nrate = 0.1\n[view]\nlow = 2\nhigh = 1\n"),
+             Catch::Contains("'high' is not above low"));
+}
+
+}  // namespace
+}  // namespace examples
