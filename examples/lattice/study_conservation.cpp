@@ -66,7 +66,7 @@ Drift driftOf(sk::Device& device, const Model& model, std::int64_t steps) {
 }  // namespace
 
 Findings studyConservation(sk::Device& device, bool small) {
-  const std::int64_t n = small ? 64 : 256, steps = small ? 500 : 10'000;
+  const std::int64_t n = small ? 64 : 128, steps = small ? 500 : 5000;
   MarkdownTable table({"lattice", "precision", "steps", "heat lost or gained", "random roundings",
                        "bound 8 n u", "compensated sum off by", "plain sum off by"});
   Verification verification("heat lost or gained, over its bound", 1.0,
