@@ -52,8 +52,8 @@ Verification checkSteps(const Scene& scene, std::int64_t steps, std::span<const 
   return checkAgainst<float, double>(scene, steps, device, roundoff, 1.0, "double");
 }
 
-Verification checkObservation(const Scene& scene, const Observation& device,
-                              std::span<const double> positions) {
+Verification checkObservation(const Scene& scene, const Observation& device, const State& state) {
+  const std::vector<double>& positions = state.positions;
   const Constants constants = constantsOf(scene);
   const LinkConstants& k = constants.relaxed;
   const Cloth& c = scene.cloth;
@@ -78,6 +78,8 @@ Verification checkObservation(const Scene& scene, const Observation& device,
         if ((link >= 4 && link < 8 && !scene.links.shear) || (link >= 8 && !scene.links.bend)) continue;
         const int nx = x + linkDirections[link].x, ny = y + linkDirections[link].y;
         if (nx < 0 || nx >= c.columns || ny >= c.rows) continue;
+        const auto i = static_cast<std::size_t>(y * std::int64_t{c.columns} + x);
+        if (!state.alive.empty() && !((state.alive[i] >> link) & 1)) continue;
         const bool across = linkDirections[link].y == 0;
         const double rest =
             link >= 4 && link < 8 ? k.diagonal : (link < 4 ? 1.0 : 2.0) * (across ? k.right : k.down);

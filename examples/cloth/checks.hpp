@@ -22,8 +22,7 @@ namespace examples {
 Verification checkSteps(const Scene& scene, std::int64_t steps, std::span<const double> device,
                         sk::Precision precision);
 
-/// Strain and centre that the device reduced against a double loop over the positions that were read back.
-Verification checkObservation(const Scene& scene, const Observation& device,
-                              std::span<const double> positions);
+/// Strain and centre that the device reduced against a double loop over the positions and links that were read back.
+Verification checkObservation(const Scene& scene, const Observation& device, const State& state);
 
 }  // namespace examples

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,12 +14,15 @@
 
 namespace examples {
 
-Filming::Filming(sk::Device& device, const Scene& scene, PictureSize size, int samples, std::string precision)
+Filming::Filming(sk::Device& device, const Scene& scene, const Look& look, const std::string& precision)
     : scene_(scene),
-      size_(size),
-      samples_(samples),
+      look_(look),
       where_(fmt::format("{} precision on {}", precision, device.name())),
       drawing_(device, scene) {
+  if (scene.cloth.columns < 2 || scene.cloth.rows < 2) {
+    throw std::runtime_error(
+        "a cloth of one row or column has no faces to draw; leave --output out, and take --csv or --obj");
+  }
   const bool picture = scene.record.frames == 1 && scene.record.film.ends_with(".png");
   if (!picture) film_.emplace(scene.record.film, static_cast<int>(std::lround(scene.record.framesPerSecond)));
 }
@@ -34,11 +38,12 @@ Filming::~Filming() {
 Image Filming::frameOf(Simulation& simulation) {
   const Stopwatch stopwatch;
   drawing_.update(simulation);
-  const Image plot = drawing_.picture(size_.width, size_.height, samples_);
+  const Image plot = drawing_.picture(look_.size.width, look_.size.height, look_.samples);
   const double time = static_cast<double>(simulation.step()) * scene_.run.dt;
-  Image image = figure(plot, {scene_.title, scene_.subtitle,
-                              fmt::format("{} x {} points, t = {:.2f} s, {}", scene_.cloth.columns,
-                                          scene_.cloth.rows, time, where_)});
+  const Caption caption{
+      scene_.title, scene_.subtitle,
+      fmt::format("{} x {} points, t = {:.2f} s, {}", scene_.cloth.columns, scene_.cloth.rows, time, where_)};
+  Image image = look_.isTitled ? figure(plot, caption) : plot;
   milliseconds_ += stopwatch.milliseconds();
   ++frames_;
   return image;
@@ -59,7 +64,7 @@ void Filming::finish(Simulation& simulation) {
 std::string Filming::report() const {
   return fmt::format(
       "wrote {}, {} frame{} of {} x {}, {:.3g} ms each; positions went {}", scene_.record.film, frames_,
-      frames_ == 1 ? "" : "s", size_.width, size_.height, milliseconds_ / std::max(1, frames_),
+      frames_ == 1 ? "" : "s", look_.size.width, look_.size.height, milliseconds_ / std::max(1, frames_),
       drawing_.isDirect() ? "from stream to vertex buffer on the device" : "up from host memory");
 }
 

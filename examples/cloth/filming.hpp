@@ -20,10 +20,17 @@ struct PictureSize {
   int width, height;
 };
 
+/// How frames look.
+struct Look {
+  PictureSize size;
+  int samples = 2;  ///< samples x samples to a pixel
+  bool isTitled = true;
+};
+
 class Filming {
  public:
   /// To scene.record.film. Throws before anything is simulated where that cannot be written, or nothing can draw.
-  Filming(sk::Device& device, const Scene& scene, PictureSize size, int samples, std::string precision);
+  Filming(sk::Device& device, const Scene& scene, const Look& look, const std::string& precision);
   ~Filming();
   Filming(const Filming&) = delete;
   Filming& operator=(const Filming&) = delete;
@@ -37,8 +44,7 @@ class Filming {
   Image frameOf(Simulation& simulation);
 
   Scene scene_;
-  PictureSize size_;
-  int samples_;
+  Look look_;
   std::string where_;
   Drawing drawing_;
   std::optional<Film> film_;  ///< none: one picture

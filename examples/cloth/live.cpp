@@ -62,10 +62,10 @@ void runLive(const Scene& scene, sk::Precision precision, const std::string& nam
       const auto due = static_cast<std::int64_t>(std::min(milliseconds, 40.0) / 1000.0 / scene.run.dt);
       simulation->advance(std::max<std::int64_t>(1, due));
       if (const Census census = simulation->census(); census.broken > 0) {
-        throw std::runtime_error(
-            fmt::format("step {}: {} points are no finite numbers any more; take a smaller dt, stiffness "
-                        "or relaxation",
-                        simulation->step(), census.broken));
+        throw std::runtime_error(fmt::format(
+            "step {}: {} points have flown off, or are no numbers any more; take a smaller dt, stiffness "
+            "or relaxation",
+            simulation->step(), census.broken));
       }
       drawing.update(*simulation);
     }

@@ -23,6 +23,7 @@
 #include "run.hpp"
 #include "scene.hpp"
 #include "simulation.hpp"
+#include "study.hpp"
 #include "support/application.hpp"
 #include "table_file.hpp"
 
@@ -37,15 +38,21 @@ struct Settings {
   std::string size = "1280x720";
   int samples = 2;
   std::string output;
+  bool bare = false;
   std::string csv;
   std::string obj;
   bool window = false;
+  std::string study;
   std::int64_t checkedSteps = 100;
   bool compares = true;
 };
 
 void addOptions(CLI::App& cli, Settings& s) {
   cli.add_option("scene", s.scene, "a scene, as those in examples/cloth/scenes");
+  std::string names;
+  for (const examples::Study& study : examples::studies())
+    names += fmt::format("\n  {:<10} {}", study.name, study.asks);
+  cli.add_option("--study", s.study, "in place of a scene, a table of the numerics:" + names);
   cli.add_option("--precision", s.precision,
                  "what steps are computed in: single, extended or double (default: single)")
       ->check(CLI::IsMember({"single", "extended", "double"}));
@@ -60,6 +67,7 @@ void addOptions(CLI::App& cli, Settings& s) {
       ->check(CLI::Range(1, 1'000'000));
   cli.add_option("-o,--output", s.output,
                  "picture or film: .png (numbered where there are many frames), .apng, .gif, .mp4 or .webm");
+  cli.add_flag("--bare", s.bare, "pictures without a frame and titles");
   cli.add_flag(
       "--window", s.window,
       "show it live: drag to turn, wheel to come nearer, space to stop, W for wind, R to begin anew");
@@ -118,7 +126,8 @@ void runScene(examples::Application& app, const Settings& s) {
 
   examples::Simulation simulation(device, scene, examples::Features::of(scene), precision);
   std::optional<examples::Filming> filming;
-  if (!scene.record.film.empty()) filming.emplace(device, scene, size, s.samples, s.precision);
+  if (!scene.record.film.empty())
+    filming.emplace(device, scene, examples::Look{size, s.samples, !s.bare}, s.precision);
   std::optional<examples::TableFile> csv;
   if (!scene.record.csv.empty()) csv.emplace(scene.record.csv);
   const examples::Outcome outcome = examples::run(simulation, scene, [&](int) {
@@ -149,7 +158,7 @@ void runScene(examples::Application& app, const Settings& s) {
   examples::Simulation again(device, scene, examples::Features::of(scene), precision);
   again.advance(checked);
   app.verified(examples::checkSteps(scene, checked, again.positions(), precision));
-  app.verified(examples::checkObservation(scene, end, simulation.positions()));
+  app.verified(examples::checkObservation(scene, end, simulation.state()));
 }
 
 }  // namespace
@@ -158,5 +167,10 @@ int main(int argc, char** argv) {
   Settings settings;
   examples::Application app("cloth", "Cloth that hangs, falls, flutters and tears: a scene from a file.");
   addOptions(app.options(), settings);
-  return app.run(argc, argv, [&] { runScene(app, settings); });
+  return app.run(argc, argv, [&] {
+    if (settings.study.empty()) return runScene(app, settings);
+    const examples::Study& study = examples::findStudy(settings.study);
+    sk::Device device(app.device());
+    fmt::print("{}", study.run(device));
+  });
 }

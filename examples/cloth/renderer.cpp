@@ -6,6 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 #include "body_mesh.hpp"
 #include "shaders.hpp"
 
@@ -52,6 +54,12 @@ Renderer::Renderer(const Scene& scene, const ClothBuffers& cloth) : scene_(scene
   if (!epoxy_is_desktop_gl() || epoxy_gl_version() < 33) {
     throw std::runtime_error(
         "drawing needs OpenGL 3.3; take another --device, or none of --output and --window");
+  }
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  if (scene.points() > most) {
+    throw std::runtime_error(
+        fmt::format("this OpenGL draws cloths of up to {} points; take fewer --points", most));
   }
   positions_ = makeBufferTexture(GL_RGBA32F, cloth.positions);
   normals_ = makeBufferTexture(GL_RGBA32F, cloth.normals);

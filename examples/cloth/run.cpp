@@ -12,12 +12,12 @@ namespace examples {
 namespace {
 
 [[noreturn]] void failBroken(const Scene& scene, std::int64_t step, const Census& census) {
-  throw std::runtime_error(
-      fmt::format("step {}: the point in column {}, row {} is no finite number any more ({} of {} points); "
-                  "take a smaller "
-                  "dt, stiffness or relaxation",
-                  step, census.first % scene.cloth.columns, census.first / scene.cloth.columns, census.broken,
-                  scene.points()));
+  throw std::runtime_error(fmt::format(
+      "step {}: the point in column {}, row {} has flown off, or is no number any more ({} of {} points); "
+      "take a smaller "
+      "dt, stiffness or relaxation",
+      step, census.first % scene.cloth.columns, census.first / scene.cloth.columns, census.broken,
+      scene.points()));
 }
 
 /// Goes from the last sound state step by step to the first that is not.

@@ -112,7 +112,7 @@ void main() {
   float sunlit;
   vec3 c = lit(albedo, at, n, sunlit);
   float rim = pow(1.0 - max(dot(n, normalize(eye - at)), 0.0), 5.0);
-  c += vec3(0.05 + 0.25 * rim) * (0.3 + 0.7 * n.y) + 0.55 * gleam(at, n, 90.0) * sunlit;
+  c += vec3(0.05 + 0.25 * rim) * max(0.3 + 0.7 * n.y, 0.0) + 0.55 * gleam(at, n, 90.0) * sunlit;
   colour = vec4(c, 1);
 }
 )";

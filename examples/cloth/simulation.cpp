@@ -196,8 +196,9 @@ Observation Simulation::observe() const {
   const bool springs = scene_.links.springs;
   const LinkConstants& k = springs ? constants_.springs : constants_.relaxed;
   const cloth::Observed o = cloth::observe.with(options_)(
-      scene_.links.shear.has_value(), scene_.links.bend.has_value(), springs,
-      static_cast<unsigned>(features_.verlet), constants_.gravity, linksOf(k), p_, p_, d_);
+      scene_.links.shear.has_value(), scene_.links.bend.has_value(), alive_.has_value(), springs,
+      static_cast<unsigned>(features_.verlet), constants_.gravity, linksOf(k), p_, p_, d_,
+      given<sk::ElementIn<int>>(alive_));
   const double joule = constants_.pointMass / (scene_.run.dt * scene_.run.dt);
   const double mass = std::max(1.0, static_cast<double>(o.energy.w));
   Observation result;
@@ -207,12 +208,6 @@ Observation Simulation::observe() const {
   result.strain = o.strain / std::max(1, o.links);
   result.largest = o.links > 0 ? o.largest : 0.0;
   result.centre = (1.0 / mass) * vecOf<double>(o.centre);
-  const Vector square = (1.0 / mass) * vecOf<double>(o.square);
-  const auto deviation = [](double mean, double meanSquare) {
-    return std::sqrt(std::max(0.0, meanSquare - mean * mean));
-  };
-  result.spread = {deviation(result.centre.x, square.x), deviation(result.centre.y, square.y),
-                   deviation(result.centre.z, square.z)};
   return result;
 }
 

@@ -17,7 +17,7 @@ namespace examples {
 
 /// What a look at all points has found.
 struct Census {
-  std::int64_t broken = 0;  ///< points of which a number is NaN or infinite
+  std::int64_t broken = 0;  ///< points that are NaN, or farther than 10^18 m
   std::int64_t first = 0;  ///< the first of them, row by row
   double fastest = 0.0;  ///< m/s
 };
@@ -28,7 +28,6 @@ struct Observation {
   double strain = 0;  ///< the mean | l / rest - 1 | of all links
   double largest = 0;  ///< the largest
   Vector centre;  ///< of the mass of what is not pinned
-  Vector spread;  ///< standard deviation of positions around it
 
   double energy() const { return kinetic + elastic + potential; }
 };
