@@ -86,7 +86,8 @@ Comparison compareWithFull(sk::Device& device, const Scene& scene, sk::Precision
   return result;
 }
 
-std::string partsOf(const Features& f, const Scene& scene) {
+std::string partsOf(const Scene& scene) {
+  const Features f = Features::of(scene);
   std::vector<std::string> parts;
   if (f.springs.any()) parts.push_back("springs: " + namesOf(f.springs));
   if (f.relaxed.any()) {
@@ -96,15 +97,15 @@ std::string partsOf(const Features& f, const Scene& scene) {
   if (f.tearing) parts.push_back("tearing");
   if (f.windy) parts.push_back("wind");
   if (f.carried) parts.push_back("pins that move");
-  const auto bodies = [&](bool on, Kind kind, const char* name) {
+  const auto bodies = [&](Kind kind, const char* one, const char* many) {
     const auto n = std::count_if(scene.bodies.begin(), scene.bodies.end(),
                                  [&](const Body& b) { return b.kind == kind; });
-    if (on) parts.push_back(n == 0 ? std::string(name) : fmt::format("{} {}", n, name));
+    if (n > 0) parts.push_back(fmt::format("{} {}", n, n == 1 ? one : many));
   };
-  bodies(f.spheres, Kind::Sphere, "sphere(s)");
-  bodies(f.planes, Kind::Plane, "plane(s)");
-  bodies(f.capsules, Kind::Capsule, "capsule(s)");
-  bodies(f.boxes, Kind::Box, "box(es)");
+  bodies(Kind::Sphere, "sphere", "spheres");
+  bodies(Kind::Plane, "plane", "planes");
+  bodies(Kind::Capsule, "capsule", "capsules");
+  bodies(Kind::Box, "box", "boxes");
   return parts.empty() ? "nothing but inertia and gravity" : fmt::format("{}", fmt::join(parts, "; "));
 }
 
@@ -121,8 +122,8 @@ std::string tableOf(const Comparison& c, const Scene& scene) {
   row("bytes", r.bytes, f.bytes, bytesText(r.bytes), bytesText(f.bytes));
   row("ms", r.milliseconds, f.milliseconds, fmt::format("{:.3g}", r.milliseconds),
       fmt::format("{:.3g}", f.milliseconds));
-  return fmt::format("required: {}\n{}largest difference of both after {} steps: {:.3g} m\n",
-                     partsOf(Features::of(scene), scene), table.text(), c.steps, c.deviation);
+  return fmt::format("required: {}\n{}largest difference of both after {} steps: {:.3g} m\n", partsOf(scene),
+                     table.text(), c.steps, c.deviation);
 }
 
 }  // namespace examples

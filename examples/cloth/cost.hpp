@@ -32,7 +32,7 @@ Comparison compareWithFull(sk::Device& device, const Scene& scene, sk::Precision
                            const State& state);
 
 /// "structural, shear; 2 rounds" and the like: what of the model the scene has switched on.
-std::string partsOf(const Features& features, const Scene& scene);
+std::string partsOf(const Scene& scene);
 
 /// The table for people.
 std::string tableOf(const Comparison& comparison, const Scene& scene);

@@ -1,18 +1,26 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# studies.sh [--check WORD] CLOTH DOCUMENT...: puts what `cloth ARGUMENTS` prints between the marks <!-- cloth ARGUMENTS --> and
-# <!-- /cloth --> of the documents; the rest of a file stays as it is. With --check it writes nothing and fails where the text
-# between marks whose arguments hold the word is another.
+# studies.sh [--check] [--only WORD] CLOTH DOCUMENT...: puts what `cloth ARGUMENTS` prints between the marks <!-- cloth ARGUMENTS -->
+# and <!-- /cloth --> of the documents, where the arguments hold the word; the rest of a file stays as it is. With --check it
+# writes nothing and fails where the text between the marks is another.
 set -euo pipefail
 
 check=
-if [[ ${1:-} == --check ]]; then
-  check=$2
-  shift 2
-fi
+only=
+while [[ ${1:-} == --* ]]; do
+  case $1 in
+    --check) check=yes ;;
+    --only)
+      only=$2
+      shift
+      ;;
+    *) break ;;
+  esac
+  shift
+done
 if (($# < 2)); then
-  echo "usage: studies.sh [--check WORD] CLOTH DOCUMENT..." >&2
+  echo "usage: studies.sh [--check] [--only WORD] CLOTH DOCUMENT..." >&2
   exit 1
 fi
 cloth=$(realpath "$1")
@@ -37,7 +45,7 @@ for document in "$@"; do
       old+=$line$'\n'
       continue
     fi
-    if [[ -n $arguments && ( -z $check || $arguments == *"$check"* ) ]]; then
+    if [[ -n $arguments && $arguments == *"$only"* ]]; then
       # shellcheck disable=SC2086 # the arguments are words
       new=$(printed $arguments)$'\n'
       if [[ -n $check && $new != "$old" ]]; then

@@ -16,6 +16,7 @@ const std::vector<Study>& studies() {
       {"energy", "what becomes of the energy in 100,000 steps?", studyEnergy},
       {"stability", "where is the limit of the time step, and where should it be?", studyStability},
       {"chaos", "how do single and double precision part, and what do they agree on?", studyChaos},
+      {"cost", "what does each part of the model cost, beside all of it?", studyCost},
   };
   return all;
 }

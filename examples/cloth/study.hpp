@@ -32,6 +32,7 @@ std::string studyCatenary(sk::Device& device);
 std::string studyEnergy(sk::Device& device);
 std::string studyStability(sk::Device& device);
 std::string studyChaos(sk::Device& device);
+std::string studyCost(sk::Device& device);
 
 /// What studies have in common.
 struct Trial {
