@@ -133,6 +133,7 @@ TEST_CASE("sheets of every shape follow the loops", "[cloth]") {
   s.wind->velocity = {3, 0, 1};
   s.wind->gust = s.wind->swirl = 0.3;
   s.links.law = rows == 2 ? Law::Jakobsen : Law::Exact;
+  s.run.verlet = rows == 3 ? Verlet::Positions : Verlet::Displacements;
   s.tear = 0.05;
   Simulation simulation(d, s, Features::of(s), sk::Precision::Single);
   HostCloth<double> host(s, constantsOf(s));
@@ -144,6 +145,53 @@ TEST_CASE("sheets of every shape follow the loops", "[cloth]") {
     CHECK(p[4 * i + 1] == Approx(host.positions()[i].y).margin(2e-5));
     CHECK(p[4 * i + 2] == Approx(host.positions()[i].z).margin(2e-5));
   }
+}
+
+TEST_CASE("bodies of every kind are touched as in the loops, also when they move", "[cloth]") {
+  const auto [device, profile] = GENERATE(
+      table<const char*, const char*>({{"native", ""}, {"software", "glsl330"}, {"software", "glsl430"}}));
+  INFO(device << " " << profile);
+  sk::Device d({.device = device, .profile = profile});
+  Scene s = sheet(15, 13);
+  s.cloth.origin = {-0.5, 0.31, -0.5};
+  s.gravity = {0, -9.81, 0};
+  s.thickness = 0.01;
+  Body ball;
+  ball.at = {-0.25, 0, 0};
+  ball.size = {0.3, 0, 0};
+  ball.swing = {0, 0.1, 0.2};
+  Body floor;
+  floor.kind = Kind::Plane;
+  floor.along = {0, 1, 0};
+  floor.at = {0, 0.1, 0};
+  Body capsule;
+  capsule.kind = Kind::Capsule;
+  capsule.at = {0, 0.2, -0.4};
+  capsule.along = {0.4, 0, 0.2};
+  capsule.size = {0.1, 0, 0};
+  Body box;
+  box.kind = Kind::Box;
+  box.at = {0.3, 0.2, 0.3};
+  box.size = {0.2, 0.1, 0.15};
+  box.axis = {0.36, 0.48, 0};
+  box.turn = 0.8;
+  box.friction = 0.6;
+  s.bodies = {box, ball, floor, capsule};
+  Simulation simulation(d, s, Features::of(s), sk::Precision::Single);
+  HostCloth<double> host(s, constantsOf(s));
+  simulation.advance(120);
+  host.advance(120);
+  const std::vector<double> p = simulation.positions();
+  double largest = 0;
+  bool fell = false;
+  for (std::size_t i = 0; i < host.positions().size(); ++i) {
+    const Vector q = host.positions()[i];
+    largest = std::max(largest, length(Vector{p[4 * i], p[4 * i + 1], p[4 * i + 2]} - q));
+    fell = fell || q.y < 0.25;
+    CHECK(q.y > 0.1);
+  }
+  CHECK(fell);
+  CHECK(largest < 1e-4);
 }
 
 TEST_CASE("both ends of a link tear together, and only links that are too long", "[cloth]") {
