@@ -153,3 +153,21 @@ TEST_CASE("NaN touches nothing", "[degenerate]") {
   const std::vector<double> p = after(device, s, {{notANumber, 0, 0}, {5, 0, 0}});
   CHECK(p[4] == 5);
 }
+
+TEST_CASE("links that cannot have their length share what is too much, and stay", "[degenerate]") {
+  sk::Device device = anyDevice();
+  Scene s = chain(5);
+  s.cloth.rest = GENERATE(0.5, 2.0);
+  s.links.relaxation = 1.2;
+  s.damping = 50;
+  s.pins.push_back({{0, 4}, {}, 0, 0});
+  Simulation simulation(device, s, Features::of(s), sk::Precision::Single);
+  simulation.advance(1000);
+  const std::vector<double> p = simulation.positions();
+  // Where one end is pinned, the other takes the whole correction and not half of it, so that half the excess is left there.
+  const double excess = 0.25 - 0.25 * s.cloth.rest;
+  CHECK(p[4] == Approx(0.25 * s.cloth.rest + excess * 2 / 3).epsilon(1e-4));
+  CHECK(p[8] == Approx(0.5).epsilon(1e-4));
+  CHECK(p[12] == Approx(1 - p[4]).epsilon(1e-4));
+  CHECK(simulation.observe().strain == Approx(s.cloth.rest < 1 ? 1.0 : 0.5).epsilon(1e-4));
+}

@@ -29,10 +29,7 @@ void obey(const Input& input, Show& show, Window& window, Orbit& camera) {
     if (key == '\x1b' || key == 'q') window.close();
     if (key == ' ') show.paused = !show.paused;
     if (key == 'r' || key == 'R') show.restarts = true;
-    if (key == 'w' || key == 'W') {
-      show.wind = show.wind >= 2.0 ? 0.0 : show.wind + 0.5;
-      show.restarts = false;
-    }
+    if (key == 'w' || key == 'W') show.wind = show.wind >= 2.0 ? 0.0 : show.wind + 0.5;
   }
 }
 

@@ -65,16 +65,18 @@ std::string studyChaos(sk::Device& device) {
   Simulation single = simulate(device, scene), exact = simulate(device, scene, sk::Precision::Double),
              shaken = simulate(device, other, sk::Precision::Double);
   std::string table = heads({"time", "single from double", "another shake from double", "mean strain, %",
-                             "mean height, cm", "its deviation, cm"});
+                             "mean height, cm", "its deviation, cm", "energy, mJ"});
   for (const double time : {0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.2, 2.0, 3.0}) {
     for (Simulation* s : {&single, &exact, &shaken})
       s->advance(std::llround(time / scene.run.dt) - s->step());
     const std::vector<double> p = single.positions(), q = exact.positions(), r = shaken.positions();
     const Heights a = heightsOf(p), b = heightsOf(q), c = heightsOf(r);
-    table += row({fmt::format("{:.1f} s", time), fmt::format("{:.1e} m", apart(p, q)),
-                  fmt::format("{:.1e} m", apart(r, q)),
-                  three(single.observe().strain, exact.observe().strain, shaken.observe().strain),
-                  three(a.mean, b.mean, c.mean), three(a.deviation, b.deviation, c.deviation)});
+    const Observation x = single.observe(), y = exact.observe(), z = shaken.observe();
+    table +=
+        row({fmt::format("{:.1f} s", time), fmt::format("{:.1e} m", apart(p, q)),
+             fmt::format("{:.1e} m", apart(r, q)), three(x.strain, y.strain, z.strain),
+             three(a.mean, b.mean, c.mean), three(a.deviation, b.deviation, c.deviation),
+             fmt::format("{:.0f}, {:.0f}, {:.0f}", 1e3 * x.energy(), 1e3 * y.energy(), 1e3 * z.energy())});
   }
   return table;
 }
