@@ -46,7 +46,7 @@ programs=$(cd "$programs" 2>/dev/null && pwd) || {
   echo "demo.sh: '$1' holds no built examples" >&2
   exit 1
 }
-scenes=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/cloth/scenes
+examples=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd) || exit 1
 cd "$out" || exit 1
 example saxpy --size "$elements"
 example edges --size "$size" --output edges.png
@@ -54,9 +54,13 @@ example edges --size "$size" --low 0.01 --high 0.05 --style ink edges_input.png 
 example gray_scott --pattern theta --size "$size" --steps "$steps" --frames 4
 example gray_scott --pattern pi --size "$((size / 2))" --steps "$steps" --colours lagoon
 example gray_scott --pattern mu --size "$((size / 2))" --steps "$steps" --colours dusk
-example cloth "$scenes/drape.toml" --points "$((size / 6 + 1))" "$((size / 6 + 1))" --steps "$((steps * 3 / 2))" --frames 1 -o cloth_drape.png
-example cloth "$scenes/torn.toml" --points "$((size / 6 + 1))" "$((size / 8 + 1))" --steps "$steps" --frames 1 -o cloth_torn.png
+example cloth "$examples/cloth/scenes/drape.toml" --points "$((size / 6 + 1))" "$((size / 6 + 1))" --steps "$((steps * 3 / 2))" --frames 1 -o cloth_drape.png
+example cloth "$examples/cloth/scenes/torn.toml" --points "$((size / 6 + 1))" "$((size / 8 + 1))" --steps "$steps" --frames 1 -o cloth_torn.png
 example stats --made weather.csv
+example lattice "$examples/lattice/scenes/boiling.toml" --size "${size}x$((size * 5 / 8))" --steps "$((steps / 2))"
+example lattice "$examples/lattice/scenes/boiling_3d.toml" --size "$((size / 8))x$((size / 8))x$((size / 8))" --steps "$((steps / 8))"
+example lattice "$examples/lattice/scenes/stirred.toml" --size "${size}x$((size * 3 / 8))" --steps "$steps" --csv stirred.csv
+example lattice "$examples/lattice/scenes/rolls.toml" --size "${size}x$((size / 8))" --steps "$steps"
 
 echo
 awk -F '\t' '

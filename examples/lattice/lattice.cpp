@@ -220,6 +220,11 @@ int Lattice::passes() const {
          static_cast<int>(model_.reaction.has_value());
 }
 
+double fastestOf(Lattice& lattice) {
+  const Observation x = lattice.observe(Field::VelocityX), y = lattice.observe(Field::VelocityY);
+  return std::max({-x.least, x.most, -y.least, y.most});
+}
+
 std::vector<sk::TableReport> tablesOf(const Model& model, const sk::Device& device) {
   if (!model.buoyancy || model.buoyancy->density == Density::Computed) return {};
   std::vector<sk::TableReport> tables = device.tables();

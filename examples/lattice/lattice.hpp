@@ -77,6 +77,9 @@ class Lattice {
   std::optional<sk::Stream<float>> warmed_;
 };
 
+/// The largest component of a velocity anywhere.
+double fastestOf(Lattice& lattice);
+
 /// Of the tables that a device has, the one that the model's density is looked up in.
 std::vector<sk::TableReport> tablesOf(const Model& model, const sk::Device& device);
 

@@ -136,6 +136,11 @@ void simulate(examples::Application& app, const Settings& s) {
     fmt::print("time step {:.4g}: {:.0f} % of what {} allows, {:.4g} ({})\n", limit.chosen,
                100.0 * limit.chosen / limit.largest, limit.of, limit.largest, limit.formula);
   }
+  if (const auto& flow = scene.model.flow) {
+    const double wind = examples::fastestOf(lattice);
+    fmt::print("wind {:.3g}: u^2 dt is {:.0f} % of the 2 nu that it may be, u / c is {:.2f}\n", wind,
+               50.0 * wind * wind * scene.model.timeStep / flow->viscosity, wind / flow->sound);
+  }
   double tableError = 0.0;
   for (const sk::TableReport& table : examples::tablesOf(scene.model, device)) {
     fmt::print("table of {}: error {:.2g} predicted, {:.2g} measured\n", table.function, table.predicted,

@@ -80,7 +80,7 @@ class Pictures {
     ++count_;
   }
   void finish() {
-    if (film_) film_->finish();
+    if (film_ && count_ > 0) film_->finish();
   }
   int count() const { return count_; }
 
@@ -130,7 +130,15 @@ Outcome runScene(sk::Device& device, const Scene& scene, Lattice& lattice) {
     numbers->add(0, lattice);
   }
   Progress progress(scene.name, steps);
-  requireFinite(lattice, 0);
+  const auto checkFinite = [&](std::int64_t at) {
+    try {
+      requireFinite(lattice, at);
+    } catch (...) {
+      pictures.finish();  // what there is stays, as a whole file
+      throw;
+    }
+  };
+  checkFinite(0);
   if (frames > 1) pictures.add(0, lattice);
   const auto frameStep = [&](int frame) { return frames > 1 ? steps * frame / (frames - 1) : steps; };
   int frame = 1;
@@ -165,7 +173,7 @@ Outcome runScene(sk::Device& device, const Scene& scene, Lattice& lattice) {
     step = end;
 
     const bool frameDue = frame < frames && frameStep(frame) == step;
-    if (step % every == 0 || frameDue || step == steps || outcome.settled) requireFinite(lattice, step);
+    if (step % every == 0 || frameDue || step == steps || outcome.settled) checkFinite(step);
     if (numbers && (step % every == 0 || step == steps || outcome.settled)) numbers->add(step, lattice);
     if (frameDue || ((step == steps || outcome.settled) && frames == 1)) {
       progress.clear();

@@ -22,16 +22,23 @@ double rms(const std::vector<double>& a, const std::vector<double>& b) {
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-/// The straight line through ln(y) over x, where y is between the bounds: its slope; 0 where there are fewer than three.
-double logarithmicSlope(const std::vector<double>& x, const std::vector<double>& y, double low, double high) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+struct Line {
+  double slope = 0.0;
+  double straight = 0.0;  ///< the square of the correlation: 1 for a straight line
+};
+
+/// Through ln(y) over x, from where y is first above `low` until it is above `high`; none of fewer than three points.
+Line logarithmicLine(const std::vector<double>& x, const std::vector<double>& y, double low, double high) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!(y[i] >= low)) continue;
     if (y[i] > high) break;
     const double l = std::log(y[i]);
-    n += 1, sx += x[i], sy += l, sxx += x[i] * x[i], sxy += x[i] * l;
+    n += 1, sx += x[i], sy += l, sxx += x[i] * x[i], sxy += x[i] * l, syy += l * l;
   }
-  return n < 3 ? 0.0 : (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  if (n < 3) return {};
+  const double covariance = n * sxy - sx * sy, varianceX = n * sxx - sx * sx, varianceY = n * syy - sy * sy;
+  return {covariance / varianceX, covariance * covariance / (varianceX * varianceY)};
 }
 
 struct Sums {
@@ -91,15 +98,15 @@ void follow(const Course& c, MarkdownTable& table, Verification& verification) {
     apart.push_back(c.pair.apart());
     if (step >= c.from && step % (8 * c.every) == 0) c.pair.gather();
   }
-  const double rate = logarithmicSlope(times, apart, 1e-6, 1e-2);
+  const Line line = logarithmicLine(times, apart, 1e-6, 1e-2);
   const auto at = [&](double part) {
     return apart[static_cast<std::size_t>(part * static_cast<double>(apart.size() - 1))];
   };
   const auto row = [&](const char* precision, Sums& s, Lattice& lattice) {
     const double n = std::max(s.count, 1);
     table.add({c.name, precision, fmt::format("{:.1e}, {:.1e}, {:.1e}", at(0.1), at(0.4), at(1.0)),
-               rate > 0 ? fmt::format("{:.3g}", rate) : "none", fmt::format("{:.5f}", s.mean / n),
-               fmt::format("{:.1f}", s.wavelength / n),
+               line.slope > 0 ? fmt::format("{:.3g} ({:.3f})", line.slope, line.straight) : "none",
+               fmt::format("{:.5f}", s.mean / n), fmt::format("{:.1f}", s.wavelength / n),
                lattice.model().flow ? fmt::format("{:.2f}", s.nusselt / n) : "-",
                lattice.model().reaction ? std::string(nameOf(c.pair.kind(lattice))) : "-"});
   };
@@ -116,7 +123,7 @@ void follow(const Course& c, MarkdownTable& table, Verification& verification) {
 
 Findings studyGrowth(sk::Device& device, bool small) {
   MarkdownTable table({"scene", "precision", "apart after 10 %, 40 % and all of the run (rms)",
-                       "grows by e in 1 / ...", "mean", "wavelength, cells", "Nusselt number", "kind"});
+                       "rate of growth (r^2)", "mean", "wavelength, cells", "Nusselt number", "kind"});
   Verification verification("statistics in single against double, relative", small ? 0.2 : 0.1,
                             "what averages over so few wavelengths and times vary by");
   for (const char* name : {"epsilon", "mu"}) {
