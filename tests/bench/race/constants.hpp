@@ -31,7 +31,7 @@ constexpr float boilingPoint = 10, boilingBottom = 10.5f, boilingTop = 9.5f;
 constexpr float boilingSpread = 0.125f, boilingAlpha = 10, boilingSigma = 0.05f, boilingLatent = 0.1f;
 
 // One of the convecting lattice.
-constexpr float flowCarry = 0.05f, flowViscosity = 0.1f, flowLift = 0.02f, flowRest = 1;
+constexpr float flowCarry = 0.05f, flowViscosity = 0.1f, flowDamping = 0.05f, flowLift = 0.02f, flowRest = 1;
 constexpr float flowSpread = 0.12f, flowStiffness = 0.2f;
 
 // A step of the cloth: cells of a length, falling by a length, links that lose a part of their excess, and the ball.

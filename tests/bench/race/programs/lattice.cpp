@@ -55,7 +55,7 @@ class Boiling final : public LatticeTask {
   void once() override {
     const lattice::Boiling boiling{boilingPoint, boilingAlpha, boilingSigma, boilingLatent};
     diffuse_(wrap, wrap, wall, wall, {0, 0, boilingBottom, boilingTop}, boilingSpread, now_[0], next_[0]);
-    rise_(wall, wall, 0, {boilingBottom, boilingTop}, boiling, next_[0], warmed_);
+    rise_(true, 0, boiling, next_[0], warmed_);
     exchange_(false, true, boiling, now_[0], warmed_, next_[0]);
   }
 
@@ -75,7 +75,7 @@ class Convection final : public LatticeTask {
 
  private:
   void once() override {
-    const lattice::Fluid fluid{flowCarry, flowViscosity, flowLift, flowRest, slope_};
+    const lattice::Fluid fluid{flowCarry, flowViscosity, flowDamping, flowLift, flowRest, slope_};
     push_(false, true, false, fluid, now_[0], now_[1], now_[2], now_[3], next_[0], next_[1]);
     convect_(wrap, wrap, wall, wall, {0, 0, 1, 0}, flowSpread, flowCarry, flowStiffness, now_[3], next_[0],
              next_[1], now_[2], next_[3], next_[2]);
@@ -162,10 +162,11 @@ Check boilingCheck(const Problem& p) {
   const auto diffused = [&](std::int64_t y, std::int64_t x) {
     return start(y, x) + boilingSpread * laplacian(start, y, x);
   };
-  const auto warm = held(diffused);
-  const auto density = [](double t) { return std::tanh(boilingAlpha * (t - boilingPoint)); };
+  const auto density = [&](std::int64_t y, std::int64_t x) {
+    return std::tanh(boilingAlpha * (diffused(std::clamp<std::int64_t>(y, 0, p.rows - 1), x) - boilingPoint));
+  };
   const auto after = [&](std::int64_t y, std::int64_t x) {
-    return warm(y, x) * (1 - 0.5 * boilingSigma * (density(warm(y + 1, x)) - density(warm(y - 1, x))));
+    return diffused(y, x) * (1 - 0.5 * boilingSigma * (density(y + 1, x) - density(y - 1, x)));
   };
   const auto turned = [&](std::int64_t y, std::int64_t x) {
     if (y < 0 || y >= p.rows) return 0.0;
@@ -192,6 +193,9 @@ Problem convectionProblem(int log2) {
 Check convectionCheck(const Problem& p) {
   const Field u(p, 0), v(p, 1), pressure(p, 2), temperature(p, 3);
   const auto square = [](double a) { return a * a; };
+  const auto divergence = [&](std::int64_t y, std::int64_t x) {
+    return u(y, x + 1) - u(y, x) + v(y + 1, x) - v(y, x);
+  };
   const auto beside = [&](std::int64_t y, std::int64_t x) { return between(u, p, 0, 0, y, x); };
   const auto t = [&](std::int64_t y, std::int64_t x) { return between(temperature, p, 1, 0, y, x); };
   const auto nextU = [&](std::int64_t y, std::int64_t x) {
@@ -199,7 +203,7 @@ Check convectionCheck(const Problem& p) {
     const double uv = (u(y, x) + u(y + 1, x)) * (v(y + 1, x) + v(y + 1, x - 1)) -
                       (u(y - 1, x) + u(y, x)) * (v(y, x) + v(y, x - 1));
     return u(y, x) - flowCarry * (0.25 * (uu + uv) + pressure(y, x) - pressure(y, x - 1)) +
-           flowViscosity * laplacian(beside, y, x);
+           flowViscosity * laplacian(beside, y, x) + flowDamping * (divergence(y, x) - divergence(y, x - 1));
   };
   const auto nextV = [&](std::int64_t y, std::int64_t x) {
     if (y == 0 || y == p.rows) return 0.0;
@@ -209,7 +213,8 @@ Check convectionCheck(const Problem& p) {
     const double rest = flowRest - static_cast<double>(y) / static_cast<double>(p.rows);
     const double warmth = 0.5 * (t(y, x) + t(y - 1, x)) - rest;
     return v(y, x) - flowCarry * (0.25 * (vv + vu) + pressure(y, x) - pressure(y - 1, x)) +
-           flowViscosity * laplacian(v, y, x) + flowLift * warmth;
+           flowViscosity * laplacian(v, y, x) + flowDamping * (divergence(y, x) - divergence(y - 1, x)) +
+           flowLift * warmth;
   };
   const auto nextP = [&](std::int64_t y, std::int64_t x) {
     return pressure(y, x) - flowStiffness * (nextU(y, x + 1) - nextU(y, x) + nextV(y + 1, x) - nextV(y, x));

@@ -82,17 +82,13 @@ class BoilingOpenMp final : public Task {
     }
   }
 
-  /// Densities are found once a cell, and those behind the walls of the temperatures there.
+  /// Densities are found once a cell; behind the walls they are those of the cells there.
   void rise() {
-    const auto behind = [&](const float* beside, float held, float* row) {
-      for (std::int64_t x = 0; x < columns_; ++x)
-        row[x] = std::tanh(boilingAlpha * (2 * held - beside[x] - boilingPoint));
-    };
-    behind(rowOf(warm_, columns_, 0), boilingBottom, below_.data());
-    behind(rowOf(warm_, columns_, rows_ - 1), boilingTop, above_.data());
 #pragma omp parallel for
     for (std::int64_t y = 0; y < rows_; ++y) {
-      const float *t = rowOf(warm_, columns_, y), *low = under(dense_, y), *high = over(dense_, y);
+      const float* t = rowOf(warm_, columns_, y);
+      const float* low = rowOf(dense_, columns_, std::max<std::int64_t>(y - 1, 0));
+      const float* high = rowOf(dense_, columns_, std::min(y + 1, rows_ - 1));
       float* r = rowOf(after_, columns_, y);
 #pragma omp simd
       for (std::int64_t x = 0; x < columns_; ++x)
@@ -177,8 +173,10 @@ class ConvectionOpenMp final : public Task {
           const float uu = (u[x] + u[east]) * (u[x] + u[east]) - (u[west] + u[x]) * (u[west] + u[x]);
           const float uv =
               (u[x] + uNorth[x]) * (vNorth[x] + vNorth[west]) - (uSouth[x] + u[x]) * (v[x] + v[west]);
-          nextU[x] = u[x] - flowCarry * (0.25f * (uu + uv) + p[x] - p[west]) +
-                     flowViscosity * (u[west] + u[east] + under[x] + over[x] - 4 * u[x]);
+          nextU[x] =
+              u[x] - flowCarry * (0.25f * (uu + uv) + p[x] - p[west]) +
+              flowViscosity * (u[west] + u[east] + under[x] + over[x] - 4 * u[x]) +
+              flowDamping * (u[east] - 2 * u[x] + u[west] + (vNorth[x] - v[x]) - (vNorth[west] - v[west]));
         });
         if (y == 0) {
           std::fill_n(nextV, columns_, 0.0f);
@@ -191,6 +189,8 @@ class ConvectionOpenMp final : public Task {
           const float warmth = 0.5f * (t[x] + tSouth[x]) - rest;
           nextV[x] = v[x] - flowCarry * (0.25f * (vv + vu) + p[x] - pSouth[x]) +
                      flowViscosity * (v[west] + v[east] + vSouth[x] + vNorth[x] - 4 * v[x]) +
+                     flowDamping *
+                         (vNorth[x] - 2 * v[x] + vSouth[x] + (u[east] - u[x]) - (uSouth[east] - uSouth[x])) +
                      flowLift * warmth;
         });
       }
