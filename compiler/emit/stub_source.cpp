@@ -86,12 +86,10 @@ class SourceWriter {
     isWritten_[unit] = true;
     const Kernel& declared = kernelOf(unit);
     const sk::program::Kernel& whole = program_.units()[unit].kernel;
-    if (whole.half != nullptr) {
+    if (whole.half != nullptr)
       kernel(*whole.half, module_.kernels[*declared.forms.half], names_[unit] + "Half", ofFloats(Speed::Any));
-    }
-    if (whole.wide != nullptr) {
+    if (whole.wide != nullptr)
       kernel(*whole.wide, module_.kernels[*declared.forms.wide], names_[unit] + "Wide", {});
-    }
     kernel(whole, declared, names_[unit], inAnyReal(Speed::Best));
     if (const sk::program::Reduction* made = program_.units()[unit].reduction) {
       const std::string combine = combination(unit, *made);
