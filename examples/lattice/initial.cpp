@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "initial.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -32,6 +33,27 @@ double conducted(const Model& model, std::int64_t x, std::int64_t y) {
   return between(t[Boundary::Left], t[Boundary::Right], x, model.grid.width);
 }
 
+/// Anywhere in the lower three quarters; they wrap round at the sides.
+void addBlobs(const Grid& g, const Initial& initial, Noise& noise, std::vector<double>& values) {
+  for (int blob = 0; blob < initial.blobs; ++blob) {
+    const double radius = initial.blobRadius * (1.5 + 0.5 * noise.symmetric());
+    const std::int64_t x0 = noise.below(g.width), y0 = noise.below(3 * g.height / 4 + 1),
+                       z0 = noise.below(g.depth);
+    const auto reach = static_cast<std::int64_t>(std::ceil(radius));
+    const std::int64_t deep = g.isSpace() ? reach : 0;
+    for (std::int64_t dz = -deep; dz <= deep; ++dz) {
+      for (std::int64_t dy = std::max(-reach, -y0); dy <= std::min(reach, g.height - 1 - y0); ++dy) {
+        for (std::int64_t dx = -reach; dx <= reach; ++dx) {
+          if (static_cast<double>(dx * dx + dy * dy + dz * dz) > radius * radius) continue;
+          const std::int64_t x = ((x0 + dx) % g.width + g.width) % g.width,
+                             z = ((z0 + dz) % g.depth + g.depth) % g.depth;
+          values[static_cast<std::size_t>((z * g.height + y0 + dy) * g.width + x)] = initial.blobTemperature;
+        }
+      }
+    }
+  }
+}
+
 std::vector<double> firstTemperature(const Model& model, const Initial& initial, Noise& noise) {
   const Grid& g = model.grid;
   std::vector<double> values;
@@ -49,6 +71,7 @@ std::vector<double> firstTemperature(const Model& model, const Initial& initial,
       }
     }
   }
+  addBlobs(g, initial, noise, values);
   return values;
 }
 

@@ -214,12 +214,6 @@ int Lattice::streams() const {
   return static_cast<int>(count(now_) + count(next_)) + static_cast<int>(warmed_.has_value());
 }
 
-int Lattice::passes() const {
-  return static_cast<int>(model_.flow.has_value()) + static_cast<int>(model_.flow || model_.diffusion) +
-         static_cast<int>(model_.buoyancy.has_value()) + static_cast<int>(model_.latentHeat.has_value()) +
-         static_cast<int>(model_.reaction.has_value());
-}
-
 double fastestOf(Lattice& lattice) {
   const Observation x = lattice.observe(Field::VelocityX), y = lattice.observe(Field::VelocityY);
   return std::max({-x.least, x.most, -y.least, y.most});

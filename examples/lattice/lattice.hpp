@@ -47,9 +47,8 @@ class Lattice {
   /// The part of the cells that boil.
   double vapour();
 
-  /// Streams that are there, and streams and passes of a step.
+  /// Streams that are there.
   int streams() const;
-  int passes() const;
 
  private:
   using Fields = std::array<std::optional<sk::Stream<float>>, 6>;

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "reference.hpp"
 
@@ -145,6 +146,24 @@ TEST_CASE("what is not finite is found where it is first") {
   values[17] = HUGE_VAL;
   lattice.write(Field::Temperature, values);
   CHECK(lattice.observe(Field::Temperature).broken == 11);
+}
+
+TEST_CASE("a scene makes the passes of its operators, and a full model all of them") {
+  for (const char* name : {"native", "software"}) {
+    sk::Device device(name);
+    Model m;
+    m.grid = {16, 16};
+    m.reaction = Reaction{0.03, 0.06};
+    for (const auto& [model, streams, passes] : {std::tuple{m, 2, 1}, std::tuple{fullModel(m), 7, 5}}) {
+      Lattice lattice(device, model);
+      lattice.advance(1);
+      device.countPasses(true);
+      lattice.advance(1);
+      CHECK(device.passCount().passes == passes);
+      device.countPasses(false);
+      CHECK(lattice.streams() == streams);
+    }
+  }
 }
 
 TEST_CASE("neutral operators are those of the full model") {

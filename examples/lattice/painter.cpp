@@ -26,8 +26,8 @@ struct Camera {
   std::int64_t width, height;  ///< pixels
 };
 
-/// From a little above, turned by a third of a right angle, all of the lattice in the picture.
-Camera cameraFor(const Grid& g) {
+/// From a little above, turned by a third of a right angle, all of the lattice in a picture so many pixels wide.
+Camera cameraFor(const Grid& g, double pixels) {
   constexpr double turn = 0.55, tilt = 0.32;
   const auto w = static_cast<double>(g.width), h = static_cast<double>(g.height),
              d = static_cast<double>(g.depth);
@@ -44,8 +44,8 @@ Camera cameraFor(const Grid& g) {
                       static_cast<float>(axis[2] * length)};
   };
   const double across = reach(right), along = reach(up);
-  constexpr double pixels = 960;
-  const auto height = static_cast<std::int64_t>(std::lround(pixels * std::min(along / across, 2.0)));
+  const auto height =
+      static_cast<std::int64_t>(2 * std::lround(0.5 * pixels * std::min(along / across, 2.0)));
   const sk::float3 middle = {static_cast<float>(0.5 * (w - 1)), static_cast<float>(0.5 * (h - 1)),
                              static_cast<float>(0.5 * (d - 1))};
   return {{middle, vector(right, across), vector(up, along), vector(ahead, 1.0)},
@@ -104,8 +104,8 @@ sk::Stream<sk::float3> Painter::plane(sk::Stream<float>& field, Values values) {
   return colour;
 }
 
-sk::Stream<sk::float3> Painter::bubbles(Lattice& lattice, Values values) {
-  const Camera camera = cameraFor(scene_.model.grid);
+sk::Stream<sk::float3> Painter::bubbles(Lattice& lattice, Values values, int finer) {
+  const Camera camera = cameraFor(scene_.model.grid, 960.0 * finer);
   auto colour = device_.stream<sk::float3>({camera.height, camera.width});
   lattice::march(palette_, static_cast<float>(values.low), static_cast<float>(values.high),
                  static_cast<float>(scene_.model.boilingPoint), camera.rays,
@@ -114,24 +114,30 @@ sk::Stream<sk::float3> Painter::bubbles(Lattice& lattice, Values values) {
 }
 
 Image Painter::plot(Lattice& lattice) {
+  constexpr int finer = 2;  // rays for each pixel, in each direction: surfaces have edges
   sk::Stream<float>& field = shown(lattice);
   last_ = range(field);
-  const auto colour = scene_.view.shown == Shown::Bubbles ? bubbles(lattice, last_) : plane(field, last_);
-  return imageOf(static_cast<int>(colour.shape()[1]), static_cast<int>(colour.shape()[0]), colour.read());
+  const bool isSpace = scene_.view.shown == Shown::Bubbles;
+  const auto colour = isSpace ? bubbles(lattice, last_, finer) : plane(field, last_);
+  const Image image =
+      imageOf(static_cast<int>(colour.shape()[1]), static_cast<int>(colour.shape()[0]), colour.read());
+  return isSpace ? reduced(image, finer) : image;
 }
 
 Painter::Texture Painter::texture(Lattice& lattice) {
   sk::Stream<float>& field = shown(lattice);
   last_ = range(field);
   if (scene_.view.shown != Shown::Bubbles) return {field.texture(), false, last_.low, last_.high};
-  seen_.emplace(bubbles(lattice, last_));
+  seen_.emplace(bubbles(lattice, last_, 1));
   return {seen_->texture(), true, last_.low, last_.high};
 }
 
 Image Painter::paint(Lattice& lattice, const std::string& moment) {
   const Image image = plot(lattice);
-  return figure(image, {scene_.title, "", moment},
-                ColourBar{colours_, last_.low, last_.high, std::string(nameOf(scene_.view.shown))});
+  std::optional<ColourBar> bar;  // surfaces in space are coloured by their height
+  if (scene_.view.shown != Shown::Bubbles)
+    bar = ColourBar{colours_, last_.low, last_.high, std::string(nameOf(scene_.view.shown))};
+  return figure(image, {scene_.title, "", moment}, bar);
 }
 
 }  // namespace examples

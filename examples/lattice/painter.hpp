@@ -37,7 +37,7 @@ class Painter {
   sk::Stream<float>& shown(Lattice& lattice);
   Values range(sk::Stream<float>& field) const;
   sk::Stream<sk::float3> plane(sk::Stream<float>& field, Values values);
-  sk::Stream<sk::float3> bubbles(Lattice& lattice, Values values);
+  sk::Stream<sk::float3> bubbles(Lattice& lattice, Values values, int finer);
 
   sk::Device& device_;
   Scene scene_;

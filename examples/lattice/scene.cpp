@@ -161,6 +161,9 @@ Initial readInitial(const SceneTable& table) {
   i.temperature = table.number("temperature", anything).value_or(0.0);
   i.noise = table.number("noise", fromZero).value_or(0.0);
   i.rolls = table.number("rolls", Range{0.0, 1e4}).value_or(0.0);
+  i.blobs = static_cast<int>(table.integer("blobs", Range{0, 1e4}).value_or(0));
+  i.blobRadius = table.number("blob_radius", positive).value_or(i.blobRadius);
+  i.blobTemperature = table.number("blob_temperature", anything).value_or(0.0);
   i.seeds = static_cast<int>(table.integer("seeds", Range{0, 1e6}).value_or(1));
   i.seedSide = static_cast<int>(table.integer("seed_side", Range{1, 1e4}).value_or(20));
   i.u = table.number("u", anything).value_or(i.u);

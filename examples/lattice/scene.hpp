@@ -22,6 +22,8 @@ struct Initial {
   double temperature = 0.0;  ///< of the uniform profile
   double noise = 0.0;  ///< evenly spread in +- this much, in each cell
   double rolls = 0.0;  ///< pairs of rolls across the width, as a wave of the amplitude `noise` in place of it
+  int blobs = 0;  ///< warm discs or balls, of `blobRadius` cells and up to twice that
+  double blobRadius = 6.0, blobTemperature = 0.0;
   int seeds = 1;  ///< squares of (u, v) for a reaction; 1 stands in the middle
   int seedSide = 20;
   double u = 0.5, v = 0.25;  ///< in the squares
