@@ -11,6 +11,18 @@ namespace {
 
 using Values = std::vector<double>;
 
+/// The largest relative error of one rounding of the model's numbers.
+double roundoffOf(sk::Precision precision) {
+  switch (precision) {
+    case sk::Precision::Default:
+    case sk::Precision::Single: return roundoff;
+    case sk::Precision::Half: return 0x1p-11;
+    case sk::Precision::Extended: return 0x1p-44;
+    case sk::Precision::Double: return 0x1p-53;
+  }
+  return roundoff;
+}
+
 /// A step on the host. Indices are of cells; those outside go round, or are answered for by the boundary.
 class HostStep {
  public:
@@ -91,7 +103,7 @@ class HostStep {
 
   /// Does what happens, cell by cell, unlike the kernel, which asks what its neighbours did.
   Values exchanged(const Values& before, const Values& after, std::vector<bool>& doubtful) const {
-    constexpr double near = 64 * roundoff;
+    const double near = 16 * roundoffOf(m_.precision);
     Values result = after;
     const auto each = [&](std::int64_t x, std::int64_t y, std::int64_t z, const auto& visit) {
       if (x > 0 || !m_.boundary.closedX()) visit(at(x - 1, y, z));
@@ -211,18 +223,6 @@ class HostStep {
   Coefficients c_;
   std::int64_t nx_, ny_, nz_;
 };
-
-/// How many units in the last place of a float the model's numbers have.
-double roundoffOf(sk::Precision precision) {
-  switch (precision) {
-    case sk::Precision::Default:
-    case sk::Precision::Single: return roundoff;
-    case sk::Precision::Half: return 0x1p-11;
-    case sk::Precision::Extended: return 0x1p-44;
-    case sk::Precision::Double: return 0x1p-53;
-  }
-  return roundoff;
-}
 
 double largestOf(const Values& values) {
   double most = 0.0;
