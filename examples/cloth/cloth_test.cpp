@@ -15,26 +15,13 @@
 #include "run.hpp"
 #include "scene.hpp"
 #include "simulation.hpp"
+#include "support/written_file.hpp"
 
 using namespace examples;
 
 namespace {
 
-/// A file that is gone after the test.
-class SceneFile {
- public:
-  explicit SceneFile(const std::string& text)
-      : path_(std::filesystem::temp_directory_path() / "sk_cloth_test.toml") {
-    std::ofstream(path_) << text;
-  }
-  ~SceneFile() { std::filesystem::remove(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-Scene parsed(const std::string& text) { return readScene(SceneFile(text).path()); }
+Scene parsed(const std::string& text) { return readScene(WrittenFile(text, "written_scene.toml").path()); }
 
 Scene sheet(int columns, int rows) {
   Scene s;

@@ -11,9 +11,9 @@
 #include <sk/sk.hpp>
 
 #include "camera.hpp"
-#include "gl_objects.hpp"
 #include "renderer.hpp"
 #include "simulation.hpp"
+#include "support/gl_objects.hpp"
 #include "support/image.hpp"
 
 namespace examples {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "camera.hpp"
-#include "gl_objects.hpp"
 #include "model.hpp"
 #include "scene.hpp"
+#include "support/gl_objects.hpp"
 #include "support/image.hpp"
 
 namespace examples {

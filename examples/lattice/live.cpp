@@ -8,12 +8,12 @@
 
 #include <fmt/format.h>
 
-#include "cloth/gl_objects.hpp"
 #include "initial.hpp"
 #include "lattice.hpp"
 #include "painter.hpp"
 #include "run.hpp"
 #include "support/colormap.hpp"
+#include "support/gl_objects.hpp"
 #include "support/stopwatch.hpp"
 #include "support/window.hpp"
 

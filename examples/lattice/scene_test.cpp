@@ -3,25 +3,15 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <fstream>
 #include <string>
+
+#include "support/written_file.hpp"
 
 namespace examples {
 namespace {
 
-/// A scene that goes when the test does.
-class Written {
- public:
-  explicit Written(const std::string& text) { std::ofstream(path_) << text; }
-  ~Written() { std::filesystem::remove(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_ = "written_scene.toml";
-};
-
 Scene read(const std::string& text, const Overrides& overrides = {}) {
-  return readScene(Written(text).path(), overrides);
+  return readScene(WrittenFile(text, "written_scene.toml").path(), overrides);
 }
 
 std::string messageOf(const std::string& text) {

@@ -4,26 +4,16 @@
 #include "support/scene_file.hpp"
 
 #include <array>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 
 #include <catch2/catch.hpp>
 
+#include "support/written_file.hpp"
+
 namespace {
 
 using namespace examples;
-
-/// A file with this text, for as long as it lives.
-class Written {
- public:
-  explicit Written(const std::string& text) { std::ofstream(path_) << text; }
-  ~Written() { std::filesystem::remove(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_ = "written.toml";
-};
 
 template <class Action>
 std::string messageOf(Action&& action) {
@@ -38,7 +28,7 @@ std::string messageOf(Action&& action) {
 }  // namespace
 
 TEST_CASE("a scene gives what it has") {
-  const Written file(
+  const WrittenFile file(
       "title = \"hot\"\nsteps = 12\n[grid]\nsize = [4, 8]\nspacing = 0.5\nwrap = true\n"
       "[[sphere]]\nradius = 1\n[[sphere]]\nradius = 2.5\n");
   const SceneTable scene = loadScene(file.path());
@@ -59,7 +49,7 @@ TEST_CASE("a scene gives what it has") {
 }
 
 TEST_CASE("what is wrong with a scene is told at its place") {
-  const Written file(
+  const WrittenFile file(
       "steps = 1.5\nspacing = nan\nname = 7\n[grid]\nsise = [4, 8]\nkind = \"wrapp\"\ncells = [1, "
       "\"x\"]\n[[ball]]\nr = -1\n");
   const SceneTable scene = loadScene(file.path());
@@ -88,7 +78,7 @@ TEST_CASE("what is wrong with a scene is told at its place") {
 }
 
 TEST_CASE("keys that nobody has asked for are told, with what is like them") {
-  const Written file("steps = 1\n[grid]\nsise = 4\n[[ball]]\ncolour = 3\n");
+  const WrittenFile file("steps = 1\n[grid]\nsise = 4\n[[ball]]\ncolour = 3\n");
   const SceneTable scene = loadScene(file.path());
   scene.integer("steps");
   CHECK(messageOf([&] { scene.finish(); }) == "written.toml:4:3: nobody knows 'ball' here; there are steps");
@@ -105,6 +95,6 @@ TEST_CASE("keys that nobody has asked for are told, with what is like them") {
 TEST_CASE("what is no scene is told") {
   CHECK(messageOf([] { loadScene("missing.toml"); }) == "the scene 'missing.toml' does not exist");
   CHECK(messageOf([] { loadScene("."); }) == "the scene '.' cannot be read; name a TOML file");
-  const Written broken("steps = = 3\n");
+  const WrittenFile broken("steps = = 3\n");
   CHECK(messageOf([&] { loadScene(broken.path()); }).starts_with("written.toml:1:9: "));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gl_objects.hpp"
+#include "support/gl_objects.hpp"
 
 #include <stdexcept>
 #include <string>
