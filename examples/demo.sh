@@ -58,7 +58,7 @@ example cloth "$examples/cloth/scenes/drape.toml" --points "$((size / 6 + 1))" "
 example cloth "$examples/cloth/scenes/torn.toml" --points "$((size / 6 + 1))" "$((size / 8 + 1))" --steps "$steps" --frames 1 -o cloth_torn.png
 example stats --made weather.csv
 example lattice "$examples/lattice/scenes/boiling.toml" --size "${size}x$((size * 5 / 8))" --steps "$((steps / 2))"
-example lattice "$examples/lattice/scenes/boiling_3d.toml" --size "$((size / 8))x$((size / 8))x$((size / 8))" --steps "$((steps / 8))"
+example lattice "$examples/lattice/scenes/boiling_3d.toml" --size "$((size * 3 / 16))x$((size / 6))x$((size * 3 / 16))"
 example lattice "$examples/lattice/scenes/stirred.toml" --size "${size}x$((size * 3 / 8))" --steps "$steps" --csv stirred.csv
 example lattice "$examples/lattice/scenes/rolls.toml" --size "${size}x$((size / 8))" --steps "$steps"
 
