@@ -75,9 +75,10 @@ void setCharacter(Image& image, const stbtt_fontinfo* font, float scale, int cod
   std::vector<std::uint8_t> covered(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   stbtt_MakeCodepointBitmapSubpixel(font, covered.data(), width, height, width, scale, scale, x - column,
                                     y - row, code);
+  const std::uint8_t* next = covered.data();
   for (int j = 0; j < height; ++j) {
     for (int i = 0; i < width; ++i) {
-      const float share = static_cast<float>(covered[static_cast<std::size_t>(j * width + i)]) / 255.0f;
+      const float share = static_cast<float>(*next++) / 255.0f;
       blend(image, static_cast<int>(column) + left + i, static_cast<int>(row) + top + j, colour, share);
     }
   }
