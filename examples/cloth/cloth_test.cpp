@@ -273,6 +273,22 @@ TEST_CASE("a run that breaks names the step and the point", "[cloth]") {
   CHECK(shown >= 1);
 }
 
+TEST_CASE("a run has as many frames as its scene asks for, the first state and the end among them",
+          "[cloth]") {
+  sk::Device device = sk::Device::native();
+  Scene s = sheet(5, 5);
+  s.run.steps = 103;
+  for (const int frames : {2, 12, 104}) {
+    s.record.frames = frames;
+    Simulation simulation(device, s, Features::of(s), sk::Precision::Single);
+    std::vector<std::int64_t> steps;
+    run(simulation, s, [&](int) { steps.push_back(simulation.step()); });
+    CHECK(steps.size() == static_cast<std::size_t>(frames));
+    CHECK(steps.front() == 0);
+    CHECK(steps.back() == 103);
+  }
+}
+
 TEST_CASE("a run ends when the cloth has come to rest", "[cloth]") {
   sk::Device device = sk::Device::native();
   Scene s = sheet(5, 5);

@@ -41,10 +41,10 @@ Outcome run(Simulation& simulation, const Scene& scene, const std::function<void
   State sound = simulation.state();
   if (const Census census = simulation.census(); census.broken > 0) failBroken(scene, 0, census);
   onFrame(0);
+  const int gaps = std::max(1, scene.record.frames - 1);
   for (int frame = 1; outcome.steps < steps && !outcome.settled;) {
     const std::int64_t nextFrame =
-        std::max(outcome.steps + 1, steps / scene.record.frames * frame +
-                                        steps % scene.record.frames * frame / scene.record.frames);
+        std::max(outcome.steps + 1, steps / gaps * frame + steps % gaps * frame / gaps);
     const std::int64_t end = std::min({outcome.steps + scene.run.checkEvery, nextFrame, steps});
     simulation.advance(end - outcome.steps);
     simulation.finish();

@@ -20,7 +20,7 @@ struct Outcome {
 };
 
 /// Runs scene.run.steps steps, or until the cloth has settled. `onFrame` is called with the number of each of the
-/// scene's frames, from 0 (the first state) on. Throws std::runtime_error, naming the step and the point, where a number breaks; the
+/// scene's frames, from 0 (the first state, which is shown even to a scene that wants 1) on. Throws std::runtime_error, naming the step and the point, where a number breaks; the
 /// frames before stand.
 Outcome run(Simulation& simulation, const Scene& scene, const std::function<void(int frame)>& onFrame);
 

@@ -91,7 +91,7 @@ struct RunSettings {
 
 /// What a run leaves behind.
 struct RecordSettings {
-  int frames = 1;  ///< evenly spaced, the last at the end
+  int frames = 1;  ///< evenly spaced, from the first state to the end; 1: the end
   double framesPerSecond = 30;
   std::string film;  ///< files; empty: none
   std::string csv;
