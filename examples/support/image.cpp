@@ -78,16 +78,6 @@ Image reduced(const Image& image, int factor) {
   return small;
 }
 
-Image magnified(const Image& image, int factor) {
-  Image large = emptyImage(image.width * factor, image.height * factor);
-  for (int y = 0; y < large.height; ++y) {
-    for (int x = 0; x < large.width; ++x) {
-      std::copy_n(image.pixel(x / factor, y / factor), 3, large.pixel(x, y));
-    }
-  }
-  return large;
-}
-
 void paste(Image& image, const Image& part, int x, int y) {
   const int left = std::max(x, 0), right = std::min(x + part.width, image.width);
   for (int row = std::max(y, 0); row < std::min(y + part.height, image.height) && left < right; ++row) {

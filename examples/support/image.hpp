@@ -33,8 +33,6 @@ Image plainImage(int width, int height, const sk::float3& colour);
 Image imageOf(int width, int height, std::span<const sk::float3> pixels);
 /// Each pixel the mean of factor x factor ones, as light: the second half of supersampling. Sizes are multiples of the factor.
 Image reduced(const Image& image, int factor);
-/// Each pixel factor x factor times.
-Image magnified(const Image& image, int factor);
 /// Copies `part` into `image`, its upper left corner at (x, y); what is outside is dropped.
 void paste(Image& image, const Image& part, int x, int y);
 /// Mixes a colour into a pixel, `share` of it (in [0, 1]); a pixel outside is nothing.

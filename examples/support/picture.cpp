@@ -10,7 +10,8 @@
 
 #include <fmt/format.h>
 #include <stb/stb_image.h>
-#include <stb/stb_image_write.h>
+
+#include "support/image.hpp"
 
 namespace examples {
 namespace {
@@ -37,16 +38,6 @@ Picture onWhite(Code* codes, int width, int height, int white, const std::string
   return picture;
 }
 
-void writePng(const std::filesystem::path& file, int width, int height,
-              const std::vector<unsigned char>& bytes) {
-  std::error_code ignored;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
-  if (stbi_write_png(file.c_str(), width, height, 3, bytes.data(), width * 3) == 0) {
-    throw std::runtime_error(
-        fmt::format("cannot write '{}'; name a file in a folder that can be written", file.string()));
-  }
-}
-
 }  // namespace
 
 Picture loadPicture(const std::filesystem::path& file) {
@@ -66,26 +57,18 @@ Picture loadPicture(const std::filesystem::path& file) {
 }
 
 void savePng(const std::filesystem::path& file, int width, int height, std::span<const sk::float3> pixels) {
-  const auto byte = [](float component) {
-    const float inside = component > 0.0f ? std::min(component, 1.0f) : 0.0f;
-    return static_cast<unsigned char>(std::lround(inside * 255.0f));
-  };
-  std::vector<unsigned char> bytes;
-  bytes.reserve(pixels.size() * 3);
-  for (const sk::float3& pixel : pixels)
-    bytes.insert(bytes.end(), {byte(pixel.x), byte(pixel.y), byte(pixel.z)});
-  writePng(file, width, height, bytes);
+  savePng(file, imageOf(width, height, pixels));
 }
 
 void savePng(const std::filesystem::path& file, const Picture& picture) {
   const auto byte = [&](std::int32_t code) {
-    return static_cast<unsigned char>((std::int64_t{code} * 255 + picture.white / 2) / picture.white);
+    return static_cast<std::uint8_t>((std::int64_t{code} * 255 + picture.white / 2) / picture.white);
   };
-  std::vector<unsigned char> bytes;
-  bytes.reserve(picture.pixels.size() * 3);
+  Image image{picture.width, picture.height, {}};
+  image.rgb.reserve(picture.pixels.size() * 3);
   for (const sk::int3& pixel : picture.pixels)
-    bytes.insert(bytes.end(), {byte(pixel.x), byte(pixel.y), byte(pixel.z)});
-  writePng(file, picture.width, picture.height, bytes);
+    image.rgb.insert(image.rgb.end(), {byte(pixel.x), byte(pixel.y), byte(pixel.z)});
+  savePng(file, image);
 }
 
 double linearFromSrgb(double encoded) {

@@ -209,12 +209,6 @@ const TestKernel& mix3() {
   return kernel;
 }
 
-const TestReduction& sum() {
-  static const TestReduction reduction("sum", "void sum(float x, inout float total) { total += x; }\n",
-                                       {input<float>("x"), accumulator<float>("total", "0.0")}, true);
-  return reduction;
-}
-
 /// Everything that a device does, with results checked.
 void useAll(Device& device) {
   constexpr std::size_t count = 150;
@@ -231,7 +225,7 @@ void useAll(Device& device) {
   CHECK(h.read()[4] == Hit{3.5f, 8});
   CHECK(h.read()[5] == Hit{6.0f, 9});
   CHECK(a.read()[9] == -27.5f);
-  CHECK(sum().value<float>(r) == -27.5f * count);
+  CHECK(sumOfFloats().value<float>(r) == -27.5f * count);
   CHECK(device.arithmetic().exactSums);
 }
 
@@ -276,7 +270,7 @@ TEST_CASE("the buffers of the application's programs are theirs again after a re
   Device device = Device::adopt({.profile = "glsl430"});
   auto ones = device.stream<float>({100, 7});
   ones.write(std::vector<float>(700, 1.0f));
-  CHECK(sum().value<float>(ones) == 700);
+  CHECK(sumOfFloats().value<float>(ones) == 700);
   GLint first = 0;
   GLint64 start = 0, size = 0;
   glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, 0, &first);
@@ -332,8 +326,6 @@ TEST_CASE("the texture of a stream is one of the application's context") {
 }
 
 TEST_CASE("how the application filters the texture of a stream is nothing to kernels") {
-  static const TestKernel twice("twice", "void twice(float x, out float r) { r = 2.0 * x; }\n",
-                                {input<float>("x"), output<float>("r")});
   Application application(Application::Kind::Core);
   Device device = Device::adopt();
   auto x = device.stream<float>({37, 53});
@@ -344,7 +336,7 @@ TEST_CASE("how the application filters the texture of a stream is nothing to ker
   glBindTexture(GL_TEXTURE_2D, x.texture().name);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  twice(x, r);
+  twice()(x, r);
   for (float& value : host) value *= 2;
   CHECK(r.read() == host);
 }

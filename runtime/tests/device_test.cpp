@@ -19,12 +19,6 @@ using namespace sk::test;
 
 namespace {
 
-const TestKernel& twice() {
-  static const TestKernel kernel("twice", "void twice(float x, out float r) { r = 2.0 * x; }\n",
-                                 {input<float>("x"), output<float>("r")});
-  return kernel;
-}
-
 /// Runs a kernel and checks its result.
 void use(Device& device) {
   auto x = device.stream<float>(3);

@@ -20,18 +20,6 @@ using namespace sk::test;
 
 namespace {
 
-const TestKernel& twice() {
-  static const TestKernel kernel("twice", "void twice(float x, out float r) { r = 2.0 * x; }\n",
-                                 {input<float>("x"), output<float>("r")});
-  return kernel;
-}
-
-const TestReduction& sum() {
-  static const TestReduction reduction("sum", "void sum(float x, inout float total) { total += x; }\n",
-                                       {input<float>("x"), accumulator<float>("total", "0.0")}, true);
-  return reduction;
-}
-
 /// A buffer of the application's with bytes of 0xff.
 GLuint bufferOf(std::size_t bytes) {
   GLuint name = 0;
@@ -159,7 +147,7 @@ TEST_CASE("passes and their bytes are counted where somebody asks") {
   CHECK(two.passes == 2);
   CHECK(two.bytesRead == 2 * 64 * 64 * 4);
   CHECK(two.bytesWritten == 2 * 64 * 64 * 4);
-  (void)sum().value<float>(r);
+  (void)sumOfFloats().value<float>(r);
   CHECK(device.passCount().passes > 2);
   device.countPasses(true);
   CHECK(device.passCount().passes == 0);

@@ -29,12 +29,6 @@ const TestKernel& lookup() {
   return kernel;
 }
 
-const TestReduction& sum() {
-  static const TestReduction reduction("sum", "void sum(float x, inout float total) { total += x; }\n",
-                                       {input<float>("x"), accumulator<float>("total", "0.0")}, true);
-  return reduction;
-}
-
 }  // namespace
 
 TEST_CASE("arguments of a kernel that do not fit") {
@@ -108,7 +102,7 @@ TEST_CASE("streams of two devices, moved streams, streams after their device") {
   CHECK(errorOf([&] { diffuse()(k, orphan, orphan); }) ==
         "heat::diffuse: 'v' is a stream whose device has been destroyed; keep the device for as long as its "
         "streams are used");
-  CHECK(errorOf([&] { sum().value<float>(orphan); }) ==
+  CHECK(errorOf([&] { sumOfFloats().value<float>(orphan); }) ==
         "sum: 'x' is a stream whose device has been destroyed; keep the device for as long as its streams "
         "are used");
   orphan = second.stream<float>({1, 1});
@@ -170,17 +164,18 @@ TEST_CASE("reductions that do not fit") {
   auto pairs = device.stream<float2>({6, 8});
   auto none = device.stream<float>({0, 8});
   CHECK(
-      errorOf([&] { sum()(x, three); }) ==
+      errorOf([&] { sumOfFloats()(x, three); }) ==
       "sum: 'x' has shape {6, 8}, and the output 'total' has {3, 3}; give the output as many dimensions, or "
       "fewer, each extent a divisor of the input's");
-  CHECK(errorOf([&] { sum()(x, line.domain(0, 5)); }).find("as many dimensions") != std::string::npos);
-  CHECK(errorOf([&] { sum()(x, line.domain(0, 2)); }) ==
+  CHECK(errorOf([&] { sumOfFloats()(x, line.domain(0, 5)); }).find("as many dimensions") !=
+        std::string::npos);
+  CHECK(errorOf([&] { sumOfFloats()(x, line.domain(0, 2)); }) ==
         "sum: 'x' has shape {6, 8}, and the output 'total' has {2}, which could mean {2, 1} or {1, 2}; write "
         "the one that you mean");
-  CHECK(errorOf([&] { sum()(x, none); }).find("a divisor") != std::string::npos);
-  CHECK(errorOf([&] { sum().value<float>(pairs); }) ==
+  CHECK(errorOf([&] { sumOfFloats()(x, none); }).find("a divisor") != std::string::npos);
+  CHECK(errorOf([&] { sumOfFloats().value<float>(pairs); }) ==
         "sum: 'x' is declared as float, but its stream holds float2");
-  CHECK(errorOf([&] { sum()(x, pairs); }) ==
+  CHECK(errorOf([&] { sumOfFloats()(x, pairs); }) ==
         "sum: 'total' is declared as float, but its stream holds float2");
 }
 

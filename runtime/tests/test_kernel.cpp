@@ -66,6 +66,18 @@ TestReduction::TestReduction(std::string_view name, std::string_view body,
 }
 
 // An odd factor makes the map one to one.
+const TestKernel& twice() {
+  static const TestKernel kernel("twice", "void twice(float x, out float r) { r = 2.0 * x; }\n",
+                                 {input<float>("x"), output<float>("r")});
+  return kernel;
+}
+
+const TestReduction& sumOfFloats() {
+  static const TestReduction reduction("sum", "void sum(float x, inout float total) { total += x; }\n",
+                                       {input<float>("x"), accumulator<float>("total", "0.0")}, true);
+  return reduction;
+}
+
 std::vector<std::uint32_t> bitPatterns(std::size_t count) {
   std::vector<std::uint32_t> patterns(count);
   for (std::size_t i = 0; i < count; ++i) {

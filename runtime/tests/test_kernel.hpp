@@ -114,6 +114,11 @@ class TestReduction {
   program::Reduction reduction_;
 };
 
+/// r = 2 x, of floats.
+const TestKernel& twice();
+/// The sum of floats, from 0 on.
+const TestReduction& sumOfFloats();
+
 /// Each value a bit pattern of its own: 0, 1, 2 ... spread over all 32 bits.
 std::vector<std::uint32_t> bitPatterns(std::size_t count);
 

@@ -140,7 +140,7 @@ class Device {
   /// The tables that stand for functions of kernels which have run on the device, by the functions' names.
   std::vector<TableReport> tables() const;
 
-  /// Begins to count passes at 0, or ends it. Counting costs each pass about a microsecond of the host's time.
+  /// Begins to count passes at 0, or ends it. Counting costs each pass some of the host's time.
   void countPasses(bool on);
   /// Since they are counted. Passes by which the runtime finds out about the device are left out. Throws sk::Error where
   /// nothing is counted.

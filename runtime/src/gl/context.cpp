@@ -105,12 +105,7 @@ void CurrentScope::enter(const Context& context) {
     draw_ = eglGetCurrentSurface(EGL_DRAW);
     read_ = eglGetCurrentSurface(EGL_READ);
   }
-  try {
-    context.makeCurrent();
-  } catch (const Error&) {
-    previous_ = EGL_NO_CONTEXT;
-    throw;
-  }
+  context.makeCurrent();
 }
 
 const char* eglErrorName(EGLint error) {
