@@ -40,6 +40,7 @@
 
 namespace sk::native {
 struct Call;
+struct Code;
 struct ReduceCall;
 }  // namespace sk::native
 
@@ -254,6 +255,7 @@ struct Kernel {
   bool drawn =
       true;  ///< whether fragment programs may run it; false where skc was asked for other targets alone
   bool dispatched = true;  ///< whether compute programs may
+  const native::Code* code = nullptr;  ///< what skc compiled for it (sk/native/code.hpp); null without native code
 };
 
 /// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.

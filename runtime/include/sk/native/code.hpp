@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// What skc's object files and the runtime agree on: the functions that skc compiles for each kernel, and what the runtime
+// hands to them. An object file has one constant Code for each kernel; the runtime chooses among its entries the best one
+// that the CPU runs. Everything here is plain data, whose layout compiler/native knows (Code::version tells of it).
+//
+// A kernel's function computes a chunk: neighbours along x in one row of the domain. The runtime divides the domain into
+// chunks, shares them out among threads, and brings what does not lie as the domain does into scratch memory first, so that
+// object code knows of no boundaries, strides or tails where it reads elements and their neighbours. Indices, extents and
+// strides have the fastest dimension first.
+#pragma once
+
+#include <cstdint>
+
+#include "sk/native/table.hpp"
+
+namespace sk::native {
+
+/// Elements that a function computes together, at most. Every array of a Chunk and of a State may be read and written up to
+/// its count rounded up to Entry::lanes.
+inline constexpr std::int64_t mostLanes = 64;
+
+/// Where a variable output's elements go.
+struct Sink {
+  std::byte* const* arrays;  ///< one for each component
+  std::int64_t count;        ///< elements pushed so far
+  std::int64_t capacity;     ///< elements that the arrays have room for
+  void (*grow)(Sink* sink);  ///< called where count == capacity: makes room for one more, and may move the arrays
+};
+
+/// An argument of a call, one for each parameter. A uniform argument is a stream of one element; an iterator has two
+/// elements, its ends.
+struct Argument {
+  void* const* components;   ///< an array for each scalar of the element; null where the stream is left out (sk::none)
+  std::int64_t first;        ///< number of the region's first element in the arrays
+  std::int64_t extent[4];    ///< of the region
+  std::int64_t stride[4];    ///< in elements; stride[0] of a gather or scatter output is 1
+  std::int64_t multiply[4];  ///< an element input's index is the domain's, times this,
+  std::int64_t divide[4];    ///< divided by this
+  Sink* sink;                ///< of a variable output
+  std::int64_t countsElements;  ///< of an iterator: 1 where it goes by element number, 0 by index in each dimension
+  std::int64_t isSmall;         ///< 1 where the numbers of all elements fit 32 bits
+};
+
+/// A call of a kernel.
+struct Frame {
+  const Argument* arguments;
+  std::int64_t domain[4];
+  const Table* tables;  ///< one for each tabulated function; null where these are computed
+};
+
+/// Elements `x`, `x + step` ... of a row of the domain.
+struct Chunk {
+  void* const* arrays;    ///< for each slot, its component arrays from the chunk's first element on (Slot)
+  std::int64_t first[4];  ///< index of the first element
+  std::int64_t count;     ///< elements; of a fold, in all rounds
+  std::int64_t step;      ///< between the x of one element and the next: 1, except in folds
+};
+
+/// A parameter whose elements a chunk has arrays for: an element input, an output, or a row of neighbours of a gather.
+struct Slot {
+  std::uint8_t parameter;
+  std::int8_t row[3];  ///< of a gather: offsets in y, z and w. x + dx of the array is the neighbour at dx, within `reach`
+  std::uint8_t reach;  ///< of a gather: the largest |dx|
+  std::uint8_t isOutput;
+};
+
+/// void(const Frame*, const Chunk*): computes a chunk.
+using RunFunction = void(const Frame*, const Chunk*);
+/// Folds a chunk into `columns` accumulators side by side. Element k + r * columns is folded into column k, in order of r.
+/// `state` has an array for each scalar of the accumulators. Where `starts` is 1, columns begin with the identity or, of a
+/// seeded reduction, with their first element; else with what `state` holds.
+using FoldFunction = void(const Frame*, const Chunk*, void* const* state, std::int64_t columns, std::int64_t rounds,
+                          std::int64_t starts);
+/// Folds later results into earlier ones, column by column.
+using CombineFunction = void(const Frame*, void* const* state, void* const* later, std::int64_t columns);
+/// Writes one element of each array: the identities of a reduction, or what a gather with Boundary::Border has outside,
+/// all components of one parameter after the other.
+using ValuesFunction = void(const Frame*, void* const* values);
+
+enum class EntryKind : std::uint8_t { Run, Fold, Combine, Identity, Borders };
+enum class Real : std::uint8_t { Float, Double, Quad };  ///< what stands for the language's float
+/// Generations of a CPU, of which each runs what those before it run: x86-64, x86-64-v3, x86-64-v4. Other CPUs have one.
+enum class Level : std::uint8_t { Base, V3, V4 };
+
+struct Entry {
+  void (*function)();  ///< by kind
+  EntryKind kind;
+  Real real;
+  Level level;
+  std::uint8_t isContracted;  ///< multiplications and additions may be fused
+  std::uint8_t lanes;         ///< elements computed together: a power of 2
+};
+
+/// All that was compiled for one kernel.
+struct Code {
+  static constexpr std::uint32_t currentVersion = 1;
+  std::uint32_t version;
+  std::uint32_t entryCount;
+  const Entry* entries;
+  const Slot* slots;
+  std::uint32_t slotCount;
+  std::uint8_t isUneven;   ///< elements may take very different times: it has loops whose trip count depends on data
+  std::uint8_t isOrdered;  ///< elements are computed in order: it pushes or scatters
+};
+
+}  // namespace sk::native
