@@ -3,6 +3,7 @@
 
 #include <llvm/IR/Constants.h>
 
+#include "ir/build.hpp"
 #include "native/arithmetic.hpp"
 #include "native/debug_info.hpp"
 #include "support/overloaded.hpp"
@@ -13,6 +14,10 @@ using namespace ir;
 
 CallResult inlineCall(const KernelContext& context, FunctionId function, const std::vector<Parts>& arguments) {
   return FunctionCode(context, function).write(arguments);
+}
+
+Parts constantParts(const KernelContext& context, const Expr& expr) {
+  return FunctionCode(context, context.kernel.entry).expression(expr);
 }
 
 FunctionCode::FunctionCode(const KernelContext& context, FunctionId function)
@@ -74,8 +79,8 @@ void FunctionCode::write(const Declare& n) {
 
 void FunctionCode::write(const Assign& n) {
   if (!n.op) return assign(*n.place, expression(*n.value));
-  const Expr combined = {n.place->type, n.place->loc, Binary{*n.op, clone(*n.place), clone(*n.value)}};
-  assign(*n.place, expression(combined));
+  const ExprPtr combined = ir::binary(*n.op, clone(*n.place), clone(*n.value), n.place->loc);
+  assign(*n.place, expression(*combined));
 }
 
 void FunctionCode::write(const CallStmt& n) {

@@ -76,7 +76,7 @@ class FunctionCode {
  private:
   // ---- variables and places (places.cpp)
   void declareAll();
-  LeafMemory memoryOf(const ir::Variable& variable, const Leaf& leaf, analysis::Shape shape) const;
+  LeafMemory memoryOf(const std::string& name, const Leaf& leaf, analysis::Shape shape) const;
   std::optional<Place> placeOf(const ir::Expr& expr);
   Place variable(ir::VarId var) const;
   Part indexInside(const ir::Expr& index, std::uint32_t length);

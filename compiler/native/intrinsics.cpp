@@ -123,7 +123,7 @@ Part sign(const Formula& f, Scalar scalar, const Part& x) {
 }
 
 /// The number before 1.
-Part belowOne(const Formula& f, const Part& x) {
+Part belowOne(const Part& x) {
   llvm::APFloat one(1.0);
   bool isInexact = false;
   one.convert(x.value->getType()->getScalarType()->getFltSemantics(), llvm::APFloat::rmNearestTiesToEven, &isInexact);
@@ -135,7 +135,7 @@ Part belowOne(const Formula& f, const Part& x) {
 Part fraction(const Formula& f, const Part& x) {
   const Part rest = f.sub(x, f.floor(x));
   const Part inside = f.select(f.less(rest, f.number(x, 1)), rest,
-                               f.select(f.differs(rest, rest), rest, belowOne(f, x)));
+                               f.select(f.differs(rest, rest), rest, belowOne(x)));
   return f.select(f.isInfinite(x), f.number(x, std::numeric_limits<double>::quiet_NaN()), inside);
 }
 

@@ -130,7 +130,7 @@ Part Lanes::callPerLane(std::string_view name, llvm::Type* result, const std::ve
   std::vector<llvm::Type*> types;
   for (const Part& part : parts) types.push_back(part.value->getType()->getScalarType());
   llvm::Module& module = *b.GetInsertBlock()->getModule();
-  const llvm::FunctionCallee callee =
+  llvm::FunctionCallee callee =
       module.getOrInsertFunction(llvm::StringRef(name), llvm::FunctionType::get(result, types, false));
   auto* const function = llvm::cast<llvm::Function>(callee.getCallee());
   function->setDoesNotThrow();

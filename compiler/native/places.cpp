@@ -14,7 +14,7 @@ using analysis::Shape;
 
 /// Bools that lanes do not share are words outside of arrays, unless the CPU has registers for masks: so LLVM keeps them as
 /// the words that comparisons give.
-LeafMemory FunctionCode::memoryOf(const Variable& variable, const Leaf& leaf, Shape shape) const {
+LeafMemory FunctionCode::memoryOf(const std::string& name, const Leaf& leaf, Shape shape) const {
   llvm::Type* element = leaf.dimensions.empty() ? l.type(leaf.scalar) : l.stored(leaf.scalar);
   const bool isMask = leaf.scalar == Scalar::Bool && leaf.dimensions.empty() && shape == Shape::Varying;
   if (isMask && l.count() > 1 && !l.form().hasMaskRegisters) element = l.int32();
@@ -23,7 +23,7 @@ LeafMemory FunctionCode::memoryOf(const Variable& variable, const Leaf& leaf, Sh
   if (!leaf.dimensions.empty()) type = llvm::ArrayType::get(element, leaf.count());
   llvm::BasicBlock& entry = b.GetInsertBlock()->getParent()->getEntryBlock();
   llvm::IRBuilder<> allocas(&entry, entry.begin());
-  return {allocas.CreateAlloca(type, nullptr, variable.name), element, leaf.scalar, leaf.dimensions, shape};
+  return {allocas.CreateAlloca(type, nullptr, name), element, leaf.scalar, leaf.dimensions, shape};
 }
 
 void FunctionCode::declareAll() {
@@ -34,7 +34,7 @@ void FunctionCode::declareAll() {
       const std::vector<Leaf> leaves = leavesOf(k.module, variable.type);
       for (std::size_t i = 0; i < leaves.size(); ++i) {
         const Shape shape = k.uniformity == nullptr ? Shape::Uniform : k.uniformity->of(id_, var)[i];
-        memory.push_back(memoryOf(variable, leaves[i], shape));
+        memory.push_back(memoryOf(variable.name, leaves[i], shape));
       }
     }
     variables_.push_back(std::move(memory));
@@ -42,7 +42,7 @@ void FunctionCode::declareAll() {
   const std::vector<Leaf> leaves = leavesOf(k.module, function_.result);
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     const Shape shape = k.uniformity == nullptr ? Shape::Uniform : k.uniformity->resultOf(id_)[i];
-    result_.push_back(memoryOf({.name = "result", .type = function_.result}, leaves[i], shape));
+    result_.push_back(memoryOf("result", leaves[i], shape));
   }
 }
 
