@@ -13,13 +13,14 @@ compiler/support      support
 compiler/ir           support ir
 compiler/split        support ir split
 compiler/transforms   support ir transforms split
-compiler/emit         support ir transforms emit assemble sk/program.hpp sk/scalar_bytes.hpp
+compiler/native       support ir native llvm sk/native/code.hpp sk/native/table.hpp
+compiler/emit         support ir transforms native/native.hpp emit assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/frontend     support ir frontend clang llvm
-compiler/driver       support ir split transforms emit frontend driver assemble sk/program.hpp
+compiler/driver       support ir split transforms native/native.hpp emit frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
-runtime/src           sk assemble gl
-runtime/tools         sk
-runtime/tests         sk assemble gl epoxy
+runtime/src           sk assemble gl native
+runtime/tools         sk native
+runtime/tests         sk assemble gl native epoxy
 runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/scalar_bytes.hpp assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
 examples              sk epoxy
@@ -29,7 +30,7 @@ tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 tests/fuzz            sk ir emit driver
 '
-guarded='support|ir|split|transforms|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+guarded='support|ir|split|transforms|native|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)
