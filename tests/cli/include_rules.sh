@@ -15,8 +15,8 @@ compiler/split        support ir split
 compiler/transforms   support ir transforms split
 compiler/emit         support ir transforms emit assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/frontend     support ir frontend clang llvm
-compiler/native/library support ir native
-compiler/driver       support ir split transforms emit frontend native driver assemble sk/program.hpp
+compiler/native/library support ir
+compiler/driver       support ir split transforms emit frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
 runtime/src           sk assemble gl
 runtime/tools         sk
@@ -30,7 +30,7 @@ tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 tests/fuzz            sk ir emit driver
 '
-guarded='support|ir|split|transforms|emit|frontend|native|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+guarded='support|ir|split|transforms|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)
