@@ -16,6 +16,7 @@ compiler/transforms   support ir transforms split
 compiler/native       support ir native llvm sk/native/code.hpp sk/native/table.hpp
 compiler/emit         support ir transforms native/native.hpp emit assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/frontend     support ir frontend clang llvm
+compiler/native/library support ir transforms
 compiler/driver       support ir split transforms native/native.hpp emit frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
 runtime/src           sk assemble gl native
