@@ -18,9 +18,11 @@
 #include "emit/program.hpp"
 #include "emit/stub.hpp"
 #include "frontend/frontend.hpp"
+#include "ir/clone_module.hpp"
 #include "ir/print.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/check_outputs.hpp"
+#include "transforms/predicate.hpp"
 #include "transforms/transforms.hpp"
 
 namespace skc::driver {
@@ -151,6 +153,15 @@ bool writeStubs(const Job& job, const ir::Module& module, const frontend::Fronte
   return writeFile(options.depfile, rule + "\n", job.messages);
 }
 
+/// predicate is no transform for all targets: the native one runs it on a copy of its own.
+void printPredicated(const Job& job, const ir::Module& module) {
+  const std::string& wanted = job.options.printAfter;
+  if (wanted != predicateName && (wanted != "all" || !job.options.nativeTarget)) return;
+  ir::Module copy = ir::clone(module);
+  predicate(copy);
+  job.output << "// after " << predicateName << "\n" << ir::print(copy) << "\n";
+}
+
 /// Everything before the emitters; nothing after errors.
 std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend) {
   const Options& options = job.options;
@@ -164,6 +175,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
     runTransforms(*module, frontend.diagnostics(), transformOptions(options, job.output));
   }
   if (frontend.diagnostics().hasErrors()) return std::nullopt;
+  printPredicated(job, *module);
   return module;
 }
 

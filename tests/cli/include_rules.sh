@@ -11,8 +11,9 @@ cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../..}"
 rules='
 compiler/support      support
 compiler/ir           support ir
+compiler/analysis     support ir analysis
 compiler/split        support ir split
-compiler/transforms   support ir transforms split
+compiler/transforms   support ir analysis transforms split
 compiler/emit         support ir transforms emit assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/frontend     support ir frontend clang llvm
 compiler/driver       support ir split transforms emit frontend driver assemble sk/program.hpp
@@ -29,7 +30,7 @@ tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 tests/fuzz            sk ir emit driver
 '
-guarded='support|ir|split|transforms|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+guarded='support|ir|analysis|split|transforms|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)
