@@ -12,6 +12,7 @@
 #include "native/debug_info.hpp"
 #include "native/entries.hpp"
 #include "native/lane_count.hpp"
+#include "native/library/call_library.hpp"
 #include "native/native.hpp"
 #include "native/optimize.hpp"
 #include "native/target.hpp"
@@ -26,12 +27,29 @@ using sk::native::Real;
 
 namespace {
 
+/// A module as code of one real type is made of it: with the functions of the library for floats, which others have from
+/// the C library.
+struct Version {
+  Module plain;
+  Module predicated;  ///< for several lanes
+
+  explicit Version(Module module) : plain(std::move(module)), predicated(clone(plain)) { predicate(predicated); }
+};
+
+Module withLibrary(const Module& module, const CompileLibrary& compileLibrary) {
+  Module linked = clone(module);
+  callLibrary(linked, linkLibrary(linked, compileLibrary));
+  return linked;
+}
+
 class Compilation {
  public:
-  Compilation(const Module& module, const Options& options)
-      : options_(options), target_(options), plain_(clone(module)), code_(module.file, context_) {
-    predicated_ = clone(plain_);
-    predicate(predicated_);
+  Compilation(const Module& module, const CompileLibrary& compileLibrary, const Options& options)
+      : options_(options),
+        target_(options),
+        plain_(module),
+        ofFloats_(withLibrary(module, compileLibrary)),
+        code_(module.file, context_) {
     code_.setTargetTriple(target_.triple());
     code_.setDataLayout(target_.machine().createDataLayout());
     code_.setPICLevel(llvm::PICLevel::BigPIC);
@@ -90,13 +108,20 @@ class Compilation {
     Form form{.lanes = 1, .real = real, .hasMaskRegisters = level.hasMaskRegisters, .isContracted = false};
     if (isInLanes(kernel, kind, real)) form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
     const bool isPredicated = form.lanes > 1;
-    const Module& module = isPredicated ? predicated_ : plain_;
+    const Version& version = versionFor(real);
+    const Module& module = isPredicated ? version.predicated : version.plain;
     std::optional<analysis::Uniformity> uniformity;
     if (isPredicated) uniformity.emplace(module, module.kernels[request.kernel]);
     const EntrySource source{module, module.kernels[request.kernel], slots, uniformity ? &*uniformity : nullptr,
                              form,   level,                          debug_ ? &*debug_ : nullptr};
     const std::string name = request.symbol + suffix(kind, real, level);
     table.entries.push_back({writeEntry(code_, source, kind, name), kind, real, level.level, false, form.lanes});
+  }
+
+  const Version& versionFor(Real real) {
+    if (real == Real::Float) return ofFloats_;
+    if (!ofOthers_) ofOthers_.emplace(clone(plain_));
+    return *ofOthers_;
   }
 
   /// Elements are folded side by side only where their order does not matter, and pushed or scattered one by one.
@@ -116,7 +141,9 @@ class Compilation {
 
   const Options& options_;
   Target target_;
-  Module plain_, predicated_;
+  const Module& plain_;
+  Version ofFloats_;
+  std::optional<Version> ofOthers_;
   llvm::LLVMContext context_;
   llvm::Module code_;
   std::optional<DebugInfo> debug_;
@@ -124,8 +151,9 @@ class Compilation {
 
 }  // namespace
 
-std::string compile(const Module& module, const std::vector<KernelRequest>& kernels, const Options& options, Output output) {
-  Compilation compilation(module, options);
+std::string compile(const Module& module, const std::vector<KernelRequest>& kernels,
+                    const CompileLibrary& compileLibrary, const Options& options, Output output) {
+  Compilation compilation(module, compileLibrary, options);
   for (const KernelRequest& request : kernels) compilation.add(request);
   return compilation.write(output);
 }
