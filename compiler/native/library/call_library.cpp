@@ -37,8 +37,9 @@ class KernelCalls {
     if (!function) return;
     std::vector<Type> types;
     for (const ExprPtr& arg : n->args) types.push_back(arg->type);
-    const FunctionId called = type.isScalar() ? copyFunction(module_, *function, copies_)
-                                              : ofVectors(n->intrinsic, *function, types, slot->type);
+    const bool isWhole = module_.functions[*function].variables[0].type == type;
+    const FunctionId called = isWhole ? copyFunction(module_, *function, copies_)
+                                      : ofVectors(n->intrinsic, *function, types, slot->type);
     slot = makeExpr(slot->type, Call{called, std::move(n->args)}, slot->loc);
   }
 

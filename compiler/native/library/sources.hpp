@@ -9,5 +9,7 @@ namespace skc::native {
 
 /// float_functions.sk
 std::string_view floatFunctions();
+/// exact_sums.sk
+std::string_view exactSums();
 
 }  // namespace skc::native
