@@ -49,7 +49,7 @@ class LaneEvaluator {
   Lanes unassigned(ir::FunctionId id, ir::VarId var) const;
   void check(const Frame& frame, ir::VarId var) const;
   void tick() {
-    if (++steps_ > 200000) throw std::runtime_error("it does not end");
+    if (++steps_ > 5000000) throw std::runtime_error("it does not end");
   }
 
   Lanes of(Frame& frame, const ir::Expr& expr);
