@@ -17,6 +17,7 @@
 #include "native/native_stream.hpp"
 #include "native/native_trace.hpp"
 #include "native/run_code.hpp"
+#include "native/sum_exactly.hpp"
 #include "precision.hpp"
 
 namespace sk {
@@ -410,6 +411,33 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
     folding.storeIdentity();
   }
   folding.fold.settle();
+}
+
+std::optional<std::vector<float>> NativeDevice::sumExactly(const program::Reduction& reduction,
+                                                           const program::ExactSum& sum,
+                                                           std::span<const Argument> arguments,
+                                                           const Shape& domain, const Shape& blocks,
+                                                           const CallOptions& options) {
+  const bool hasTerm = sum.term.kernel != nullptr || !sum.term.factors.empty();
+  if (reduction.fold.code == nullptr || !hasTerm) return std::nullopt;
+  const Kernel& kernel = kernelOfTerm(reduction, sum);
+  std::vector<Argument> all;
+  if (sum.term.kernel == nullptr) {
+    all.assign(arguments.begin(), arguments.end());
+  } else {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      if (reduction.fold.parameters[i].role != Role::Accumulator) all.push_back(arguments[i]);
+    }
+    all.resize(kernel.parameters.size());  // its outputs are looked at and never stored
+  }
+  const RealType real = realOf(options);
+  Operands operands(real, kernel, all, domain, tablesOf(kernel, real, options));
+  const Extents counts = fastestFirst(blocks);
+  Extents block = fastestFirst(domain);
+  for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
+  const NativePass traced(*this, kernel, "fold", all, domain);
+  const native::Call call = operands.call(block);
+  return sk::sumExactly(reduction, sum, call, block, {.real = real});
 }
 
 }  // namespace sk

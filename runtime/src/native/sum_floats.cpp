@@ -2,18 +2,13 @@
 #include "native/sum_floats.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <vector>
 
 #include "native/code_frame.hpp"
+#include "native/factor_kernel.hpp"
+#include "native/float_vectors.hpp"
 #include "native/fold_program.hpp"
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#define SK_SUM_WIDE [[gnu::target("arch=x86-64-v3")]]
-#else
-#define SK_SUM_WIDE
-#endif
 
 namespace sk {
 
@@ -22,20 +17,11 @@ namespace {
 using native::Chunk;
 using native::Frame;
 using native::Level;
-using native::Operand;
-using program::Parameter;
-using program::Role;
 
 /// What the functions below get for a Frame.
 struct SumFrame : Frame {
   double start;  ///< the identity; -0, which no term changes, of a seeded reduction
 };
-
-// Four doubles to a vector: compilers that are shown eight floats convert the halves of them, for which CPUs take three times as long.
-// No vector is handed over by value, of which compilers for other CPUs would warn.
-using Doubles [[gnu::vector_size(32)]] = double;
-using Floats [[gnu::vector_size(16)]] = float;
-constexpr std::int64_t perVector = 4;
 
 /// Columns of a leaf: sideOf() one double.
 constexpr std::int64_t side = 32;
@@ -48,42 +34,22 @@ double termAt(std::int64_t i, const Factors*... factors) {
   return (double{factors[i]} * ...);
 }
 
-/// sum += x, and sum += x * y, where the product is exact, so that one fused operation rounds no differently. It takes the place of
-/// additions on CPUs that convert to doubles where they add.
-struct AddWide {
-  SK_SUM_WIDE static void widen(const float* at, Doubles& wide) {
-    Floats floats;
-    std::memcpy(&floats, at, sizeof floats);
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-    wide = __builtin_ia32_cvtps2pd256(floats);  // which GCC 12 makes of no __builtin_convertvector
-#else
-    wide = __builtin_convertvector(floats, Doubles);
-#endif
-  }
-  SK_SUM_WIDE static void addProduct(const Doubles& x, const Doubles& y, Doubles& sum) {
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-    sum = __builtin_ia32_vfmaddpd256(x, y, sum);
-#else
-    sum += x * y;
-#endif
-  }
-  SK_SUM_WIDE static void add(Doubles& sum, std::int64_t i, const float* x) {
-    Doubles wide;
-    widen(x + i, wide);
-    addProduct(wide, Doubles{1, 1, 1, 1}, sum);
-  }
-  SK_SUM_WIDE static void add(Doubles& sum, std::int64_t i, const float* x, const float* y) {
-    Doubles first, second;
-    widen(x + i, first);
-    widen(y + i, second);
-    addProduct(first, second, sum);
-  }
-};
+SK_FOR_V3 void addTerm(Doubles& sum, std::int64_t i, const float* x) {
+  Doubles wide;
+  widen(x + i, wide);
+  addProduct(wide, Doubles{1, 1, 1, 1}, sum);
+}
+SK_FOR_V3 void addTerm(Doubles& sum, std::int64_t i, const float* x, const float* y) {
+  Doubles first, second;
+  widen(x + i, first);
+  widen(y + i, second);
+  addProduct(first, second, sum);
+}
 
 /// A leaf of whole columns, on CPUs that have vectors of 256 bits.
 template <class... Factors>
-SK_SUM_WIDE void sumLeaf(double* columns, double start, std::int64_t rounds, const Factors*... factors) {
-  constexpr std::int64_t vectors = side / perVector;
+SK_FOR_V3 void sumLeaf(double* columns, double start, std::int64_t rounds, const Factors*... factors) {
+  constexpr std::int64_t vectors = side / doublesPerVector;
   Doubles sums[vectors];
 #pragma GCC unroll 16
   for (Doubles& sum : sums) sum = Doubles{start, start, start, start};
@@ -93,7 +59,7 @@ SK_SUM_WIDE void sumLeaf(double* columns, double start, std::int64_t rounds, con
       (__builtin_prefetch(factors + first + ahead + fetchedAhead), ...);
     }
 #pragma GCC unroll 16
-    for (std::int64_t v = 0; v < vectors; ++v) AddWide::add(sums[v], first + v * perVector, factors...);
+    for (std::int64_t v = 0; v < vectors; ++v) addTerm(sums[v], first + v * doublesPerVector, factors...);
   }
   std::memcpy(columns, sums, sizeof sums);
 }
@@ -145,38 +111,6 @@ void addColumns(const Frame*, void* const* state, void* const* later, std::int64
   for (std::int64_t k = 0; k < columns; ++k) sums[k] += others[k];
 }
 
-/// Which of the inputs a call reads as floats, those of the term: a kernel of these, for the slots of the functions above.
-class Term {
- public:
-  Term(const program::Reduction& reduction, const native::Call& fold) : call_(fold) {
-    for (const std::uint8_t parameter : reduction.term.factors) {
-      operands_.push_back(fold.operands[parameter]);
-      operands_.back().holdsFloats = false;
-      parameters_.push_back(reduction.fold.parameters[parameter]);
-      slots_.push_back(
-          {.parameter = static_cast<std::uint8_t>(slots_.size()), .row = {}, .reach = 0, .isOutput = 0});
-    }
-    call_.operands = operands_;
-    code_.slots = slots_.data();
-    code_.slotCount = static_cast<std::uint32_t>(slots_.size());
-    kernel_.parameters = parameters_;
-    kernel_.code = &code_;
-  }
-  Term(const Term&) = delete;
-  Term& operator=(const Term&) = delete;
-
-  const program::Kernel& kernel() const { return kernel_; }
-  const native::Call& call() const { return call_; }
-
- private:
-  std::vector<Operand> operands_;
-  std::vector<Parameter> parameters_;
-  std::vector<native::Slot> slots_;
-  native::Code code_{};
-  program::Kernel kernel_;
-  native::Call call_;
-};
-
 double startOf(const program::Reduction& reduction, const CodeFrame& frame, const CodeChoice& choice) {
   if (reduction.seeded) return -0.0;
   double identity = 0;
@@ -196,7 +130,7 @@ bool sumsFloats(const program::Reduction& reduction, const native::Call& fold, c
 
 void sumFloats(const program::Reduction& reduction, const native::ReduceCall& call,
                const CodeChoice& choice) {
-  const Term term(reduction, call.fold);
+  const FactorKernel term(reduction.fold, reduction.term.factors, call.fold);
   const CodeFrame frame(term.kernel(), term.call());
   const SumFrame sumFrame{*frame.get(), startOf(reduction, CodeFrame(reduction.fold, call.fold), choice)};
   const SlotLayout layout(term.kernel(), term.call(), frame, {.real = RealType::Float});
