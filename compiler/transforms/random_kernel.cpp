@@ -183,7 +183,7 @@ class BodyMaker {
   }
   void counted(Block& out, int depth) {
     const VarId i = local("i", intType);
-    ExprPtr limit = small();
+    ExprPtr limit = oneIn(2) ? literal(3) : small();
     readable_.push_back(i);
     Block body = loopBody(depth);
     readable_.pop_back();
