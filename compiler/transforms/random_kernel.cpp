@@ -34,7 +34,7 @@ class BodyMaker {
   void pushesTo(VarId sink) { sink_ = StreamRef{StreamRef::Space::KernelParameter, sink}; }
 
   Block body() {
-    Block statements = block(4);
+    Block statements = block(3);
     if (!function_.result.isVoid()) statements.push_back(returnStmt(value(2)));
     return statements;
   }
