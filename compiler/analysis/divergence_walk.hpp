@@ -38,7 +38,7 @@ class DivergenceWalk {
   };
   struct Declared {
     std::size_t frames, loops;  ///< around it
-    bool isCallers;             ///< read after the function's end
+    bool isCallers;  ///< read after the function's end
   };
 
   void block(const ir::Block& statements, Frame::Kind leaves = Frame::Branch);

@@ -7,7 +7,9 @@ namespace skc::analysis {
 
 using namespace ir;
 
-LastUses::LastUses(const Function& function) : lastUse_(function.variables.size(), 0) { visit(function.body); }
+LastUses::LastUses(const Function& function) : lastUse_(function.variables.size(), 0) {
+  visit(function.body);
+}
 
 void LastUses::visit(const Block& block) {
   for (const Stmt& stmt : block) {

@@ -160,9 +160,7 @@ class ExprRule {
     Leaves result;
     for (std::size_t i = 0; i < leafCount(module_, type); ++i) {
       const Leaf chooses = component(cond, i);
-      result.push_back(!chooses             ? std::nullopt
-                       : isVarying(chooses) ? Shape::Varying
-                                            : join(yes[i], no[i]));
+      result.push_back(!chooses ? std::nullopt : isVarying(chooses) ? Shape::Varying : join(yes[i], no[i]));
     }
     return result;
   }
@@ -214,8 +212,7 @@ class ExprRule {
       const bool fits = leaves.size() == 1 || leaves.size() == result.size();
       const Leaf whole = mixed(leaves);
       for (std::size_t i = 0; i < result.size(); ++i) {
-        result[i] =
-            mixed(result[i], fits && isComponentwise(n.intrinsic) ? component(leaves, i) : whole);
+        result[i] = mixed(result[i], fits && isComponentwise(n.intrinsic) ? component(leaves, i) : whole);
       }
     }
     return result;
@@ -248,7 +245,9 @@ class ExprRule {
   FunctionId function_;
 };
 
-Leaves ExprShapes::of(FunctionId function, const Expr& expr) const { return ExprRule(*this, function).of(expr); }
+Leaves ExprShapes::of(FunctionId function, const Expr& expr) const {
+  return ExprRule(*this, function).of(expr);
+}
 
 Leaves ExprShapes::ofCompound(FunctionId function, const Expr& place, BinaryOp op, const Expr& value) const {
   return ExprRule(*this, function).binary(op, place.type, place, value);

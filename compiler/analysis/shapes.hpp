@@ -15,9 +15,9 @@
 namespace skc::analysis {
 
 enum class Shape : std::uint8_t {
-  Uniform,      ///< one value for all lanes
+  Uniform,  ///< one value for all lanes
   Consecutive,  ///< an int; each lane has 1 more than the lane before
-  Varying,      ///< anything else
+  Varying,  ///< anything else
 };
 
 /// None is the bottom of the lattice; Uniform and Consecutive are above it, and Varying is the top.
@@ -45,7 +45,8 @@ class ExprShapes {
 
   Leaves of(ir::FunctionId function, const ir::Expr& expr) const;
   /// What `place op= value` assigns.
-  Leaves ofCompound(ir::FunctionId function, const ir::Expr& place, ir::BinaryOp op, const ir::Expr& value) const;
+  Leaves ofCompound(ir::FunctionId function, const ir::Expr& place, ir::BinaryOp op,
+                    const ir::Expr& value) const;
   /// The leaves of the variable at the root of a place after an assignment of these, with none where it leaves them alone.
   Leaves assigned(ir::FunctionId function, const ir::Expr& place, Leaves value) const;
 

@@ -78,7 +78,9 @@ void Uniformity::propagate(const std::vector<FunctionId>& functions) {
   }
 }
 
-std::span<const Shape> Uniformity::of(FunctionId function, VarId var) const { return at(function).variables[var]; }
+std::span<const Shape> Uniformity::of(FunctionId function, VarId var) const {
+  return at(function).variables[var];
+}
 
 std::span<const Shape> Uniformity::resultOf(FunctionId function) const { return at(function).result; }
 

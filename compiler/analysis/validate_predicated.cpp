@@ -21,8 +21,8 @@ std::string validatePredicated(const Module& module) {
       const Function& function = module.functions[id];
       walkStmts(function.body, [&](const Stmt& stmt) {
         if (!violation.empty() || !uniformity.diverges(id, stmt)) return;
-        violation = fmt::format("kernel {}: function @{} '{}': line {}: control flow diverges", kernel.name, id,
-                                function.name, stmt.loc.line);
+        violation = fmt::format("kernel {}: function @{} '{}': line {}: control flow diverges", kernel.name,
+                                id, function.name, stmt.loc.line);
       });
     }
   }

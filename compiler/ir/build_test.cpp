@@ -4,8 +4,11 @@
 // reaches every node.
 #include "ir/build.hpp"
 
+#include <string>
+
 #include <catch2/catch.hpp>
 
+#include "ir/clone_module.hpp"
 #include "ir/evaluate.hpp"
 #include "ir/kernel_maker.hpp"
 #include "ir/print.hpp"
@@ -101,6 +104,16 @@ TEST_CASE("rewriting goes from the inside to the outside") {
       slot = literal(static_cast<std::int32_t>(*bits));
   });
   CHECK(std::get<Literal>(sum->node).bits == 10);
+}
+
+TEST_CASE("a clone of a module is equal and separate") {
+  const Module module = everything();
+  const std::string text = print(module);
+  Module copy = clone(module);
+  CHECK(print(copy) == text);
+  copy.functions[0].body.clear();
+  copy.kernels.clear();
+  CHECK(print(module) == text);
 }
 
 }  // namespace

@@ -7,7 +7,8 @@ namespace skc::ir {
 namespace {
 
 Constant clone(const Constant& constant) {
-  return {.name = constant.name, .type = constant.type, .value = ir::clone(constant.value), .loc = constant.loc};
+  return {
+      .name = constant.name, .type = constant.type, .value = ir::clone(constant.value), .loc = constant.loc};
 }
 
 Kernel clone(const Kernel& kernel) {

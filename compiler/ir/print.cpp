@@ -43,7 +43,8 @@ class StmtPrinter {
         [&](const Return& n) { return indent + (n.value ? "return " + expr(n.value) : "return") + ";\n"; },
         [&](const Scope& n) { return indent + braces(n.body, depth) + "\n"; },
         [&](const Push& n) {
-          return fmt::format("{}{}push({}, {});\n", indent, where(n.mask), print(function_, n.stream), expr(n.value));
+          return fmt::format("{}{}push({}, {});\n", indent, where(n.mask), print(function_, n.stream),
+                             expr(n.value));
         },
         [&](const Scatter& n) { return indent + where(n.mask) + scatter(n) + ";\n"; });
   }

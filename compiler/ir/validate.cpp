@@ -367,8 +367,8 @@ void checkTables(const Module& module, Stage stage) {
 void checkTabulated(const Module& module, Stage stage, const Function& function) {
   require(*function.table < module.tables.size(), "its values have no table in the module");
   checkParameterCount(stage, function, 1);
-  require(function.result.isFloat() && function.result.isScalar() && function.variables[0].role == VarRole::In &&
-              function.variables[0].type == function.result,
+  require(function.result.isFloat() && function.result.isScalar() &&
+              function.variables[0].role == VarRole::In && function.variables[0].type == function.result,
           "it has a table, but does not take one float and give one");
 }
 

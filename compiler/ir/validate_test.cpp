@@ -241,5 +241,30 @@ TEST_CASE("after specialize-gathers, streams are parameters and functions have o
   CHECK(contains(validate(module, Stage::Specialized), "belongs to two kernels"));
 }
 
+TEST_CASE("masks and questions to other lanes come with predicate, and so does an entry's mask") {
+  Module module = testModule();
+  KernelMaker k(module, "k");
+  const VarId value = k.input("x", floatType), out = k.variableOutput("out", floatType);
+  k.finish(block(push({StreamRef::Space::KernelParameter, out}, k.ref(value))));
+  CHECK(validate(module, Stage::Specialized).empty());
+  Function& entry = module.functions[0];
+  auto& pushed = std::get<Push>(entry.body[0].node);
+  pushed.mask = literal(true);
+  CHECK(contains(validate(module, Stage::Specialized), "a mask before predicate"));
+  CHECK(validate(module, Stage::Predicated).empty());
+  pushed.mask = literal(1);
+  CHECK(contains(validate(module, Stage::Predicated), "a condition is no bool"));
+  pushed.mask.reset();
+  pushed.value =
+      select(intrinsic(Intrinsic::AnyLane, exprs(literal(true))), std::move(pushed.value), literal(0.0F));
+  CHECK(contains(validate(module, Stage::Specialized), "lanes are asked about"));
+  CHECK(validate(module, Stage::Predicated).empty());
+  addVariable(entry, "active", Type::of(Scalar::Bool), VarRole::In);
+  CHECK(contains(validate(module, Stage::Specialized), "too many or too few parameters"));
+  CHECK(validate(module, Stage::Predicated).empty());
+  entry.variables.back().type = intType;
+  CHECK(contains(validate(module, Stage::Predicated), "is no mask"));
+}
+
 }  // namespace
 }  // namespace skc::ir

@@ -30,11 +30,13 @@ std::uint32_t BlendCost::of(const Stmt& stmt) {
 std::uint32_t BlendCost::of(const Expr& expr) {
   std::uint32_t sum = 0;
   if (const auto* n = std::get_if<Call>(&expr.node)) sum = ofCall(n->callee);
-  const bool isOperation = std::holds_alternative<Unary>(expr.node) || std::holds_alternative<Binary>(expr.node) ||
-                           std::holds_alternative<Select>(expr.node) || std::holds_alternative<Convert>(expr.node);
+  const bool isOperation =
+      std::holds_alternative<Unary>(expr.node) || std::holds_alternative<Binary>(expr.node) ||
+      std::holds_alternative<Select>(expr.node) || std::holds_alternative<Convert>(expr.node);
   if (isOperation) sum = expr.type.width;
   if (std::holds_alternative<IntrinsicCall>(expr.node)) sum = intrinsicCost * expr.type.width;
-  if (std::holds_alternative<GatherRead>(expr.node) || std::holds_alternative<Sample>(expr.node)) sum = gatherCost;
+  if (std::holds_alternative<GatherRead>(expr.node) || std::holds_alternative<Sample>(expr.node))
+    sum = gatherCost;
   forEachOperand(expr, [&](const ExprPtr& operand) { sum = std::min(sum + of(*operand), limit); });
   return sum;
 }

@@ -109,7 +109,8 @@ class Hoister {
       loop.cond = varRef(function_, again, loc);
       return;
     }
-    before.push_back(ifStmt(unary(UnaryOp::LogicalNot, std::move(loop.cond), loc), ir::block(breakStmt(loc)), {}, loc));
+    before.push_back(
+        ifStmt(unary(UnaryOp::LogicalNot, std::move(loop.cond), loc), ir::block(breakStmt(loc)), {}, loc));
     std::move(loop.body.begin(), loop.body.end(), std::back_inserter(before));
     loop.body = std::move(before);
   }
@@ -123,10 +124,11 @@ class Hoister {
 std::set<FunctionId> longFunctions(const Module& module) {
   std::set<FunctionId> found;
   for (const Kernel& kernel : module.kernels) {
-    for (const FunctionId id : functionsOf(module, kernel)) {   // callees first
+    for (const FunctionId id : functionsOf(module, kernel)) {  // callees first
       const Function& function = module.functions[id];
       const std::vector<FunctionId> called = callees(function);
-      const bool callsLong = std::ranges::any_of(called, [&](FunctionId callee) { return found.contains(callee); });
+      const bool callsLong =
+          std::ranges::any_of(called, [&](FunctionId callee) { return found.contains(callee); });
       if (callsLong || hasOpenLoop(module, function)) found.insert(id);
     }
   }

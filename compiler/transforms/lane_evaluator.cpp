@@ -51,7 +51,8 @@ std::size_t LaneEvaluator::size(Type type) const {
   return array.length * size(array.element);
 }
 
-std::vector<LaneEvaluator::Lanes> LaneEvaluator::call(FunctionId id, std::vector<Lanes> arguments, Lanes& result) {
+std::vector<LaneEvaluator::Lanes> LaneEvaluator::call(FunctionId id, std::vector<Lanes> arguments,
+                                                      Lanes& result) {
   const Function& function = module_.functions[id];
   Frame frame{id, function, std::move(arguments), {}};
   for (VarId var = function.parameterCount; var < function.variables.size(); ++var) {
@@ -71,7 +72,8 @@ LaneEvaluator::Lanes LaneEvaluator::unassigned(FunctionId id, VarId var) const {
   return each([&](std::size_t lane) {
     Value value(size(type));
     for (std::size_t i = 0; i < value.size(); ++i) {
-      const bool varies = shapes_ != nullptr && shapes_->of(id, var)[type.isArithmetic() ? i : 0] == analysis::Shape::Varying;
+      const bool varies =
+          shapes_ != nullptr && shapes_->of(id, var)[type.isArithmetic() ? i : 0] == analysis::Shape::Varying;
       value[i] = varies ? 1000 + static_cast<int>(lane) : 77;
     }
     return value;
@@ -96,7 +98,8 @@ void LaneEvaluator::check(const Frame& frame, VarId var) const {
 bool LaneEvaluator::uniform(Frame& frame, const Expr& expr) {
   const Lanes value = of(frame, expr);
   for (const Value& lane : value) {
-    if (lane != value.front()) throw std::runtime_error("control flow diverges at " + print(module_, frame.function, expr));
+    if (lane != value.front())
+      throw std::runtime_error("control flow diverges at " + print(module_, frame.function, expr));
   }
   return value.front().front() != 0;
 }
@@ -138,7 +141,8 @@ LaneEvaluator::Flow LaneEvaluator::statement(Frame& frame, const Stmt& stmt) {
         Lanes result;
         const std::vector<Lanes> after = call(n.callee, std::move(arguments), result);
         for (std::size_t i = 0; i < after.size(); ++i) {
-          if (module_.functions[n.callee].variables[i].role == VarRole::InOut) assign(frame, *n.args[i], after[i]);
+          if (module_.functions[n.callee].variables[i].role == VarRole::InOut)
+            assign(frame, *n.args[i], after[i]);
         }
         if (n.result) assign(frame, *n.result, result);
         return Flow::Next;
@@ -180,7 +184,9 @@ LaneEvaluator::Flow LaneEvaluator::choice(Frame& frame, const Switch& n) {
   for (const Value& lane : value) {
     if (lane != value.front()) throw std::runtime_error("a switch diverges");
   }
-  const auto holds = [&](const Case& one) { return std::ranges::find(one.values, value.front().front()) != one.values.end(); };
+  const auto holds = [&](const Case& one) {
+    return std::ranges::find(one.values, value.front().front()) != one.values.end();
+  };
   auto entered = std::ranges::find_if(n.cases, holds);
   if (entered == n.cases.end()) entered = std::ranges::find_if(n.cases, &Case::isDefault);
   for (; entered != n.cases.end(); ++entered) {
@@ -280,9 +286,8 @@ LaneEvaluator::Lanes LaneEvaluator::of(Frame& frame, const Expr& expr) {
   }
   if (const auto* n = std::get_if<Index>(&expr.node)) {
     const Lanes base = of(frame, *n->base), index = of(frame, *n->index);
-    return each([&](std::size_t lane) {
-      return Value{base[lane][nearest(index[lane].front(), base[lane].size())]};
-    });
+    return each(
+        [&](std::size_t lane) { return Value{base[lane][nearest(index[lane].front(), base[lane].size())]}; });
   }
   if (const auto* n = std::get_if<Call>(&expr.node)) {
     std::vector<Lanes> arguments;
@@ -291,12 +296,14 @@ LaneEvaluator::Lanes LaneEvaluator::of(Frame& frame, const Expr& expr) {
     call(n->callee, std::move(arguments), result);
     return result;
   }
-  if (const auto* n = std::get_if<IntrinsicCall>(&expr.node); n != nullptr && n->intrinsic == Intrinsic::AnyLane) {
+  if (const auto* n = std::get_if<IntrinsicCall>(&expr.node);
+      n != nullptr && n->intrinsic == Intrinsic::AnyLane) {
     const Lanes value = of(frame, *n->args.front());
     return all(std::ranges::any_of(value, [](const Value& lane) { return lane.front() != 0; }) ? 1 : 0);
   }
   if (std::holds_alternative<IndexOf>(expr.node)) {
-    return each([&](std::size_t lane) { return Value{firstIndex + static_cast<std::int32_t>(lane), 3, 0, 0}; });
+    return each(
+        [&](std::size_t lane) { return Value{firstIndex + static_cast<std::int32_t>(lane), 3, 0, 0}; });
   }
   throw std::logic_error("the evaluator has no such expression");
 }

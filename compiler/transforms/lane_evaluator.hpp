@@ -17,11 +17,12 @@ namespace skc {
 
 class LaneEvaluator {
  public:
-  using Value = std::vector<std::int32_t>;   ///< all scalars, one after the other
+  using Value = std::vector<std::int32_t>;  ///< all scalars, one after the other
   using Lanes = std::vector<Value>;
 
   /// `&&`, `||` and `?:` evaluate all their operands only where `inFull`. Values are checked against `shapes`.
-  LaneEvaluator(const ir::Module& module, std::size_t lanes, bool inFull, const analysis::Uniformity* shapes = nullptr)
+  LaneEvaluator(const ir::Module& module, std::size_t lanes, bool inFull,
+                const analysis::Uniformity* shapes = nullptr)
       : module_(module), count_(lanes), inFull_(inFull), shapes_(shapes), pushed(lanes) {}
 
   /// Runs a function; returns what its parameters are at the end.
@@ -45,7 +46,8 @@ class LaneEvaluator {
   Flow loop(Frame& frame, const ir::Loop& loop);
   Flow choice(Frame& frame, const ir::Switch& choice);
   void assign(Frame& frame, const ir::Expr& place, const Lanes& value);
-  std::int32_t* scalars(Frame& frame, const ir::Expr& place, std::size_t lane, std::vector<std::size_t>& swizzle);
+  std::int32_t* scalars(Frame& frame, const ir::Expr& place, std::size_t lane,
+                        std::vector<std::size_t>& swizzle);
   Lanes unassigned(ir::FunctionId id, ir::VarId var) const;
   void check(const Frame& frame, ir::VarId var) const;
   void tick() {
@@ -70,8 +72,8 @@ class LaneEvaluator {
   int steps_ = 0;
 
  public:
-  std::vector<Value> pushed;   ///< by each lane
-  std::int32_t firstIndex = 0;   ///< of lane 0
+  std::vector<Value> pushed;  ///< by each lane
+  std::int32_t firstIndex = 0;  ///< of lane 0
 };
 
 }  // namespace skc

@@ -51,12 +51,13 @@ std::set<FunctionId> maskedFunctions(const Module& module, const Kernel& kernel,
   bool entryWants = false;
   for (const FunctionId id : functions) {
     const Function& function = module.functions[id];
-    const bool must = anyStmt(function.body, [&](const Stmt& stmt) { return wantsMask(uniformity, id, stmt); });
+    const bool must =
+        anyStmt(function.body, [&](const Stmt& stmt) { return wantsMask(uniformity, id, stmt); });
     entryWants = entryWants || must;
-    const bool gains = anyStmt(
-        function.body, [&](const Stmt& stmt) { return gainsByMask(uniformity, cost, id, stmt); });
-    const bool callsWanting = std::ranges::any_of(
-        callees(function), [&](FunctionId callee) { return wanting.contains(callee); });
+    const bool gains =
+        anyStmt(function.body, [&](const Stmt& stmt) { return gainsByMask(uniformity, cost, id, stmt); });
+    const bool callsWanting =
+        std::ranges::any_of(callees(function), [&](FunctionId callee) { return wanting.contains(callee); });
     if (must || gains || callsWanting) wanting.insert(id);
   }
   if (entryWants) masked.insert(kernel.entry);

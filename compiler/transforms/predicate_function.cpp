@@ -36,7 +36,9 @@ ExprPtr negated(ExprPtr a, Loc loc) { return unary(UnaryOp::LogicalNot, std::mov
 /// Makes a local variable the last parameter, which moves the other locals.
 void makeParameter(Function& function, VarId var) {
   const VarId place = function.parameterCount;
-  const auto moved = [&](VarId old) { return old == var ? place : old >= place && old < var ? old + 1 : old; };
+  const auto moved = [&](VarId old) {
+    return old == var ? place : old >= place && old < var ? old + 1 : old;
+  };
   const auto first = function.variables.begin() + static_cast<std::ptrdiff_t>(place);
   const auto it = function.variables.begin() + static_cast<std::ptrdiff_t>(var);
   std::rotate(first, it, it + 1);
@@ -59,6 +61,11 @@ bool endsInJump(const Block& block) {
   if (block.empty()) return false;
   if (const auto* inner = std::get_if<Scope>(&block.back().node)) return endsInJump(inner->body);
   return isJump(block.back());
+}
+
+bool isTrue(const Expr& expr) {
+  const auto* n = std::get_if<Literal>(&expr.node);
+  return n != nullptr && n->bits != 0;
 }
 
 /// The operands of a chain of `&&`.
@@ -240,7 +247,8 @@ class Predicator {
 
   /// The place stays the same when the call changes what its indices name.
   void keepIndices(Expr& place, Block& out) {
-    if (auto* n = std::get_if<Index>(&place.node); n != nullptr && !std::holds_alternative<Literal>(n->index->node)) {
+    if (auto* n = std::get_if<Index>(&place.node);
+        n != nullptr && !std::holds_alternative<Literal>(n->index->node)) {
       const VarId kept = addVariable(function_, "index", n->index->type, VarRole::Local, place.loc);
       out.push_back(declare(kept, std::move(n->index), place.loc));
       n->index = ref(kept, place.loc);
@@ -269,13 +277,20 @@ class Predicator {
     masks_.push_back({taken, Mask::Branch});
     guarded(body, loc, out);
     masks_.pop_back();
+    if (!out.empty() && isCleared(out.back(), taken)) out.pop_back();  // nobody asks any more
+  }
+  static bool isCleared(const Stmt& stmt, VarId var) {
+    const auto* n = std::get_if<Assign>(&stmt.node);
+    const auto* place = n == nullptr ? nullptr : std::get_if<VarRef>(&n->place->node);
+    return place != nullptr && place->var == var && std::holds_alternative<Literal>(n->value->node);
   }
 
   // ---- loops ------------------------------------------------------------------------------------
 
   void write(const Stmt& stmt, const ir::Loop& n, Block& out) {
     if (diverges(stmt)) return divergentLoop(stmt, n, out);
-    out.push_back({stmt.loc, ir::Loop{n.kind, statements(n.init), value(n.cond), statements(n.step), round(stmt, n)}});
+    out.push_back(
+        {stmt.loc, ir::Loop{n.kind, statements(n.init), value(n.cond), statements(n.step), round(stmt, n)}});
   }
 
   /// `for (init, live = condition; AnyLane(live); step, live = live && condition) body`, where uniform operands of the
@@ -301,11 +316,12 @@ class Predicator {
   };
   Condition split(const ir::Loop& n) const {
     if (!n.cond) return {};
-    if (n.kind == LoopKind::DoWhile) return {{}, {n.cond.get()}};   // not asked before the first round
+    if (n.kind == LoopKind::DoWhile) return {{}, {n.cond.get()}};  // not asked before the first round
     Condition condition;
     std::vector<const Expr*> operands;
     conjuncts(*n.cond, operands);
     for (const Expr* operand : operands) {
+      if (isTrue(*operand)) continue;
       const bool isUniform = !isVarying(*operand) && !callsOneOf(context_.isLong, *operand);
       (isUniform ? condition.uniform : condition.varying).push_back(operand);
     }
@@ -332,7 +348,8 @@ class Predicator {
       const auto* call = std::get_if<Call>(&expr.node);
       isLong = isLong || (call != nullptr && context_.isLong.contains(call->callee));
     });
-    return isLong ? ir::block(ifStmt(anyLane(mask(loc), loc), std::move(result), {}, loc)) : std::move(result);
+    return isLong ? ir::block(ifStmt(anyLane(mask(loc), loc), std::move(result), {}, loc))
+                  : std::move(result);
   }
 
   /// The body, whose lanes all take part again in the next round.
@@ -432,7 +449,9 @@ class Predicator {
 
   // ---- others -----------------------------------------------------------------------------------
 
-  void write(const Stmt& stmt, const Scope& n, Block& out) { out.push_back(scope(statements(n.body), stmt.loc)); }
+  void write(const Stmt& stmt, const Scope& n, Block& out) {
+    out.push_back(scope(statements(n.body), stmt.loc));
+  }
   void write(const Stmt& stmt, const Push& n, Block& out) {
     out.push_back({stmt.loc, Push{n.stream, value(n.value), mask(stmt.loc)}});
   }

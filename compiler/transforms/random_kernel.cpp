@@ -21,7 +21,11 @@ class BodyMaker {
  public:
   BodyMaker(Module& module, Function& function, std::mt19937& random, std::vector<FunctionId> pure,
             std::vector<FunctionId> changing)
-      : module_(module), function_(function), random_(random), pure_(std::move(pure)), changing_(std::move(changing)) {}
+      : module_(module),
+        function_(function),
+        random_(random),
+        pure_(std::move(pure)),
+        changing_(std::move(changing)) {}
 
   void knows(VarId var, bool isMutable) {
     readable_.push_back(var);
@@ -30,7 +34,7 @@ class BodyMaker {
   void pushesTo(VarId sink) { sink_ = StreamRef{StreamRef::Space::KernelParameter, sink}; }
 
   Block body() {
-    Block statements = block(4);
+    Block statements = block(3);
     if (!function_.result.isVoid()) statements.push_back(returnStmt(value(2)));
     return statements;
   }
@@ -76,14 +80,16 @@ class BodyMaker {
   ExprPtr small() { return binary(BinaryOp::BitAnd, value(1), literal(3)); }
   ExprPtr condition(int depth) {
     if (depth > 0 && oneIn(3)) {
-      return binary(oneIn(2) ? BinaryOp::LogicalAnd : BinaryOp::LogicalOr, condition(depth - 1), condition(depth - 1));
+      return binary(oneIn(2) ? BinaryOp::LogicalAnd : BinaryOp::LogicalOr, condition(depth - 1),
+                    condition(depth - 1));
     }
     return binary(oneIn(2) ? BinaryOp::Less : BinaryOp::Equal, small(), oneIn(2) ? literal(2) : small());
   }
   /// The first function takes as many rounds as its argument says, and does not end where that is negative.
   ExprPtr guardedCall(ExprPtr rounds) {
-    ExprPtr isAllowed = binary(BinaryOp::LogicalAnd, binary(BinaryOp::GreaterEqual, clone(rounds), literal(0)),
-                               binary(BinaryOp::Less, clone(rounds), literal(9)));
+    ExprPtr isAllowed =
+        binary(BinaryOp::LogicalAnd, binary(BinaryOp::GreaterEqual, clone(rounds), literal(0)),
+               binary(BinaryOp::Less, clone(rounds), literal(9)));
     return select(std::move(isAllowed), call(module_, 0, exprs(std::move(rounds))), literal(5));
   }
 
@@ -177,7 +183,7 @@ class BodyMaker {
   }
   void counted(Block& out, int depth) {
     const VarId i = local("i", intType);
-    ExprPtr limit = small();
+    ExprPtr limit = oneIn(2) ? literal(3) : small();
     readable_.push_back(i);
     Block body = loopBody(depth);
     readable_.pop_back();
@@ -198,7 +204,8 @@ class BodyMaker {
     out.push_back(declare(i, literal(0)));
     Block body = ir::block(assign(ref(i), BinaryOp::Add, literal(1)));
     for (Stmt& stmt : loopBody(depth)) body.push_back(std::move(stmt));
-    out.push_back(doWhileLoop(std::move(body), binary(BinaryOp::LogicalAnd, condition(1), binary(BinaryOp::Less, ref(i), small()))));
+    out.push_back(doWhileLoop(std::move(body), binary(BinaryOp::LogicalAnd, condition(1),
+                                                      binary(BinaryOp::Less, ref(i), small()))));
   }
   void choice(Block& out, int depth) {
     ExprPtr chosen = small();

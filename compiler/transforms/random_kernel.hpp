@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// For tests: kernels of ints with all kinds of control flow, nested at random, which end for every element.
+// For tests: kernels of ints with all kinds of control flow, nested at random, which end for every element. A seed gives
+// another kernel under another C++ compiler, which may evaluate arguments in another order.
 #pragma once
 
 #include <cstdint>

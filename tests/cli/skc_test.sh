@@ -100,6 +100,11 @@ run 0 -Iinclude --emit=ast heat.sk
 prints 'diffuse'
 run 0 -Iinclude --print-after=all heat.sk
 prints 'diffuse'
+prints '// after predicate'
+run 0 -Iinclude --print-after=all --target=fragment heat.sk
+[[ $out != *'after predicate'* ]] || broken "predicate is printed without native code"
+run 0 -Iinclude --print-after=predicate heat.sk
+[[ $out == '// after predicate'* ]] || broken "--print-after=predicate prints more, or nothing"
 
 # Plans for the limits of devices that sk info has measured.
 cat >large.sk <<'SK'
