@@ -66,8 +66,10 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   made.reach = slot.reach;
   made.argument = &argument;
   made.firstArray = arrays_.size();
-  const bool isFitted = argument.multiply[0] != 1 || argument.divide[0] != 1;
-  made.isDirect = made.isGiven && !operand.holdsFloats && !isFitted && argument.stride[0] == 1;
+  // one element of an input, which repeats as far as its extent says, lies as the domain's one does
+  const bool isFitted = width_ != 1 && (argument.multiply[0] != 1 || argument.divide[0] != 1);
+  made.isDirect =
+      made.isGiven && !operand.holdsFloats && !isFitted && (width_ == 1 || argument.stride[0] == 1);
   if (made.kind == Kind::Gather) {
     hasGathers_ = true;
     made.firstBorder = firstBorderOf(kernel, slot.parameter);
@@ -117,7 +119,8 @@ SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t
   for (const Slot& slot : layout.slots()) {
     const bool isDirect = slot.kind == SlotLayout::Kind::Output ? slot.isGiven : slot.isDirect;
     const bool isAtEndsAlone = isDirect && slot.kind != SlotLayout::Kind::Gather;
-    const std::int64_t elements = (isAtEndsAlone ? mostAtEnds : most) + native::mostLanes + 2 * slot.reach;
+    const std::int64_t laidOut = std::min(layout.width(), isAtEndsAlone ? mostAtEnds : most);
+    const std::int64_t elements = laidOut + native::mostLanes + 2 * slot.reach;
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
       const std::size_t bytes = static_cast<std::size_t>(elements) * layout.arrays()[a].bytes.read;
       scratch_.push_back(static_cast<std::byte*>(memory_.get()->allocate(bytes, cacheLine)));
