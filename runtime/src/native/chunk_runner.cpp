@@ -19,7 +19,7 @@ ChunkRunner::ChunkRunner(const SlotLayout& layout, const native::Entry& run, con
       function_(functionOf<native::RunFunction>(run)),
       lanes_(run.lanes),
       frame_(frame),
-      arrays_(layout, mostLaidOut) {
+      arrays_(layout, mostLaidOut, layout.isDirect() ? 0 : mostLaidOut) {
   chunk_.arrays = arrays_.get();
   chunk_.step = 1;
 }

@@ -39,8 +39,11 @@ Argument argumentOf(const Operand& operand) {
 
 }  // namespace
 
-CodeFrame::CodeFrame(const program::Kernel& kernel, const native::Call& call)
-    : frame_{.arguments = nullptr,
+CodeFrame::CodeFrame(const program::Kernel& kernel, const native::Call& call,
+                     std::pmr::memory_resource* memory)
+    : arguments_(memory),
+      zeroArrays_(memory),
+      frame_{.arguments = nullptr,
              .domain = {call.domain[0], call.domain[1], call.domain[2], call.domain[3]},
              .tables = call.tables.empty() ? nullptr : call.tables.data()} {
   arguments_.reserve(call.operands.size());

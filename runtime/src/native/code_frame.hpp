@@ -3,6 +3,7 @@
 // The operands of a call as object code takes them (sk/native/code.hpp).
 #pragma once
 
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace sk {
 /// A Frame with its Arguments, one for each parameter of the kernel. What the operands point to must outlive it.
 class CodeFrame {
  public:
-  CodeFrame(const program::Kernel& kernel, const native::Call& call);
+  CodeFrame(const program::Kernel& kernel, const native::Call& call,
+            std::pmr::memory_resource* memory = std::pmr::get_default_resource());
   CodeFrame(const CodeFrame&) = delete;
   CodeFrame& operator=(const CodeFrame&) = delete;
 
@@ -25,8 +27,8 @@ class CodeFrame {
  private:
   void* const* zeroArrays(const program::Kernel& kernel);
 
-  std::vector<native::Argument> arguments_;
-  std::vector<void*> zeroArrays_;
+  std::pmr::vector<native::Argument> arguments_;
+  std::pmr::vector<void*> zeroArrays_;
   native::Frame frame_;
 };
 

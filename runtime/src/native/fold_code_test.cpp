@@ -91,6 +91,7 @@ struct TestReduction {
 
   TestReduction(int inputs, int accumulators, bool isCommutative) {
     for (int i = 0; i < inputs; ++i) fold.add(Role::Input);
+    for (int i = 0; i < 3; ++i) combine.add(Role::Uniform);  // nobody looks at them
     for (int i = 0; i < inputs; ++i) fold.slot(static_cast<std::uint8_t>(i));
     for (int i = 0; i < accumulators; ++i) fold.add(Role::Accumulator);
     reduction.commutative = isCommutative;
@@ -156,7 +157,8 @@ std::vector<std::vector<std::byte>> results(const Reduced& what, const Shaped& s
     if (lie == Lie::InRows) operand.stride[1] += 9;
   }
   for (auto& output : outputs) operands.add(output, blocks);
-  reduce(native::ReduceCall{operands.call(shape.domain), {{}, {1, 1, 1, 1}, {}}, shape.block});
+  const std::vector<Operand> ofCombine(3);
+  reduce(native::ReduceCall{operands.call(shape.domain), {ofCombine, {1, 1, 1, 1}, {}}, shape.block});
   return outputs;
 }
 

@@ -17,7 +17,7 @@ std::int64_t mostPlaced(const StateShape& shape) {
 LeafFolder::LeafFolder(const FoldProgram& program)
     : program_(program),
       longest_(program.layout.isDirect() ? std::numeric_limits<std::int64_t>::max() : mostLaidOut),
-      arrays_(program.layout, mostPlaced(program.shape)),
+      arrays_(program.layout, mostPlaced(program.shape), mostPlaced(program.shape)),
       some_(program.shape, sideOf(program.shape)),
       rest_(program.shape.scalars()) {
   chunk_.arrays = arrays_.get();

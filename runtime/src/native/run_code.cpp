@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "native/call_memory.hpp"
 #include "native/chunk_runner.hpp"
 #include "native/code_frame.hpp"
 #include "native/push_buffers.hpp"
@@ -28,8 +29,8 @@ class CodeRun {
         call_(call),
         real_(choice.real),
         entry_(entryOf(kernel, native::EntryKind::Run, choice)),
-        frame_(kernel, call),
-        layout_(kernel, call, frame_, choice),
+        frame_(kernel, call, memory_.get()),
+        layout_(kernel, call, frame_, choice, memory_.get()),
         pieces_(call.domain, kernel.code->isUneven != 0) {}
 
   void run() {
@@ -81,6 +82,7 @@ class CodeRun {
   const native::Call& call_;
   RealType real_;
   const native::Entry& entry_;
+  CallMemory memory_;
   CodeFrame frame_;
   SlotLayout layout_;
   RowPieces pieces_;

@@ -43,8 +43,8 @@ std::int64_t ownIndex(const Argument& input, std::size_t d, std::int64_t index) 
 // ---- of a call -------------------------------------------------------------------------------------
 
 SlotLayout::SlotLayout(const program::Kernel& kernel, const native::Call& call, const CodeFrame& frame,
-                       const CodeChoice& choice)
-    : width_(call.domain[0]) {
+                       const CodeChoice& choice, std::pmr::memory_resource* memory)
+    : width_(call.domain[0]), slots_(memory), arrays_(memory), borders_(memory) {
   const std::span<const native::Slot> slots(kernel.code->slots, kernel.code->slotCount);
   slots_.reserve(slots.size());
   arrays_.reserve(slots.size());
@@ -66,8 +66,10 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   made.reach = slot.reach;
   made.argument = &argument;
   made.firstArray = arrays_.size();
-  const bool isFitted = argument.multiply[0] != 1 || argument.divide[0] != 1;
-  made.isDirect = made.isGiven && !operand.holdsFloats && !isFitted && argument.stride[0] == 1;
+  // one element of an input, which repeats as far as its extent says, lies as the domain's one does
+  const bool isFitted = width_ != 1 && (argument.multiply[0] != 1 || argument.divide[0] != 1);
+  made.isDirect =
+      made.isGiven && !operand.holdsFloats && !isFitted && (width_ == 1 || argument.stride[0] == 1);
   if (made.kind == Kind::Gather) {
     hasGathers_ = true;
     made.firstBorder = firstBorderOf(kernel, slot.parameter);
@@ -108,18 +110,22 @@ void SlotLayout::readBorders(const program::Kernel& kernel, const CodeFrame& fra
 
 // ---- of a thread -----------------------------------------------------------------------------------
 
-SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most)
-    : layout_(layout), rows_(layout.slots().size()), arrays_(layout.arrays().size()) {
-  scratchAt_.reserve(arrays_.size());
-  std::size_t bytes = 0;
+SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t mostAtEnds)
+    : layout_(layout),
+      rows_(layout.slots().size(), memory_.get()),
+      arrays_(layout.arrays().size(), memory_.get()),
+      scratch_(memory_.get()) {
+  scratch_.reserve(arrays_.size());
   for (const Slot& slot : layout.slots()) {
+    const bool isDirect = slot.kind == SlotLayout::Kind::Output ? slot.isGiven : slot.isDirect;
+    const bool isAtEndsAlone = isDirect && slot.kind != SlotLayout::Kind::Gather;
+    const std::int64_t laidOut = std::min(layout.width(), isAtEndsAlone ? mostAtEnds : most);
+    const std::int64_t elements = laidOut + native::mostLanes + 2 * slot.reach;
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
-      scratchAt_.push_back(bytes);
-      const auto elements = static_cast<std::size_t>(most + native::mostLanes + 2 * slot.reach);
-      bytes += (elements * layout.arrays()[a].bytes.read + cacheLine - 1) / cacheLine * cacheLine;
+      const std::size_t bytes = static_cast<std::size_t>(elements) * layout.arrays()[a].bytes.read;
+      scratch_.push_back(static_cast<std::byte*>(memory_.get()->allocate(bytes, cacheLine)));
     }
   }
-  scratch_ = std::make_unique_for_overwrite<std::byte[]>(bytes);
 }
 
 void SlotArrays::moveToRow(const Extents& first) {

@@ -6,10 +6,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
+#include "native/call_memory.hpp"
 #include "native/code_frame.hpp"
 #include "native/entries.hpp"
 #include "native/scalars.hpp"
@@ -50,7 +51,7 @@ class SlotLayout {
 
   /// `kernel.code` has been checked (entryOf()). Reads the values of borders. The kernel, the call and the frame must outlive this.
   SlotLayout(const program::Kernel& kernel, const native::Call& call, const CodeFrame& frame,
-             const CodeChoice& choice);
+             const CodeChoice& choice, std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
   std::span<const Slot> slots() const { return slots_; }
   std::span<const Array> arrays() const { return arrays_; }
@@ -73,9 +74,9 @@ class SlotLayout {
   std::size_t firstBorderOf(const program::Kernel& kernel, std::size_t parameter) const;
 
   std::int64_t width_;
-  std::vector<Slot> slots_;
-  std::vector<Array> arrays_;
-  std::vector<Value> borders_;
+  std::pmr::vector<Slot> slots_;
+  std::pmr::vector<Array> arrays_;
+  std::pmr::vector<Value> borders_;
   bool isDirect_ = true;
   bool goesByElement_ = false;
   bool hasGathers_ = false;
@@ -84,8 +85,9 @@ class SlotLayout {
 /// The arrays of one thread.
 class SlotArrays {
  public:
-  /// `most` elements are placed at once where they are laid out.
-  SlotArrays(const SlotLayout& layout, std::int64_t most);
+  /// At most so many elements are placed at once where they are laid out; and of slots that lie as the domain does, so many that
+  /// may be laid out because they are at the end of a row.
+  SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t mostAtEnds);
 
   /// From here on, chunks are in the row of this element.
   void moveToRow(const native::Extents& first);
@@ -108,17 +110,17 @@ class SlotArrays {
   void layOutInput(std::size_t slot, std::size_t array, std::int64_t x, std::int64_t count,
                    std::int64_t step);
   void layOutGather(const Slot& slot, std::size_t row, std::size_t array, std::int64_t x, std::int64_t count);
-  std::byte* scratchOf(std::size_t array) { return scratch_.get() + scratchAt_[array]; }
+  std::byte* scratchOf(std::size_t array) { return scratch_[array]; }
 
   struct Row {
     std::int64_t first;  ///< number of the element at x = 0
     bool isOutside;  ///< of a gather with Boundary::Border
   };
   const SlotLayout& layout_;
-  std::vector<Row> rows_;
-  std::vector<void*> arrays_;
-  std::vector<std::size_t> scratchAt_;
-  std::unique_ptr<std::byte[]> scratch_;
+  CallMemory memory_;
+  std::pmr::vector<Row> rows_;
+  std::pmr::vector<void*> arrays_;
+  std::pmr::vector<std::byte*> scratch_;
 };
 
 }  // namespace sk

@@ -32,7 +32,7 @@ class FactorAdder {
   explicit FactorAdder(const SlotLayout& layout)
       : longest_(layout.isDirect() ? layout.width() : mostLaidOut),
         factors_(layout.slots().size()),
-        arrays_(layout, mostLaidOut) {}
+        arrays_(layout, mostLaidOut, 0) {}
 
   void add(ExactAccumulator& sum, const Extents& first, std::int64_t count) {
     arrays_.moveToRow(first);

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+//
+// Memory for what a call needs while it lasts. Small calls, which should take well below a microsecond, allocate nothing.
+#pragma once
+
+#include <cstddef>
+#include <memory_resource>
+
+namespace sk {
+
+class CallMemory {
+ public:
+  CallMemory() = default;
+  CallMemory(const CallMemory&) = delete;
+  CallMemory& operator=(const CallMemory&) = delete;
+
+  std::pmr::memory_resource* get() { return &resource_; }
+
+ private:
+  alignas(std::max_align_t) std::byte first_[4096];
+  std::pmr::monotonic_buffer_resource resource_{first_, sizeof first_};
+};
+
+}  // namespace sk
