@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <iterator>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "ir/reach.hpp"
@@ -17,25 +17,36 @@ namespace {
 
 using namespace ir;
 
-/// What float_functions.sk defines, under the spelling of the intrinsic.
-constexpr Intrinsic ofFloats[] = {
-    Intrinsic::Sin,   Intrinsic::Cos,   Intrinsic::Tan,    Intrinsic::Asin,  Intrinsic::Acos,
-    Intrinsic::Atan,  Intrinsic::Sinh,  Intrinsic::Cosh,   Intrinsic::Tanh,  Intrinsic::Asinh,
-    Intrinsic::Acosh, Intrinsic::Atanh, Intrinsic::AtanYX, Intrinsic::Atan2, Intrinsic::Pow,
-    Intrinsic::Exp,   Intrinsic::Exp2,  Intrinsic::Log,    Intrinsic::Log2,  Intrinsic::Log10,
-    Intrinsic::Fmod,  Intrinsic::Mod,
-};
+/// What both files define, under the spelling of the intrinsic.
+#define SKC_TRANSCENDENTAL_INTRINSICS                                                                \
+  Intrinsic::Sin, Intrinsic::Cos, Intrinsic::Tan, Intrinsic::Asin, Intrinsic::Acos, Intrinsic::Atan, \
+      Intrinsic::Sinh, Intrinsic::Cosh, Intrinsic::Tanh, Intrinsic::Asinh, Intrinsic::Acosh,         \
+      Intrinsic::Atanh, Intrinsic::AtanYX, Intrinsic::Atan2, Intrinsic::Pow, Intrinsic::Exp,         \
+      Intrinsic::Exp2, Intrinsic::Log, Intrinsic::Log2, Intrinsic::Log10
+constexpr Intrinsic ofFloats[] = {SKC_TRANSCENDENTAL_INTRINSICS, Intrinsic::Fmod, Intrinsic::Mod};
+constexpr Intrinsic ofDoubles[] = {SKC_TRANSCENDENTAL_INTRINSICS};
+#undef SKC_TRANSCENDENTAL_INTRINSICS
 
-/// Those of the intrinsics that kernels call with floats.
-std::set<Intrinsic> wantedOfFloats(const Module& module) {
+struct Library {
+  Scalar scalar;   ///< of all arguments
+  std::string_view file;
+  std::string_view (*text)();
+  std::span<const Intrinsic> intrinsics;
+};
+constexpr Library libraries[] = {{Scalar::Float, "float_functions.sk", floatFunctions, ofFloats},
+                                 {Scalar::Double, "double_functions.sk", doubleFunctions, ofDoubles}};
+
+/// Those of a library's intrinsics that kernels call with its scalar.
+std::set<Intrinsic> wantedOf(const Library& library, const Module& module) {
   std::set<Intrinsic> wanted;
   for (const Kernel& kernel : module.kernels) {
     for (const FunctionId id : functionsOf(module, kernel)) {
       walkExprs(module.functions[id].body, [&](const Expr& expr) {
         const auto* call = std::get_if<IntrinsicCall>(&expr.node);
-        if (call == nullptr || !call->args.front()->type.isFloat()) return;
-        if (std::ranges::find(ofFloats, call->intrinsic) != std::end(ofFloats))
-          wanted.insert(call->intrinsic);
+        if (call == nullptr ||
+            std::ranges::find(library.intrinsics, call->intrinsic) == library.intrinsics.end())
+          return;
+        if (call->args.front()->type.scalar == library.scalar) wanted.insert(call->intrinsic);
       });
     }
   }
@@ -48,6 +59,13 @@ bool implements(const Function& function, Intrinsic intrinsic) {
   for (std::uint32_t i = 0; i < function.parameterCount; ++i)
     parameters.push_back(function.variables[i].type);
   return function.name == row(intrinsic).spelling && resultType(intrinsic, parameters) == function.result;
+}
+
+FunctionId implementation(const Module& library, Intrinsic intrinsic) {
+  const auto found = std::ranges::find_if(
+      library.functions, [&](const Function& function) { return implements(function, intrinsic); });
+  assert(found != library.functions.end());
+  return static_cast<FunctionId>(found - library.functions.begin());
 }
 
 }  // namespace
@@ -63,16 +81,13 @@ void LinkedFunctions::add(Intrinsic intrinsic, Scalar scalar, FunctionId functio
 
 LinkedFunctions linkLibrary(Module& module, const CompileLibrary& compile) {
   LinkedFunctions linked;
-  const std::set<Intrinsic> wanted = wantedOfFloats(module);
-  if (wanted.empty()) return linked;
-  const Module library = compile("float_functions.sk", floatFunctions());
-  FunctionImporter importer(module, library);
-  for (const Intrinsic intrinsic : wanted) {
-    const auto found = std::ranges::find_if(
-        library.functions, [&](const Function& function) { return implements(function, intrinsic); });
-    assert(found != library.functions.end());
-    const auto id = static_cast<FunctionId>(found - library.functions.begin());
-    linked.add(intrinsic, Scalar::Float, importer.import(id));
+  for (const Library& library : libraries) {
+    const std::set<Intrinsic> wanted = wantedOf(library, module);
+    if (wanted.empty()) continue;
+    const Module compiled = compile(library.file, library.text());
+    FunctionImporter importer(module, compiled);
+    for (const Intrinsic intrinsic : wanted)
+      linked.add(intrinsic, library.scalar, importer.import(implementation(compiled, intrinsic)));
   }
   return linked;
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// Functions in place of intrinsics. What float_functions.sk says of sin, exp and their like is an ordinary program of the
-// language, so that the back end computes several elements together as it does in any kernel:
+// Functions in place of intrinsics. What float_functions.sk and double_functions.sk say of sin, exp and their like is an
+// ordinary program of the language, so that the back end computes several elements together as it does in any kernel:
 //
 //   kernel void wave(float x<>, out float r<>) { r = sin(x); }
 //
 // makes linkLibrary() compile the library and append to the module its `float sin(float)`, all that this calls, and their
-// constants. The kernel keeps its IntrinsicCall; the back end calls the function that LinkedFunctions names for it.
+// constants. The kernel keeps its IntrinsicCall; the back end calls the function that LinkedFunctions names for it. Where
+// it computes a kernel's floats in another precision, it must call the C library instead: the library's functions are
+// right in their own types only.
 #pragma once
 
 #include <functional>

@@ -7,7 +7,7 @@
 
 namespace skc::native {
 
-/// float_functions.sk
-std::string_view floatFunctions();
+std::string_view floatFunctions();    ///< float_functions.sk
+std::string_view doubleFunctions();   ///< double_functions.sk
 
 }  // namespace skc::native
