@@ -5,23 +5,19 @@
 include_guard(GLOBAL)
 cmake_policy(VERSION 3.25)
 
-# What the .sk.cpp files are compiled with by GCC and Clang. Native code rounds each operation by itself, as the language says: no
-# fused multiply-add. Nobody looks at errno or at the flags of exceptions, which would keep loops from being vectorised;
-# results are IEEE 754's all the same.
-set(SK_NATIVE_OPTIONS -Wno-psabi -ffp-contract=off -fno-math-errno -fno-trapping-math $<$<NOT:$<CONFIG:Debug>>:-O3>
-    CACHE INTERNAL "")
-
 # sk_add_kernels(<target> <file.sk>...
 #                [TARGETS <fragment|compute|native>...]     what skc emits for (default: skc's own)
 #                [INCLUDE_DIRECTORIES <folder>...]          searched by #include in .sk files
 #                [OPTIONS <option>...])                     further options of skc
 #
-# Of --quad, whose code is in __float128, the target links libquadmath, where that is another type than long double.
-#
 # Compiles each file at build time, again when it or a file that it includes has changed, and adds
-# the result to <target>. The target's own sources then include a kernel's header by the path of its
-# .sk file: "heat.sk.hpp", "solver/heat.sk.hpp"; files outside of the source folder by their name.
-# To be called in the folder that makes the target, which also links sk::runtime.
+# the stubs and the object file with the native code to <target>. The target's own sources then
+# include a kernel's header by the path of its .sk file: "heat.sk.hpp", "solver/heat.sk.hpp"; files
+# outside of the source folder by their name. To be called in the folder that makes the target, which
+# also links sk::runtime. With the option --quad the target also links libquadmath, where __float128
+# is another type than long double.
+#
+# An object library must be linked by what uses it: $<TARGET_OBJECTS:...> has only what CMake compiles.
 function(sk_add_kernels target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "TARGETS;INCLUDE_DIRECTORIES;OPTIONS")
   sk_check_kernel_target("${target}")
@@ -34,6 +30,7 @@ function(sk_add_kernels target)
     list(JOIN arg_TARGETS "," targets)
     list(APPEND options "--target=${targets}")
   endif()
+  sk_native_options(options)
   foreach(folder IN LISTS arg_INCLUDE_DIRECTORIES)
     file(REAL_PATH "${folder}" folder BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
     list(APPEND options "-I${folder}")
@@ -46,6 +43,22 @@ function(sk_add_kernels target)
   foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
     sk_add_kernel_file("${target}" "${file}" "${options}")
   endforeach()
+endfunction()
+
+# sk_native_options(LIST): appends to skc's options what the build says of native code.
+function(sk_native_options list)
+  set(options ${${list}} "$<$<CONFIG:Debug,RelWithDebInfo>:-g>")
+  if(NOT "${options}" MATCHES "--target-triple")
+    if(CMAKE_CXX_COMPILER_TARGET)
+      list(APPEND options "--target-triple=${CMAKE_CXX_COMPILER_TARGET}")
+    elseif(CMAKE_CROSSCOMPILING AND CMAKE_LIBRARY_ARCHITECTURE)
+      list(APPEND options "--target-triple=${CMAKE_LIBRARY_ARCHITECTURE}")
+    elseif(CMAKE_CROSSCOMPILING)
+      string(TOLOWER "${CMAKE_SYSTEM_PROCESSOR}-${CMAKE_SYSTEM_NAME}-gnu" triple)
+      list(APPEND options "--target-triple=${triple}")
+    endif()
+  endif()
+  set(${list} ${options} PARENT_SCOPE)
 endfunction()
 
 # sk_check_kernel_target(TARGET): stops where sk_add_kernels cannot add sources to it.
@@ -98,18 +111,35 @@ function(sk_add_kernel_file target file options)
   cmake_path(GET source FILENAME name)
   file(MAKE_DIRECTORY "${output}")
 
+  set(outputs "${output}/${name}.hpp" "${output}/${name}.cpp")
+  if(NOT "${options}" MATCHES "--target=" OR "${options}" MATCHES "--target=[a-z,]*native")
+    set(object "${output}/${name}.o")
+  endif()
   # Ninja holds that the depfile's first target is the first output.
   add_custom_command(
-    OUTPUT "${output}/${name}.hpp" "${output}/${name}.cpp"
-    COMMAND sk::skc ${options} -o "${output}" "--depfile=${output}/${name}.d" "${source}"
+    OUTPUT ${outputs} ${object}
+    COMMAND sk::skc "${options}" -o "${output}" "--depfile=${output}/${name}.d" "${source}"
     DEPENDS "${source}" "$<TARGET_FILE:sk::skc>"
     DEPFILE "${output}/${name}.d"
     COMMENT "skc ${file}"
-    VERBATIM)
-  target_sources(${target} PRIVATE "${output}/${name}.cpp" "${output}/${name}.hpp")
-  set_property(SOURCE "${output}/${name}.cpp" APPEND PROPERTY
-               COMPILE_OPTIONS "$<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:${SK_NATIVE_OPTIONS}>")
+    VERBATIM COMMAND_EXPAND_LISTS)
+  target_sources(${target} PRIVATE ${outputs})
+  if(object)
+    sk_add_object("${target}" "${object}")
+  endif()
   target_include_directories(${target} PRIVATE "${tree}")
+endfunction()
+
+# sk_add_object(TARGET OBJECT): links an object file that skc writes. CMake does not hand on the objects of
+# an object library that it has not compiled, so that each target which links the library gets this one.
+function(sk_add_object target object)
+  set_source_files_properties("${object}" PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+  get_target_property(type "${target}" TYPE)
+  if(type STREQUAL "OBJECT_LIBRARY")
+    target_sources(${target} INTERFACE "$<BUILD_INTERFACE:${object}>")
+  else()
+    target_sources(${target} PRIVATE "${object}")
+  endif()
 endfunction()
 
 # sk_find_skc([PLACE...]): makes sk::skc of an installed skc: the one that SK_SKC names, else the one

@@ -8,19 +8,23 @@
 #include <fstream>
 #include <iostream>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "assemble/assemble.hpp"
 #include "driver/glsl_listing.hpp"
+#include "driver/native_library.hpp"
 #include "driver/plan_listing.hpp"
-#include "emit/native_code.hpp"
 #include "emit/program.hpp"
 #include "emit/stub.hpp"
 #include "frontend/frontend.hpp"
+#include "ir/clone_module.hpp"
 #include "ir/print.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/check_outputs.hpp"
+#include "transforms/predicate.hpp"
 #include "transforms/transforms.hpp"
 
 namespace skc::driver {
@@ -114,10 +118,13 @@ std::string makeEscaped(const std::string& path) {
 std::string fileName(const ir::Module& module) { return fs::path(module.file).filename().string(); }
 
 emit::Stub stubOf(const Options& options, const ir::Module& module) {
-  const emit::Reals reals = options.quad ? emit::Reals::Quad : emit::Reals::Double;
-  return emit::emitStub(module, emit::Program(module, {options.fragmentTarget, options.computeTarget}),
-                        fileName(module),
-                        {options.nativeTarget ? std::optional(reals) : std::nullopt, options.library});
+  return emit::emitStub(
+      module, emit::Program(module, {options.fragmentTarget, options.computeTarget}), fileName(module),
+      {.native = options.nativeTarget, .quad = options.quad, .withLibrary = options.library});
+}
+
+std::string nativeText(const Options& options, const ir::Module& module, native::Output output) {
+  return native::compile(module, stubOf(options, module).native, compileLibrary, options.native, output);
 }
 
 /// Of each measured device, else of the profile.
@@ -135,20 +142,50 @@ std::string planListings(const Options& options, const ir::Module& module) {
   return text;
 }
 
+/// A file to write, and what is in it.
+struct OutputFile {
+  std::string path;
+  std::string text;
+};
+
+/// FILE.sk.hpp and FILE.sk.cpp, and for the native target FILE.sk.o, also where no kernel has native code: build rules name
+/// their outputs without having read the file.
+std::vector<OutputFile> outputsOf(const Options& options, const ir::Module& module) {
+  emit::Stub stub = stubOf(options, module);
+  const std::string base = (fs::path(options.outputDirectory) / fileName(module)).string();
+  std::vector<OutputFile> files;
+  files.push_back({base + ".hpp", std::move(stub.header)});
+  files.push_back({base + ".cpp", std::move(stub.source)});
+  if (options.nativeTarget) {
+    files.push_back(
+        {base + ".o", native::compile(module, stub.native, compileLibrary, options.native, native::Output::Object)});
+  }
+  return files;
+}
+
 bool writeStubs(const Job& job, const ir::Module& module, const frontend::Frontend& frontend) {
   const Options& options = job.options;
-  const emit::Stub stub = stubOf(options, module);
+  const std::vector<OutputFile> files = outputsOf(options, module);
   std::error_code error;
   fs::create_directories(options.outputDirectory, error);   // a failure shows when the files are written
-  const fs::path base = fs::path(options.outputDirectory) / fileName(module);
-  const std::string header = base.string() + ".hpp";
-  const std::string source = base.string() + ".cpp";
-  if (!writeFile(header, stub.header, job.messages) || !writeFile(source, stub.source, job.messages))
-    return false;
+  std::string rule;
+  for (const OutputFile& file : files) {
+    if (!writeFile(file.path, file.text, job.messages)) return false;
+    rule += (rule.empty() ? "" : " ") + makeEscaped(file.path);
+  }
   if (options.depfile.empty()) return true;
-  std::string rule = makeEscaped(header) + " " + makeEscaped(source) + ":";
+  rule += ":";
   for (const std::string& file : frontend.dependencies()) rule += " \\\n  " + makeEscaped(file);
   return writeFile(options.depfile, rule + "\n", job.messages);
+}
+
+/// predicate is no transform for all targets: the native one runs it on a copy of its own.
+void printPredicated(const Job& job, const ir::Module& module) {
+  const std::string& wanted = job.options.printAfter;
+  if (wanted != predicateName && (wanted != "all" || !job.options.nativeTarget)) return;
+  ir::Module copy = ir::clone(module);
+  predicate(copy);
+  job.output << "// after " << predicateName << "\n" << ir::print(copy) << "\n";
 }
 
 /// Everything before the emitters; nothing after errors.
@@ -164,6 +201,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
     runTransforms(*module, frontend.diagnostics(), transformOptions(options, job.output));
   }
   if (frontend.diagnostics().hasErrors()) return std::nullopt;
+  printPredicated(job, *module);
   return module;
 }
 
@@ -187,12 +225,13 @@ std::string emitText(const Options& options, const ir::Module& module) {
   switch (options.emit) {
     case Emit::Ir: return ir::print(module);
     case Emit::Glsl: return glslListing(emit::Program(module), options.profile, options.precision);
-    case Emit::Cpp: return emit::nativeListing(module, emit::Program(module), emit::Reals::Double);
     case Emit::Plan: return planListings(options, module);
     case Emit::Stubs: {
       const emit::Stub stub = stubOf(options, module);
       return stub.header + stub.source;
     }
+    case Emit::Llvm: return nativeText(options, module, native::Output::Llvm);
+    case Emit::Assembly: return nativeText(options, module, native::Output::Assembly);
     case Emit::Ast: break;   // the tree is the frontend's
   }
   return {};

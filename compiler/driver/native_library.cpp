@@ -10,7 +10,6 @@
 #include "frontend/frontend.hpp"
 
 namespace skc::driver {
-namespace {
 
 /// A mistake in the library is a bug of ours: the tests compile all of it.
 ir::Module compileLibrary(std::string_view file, std::string_view text) {
@@ -24,8 +23,6 @@ ir::Module compileLibrary(std::string_view file, std::string_view text) {
   std::cerr << "skc: internal error: the library of native code does not compile\n" << messages.str();
   std::abort();
 }
-
-}  // namespace
 
 native::LinkedFunctions linkNativeLibrary(ir::Module& module) {
   return native::linkLibrary(module, compileLibrary);

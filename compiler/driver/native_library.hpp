@@ -9,5 +9,7 @@ namespace skc::driver {
 
 /// See native::linkLibrary().
 native::LinkedFunctions linkNativeLibrary(ir::Module& module);
+/// What native::compile() compiles the library with.
+ir::Module compileLibrary(std::string_view file, std::string_view text);
 
 }  // namespace skc::driver

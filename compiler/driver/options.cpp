@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
+#include <utility>
 
 #include <unistd.h>
 
@@ -10,13 +12,15 @@
 #include <CLI/CLI.hpp>
 
 #include "assemble/assemble.hpp"
+#include "transforms/predicate.hpp"
 #include "transforms/transforms.hpp"
 
 namespace skc::driver {
 namespace {
 
-const std::map<std::string, Emit> emits = {{"stubs", Emit::Stubs}, {"glsl", Emit::Glsl}, {"cpp", Emit::Cpp},
-                                           {"ir", Emit::Ir},       {"plan", Emit::Plan}, {"ast", Emit::Ast}};
+const std::map<std::string, Emit> emits = {{"stubs", Emit::Stubs}, {"glsl", Emit::Glsl}, {"ir", Emit::Ir},
+                                           {"plan", Emit::Plan},   {"ast", Emit::Ast},   {"llvm", Emit::Llvm},
+                                           {"asm", Emit::Assembly}};
 
 std::string profileNames() {
   std::string names;
@@ -29,15 +33,15 @@ std::string profileNames() {
 std::string transformList() {
   std::string names;
   for (const std::string_view name : skc::transformNames()) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+    names += fmt::format("{}, ", name);
   }
-  return names;
+  return names + std::string(skc::predicateName);
 }
 
 /// A message for a value that is not allowed, or "".
 std::string checkEmit(const std::string& value) {
   if (emits.contains(value)) return {};
-  return fmt::format("'{}' is none of stubs, glsl, cpp, ir, plan, ast", value);
+  return fmt::format("'{}' is none of stubs, glsl, ir, plan, ast, llvm, asm", value);
 }
 
 std::string checkProfile(const std::string& value) {
@@ -52,12 +56,13 @@ std::string checkTarget(const std::string& value) {
 
 std::string checkTransform(const std::string& value) {
   const auto names = skc::transformNames();
-  if (value == "all" || std::find(names.begin(), names.end(), value) != names.end()) return {};
+  const bool isKnown = value == "all" || value == skc::predicateName;
+  if (isKnown || std::find(names.begin(), names.end(), value) != names.end()) return {};
   return fmt::format("'{}' is no transform; use all, {}", value, transformList());
 }
 
-/// `skc a/x.sk b/x.sk -o out` would write out/x.sk.hpp twice.
-std::string duplicateStem(const std::vector<std::string>& files) {
+/// A message where `skc a/x.sk b/x.sk -o out` would write out/x.sk.hpp twice, or "".
+std::string checkStems(const std::vector<std::string>& files) {
   std::map<std::string, std::string> seen;
   for (const std::string& file : files) {
     const std::string name = file.substr(file.find_last_of('/') + 1);
@@ -69,67 +74,133 @@ std::string duplicateStem(const std::vector<std::string>& files) {
   return {};
 }
 
-}  // namespace
-
-CommandLine parseCommandLine(int argc, const char* const* argv) {
+/// What the command line says, before it is checked as a whole.
+struct Words {
   Options options;
   std::string emit = "stubs", color = "auto";
   std::vector<std::string> targets;
   std::string deviceFile;
-  CLI::App app{
-      "skc: compiles StreamKernel files (.sk) to GLSL, descriptors and C++ stubs.\n"
-      "FILE.sk becomes FILE.sk.hpp and FILE.sk.cpp.",
-      "skc"};
-  app.get_formatter()->column_width(30);
-  app.set_version_flag("--version", "skc " SKC_VERSION);
-  app.add_option("FILE", options.files, ".sk files to compile")->required();
-  app.add_option("-o", options.outputDirectory,
-                 "Write the stubs to this directory (default: the current one)")
+};
+
+void addOutputOptions(CLI::App& app, Words& words) {
+  app.add_option("-o", words.options.outputDirectory,
+                 "Write the stubs and objects to this directory (default: the current one)")
       ->type_name("DIR");
-  app.add_option("--emit", emit, "What to emit: stubs, or glsl, cpp, ir, plan, ast on standard output")
+  app.add_option(
+         "--emit", words.emit,
+         "Write stubs and objects (stubs, the default), or print one of glsl, ir, plan, ast, llvm, asm")
       ->check(checkEmit, "")
       ->type_name("KIND");
-  app.add_option("--target", targets, "Targets that the stubs serve (default: fragment,compute,native)")
-      ->delimiter(',')
-      ->check(checkTarget, "")
-      ->type_name("LIST");
-  app.add_option("--precision", options.precision,
-                 "What floats are computed in, for --emit=glsl, ir and plan: single (default), half, "
-                 "extended or double; "
-                 "stubs have all forms, but for 'single'")
+  app.add_option("--kernel", words.options.kernel, "Emit only this kernel or reduce")->type_name("NAME");
+  app.add_option(
+         "--precision", words.options.precision,
+         "Precision that --emit prints: single (default), half, extended or double. Stubs have all of "
+         "them; with 'single', only that one")
       ->check(CLI::IsMember({"single", "half", "extended", "double"}));
-  app.add_flag("--quad", options.quad,
-               "Native code for the reference in __float128, too; programs with it link quadmath");
-  app.add_flag("--library", options.library,
-               "The stubs list all kernels and reduces, for programs that load them: sk/library.hpp");
-  app.add_option("--profile", options.profile,
-                 "Version of GLSL that --emit=glsl and plan are about: " + profileNames())
-      ->check(checkProfile, "")
-      ->type_name("NAME");
-  app.add_option("--device", deviceFile,
-                 "Plan the passes of large kernels for the devices in this file of sk info --json, too")
+  app.add_flag(
+      "--library", words.options.library,
+      "Add a list of all kernels and reduces to the stubs, for programs that load them (sk/library.hpp)");
+  app.add_option("--depfile", words.options.depfile,
+                 "Write a Makefile rule with the files that the outputs depend on")
       ->type_name("FILE");
-  app.add_option("--kernel", options.kernel, "Emit only this kernel or reduce")->type_name("NAME");
-  app.add_option("-I", options.includeDirectories, "Look for #include files in this directory")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
-  app.add_option("-D", options.definitions, "Define a macro")
-      ->type_name("NAME[=VALUE]")
-      ->allow_extra_args(false);
-  app.add_option("-W", options.warnings, "Warnings, as Clang names them; -Werror makes them errors")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  app.add_option("--depfile", options.depfile, "Write the files that the stubs depend on, as a Makefile rule")
-      ->type_name("FILE");
-  app.add_option("--print-after", options.printAfter,
+  app.add_option("--print-after", words.options.printAfter,
                  "Print the IR after this transform: all, " + transformList())
       ->check(checkTransform, "")
       ->type_name("NAME");
-  app.add_option("--color", color, "Colour the messages: auto, always, never")
+}
+
+void addSourceOptions(CLI::App& app, Words& words) {
+  app.add_option("FILE", words.options.files, ".sk files to compile")->required();
+  app.add_option("-I", words.options.includeDirectories, "Search this directory for #include files")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  app.add_option("-D", words.options.definitions, "Define a macro")
+      ->type_name("NAME[=VALUE]")
+      ->allow_extra_args(false);
+  app.add_option("-W", words.options.warnings,
+                 "Enable or disable a warning by Clang's name for it; -Werror turns warnings into errors")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  app.add_option("--color", words.color, "Colour messages: auto, always or never")
       ->check(CLI::IsMember({"auto", "always", "never"}))
       ->type_name("WHEN");
-  app.add_flag("--fixits", options.fixIts,
-               "Print the mends of messages as Clang's -fdiagnostics-parseable-fixits does");
+  app.add_flag("--fixits", words.options.fixIts,
+               "Print fix-its in the form of Clang's -fdiagnostics-parseable-fixits");
+}
+
+void addTargetOptions(CLI::App& app, Words& words) {
+  app.add_option("--target", words.targets, "Targets to compile for (default: fragment,compute,native)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(checkTarget, "")
+      ->type_name("LIST");
+  app.add_option("--profile", words.options.profile,
+                 "Version of GLSL for --emit=glsl and --emit=plan: " + profileNames())
+      ->check(checkProfile, "")
+      ->type_name("NAME");
+  app.add_option("--device", words.deviceFile,
+                 "Also plan the passes of large kernels for the devices in this output of 'sk info --json'")
+      ->type_name("FILE");
+}
+
+void addNativeOptions(CLI::App& app, Words& words) {
+  native::Options& options = words.options.native;
+  app.add_option("--target-triple", options.triple,
+                 "Compile native code for this system, such as aarch64-linux-gnu (default: this machine's)")
+      ->type_name("TRIPLE");
+  app.add_option("--levels", options.levels,
+                 "Compile native code for these levels of the CPU (default: all). Those of x86-64: " +
+                     fmt::format("{}", fmt::join(native::levelNames("x86_64-linux-gnu"), ", ")))
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("LIST");
+  app.add_option("--lanes", options.lanes,
+                 "Elements that native code computes together (default: chosen for each kernel)")
+      ->type_name("N");
+  app.add_flag("-g", options.debugInfo, "Add debug information for the .sk file to the objects");
+  app.add_flag(
+      "--quad", words.options.quad,
+      "Also compile native code that computes in __float128, as a reference for accuracy; programs with "
+      "it link libquadmath");
+}
+
+/// Fills in the options that depend on several words, and returns a message for what does not fit together, or "".
+std::string checkTogether(Words& words) {
+  Options& options = words.options;
+  options.emit = emits.at(words.emit);
+  const auto serves = [&](std::string_view target) {
+    return words.targets.empty() || std::ranges::find(words.targets, target) != words.targets.end();
+  };
+  options.fragmentTarget = serves("fragment");
+  options.computeTarget = serves("compute");
+  options.nativeTarget = serves("native");
+  options.color = words.color == "always" || (words.color == "auto" && isatty(STDERR_FILENO));
+  const bool printsNative = options.emit == Emit::Llvm || options.emit == Emit::Assembly;
+  if (printsNative && !options.nativeTarget)
+    return fmt::format("--emit={} prints native code; leave out --target, or add native to it", words.emit);
+  try {
+    if (options.nativeTarget) native::checkOptions(options.native);
+    if (!words.deviceFile.empty()) options.devices = readDevices(words.deviceFile);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return options.emit == Emit::Stubs ? checkStems(options.files) : "";
+}
+
+}  // namespace
+
+CommandLine parseCommandLine(int argc, const char* const* argv) {
+  Words words;
+  CLI::App app{
+      "skc compiles StreamKernel files (.sk): FILE.sk becomes the C++ stubs FILE.sk.hpp and FILE.sk.cpp,\n"
+      "which contain the GLSL, and the native object file FILE.sk.o. A program links both.",
+      "skc"};
+  app.get_formatter()->column_width(30);
+  app.set_version_flag("--version", "skc " SKC_VERSION);
+  addOutputOptions(app, words);
+  addSourceOptions(app, words);
+  addTargetOptions(app, words);
+  addNativeOptions(app, words);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
@@ -139,26 +210,11 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
     fmt::print(stderr, "skc: {}\nsee 'skc --help'\n", error.what());
     return {std::nullopt, 1};
   }
-  const std::string clash = options.emit == Emit::Stubs ? duplicateStem(options.files) : "";
-  options.emit = emits.at(emit);
-  const auto serves = [&](std::string_view target) {
-    return targets.empty() || std::ranges::find(targets, target) != targets.end();
-  };
-  options.fragmentTarget = serves("fragment");
-  options.computeTarget = serves("compute");
-  options.nativeTarget = serves("native");
-  if (options.emit == Emit::Stubs && !clash.empty()) {
-    fmt::print(stderr, "skc: {}\n", clash);
+  if (const std::string mistake = checkTogether(words); !mistake.empty()) {
+    fmt::print(stderr, "skc: {}\n", mistake);
     return {std::nullopt, 1};
   }
-  try {
-    if (!deviceFile.empty()) options.devices = readDevices(deviceFile);
-  } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "skc: {}\n", error.what());
-    return {std::nullopt, 1};
-  }
-  options.color = color == "always" || (color == "auto" && isatty(STDERR_FILENO));
-  return {std::move(options), 0};
+  return {std::move(words.options), 0};
 }
 
 }  // namespace skc::driver

@@ -21,30 +21,14 @@
 // sk_element, sk_lanes (native_lanes.hpp).
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 
 #include "emit/program.hpp"
+#include "emit/variant_names.hpp"
 #include "ir/ir.hpp"
 
 namespace skc::emit {
-
-/// What the descriptors and the native code of the kernels of a reduce's second form are called.
-struct CompensatedNames {
-  explicit CompensatedNames(const std::string& reduce)
-      : fold(reduce + "CompensatedFold"), combine(reduce + "CompensatedCombine"), finish(reduce + "Finish") {}
-  std::string fold, combine, finish;
-};
-
-/// The same of its exact sum number `sum`; and of the reduce that combines digits, one for all sums of a file.
-struct ExactNames {
-  ExactNames(const std::string& reduce, std::size_t sum)
-      : fold(reduce + "ExactFold" + std::to_string(sum)),
-        finish(reduce + "ExactFinish" + std::to_string(sum)) {}
-  std::string fold, finish;
-};
-inline std::string exactCombinationName(const ir::Kernel& combine) { return "sk_" + combine.name; }
 
 /// The real types that a kernel's native code is made for.
 enum class Reals : std::uint8_t {

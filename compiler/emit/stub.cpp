@@ -70,7 +70,12 @@ Stub emitStub(const Module& module, const Program& program, std::string_view fil
               const StubOptions& options) {
   StubParts parts{callables(module, program), {}, fileName, options};
   parts.streams = streamStructs(module, parts.callables, fileName);
-  return {stubHeader(module, program, parts), stubSource(module, program, parts)};
+  Stub stub;
+  stub.header = stubHeader(module, program, parts);
+  NativeSymbols symbols(stub.header);
+  stub.source = stubSource(module, program, parts, symbols);
+  stub.native = symbols.requests();
+  return stub;
 }
 
 }  // namespace skc::emit

@@ -4,24 +4,25 @@
 // FILE.sk.cpp with its descriptors. It must read as if a person had written it.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "emit/native_code.hpp"
 #include "emit/program.hpp"
 #include "ir/ir.hpp"
+#include "native/native.hpp"
 
 namespace skc::emit {
 
 struct Stub {
   std::string header;   ///< FILE.sk.hpp
   std::string source;   ///< FILE.sk.cpp
+  std::vector<native::KernelRequest> native;   ///< the code that the source refers to: FILE.sk.o
 };
 
 struct StubOptions {
-  std::optional<Reals> native =
-      Reals::Double;  ///< real types of the native code; none: there is no such code
+  bool native = true;  ///< the descriptors refer to native code
+  bool quad = false;  ///< which computes in __float128, too
   bool withLibrary = false;  ///< the source has a list of its descriptors: sk/library.hpp
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emit/cpp_names.hpp"
+#include "emit/native_symbols.hpp"
 #include "emit/stream_structs.hpp"
 #include "emit/stub.hpp"
 
@@ -22,7 +23,13 @@ struct StubParts {
 };
 
 std::string stubHeader(const ir::Module& module, const Program& program, const StubParts& parts);
-std::string stubSource(const ir::Module& module, const Program& program, const StubParts& parts);
+/// Adds the native code that the descriptors refer to.
+std::string stubSource(const ir::Module& module, const Program& program, const StubParts& parts,
+                       NativeSymbols& symbols);
+
+/// The functions of the callable objects, for the source.
+std::string stubFunctions(const ir::Module& module, const Program& program,
+                          const std::vector<Callable>& callables);
 
 /// Names of the enumerators of sk::program::Scalar, in their order.
 inline constexpr std::string_view scalarNames[] = {"Bool",   "Int",    "Uint",    "Float",  "Double",

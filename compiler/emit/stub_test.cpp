@@ -4,6 +4,8 @@
 // bodies are cut into pieces that every compiler takes.
 #include "emit/stub.hpp"
 
+#include <map>
+
 #include <catch2/catch.hpp>
 
 #include "emit/sample_module.hpp"
@@ -17,9 +19,7 @@ using namespace ir;
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
-Stub stubOf(const Module& module) {
-  return emitStub(module, Program(module), "heat.sk", {.native = std::nullopt});
-}
+Stub stubOf(const Module& module) { return emitStub(module, Program(module), "heat.sk", {.native = false}); }
 
 TEST_CASE("the header") {
   const std::string header = stubOf(sampleModule()).header;
@@ -122,11 +122,67 @@ Hit NearestReduce::operator()(const sk::ElementIn<Hit>& h) const {
 )"));
 }
 
+/// The requests of a stub by what their symbols have after the hash.
+std::map<std::string, native::KernelRequest> requestsOf(const Stub& stub) {
+  std::map<std::string, native::KernelRequest> requests;
+  for (const native::KernelRequest& request : stub.native) {
+    constexpr std::size_t prefix = std::string_view("sk_0123456789abcdef_").size();
+    CHECK(requests.emplace(request.symbol.substr(prefix), request).second);
+  }
+  return requests;
+}
+
+TEST_CASE("kernels, folds and what combines point to native code") {
+  const Module module = sampleModule();
+  const Stub stub = emitStub(module, Program(module), "heat.sk", {});
+  for (const auto& [name, request] : requestsOf(stub)) {
+    INFO(request.symbol);
+    CHECK(contains(stub.source, "\nnamespace sk::native {\n\nextern \"C\" {\n"));
+    CHECK(contains(stub.source, "extern const Code " + request.symbol + ";\n"));
+    CHECK(contains(stub.source, ".code = &native::" + request.symbol + "};\n"));
+    CHECK(request.inDoubles);
+    CHECK_FALSE(request.inQuads);
+    CHECK_FALSE(request.isCold);
+  }
+  const std::map<std::string, native::KernelRequest> requests = requestsOf(stub);
+  REQUIRE(requests.size() == 5);
+  for (const auto& [name, kernel] :
+       {std::pair("diffuse", "diffuse"), {"sum", "sum"}, {"nearest", "nearest"}, {"power", "power"}}) {
+    CHECK(module.kernels[requests.at(name).kernel].name == kernel);
+  }
+  CHECK(requests.at("powerCombine").kernel ==
+        *module.kernels[requests.at("power").kernel].reduction->combine);
+}
+
+TEST_CASE("native code computes in __float128 where that is asked for, and is left out where it is not") {
+  const Module module = sampleModule();
+  for (const native::KernelRequest& request :
+       emitStub(module, Program(module), "heat.sk", {.quad = true}).native) {
+    CHECK(request.inQuads);
+  }
+  const Stub without = stubOf(module);
+  CHECK(without.native.empty());
+  CHECK_FALSE(contains(without.source, "native"));
+}
+
+TEST_CASE("symbols of files that can be linked together differ, wherever the files are") {
+  Module module = sampleModule();
+  const auto symbol = [&](std::string_view file) {
+    return emitStub(module, Program(module), file, {}).native.front().symbol;
+  };
+  const std::string heat = symbol("heat.sk");
+  CHECK(symbol("cold.sk") != heat);
+  module.file = "/elsewhere/heat.sk";
+  module.sources.front() = module.file;
+  CHECK(symbol("heat.sk") == heat);
+  module.kernels.front().signature = "kernel void diffuse()";
+  CHECK(symbol("heat.sk") != heat);
+}
+
 TEST_CASE("a list of all descriptors, where it is asked for") {
   const Module module = sampleModule();
   const Stub plain = stubOf(module);
-  const Stub listed =
-      emitStub(module, Program(module), "heat.sk", {.native = std::nullopt, .withLibrary = true});
+  const Stub listed = emitStub(module, Program(module), "heat.sk", {.native = false, .withLibrary = true});
   CHECK(listed.header == plain.header);
   CHECK_FALSE(contains(plain.source, "Library"));
   CHECK(contains(listed.source, "#include \"heat.sk.hpp\"\n\n#include <sk/library.hpp>\n"));
@@ -245,7 +301,9 @@ grid::HeatStreams::HeatStreams(sk::Device& device)
 
 TEST_CASE("a C++ compiler takes the stubs without a warning") {
   const ToolFolder folder("stubs");
-  const Stub stubs[] = {stubOf(sampleModule()), stubOf(awkwardModule()), stubOf(streamModule())};
+  const Module sample = sampleModule();
+  const Stub stubs[] = {stubOf(sample), stubOf(awkwardModule()), stubOf(streamModule()),
+                        emitStub(sample, Program(sample), "heat.sk", {})};
   for (const Stub& stub : stubs) {
     folder.write("heat.sk.hpp", stub.header);
     folder.write("heat.sk.cpp", stub.source);

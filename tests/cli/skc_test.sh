@@ -36,24 +36,51 @@ echo '#define WEIGHT 0.25f' >include/weights.sk
 # Help and version.
 run 0 --help
 prints 'FILE'
-for option in -o --emit --target --profile --kernel -I -D -W --depfile --print-after --library --device --quad --version; do prints " $option"; done
+for option in -o --emit --target --profile --kernel -I -D -W -g --depfile --print-after --library --device --target-triple --levels \
+  --lanes --quad --version; do
+  prints " $option"
+done
 run 0 --version
 [[ $out =~ ^skc\ [0-9]+\.[0-9]+\.[0-9]+ ]] || broken "no version"
 
-# Stubs, with a list of their kernels where that is asked for, and the depfile that rebuilds them.
+# Stubs and the object file, and the depfile that rebuilds them.
 run 0 -Iinclude heat.sk
 silent
-[[ -s heat.sk.hpp && -s heat.sk.cpp ]] || broken "no stubs beside the caller"
+[[ -s heat.sk.hpp && -s heat.sk.cpp && -s heat.sk.o ]] || broken "no stubs or no object beside the caller"
 run 0 -I include -o "a folder" --depfile=heat.d heat.sk
 silent
-cmp -s heat.sk.hpp "a folder/heat.sk.hpp" || broken "the stub depends on where it is written"
-grep -qF 'a\ folder/heat.sk.hpp' heat.d || broken "the depfile lacks the stub: $(<heat.d)"
+for part in hpp cpp o; do
+  cmp -s "heat.sk.$part" "a folder/heat.sk.$part" || broken "heat.sk.$part depends on where it is written"
+  grep -qF "a\ folder/heat.sk.$part" heat.d || broken "the depfile lacks heat.sk.$part: $(<heat.d)"
+done
 grep -qF 'include/weights.sk' heat.d || broken "the depfile lacks the included file: $(<heat.d)"
 
-# Native code is in the stub unless other targets are named.
-grep -qF 'diffuseNative' heat.sk.cpp || broken "the stub has no native code"
+# codeSymbols FILE.sk.cpp: the native code that the stub refers to.
+codeSymbols() { grep -oE 'sk_[0-9a-f]{16}_[A-Za-z0-9_]+' "$1" | sort -u; }
+
+# The stub refers to native code that the object defines, unless other targets are named.
+codeSymbols heat.sk.cpp | grep -q '_diffuse$' || broken "the stub refers to no native code"
+if command -v nm >/dev/null; then
+  codeSymbols heat.sk.cpp | cmp -s - <(nm --defined-only --extern-only --format=just-symbols heat.sk.o | sort) ||
+    broken "the object defines other symbols than the stub refers to"
+fi
 run 0 -Iinclude -o fragment --target=fragment heat.sk
 grep -qF 'native' fragment/heat.sk.cpp && broken "--target=fragment writes native code"
+[[ ! -e fragment/heat.sk.o ]] || broken "--target=fragment writes an object"
+
+# Symbols do not depend on folders, and differ between files.
+mkdir elsewhere
+cp heat.sk elsewhere
+run 0 -Iinclude -o elsewhere "$PWD/elsewhere/heat.sk"
+cmp -s <(codeSymbols heat.sk.cpp) <(codeSymbols elsewhere/heat.sk.cpp) || broken "symbols depend on the folder of the file"
+cp heat.sk cold.sk
+run 0 -Iinclude -o elsewhere cold.sk
+[[ -z $(comm -12 <(codeSymbols heat.sk.cpp) <(codeSymbols elsewhere/cold.sk.cpp)) ]] || broken "two files share a symbol"
+
+# An object without kernels, for build rules that name their outputs beforehand.
+echo 'stream float field<height, width>;' >declared.sk
+run 0 declared.sk
+[[ -s declared.sk.o ]] || broken "no object without kernels"
 
 # What is printed.
 run 0 -Iinclude --emit=glsl heat.sk
@@ -62,8 +89,11 @@ run 0 -Iinclude --emit=glsl --profile=essl300 --kernel=diffuse heat.sk
 prints '#version 300 es'
 prints 'diffuse'
 [[ $out != *sum* ]] || broken "--kernel=diffuse prints more"
-run 0 -Iinclude --emit=cpp heat.sk
-prints 'struct sk_diffuse'
+run 0 -Iinclude --emit=llvm --kernel=diffuse heat.sk
+prints '_diffuse'
+[[ $out != *_sum* ]] || broken "--kernel=diffuse prints more"
+run 0 -Iinclude --emit=asm heat.sk
+prints '_diffuse'
 run 0 -Iinclude --emit=ir heat.sk
 prints 'diffuse'
 run 0 -Iinclude --emit=ast heat.sk
@@ -116,6 +146,10 @@ refuses '--nosuch' --nosuch heat.sk
 refuses 'glsll' --emit=glsll heat.sk
 refuses 'glsl990' --emit=glsl --profile=glsl990 heat.sk
 refuses 'quantum' --target=quantum heat.sk
+refuses 'quantum-unknown' --target-triple=quantum-unknown heat.sk
+refuses 'x86-64-v9' --levels=x86-64,x86-64-v9 heat.sk
+refuses '3' --lanes=3 heat.sk
+refuses '--emit=asm prints native code' --emit=asm --target=fragment heat.sk
 run 0 -Iinclude -o compute --target=compute heat.sk
 grep -qF '.drawn = false' compute/heat.sk.cpp || broken "--target=compute has fragment programs"
 grep -qF '.dispatched = false' fragment/heat.sk.cpp || broken "--target=fragment has compute programs"
@@ -123,7 +157,8 @@ refuses 'nosuch' --print-after=nosuch heat.sk
 refuses 'nosuch' -Iinclude --emit=glsl --kernel=nosuch heat.sk
 mkdir other
 cp heat.sk other
-refuses 'heat.sk' -Iinclude heat.sk other/heat.sk
+refuses "'heat.sk' and 'other/heat.sk' would both be written to heat.sk.hpp" -Iinclude heat.sk other/heat.sk
+run 0 -Iinclude --emit=ir heat.sk other/heat.sk   # writes nothing
 echo 'in the way' >file
 run 1 -Iinclude -o file/below heat.sk
 says 'file/below'

@@ -1,58 +1,39 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# The native loops of simple kernels are vectorised, says GCC itself: those around elements (sk/native/run.hpp) and those around
-# what is folded in any order (fold.hpp), in the clone for vectors of 256 bits as in the one for all CPUs. Kernels with loops or
-# computed gathers are computed by lanes (sk/native/lanes.hpp): that clone multiplies eight at a time.
-# Usage: vectorized_test.sh SKC CXX INCLUDE_FOLDER OPTION...
+# Native code computes several elements side by side, whatever a kernel is made of: its assembly for x86-64-v3 has
+# arithmetic on vectors of 256 bits, that for x86-64-v4 on vectors of 512 or 256.
+# Usage: vectorized_test.sh SKC
 set -euo pipefail
-skc=$(realpath "$1") cxx=$2 include=$(realpath "$3")
-shift 3
-options=("$@")
+skc=$(realpath "$1")
 source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
 
-# Where the loops that may be vectorised begin: the lines that follow the mark.
-loopsIn() { grep -n -A1 '^ *SK_NATIVE_INDEPENDENT' "$include/sk/native/$1" | sed -n 's/^\([0-9]*\)-.*for (.*/\1/p'; }
-
-# vectorised HEADER KERNEL: a loop of the header is, for this kernel alone.
+# vectorised INSTRUCTION KERNEL: both levels have this instruction on whole vectors.
 vectorised() {
-  local header=$1 bytes lines
+  local instruction=$1 level registers
   printf '%s\n' "$2" >kernel.sk
-  "$skc" --precision=single -o . kernel.sk
-  "$cxx" -std=c++20 "${options[@]}" -I"$include" -I. -fopt-info-vec -c kernel.sk.cpp -o kernel.o 2>report.txt
-  lines=$(loopsIn "$header" | paste -sd'|')
-  [[ -n $lines ]] || { echo "broken: no loops found in $header"; exit 1; }
-  for bytes in 16 32; do
-    grep -qE "$header:($lines):[0-9]+: optimized: loop vectorized using $bytes byte vectors" report.txt || {
-      echo "broken: no loop of $header is vectorised with $bytes bytes for: $2"
-      cat report.txt
-      exit 1
-    }
-  done
+  while read -r level registers; do
+    "$skc" --emit=asm --target-triple=x86_64-linux-gnu --levels="$level" kernel.sk >kernel.s
+    grep -qE "^[[:space:]]$instruction[[:space:]].*%[$registers]mm" kernel.s ||
+      { echo "broken: no $instruction on vectors in the code for $level of: $2"; exit 1; }
+  done <<<$'x86-64-v3 y\nx86-64-v4 yz'
 }
 
-vectorised run.hpp 'kernel void saxpy(float a, float x<>, float y<>, out float r<>) { r = a * x + y; }'
+vectorised vmulps 'kernel void saxpy(float a, float x<>, float y<>, out float r<>) { r = a * x + y; }'
 for boundary in clamp wrap mirror 'border(0.0f)'; do
-  vectorised run.hpp "kernel void diffuse(float k, [[$boundary]] float u[][], out float v<>) {
+  vectorised vmulps "kernel void diffuse(float k, [[$boundary]] float u[][], out float v<>) {
     float c = neighbor(u, 0, 0);
     v = c + k * (neighbor(u, 1, 0) + neighbor(u, -1, 0) + neighbor(u, 0, 1) + neighbor(u, 0, -1) - 4 * c);
   }"
 done
-vectorised run.hpp 'struct Pair { float a; int b; };
+vectorised vpaddd 'struct Pair { float a; int b; };
 kernel void pairs(Pair p<>, out Pair q<>) { q.a = max(p.a, 0.0f); q.b = p.b + indexof(p).x; }'
-vectorised fold.hpp '[[accumulate(tree)]] reduce void sum(float x<>, reduce float total<> = 0) { total += x; }'
-vectorised fold.hpp 'reduce void dots(float x<>, float y<>, reduce float total<>) { total += x * y; }'
-vectorised fold.hpp 'reduce void most(float x<>, reduce float m<>) { m = max(m, x); }'
+vectorised vaddps '[[accumulate(tree)]] reduce void sum(float x<>, reduce float total<> = 0) { total += x; }'
+vectorised vmulps 'reduce void dots(float x<>, float y<>, reduce float total<>) { total += x * y; }'
+vectorised vmaxps 'reduce void most(float x<>, reduce float m<>) { m = max(m, x); }'
 
-# byLanes KERNEL: it multiplies vectors of 256 bits, which no loop around its elements does.
-byLanes() {
-  printf '%s\n' "$1" >kernel.sk
-  "$skc" --precision=single -o . kernel.sk
-  "$cxx" -std=c++20 "${options[@]}" -I"$include" -I. -S kernel.sk.cpp -o kernel.s
-  grep -qE 'vmulps[[:space:]].*%ymm' kernel.s || { echo "broken: not computed by lanes: $1"; exit 1; }
-}
-
-byLanes 'kernel void escape(float2 c<>, int most, out int steps<>) {
+# Loops whose trip counts differ, and gathers at computed indices.
+vectorised vmulps 'kernel void escape(float2 c<>, int most, out int steps<>) {
   float2 z = 0;
   steps = 0;
   while (steps < most && dot(z, z) <= 4) {
@@ -60,12 +41,12 @@ byLanes 'kernel void escape(float2 c<>, int most, out int steps<>) {
     ++steps;
   }
 }'
-byLanes 'kernel void multiply(float a[][], float b[][], out float c<>) {
+vectorised vmulps 'kernel void multiply(float a[][], float b[][], out float c<>) {
   int2 p = indexof(c).xy;
   c = 0;
   for (int k = 0; k < extentof(a).x; ++k) c += a[p.y][k] * b[k][p.x];
 }'
-byLanes 'kernel void leap(int by, [[wrap]] float a[], out float r<>) {
+vectorised vmulps 'kernel void leap(int by, [[wrap]] float a[], out float r<>) {
   int i = indexof(r).x;
   r = (i & by) != 0 ? a[i ^ by] * a[i] : 0;
 }'

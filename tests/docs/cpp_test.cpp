@@ -138,7 +138,7 @@ TEST_CASE("the programs of the documentation run", "[cpp]") {
     ++programs;
     INFO(block->place());
     docs::writeFile(folder / "main.cpp", block->text);
-    build(folder, block->value("kernels") + ".cpp");
+    build(folder, fmt::format("{0}.cpp {0}.o", block->value("kernels")));
     const docs::Outcome ran = docs::run("./program", folder);
     INFO(ran.output);
     CHECK(ran.status == 0);
@@ -156,7 +156,7 @@ TEST_CASE("what is said to throw throws the message that is quoted above it", "[
       continue;
     }
     docs::writeFile(folder / "main.cpp", throwingProgram(document));
-    build(folder, "*.sk.cpp");
+    build(folder, "*.sk.cpp *.sk.o");
     const docs::Outcome ran = docs::run("./program", folder);
     INFO(ran.output);
     CHECK(ran.status == 0);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <set>
 #include <span>
 #include <vector>
 
@@ -17,53 +16,77 @@ namespace {
 
 using namespace ir;
 
-/// What both files define, under the spelling of the intrinsic.
-#define SKC_TRANSCENDENTAL_INTRINSICS                                                                \
-  Intrinsic::Sin, Intrinsic::Cos, Intrinsic::Tan, Intrinsic::Asin, Intrinsic::Acos, Intrinsic::Atan, \
-      Intrinsic::Sinh, Intrinsic::Cosh, Intrinsic::Tanh, Intrinsic::Asinh, Intrinsic::Acosh,         \
-      Intrinsic::Atanh, Intrinsic::AtanYX, Intrinsic::Atan2, Intrinsic::Pow, Intrinsic::Exp,         \
-      Intrinsic::Exp2, Intrinsic::Log, Intrinsic::Log2, Intrinsic::Log10
-constexpr Intrinsic ofFloats[] = {SKC_TRANSCENDENTAL_INTRINSICS, Intrinsic::Fmod, Intrinsic::Mod};
-constexpr Intrinsic ofDoubles[] = {SKC_TRANSCENDENTAL_INTRINSICS};
-#undef SKC_TRANSCENDENTAL_INTRINSICS
+/// An intrinsic, and the name of the library's function that computes it.
+struct Row {
+  Intrinsic intrinsic;
+  std::string_view function;
+};
+
+// Functions of doubles do without the last two.
+constexpr Row functionsOfReals[] = {
+    {Intrinsic::Sin, "sin"},     {Intrinsic::Cos, "cos"},     {Intrinsic::Tan, "tan"},
+    {Intrinsic::Asin, "asin"},   {Intrinsic::Acos, "acos"},   {Intrinsic::Atan, "atan"},
+    {Intrinsic::Sinh, "sinh"},   {Intrinsic::Cosh, "cosh"},   {Intrinsic::Tanh, "tanh"},
+    {Intrinsic::Asinh, "asinh"}, {Intrinsic::Acosh, "acosh"}, {Intrinsic::Atanh, "atanh"},
+    {Intrinsic::AtanYX, "atan"}, {Intrinsic::Atan2, "atan2"}, {Intrinsic::Pow, "pow"},
+    {Intrinsic::Exp, "exp"},     {Intrinsic::Exp2, "exp2"},   {Intrinsic::Log, "log"},
+    {Intrinsic::Log2, "log2"},   {Intrinsic::Log10, "log10"}, {Intrinsic::Fmod, "fmod"},
+    {Intrinsic::Mod, "mod"},
+};
+constexpr Row functionsOfExactSums[] = {
+    {Intrinsic::ExactDigits, "exact_digits"},
+    {Intrinsic::ExactFlags, "exact_flags"},
+    {Intrinsic::ExactProductDigits, "exact_product_digits"},
+    {Intrinsic::ExactProductFlags, "exact_product_flags"},
+    {Intrinsic::ExactCarry, "exact_carry"},
+    {Intrinsic::ExactSettled, "exact_settled"},
+    {Intrinsic::ExactRounded, "exact_rounded"},
+};
 
 struct Library {
-  Scalar scalar;   ///< of all arguments
   std::string_view file;
   std::string_view (*text)();
-  std::span<const Intrinsic> intrinsics;
+  std::span<const Row> rows;
+  std::optional<Scalar> scalar;   ///< of the first argument, if intrinsics of others are not the library's
 };
-constexpr Library libraries[] = {{Scalar::Float, "float_functions.sk", floatFunctions, ofFloats},
-                                 {Scalar::Double, "double_functions.sk", doubleFunctions, ofDoubles}};
+const Library libraries[] = {
+    {"float_functions.sk", floatFunctions, functionsOfReals, Scalar::Float},
+    {"double_functions.sk", doubleFunctions, std::span(functionsOfReals).first(20), Scalar::Double},
+    {"exact_sums.sk", exactSums, functionsOfExactSums, std::nullopt},
+};
 
-/// Those of a library's intrinsics that kernels call with its scalar.
-std::set<Intrinsic> wantedOf(const Library& library, const Module& module) {
-  std::set<Intrinsic> wanted;
+/// Rows whose intrinsics kernels call, with arguments that the library is for.
+std::vector<Row> wantedRows(const Library& library, const Module& module) {
+  std::vector<bool> isWanted(library.rows.size());
+  const auto look = [&](const Expr& expr) {
+    const auto* call = std::get_if<IntrinsicCall>(&expr.node);
+    if (call == nullptr) return;
+    const auto row = std::ranges::find(library.rows, call->intrinsic, &Row::intrinsic);
+    if (row == library.rows.end()) return;
+    if (!library.scalar || call->args.front()->type.scalar == *library.scalar)
+      isWanted[static_cast<std::size_t>(row - library.rows.begin())] = true;
+  };
   for (const Kernel& kernel : module.kernels) {
-    for (const FunctionId id : functionsOf(module, kernel)) {
-      walkExprs(module.functions[id].body, [&](const Expr& expr) {
-        const auto* call = std::get_if<IntrinsicCall>(&expr.node);
-        if (call == nullptr ||
-            std::ranges::find(library.intrinsics, call->intrinsic) == library.intrinsics.end())
-          return;
-        if (call->args.front()->type.scalar == library.scalar) wanted.insert(call->intrinsic);
-      });
-    }
+    for (const FunctionId id : functionsOf(module, kernel)) walkExprs(module.functions[id].body, look);
+  }
+  std::vector<Row> wanted;
+  for (std::size_t i = 0; i < isWanted.size(); ++i) {
+    if (isWanted[i]) wanted.push_back(library.rows[i]);
   }
   return wanted;
 }
 
-/// True for `float atan(float, float)` if the intrinsic is AtanYX.
-bool implements(const Function& function, Intrinsic intrinsic) {
+/// By name and types, since `atan` is two intrinsics.
+bool implements(const Function& function, const Row& row) {
   std::vector<Type> parameters;
   for (std::uint32_t i = 0; i < function.parameterCount; ++i)
     parameters.push_back(function.variables[i].type);
-  return function.name == row(intrinsic).spelling && resultType(intrinsic, parameters) == function.result;
+  return function.name == row.function && resultType(row.intrinsic, parameters) == function.result;
 }
 
-FunctionId implementation(const Module& library, Intrinsic intrinsic) {
+FunctionId implementation(const Module& library, const Row& row) {
   const auto found = std::ranges::find_if(
-      library.functions, [&](const Function& function) { return implements(function, intrinsic); });
+      library.functions, [&](const Function& function) { return implements(function, row); });
   assert(found != library.functions.end());
   return static_cast<FunctionId>(found - library.functions.begin());
 }
@@ -82,12 +105,14 @@ void LinkedFunctions::add(Intrinsic intrinsic, Scalar scalar, FunctionId functio
 LinkedFunctions linkLibrary(Module& module, const CompileLibrary& compile) {
   LinkedFunctions linked;
   for (const Library& library : libraries) {
-    const std::set<Intrinsic> wanted = wantedOf(library, module);
+    const std::vector<Row> wanted = wantedRows(library, module);
     if (wanted.empty()) continue;
     const Module compiled = compile(library.file, library.text());
     FunctionImporter importer(module, compiled);
-    for (const Intrinsic intrinsic : wanted)
-      linked.add(intrinsic, library.scalar, importer.import(implementation(compiled, intrinsic)));
+    for (const Row& row : wanted) {
+      const FunctionId function = importer.import(implementation(compiled, row));
+      linked.add(row.intrinsic, module.functions[function].variables[0].type.scalar, function);
+    }
   }
   return linked;
 }

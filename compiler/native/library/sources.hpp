@@ -9,5 +9,6 @@ namespace skc::native {
 
 std::string_view floatFunctions();    ///< float_functions.sk
 std::string_view doubleFunctions();   ///< double_functions.sk
+std::string_view exactSums();         ///< exact_sums.sk
 
 }  // namespace skc::native

@@ -31,7 +31,19 @@ std::string variable(const char* name) {
 
 fs::path ownFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
-/// A file to compile as FOLDER/NAME.sk.cpp.
+/// What skc writes for a file.
+struct Compiled {
+  fs::path header, source, object;
+
+  Compiled(const fs::path& folder, const fs::path& file) {
+    const std::string base = (folder / file.filename()).string();
+    header = base + ".hpp";
+    source = base + ".cpp";
+    object = base + ".o";
+  }
+};
+
+/// Compiles a file to FOLDER/NAME.sk.hpp, .cpp and .o.
 void runSkc(const fs::path& file, const BuildOptions& options, const fs::path& folder) {
   std::string skc = options.skc.empty() ? variable("SK_SKC") : options.skc;
   if (skc.empty()) skc = fs::exists(ownFolder() / "skc") ? (ownFolder() / "skc").string() : "skc";
@@ -59,18 +71,19 @@ fs::path headerFolder() {
       folders.front().lexically_normal().string()));
 }
 
-/// By the compiler that CXX names, which may be several words, else by the first that there is.
-void runCompiler(const fs::path& source, const fs::path& object) {
+/// Links stubs and object to a library, by the compiler that CXX names, which may be several words, else by the first that there
+/// is. The stubs are constants and a few calls, which no optimization serves.
+void runCompiler(const Compiled& compiled, const fs::path& library) {
   std::vector<Words> compilers{{"c++"}, {"g++"}};
   if (std::istringstream chosen(variable("CXX")); !chosen.str().empty()) {
     compilers.assign(1, {});
     for (std::string word; chosen >> word;) compilers.front().push_back(word);
   }
-  Words options{"-std=c++20", "-O2", "-w", "-fPIC", "-shared",
-                "-ffp-contract=off",  // as sk_add_kernels has it
-                // only descriptors stay, not the stubs, which call the runtime that nobody links here
-                "-fvisibility=hidden", "-ffunction-sections", "-Wl,--gc-sections",
-                "-I" + headerFolder().string(), source.string(), "-o", object.string()};
+  Words options{
+      "-std=c++20", "-O0", "-w", "-fPIC", "-shared",
+      // only descriptors and what they point to stay, not the stubs, which call the runtime that nobody links here
+      "-fvisibility=hidden", "-ffunction-sections", "-Wl,--gc-sections", "-I" + headerFolder().string(),
+      compiled.source.string(), compiled.object.string(), "-o", library.string()};
 #if defined(__x86_64__) || defined(__i386__) || defined(__powerpc64__)
   options.emplace_back("-lquadmath");  // where __float128 is another type than long double
 #endif
@@ -83,7 +96,8 @@ void runCompiler(const fs::path& source, const fs::path& object) {
         "'{}' cannot compile what skc made of the file; CXX names another compiler", words.front()));
   }
   throw std::runtime_error(
-      "there is no C++ compiler, which the kernels' native code needs; install one (Debian: g++), or name it "
+      "there is no C++ compiler, which the descriptors of kernels need; install one (Debian: g++), or name "
+      "it "
       "by CXX");
 }
 
@@ -92,28 +106,27 @@ std::string textOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// What the object depends on: the compiler, the headers and what skc has made.
-std::string keyOf(const fs::path& source) {
+/// What the library depends on: the compiler, the headers and what skc has written.
+std::string keyOf(const Compiled& compiled) {
   const fs::path headers = headerFolder();
   fs::file_time_type newest = fs::file_time_type::min();
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(headers / "sk")) {
     newest = std::max(newest, entry.last_write_time());
   }
-  fs::path header = source;
-  header.replace_extension(".hpp");
-  return fmt::format("StreamKernel {}, CXX '{}', headers in {} of {}: {}{}", SK_VERSION, variable("CXX"),
-                     headers.string(), newest.time_since_epoch().count(), textOf(header), textOf(source));
+  return fmt::format("StreamKernel {}, CXX '{}', headers in {} of {}: {}{}{}", SK_VERSION, variable("CXX"),
+                     headers.string(), newest.time_since_epoch().count(), textOf(compiled.header),
+                     textOf(compiled.source), textOf(compiled.object));
 }
 
-/// A compilation takes seconds, so that its result is kept.
-void compile(const fs::path& source, const fs::path& object) {
-  const std::string key = keyOf(source);
+/// A compilation takes a second or more, so that its result is kept.
+void linkKept(const Compiled& compiled, const fs::path& library) {
+  const std::string key = keyOf(compiled);
   if (const std::optional<std::string> kept = sk::readCached("kernels", key)) {
-    std::ofstream(object, std::ios::binary) << *kept;
+    std::ofstream(library, std::ios::binary) << *kept;
     return;
   }
-  runCompiler(source, object);
-  sk::writeCached("kernels", key, textOf(object));
+  runCompiler(compiled, library);
+  sk::writeCached("kernels", key, textOf(library));
 }
 
 }  // namespace
@@ -121,9 +134,9 @@ void compile(const fs::path& source, const fs::path& object) {
 KernelLibrary::KernelLibrary(const fs::path& file, const BuildOptions& options) {
   const TemporaryFolder folder;
   runSkc(file, options, folder.path());
-  const fs::path object = folder.path() / "kernels.so";
-  compile(folder.path() / (file.filename().string() + ".cpp"), object);
-  object_ = ::dlopen(object.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  const fs::path library = folder.path() / "kernels.so";
+  linkKept(Compiled(folder.path(), file), library);
+  object_ = ::dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (object_ == nullptr) {
     throw std::runtime_error(
         fmt::format("cannot load the kernels: {}; is '{}' a place for programs? TMPDIR names another",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The kernels of a .sk file, brought into this process: by skc to C++, by a C++ compiler to a shared object, which
-// is loaded. What the two have to say goes to standard error.
+// The kernels of a .sk file, brought into this process: skc writes stubs and native code, a C++ compiler links them to a
+// shared library, which is loaded. Messages of the two go to standard error.
 #pragma once
 
 #include <filesystem>
