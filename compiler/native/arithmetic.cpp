@@ -118,7 +118,7 @@ llvm::Value* integerOperation(Lanes& l, BinaryOp op, bool isSigned, llvm::Value*
 
 /// The float that a normalized integer stands for: k / max, not below -1.
 Part floatOfNormalized(Lanes& l, Scalar narrow, const Part& stored) {
-  llvm::Value* const k = l.spread(stored);
+  llvm::Value* const k = l.value(stored);
   const bool isSnorm = narrow == Scalar::Snorm8 || narrow == Scalar::Snorm16;
   llvm::Type* const type = l.sameShape(k, l.b.getFloatTy());
   llvm::Value* const whole = isSnorm ? l.b.CreateSIToFP(k, type) : l.b.CreateUIToFP(k, type);
@@ -130,7 +130,7 @@ Part floatOfNormalized(Lanes& l, Scalar narrow, const Part& stored) {
 
 /// The nearest of them; of two the even one; NaN gives 0.
 Part normalizedOfFloat(Lanes& l, Scalar narrow, const Part& value) {
-  llvm::Value* const x = l.spread(value);
+  llvm::Value* const x = l.value(value);
   llvm::Type* const type = x->getType();
   const bool isSnorm = narrow == Scalar::Snorm8 || narrow == Scalar::Snorm16;
   llvm::Value* const low = l.number(type, isSnorm ? -1 : 0);
@@ -169,7 +169,7 @@ Part fromNarrow(Lanes& l, Scalar narrow, const Part& stored) {
 }
 Part toNarrow(Lanes& l, Scalar narrow, const Part& carrier) {
   if (carrierOf(narrow) == Scalar::Int) {
-    llvm::Value* const word = l.spread(carrier);
+    llvm::Value* const word = l.value(carrier);
     return {l.b.CreateTrunc(word, l.sameShape(word, l.type(narrow)))};
   }
   return narrow == Scalar::Half ? halfOfFloat(l, asFloat(l, carrier))
@@ -179,7 +179,7 @@ Part toNarrow(Lanes& l, Scalar narrow, const Part& carrier) {
 }  // namespace
 
 Part unary(Lanes& l, UnaryOp op, Scalar scalar, const Part& operand) {
-  llvm::Value* const x = operand.isConsecutive ? l.spread(operand) : operand.value;
+  llvm::Value* const x = l.value(operand);
   switch (op) {
     case UnaryOp::Negate: return {isReal(scalar) ? l.b.CreateFNeg(x) : l.b.CreateNeg(x)};
     case UnaryOp::BitNot:
@@ -204,7 +204,7 @@ Part convert(Lanes& l, Scalar from, Scalar to, const Part& operand) {
   if (isNarrow(to)) return toNarrow(l, to, convert(l, from, carrierOf(to), operand));
   const bool areWords = (from == Scalar::Int || from == Scalar::Uint) && (to == Scalar::Int || to == Scalar::Uint);
   if (areWords) return operand;
-  llvm::Value* const x = operand.isConsecutive ? l.spread(operand) : operand.value;
+  llvm::Value* const x = l.value(operand);
   llvm::Type* const type = l.sameShape(x, l.type(to));
   if (to == Scalar::Bool) {
     llvm::Value* const zero = llvm::Constant::getNullValue(x->getType());
@@ -218,7 +218,7 @@ Part convert(Lanes& l, Scalar from, Scalar to, const Part& operand) {
 }
 
 Part floatOfHalf(Lanes& l, const Part& stored) {
-  llvm::Value* const bits = l.b.CreateZExt(l.spread(stored), l.sameShape(l.spread(stored), l.int32()));
+  llvm::Value* const bits = l.b.CreateZExt(l.value(stored), l.sameShape(l.value(stored), l.int32()));
   llvm::Type* const word = bits->getType();
   llvm::Type* const real = l.sameShape(bits, l.b.getFloatTy());
   llvm::Value* const sign = l.b.CreateShl(l.b.CreateAnd(bits, l.integer(word, 0x8000)), 16);
@@ -235,7 +235,7 @@ Part floatOfHalf(Lanes& l, const Part& stored) {
 }
 
 Part roundedToHalf(Lanes& l, const Part& value) {
-  llvm::Value* const x = l.spread(value);
+  llvm::Value* const x = l.value(value);
   llvm::Type* const real = x->getType();
   llvm::Type* const word = l.sameShape(x, l.int32());
   const auto constant = [&](std::int64_t bits) { return l.integer(word, static_cast<std::int32_t>(bits)); };

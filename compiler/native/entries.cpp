@@ -5,6 +5,7 @@
 
 #include <llvm/IR/Constants.h>
 
+#include "ir/reach.hpp"
 #include "native/debug_info.hpp"
 #include "native/function_code.hpp"
 #include "native/leaves.hpp"
@@ -336,14 +337,14 @@ class EntryWriter {
   llvm::BasicBlock* prologue_ = nullptr;
 };
 
-/// Whether the inputs are of the accumulators' types: it can fold partial results.
-bool combines(const Kernel& kernel) {
+/// Whether it can fold partial results: its inputs are of the accumulators' types, and it does not ask where they are.
+bool combines(const Module& module, const Kernel& kernel) {
   std::vector<Type> inputs, accumulators;
   for (const KernelParam& param : kernel.params) {
     if (param.role == ParamRole::Input) inputs.push_back(param.type);
     if (param.role == ParamRole::Accumulator) accumulators.push_back(param.type);
   }
-  return inputs == accumulators;
+  return inputs == accumulators && !usesPlace(module, kernel);
 }
 
 bool hasIdentities(const Kernel& kernel) {
@@ -358,11 +359,11 @@ llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, EntryK
   return EntryWriter(code, source, name).write(kind);
 }
 
-std::vector<EntryKind> entriesOf(const Module&, const Kernel& kernel) {
+std::vector<EntryKind> entriesOf(const Module& module, const Kernel& kernel) {
   std::vector<EntryKind> kinds;
   if (kernel.reduction) {
     kinds.push_back(EntryKind::Fold);
-    if (combines(kernel)) kinds.push_back(EntryKind::Combine);
+    if (combines(module, kernel)) kinds.push_back(EntryKind::Combine);
     if (hasIdentities(kernel)) kinds.push_back(EntryKind::Identity);
   } else {
     kinds.push_back(EntryKind::Run);

@@ -168,7 +168,7 @@ Part bitsOf(const Formula& f, const Part& x) {
   return {f.l.b.CreateBitCast(narrow.value, f.l.sameShape(x.value, f.l.int32()))};
 }
 Part realOfBits(const Formula& f, const Part& x) {
-  llvm::Value* const bits = f.l.spread(x);
+  llvm::Value* const bits = f.l.value(x);
   llvm::Value* const value = f.l.b.CreateBitCast(bits, f.l.sameShape(bits, f.l.b.getFloatTy()));
   return {f.l.b.CreateFPCast(value, f.l.sameShape(bits, f.l.real()))};
 }
@@ -520,7 +520,7 @@ Parts byComponent(const Formula& f, Intrinsic intrinsic, const std::vector<Intri
     std::vector<Part> x;
     for (const IntrinsicArgument& argument : arguments) {
       const Part& part = argument.parts[argument.parts.size() == 1 ? 0 : i];
-      x.push_back(part.isConsecutive ? Part{f.l.spread(part)} : part);
+      x.push_back({f.l.value(part)});
     }
     result.push_back(component(f, intrinsic, arguments[0].type.scalar, x));
   }

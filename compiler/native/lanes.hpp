@@ -69,6 +69,8 @@ class Lanes {
   /// The value in each lane: a vector, or a scalar where there is one lane.
   llvm::Value* spread(const Part& part) const;
   llvm::Value* spread(llvm::Value* scalar) const;
+  /// A scalar where all lanes share the value, else a vector.
+  llvm::Value* value(const Part& part) const { return part.isConsecutive ? spread(part) : part.value; }
   /// Both with one shape: vectors where one of them is not the same for all lanes.
   void unify(Part& a, Part& c) const;
   void unify(std::vector<Part*> parts) const;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 #include <string_view>
 
 #include "configuration.hpp"
@@ -66,6 +67,12 @@ class DeviceState {
   /// `blocks`: how many there are in each dimension of the domain; one at least.
   virtual void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
                       const Shape& domain, const Shape& blocks, const CallOptions& options) = 0;
+  /// The rounded sums of all blocks, row-major, where the device adds them itself; else the sum is folded to digits.
+  virtual std::optional<std::vector<float>> sumExactly(const program::Reduction&, const program::ExactSum&,
+                                                       std::span<const Argument>, const Shape& /*domain*/,
+                                                       const Shape& /*blocks*/, const CallOptions&) {
+    return std::nullopt;
+  }
 
   DeviceLimits limits;
   Configuration configuration;

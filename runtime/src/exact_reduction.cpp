@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "exact_reduction.hpp"
 
+#include <cstring>
+#include <optional>
 #include <vector>
 
 #include "device_state.hpp"
@@ -15,30 +17,47 @@ using program::Parameter;
 using program::Reduction;
 using program::Role;
 
-/// The digits of one sum: a stream for each accumulator of its fold.
-struct Digits {
+/// One sum: rounded by the device, or its digits, a stream for each accumulator of its fold.
+struct Sum {
+  std::optional<std::vector<float>> rounded;
   std::vector<detail::StreamOwner> streams;
   std::vector<Argument> arguments;
 };
 
-/// Folds to digits, one element for each of the results.
-Digits fold(const ExactSum& sum, std::span<const Argument> plain, const Reduction& reduction,
-            const CheckedReduction& checked, const CallOptions& options) {
+/// Folds to floats or to digits, one element for each of the results.
+Sum fold(const ExactSum& sum, std::span<const Argument> plain, const Reduction& reduction,
+         const CheckedReduction& checked, const CallOptions& options) {
+  Sum made;
+  made.rounded = checked.device.sumExactly(reduction, sum, plain, checked.domain, checked.blocks, options);
+  if (made.rounded) return made;
   std::vector<Argument> all;
   for (std::size_t i = 0; i < plain.size(); ++i) {
     if (reduction.fold.parameters[i].role != Role::Accumulator) all.push_back(plain[i]);
   }
-  Digits digits;
   for (const Parameter& parameter : sum.reduction.fold.parameters) {
     if (parameter.role != Role::Accumulator) continue;
     const Shape& shape = plain[sum.accumulator].region.shape;
-    digits.streams.emplace_back(
+    made.streams.emplace_back(
         checked.device.createStream(*parameter.element, shape, Storage::Single).release());
-    digits.arguments.push_back({.region = detail::wholeRegion(digits.streams.back().get())});
+    made.arguments.push_back({.region = detail::wholeRegion(made.streams.back().get())});
   }
-  all.insert(all.end(), digits.arguments.begin(), digits.arguments.end());
+  all.insert(all.end(), made.arguments.begin(), made.arguments.end());
   checked.device.reduce(sum.reduction, all, checked.domain, checked.blocks, options);
-  return digits;
+  return made;
+}
+
+/// Puts rounded sums in their scalar of each result.
+void store(const ExactSum& sum, const StreamRegion& results, std::span<const float> rounded) {
+  StreamState& stream = *results.stream;
+  const std::size_t size = stream.element->size;
+  std::vector<std::byte> elements(rounded.size() * size);
+  stream.read(results, elements.data());
+  std::byte* scalar = elements.data() + sum.offset;
+  for (const float value : rounded) {
+    std::memcpy(scalar, &value, sizeof value);
+    scalar += size;
+  }
+  stream.write(results, elements.data());
 }
 
 /// Whether nothing is left for the plain form: every scalar of every accumulator is a sum.
@@ -61,7 +80,7 @@ Shape oneBlock(Shape domain) {
 
 void reduceExactly(const Reduction& reduction, std::span<const Argument> arguments,
                    const CheckedReduction& checked, const CallOptions& options) {
-  std::vector<Digits> sums;   // all of them first: a result may be an input
+  std::vector<Sum> sums;   // all of them first: a result may be an input
   for (const ExactSum& sum : reduction.exact) {
     sums.push_back(fold(sum, arguments, reduction, checked, options));
   }
@@ -69,6 +88,10 @@ void reduceExactly(const Reduction& reduction, std::span<const Argument> argumen
     checked.device.reduce(reduction, arguments, checked.domain, checked.blocks, options);
   }
   for (std::size_t k = 0; k < sums.size(); ++k) {
+    if (sums[k].rounded) {
+      store(reduction.exact[k], arguments[reduction.exact[k].accumulator].region, *sums[k].rounded);
+      continue;
+    }
     const Argument result = {.region = arguments[reduction.exact[k].accumulator].region};
     std::vector<Argument> all = {result};
     all.insert(all.end(), sums[k].arguments.begin(), sums[k].arguments.end());

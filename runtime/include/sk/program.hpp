@@ -299,6 +299,14 @@ struct ExactSum;
 /// Elements, or partial results, that a run folds one after the other, at most: as many as exact sums have room for.
 inline constexpr int longestRun = 32;
 
+/// What a sum of floats adds for each element, where the runtime can add it itself: one input, or the product of two. Of an
+/// exact sum it may be a kernel instead, which has all parameters of the fold but accumulators, and then Outputs of one float each:
+/// one for each term, or, where the sum is one of products, two, its factors. A term that an element does not add is -0.
+struct SumTerm {
+  std::span<const std::uint8_t> factors = {};  ///< parameters of the fold: Inputs of one float
+  const Kernel* kernel = nullptr;              ///< where there are no factors
+};
+
 /// A reduction. `fold` is a kernel whose entry takes every Input by value and every Accumulator as `inout`,
 /// among its other parameters, and folds an element into the accumulators. `combine` is one of the same
 /// kind: its Inputs, as many as `fold` has Accumulators and of their types, are the accumulators of a later
@@ -320,6 +328,7 @@ struct Reduction {
   const WideReduction* wide = nullptr;
   std::span<const ExactSum> exact = {};  ///< one for each scalar of the accumulators that is a sum of floats
   bool commutative = false;  ///< elements may be folded in any order: by operators that are known
+  SumTerm term = {};  ///< its factors, where it does nothing but sum such a term to one float
 };
 
 /// A reduction whose accumulators are doubles. `finish` takes them as Inputs and has the results as Outputs, which
@@ -353,6 +362,9 @@ struct ExactSum {
   Reduction reduction;
   Kernel finish;
   std::uint8_t accumulator;  ///< a parameter of the plain fold
+  std::uint32_t offset = 0;  ///< of the scalar: bytes from the accumulator's start in host memory
+  bool ofProducts = false;   ///< its terms are products of two floats, which are added as they are
+  SumTerm term = {};         ///< null where an element may add any number of terms
 };
 
 }  // namespace sk::program

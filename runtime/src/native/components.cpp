@@ -69,7 +69,8 @@ void move(const Values<const std::byte>& from, const Values<std::byte>& to, std:
   }
 }
 
-/// What a scalar takes in an array.
+}  // namespace
+
 std::size_t storedBytes(Scalar scalar, RealType real) {
   const bool isReal = scalar == Scalar::Float || (scalar == Scalar::Double && real == RealType::Quad);
   if (!isReal) return program::hostBytes(scalar);
@@ -77,8 +78,6 @@ std::size_t storedBytes(Scalar scalar, RealType real) {
          : real == RealType::Double ? sizeof(double)
                                     : sizeof(native::Quad);
 }
-
-}  // namespace
 
 std::vector<ComponentType> componentsOf(const program::Element& element, RealType real) {
   std::vector<ComponentType> components;

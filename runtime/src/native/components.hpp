@@ -24,6 +24,8 @@ struct ComponentType {
   std::size_t storedBytes;
   program::Scalar scalar;
 };
+/// What a scalar takes in an array.
+std::size_t storedBytes(program::Scalar scalar, RealType real);
 std::vector<ComponentType> componentsOf(const program::Element& element, RealType real);
 
 /// Where values of some bytes lie, one each stride.

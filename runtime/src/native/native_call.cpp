@@ -11,9 +11,13 @@
 #include "check_argument.hpp"
 #include "iterator.hpp"
 #include "native/collapse.hpp"
+#include "native/entries.hpp"
+#include "native/fold_code.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
 #include "native/native_trace.hpp"
+#include "native/run_code.hpp"
+#include "native/sum_exactly.hpp"
 #include "precision.hpp"
 
 namespace sk {
@@ -256,7 +260,8 @@ class Folding {
           const Shape& domain, std::vector<native::Table> foldTables,
           std::vector<native::Table> combineTables)
       : fold(real, reduction.fold, arguments, domain, std::move(foldTables)),
-        code_(codeOf(*reduction.native, real)),
+        real_(real),
+        reduction_(reduction),
         combineTables_(std::move(combineTables)) {
     for (const std::uint8_t operand : reduction.combineOperands) {
       combine_.push_back(fold.list()[operand]);
@@ -266,14 +271,26 @@ class Folding {
 
   void run(Extents block) {
     const native::Call whole = fold.call(block);
-    code_.run({whole, {combine_, {1, 1, 1, 1}, combineTables_}, block});
+    const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block};
+    if (reduction_.fold.code != nullptr) {
+      foldCode(reduction_, call, {.real = real_});
+    } else {
+      codeOf(*reduction_.native, real_).run(call);
+    }
   }
   void storeIdentity() {
-    code_.identity({fold.callAsItIs(), {combine_, {1, 1, 1, 1}, combineTables_}, {1, 1, 1, 1}});
+    const native::Call whole = fold.callAsItIs();
+    if (reduction_.fold.code != nullptr) {
+      storeIdentities(reduction_, whole, {.real = real_});
+    } else {
+      codeOf(*reduction_.native, real_)
+          .identity({whole, {combine_, {1, 1, 1, 1}, combineTables_}, {1, 1, 1, 1}});
+    }
   }
 
  private:
-  const program::NativeReduction::Code& code_;
+  RealType real_;
+  const program::Reduction& reduction_;
   std::vector<native::Table> combineTables_;
   std::vector<Operand> combine_;
 };
@@ -319,7 +336,11 @@ void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments
   Operands operands(real, kernel, arguments, domain, tablesOf(kernel, real, options));
   {
     const NativePass traced(*this, kernel, {}, arguments, domain);
-    codeOf(*kernel.native, real)(operands.call());
+    if (kernel.code != nullptr) {
+      runCode(kernel, operands.call(), {.real = real});
+    } else {
+      codeOf(*kernel.native, real)(operands.call());
+    }
   }
   operands.settle();
 }
@@ -390,6 +411,33 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
     folding.storeIdentity();
   }
   folding.fold.settle();
+}
+
+std::optional<std::vector<float>> NativeDevice::sumExactly(const program::Reduction& reduction,
+                                                           const program::ExactSum& sum,
+                                                           std::span<const Argument> arguments,
+                                                           const Shape& domain, const Shape& blocks,
+                                                           const CallOptions& options) {
+  const bool hasTerm = sum.term.kernel != nullptr || !sum.term.factors.empty();
+  if (reduction.fold.code == nullptr || !hasTerm) return std::nullopt;
+  const Kernel& kernel = kernelOfTerm(reduction, sum);
+  std::vector<Argument> all;
+  if (sum.term.kernel == nullptr) {
+    all.assign(arguments.begin(), arguments.end());
+  } else {
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      if (reduction.fold.parameters[i].role != Role::Accumulator) all.push_back(arguments[i]);
+    }
+    all.resize(kernel.parameters.size());  // its outputs are looked at and never stored
+  }
+  const RealType real = realOf(options);
+  Operands operands(real, kernel, all, domain, tablesOf(kernel, real, options));
+  const Extents counts = fastestFirst(blocks);
+  Extents block = fastestFirst(domain);
+  for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
+  const NativePass traced(*this, kernel, "fold", all, domain);
+  const native::Call call = operands.call(block);
+  return sk::sumExactly(reduction, sum, call, block, {.real = real});
 }
 
 }  // namespace sk

@@ -5,6 +5,7 @@
 
 #include "check_argument.hpp"
 #include "copy_bandwidth.hpp"
+#include "native/entries.hpp"
 #include "native/native_stream.hpp"
 
 namespace sk {
@@ -17,6 +18,10 @@ namespace {
 
 [[noreturn]] void failWithoutQuad(const program::Kernel& kernel) {
   fail(kernel, "it has no native code in __float128; compile its .sk file with skc --quad");
+}
+
+void checkCode(const program::Kernel& kernel, RealType real) {
+  if (real == RealType::Quad && !hasCodeFor(*kernel.code, real)) failWithoutQuad(kernel);
 }
 
 }  // namespace
@@ -47,6 +52,10 @@ NativeDevice::~NativeDevice() {
 }
 
 void NativeDevice::checkProgram(const program::Kernel& kernel) {
+  if (kernel.code != nullptr) {
+    checkCode(kernel, real_);
+    return;
+  }
   if (kernel.native == nullptr) {
     failWithoutCode(kernel);
   }
@@ -56,6 +65,10 @@ void NativeDevice::checkProgram(const program::Kernel& kernel) {
 }
 
 void NativeDevice::checkProgram(const program::Reduction& reduction) {
+  if (reduction.fold.code != nullptr) {
+    checkCode(reduction.fold, real_);
+    return;
+  }
   if (reduction.native == nullptr) {
     failWithoutCode(reduction.fold);
   }

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "native/code_frame.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "native/scalars.hpp"
+
+namespace sk {
+
+namespace {
+
+using native::Argument;
+using native::Operand;
+using program::Role;
+
+bool isEmpty(const Operand& operand) {
+  return operand.components.empty() || std::ranges::count(operand.extent, 0) > 0;
+}
+
+bool isSmall(const Operand& operand) {
+  std::int64_t last = operand.first;
+  for (std::size_t d = 0; d < 4; ++d) last += (operand.extent[d] - 1) * operand.stride[d];
+  return last <= std::numeric_limits<std::int32_t>::max();
+}
+
+Argument argumentOf(const Operand& operand) {
+  Argument argument{};
+  argument.components = operand.components.empty() ? nullptr : operand.components.data();
+  argument.first = operand.first;
+  std::ranges::copy(operand.extent, argument.extent);
+  std::ranges::copy(operand.stride, argument.stride);
+  std::ranges::copy(operand.multiply, argument.multiply);
+  std::ranges::copy(operand.divide, argument.divide);
+  argument.countsElements = operand.countsElements ? 1 : 0;
+  argument.isSmall = isSmall(operand) ? 1 : 0;
+  return argument;
+}
+
+}  // namespace
+
+CodeFrame::CodeFrame(const program::Kernel& kernel, const native::Call& call)
+    : frame_{.arguments = nullptr,
+             .domain = {call.domain[0], call.domain[1], call.domain[2], call.domain[3]},
+             .tables = call.tables.empty() ? nullptr : call.tables.data()} {
+  arguments_.reserve(call.operands.size());
+  for (std::size_t i = 0; i < call.operands.size(); ++i) {
+    const program::Parameter& parameter = kernel.parameters[i];
+    // object code brings the indices of a gather inside and then reads, also where its stream is left out
+    if (parameter.role == Role::Gather && isEmpty(call.operands[i])) {
+      Argument& zero = arguments_.emplace_back(argumentOf({}));
+      zero.stride[0] = 1;
+      zero.components = zeroArrays(kernel);
+    } else {
+      arguments_.push_back(argumentOf(call.operands[i]));
+    }
+  }
+  frame_.arguments = arguments_.data();
+}
+
+/// One element of zeros, for any gather of the kernel.
+void* const* CodeFrame::zeroArrays(const program::Kernel& kernel) {
+  alignas(mostScalarBytes) static constexpr std::byte zero[mostScalarBytes] = {};
+  if (zeroArrays_.empty()) {
+    std::size_t most = 0;
+    for (const program::Parameter& parameter : kernel.parameters) {
+      most = std::max(most, scalarsOf(*parameter.element));
+    }
+    zeroArrays_.resize(most, const_cast<std::byte*>(zero));
+  }
+  return zeroArrays_.data();
+}
+
+}  // namespace sk

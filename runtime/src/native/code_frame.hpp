@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// The operands of a call as object code takes them (sk/native/code.hpp).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sk/native/call.hpp"
+#include "sk/native/code.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+/// A Frame with its Arguments, one for each parameter of the kernel. What the operands point to must outlive it.
+class CodeFrame {
+ public:
+  CodeFrame(const program::Kernel& kernel, const native::Call& call);
+  CodeFrame(const CodeFrame&) = delete;
+  CodeFrame& operator=(const CodeFrame&) = delete;
+
+  const native::Frame* get() const { return &frame_; }
+  std::span<const native::Argument> arguments() const { return arguments_; }
+
+ private:
+  void* const* zeroArrays(const program::Kernel& kernel);
+
+  std::vector<native::Argument> arguments_;
+  std::vector<void*> zeroArrays_;
+  native::Frame frame_;
+};
+
+}  // namespace sk

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+//
+// Chooses among the functions that an object file has for a kernel: the newest generation of the CPU that this machine runs,
+// in the call's real type.
+#pragma once
+
+#include <cstdint>
+
+#include "native/components.hpp"
+#include "sk/native/code.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+/// What a call asks of a kernel's object code.
+struct CodeChoice {
+  RealType real = RealType::Float;
+  bool mayContract = false;  ///< multiplications and additions may be fused
+};
+
+/// The newest generation that this CPU runs.
+native::Level levelOfCpu();
+
+/// The best entry of a kind for a CPU of that level; null where there is none.
+const native::Entry* findEntry(const native::Code& code, native::EntryKind kind, const CodeChoice& choice,
+                               native::Level level = levelOfCpu());
+
+/// Whether some entry is for this real type, whatever the CPU.
+bool hasCodeFor(const native::Code& code, RealType real);
+
+/// The best entry of a kind for this CPU. Throws sk::Error where the code is of another version, or has no entry that runs here.
+const native::Entry& entryOf(const program::Kernel& kernel, native::EntryKind kind, const CodeChoice& choice,
+                             native::Level level = levelOfCpu());
+
+/// An entry's function, by the type that code.hpp gives for its kind.
+template <class Function>
+Function* functionOf(const native::Entry& entry) {
+  return reinterpret_cast<Function*>(entry.function);
+}
+
+}  // namespace sk

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: MIT
+//
+// Of a block of terms, each is cut at the same bit, by adding and taking away a large number; what is above adds up in doubles without
+// rounding, and so does what is below, cut once more (ExtractVector: Rump, Ogita and Oishi, Accurate floating-point summation, SIAM J.
+// Sci. Comput. 31, 2008). What then still is left of a term is added to the digits by itself.
+#include "native/exact_accumulator.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "native/entries.hpp"
+#include "native/float_vectors.hpp"
+
+namespace sk {
+
+namespace {
+
+constexpr int digitBits = 26;
+constexpr std::int64_t digitMask = (std::int64_t{1} << digitBits) - 1;
+constexpr std::uint32_t infinityBits = 0x7f800000;
+
+constexpr int together = 16;  ///< terms that go through the loops side by side
+constexpr int mostInBlock = 1024;
+constexpr int bitsOfMost = 10;
+
+int blockAt(std::int64_t left) {
+  return static_cast<int>(std::min<std::int64_t>(left - left % together, mostInBlock));
+}
+
+bool hasVectors() {
+#if defined(__x86_64__)
+  return levelOfCpu() >= native::Level::V3;
+#else
+  return true;
+#endif
+}
+
+std::uint32_t magnitudeOf(float x) { return std::bit_cast<std::uint32_t>(x) & 0x7fffffff; }
+
+/// The largest magnitude, as bits: beyond those of infinity where there is a NaN.
+SK_FOR_V3 std::uint32_t largestOf(const float* x, int count) {
+  std::uint32_t largest = 0;
+  for (int i = 0; i < count; ++i) {
+    largest = std::max(largest, std::bit_cast<std::uint32_t>(x[i]) & 0x7fffffff);
+  }
+  return largest;
+}
+
+/// What adding this and taking it away again cuts numbers below 2^exponent at, so that the upper parts of a block add up exactly.
+double cutterFor(int exponent) { return std::ldexp(1.5, exponent + bitsOfMost); }
+/// Below which power of 2 the lower parts then are.
+int below(int exponent) { return exponent + bitsOfMost - 52; }
+
+double cut(double x, double cutter) { return (x + cutter) - cutter; }
+template <class... Floats>
+double restOf(double upper, double lower, Floats... x) {
+  const double term = (double{x} * ...);
+  const double rest = term - cut(term, upper);
+  return rest - cut(rest, lower);
+}
+
+SK_FOR_V3 void termsAt(int i, Doubles& terms, const float* x) { widen(x + i, terms); }
+SK_FOR_V3 void termsAt(int i, Doubles& terms, const float* x, const float* y) {
+  Doubles others;
+  widen(x + i, terms);
+  widen(y + i, others);
+  terms *= others;
+}
+
+/// Adds up both parts of each term; false if there is more than these.
+template <class... Factors>
+SK_FOR_V3 bool addParts(int count, double upper, double lower, double (&sums)[2], const Factors*... x) {
+  constexpr int vectors = together / doublesPerVector;
+  const Doubles one{upper, upper, upper, upper};
+  const Doubles two{lower, lower, lower, lower};
+  Doubles highs[vectors] = {};
+  Doubles lows[vectors] = {};
+  Words left[vectors] = {};
+  for (int i = 0; i < count; i += together) {
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v) {
+      Doubles term;
+      termsAt(i + v * doublesPerVector, term, x...);
+      const Doubles high = (term + one) - one;
+      const Doubles rest = term - high;
+      const Doubles low = (rest + two) - two;
+      highs[v] += high;
+      lows[v] += low;
+      left[v] |= (Words)(rest - low);
+    }
+  }
+  sums[0] = sums[1] = 0;
+  std::int64_t all = 0;
+  for (int v = 0; v < vectors; ++v) {
+    for (int k = 0; k < doublesPerVector; ++k) {
+      sums[0] += highs[v][k];
+      sums[1] += lows[v][k];
+      all |= left[v][k];
+    }
+  }
+  return all == 0;
+}
+
+/// The float nearest to an integer of digits that are settled and not negative; its bit `base` stands for 2^-149.
+float nearestFloat(const std::int64_t* digits, int count, bool isNegative, int base) {
+  const auto digit = [&](int k) { return k < 0 ? std::uint64_t{0} : static_cast<std::uint64_t>(digits[k]); };
+  int top = count - 1;
+  while (top >= 0 && digits[top] == 0) --top;
+  if (top < 0) return 0;
+  const std::uint64_t last = digit(top) << digitBits | digit(top - 1);
+  const int width = std::bit_width(last);
+  const int first = digitBits * (top - 1);  // the integer's bit that is the lowest of `last`
+  const int unit = std::max(first + width - 24, base);
+  const int shift = std::min(unit - first, 54);
+  auto mantissa = static_cast<std::uint32_t>(last >> shift);
+  bool isMore = (last & ((std::uint64_t{1} << (shift - 1)) - 1)) != 0;
+  for (int k = 0; k < top - 1; ++k) isMore = isMore || digits[k] != 0;
+  const bool isHalf = (last >> (shift - 1) & 1) != 0;
+  if (isHalf && (isMore || (mantissa & 1) != 0)) ++mantissa;
+  const std::uint32_t bits = (static_cast<std::uint32_t>(std::min(unit - base, 254)) << 23) + mantissa;
+  return std::bit_cast<float>(std::min(bits, infinityBits) | (isNegative ? 0x80000000U : 0U));
+}
+
+/// Makes all digits but the last ones of 26 bits, with the same sum.
+void settle(std::int64_t* digits, int count) {
+  for (int k = 0; k + 1 < count; ++k) {
+    digits[k + 1] += digits[k] >> digitBits;
+    digits[k] &= digitMask;
+  }
+}
+
+}  // namespace
+
+void ExactAccumulator::add(std::int64_t count, const float* x) {
+  if (digitCount_ == mostDigits) {
+    static constexpr float one = 1;
+    for (std::int64_t i = 0; i < count; ++i) addAll(1, x + i, &one);
+  } else {
+    addAll(count, x);
+  }
+}
+
+void ExactAccumulator::add(std::int64_t count, const float* x, const float* y) { addAll(count, x, y); }
+
+void ExactAccumulator::add(const ExactAccumulator& other) {
+  for (int k = 0; k < digitCount_; ++k) digits_[k] += other.digits_[k];
+  flags_ |= other.flags_;
+}
+
+template <class... Factors>
+void ExactAccumulator::addAll(std::int64_t count, const Factors*... x) {
+  std::int64_t first = 0;
+  if (hasVectors()) {
+    for (; count - first >= together; first += blockAt(count - first)) {
+      addBlock(blockAt(count - first), (x + first)...);
+    }
+  }
+  for (; first < count; ++first) addOne(x[first]...);
+}
+
+template <class... Factors>
+void ExactAccumulator::addBlock(int count, const Factors*... x) {
+  const std::uint32_t largest[] = {largestOf(x, count)...};
+  int exponent = 0;  // all terms are below this power of 2
+  bool isPlain = true;
+  for (const std::uint32_t bits : largest) {
+    isPlain = isPlain && bits != 0 && bits < infinityBits;
+    exponent += std::max(static_cast<int>(bits >> 23), 1) - 126;
+  }
+  if (!isPlain) {
+    for (int i = 0; i < count; ++i) addOne(x[i]...);
+    return;
+  }
+  flags_ |= HasOther;
+  const double upper = cutterFor(exponent);
+  const double lower = cutterFor(below(exponent));
+  double sums[2];
+  if (!addParts(count, upper, lower, sums, x...)) {
+    for (int i = 0; i < count; ++i) addWhole(restOf(upper, lower, x[i]...));
+  }
+  for (const double sum : sums) addWhole(sum);
+}
+
+void ExactAccumulator::addOne(float x) {
+  const std::uint32_t magnitude = magnitudeOf(x);
+  if (magnitude > infinityBits) {
+    flags_ |= HasNaN;
+  } else if (magnitude == infinityBits) {
+    flags_ |= std::signbit(x) ? HasNegativeInfinity : HasInfinity;
+  } else {
+    flags_ |= magnitude == 0 && std::signbit(x) ? 0U : HasOther;
+    addWhole(x);
+  }
+}
+
+void ExactAccumulator::addOne(float x, float y) {
+  const std::uint32_t low = std::min(magnitudeOf(x), magnitudeOf(y));
+  const std::uint32_t high = std::max(magnitudeOf(x), magnitudeOf(y));
+  const bool isNegative = std::signbit(x) != std::signbit(y);
+  if (high > infinityBits || (high == infinityBits && low == 0)) {
+    flags_ |= HasNaN;
+  } else if (high == infinityBits) {
+    flags_ |= isNegative ? HasNegativeInfinity : HasInfinity;
+  } else {
+    flags_ |= low == 0 && isNegative ? 0U : HasOther;
+    addWhole(double{x} * double{y});
+  }
+}
+
+/// A multiple of the unit.
+void ExactAccumulator::addWhole(double x) {
+  if (x == 0) return;
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  std::uint64_t mantissa = (bits & ((std::uint64_t{1} << 52) - 1)) | std::uint64_t{1} << 52;
+  int at = static_cast<int>(bits >> 52 & 2047) - 1075 - unit();
+  if (at < 0) {  // zeros
+    mantissa >>= -at;
+    at = 0;
+  }
+  const int shift = at % digitBits;
+  const std::uint64_t rest = mantissa >> (digitBits - shift);
+  const std::int64_t sign = x < 0 ? -1 : 1;
+  std::int64_t* const digit = digits_ + at / digitBits;
+  digit[0] += sign * (static_cast<std::int64_t>(mantissa << shift) & digitMask);
+  digit[1] += sign * (static_cast<std::int64_t>(rest) & digitMask);
+  digit[2] += sign * static_cast<std::int64_t>(rest >> digitBits);
+}
+
+float ExactAccumulator::rounded() const {
+  constexpr std::uint32_t both = HasInfinity | HasNegativeInfinity;
+  if ((flags_ & HasNaN) != 0 || (flags_ & both) == both) return std::numeric_limits<float>::quiet_NaN();
+  if ((flags_ & both) != 0) {
+    const float infinity = std::numeric_limits<float>::infinity();
+    return (flags_ & HasInfinity) != 0 ? infinity : -infinity;
+  }
+  if ((flags_ & HasOther) == 0) return -0.0F;
+  std::int64_t digits[mostDigits];
+  std::copy_n(digits_, digitCount_, digits);
+  settle(digits, digitCount_);
+  const bool isNegative = digits[digitCount_ - 1] < 0;
+  if (isNegative) {
+    for (int k = 0; k < digitCount_; ++k) digits[k] = -digits[k];
+    settle(digits, digitCount_);
+  }
+  return nearestFloat(digits, digitCount_, isNegative, -149 - unit());
+}
+
+}  // namespace sk

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "native/fold_code.hpp"
+
+#include <vector>
+
+#include "native/code_frame.hpp"
+#include "native/fold_program.hpp"
+#include "native/sum_floats.hpp"
+
+namespace sk {
+
+namespace {
+
+using native::Entry;
+using native::EntryKind;
+
+template <class Function>
+Bound<Function> bound(const Entry& entry, const CodeFrame& frame) {
+  return {functionOf<Function>(entry), entry.lanes, frame.get()};
+}
+
+}  // namespace
+
+void foldCode(const program::Reduction& reduction, const native::ReduceCall& call, const CodeChoice& choice) {
+  if (sumsFloats(reduction, call.fold, choice)) {
+    sumFloats(reduction, call, choice);
+    return;
+  }
+  const Entry& fold = entryOf(reduction.fold, EntryKind::Fold, choice);
+  const Entry& combine = entryOf(reduction.combine, EntryKind::Combine, choice);
+  const CodeFrame frame(reduction.fold, call.fold);
+  const CodeFrame combineFrame(reduction.combine, call.combine);
+  const SlotLayout layout(reduction.fold, call.fold, frame, choice);
+  const StateShape shape(reduction.fold.parameters, choice.real);
+  const FoldResults results(reduction.fold.parameters, call.fold.operands, shape);
+  foldBlocks({.layout = layout,
+              .shape = shape,
+              .fold = bound<native::FoldFunction>(fold, frame),
+              .combine = bound<native::CombineFunction>(combine, combineFrame),
+              .isCommutative = reduction.commutative,
+              .isUneven = reduction.fold.code->isUneven != 0},
+             call.fold.domain, call.block, results);
+}
+
+void storeIdentities(const program::Reduction& reduction, const native::Call& call,
+                     const CodeChoice& choice) {
+  const CodeFrame frame(reduction.fold, call);
+  const StateShape shape(reduction.fold.parameters, choice.real);
+  const StateColumns identities(shape, 1);
+  const Entry& entry = entryOf(reduction.fold, EntryKind::Identity, choice);
+  functionOf<native::ValuesFunction>(entry)(frame.get(), identities.arrays());
+  FoldResults(reduction.fold.parameters, call.operands, shape).store({}, identities, 1);
+}
+
+}  // namespace sk

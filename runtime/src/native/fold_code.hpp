@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+//
+// Runs reductions that skc compiled to object code.
+#pragma once
+
+#include "native/entries.hpp"
+#include "sk/native/call.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+/// Folds each block of the domain to one element of the accumulators' operands. No block is empty; the fold's code is not null.
+/// Throws sk::Error where this CPU runs none of it.
+void foldCode(const program::Reduction& reduction, const native::ReduceCall& call, const CodeChoice& choice);
+
+/// Where there is no element: writes the identities to the first element of the accumulators' operands.
+void storeIdentities(const program::Reduction& reduction, const native::Call& call, const CodeChoice& choice);
+
+}  // namespace sk

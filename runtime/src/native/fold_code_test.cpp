@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+//
+// Reductions whose object code is written by hand: their bits are those of the templates, which fold in an order of their own, and
+// they fold everything once and in order.
+#include "native/fold_code.hpp"
+
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "native/object_code_test.hpp"
+#include "native/template_folds_test.hpp"
+
+namespace sk::test {
+namespace {
+
+using native::Chunk;
+using native::EntryKind;
+using native::Extents;
+using native::Frame;
+using native::Operand;
+using program::Role;
+
+/// fold(column, element number) for all elements of a fold, whole groups of columns.
+template <class Fold>
+void forAll(std::int64_t columns, std::int64_t rounds, Fold&& fold) {
+  for (std::int64_t round = 0; round < rounds; ++round) {
+    for (std::int64_t k = 0; k < inGroups(columns); ++k) fold(k, round, round * columns + k);
+  }
+}
+
+void sumFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_t columns, std::int64_t rounds,
+             std::int64_t starts) {
+  auto* total = static_cast<float*>(state[0]);
+  const auto* x = arrayOf<float>(chunk, 0);
+  forAll(columns, rounds, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
+    total[k] = (starts != 0 && round == 0 ? 0 : total[k]) + x[i];
+  });
+}
+void sumCombine(const Frame*, void* const* state, void* const* later, std::int64_t columns) {
+  for (std::int64_t k = 0; k < inGroups(columns); ++k) {
+    static_cast<float*>(state[0])[k] += static_cast<float*>(later[0])[k];
+  }
+}
+
+void orderFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_t columns,
+               std::int64_t rounds, std::int64_t starts) {
+  auto* last = static_cast<float*>(state[0]);
+  const auto* x = arrayOf<float>(chunk, 0);
+  forAll(columns, rounds, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
+    last[k] = starts != 0 && round == 0 ? x[i] : last[k] * 0.75F + x[i];
+  });
+}
+void orderCombine(const Frame*, void* const* state, void* const* later, std::int64_t columns) {
+  for (std::int64_t k = 0; k < inGroups(columns); ++k) {
+    float& last = static_cast<float*>(state[0])[k];
+    last = last * 0.75F + static_cast<float*>(later[0])[k];
+  }
+}
+
+void pairFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_t columns, std::int64_t rounds,
+              std::int64_t starts) {
+  auto* total = static_cast<float*>(state[0]);
+  auto* last = static_cast<float*>(state[1]);
+  const auto* x = arrayOf<float>(chunk, 0);
+  forAll(columns, rounds, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
+    const bool isNew = starts != 0 && round == 0;
+    total[k] = (isNew ? 0 : total[k]) + x[i];
+    last[k] = x[i] + 0.5F * (isNew ? 1 : last[k]);
+  });
+}
+void pairCombine(const Frame*, void* const* state, void* const* later, std::int64_t columns) {
+  for (std::int64_t k = 0; k < inGroups(columns); ++k) {
+    static_cast<float*>(state[0])[k] += static_cast<float*>(later[0])[k];
+    float& last = static_cast<float*>(state[1])[k];
+    last = static_cast<float*>(later[1])[k] + 0.5F * last;
+  }
+}
+
+template <class Real>
+void zero(const Frame*, void* const* values) {
+  *static_cast<Real*>(values[0]) = 0;
+}
+
+/// A reduction of floats, whose combine has the same parameters.
+struct TestReduction {
+  TestKernel fold, combine;
+  program::Reduction reduction{};
+
+  TestReduction(int inputs, int accumulators, bool isCommutative) {
+    for (int i = 0; i < inputs; ++i) fold.add(Role::Input);
+    for (int i = 0; i < inputs; ++i) fold.slot(static_cast<std::uint8_t>(i));
+    for (int i = 0; i < accumulators; ++i) fold.add(Role::Accumulator);
+    reduction.commutative = isCommutative;
+  }
+  const program::Reduction& finish() {
+    reduction.fold = fold.finish();
+    reduction.combine = combine.finish();
+    return reduction;
+  }
+};
+
+struct Shaped {
+  Extents domain, block;
+};
+
+/// Blocks of every kind: one piece and several, whole rows and parts, rests, narrow ones; and the way that streams lie.
+const Shaped shapes[] = {
+    {{1, 1, 1, 1}, {1, 1, 1, 1}},         {{63, 1, 1, 1}, {63, 1, 1, 1}},
+    {{1100, 1, 1, 1}, {1100, 1, 1, 1}},   {{200003, 1, 1, 1}, {200003, 1, 1, 1}},
+    {{30, 50, 1, 1}, {30, 50, 1, 1}},     {{100, 700, 1, 1}, {100, 700, 1, 1}},
+    {{37, 9, 5, 3}, {37, 9, 5, 3}},       {{1093, 20, 1, 1}, {1093, 1, 1, 1}},
+    {{20000, 3, 1, 1}, {20000, 1, 1, 1}}, {{333, 70, 1, 1}, {1, 70, 1, 1}},
+    {{1000, 40, 1, 1}, {2, 2, 1, 1}},     {{1200, 33, 2, 1}, {4, 3, 2, 1}},
+    {{5000, 2, 1, 1}, {8, 1, 1, 1}},      {{90, 60, 1, 1}, {30, 20, 1, 1}},
+};
+
+Extents blocksOf(const Shaped& shape) {
+  Extents blocks;
+  for (std::size_t d = 0; d < 4; ++d) blocks[d] = shape.domain[d] / shape.block[d];
+  return blocks;
+}
+
+std::int64_t sizeOf(const Extents& extents) { return extents[0] * extents[1] * extents[2] * extents[3]; }
+
+enum class Lie { Dense, Strided, Repeated, InRows };
+
+struct Reduced {
+  int inputs = 1;
+  int results = 1;
+  std::size_t resultBytes = sizeof(float);
+  bool holdsFloats = false;
+};
+
+/// The bytes of all results.
+template <class Reduce>
+std::vector<std::vector<std::byte>> results(const Reduced& what, const Shaped& shape, Lie lie,
+                                            Reduce&& reduce) {
+  const Extents blocks = blocksOf(shape);
+  std::vector<std::vector<float>> inputs;
+  for (int i = 0; i < what.inputs; ++i) {
+    inputs.push_back(someFloats(3 * sizeOf(shape.domain) + 100 * shape.domain[1] * shape.domain[2], i + 1));
+    for (float& x : inputs.back()) x *= 0.123F;  // so that sums round
+  }
+  std::vector<std::vector<std::byte>> outputs(
+      static_cast<std::size_t>(what.results),
+      std::vector<std::byte>(static_cast<std::size_t>(sizeOf(blocks)) * what.resultBytes));
+  TestOperands operands;
+  for (std::vector<float>& input : inputs) {
+    Operand& operand = operands.add(input, shape.domain);
+    operand.holdsFloats = what.holdsFloats;
+    if (lie == Lie::Strided) operand.multiply = {3, 1, 1, 1};
+    if (lie == Lie::Repeated) operand.multiply[0] = 0;
+    if (lie == Lie::InRows) operand.stride[1] += 9;
+  }
+  for (auto& output : outputs) operands.add(output, blocks);
+  reduce(native::ReduceCall{operands.call(shape.domain), {{}, {1, 1, 1, 1}, {}}, shape.block});
+  return outputs;
+}
+
+void checkBits(const Reduced& what, const program::Reduction& reduction, RealType real,
+               void (*expected)(const native::ReduceCall&)) {
+  for (const Shaped& shape : shapes) {
+    for (const Lie lie : {Lie::Dense, Lie::Strided, Lie::Repeated, Lie::InRows}) {
+      CAPTURE(shape.domain[0], shape.domain[1], shape.block[0], shape.block[1], static_cast<int>(lie));
+      CHECK(results(what, shape, lie, [&](const native::ReduceCall& call) {
+              foldCode(reduction, call, {.real = real});
+            }) == results(what, shape, lie, expected));
+    }
+  }
+}
+
+TEST_CASE("sums of floats have the bits of the templates") {
+  TestReduction sum(1, 1, true);
+  sum.fold.entries = {entry(EntryKind::Fold, &sumFold)};
+  sum.combine.entries = {entry(EntryKind::Combine, &sumCombine)};
+  checkBits({}, sum.finish(), RealType::Float, &templateSum);
+}
+
+TEST_CASE("folds in order have the bits of the templates") {
+  TestReduction order(1, 1, false);
+  order.fold.entries = {entry(EntryKind::Fold, &orderFold)};
+  order.combine.entries = {entry(EntryKind::Combine, &orderCombine)};
+  checkBits({}, order.finish(), RealType::Float, &templateInOrder);
+}
+
+TEST_CASE("two accumulators have the bits of the templates") {
+  TestReduction pair(1, 2, true);
+  pair.fold.entries = {entry(EntryKind::Fold, &pairFold)};
+  pair.combine.entries = {entry(EntryKind::Combine, &pairCombine)};
+  checkBits({.results = 2}, pair.finish(), RealType::Float, &templatePair);
+}
+
+TEST_CASE("sums of floats in doubles have the bits of the templates") {
+  TestReduction sum(1, 1, true);
+  sum.fold.entries = {entry(EntryKind::Identity, &zero<double>, native::Real::Double)};
+  const std::uint8_t factors[] = {0};
+  sum.reduction.term = {.factors = factors};
+  checkBits({.resultBytes = sizeof(double), .holdsFloats = true}, sum.finish(), RealType::Double,
+            &templateSumInDoubles);
+}
+
+TEST_CASE("sums of products of floats in doubles have the bits of the templates") {
+  TestReduction dot(2, 1, true);
+  dot.fold.entries = {entry(EntryKind::Identity, &zero<double>, native::Real::Double)};
+  const std::uint8_t factors[] = {0, 1};
+  dot.reduction.term = {.factors = factors};
+  checkBits({.inputs = 2, .resultBytes = sizeof(double), .holdsFloats = true}, dot.finish(), RealType::Double,
+            &templateDotInDoubles);
+}
+
+TEST_CASE("identities are stored where there is no element, in arrays of their own type") {
+  TestReduction sum(1, 1, true);
+  sum.fold.entries = {entry(EntryKind::Identity, &zero<float>)};
+  std::vector<float> x, r{5};
+  TestOperands operands;
+  operands.add(x, {0, 1, 1, 1});
+  operands.add(r, {1, 1, 1, 1});
+  storeIdentities(sum.finish(), operands.call({0, 1, 1, 1}), {});
+  CHECK(r[0] == 0);
+}
+
+// ---- folds that know where they are ---------------------------------------------------------------
+
+/// Sums x times (1 + its index), modulo 2^32; and the neighbour to the right of each element.
+void placeFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_t columns,
+               std::int64_t rounds, std::int64_t starts) {
+  auto* total = static_cast<std::uint32_t*>(state[0]);
+  const auto* x = arrayOf<float>(chunk, 0);
+
+  forAll(columns, rounds, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
+    const std::int64_t index = chunk->first[0] + i * chunk->step + 1000 * chunk->first[1];
+    auto term = static_cast<std::uint32_t>(static_cast<std::int64_t>(x[i]) * (1 + index));
+    term += static_cast<std::uint32_t>(static_cast<std::int64_t>(arrayOf<float>(chunk, 1)[i + 1]));
+    total[k] = (starts != 0 && round == 0 ? 0 : total[k]) + term;
+  });
+}
+void addWords(const Frame*, void* const* state, void* const* later, std::int64_t columns) {
+  for (std::int64_t k = 0; k < inGroups(columns); ++k) {
+    static_cast<std::uint32_t*>(state[0])[k] += static_cast<std::uint32_t*>(later[0])[k];
+  }
+}
+
+TEST_CASE("a fold knows the index and the neighbours of each element, in blocks of every shape") {
+  TestKernel fold, combine;
+  fold.add(Role::Input);
+  program::Parameter& gather = fold.add(Role::Gather);
+  gather.rank = 2;
+  gather.usesNear = true;
+  fold.add(Role::Accumulator, intElement);
+  fold.slot(0);
+  fold.slot(1, 1);
+  fold.entries = {entry(EntryKind::Fold, &placeFold)};
+  combine.entries = {entry(EntryKind::Combine, &addWords)};
+  program::Reduction reduction{};
+  reduction.commutative = true;
+  reduction.fold = fold.finish();
+  reduction.combine = combine.finish();
+  for (const Shaped& shape : shapes) {
+    if (shape.domain[2] > 1) continue;
+    const Extents blocks = blocksOf(shape);
+    std::vector<float> x = someFloats(sizeOf(shape.domain));
+    std::vector<std::uint32_t> r(static_cast<std::size_t>(sizeOf(blocks))), expected(r.size());
+    TestOperands operands;
+    operands.add(x, shape.domain);
+    operands.add(x, shape.domain);
+    operands.add(r, blocks);
+    foldCode(reduction, {operands.call(shape.domain), {{}, {1, 1, 1, 1}, {}}, shape.block}, {});
+    for (std::int64_t row = 0; row < shape.domain[1]; ++row) {
+      for (std::int64_t i = 0; i < shape.domain[0]; ++i) {
+        const auto at = [&](std::int64_t k) {
+          return static_cast<std::int64_t>(
+              x[static_cast<std::size_t>(row * shape.domain[0] + std::min(k, shape.domain[0] - 1))]);
+        };
+        expected[static_cast<std::size_t>(row / shape.block[1] * blocks[0] + i / shape.block[0])] +=
+            static_cast<std::uint32_t>(at(i) * (1 + i + 1000 * row) + at(i + 1));
+      }
+    }
+    CAPTURE(shape.domain[0], shape.domain[1], shape.block[0], shape.block[1]);
+    CHECK(r == expected);
+  }
+}
+
+}  // namespace
+}  // namespace sk::test

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+//
+// How the blocks of a reduction's domain are divided among threads. Pieces do not depend on how many threads there are, and so neither
+// do the results.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "sk/native/call.hpp"
+
+namespace sk {
+
+/// A domain in blocks, and these in pieces: whole rows of a block, or parts of one.
+class BlockPieces {
+ public:
+  /// Elements of one.
+  static constexpr std::int64_t most = 1 << 14;
+
+  BlockPieces(const native::Extents& domain, const native::Extents& block) : block_(block) {
+    for (std::size_t d = 0; d < 4; ++d) blocks_[d] = domain[d] / block_[d];
+    rows_ = block_[1] * block_[2] * block_[3];
+    width_ = std::min(block_[0], most);
+    perRow_ = (block_[0] + width_ - 1) / width_;
+    height_ = perRow_ > 1 ? 1 : std::min(most / width_, rows_);
+  }
+
+  std::int64_t ofBlock() const { return perRow_ * ((rows_ + height_ - 1) / height_); }
+  std::int64_t count() const { return ofBlock() * blocks_[0] * blocks_[1] * blocks_[2] * blocks_[3]; }
+  std::int64_t elementsOfOne() const { return width_ * height_; }
+  native::Extents blockAt(std::int64_t number) const {
+    native::Extents at;
+    for (std::size_t d = 0; d < 4; ++d) {
+      at[d] = number % blocks_[d];
+      number /= blocks_[d];
+    }
+    return at;
+  }
+
+  /// visit(first, count) for the rows of a piece.
+  template <class Visit>
+  void forEachRow(const native::Extents& block, std::int64_t piece, Visit&& visit) const {
+    const std::int64_t row = piece / perRow_ * height_;
+    const std::int64_t x = piece % perRow_ * width_;
+    const std::int64_t rows = std::min(height_, rows_ - row);
+    native::Extents in{x, row % block_[1], row / block_[1] % block_[2], row / block_[1] / block_[2]};
+    for (std::int64_t k = 0; k < rows; ++k) {
+      native::Extents first;
+      for (std::size_t d = 0; d < 4; ++d) first[d] = block[d] * block_[d] + in[d];
+      visit(first, std::min(width_, block_[0] - x));
+      for (std::size_t d = 1; d < 4 && ++in[d] == block_[d]; ++d) in[d] = 0;
+    }
+  }
+
+ private:
+  native::Extents block_;
+  native::Extents blocks_;
+  std::int64_t rows_;  ///< of a block
+  std::int64_t width_;  ///< of a piece
+  std::int64_t perRow_;
+  std::int64_t height_;  ///< rows of a piece
+};
+
+/// Blocks of few elements along x, as those of a sum of columns, in groups of neighbours, which are folded side by side.
+class BlockGroups {
+ public:
+  BlockGroups(const native::Extents& domain, const native::Extents& block, std::int64_t longest)
+      : block_(block), longest_(longest) {
+    for (std::size_t d = 0; d < 4; ++d) blocks_[d] = domain[d] / block_[d];
+  }
+
+  /// Whether blocks are so narrow that a row of the domain goes through many of them.
+  static bool areNarrow(const native::Extents& domain, const native::Extents& block) {
+    return block[0] <= 8 && block[0] < domain[0];
+  }
+
+  std::int64_t count() const { return perRow() * blocks_[1] * blocks_[2] * blocks_[3]; }
+  std::int64_t elementsOfOne() const {
+    return std::min(longest_, blocks_[0]) * block_[0] * block_[1] * block_[2] * block_[3];
+  }
+  /// The first block of a group, and how many there are.
+  native::Extents firstOf(std::int64_t group) const {
+    const std::int64_t row = group / perRow();
+    return {group % perRow() * longest_, row % blocks_[1], row / blocks_[1] % blocks_[2],
+            row / blocks_[1] / blocks_[2]};
+  }
+  std::int64_t lengthFrom(const native::Extents& first) const {
+    return std::min(longest_, blocks_[0] - first[0]);
+  }
+
+ private:
+  std::int64_t perRow() const { return (blocks_[0] + longest_ - 1) / longest_; }
+
+  native::Extents block_, blocks_;
+  std::int64_t longest_;
+};
+
+}  // namespace sk

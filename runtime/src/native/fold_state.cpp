@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "native/fold_state.hpp"
+
+#include <cstring>
+#include <utility>
+
+#include "native/scalars.hpp"
+#include "native/slot_arrays.hpp"
+
+namespace sk {
+
+namespace {
+
+constexpr std::size_t cacheLine = 64;
+
+std::vector<std::size_t> accumulatorBytes(std::span<const program::Parameter> parameters, RealType real) {
+  std::vector<std::size_t> all;
+  for (const program::Parameter& parameter : parameters) {
+    if (parameter.role != program::Role::Accumulator) continue;
+    forEachScalar(*parameter.element, real,
+                  [&](std::size_t, std::size_t bytes, program::Scalar) { all.push_back(bytes); });
+  }
+  return all;
+}
+
+}  // namespace
+
+StateShape::StateShape(std::span<const program::Parameter> parameters, RealType real)
+    : StateShape(accumulatorBytes(parameters, real)) {}
+
+StateShape::StateShape(std::vector<std::size_t> bytes) : bytes_(std::move(bytes)) {
+  for (const std::size_t scalar : bytes_) total_ += scalar;
+}
+
+StateColumns::StateColumns(const StateShape& shape, std::int64_t most)
+    : shape_(&shape), arrays_(shape.scalars()) {
+  const auto room = [&](std::size_t scalar) {
+    const std::size_t bytes = static_cast<std::size_t>(most + native::mostLanes) * shape.bytesOf(scalar);
+    return (bytes + cacheLine - 1) / cacheLine * cacheLine;
+  };
+  std::size_t total = cacheLine;
+  for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) total += room(scalar);
+  bytes_ = std::make_unique<std::byte[]>(total);  // what lies beyond the columns is read, too
+  void* next = bytes_.get();
+  next = std::align(cacheLine, total - cacheLine, next, total);
+  for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {
+    arrays_[scalar] = next;
+    next = static_cast<std::byte*>(next) + room(scalar);
+  }
+}
+
+void StateColumns::assign(std::int64_t first, const StateColumns& other, std::int64_t from,
+                          std::int64_t count) {
+  for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {
+    std::memcpy(at(scalar, first), other.at(scalar, from),
+                static_cast<std::size_t>(count) * shape_->bytesOf(scalar));
+  }
+}
+
+void StateColumns::pack(std::int64_t column, std::byte* bytes) const {
+  for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {
+    std::memcpy(bytes, at(scalar, column), shape_->bytesOf(scalar));
+    bytes += shape_->bytesOf(scalar);
+  }
+}
+
+void StateColumns::unpack(std::int64_t column, const std::byte* bytes) {
+  for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {
+    std::memcpy(at(scalar, column), bytes, shape_->bytesOf(scalar));
+    bytes += shape_->bytesOf(scalar);
+  }
+}
+
+ColumnCombiner::ColumnCombiner(const StateShape& shape, native::CombineFunction* function, std::int64_t lanes,
+                               const native::Frame* frame)
+    : function_(function),
+      lanes_(lanes),
+      frame_(frame),
+      kept_(shape, lanes),
+      later_(shape.scalars()),
+      shape_(shape) {}
+
+void ColumnCombiner::combine(StateColumns& state, const StateColumns& later, std::int64_t first,
+                             std::int64_t count) {
+  if (count == 0) return;
+  const std::int64_t beyond = roundUp(count, lanes_) - count;
+  if (beyond > 0) kept_.assign(0, state, count, beyond);
+  for (std::size_t scalar = 0; scalar < shape_.scalars(); ++scalar) later_[scalar] = later.at(scalar, first);
+  function_(frame_, state.arrays(), later_.data(), count);
+  if (beyond > 0) state.assign(count, kept_, 0, beyond);
+}
+
+void ColumnCombiner::gather(StateColumns& state, std::int64_t count) {
+  while (count > 1) {
+    const std::int64_t half = (count + 1) / 2;
+    combine(state, state, half, count - half);
+    count = half;
+  }
+}
+
+StateColumns& StateRuns::next() {
+  if (runs_.size() == leaves_.size()) runs_.push_back(std::make_unique<StateColumns>(shape_, most_));
+  return *runs_[leaves_.size()];
+}
+
+void StateRuns::add() {
+  leaves_.push_back(1);
+  while (leaves_.size() > 1 && leaves_[leaves_.size() - 2] == leaves_.back()) merge();
+}
+
+StateColumns& StateRuns::take() {
+  while (leaves_.size() > 1) merge();
+  leaves_.clear();
+  return *runs_[0];
+}
+
+void StateRuns::merge() {
+  const std::size_t last = leaves_.size() - 1;
+  combiner_.combine(*runs_[last - 1], *runs_[last], 0, columns_);
+  leaves_[last - 1] += leaves_[last];
+  leaves_.pop_back();
+}
+
+}  // namespace sk

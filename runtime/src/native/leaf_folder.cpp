@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "native/leaf_folder.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace sk {
+
+namespace {
+
+std::int64_t mostPlaced(const StateShape& shape) {
+  return std::max(leafRounds * sideOf(shape), groupOf(shape));
+}
+
+}  // namespace
+
+LeafFolder::LeafFolder(const FoldProgram& program)
+    : program_(program),
+      longest_(program.layout.isDirect() ? std::numeric_limits<std::int64_t>::max() : mostLaidOut),
+      arrays_(program.layout, mostPlaced(program.shape)),
+      some_(program.shape, sideOf(program.shape)),
+      rest_(program.shape.scalars()) {
+  chunk_.arrays = arrays_.get();
+}
+
+void LeafFolder::moveToRow(const native::Extents& first) {
+  arrays_.moveToRow(first);
+  std::ranges::copy(first, chunk_.first);
+}
+
+void LeafFolder::fold(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
+                      Start start, std::int64_t step) {
+  const bool areApart = program_.layout.hasGathers() && step != 1;  // neighbours of the code's lanes are not
+  if (program_.layout.goesByElement() || areApart) {
+    foldOneByOne(state, x, columns, rounds, start, step);
+    return;
+  }
+  // the ragged end of a row is laid out; what comes before it need not be
+  const std::int64_t whole = columns & -program_.fold.lanes;
+  if (rounds != 1 || whole == 0 || whole == columns) {
+    call(state.arrays(), x, columns, rounds, start, step);
+    return;
+  }
+  call(state.arrays(), x, whole, 1, start, step);
+  for (std::size_t scalar = 0; scalar < rest_.size(); ++scalar) rest_[scalar] = state.at(scalar, whole);
+  call(rest_.data(), x + whole * step, columns - whole, 1, start, step);
+}
+
+void LeafFolder::call(void* const* state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
+                      Start start, std::int64_t step) {
+  const std::int64_t count = columns * rounds;
+  arrays_.place(x, count, count - columns + roundUp(columns, program_.fold.lanes), step);
+  chunk_.first[0] = x;
+  chunk_.count = count;
+  chunk_.step = step;
+  program_.fold.function(program_.fold.frame, &chunk_, state, columns, rounds, start == Start::New ? 1 : 0);
+}
+
+void LeafFolder::foldInto(StateColumns& state, std::int64_t first, std::int64_t x, std::int64_t count,
+                          Start start) {
+  if (count == 0) return;
+  if (start == Start::Continued) some_.assign(0, state, first, count);
+  fold(some_, x, count, 1, start);
+  state.assign(first, some_, 0, count);
+}
+
+void LeafFolder::foldOneByOne(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
+                              Start start, std::int64_t step) {
+  StateColumns one(program_.shape, 1);
+  for (std::int64_t k = 0; k < columns; ++k) {
+    if (start == Start::Continued) one.assign(0, state, k, 1);
+    for (std::int64_t round = 0; round < rounds; ++round) {
+      call(one.arrays(), x + (k + round * columns) * step, 1, 1, round == 0 ? start : Start::Continued, 1);
+    }
+    state.assign(k, one, 0, 1);
+  }
+}
+
+}  // namespace sk

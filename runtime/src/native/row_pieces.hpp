@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// How the elements of a domain are dealt out to threads: rows in pieces of neighbours.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "sk/native/call.hpp"
+#include "sk/native/parallel.hpp"
+
+namespace sk {
+
+/// The rows of a domain in pieces of elements that are neighbours along x.
+class RowPieces {
+ public:
+  /// Where elements may take very different times, a few are enough for a piece.
+  RowPieces(const native::Extents& domain, bool areUneven)
+      : domain_(domain),
+        longest_(areUneven ? 1 << 6 : 1 << 13),
+        perRow_((domain[0] + longest_ - 1) / longest_) {}
+
+  std::int64_t count() const { return perRow_ * domain_[1] * domain_[2] * domain_[3]; }
+  std::int64_t elementsOfOne() const { return std::min(domain_[0], longest_); }
+
+  /// visit(first, count) for the elements of these pieces in order: those that are in one row together.
+  template <class Visit>
+  void forEachRun(native::Range pieces, Visit&& visit) const {
+    native::Extents at = firstOf(pieces.begin);
+    for (std::int64_t left = pieces.end - pieces.begin; left > 0;) {
+      const std::int64_t end = std::min(domain_[0], at[0] + left * longest_);
+      left -= (end - at[0] + longest_ - 1) / longest_;
+      visit(at, end - at[0]);
+      at[0] = 0;
+      for (std::size_t d = 1; d < 4 && ++at[d] == domain_[d]; ++d) at[d] = 0;
+    }
+  }
+
+ private:
+  native::Extents firstOf(std::int64_t piece) const {
+    const std::int64_t row = piece / perRow_;
+    return {piece % perRow_ * longest_, row % domain_[1], row / domain_[1] % domain_[2],
+            row / domain_[1] / domain_[2]};
+  }
+
+  native::Extents domain_;
+  std::int64_t longest_;
+  std::int64_t perRow_;
+};
+
+}  // namespace sk

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: MIT
+//
+// Kernels whose object code is written by hand, against plain loops.
+#include "native/run_code.hpp"
+
+#include <cstring>
+#include <numeric>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "native/object_code_test.hpp"
+#include "sk/error.hpp"
+
+namespace sk::test {
+namespace {
+
+using native::Chunk;
+using native::EntryKind;
+using native::Extents;
+using native::Frame;
+using native::Operand;
+using program::Boundary;
+using program::Role;
+
+// ---- elements --------------------------------------------------------------------------------------
+
+void saxpy(const Frame* frame, const Chunk* chunk) {
+  const auto a = valueOf<float>(frame, 0);
+  const auto* x = arrayOf<float>(chunk, 0);
+  const auto* y = arrayOf<float>(chunk, 1);
+  auto* r = arrayOf<float>(chunk, 2);
+  for (std::int64_t i = 0; i < inGroups(chunk->count); ++i) r[i] = a * x[i] + y[i];
+}
+
+struct Saxpy : TestKernel {
+  Saxpy() {
+    add(Role::Uniform);
+    add(Role::Input);
+    add(Role::Input);
+    add(Role::Output);
+    for (const std::uint8_t parameter : {1, 2, 3}) slot(parameter);
+    entries = {entry(EntryKind::Run, &saxpy)};
+    finish();
+  }
+};
+
+TEST_CASE("rows of every length are computed, and nothing beyond them") {
+  const Saxpy f;
+  std::vector<float> a{3};
+  for (const std::int64_t n : {1, 7, 8, 9, 511, 512, 513, 8192, 8201, 100003}) {
+    std::vector<float> x = someFloats(n, 1);
+    std::vector<float> y = someFloats(n, 2);
+    std::vector<float> r(static_cast<std::size_t>(n + 20), -7);
+    TestOperands operands;
+    operands.add(a, {1, 1, 1, 1});
+    operands.add(x, {n, 1, 1, 1});
+    operands.add(y, {n, 1, 1, 1});
+    operands.add(r, {n, 1, 1, 1}).first = 10;
+    runCode(f.kernel, operands.call({n, 1, 1, 1}), {});
+    std::vector<float> expected(r.size(), -7);
+    for (std::size_t i = 0; i < x.size(); ++i) expected[i + 10] = 3 * x[i] + y[i];
+    CAPTURE(n);
+    CHECK(r == expected);
+  }
+}
+
+TEST_CASE("a stream may be read and written in one call, and views have rows of their own") {
+  const Saxpy f;
+  std::vector<float> a{2};
+  const std::int64_t width = 37, height = 21, pitch = 50;
+  std::vector<float> x = someFloats(pitch * height);
+  const std::vector<float> before = x;
+  TestOperands operands;
+  operands.add(a, {1, 1, 1, 1});
+  for (int k = 0; k < 3; ++k) {
+    Operand& view = operands.add(x, {width, height, 1, 1});
+    view.first = 5;
+    view.stride[1] = pitch;
+  }
+  runCode(f.kernel, operands.call({width, height, 1, 1}), {});
+  std::vector<float> expected = before;
+  for (std::int64_t row = 0; row < height; ++row) {
+    for (std::int64_t i = 0; i < width; ++i) expected[static_cast<std::size_t>(5 + row * pitch + i)] *= 3;
+  }
+  CHECK(x == expected);
+}
+
+TEST_CASE("inputs repeat, are stretched or strode through, and those left out are zeros") {
+  const Saxpy f;
+  std::vector<float> a{3};
+  const std::int64_t n = 1200;
+  std::vector<float> x = someFloats(4 * n, 1);
+  std::vector<float> y = someFloats(n, 2);
+  const auto computed = [&](std::int64_t multiply, std::int64_t divide, std::int64_t stride, bool isGiven) {
+    std::vector<float> r(static_cast<std::size_t>(n));
+    TestOperands operands;
+    operands.add(a, {1, 1, 1, 1});
+    if (isGiven) {
+      Operand& input = operands.add(x, {n * multiply / divide, 1, 1, 1});
+      input.multiply[0] = multiply;
+      input.divide[0] = divide;
+      input.stride[0] = stride;
+    } else {
+      operands.addNone();
+    }
+    operands.add(y, {n, 1, 1, 1});
+    operands.add(r, {n, 1, 1, 1});
+    runCode(f.kernel, operands.call({n, 1, 1, 1}), {});
+    return r;
+  };
+  const auto expected = [&](auto&& number) {
+    std::vector<float> r;
+    for (std::int64_t i = 0; i < n; ++i) {
+      r.push_back(3 * number(i) + y[static_cast<std::size_t>(i)]);
+    }
+    return r;
+  };
+  const auto at = [&](std::int64_t i) { return x[static_cast<std::size_t>(i)]; };
+  CHECK(computed(0, 1, 1, true) == expected([&](std::int64_t) { return at(0); }));
+  CHECK(computed(1, 3, 1, true) == expected([&](std::int64_t i) { return at(i / 3); }));
+  CHECK(computed(4, 1, 1, true) == expected([&](std::int64_t i) { return at(4 * i); }));
+  CHECK(computed(1, 1, 2, true) == expected([&](std::int64_t i) { return at(2 * i); }));
+  CHECK(computed(1, 1, 1, false) == expected([&](std::int64_t) { return 0.0F; }));
+}
+
+TEST_CASE("what is stored to an output that is left out is lost") {
+  const Saxpy f;
+  std::vector<float> a{3};
+  std::vector<float> x = someFloats(3000);
+  TestOperands operands;
+  operands.add(a, {1, 1, 1, 1});
+  operands.add(x, {3000, 1, 1, 1});
+  operands.add(x, {3000, 1, 1, 1});
+  operands.addNone();
+  CHECK_NOTHROW(runCode(f.kernel, operands.call({3000, 1, 1, 1}), {}));
+}
+
+void addWide(const Frame*, const Chunk* chunk) {
+  const auto* x = arrayOf<double>(chunk, 0);
+  auto* r = arrayOf<double>(chunk, 1);
+  for (std::int64_t i = 0; i < inGroups(chunk->count); ++i) r[i] = x[i] + 0x1p-40;
+}
+
+TEST_CASE("code that computes in doubles reads streams of floats") {
+  TestKernel f;
+  f.add(Role::Input);
+  f.add(Role::Output);
+  f.slot(0);
+  f.slot(1);
+  f.entries = {entry(EntryKind::Run, &addWide, native::Real::Double)};
+  f.finish();
+  std::vector<float> x = someFloats(1003);
+  std::vector<double> r(1003);
+  TestOperands operands;
+  operands.add(x, {1003, 1, 1, 1}).holdsFloats = true;
+  operands.add(r, {1003, 1, 1, 1});
+  runCode(f.kernel, operands.call({1003, 1, 1, 1}), {.real = RealType::Double});
+  for (std::size_t i = 0; i < x.size(); ++i) REQUIRE(r[i] == double{x[i]} + 0x1p-40);
+}
+
+void ownIndex(const Frame* frame, const Chunk* chunk) {
+  const native::Argument& input = frame->arguments[0];
+  auto* r = arrayOf<std::int32_t>(chunk, 1);
+  const std::int64_t first = chunk->first[0] * input.multiply[0] / input.divide[0];
+  for (std::int64_t i = 0; i < inGroups(chunk->count); ++i) r[i] = static_cast<std::int32_t>(first + i);
+}
+
+TEST_CASE("the index in an input that is stretched is right for every element") {
+  TestKernel f;
+  f.add(Role::Input).usesIndex = true;
+  f.add(Role::Output, intElement);
+  f.slot(0);
+  f.slot(1);
+  f.entries = {entry(EntryKind::Run, &ownIndex)};
+  f.finish();
+  std::vector<float> x(10);
+  std::vector<std::int32_t> r(30);
+  TestOperands operands;
+  operands.add(x, {10, 1, 1, 1}).divide[0] = 3;
+  operands.add(r, {30, 1, 1, 1});
+  runCode(f.kernel, operands.call({30, 1, 1, 1}), {});
+  for (std::int32_t i = 0; i < 30; ++i) CHECK(r[static_cast<std::size_t>(i)] == i / 3);
+}
+
+// ---- neighbours ------------------------------------------------------------------------------------
+
+constexpr std::uint8_t stencilReach = 2;
+
+/// Neighbours at -2, 0 and 2 along x, and one row to either side in y and z.
+void stencil(const Frame*, const Chunk* chunk) {
+  const auto* u = arrayOf<float>(chunk, 0);
+  const float* rows[4];
+  for (std::size_t k = 0; k < 4; ++k) rows[k] = arrayOf<float>(chunk, k + 1);
+  auto* r = arrayOf<float>(chunk, 5);
+  for (std::int64_t i = 0; i < inGroups(chunk->count); ++i) {
+    r[i] = u[i] + 2 * u[i - stencilReach] + 3 * u[i + stencilReach];
+    for (int k = 0; k < 4; ++k) r[i] += static_cast<float>(4 + k) * rows[k][i];
+  }
+}
+
+constexpr float borderValue = 1000;
+
+void borders(const Frame*, void* const* values) { *static_cast<float*>(values[0]) = borderValue; }
+
+struct Stencil : TestKernel {
+  Stencil(Boundary boundary, std::uint8_t rank) {
+    program::Parameter& u = add(Role::Gather);
+    u.boundary = boundary;
+    u.rank = rank;
+    u.usesNear = true;
+    add(Role::Output);
+    slot(0, stencilReach);
+    slot(0, 0, -1);
+    slot(0, 0, 1);
+    slot(0, 0, 0, -1);
+    slot(0, 0, 0, 1);
+    slot(1);
+    entries = {entry(EntryKind::Run, &stencil), entry(EntryKind::Borders, &borders)};
+    finish();
+  }
+};
+
+std::int64_t bringInside(Boundary boundary, std::int64_t i, std::int64_t n) {
+  switch (boundary) {
+    case Boundary::Clamp: return i < 0 ? 0 : i >= n ? n - 1 : i;
+    case Boundary::Wrap:
+      while (i < 0) i += n;
+      return i % n;
+    case Boundary::Mirror:
+      while (i < 0 || i >= n) i = i < 0 ? -1 - i : 2 * n - 1 - i;
+      return i;
+    case Boundary::Border: break;
+  }
+  return i < 0 || i >= n ? -1 : i;
+}
+
+float gathered(const std::vector<float>& u, const Extents& extent, Boundary boundary, int rank, Extents at) {
+  std::int64_t number = 0, stride = 1;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(rank); stride *= extent[d++]) {
+    const std::int64_t i = bringInside(boundary, at[d], extent[d]);
+    if (i < 0) return borderValue;
+    number += i * stride;
+  }
+  return u[static_cast<std::size_t>(number)];
+}
+
+void checkStencil(Boundary boundary, int rank, const Extents& extent, const Extents& domain) {
+  const Stencil f(boundary, static_cast<std::uint8_t>(rank));
+  std::vector<float> u = someFloats(extent[0] * extent[1] * extent[2]);
+  std::vector<float> r(static_cast<std::size_t>(domain[0] * domain[1] * domain[2]));
+  TestOperands operands;
+  operands.add(u, extent);
+  operands.add(r, domain);
+  runCode(f.kernel, operands.call(domain), {});
+  std::vector<float> expected;
+  for (std::int64_t z = 0; z < domain[2]; ++z) {
+    for (std::int64_t y = 0; y < domain[1]; ++y) {
+      for (std::int64_t x = 0; x < domain[0]; ++x) {
+        const auto at = [&](std::int64_t dx, std::int64_t dy, std::int64_t dz) {
+          return gathered(u, extent, boundary, rank, {x + dx, y + dy, z + dz, 0});
+        };
+        expected.push_back(at(0, 0, 0) + 2 * at(-stencilReach, 0, 0) + 3 * at(stencilReach, 0, 0) +
+                           4 * at(0, -1, 0) + 5 * at(0, 1, 0) + 6 * at(0, 0, -1) + 7 * at(0, 0, 1));
+      }
+    }
+  }
+  CAPTURE(static_cast<int>(boundary), rank, extent[0], extent[1], extent[2], domain[0]);
+  CHECK(r == expected);
+}
+
+TEST_CASE("neighbours outside are what the boundary says, in rows of every length") {
+  for (const Boundary boundary : {Boundary::Clamp, Boundary::Wrap, Boundary::Mirror, Boundary::Border}) {
+    for (const std::int64_t width : {1, 2, 3, 7, 8, 9, 12, 16, 17, 30, 512, 517, 9000}) {
+      checkStencil(boundary, 1, {width, 1, 1, 1}, {width, 1, 1, 1});
+      if (width > 600) continue;
+      checkStencil(boundary, 2, {width, 4, 1, 1}, {width, 4, 1, 1});
+      checkStencil(boundary, 3, {width, 3, 2, 1}, {width, 3, 2, 1});
+    }
+  }
+}
+
+TEST_CASE("a gather may be smaller or larger than the domain") {
+  for (const Boundary boundary : {Boundary::Clamp, Boundary::Wrap, Boundary::Mirror, Boundary::Border}) {
+    checkStencil(boundary, 2, {5, 3, 1, 1}, {1100, 6, 1, 1});
+    checkStencil(boundary, 2, {1100, 6, 1, 1}, {33, 3, 1, 1});
+    checkStencil(boundary, 1, {40, 1, 1, 1}, {40, 3, 1, 1});
+  }
+}
+
+TEST_CASE("a gather that is left out is zeros") {
+  const Stencil f(Boundary::Clamp, 2);
+  std::vector<float> r(300, -1);
+  TestOperands operands;
+  operands.addNone();
+  operands.add(r, {100, 3, 1, 1});
+  runCode(f.kernel, operands.call({100, 3, 1, 1}), {});
+  CHECK(r == std::vector<float>(300, 0));
+}
+
+// ---- pushes ----------------------------------------------------------------------------------------
+
+/// Pushes odd numbers, and those that 5 divides, twice where both hold.
+void pushSome(const Frame* frame, const Chunk* chunk) {
+  native::Sink* sink = frame->arguments[1].sink;
+  const auto* x = arrayOf<float>(chunk, 0);
+  const auto push = [&](float value) {
+    if (sink->count == sink->capacity) sink->grow(sink);
+    reinterpret_cast<float*>(sink->arrays[0])[sink->count++] = value;
+  };
+  for (std::int64_t i = 0; i < chunk->count; ++i) {
+    if (static_cast<int>(x[i]) % 2 == 1) push(x[i]);
+    if (static_cast<int>(x[i]) % 5 == 0) push(x[i]);
+  }
+}
+
+TEST_CASE("pushes of all threads come in the order of elements") {
+  TestKernel f;
+  f.add(Role::Input);
+  f.add(Role::VariableOutput);
+  f.slot(0);
+  f.entries = {entry(EntryKind::Run, &pushSome)};
+  f.code.isOrdered = 1;
+  for (const std::uint8_t isUneven : {0, 1}) {
+    f.code.isUneven = isUneven;
+    f.finish();
+    std::vector<float> x(100001);
+    std::iota(x.begin(), x.end(), 0.0F);
+    native::Pushed pushed(1);
+    TestOperands operands;
+    operands.add(x, {100001, 1, 1, 1});
+    operands.addNone().pushed = &pushed;
+    runCode(f.kernel, operands.call({100001, 1, 1, 1}), {});
+    std::vector<float> expected;
+    for (const float value : x) {
+      if (static_cast<int>(value) % 2 == 1) expected.push_back(value);
+      if (static_cast<int>(value) % 5 == 0) expected.push_back(value);
+    }
+    REQUIRE(pushed[0].size() == expected.size() * sizeof(float));
+    CHECK(std::memcmp(pushed[0].data(), expected.data(), pushed[0].size()) == 0);
+  }
+}
+
+// ---- entries ---------------------------------------------------------------------------------------
+
+TEST_CASE("the newest entry that the CPU runs is taken, and fused ones only where that is allowed") {
+  using native::Level;
+  TestKernel f;
+  f.add(Role::Output);
+  for (const Level level : {Level::Base, Level::V3, Level::V4}) {
+    for (const std::uint8_t isContracted : {0, 1}) {
+      native::Entry& made = f.entries.emplace_back(entry(EntryKind::Run, &saxpy));
+      made.level = level;
+      made.isContracted = isContracted;
+    }
+  }
+  f.finish();
+  for (const Level level : {Level::Base, Level::V3, Level::V4}) {
+    for (const bool mayContract : {false, true}) {
+      const native::Entry* found = findEntry(f.code, EntryKind::Run, {.mayContract = mayContract}, level);
+      REQUIRE(found != nullptr);
+      CHECK(found->level == level);
+      CHECK((found->isContracted != 0) == mayContract);
+    }
+  }
+  CHECK(findEntry(f.code, EntryKind::Fold, {}) == nullptr);
+  CHECK(findEntry(f.code, EntryKind::Run, {.real = RealType::Double}) == nullptr);
+}
+
+TEST_CASE("code of another version, and code for newer CPUs alone, is rejected") {
+  TestKernel f;
+  f.add(Role::Output);
+  f.entries = {entry(EntryKind::Run, &saxpy)};
+  f.entries[0].level = native::Level::V4;
+  f.finish();
+  CHECK_THROWS_WITH(entryOf(f.kernel, EntryKind::Run, {}, native::Level::V3),
+                    Catch::Contains("x86-64-v4") && Catch::Contains("--levels"));
+  f.code.version = 99;
+  CHECK_THROWS_WITH(entryOf(f.kernel, EntryKind::Run, {}), Catch::Contains("version 99"));
+}
+
+}  // namespace
+}  // namespace sk::test

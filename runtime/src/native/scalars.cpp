@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "native/scalars.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace sk {
+
+namespace {
+
+struct Bytes16 {
+  std::uint64_t words[2];
+};
+
+/// visit<Held, Read>() for the types of these sizes.
+template <class Visit>
+void withTypes(ScalarBytes bytes, Visit&& visit) {
+  if (bytes.held != bytes.read) return visit.template operator()<float, double>();
+  switch (bytes.read) {
+    case 1: return visit.template operator()<std::uint8_t, std::uint8_t>();
+    case 2: return visit.template operator()<std::uint16_t, std::uint16_t>();
+    case 4: return visit.template operator()<std::uint32_t, std::uint32_t>();
+    case 8: return visit.template operator()<std::uint64_t, std::uint64_t>();
+    default: return visit.template operator()<Bytes16, Bytes16>();
+  }
+}
+
+template <class Held, class Read>
+Read readAt(const std::byte* array, std::int64_t index) {
+  Held value;
+  std::memcpy(&value, array + index * static_cast<std::int64_t>(sizeof value), sizeof value);
+  return static_cast<Read>(value);
+}
+
+template <class Read>
+void writeAt(std::byte* array, std::int64_t index, const Read& value) {
+  std::memcpy(array + index * static_cast<std::int64_t>(sizeof value), &value, sizeof value);
+}
+
+}  // namespace
+
+std::size_t scalarsOf(const program::Element& element) {
+  std::size_t scalars = 0;
+  for (const program::Field& field : element.fields) scalars += field.width;
+  return scalars;
+}
+
+void copyScalars(const Steps& from, ScalarBytes bytes, std::byte* to, std::int64_t count) {
+  if (from.stride == 1 && bytes.held == bytes.read) {
+    if (count > 0)
+      std::memcpy(to, from.array + from.index * bytes.held, static_cast<std::size_t>(count) * bytes.held);
+    return;
+  }
+  withTypes(bytes, [&]<class Held, class Read> {
+    if (from.stride == 1) {
+      for (std::int64_t i = 0; i < count; ++i) writeAt(to, i, readAt<Held, Read>(from.array, from.index + i));
+    } else if (from.stride == 0) {
+      const Read value = readAt<Held, Read>(from.array, from.index);
+      for (std::int64_t i = 0; i < count; ++i) writeAt(to, i, value);
+    } else {
+      std::int64_t index = from.index;
+      for (std::int64_t i = 0; i < count; ++i, index += from.stride) {
+        writeAt(to, i, readAt<Held, Read>(from.array, index));
+      }
+    }
+  });
+}
+
+void stretchScalars(const Steps& from, ScalarBytes bytes, std::int64_t repeats, std::int64_t begun,
+                    std::byte* to, std::int64_t count) {
+  withTypes(bytes, [&]<class Held, class Read> {
+    std::int64_t index = from.index;
+    std::int64_t end = repeats - begun;
+    for (std::int64_t i = 0; i < count; end += repeats, index += from.stride) {
+      const Read value = readAt<Held, Read>(from.array, index);
+      for (const std::int64_t last = std::min(end, count); i < last; ++i) writeAt(to, i, value);
+    }
+  });
+}
+
+void padScalars(std::byte* array, std::size_t bytes, std::int64_t count, std::int64_t room) {
+  if (count >= room) return;
+  static constexpr std::byte zero[mostScalarBytes] = {};
+  const std::byte* last = count == 0 ? zero : array + static_cast<std::size_t>(count - 1) * bytes;
+  fillScalars(last, bytes, array + static_cast<std::size_t>(count) * bytes, room - count);
+}
+
+void fillScalars(const void* value, std::size_t bytes, std::byte* to, std::int64_t count) {
+  const auto size = static_cast<std::uint8_t>(bytes);
+  copyScalars({static_cast<const std::byte*>(value), 0, 0}, {size, size}, to, count);
+}
+
+}  // namespace sk

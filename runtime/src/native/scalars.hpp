@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+//
+// Arrays of scalars whose type is known by its size alone: what brings elements into the scratch memory of object code.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "native/components.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+inline constexpr std::size_t mostScalarBytes = 16;
+
+/// Scalar components of an element.
+std::size_t scalarsOf(const program::Element& element);
+
+/// visit(number, bytes in an array, type) for each scalar of an element, in order.
+template <class Visit>
+void forEachScalar(const program::Element& element, RealType real, Visit&& visit) {
+  std::size_t number = 0;
+  for (const program::Field& field : element.fields) {
+    for (std::size_t c = 0; c < field.width; ++c)
+      visit(number++, storedBytes(field.scalar, real), field.scalar);
+  }
+}
+
+/// Bytes of a scalar in an array and in the code that reads it, which differ where a float is read as a double.
+struct ScalarBytes {
+  std::uint8_t held;
+  std::uint8_t read;
+};
+
+/// Where to read: element `index` of an array, and then one each `stride` elements.
+struct Steps {
+  const std::byte* array;
+  std::int64_t index;
+  std::int64_t stride;
+};
+
+/// Writes `count` scalars side by side.
+void copyScalars(const Steps& from, ScalarBytes bytes, std::byte* to, std::int64_t count);
+
+/// Likewise, but each of them is written `repeats` times; of the first, `begun` times are left out.
+void stretchScalars(const Steps& from, ScalarBytes bytes, std::int64_t repeats, std::int64_t begun,
+                    std::byte* to, std::int64_t count);
+
+/// Writes the last of `count` scalars once more in each place up to `room`; zeros where there is none.
+void padScalars(std::byte* array, std::size_t bytes, std::int64_t count, std::int64_t room);
+
+/// Writes one value in each of `count` places.
+void fillScalars(const void* value, std::size_t bytes, std::byte* to, std::int64_t count);
+
+}  // namespace sk

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include "native/sum_exactly.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "native/chunk_runner.hpp"
+#include "native/code_frame.hpp"
+#include "native/exact_accumulator.hpp"
+#include "native/factor_kernel.hpp"
+#include "native/fold_pieces.hpp"
+#include "native/fold_state.hpp"
+#include "native/slot_arrays.hpp"
+#include "sk/native/parallel.hpp"
+
+namespace sk {
+
+namespace {
+
+using native::Call;
+using native::Extents;
+using native::Range;
+using program::Kernel;
+using program::Role;
+
+const float* floatsAt(void* array) { return static_cast<const float*>(array); }
+
+/// Adds terms that are inputs, or products of two.
+class FactorAdder {
+ public:
+  explicit FactorAdder(const SlotLayout& layout)
+      : longest_(layout.isDirect() ? layout.width() : mostLaidOut),
+        factors_(layout.slots().size()),
+        arrays_(layout, mostLaidOut) {}
+
+  void add(ExactAccumulator& sum, const Extents& first, std::int64_t count) {
+    arrays_.moveToRow(first);
+    for (std::int64_t at = 0; at < count; at += longest_) {
+      const std::int64_t now = std::min(longest_, count - at);
+      arrays_.place(first[0] + at, now, now);
+      if (factors_ == 1) {
+        sum.add(now, floatsAt(arrays_.get()[0]));
+      } else {
+        sum.add(now, floatsAt(arrays_.get()[0]), floatsAt(arrays_.get()[1]));
+      }
+    }
+  }
+
+ private:
+  std::int64_t longest_;
+  std::size_t factors_;
+  SlotArrays arrays_;
+};
+
+/// Adds the terms that a kernel computes for each element.
+class TermAdder {
+ public:
+  TermAdder(const SlotLayout& layout, std::span<const std::size_t> outputs, bool areProducts,
+            const native::Entry& run, const native::Frame* frame)
+      : outputs_(outputs), areProducts_(areProducts), runner_(layout, run, frame) {}
+
+  void add(ExactAccumulator& sum, Extents first, std::int64_t count) {
+    for (std::int64_t now = 0; count > 0; first[0] += now, count -= now) {
+      now = std::min(count, mostLaidOut);
+      runner_.runChunk(first, now, [&](void* const* arrays) { addOutputs(sum, now, arrays); });
+    }
+  }
+
+ private:
+  void addOutputs(ExactAccumulator& sum, std::int64_t count, void* const* arrays) const {
+    const std::size_t perTerm = areProducts_ ? 2 : 1;
+    for (std::size_t k = 0; k < outputs_.size(); k += perTerm) {
+      if (areProducts_) {
+        sum.add(count, floatsAt(arrays[outputs_[k]]), floatsAt(arrays[outputs_[k + 1]]));
+      } else {
+        sum.add(count, floatsAt(arrays[outputs_[k]]));
+      }
+    }
+  }
+
+  std::span<const std::size_t> outputs_;
+  bool areProducts_;
+  ChunkRunner runner_;
+};
+
+/// Numbers of the outputs' arrays, in the order of the parameters.
+std::vector<std::size_t> outputArrays(const Kernel& kernel, const SlotLayout& layout) {
+  std::vector<std::pair<std::uint8_t, std::size_t>> outputs;
+  for (std::size_t s = 0; s < layout.slots().size(); ++s) {
+    const SlotLayout::Slot& slot = layout.slots()[s];
+    if (slot.kind == SlotLayout::Kind::Output) {
+      outputs.emplace_back(kernel.code->slots[s].parameter, slot.firstArray);
+    }
+  }
+  std::ranges::sort(outputs);
+  std::vector<std::size_t> arrays;
+  for (const auto& [parameter, array] : outputs) arrays.push_back(array);
+  return arrays;
+}
+
+/// The scalar's identity, which is one of the summands; of a seeded reduction there is none.
+std::optional<float> identityOf(const program::Reduction& reduction, const program::ExactSum& sum,
+                                const CodeChoice& choice) {
+  if (reduction.seeded) return std::nullopt;
+  const std::span<const program::Parameter> parameters = reduction.fold.parameters;
+  const StateShape shape(parameters, choice.real);
+  const StateColumns identities(shape, 1);
+  const std::vector<native::Operand> none(parameters.size());
+  const CodeFrame frame(reduction.fold, {none, {}, {}});
+  const native::Entry& entry = entryOf(reduction.fold, native::EntryKind::Identity, choice);
+  functionOf<native::ValuesFunction>(entry)(frame.get(), identities.arrays());
+  std::size_t scalar = 0;
+  for (std::size_t i = 0; i < sum.accumulator; ++i) {
+    if (parameters[i].role == Role::Accumulator) scalar += scalarsOf(*parameters[i].element);
+  }
+  for (const ComponentType& type : componentsOf(*parameters[sum.accumulator].element, choice.real)) {
+    if (type.offset == sum.offset) break;
+    ++scalar;
+  }
+  return *floatsAt(identities.arrays()[scalar]);
+}
+
+/// The rounded sums of all blocks, each of which begins with `start`. make() makes what adds the terms of a row, for one thread.
+template <class Make>
+std::vector<float> sumBlocks(const BlockPieces& pieces, const ExactAccumulator& start, native::Deal deal,
+                             Make&& make) {
+  const std::int64_t ofBlock = pieces.ofBlock();
+  const auto count = static_cast<std::size_t>(pieces.count());
+  std::vector<float> results(count / static_cast<std::size_t>(ofBlock));
+  std::vector<ExactAccumulator> parts(ofBlock == 1 ? 0 : count, start);
+  native::inParallel(pieces.count(), pieces.elementsOfOne(), deal, [&](Range range) {
+    auto adder = make();
+    for (std::int64_t piece = range.begin; piece < range.end; ++piece) {
+      ExactAccumulator sum = start;
+      const std::int64_t inBlock = piece % ofBlock;
+      if (inBlock != 0) sum.clear();
+      pieces.forEachRow(pieces.blockAt(piece / ofBlock), inBlock,
+                        [&](const Extents& first, std::int64_t length) { adder.add(sum, first, length); });
+      if (ofBlock == 1) {
+        results[static_cast<std::size_t>(piece)] = sum.rounded();
+      } else {
+        parts[static_cast<std::size_t>(piece)] = sum;
+      }
+    }
+  });
+  for (std::size_t block = 0; block < results.size() && ofBlock > 1; ++block) {
+    const auto first = parts.begin() + static_cast<std::ptrdiff_t>(block) * ofBlock;
+    for (auto part = first + 1; part != first + ofBlock; ++part) first->add(*part);
+    results[block] = first->rounded();
+  }
+  return results;
+}
+
+}  // namespace
+
+const Kernel& kernelOfTerm(const program::Reduction& reduction, const program::ExactSum& sum) {
+  return sum.term.kernel != nullptr ? *sum.term.kernel : reduction.fold;
+}
+
+std::vector<float> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
+                              const Call& call, const Extents& block, const CodeChoice& choice) {
+  const BlockPieces pieces(call.domain, block);
+  ExactAccumulator start(sum.ofProducts ? ExactAccumulator::Of::Products : ExactAccumulator::Of::Floats);
+  if (const std::optional<float> identity = identityOf(reduction, sum, choice)) start.add(1, &*identity);
+  if (sum.term.kernel == nullptr) {
+    const FactorKernel factors(reduction.fold, sum.term.factors, call);
+    const CodeFrame frame(factors.kernel(), factors.call());
+    const SlotLayout layout(factors.kernel(), factors.call(), frame, choice);
+    return sumBlocks(pieces, start, native::Deal::Evenly, [&] { return FactorAdder(layout); });
+  }
+  const Kernel& kernel = *sum.term.kernel;
+  const native::Entry& run = entryOf(kernel, native::EntryKind::Run, choice);
+  const CodeFrame frame(kernel, call);
+  const SlotLayout layout(kernel, call, frame, choice);
+  const std::vector<std::size_t> outputs = outputArrays(kernel, layout);
+  const native::Deal deal = kernel.code->isUneven != 0 ? native::Deal::AsTheyCome : native::Deal::Evenly;
+  return sumBlocks(pieces, start, deal,
+                   [&] { return TermAdder(layout, outputs, sum.ofProducts, run, frame.get()); });
+}
+
+}  // namespace sk

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+//
+// Exact sums of floats (program::ExactSum), which the runtime adds itself, of terms that are inputs, products of two, or what a
+// kernel computes.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "native/entries.hpp"
+#include "sk/native/call.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+/// The kernel that a term is summed for: its own, or the fold whose inputs are its factors.
+const program::Kernel& kernelOfTerm(const program::Reduction& reduction, const program::ExactSum& sum);
+
+/// The rounded sum of each block of the domain, row-major; no block is empty. `call` is one of kernelOfTerm() whose outputs are left
+/// out; `identity` is added once to each.
+std::vector<float> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
+                              const native::Call& call, const native::Extents& block,
+                              const CodeChoice& choice);
+
+}  // namespace sk

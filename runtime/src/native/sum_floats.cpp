@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "native/sum_floats.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "native/code_frame.hpp"
+#include "native/factor_kernel.hpp"
+#include "native/float_vectors.hpp"
+#include "native/fold_program.hpp"
+
+namespace sk {
+
+namespace {
+
+using native::Chunk;
+using native::Frame;
+using native::Level;
+
+/// What the functions below get for a Frame.
+struct SumFrame : Frame {
+  double start;  ///< the identity; -0, which no term changes, of a seeded reduction
+};
+
+/// Columns of a leaf: sideOf() one double.
+constexpr std::int64_t side = 32;
+
+/// Elements that are fetched before they are needed: converting them takes so many operations that few loads are under way at once.
+constexpr std::int64_t fetchedAhead = 384;
+
+template <class... Factors>
+double termAt(std::int64_t i, const Factors*... factors) {
+  return (double{factors[i]} * ...);
+}
+
+SK_FOR_V3 void addTerm(Doubles& sum, std::int64_t i, const float* x) {
+  Doubles wide;
+  widen(x + i, wide);
+  addProduct(wide, Doubles{1, 1, 1, 1}, sum);
+}
+SK_FOR_V3 void addTerm(Doubles& sum, std::int64_t i, const float* x, const float* y) {
+  Doubles first, second;
+  widen(x + i, first);
+  widen(y + i, second);
+  addProduct(first, second, sum);
+}
+
+/// A leaf of whole columns, on CPUs that have vectors of 256 bits.
+template <class... Factors>
+SK_FOR_V3 void sumLeaf(double* columns, double start, std::int64_t rounds, const Factors*... factors) {
+  constexpr std::int64_t vectors = side / doublesPerVector;
+  Doubles sums[vectors];
+#pragma GCC unroll 16
+  for (Doubles& sum : sums) sum = Doubles{start, start, start, start};
+  for (std::int64_t round = 0; round < rounds; ++round) {
+    const std::int64_t first = round * side;
+    for (std::int64_t ahead = 0; ahead < side; ahead += 16) {
+      (__builtin_prefetch(factors + first + ahead + fetchedAhead), ...);
+    }
+#pragma GCC unroll 16
+    for (std::int64_t v = 0; v < vectors; ++v) addTerm(sums[v], first + v * doublesPerVector, factors...);
+  }
+  std::memcpy(columns, sums, sizeof sums);
+}
+
+template <class... Factors>
+void sumAny(double* columns, std::int64_t count, std::int64_t rounds, const Factors*... factors) {
+  for (std::int64_t round = 0; round < rounds; ++round) {
+    for (std::int64_t k = 0; k < count; ++k) columns[k] += termAt(round * count + k, factors...);
+  }
+}
+
+template <bool isWide, class... Factors>
+void sum(const Frame* frame, void* const* state, std::int64_t columns, std::int64_t rounds,
+         std::int64_t starts, const Factors*... factors) {
+  const double start = static_cast<const SumFrame*>(frame)->start;
+  auto* const sums = static_cast<double*>(state[0]);
+  if constexpr (isWide) {
+    if (columns == side && starts != 0) {
+      sumLeaf(sums, start, rounds, factors...);
+      return;
+    }
+  }
+  if (starts != 0) std::fill_n(sums, columns, start);
+  sumAny(sums, columns, rounds, factors...);
+}
+
+template <bool isWide>
+void sumOfOne(const Frame* frame, const Chunk* chunk, void* const* state, std::int64_t columns,
+              std::int64_t rounds, std::int64_t starts) {
+  sum<isWide>(frame, state, columns, rounds, starts, static_cast<const float*>(chunk->arrays[0]));
+}
+template <bool isWide>
+void sumOfProducts(const Frame* frame, const Chunk* chunk, void* const* state, std::int64_t columns,
+                   std::int64_t rounds, std::int64_t starts) {
+  sum<isWide>(frame, state, columns, rounds, starts, static_cast<const float*>(chunk->arrays[0]),
+              static_cast<const float*>(chunk->arrays[1]));
+}
+
+native::FoldFunction* sumOf(std::size_t factors) {
+#if defined(__x86_64__) && defined(__GNUC__)
+  if (levelOfCpu() >= Level::V3) return factors == 1 ? &sumOfOne<true> : &sumOfProducts<true>;
+#endif
+  return factors == 1 ? &sumOfOne<false> : &sumOfProducts<false>;
+}
+
+void addColumns(const Frame*, void* const* state, void* const* later, std::int64_t columns) {
+  auto* const sums = static_cast<double*>(state[0]);
+  const auto* const others = static_cast<const double*>(later[0]);
+  for (std::int64_t k = 0; k < columns; ++k) sums[k] += others[k];
+}
+
+double startOf(const program::Reduction& reduction, const CodeFrame& frame, const CodeChoice& choice) {
+  if (reduction.seeded) return -0.0;
+  double identity = 0;
+  void* const values[] = {&identity};
+  const native::Entry& entry = entryOf(reduction.fold, native::EntryKind::Identity, choice);
+  functionOf<native::ValuesFunction>(entry)(frame.get(), values);
+  return identity;
+}
+
+}  // namespace
+
+bool sumsFloats(const program::Reduction& reduction, const native::Call& fold, const CodeChoice& choice) {
+  const auto& factors = reduction.term.factors;
+  return choice.real == RealType::Double && !factors.empty() &&
+         std::ranges::all_of(factors, [&](std::uint8_t i) { return fold.operands[i].holdsFloats; });
+}
+
+void sumFloats(const program::Reduction& reduction, const native::ReduceCall& call,
+               const CodeChoice& choice) {
+  const FactorKernel term(reduction.fold, reduction.term.factors, call.fold);
+  const CodeFrame frame(term.kernel(), term.call());
+  const SumFrame sumFrame{*frame.get(), startOf(reduction, CodeFrame(reduction.fold, call.fold), choice)};
+  const SlotLayout layout(term.kernel(), term.call(), frame, {.real = RealType::Float});
+  const StateShape shape({sizeof(double)});
+  const FoldResults results(reduction.fold.parameters, call.fold.operands, shape);
+  foldBlocks({.layout = layout,
+              .shape = shape,
+              .fold = {sumOf(reduction.term.factors.size()), 1, &sumFrame},
+              .combine = {&addColumns, 1, nullptr},
+              .isCommutative = true,
+              .isUneven = false},
+             call.fold.domain, call.block, results);
+}
+
+}  // namespace sk
