@@ -3,8 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <iterator>
-#include <set>
+#include <span>
 #include <vector>
 
 #include "ir/reach.hpp"
@@ -17,21 +16,24 @@ namespace {
 
 using namespace ir;
 
-/// What float_functions.sk defines, under the spelling of the intrinsic, for scalars.
-constexpr Intrinsic ofFloats[] = {
-    Intrinsic::Sin,   Intrinsic::Cos,   Intrinsic::Tan,    Intrinsic::Asin,  Intrinsic::Acos,
-    Intrinsic::Atan,  Intrinsic::Sinh,  Intrinsic::Cosh,   Intrinsic::Tanh,  Intrinsic::Asinh,
-    Intrinsic::Acosh, Intrinsic::Atanh, Intrinsic::AtanYX, Intrinsic::Atan2, Intrinsic::Pow,
-    Intrinsic::Exp,   Intrinsic::Exp2,  Intrinsic::Log,    Intrinsic::Log2,  Intrinsic::Log10,
-    Intrinsic::Fmod,  Intrinsic::Mod,
-};
-
-/// What exact_sums.sk defines, for all arguments together.
-struct Named {
+/// An intrinsic, and the name of the library's function that computes it.
+struct Row {
   Intrinsic intrinsic;
   std::string_view function;
 };
-constexpr Named ofExactSums[] = {
+
+// Functions of doubles do without the last two.
+constexpr Row functionsOfReals[] = {
+    {Intrinsic::Sin, "sin"},     {Intrinsic::Cos, "cos"},     {Intrinsic::Tan, "tan"},
+    {Intrinsic::Asin, "asin"},   {Intrinsic::Acos, "acos"},   {Intrinsic::Atan, "atan"},
+    {Intrinsic::Sinh, "sinh"},   {Intrinsic::Cosh, "cosh"},   {Intrinsic::Tanh, "tanh"},
+    {Intrinsic::Asinh, "asinh"}, {Intrinsic::Acosh, "acosh"}, {Intrinsic::Atanh, "atanh"},
+    {Intrinsic::AtanYX, "atan"}, {Intrinsic::Atan2, "atan2"}, {Intrinsic::Pow, "pow"},
+    {Intrinsic::Exp, "exp"},     {Intrinsic::Exp2, "exp2"},   {Intrinsic::Log, "log"},
+    {Intrinsic::Log2, "log2"},   {Intrinsic::Log10, "log10"}, {Intrinsic::Fmod, "fmod"},
+    {Intrinsic::Mod, "mod"},
+};
+constexpr Row functionsOfExactSums[] = {
     {Intrinsic::ExactDigits, "exact_digits"},
     {Intrinsic::ExactFlags, "exact_flags"},
     {Intrinsic::ExactProductDigits, "exact_product_digits"},
@@ -41,39 +43,52 @@ constexpr Named ofExactSums[] = {
     {Intrinsic::ExactRounded, "exact_rounded"},
 };
 
-/// The intrinsics that kernels call: of floats, and of exact sums.
-struct Wanted {
-  std::set<Intrinsic> ofFloats;
-  std::vector<Named> ofExactSums;
+struct Library {
+  std::string_view file;
+  std::string_view (*text)();
+  std::span<const Row> rows;
+  std::optional<Scalar> scalar;   ///< of the first argument, if intrinsics of others are not the library's
 };
-Wanted wantedBy(const Module& module) {
-  std::set<Intrinsic> all;
+const Library libraries[] = {
+    {"float_functions.sk", floatFunctions, functionsOfReals, Scalar::Float},
+    {"double_functions.sk", doubleFunctions, std::span(functionsOfReals).first(20), Scalar::Double},
+    {"exact_sums.sk", exactSums, functionsOfExactSums, std::nullopt},
+};
+
+/// Rows whose intrinsics kernels call, with arguments that the library is for.
+std::vector<Row> wantedRows(const Library& library, const Module& module) {
+  std::vector<bool> isWanted(library.rows.size());
+  const auto look = [&](const Expr& expr) {
+    const auto* call = std::get_if<IntrinsicCall>(&expr.node);
+    if (call == nullptr) return;
+    const auto row = std::ranges::find(library.rows, call->intrinsic, &Row::intrinsic);
+    if (row == library.rows.end()) return;
+    if (!library.scalar || call->args.front()->type.scalar == *library.scalar)
+      isWanted[static_cast<std::size_t>(row - library.rows.begin())] = true;
+  };
   for (const Kernel& kernel : module.kernels) {
-    for (const FunctionId id : functionsOf(module, kernel)) {
-      walkExprs(module.functions[id].body, [&](const Expr& expr) {
-        const auto* call = std::get_if<IntrinsicCall>(&expr.node);
-        if (call == nullptr) return;
-        const bool isOfFloats = std::ranges::find(ofFloats, call->intrinsic) != std::end(ofFloats);
-        if (!isOfFloats || call->args.front()->type.isFloat()) all.insert(call->intrinsic);
-      });
-    }
+    for (const FunctionId id : functionsOf(module, kernel)) walkExprs(module.functions[id].body, look);
   }
-  Wanted wanted;
-  for (const Intrinsic intrinsic : ofFloats) {
-    if (all.contains(intrinsic)) wanted.ofFloats.insert(intrinsic);
-  }
-  for (const Named& named : ofExactSums) {
-    if (all.contains(named.intrinsic)) wanted.ofExactSums.push_back(named);
+  std::vector<Row> wanted;
+  for (std::size_t i = 0; i < isWanted.size(); ++i) {
+    if (isWanted[i]) wanted.push_back(library.rows[i]);
   }
   return wanted;
 }
 
-/// True for `float atan(float, float)` if the intrinsic is AtanYX.
-bool implements(const Function& function, Intrinsic intrinsic) {
+/// By name and types, since `atan` is two intrinsics.
+bool implements(const Function& function, const Row& row) {
   std::vector<Type> parameters;
   for (std::uint32_t i = 0; i < function.parameterCount; ++i)
     parameters.push_back(function.variables[i].type);
-  return function.name == row(intrinsic).spelling && resultType(intrinsic, parameters) == function.result;
+  return function.name == row.function && resultType(row.intrinsic, parameters) == function.result;
+}
+
+FunctionId implementation(const Module& library, const Row& row) {
+  const auto found = std::ranges::find_if(
+      library.functions, [&](const Function& function) { return implements(function, row); });
+  assert(found != library.functions.end());
+  return static_cast<FunctionId>(found - library.functions.begin());
 }
 
 }  // namespace
@@ -89,27 +104,14 @@ void LinkedFunctions::add(Intrinsic intrinsic, Scalar scalar, FunctionId functio
 
 LinkedFunctions linkLibrary(Module& module, const CompileLibrary& compile) {
   LinkedFunctions linked;
-  const Wanted wanted = wantedBy(module);
-  const auto import = [&](FunctionImporter& importer, const Module& library, auto&& isWanted) {
-    const auto found = std::ranges::find_if(library.functions, isWanted);
-    assert(found != library.functions.end());
-    return importer.import(static_cast<FunctionId>(found - library.functions.begin()));
-  };
-  if (!wanted.ofFloats.empty()) {
-    const Module library = compile("float_functions.sk", floatFunctions());
-    FunctionImporter importer(module, library);
-    for (const Intrinsic intrinsic : wanted.ofFloats) {
-      linked.add(intrinsic, Scalar::Float, import(importer, library, [&](const Function& function) {
-                   return implements(function, intrinsic);
-                 }));
-    }
-  }
-  if (!wanted.ofExactSums.empty()) {
-    const Module library = compile("exact_sums.sk", exactSums());
-    FunctionImporter importer(module, library);
-    for (const Named& named : wanted.ofExactSums) {
-      const FunctionId function = import(importer, library, [&](const Function& f) { return f.name == named.function; });
-      linked.add(named.intrinsic, module.functions[function].variables[0].type.scalar, function);
+  for (const Library& library : libraries) {
+    const std::vector<Row> wanted = wantedRows(library, module);
+    if (wanted.empty()) continue;
+    const Module compiled = compile(library.file, library.text());
+    FunctionImporter importer(module, compiled);
+    for (const Row& row : wanted) {
+      const FunctionId function = importer.import(implementation(compiled, row));
+      linked.add(row.intrinsic, module.functions[function].variables[0].type.scalar, function);
     }
   }
   return linked;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// Functions in place of intrinsics. What float_functions.sk says of sin, exp and their like is an ordinary program of the
-// language, so that the back end computes several elements together as it does in any kernel:
+// Functions in place of intrinsics. What float_functions.sk and double_functions.sk say of sin, exp and their like is an
+// ordinary program of the language, so that the back end computes several elements together as it does in any kernel:
 //
 //   kernel void wave(float x<>, out float r<>) { r = sin(x); }
 //
 // makes linkLibrary() compile the library and append to the module its `float sin(float)`, all that this calls, and their
-// constants. The kernel keeps its IntrinsicCall; the back end calls the function that LinkedFunctions names for it.
+// constants. The kernel keeps its IntrinsicCall; callLibrary() puts calls of the functions that LinkedFunctions names in its
+// place. Code that computes a kernel's floats in another precision must call the C library instead: the library's functions
+// are right in their own types only. exact_sums.sk does the same for the intrinsics of exact sums.
 #pragma once
 
 #include <functional>
@@ -19,8 +21,8 @@
 
 namespace skc::native {
 
-/// Functions of the module that compute an intrinsic of scalar arguments of one type. Components of vectors are computed
-/// one by one.
+/// Functions of the module that compute intrinsics, by the scalar type of their first argument. Those of reals take scalars:
+/// components of vectors are computed one by one.
 class LinkedFunctions {
  public:
   /// Empty where the module has none: the back end has an instruction or calls the C library.

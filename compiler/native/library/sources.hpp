@@ -7,9 +7,8 @@
 
 namespace skc::native {
 
-/// float_functions.sk
-std::string_view floatFunctions();
-/// exact_sums.sk
-std::string_view exactSums();
+std::string_view floatFunctions();    ///< float_functions.sk
+std::string_view doubleFunctions();   ///< double_functions.sk
+std::string_view exactSums();         ///< exact_sums.sk
 
 }  // namespace skc::native

@@ -9,12 +9,24 @@ namespace numerics {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr mpfr_prec_t precision = 160;
+constexpr mpfr_prec_t precision = 200;
 
-/// The unit in the last place of the float next to a finite number.
-double unitOf(double exact) {
-  const int exponent = exact == 0 ? -126 : std::clamp(std::ilogb(exact), -126, 127);
-  return std::ldexp(1.0, exponent - 23);
+/// The exponent of the unit in the last place of the number next to `exact`, which is not infinite.
+template <class Real>
+mpfr_exp_t unitExponent(const mpfr_t exact) {
+  using Limits = std::numeric_limits<Real>;
+  const mpfr_exp_t lowest = Limits::min_exponent;
+  const mpfr_exp_t highest = Limits::max_exponent;
+  const mpfr_exp_t own = mpfr_zero_p(exact) ? lowest : mpfr_get_exp(exact);
+  return std::clamp(own, lowest, highest) - Limits::digits;
+}
+
+/// Of an infinity or a number that is too large, the power of 2 beyond the largest number.
+template <class Real>
+void limit(mpfr_t x) {
+  const int sign = mpfr_signbit(x) ? -1 : 1;
+  if (mpfr_inf_p(x) || (mpfr_regular_p(x) && mpfr_get_exp(x) > std::numeric_limits<Real>::max_exponent))
+    mpfr_set_si_2exp(x, sign, std::numeric_limits<Real>::max_exponent, MPFR_RNDN);
 }
 
 }  // namespace
@@ -22,30 +34,39 @@ double unitOf(double exact) {
 FunctionOracle::FunctionOracle() { mpfr_inits2(precision, x_, y_, exact_, difference_, nullptr); }
 FunctionOracle::~FunctionOracle() { mpfr_clears(x_, y_, exact_, difference_, nullptr); }
 
-double FunctionOracle::error(Unary function, float x, float result) {
-  mpfr_set_flt(x_, x, MPFR_RNDN);
+template <class Real>
+double FunctionOracle::error(Unary function, Real x, Real result) {
+  mpfr_set_d(x_, x, MPFR_RNDN);
   function(exact_, x_, MPFR_RNDN);
   return errorOf(result);
 }
 
-double FunctionOracle::error(Binary function, float x, float y, float result) {
-  mpfr_set_flt(x_, x, MPFR_RNDN);
-  mpfr_set_flt(y_, y, MPFR_RNDN);
+template <class Real>
+double FunctionOracle::error(Binary function, Real x, Real y, Real result) {
+  mpfr_set_d(x_, x, MPFR_RNDN);
+  mpfr_set_d(y_, y, MPFR_RNDN);
   function(exact_, x_, y_, MPFR_RNDN);
   return errorOf(result);
 }
 
-double FunctionOracle::errorOf(float result) {
+template <class Real>
+double FunctionOracle::errorOf(Real result) {
   if (mpfr_nan_p(exact_) || std::isnan(result))
     return mpfr_nan_p(exact_) && std::isnan(result) ? 0 : infinity;
   if (result == 0 && std::signbit(result) != (mpfr_signbit(exact_) != 0)) return infinity;
-  if (mpfr_cmpabs_ui(exact_, 1) > 0 && mpfr_get_exp(exact_) > 128 && !mpfr_inf_p(exact_))
-    mpfr_set_inf(exact_, mpfr_sgn(exact_));
-  if (mpfr_inf_p(exact_)) mpfr_set_d(exact_, std::copysign(0x1p128, mpfr_sgn(exact_)), MPFR_RNDN);
-  const double finite = std::isinf(result) ? std::copysign(0x1p128, result) : double{result};
-  mpfr_sub_d(difference_, exact_, finite, MPFR_RNDN);
-  return std::fabs(mpfr_get_d(difference_, MPFR_RNDN)) / unitOf(mpfr_get_d(exact_, MPFR_RNDN));
+  mpfr_set_d(difference_, result, MPFR_RNDN);
+  limit<Real>(exact_);
+  limit<Real>(difference_);
+  const mpfr_exp_t unit = unitExponent<Real>(exact_);
+  mpfr_sub(difference_, exact_, difference_, MPFR_RNDN);
+  mpfr_mul_2si(difference_, difference_, -unit, MPFR_RNDN);
+  return std::fabs(mpfr_get_d(difference_, MPFR_RNDN));
 }
+
+template double FunctionOracle::error(Unary, float, float);
+template double FunctionOracle::error(Unary, double, double);
+template double FunctionOracle::error(Binary, float, float, float);
+template double FunctionOracle::error(Binary, double, double, double);
 
 int floorModulo(mpfr_t result, const mpfr_t x, const mpfr_t y, mpfr_rnd_t rounding) {
   const int inexact = mpfr_fmod(result, x, y, rounding);
@@ -53,74 +74,61 @@ int floorModulo(mpfr_t result, const mpfr_t x, const mpfr_t y, mpfr_rnd_t roundi
   return mpfr_add(result, result, y, rounding);
 }
 
-std::vector<float> nearMultiplesOfHalfPi(int first, int others) {
-  std::vector<float> found;
+template <class Real>
+std::vector<Real> nearMultiplesOfHalfPi(int first, int others) {
+  using Limits = std::numeric_limits<Real>;
+  std::vector<Real> found;
   mpfr_t multiple;
-  mpfr_init2(multiple, 400);
+  mpfr_init2(multiple, 1200);
   const auto add = [&](double factor) {
     mpfr_const_pi(multiple, MPFR_RNDN);
     mpfr_div_2ui(multiple, multiple, 1, MPFR_RNDN);
     mpfr_mul_d(multiple, multiple, factor, MPFR_RNDN);
-    const float nearest = mpfr_get_flt(multiple, MPFR_RNDN);
-    for (const float x : {nearest, std::nextafter(nearest, 0.0F), std::nextafter(nearest, 3e38F)})
+    const auto nearest = static_cast<Real>(Limits::digits == 24 ? mpfr_get_flt(multiple, MPFR_RNDN)
+                                                                : mpfr_get_d(multiple, MPFR_RNDN));
+    for (const Real x : {nearest, std::nextafter(nearest, Real(0)), std::nextafter(nearest, Limits::max())})
       found.insert(found.end(), {x, -x});
   };
   for (int i = 1; i <= first; ++i) add(i);
-  for (int i = 0; i < others; ++i)
-    add(std::floor(std::exp2(10 + 117.0 * i / others) * (1 + 0.618 * (i % 7))));
+  for (int i = 0; i < others; ++i) {
+    const double exponent = 10 + (Limits::max_exponent - 14.0) * i / others;
+    add(std::floor(std::exp2(exponent) * (1 + 0.618 * (i % 7))));
+  }
   mpfr_clear(multiple);
-  // the float above 2^23 that comes closest of all to a multiple, and those of the other powers of 2 next to it
-  for (int shift = 0; shift <= 80; ++shift) found.push_back(std::ldexp(16367173.0F, shift));
+  // of all floats and of all doubles, those that come closest to a multiple
+  for (int shift = 0; shift <= 80; ++shift) found.push_back(std::ldexp(Real(16367173), shift));
+  if (Limits::digits == 53) found.push_back(static_cast<Real>(std::ldexp(6381956970095103.0, 797)));
   return found;
 }
 
-std::vector<float> specialFloats() {
-  using Limits = std::numeric_limits<float>;
-  const float positive[] = {0,
-                            Limits::denorm_min(),
-                            1e-40F,
-                            Limits::min(),
-                            1e-30F,
-                            0x1p-24F,
-                            0.41421357F,
-                            0.5F,
-                            0.70710677F,
-                            0.99999994F,
-                            1,
-                            1.0000001F,
-                            1.4142135F,
-                            1.5F,
-                            2,
-                            3,
-                            9.01F,
-                            10,
-                            44.3F,
-                            88.72283F,
-                            88.72284F,
-                            89.41599F,
-                            89.416F,
-                            103.97208F,
-                            103.97209F,
-                            127.99999F,
-                            128,
-                            149,
-                            149.99998F,
-                            150,
-                            1000,
-                            8388607.5F,
-                            8388608,
-                            8388609,
-                            16777215,
-                            16777216,
-                            16777218,
-                            2147483648.0F,
-                            1e30F,
-                            Limits::max(),
-                            Limits::infinity(),
-                            Limits::quiet_NaN()};
-  std::vector<float> all;
-  for (const float x : positive) all.insert(all.end(), {x, -x});
+template std::vector<float> nearMultiplesOfHalfPi(int, int);
+template std::vector<double> nearMultiplesOfHalfPi(int, int);
+
+template <class Real>
+std::vector<Real> specialNumbers() {
+  using Limits = std::numeric_limits<Real>;
+  const Real one = 1, whole = std::ldexp(one, Limits::digits - 1);
+  std::vector<Real> positive = {
+      0, Limits::denorm_min(), Limits::min(), Limits::min() / 64, Limits::epsilon() / 2, 1e-30F, 0.41421357F,
+      0.5F, 0.70710677F, one - Limits::epsilon() / 2, one, one + Limits::epsilon(), 1.4142135F, 1.5F, 2, 3,
+      9.01F, 10, 22, 44.3F, 1000, 1e30F, Limits::max(), Limits::infinity(), Limits::quiet_NaN(),
+      // where whole numbers lose their halves, and where they are all even
+      whole - Real(0.5), whole, whole + 1, 2 * whole - 1, 2 * whole, 2 * whole + 2, 256 * whole};
+  // where exponentials become infinite or 0, and what is next to it
+  for (const double end : {Limits::max_exponent * 1.0, Limits::min_exponent - 1.0,
+                           Limits::min_exponent - Limits::digits * 1.0}) {
+    for (const double unit : {1.0, std::log(2.0)}) {
+      const auto x = static_cast<Real>(std::fabs(end * unit));
+      positive.insert(positive.end(), {x, std::nextafter(x, Real(0)), std::nextafter(x, Limits::max()),
+                                       x + static_cast<Real>(0.6931471805599453)});
+    }
+  }
+  std::vector<Real> all;
+  for (const Real x : positive) all.insert(all.end(), {x, -x});
   return all;
 }
+
+template std::vector<float> specialNumbers();
+template std::vector<double> specialNumbers();
 
 }  // namespace numerics
