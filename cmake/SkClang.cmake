@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
-# Clang 19 and LLVM 19 as one target, sk_clang: their headers (as SYSTEM) and their shared libraries.
-# Only compiler/frontend links it. SK_LLVM_ROOT names another installation.
+# Clang 19 and LLVM 19 as targets: their headers (as SYSTEM) and their shared libraries. Only
+# compiler/frontend links sk_clang, and only compiler/native sk_llvm. SK_LLVM_ROOT names another installation.
 #
 # Clang's own CMake package is not used: Debian ships it with the compiler, not with the headers, and
 # it looks for a dozen libraries (curl, libedit, z3 ...) that matter only to LLVM's static archives.
@@ -50,3 +50,6 @@ file(REAL_PATH "${SK_LLVM_LIBRARY}" llvmLibrary)
 add_library(sk_clang INTERFACE)
 target_include_directories(sk_clang SYSTEM INTERFACE "${SK_CLANG_INCLUDE_DIR}" "${SK_LLVM_INCLUDE_DIR}")
 target_link_libraries(sk_clang INTERFACE "${clangLibrary}" "${llvmLibrary}")
+add_library(sk_llvm INTERFACE)
+target_include_directories(sk_llvm SYSTEM INTERFACE "${SK_LLVM_INCLUDE_DIR}")
+target_link_libraries(sk_llvm INTERFACE "${llvmLibrary}")

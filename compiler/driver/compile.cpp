@@ -15,13 +15,16 @@
 
 #include "assemble/assemble.hpp"
 #include "driver/glsl_listing.hpp"
+#include "driver/native_library.hpp"
 #include "driver/plan_listing.hpp"
 #include "emit/program.hpp"
 #include "emit/stub.hpp"
 #include "frontend/frontend.hpp"
+#include "ir/clone_module.hpp"
 #include "ir/print.hpp"
 #include "transforms/check_limits.hpp"
 #include "transforms/check_outputs.hpp"
+#include "transforms/predicate.hpp"
 #include "transforms/transforms.hpp"
 
 namespace skc::driver {
@@ -121,7 +124,7 @@ emit::Stub stubOf(const Options& options, const ir::Module& module) {
 }
 
 std::string nativeText(const Options& options, const ir::Module& module, native::Output output) {
-  return native::compile(module, stubOf(options, module).native, options.native, output);
+  return native::compile(module, stubOf(options, module).native, compileLibrary, options.native, output);
 }
 
 /// Of each measured device, else of the profile.
@@ -155,7 +158,7 @@ std::vector<OutputFile> outputsOf(const Options& options, const ir::Module& modu
   files.push_back({base + ".cpp", std::move(stub.source)});
   if (options.nativeTarget) {
     files.push_back(
-        {base + ".o", native::compile(module, stub.native, options.native, native::Output::Object)});
+        {base + ".o", native::compile(module, stub.native, compileLibrary, options.native, native::Output::Object)});
   }
   return files;
 }
@@ -176,6 +179,15 @@ bool writeStubs(const Job& job, const ir::Module& module, const frontend::Fronte
   return writeFile(options.depfile, rule + "\n", job.messages);
 }
 
+/// predicate is no transform for all targets: the native one runs it on a copy of its own.
+void printPredicated(const Job& job, const ir::Module& module) {
+  const std::string& wanted = job.options.printAfter;
+  if (wanted != predicateName && (wanted != "all" || !job.options.nativeTarget)) return;
+  ir::Module copy = ir::clone(module);
+  predicate(copy);
+  job.output << "// after " << predicateName << "\n" << ir::print(copy) << "\n";
+}
+
 /// Everything before the emitters; nothing after errors.
 std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend) {
   const Options& options = job.options;
@@ -189,6 +201,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
     runTransforms(*module, frontend.diagnostics(), transformOptions(options, job.output));
   }
   if (frontend.diagnostics().hasErrors()) return std::nullopt;
+  printPredicated(job, *module);
   return module;
 }
 

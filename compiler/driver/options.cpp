@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "assemble/assemble.hpp"
+#include "transforms/predicate.hpp"
 #include "transforms/transforms.hpp"
 
 namespace skc::driver {
@@ -32,9 +33,9 @@ std::string profileNames() {
 std::string transformList() {
   std::string names;
   for (const std::string_view name : skc::transformNames()) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+    names += fmt::format("{}, ", name);
   }
-  return names;
+  return names + std::string(skc::predicateName);
 }
 
 /// A message for a value that is not allowed, or "".
@@ -55,7 +56,8 @@ std::string checkTarget(const std::string& value) {
 
 std::string checkTransform(const std::string& value) {
   const auto names = skc::transformNames();
-  if (value == "all" || std::find(names.begin(), names.end(), value) != names.end()) return {};
+  const bool isKnown = value == "all" || value == skc::predicateName;
+  if (isKnown || std::find(names.begin(), names.end(), value) != names.end()) return {};
   return fmt::format("'{}' is no transform; use all, {}", value, transformList());
 }
 

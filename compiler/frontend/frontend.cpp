@@ -88,6 +88,10 @@ class Frontend::Unit {
     if (diagnostics_->hasErrors()) return std::nullopt;
     ir::Module module = lowerModule(compiler_.getSema(), edited.syntax, path, *diagnostics_);
     if (diagnostics_->hasErrors()) return std::nullopt;
+    if (module.kernels.empty() && module.streams.empty() && !options_.isLibrary) {
+      fail(Diag::NoKernels, path);
+      return std::nullopt;
+    }
     return module;
   }
 

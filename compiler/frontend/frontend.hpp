@@ -22,6 +22,7 @@ struct Options {
   bool color = false;
   bool fixIts = false;                           ///< in Clang's parseable form
   std::ostream* messages = nullptr;              ///< where messages go; null: standard error
+  bool isLibrary = false;                        ///< the file may do without kernels
 };
 
 /// One translation unit. It lives until the last diagnostic about it is reported.

@@ -37,8 +37,6 @@ ir::Module ModuleLowering::run(const std::string& file) {
   module_.sources.push_back(file);
   sourceIndex_[file] = 0;
   declarations(context().getTranslationUnitDecl());
-  if (module_.kernels.empty() && module_.streams.empty() && !diagnostics_.hasErrors())
-    diagnostics_.report(Diag::NoKernels, {}, {file});
   if (!diagnostics_.hasErrors()) pairReductions();
   return std::move(module_);
 }

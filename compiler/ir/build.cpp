@@ -213,8 +213,10 @@ Stmt::Node cloneNode(const Stmt::Node& node) {
       [](const Break& n) -> N { return n; }, [](const Continue& n) -> N { return n; },
       [](const Return& n) -> N { return Return{clone(n.value)}; },
       [](const Scope& n) -> N { return Scope{clone(n.body)}; },
-      [](const Push& n) -> N { return Push{n.stream, clone(n.value)}; },
-      [](const Scatter& n) -> N { return Scatter{n.stream, n.op, clone(n.index), clone(n.value)}; });
+      [](const Push& n) -> N { return Push{n.stream, clone(n.value), clone(n.mask)}; },
+      [](const Scatter& n) -> N {
+        return Scatter{n.stream, n.op, clone(n.index), clone(n.value), clone(n.mask)};
+      });
 }
 
 }  // namespace

@@ -32,6 +32,10 @@
 //     types of its accumulators, and which does not ask where an element is.
 //   * A kernel that some target cannot run in one pass has plans after `split-kernels`. The kernels
 //     of their passes stand in the module like all others.
+//   * After `predicate`, which only native code wants, a function computes several elements at once, each in a
+//     lane. Control flow is the same for all lanes: conditions are uniform, or ask AnyLane. What an element does
+//     alone depends on masks, which are bool variables. An entry may take one more parameter than its kernel
+//     has: a bool In, true in the lanes that have an element.
 //
 // `validate` (validate.hpp) is this text made executable.
 #pragma once
@@ -142,12 +146,13 @@ struct Return { ExprPtr value; };                                   ///< null in
 struct Scope { Block body; };
 
 /// Appends an element to a variable output. Pushes of one element stay in the order of execution, and
-/// those of an element come before those of every later one.
-struct Push { StreamRef stream; ExprPtr value; };
+/// those of an element come before those of every later one. `mask` is a bool that is true in the lanes which
+/// push; null is all of them, and what it is before `predicate`.
+struct Push { StreamRef stream; ExprPtr value; ExprPtr mask = nullptr; };
 enum class ScatterOp : std::uint8_t { Store, Add, Min, Max };
 /// Element `index` (int, int2 .. int4; x fastest) of a scatter output becomes `value`, or its old value
-/// combined with it; an index outside does nothing. In the order of Push. One op an output.
-struct Scatter { StreamRef stream; ScatterOp op; ExprPtr index, value; };
+/// combined with it; an index outside does nothing. In the order of Push, and with its mask. One op an output.
+struct Scatter { StreamRef stream; ScatterOp op; ExprPtr index, value; ExprPtr mask = nullptr; };
 
 struct Stmt {
   using Node = std::variant<Declare, Assign, CallStmt, If, Loop, Switch, Break, Continue, Return, Scope,

@@ -43,10 +43,13 @@ class StmtPrinter {
         [&](const Return& n) { return indent + (n.value ? "return " + expr(n.value) : "return") + ";\n"; },
         [&](const Scope& n) { return indent + braces(n.body, depth) + "\n"; },
         [&](const Push& n) {
-          return fmt::format("{}push({}, {});\n", indent, print(function_, n.stream), expr(n.value));
+          return fmt::format("{}{}push({}, {});\n", indent, where(n.mask), print(function_, n.stream), expr(n.value));
         },
-        [&](const Scatter& n) { return indent + scatter(n) + ";\n"; });
+        [&](const Scatter& n) { return indent + where(n.mask) + scatter(n) + ";\n"; });
   }
+
+  /// "where (mask) ", which is shorter than an If and unlike one.
+  std::string where(const ExprPtr& mask) const { return mask ? fmt::format("where ({}) ", expr(mask)) : ""; }
 
   /// "$1[i] += v", "$1[i] = min($1[i], v)".
   std::string scatter(const Scatter& n) const {

@@ -147,6 +147,7 @@ class FunctionChecker {
   void rule(const Push& n) const {
     checkExpr(context_, *n.value);
     checkSink(context_, n.stream, n.value->type, 0);
+    mask(n.mask);
   }
   void rule(const Scatter& n) const {
     checkExpr(context_, *n.index);
@@ -156,6 +157,12 @@ class FunctionChecker {
     checkSink(context_, n.stream, n.value->type, n.index->type.width);
     const bool isNumber = n.value->type.isFloat() || n.value->type.isInteger();
     require(n.op == ScatterOp::Store || isNumber, "something that is no number is combined");
+    mask(n.mask);
+  }
+  void mask(const ExprPtr& expr) const {
+    if (!expr) return;
+    require(context_.stage == Stage::Predicated, "there is a mask before predicate");
+    condition(*expr);
   }
 
   void condition(const Expr& expr) const {
@@ -281,11 +288,20 @@ void checkPlan(const Module& module, const Kernel& kernel, const Plan& plan) {
   }
 }
 
+/// predicate appends a mask to some functions' parameters.
+void checkParameterCount(Stage stage, const Function& function, std::size_t expected) {
+  const bool isLonger = stage == Stage::Predicated && function.parameterCount == expected + 1;
+  require(isLonger || function.parameterCount == expected, "it has too many or too few parameters");
+  if (!isLonger) return;
+  const Variable& mask = function.variables[expected];
+  require(mask.role == VarRole::In && mask.type == Type::of(Scalar::Bool), "its last parameter is no mask");
+}
+
 void checkKernel(const Module& module, Stage stage, const Kernel& kernel) {
   require(kernel.entry < module.functions.size(), "the entry is not in the table");
   const Function& entry = module.functions[kernel.entry];
   require(entry.result.isVoid(), "the entry returns a value");
-  require(entry.parameterCount == kernel.params.size(), "the entry has too many or too few parameters");
+  checkParameterCount(stage, entry, kernel.params.size());
   bool hasAccumulator = false;
   for (std::size_t i = 0; i < kernel.params.size(); ++i) {
     hasAccumulator = hasAccumulator || kernel.params[i].role == ParamRole::Accumulator;
@@ -348,10 +364,11 @@ void checkTables(const Module& module, Stage stage) {
   }
 }
 
-void checkTabulated(const Module& module, const Function& function) {
+void checkTabulated(const Module& module, Stage stage, const Function& function) {
   require(*function.table < module.tables.size(), "its values have no table in the module");
-  require(function.result.isFloat() && function.result.isScalar() && function.parameterCount == 1 &&
-              function.variables[0].role == VarRole::In && function.variables[0].type == function.result,
+  checkParameterCount(stage, function, 1);
+  require(function.result.isFloat() && function.result.isScalar() && function.variables[0].role == VarRole::In &&
+              function.variables[0].type == function.result,
           "it has a table, but does not take one float and give one");
 }
 
@@ -365,14 +382,14 @@ std::string validate(const Module& module, Stage stage) {
       within("kernel " + kernel.name, [&] { checkKernel(module, stage, kernel); });
     }
     std::vector<const Kernel*> owner(module.functions.size(), nullptr);
-    if (stage == Stage::Specialized) owner = owners(module);
+    if (stage != Stage::Lowered) owner = owners(module);
     for (std::size_t i = 0; i < module.functions.size(); ++i) {
       const Function& function = module.functions[i];
       // what folding has cut off may name streams, and nobody knows of which kernel
-      if (stage == Stage::Specialized && owner[i] == nullptr) continue;
+      if (stage != Stage::Lowered && owner[i] == nullptr) continue;
       within(fmt::format("function @{} '{}'", i, function.name), [&] {
         FunctionChecker(module, stage, function, owner[i]).check();
-        if (function.table) checkTabulated(module, function);
+        if (function.table) checkTabulated(module, stage, function);
       });
     }
   } catch (const Violation& violation) {

@@ -173,6 +173,8 @@ class ExprChecker {
     require(module_.functions[n.callee].result == type, "a call has another type than its function's result");
   }
   void rule(Type type, const IntrinsicCall& n) const {
+    require(n.intrinsic != Intrinsic::AnyLane || context_.stage == Stage::Predicated,
+            "lanes are asked about before predicate");
     std::vector<Type> types;
     for (const ExprPtr& arg : n.args) types.push_back(arg->type);
     const std::optional<Type> result = resultType(n.intrinsic, types);

@@ -62,8 +62,8 @@ void forEachOperand(S& stmt, Fn&& fn) {
       [](const Break&) {}, [](const Continue&) {},
       [&](Like<S, Return>& n) { optional(n.value); },
       [](const Scope&) {},
-      [&](Like<S, Push>& n) { fn(n.value); },
-      [&](Like<S, Scatter>& n) { fn(n.index), fn(n.value); });
+      [&](Like<S, Push>& n) { fn(n.value), optional(n.mask); },
+      [&](Like<S, Scatter>& n) { fn(n.index), fn(n.value), optional(n.mask); });
 }
 
 /// fn(block) for every block of a statement, in order.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ir/ir.hpp"
+#include "native/library/link_library.hpp"
 
 namespace skc::native {
 
@@ -48,7 +49,7 @@ void checkOptions(const Options& options);
 std::vector<std::string_view> levelNames(const std::string& triple);
 
 /// The object file (its bytes), the assembly or the LLVM IR of these kernels. The object is position independent.
-std::string compile(const ir::Module& module, const std::vector<KernelRequest>& kernels, const Options& options,
-                    Output output);
+std::string compile(const ir::Module& module, const std::vector<KernelRequest>& kernels,
+                    const CompileLibrary& compileLibrary, const Options& options, Output output);
 
 }  // namespace skc::native

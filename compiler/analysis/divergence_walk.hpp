@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+//
+// Private to Uniformity: one walk over a function, which adds what makes values vary and control flow diverge. It is
+// repeated until it adds nothing.
+//
+// The walk keeps the reasons why some lanes are inactive as frames: they are in another branch, or have left the loop, the round of
+// a loop, or the function. A lane in another branch can read what is assigned meanwhile to a variable that
+// is declared outside of the branch. One that has left a loop cannot, where the variable lives in that loop only.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "analysis/last_uses.hpp"
+#include "analysis/uniformity.hpp"
+#include "ir/ir.hpp"
+
+namespace skc::analysis {
+
+class DivergenceWalk {
+ public:
+  DivergenceWalk(Uniformity& whole, ir::FunctionId id);
+
+  /// Whether something was added.
+  bool run();
+
+ private:
+  /// Why some lanes are inactive.
+  struct Frame {
+    enum Kind : std::uint8_t { Branch, Loop, Round, Function } kind;
+    std::size_t loop = 0;  ///< of Loop and Round: how many loops are around it
+  };
+  /// A statement that a jump can leave.
+  struct Enclosing {
+    const ir::Stmt* stmt;
+    std::size_t frames;  ///< around it
+    bool isLoop;
+  };
+  struct Declared {
+    std::size_t frames, loops;  ///< around it
+    bool isCallers;             ///< read after the function's end
+  };
+
+  void block(const ir::Block& statements, Frame::Kind leaves = Frame::Branch);
+  bool jumps(const ir::Stmt& stmt, Frame::Kind left) const;
+
+  void visit(const ir::Stmt& stmt, const ir::Declare& n);
+  void visit(const ir::Stmt& stmt, const ir::Assign& n);
+  void visit(const ir::Stmt& stmt, const ir::CallStmt& n);
+  void visit(const ir::Stmt& stmt, const ir::If& n);
+  void visit(const ir::Stmt& stmt, const ir::Loop& n);
+  void visit(const ir::Stmt& stmt, const ir::Switch& n);
+  void visit(const ir::Stmt& stmt, const ir::Break& n);
+  void visit(const ir::Stmt& stmt, const ir::Continue& n);
+  void visit(const ir::Stmt& stmt, const ir::Return& n);
+  void visit(const ir::Stmt& stmt, const ir::Scope& n);
+  void visit(const ir::Stmt&, const ir::Push&) {}
+  void visit(const ir::Stmt&, const ir::Scatter&) {}
+
+  void calls(const ir::Expr& expr);
+  void called(ir::FunctionId callee);
+  void assign(const ir::Stmt& stmt, const ir::Expr& place, Leaves value);
+  bool isSeenByOthers(ir::VarId var) const;
+  bool isSeenOutside(const Frame& frame, const Declared& declared, ir::VarId var) const;
+  bool isDivergentJump(std::size_t frames, Frame::Kind allowed) const;
+
+  Leaves shapes(const ir::Expr& expr) const { return exprs_.of(id_, expr); }
+  void add(Leaves& into, const Leaves& from);
+  void set(bool& flag);
+  void insert(std::set<const ir::Stmt*>& where, const ir::Stmt& stmt);
+
+  Uniformity& whole_;
+  ir::FunctionId id_;
+  const ir::Function& function_;
+  Uniformity::Facts& facts_;
+  ExprShapes exprs_;
+  LastUses lastUses_;
+  std::vector<Declared> declared_;
+  std::vector<Frame> frames_;
+  std::vector<Enclosing> enclosing_;
+  std::vector<const ir::Stmt*> loops_;
+  bool isNew_ = false;
+};
+
+}  // namespace skc::analysis

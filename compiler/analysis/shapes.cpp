@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/shapes.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "ir/walk.hpp"
+#include "support/overloaded.hpp"
+
+namespace skc::analysis {
+
+using namespace ir;
+
+std::size_t leafCount(const Module& module, Type type) {
+  switch (type.kind) {
+    case Type::Kind::Void: return 0;
+    case Type::Kind::Scalar:
+    case Type::Kind::Vector: return type.width;
+    case Type::Kind::Matrix: return std::size_t{type.width} * type.width;
+    case Type::Kind::Array: return leafCount(module, module.arrays[type.index].element);
+    case Type::Kind::Struct: break;
+  }
+  std::size_t count = 0;
+  for (const StructField& field : module.structs[type.index].fields) count += leafCount(module, field.type);
+  return count;
+}
+
+Leaf join(Leaf a, Leaf b) {
+  if (!a || !b) return a ? a : b;
+  return a == b ? a : Shape::Varying;
+}
+
+Leaf join(const Leaves& leaves) {
+  Leaf all;
+  for (const Leaf leaf : leaves) all = join(all, leaf);
+  return all;
+}
+
+namespace {
+
+/// The shape of what is computed from both by an operation that keeps nothing but uniformity.
+Leaf mixed(Leaf a, Leaf b) {
+  if (!a || !b) return std::nullopt;
+  return isVarying(a) || isVarying(b) ? Shape::Varying : Shape::Uniform;
+}
+Leaf mixed(Leaf a) { return mixed(a, a); }
+
+Leaf mixed(const Leaves& leaves) {
+  Leaf all = Shape::Uniform;
+  for (const Leaf leaf : leaves) all = mixed(all, leaf);
+  return all;
+}
+
+/// Addition and subtraction of ints keep what is consecutive.
+Leaf moved(BinaryOp op, Leaf lhs, Leaf rhs) {
+  const bool isAdd = op == BinaryOp::Add;
+  if (lhs == Shape::Consecutive && rhs == Shape::Uniform) return lhs;
+  if (isAdd && lhs == Shape::Uniform && rhs == Shape::Consecutive) return rhs;
+  return mixed(lhs, rhs);
+}
+
+bool isComponentwise(Intrinsic intrinsic) {
+  using enum Intrinsic;
+  static constexpr Intrinsic others[] = {Cross,   Normalize, Faceforward, Reflect,
+                                         Refract, Transpose, Inverse,     ExactSettled};
+  return std::ranges::find(others, intrinsic) == std::end(others);
+}
+
+/// Where in a struct a field's leaves begin.
+std::size_t firstLeaf(const Module& module, Type type, std::uint32_t field) {
+  std::size_t first = 0;
+  const std::vector<StructField>& fields = module.structs[type.index].fields;
+  for (std::uint32_t i = 0; i < field; ++i) first += leafCount(module, fields[i].type);
+  return first;
+}
+
+std::optional<std::uint32_t> literalIndex(const Expr& index, std::uint32_t length) {
+  const auto* n = std::get_if<Literal>(&index.node);
+  return n != nullptr && n->bits < length ? std::optional(n->bits) : std::nullopt;
+}
+
+}  // namespace
+
+/// One rule for each kind of expression.
+class ExprRule {
+ public:
+  ExprRule(const ExprShapes& shapes, FunctionId function)
+      : module_(shapes.module_), kernel_(shapes.kernel_), shapes_(shapes.shapes_), function_(function) {}
+
+  Leaves of(const Expr& expr) const {
+    return match(expr.node, [&](const auto& node) { return rule(expr.type, node); });
+  }
+
+  Leaves binary(BinaryOp op, Type type, const Expr& left, const Expr& right) const {
+    const Leaves lhs = of(left), rhs = of(right);
+    if (left.type.isMatrix() || right.type.isMatrix() || !type.isArithmetic() ||
+        !(left.type.isArithmetic() && right.type.isArithmetic()))
+      return all(type, mixed(mixed(lhs), mixed(rhs)));
+    const bool moves = (op == BinaryOp::Add || op == BinaryOp::Sub) && type.isInteger();
+    return componentwise(type, lhs, rhs,
+                         [&](Leaf a, Leaf b) { return moves ? moved(op, a, b) : mixed(a, b); });
+  }
+
+  /// Into the base of a place go the leaves of the place.
+  Leaves assigned(const Expr& place, Leaves value) const {
+    if (const auto* n = std::get_if<Member>(&place.node)) {
+      Leaves base(leafCount(module_, n->base->type));
+      std::ranges::copy(value, base.begin() + offset(firstLeaf(module_, n->base->type, n->field)));
+      return assigned(*n->base, std::move(base));
+    }
+    if (const auto* n = std::get_if<Swizzle>(&place.node)) {
+      Leaves base(n->base->type.width);
+      for (std::size_t i = 0; i < value.size(); ++i) base[n->components[i]] = value[i];
+      return assigned(*n->base, std::move(base));
+    }
+    if (const auto* n = std::get_if<ir::Index>(&place.node)) return assigned(*n->base, indexed(*n, value));
+    return value;
+  }
+
+ private:
+  static std::ptrdiff_t offset(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
+  Leaves all(Type type, Leaf leaf) const { return Leaves(leafCount(module_, type), leaf); }
+  Leaves uniform(Type type) const { return all(type, Shape::Uniform); }
+
+  template <class Fn>
+  Leaves componentwise(Type type, const Leaves& lhs, const Leaves& rhs, Fn&& fn) const {
+    Leaves result;
+    const std::size_t count = leafCount(module_, type);
+    for (std::size_t i = 0; i < count; ++i) result.push_back(fn(component(lhs, i), component(rhs, i)));
+    return result;
+  }
+  /// A scalar goes with every component.
+  static Leaf component(const Leaves& leaves, std::size_t i) {
+    return leaves.size() == 1 ? leaves.front() : leaves[i];
+  }
+
+  /// What an assignment to an element at an index does to the whole.
+  Leaves indexed(const ir::Index& n, const Leaves& value) const {
+    Leaves base(leafCount(module_, n.base->type));
+    if (isVarying(join(of(*n.index)))) {
+      std::ranges::fill(base, Leaf(Shape::Varying));
+      return base;
+    }
+    const std::optional<std::uint32_t> known =
+        n.base->type.kind == Type::Kind::Array ? 0 : literalIndex(*n.index, n.base->type.width);
+    for (std::size_t i = 0; i < base.size(); ++i) {
+      if (!known || i / value.size() == *known) base[i] = value[i % value.size()];
+    }
+    return base;
+  }
+
+  Leaves rule(Type type, const Literal&) const { return uniform(type); }
+  Leaves rule(Type type, const ConstantRef&) const { return uniform(type); }
+  Leaves rule(Type, const VarRef& n) const { return shapes_.at(function_).variables[n.var]; }
+  Leaves rule(Type, const Unary& n) const { return each(of(*n.operand)); }
+  Leaves rule(Type type, const Binary& n) const { return binary(n.op, type, *n.lhs, *n.rhs); }
+  Leaves rule(Type type, const Select& n) const {
+    const Leaves cond = of(*n.cond), yes = of(*n.yes), no = of(*n.no);
+    Leaves result;
+    for (std::size_t i = 0; i < leafCount(module_, type); ++i) {
+      const Leaf chooses = component(cond, i);
+      result.push_back(!chooses             ? std::nullopt
+                       : isVarying(chooses) ? Shape::Varying
+                                            : join(yes[i], no[i]));
+    }
+    return result;
+  }
+  Leaves rule(Type type, const Convert& n) const {
+    const bool keeps = type.isInteger() && n.operand->type.isInteger();
+    return keeps ? of(*n.operand) : each(of(*n.operand));
+  }
+  Leaves rule(Type type, const Construct& n) const {
+    if (type.kind == Type::Kind::Array) {
+      Leaves result = of(*n.args.front());
+      for (const ExprPtr& arg : n.args) merge(result, of(*arg));
+      return result;
+    }
+    Leaves result;
+    for (const ExprPtr& arg : n.args) std::ranges::copy(of(*arg), std::back_inserter(result));
+    const bool isSplat = type.isVector() && result.size() == 1;
+    return isSplat ? all(type, result.front()) : result;
+  }
+  Leaves rule(Type, const Swizzle& n) const {
+    const Leaves base = of(*n.base);
+    Leaves result;
+    for (const std::uint8_t component : n.components) result.push_back(base[component]);
+    return result;
+  }
+  Leaves rule(Type type, const Member& n) const {
+    const Leaves base = of(*n.base);
+    const auto first = base.begin() + offset(firstLeaf(module_, n.base->type, n.field));
+    return Leaves(first, first + offset(leafCount(module_, type)));
+  }
+  Leaves rule(Type type, const ir::Index& n) const {
+    if (isVarying(join(of(*n.index)))) return all(type, Shape::Varying);
+    const Leaves base = of(*n.base);
+    if (n.base->type.kind == Type::Kind::Array) return base;
+    const std::size_t size = leafCount(module_, type);
+    if (const auto known = literalIndex(*n.index, n.base->type.width)) {
+      const auto first = base.begin() + offset(*known * size);
+      return Leaves(first, first + offset(size));
+    }
+    Leaves result(size);
+    for (std::size_t i = 0; i < base.size(); ++i) result[i % size] = join(result[i % size], base[i]);
+    return result;
+  }
+  Leaves rule(Type, const Call& n) const { return shapes_.at(n.callee).result; }
+  Leaves rule(Type type, const IntrinsicCall& n) const {
+    if (n.intrinsic == Intrinsic::AnyLane) return uniform(type);
+    Leaves result = uniform(type);
+    for (const ExprPtr& arg : n.args) {
+      const Leaves leaves = of(*arg);
+      const bool fits = leaves.size() == 1 || leaves.size() == result.size();
+      const Leaf whole = mixed(leaves);
+      for (std::size_t i = 0; i < result.size(); ++i) {
+        result[i] =
+            mixed(result[i], fits && isComponentwise(n.intrinsic) ? component(leaves, i) : whole);
+      }
+    }
+    return result;
+  }
+  Leaves rule(Type type, const GatherRead& n) const { return all(type, mixed(of(*n.index))); }
+  Leaves rule(Type type, const NeighborRead&) const { return all(type, Shape::Varying); }
+  Leaves rule(Type type, const Sample& n) const { return all(type, mixed(of(*n.position))); }
+  /// The lanes are a run of elements along x, except in a fold, whose lanes may stand farther apart. An input's index
+  /// is the domain's after a multiplication and a division.
+  Leaves rule(Type type, const IndexOf& n) const {
+    Leaves result = uniform(type);
+    const bool isInput = n.stream.space == StreamRef::Space::KernelParameter &&
+                         kernel_.params[n.stream.id].role == ParamRole::Input;
+    result[0] = isInput || kernel_.reduction ? Shape::Varying : Shape::Consecutive;
+    return result;
+  }
+  Leaves rule(Type type, const ExtentOf&) const { return uniform(type); }
+
+  static Leaves each(Leaves leaves) {
+    for (Leaf& leaf : leaves) leaf = mixed(leaf);
+    return leaves;
+  }
+  static void merge(Leaves& into, const Leaves& from) {
+    for (std::size_t i = 0; i < into.size(); ++i) into[i] = join(into[i], from[i]);
+  }
+
+  const Module& module_;
+  const Kernel& kernel_;
+  const KernelShapes& shapes_;
+  FunctionId function_;
+};
+
+Leaves ExprShapes::of(FunctionId function, const Expr& expr) const { return ExprRule(*this, function).of(expr); }
+
+Leaves ExprShapes::ofCompound(FunctionId function, const Expr& place, BinaryOp op, const Expr& value) const {
+  return ExprRule(*this, function).binary(op, place.type, place, value);
+}
+
+Leaves ExprShapes::assigned(FunctionId function, const Expr& place, Leaves value) const {
+  return ExprRule(*this, function).assigned(place, std::move(value));
+}
+
+}  // namespace skc::analysis

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/uniformity.hpp"
+
+#include <utility>
+
+#include "analysis/divergence_walk.hpp"
+#include "ir/reach.hpp"
+
+namespace skc::analysis {
+
+using namespace ir;
+
+namespace {
+
+/// Without leaves that nothing is assigned to.
+std::vector<Shape> known(const Leaves& leaves) {
+  std::vector<Shape> shapes;
+  for (const Leaf leaf : leaves) shapes.push_back(leaf.value_or(Shape::Uniform));
+  return shapes;
+}
+
+void makeUniform(Leaves& leaves) {
+  for (Leaf& leaf : leaves) leaf = leaf.value_or(Shape::Uniform);
+}
+
+/// What the entry's variables are when it starts.
+Leaf atEntry(const Kernel& kernel, VarId var) {
+  if (var >= kernel.params.size()) return Shape::Varying;  // the mask of predicate
+  switch (kernel.params[var].role) {
+    case ParamRole::Input:
+    case ParamRole::Iterator:
+    case ParamRole::Accumulator: return Shape::Varying;
+    case ParamRole::Output: return std::nullopt;
+    case ParamRole::Uniform:
+    case ParamRole::Gather:
+    case ParamRole::VariableOutput:
+    case ParamRole::Scatter:
+    case ParamRole::Spec: break;
+  }
+  return Shape::Uniform;
+}
+
+}  // namespace
+
+Uniformity::Uniformity(const Module& module, const Kernel& kernel) : module_(module), kernel_(kernel) {
+  const std::vector<FunctionId> functions = functionsOf(module, kernel);
+  for (const FunctionId id : functions) {
+    const Function& function = module.functions[id];
+    FunctionShapes& own = shapes_[id];
+    for (VarId i = 0; i < function.variables.size(); ++i) {
+      const bool isParameter = id == kernel.entry && i < function.parameterCount;
+      own.variables.emplace_back(leafCount(module, function.variables[i].type),
+                                 isParameter ? atEntry(kernel, i) : std::nullopt);
+    }
+    own.result.resize(leafCount(module, function.result));
+    facts_[id] = {};
+  }
+  propagate(functions);
+  // What nothing is assigned to has no shape so far, nor has what is computed from it alone.
+  for (auto& [id, own] : shapes_) {
+    for (Leaves& leaves : own.variables) makeUniform(leaves);
+    makeUniform(own.result);
+  }
+  propagate(functions);
+  for (const auto& [id, own] : shapes_) {
+    for (const Leaves& leaves : own.variables) facts_[id].variables.push_back(known(leaves));
+    facts_[id].result = known(own.result);
+  }
+}
+
+void Uniformity::propagate(const std::vector<FunctionId>& functions) {
+  for (bool isNew = true; isNew;) {
+    isNew = false;
+    for (const FunctionId id : functions) {
+      const bool found = DivergenceWalk(*this, id).run();
+      isNew = isNew || found;
+    }
+  }
+}
+
+std::span<const Shape> Uniformity::of(FunctionId function, VarId var) const { return at(function).variables[var]; }
+
+std::span<const Shape> Uniformity::resultOf(FunctionId function) const { return at(function).result; }
+
+std::vector<Shape> Uniformity::leavesOf(FunctionId function, const Expr& expr) const {
+  return known(ExprShapes(module_, kernel_, shapes_).of(function, expr));
+}
+
+Shape Uniformity::of(FunctionId function, const Expr& expr) const {
+  const Leaf all = join(ExprShapes(module_, kernel_, shapes_).of(function, expr));
+  const bool isPart = all == Shape::Consecutive && !expr.type.isScalar();
+  return isPart ? Shape::Varying : all.value_or(Shape::Uniform);
+}
+
+bool Uniformity::diverges(FunctionId function, const Stmt& stmt) const {
+  return at(function).divergent.contains(&stmt);
+}
+
+bool Uniformity::skips(FunctionId function, const Stmt& loop) const {
+  return at(function).skipping.contains(&loop);
+}
+
+bool Uniformity::blends(FunctionId function, const Stmt& stmt, VarId var) const {
+  return at(function).blended.contains({&stmt, var});
+}
+
+}  // namespace skc::analysis

@@ -1,0 +1,2 @@
+#include "analysis/uniformity.hpp"
+#include <catch2/catch.hpp>

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#include "driver/native_library.hpp"
+
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include "frontend/frontend.hpp"
+
+namespace skc::driver {
+
+/// A mistake in the library is a bug of ours: the tests compile all of it.
+ir::Module compileLibrary(std::string_view file, std::string_view text) {
+  std::ostringstream messages;
+  frontend::Options options;
+  options.messages = &messages;
+  options.isLibrary = true;
+  frontend::Frontend frontend(options);
+  std::optional<ir::Module> module = frontend.compile(std::string(file), std::string(text));
+  if (module) return std::move(*module);
+  std::cerr << "skc: internal error: the library of native code does not compile\n" << messages.str();
+  std::abort();
+}
+
+native::LinkedFunctions linkNativeLibrary(ir::Module& module) {
+  return native::linkLibrary(module, compileLibrary);
+}
+
+}  // namespace skc::driver

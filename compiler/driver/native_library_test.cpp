@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: a module gets the functions of the intrinsics that its kernels call, and no others; it stays valid.
+#include "driver/native_library.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <string>
+
+#include "driver/compile.hpp"
+#include "ir/print.hpp"
+#include "ir/validate.hpp"
+#include "ir/walk.hpp"
+
+using namespace skc;
+
+namespace {
+
+ir::Module translated(const std::string& text) {
+  driver::Translation translation = driver::translateText({}, "test.sk", text);
+  INFO(translation.messages);
+  REQUIRE(translation.module);
+  return std::move(*translation.module);
+}
+
+}  // namespace
+
+TEST_CASE("intrinsics of floats get functions, and what these need") {
+  ir::Module module = translated(
+      "constexpr float weights[2] = {0.5, 0.25};\n"
+      "kernel void wave(float2 x<>, int i, out float2 r<>) { r = weights[i] * sin(x); }\n"
+      "kernel void angle(float y<>, float x<>, out float a<>) { a = atan(y, x); }\n");
+  const std::size_t functions = module.functions.size();
+  const native::LinkedFunctions linked = driver::linkNativeLibrary(module);
+  const auto sine = linked.find(ir::Intrinsic::Sin, ir::Scalar::Float);
+  const auto angle = linked.find(ir::Intrinsic::AtanYX, ir::Scalar::Float);
+  REQUIRE(sine);
+  REQUIRE(angle);
+  CHECK(module.functions[*sine].name == "sin");
+  CHECK(module.functions[*sine].parameterCount == 1);
+  CHECK(module.functions[*angle].parameterCount == 2);
+  CHECK(*sine >= functions);
+  CHECK_FALSE(linked.find(ir::Intrinsic::Cos, ir::Scalar::Float));
+  CHECK_FALSE(linked.find(ir::Intrinsic::Sin, ir::Scalar::Double));
+  INFO(ir::print(module));
+  CHECK(ir::validate(module, ir::Stage::Specialized).empty());
+}
+
+TEST_CASE("a module without such intrinsics stays as it is") {
+  ir::Module module =
+      translated("kernel void root(float x<>, out float r<>) { r = sqrt(abs(x)) + min(x, 1); }\n");
+  const std::string before = ir::print(module);
+  CHECK(driver::linkNativeLibrary(module).empty());
+  CHECK(ir::print(module) == before);
+}
+
+TEST_CASE("every function of the library has its intrinsic") {
+  ir::Module module = translated(
+      "kernel void all(float x<>, float y, out float r<>) {\n"
+      "  r = sin(x) + cos(x) + tan(x) + asin(x) + acos(x) + atan(x) + sinh(x) + cosh(x) + tanh(x) + asinh(x) "
+      "+ acosh(x) +\n"
+      "      atanh(x) + atan(x, y) + atan2(x, y) + pow(x, y) + exp(x) + exp2(x) + log(x) + log2(x) + "
+      "log10(x) +\n"
+      "      fmod(x, y) + mod(x, y);\n}\n");
+  const native::LinkedFunctions linked = driver::linkNativeLibrary(module);
+  for (const ir::Function& function : module.functions) {
+    ir::walkExprs(function.body, [&](const ir::Expr& expr) {
+      const auto* call = std::get_if<ir::IntrinsicCall>(&expr.node);
+      if (call == nullptr || function.name != "all") return;
+      INFO(ir::row(call->intrinsic).name);
+      CHECK(linked.find(call->intrinsic, ir::Scalar::Float));
+    });
+  }
+  CHECK(ir::validate(module, ir::Stage::Specialized).empty());
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+//
+// A deep copy of a module, for a back end that rewrites it for itself.
+#pragma once
+
+#include "ir/ir.hpp"
+
+namespace skc::ir {
+
+Module clone(const Module& module);
+
+}  // namespace skc::ir

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+#include "native/arithmetic.hpp"
+
+#include <utility>
+
+#include <llvm/IR/Constants.h>
+#include <llvm/IR/Intrinsics.h>
+
+#include "ir/quantize.hpp"
+
+namespace skc::native {
+
+using namespace ir;
+
+namespace {
+
+bool isReal(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Double; }
+bool isSigned(Scalar scalar) { return scalar != Scalar::Uint && scalar != Scalar::Bool; }
+
+/// Consecutive numbers stay consecutive where the same number is added to all, or taken away.
+bool staysConsecutive(BinaryOp op, const Lanes& lanes, const Part& lhs, const Part& rhs) {
+  if (op == BinaryOp::Add) {
+    return (lhs.isConsecutive && lanes.isUniform(rhs)) || (lanes.isUniform(lhs) && rhs.isConsecutive);
+  }
+  return op == BinaryOp::Sub && lhs.isConsecutive && lanes.isUniform(rhs);
+}
+
+/// A quotient of vectors of 32-bit integers. CPUs have no such instruction, but doubles hold both operands and the
+/// truncated quotient exactly.
+llvm::Value* quotientByDoubles(Lanes& l, bool isSigned, llvm::Value* a, llvm::Value* c) {
+  llvm::Type* const wide = l.vector(l.b.getDoubleTy());
+  llvm::Value* const x = isSigned ? l.b.CreateSIToFP(a, wide) : l.b.CreateUIToFP(a, wide);
+  llvm::Value* const y = isSigned ? l.b.CreateSIToFP(c, wide) : l.b.CreateUIToFP(c, wide);
+  llvm::Value* const q = l.b.CreateFDiv(x, y);
+  return isSigned ? l.b.CreateFPToSI(q, a->getType()) : l.b.CreateFPToUI(q, a->getType());
+}
+
+llvm::Value* plainQuotient(Lanes& l, bool isSigned, llvm::Value* a, llvm::Value* c) {
+  if (l.isVector(a) && !llvm::isa<llvm::Constant>(c)) return quotientByDoubles(l, isSigned, a, c);
+  return isSigned ? l.b.CreateSDiv(a, c) : l.b.CreateUDiv(a, c);
+}
+
+/// a / c and a % c.
+struct Division {
+  llvm::Value* quotient;
+  llvm::Value* remainder;
+};
+Division divide(Lanes& l, bool isSigned, llvm::Value* a, llvm::Value* c) {
+  llvm::Type* const type = a->getType();
+  llvm::Value* const zero = l.integer(type, 0);
+  llvm::Value* const one = l.integer(type, 1);
+  llvm::Value* const isZero = l.b.CreateICmpEQ(c, zero);
+  llvm::Value* isSpecial = isZero;
+  llvm::Value* isMinusOne = nullptr;
+  if (isSigned) {
+    isMinusOne = l.b.CreateICmpEQ(c, l.integer(type, -1));
+    isSpecial = l.b.CreateOr(isZero, isMinusOne);
+  }
+  llvm::Value* const divisor = l.b.CreateSelect(isSpecial, one, c);
+  llvm::Value* quotient = plainQuotient(l, isSigned, a, divisor);
+  llvm::Value* const remainder = l.b.CreateSub(a, l.b.CreateMul(quotient, divisor));  // by 1: 0
+  if (isSigned) quotient = l.b.CreateSelect(isMinusOne, l.b.CreateNeg(a), quotient);
+  return {quotient, remainder};
+}
+
+llvm::Value* shiftCount(Lanes& l, llvm::Value* count) { return l.b.CreateAnd(count, l.integer(count->getType(), 31)); }
+
+llvm::Value* realOperation(Lanes& l, BinaryOp op, llvm::Value* a, llvm::Value* c) {
+  switch (op) {
+    case BinaryOp::Add: return l.b.CreateFAdd(a, c);
+    case BinaryOp::Sub: return l.b.CreateFSub(a, c);
+    case BinaryOp::Mul: return l.b.CreateFMul(a, c);
+    case BinaryOp::Div: return l.b.CreateFDiv(a, c);
+    case BinaryOp::Less: return l.b.CreateFCmpOLT(a, c);
+    case BinaryOp::LessEqual: return l.b.CreateFCmpOLE(a, c);
+    case BinaryOp::Greater: return l.b.CreateFCmpOGT(a, c);
+    case BinaryOp::GreaterEqual: return l.b.CreateFCmpOGE(a, c);
+    case BinaryOp::Equal: return l.b.CreateFCmpOEQ(a, c);
+    case BinaryOp::NotEqual: return l.b.CreateFCmpUNE(a, c);
+    case BinaryOp::Rem:
+    case BinaryOp::BitAnd:
+    case BinaryOp::BitOr:
+    case BinaryOp::BitXor:
+    case BinaryOp::ShiftLeft:
+    case BinaryOp::ShiftRight:
+    case BinaryOp::LogicalAnd:
+    case BinaryOp::LogicalOr: break;
+  }
+  llvm_unreachable("no operator of real numbers");
+}
+
+llvm::Value* integerOperation(Lanes& l, BinaryOp op, bool isSigned, llvm::Value* a, llvm::Value* c) {
+  switch (op) {
+    case BinaryOp::Add: return l.b.CreateAdd(a, c);
+    case BinaryOp::Sub: return l.b.CreateSub(a, c);
+    case BinaryOp::Mul: return l.b.CreateMul(a, c);
+    case BinaryOp::Div: return divide(l, isSigned, a, c).quotient;
+    case BinaryOp::Rem: return divide(l, isSigned, a, c).remainder;
+    case BinaryOp::LogicalAnd:
+    case BinaryOp::BitAnd: return l.b.CreateAnd(a, c);
+    case BinaryOp::LogicalOr:
+    case BinaryOp::BitOr: return l.b.CreateOr(a, c);
+    case BinaryOp::BitXor: return l.b.CreateXor(a, c);
+    case BinaryOp::ShiftLeft: return l.b.CreateShl(a, shiftCount(l, c));
+    case BinaryOp::ShiftRight:
+      return isSigned ? l.b.CreateAShr(a, shiftCount(l, c)) : l.b.CreateLShr(a, shiftCount(l, c));
+    case BinaryOp::Less: return isSigned ? l.b.CreateICmpSLT(a, c) : l.b.CreateICmpULT(a, c);
+    case BinaryOp::LessEqual: return isSigned ? l.b.CreateICmpSLE(a, c) : l.b.CreateICmpULE(a, c);
+    case BinaryOp::Greater: return isSigned ? l.b.CreateICmpSGT(a, c) : l.b.CreateICmpUGT(a, c);
+    case BinaryOp::GreaterEqual: return isSigned ? l.b.CreateICmpSGE(a, c) : l.b.CreateICmpUGE(a, c);
+    case BinaryOp::Equal: return l.b.CreateICmpEQ(a, c);
+    case BinaryOp::NotEqual: return l.b.CreateICmpNE(a, c);
+  }
+  llvm_unreachable("every operator has its case");
+}
+
+// ---- narrow scalars -------------------------------------------------------------------------------
+
+/// The float that a normalized integer stands for: k / max, not below -1.
+Part floatOfNormalized(Lanes& l, Scalar narrow, const Part& stored) {
+  llvm::Value* const k = l.spread(stored);
+  const bool isSnorm = narrow == Scalar::Snorm8 || narrow == Scalar::Snorm16;
+  llvm::Type* const type = l.sameShape(k, l.b.getFloatTy());
+  llvm::Value* const whole = isSnorm ? l.b.CreateSIToFP(k, type) : l.b.CreateUIToFP(k, type);
+  llvm::Value* const value = l.b.CreateFDiv(whole, l.number(type, normalizedScale(narrow)));
+  if (!isSnorm) return {value};
+  llvm::Value* const least = l.number(type, -1);
+  return {l.b.CreateSelect(l.b.CreateFCmpOLT(value, least), least, value)};
+}
+
+/// The nearest of them; of two the even one; NaN gives 0.
+Part normalizedOfFloat(Lanes& l, Scalar narrow, const Part& value) {
+  llvm::Value* const x = l.spread(value);
+  llvm::Type* const type = x->getType();
+  const bool isSnorm = narrow == Scalar::Snorm8 || narrow == Scalar::Snorm16;
+  llvm::Value* const low = l.number(type, isSnorm ? -1 : 0);
+  llvm::Value* const high = l.number(type, 1);
+  llvm::Value* inside = l.b.CreateSelect(l.b.CreateFCmpOGT(x, low), x, low);
+  inside = l.b.CreateSelect(l.b.CreateFCmpOLT(inside, high), inside, high);
+  inside = l.b.CreateSelect(l.b.CreateFCmpUNO(x, x), l.number(type, 0), inside);
+  llvm::Value* const product = l.b.CreateFMul(inside, l.number(type, normalizedScale(narrow)));
+  // no bits behind the point are left of what is so large
+  llvm::Value* const large = l.number(type, 0x1.8p23);
+  llvm::Value* const nearest = l.b.CreateFSub(l.b.CreateFAdd(product, large), large);
+  llvm::Value* const whole = l.b.CreateFPToSI(nearest, l.sameShape(x, l.int32()));
+  return {l.b.CreateTrunc(whole, l.sameShape(x, l.type(narrow)))};
+}
+
+/// A real number of any type as a float, and the way back.
+Part asFloat(Lanes& l, const Part& real) {
+  llvm::Type* const type = l.sameShape(real.value, l.b.getFloatTy());
+  return real.value->getType() == type ? real : Part{l.b.CreateFPTrunc(real.value, type)};
+}
+Part asReal(Lanes& l, const Part& value) {
+  llvm::Type* const type = l.sameShape(value.value, l.real());
+  return value.value->getType() == type ? value : Part{l.b.CreateFPExt(value.value, type)};
+}
+
+Part fromNarrow(Lanes& l, Scalar narrow, const Part& stored) {
+  llvm::Type* const word = l.sameShape(stored.value, l.int32());
+  switch (narrow) {
+    case Scalar::Char:
+    case Scalar::Short: return {l.b.CreateSExt(stored.value, word)};
+    case Scalar::Uchar:
+    case Scalar::Ushort: return {l.b.CreateZExt(stored.value, word)};
+    case Scalar::Half: return asReal(l, floatOfHalf(l, stored));
+    default: return asReal(l, floatOfNormalized(l, narrow, stored));
+  }
+}
+Part toNarrow(Lanes& l, Scalar narrow, const Part& carrier) {
+  if (carrierOf(narrow) == Scalar::Int) {
+    llvm::Value* const word = l.spread(carrier);
+    return {l.b.CreateTrunc(word, l.sameShape(word, l.type(narrow)))};
+  }
+  return narrow == Scalar::Half ? halfOfFloat(l, asFloat(l, carrier))
+                                : normalizedOfFloat(l, narrow, asFloat(l, carrier));
+}
+
+}  // namespace
+
+Part unary(Lanes& l, UnaryOp op, Scalar scalar, const Part& operand) {
+  llvm::Value* const x = operand.isConsecutive ? l.spread(operand) : operand.value;
+  switch (op) {
+    case UnaryOp::Negate: return {isReal(scalar) ? l.b.CreateFNeg(x) : l.b.CreateNeg(x)};
+    case UnaryOp::BitNot:
+    case UnaryOp::LogicalNot: break;
+  }
+  return {l.b.CreateNot(x)};
+}
+
+Part binary(Lanes& l, BinaryOp op, Scalar scalar, const Part& lhs, const Part& rhs) {
+  if (scalar == Scalar::Int && staysConsecutive(op, l, lhs, rhs)) {
+    return {integerOperation(l, op, true, lhs.value, rhs.value), true};
+  }
+  Part a = lhs, c = rhs;
+  l.unify(a, c);
+  return {isReal(scalar) ? realOperation(l, op, a.value, c.value)
+                         : integerOperation(l, op, isSigned(scalar), a.value, c.value)};
+}
+
+Part convert(Lanes& l, Scalar from, Scalar to, const Part& operand) {
+  if (from == to) return operand;
+  if (isNarrow(from)) return convert(l, carrierOf(from), to, fromNarrow(l, from, operand));
+  if (isNarrow(to)) return toNarrow(l, to, convert(l, from, carrierOf(to), operand));
+  const bool areWords = (from == Scalar::Int || from == Scalar::Uint) && (to == Scalar::Int || to == Scalar::Uint);
+  if (areWords) return operand;
+  llvm::Value* const x = operand.isConsecutive ? l.spread(operand) : operand.value;
+  llvm::Type* const type = l.sameShape(x, l.type(to));
+  if (to == Scalar::Bool) {
+    llvm::Value* const zero = llvm::Constant::getNullValue(x->getType());
+    return {isReal(from) ? l.b.CreateFCmpUNE(x, zero) : l.b.CreateICmpNE(x, zero)};
+  }
+  if (from == Scalar::Bool) return {isReal(to) ? l.b.CreateUIToFP(x, type) : l.b.CreateZExt(x, type)};
+  if (isReal(from) && isReal(to)) return {l.b.CreateFPCast(x, type)};
+  if (isReal(to)) return {from == Scalar::Int ? l.b.CreateSIToFP(x, type) : l.b.CreateUIToFP(x, type)};
+  const auto saturating = to == Scalar::Int ? llvm::Intrinsic::fptosi_sat : llvm::Intrinsic::fptoui_sat;
+  return {l.b.CreateIntrinsic(saturating, {type, x->getType()}, {x})};
+}
+
+Part floatOfHalf(Lanes& l, const Part& stored) {
+  llvm::Value* const bits = l.b.CreateZExt(l.spread(stored), l.sameShape(l.spread(stored), l.int32()));
+  llvm::Type* const word = bits->getType();
+  llvm::Type* const real = l.sameShape(bits, l.b.getFloatTy());
+  llvm::Value* const sign = l.b.CreateShl(l.b.CreateAnd(bits, l.integer(word, 0x8000)), 16);
+  llvm::Value* const magnitude = l.b.CreateAnd(bits, l.integer(word, 0x7fff));
+  llvm::Value* const shifted = l.b.CreateShl(magnitude, 13);
+  llvm::Value* const normal = l.b.CreateAdd(shifted, l.integer(word, 112 << 23));
+  llvm::Value* const special = l.b.CreateAdd(shifted, l.integer(word, 224 << 23));  // infinity, NaN
+  llvm::Value* const denormal = l.b.CreateBitCast(
+      l.b.CreateFMul(l.b.CreateUIToFP(magnitude, real), l.number(real, 0x1p-24)), word);
+  llvm::Value* result =
+      l.b.CreateSelect(l.b.CreateICmpUGE(magnitude, l.integer(word, 0x7c00)), special, normal);
+  result = l.b.CreateSelect(l.b.CreateICmpULT(magnitude, l.integer(word, 0x400)), denormal, result);
+  return {l.b.CreateBitCast(l.b.CreateOr(result, sign), real)};
+}
+
+Part roundedToHalf(Lanes& l, const Part& value) {
+  llvm::Value* const x = l.spread(value);
+  llvm::Type* const real = x->getType();
+  llvm::Type* const word = l.sameShape(x, l.int32());
+  const auto constant = [&](std::int64_t bits) { return l.integer(word, static_cast<std::int32_t>(bits)); };
+  llvm::Value* const bits = l.b.CreateBitCast(x, word);
+  llvm::Value* const sign = l.b.CreateAnd(bits, constant(0x80000000));
+  llvm::Value* const magnitude = l.b.CreateXor(bits, sign);
+  llvm::Value* const odd = l.b.CreateAnd(l.b.CreateLShr(magnitude, 13), constant(1));
+  llvm::Value* const up = l.b.CreateAdd(l.b.CreateAdd(magnitude, constant(0xfff)), odd);
+  llvm::Value* const normal = l.b.CreateAnd(up, constant(~std::int64_t{0x1fff}));
+  // the unit of a float at 1/2 is that of denormal halves, 2^-24
+  llvm::Value* const half = l.number(real, 0.5);
+  llvm::Value* const denormal =
+      l.b.CreateBitCast(l.b.CreateFSub(l.b.CreateFAdd(l.b.CreateBitCast(magnitude, real), half), half), word);
+  llvm::Value* const nan =
+      l.b.CreateAnd(l.b.CreateOr(magnitude, constant(0x7fc00000)), constant(~std::int64_t{0x1fff}));
+  llvm::Value* rounded = l.b.CreateSelect(l.b.CreateICmpUGT(normal, constant(0x477fe000)),  // beyond 65504
+                                          constant(0x7f800000), normal);
+  rounded = l.b.CreateSelect(l.b.CreateICmpULT(magnitude, constant(0x38800000)), denormal, rounded);
+  rounded = l.b.CreateSelect(l.b.CreateICmpUGT(magnitude, constant(0x7f800000)), nan, rounded);
+  return {l.b.CreateBitCast(l.b.CreateOr(rounded, sign), real)};
+}
+
+Part halfOfFloat(Lanes& l, const Part& value) {
+  llvm::Value* const rounded = roundedToHalf(l, value).value;
+  llvm::Type* const word = l.sameShape(rounded, l.int32());
+  llvm::Value* const bits = l.b.CreateBitCast(rounded, word);
+  llvm::Value* const sign = l.b.CreateAnd(l.b.CreateLShr(bits, 16), l.integer(word, 0x8000));
+  llvm::Value* const magnitude = l.b.CreateAnd(bits, l.integer(word, 0x7fffffff));
+  llvm::Value* const normal = l.b.CreateSub(l.b.CreateLShr(magnitude, 13), l.integer(word, 112 << 10));
+  llvm::Value* const special = l.b.CreateSub(l.b.CreateLShr(magnitude, 13), l.integer(word, 224 << 10));
+  // a denormal half counts units of 2^-24
+  llvm::Value* const scaled =
+      l.b.CreateFMul(l.b.CreateBitCast(magnitude, rounded->getType()), l.number(rounded->getType(), 0x1p24));
+  llvm::Value* const isDenormal = l.b.CreateICmpULT(magnitude, l.integer(word, 0x38800000));
+  llvm::Value* const small =
+      l.b.CreateSelect(isDenormal, scaled, llvm::Constant::getNullValue(scaled->getType()));
+  llvm::Value* half = l.b.CreateSelect(isDenormal, l.b.CreateFPToUI(small, word), normal);
+  half = l.b.CreateSelect(l.b.CreateICmpUGE(magnitude, l.integer(word, 0x7f800000)), special, half);
+  return {l.b.CreateTrunc(l.b.CreateOr(half, sign), l.sameShape(rounded, l.type(Scalar::Half)))};
+}
+
+}  // namespace skc::native

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "native/code_table.hpp"
+
+#include <cstddef>
+
+#include <llvm/IR/Constants.h>
+#include <llvm/IR/IRBuilder.h>
+
+namespace skc::native {
+
+using sk::native::Code;
+using sk::native::Entry;
+using sk::native::Slot;
+
+namespace {
+
+// The structs below have the members of the C++ ones, in their order; their layouts are the same on all 64-bit machines.
+static_assert(sizeof(Entry) == 16 && offsetof(Entry, kind) == 8 && offsetof(Entry, lanes) == 12);
+static_assert(sizeof(Slot) == 6);
+static_assert(sizeof(Code) == 32 && offsetof(Code, entries) == 8 && offsetof(Code, slotCount) == 24 &&
+              offsetof(Code, isOrdered) == 29);
+
+class Constants {
+ public:
+  explicit Constants(llvm::Module& module) : module_(module), context_(module.getContext()) {}
+
+  llvm::Constant* byte(std::uint64_t value) { return llvm::ConstantInt::get(llvm::Type::getInt8Ty(context_), value); }
+  llvm::Constant* word(std::uint64_t value) { return llvm::ConstantInt::get(llvm::Type::getInt32Ty(context_), value); }
+  llvm::Constant* record(const std::vector<llvm::Constant*>& members) {
+    return llvm::ConstantStruct::getAnon(context_, members);
+  }
+  /// The address of an array of these; null of none.
+  llvm::Constant* array(const std::vector<llvm::Constant*>& items) {
+    if (items.empty()) return llvm::ConstantPointerNull::get(llvm::PointerType::get(context_, 0));
+    auto* const type = llvm::ArrayType::get(items[0]->getType(), items.size());
+    auto* const data = new llvm::GlobalVariable(module_, type, true, llvm::GlobalValue::PrivateLinkage,
+                                                llvm::ConstantArray::get(type, items));
+    data->setAlignment(llvm::Align(8));
+    return data;
+  }
+
+ private:
+  llvm::Module& module_;
+  llvm::LLVMContext& context_;
+};
+
+}  // namespace
+
+void writeCodeTable(llvm::Module& code, const CodeTable& table) {
+  Constants c(code);
+  std::vector<llvm::Constant*> entries, slots;
+  for (const EntryFunction& entry : table.entries) {
+    entries.push_back(c.record({entry.function, c.byte(static_cast<std::uint64_t>(entry.kind)),
+                                c.byte(static_cast<std::uint64_t>(entry.real)),
+                                c.byte(static_cast<std::uint64_t>(entry.level)), c.byte(entry.isContracted ? 1 : 0),
+                                c.byte(entry.lanes)}));
+  }
+  for (const Slot& slot : table.slots) {
+    std::vector<llvm::Constant*> members = {c.byte(slot.parameter)};
+    for (const std::int8_t row : slot.row) members.push_back(c.byte(static_cast<std::uint8_t>(row)));
+    members.push_back(c.byte(slot.reach));
+    members.push_back(c.byte(slot.isOutput));
+    slots.push_back(c.record(members));
+  }
+  llvm::Constant* const value =
+      c.record({c.word(Code::currentVersion), c.word(entries.size()), c.array(entries), c.array(slots),
+                c.word(slots.size()), c.byte(table.isUneven ? 1 : 0), c.byte(table.isOrdered ? 1 : 0)});
+  auto* const global = new llvm::GlobalVariable(code, value->getType(), true, llvm::GlobalValue::ExternalLinkage, value,
+                                                table.symbol);
+  global->setVisibility(llvm::GlobalValue::HiddenVisibility);
+  global->setAlignment(llvm::Align(8));
+}
+
+}  // namespace skc::native

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// The constant sk::native::Code of a kernel, as the runtime's C++ has it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <llvm/IR/Module.h>
+
+#include "sk/native/code.hpp"
+
+namespace skc::native {
+
+struct EntryFunction {
+  llvm::Function* function;
+  sk::native::EntryKind kind;
+  sk::native::Real real;
+  sk::native::Level level;
+  bool isContracted;
+  std::uint32_t lanes;
+};
+
+struct CodeTable {
+  std::string symbol;
+  std::vector<EntryFunction> entries;
+  std::vector<sk::native::Slot> slots;
+  bool isUneven;
+  bool isOrdered;
+};
+
+void writeCodeTable(llvm::Module& code, const CodeTable& table);
+
+}  // namespace skc::native

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include <llvm/IR/LLVMContext.h>
+#include <llvm/IR/LegacyPassManager.h>
+#include <llvm/IR/Module.h>
+#include <llvm/IR/Verifier.h>
+#include <llvm/Support/raw_ostream.h>
+
+#include "analysis/uniformity.hpp"
+#include "emit/stream_uses.hpp"
+#include "ir/clone_module.hpp"
+#include "native/code_table.hpp"
+#include "native/debug_info.hpp"
+#include "native/entries.hpp"
+#include "native/lane_count.hpp"
+#include "native/library/call_library.hpp"
+#include "native/native.hpp"
+#include "native/optimize.hpp"
+#include "native/target.hpp"
+#include "transforms/predicate.hpp"
+
+namespace skc::native {
+
+using namespace ir;
+using sk::native::EntryKind;
+using sk::native::Level;
+using sk::native::Real;
+
+namespace {
+
+/// A module as code of one real type is made of it: with the functions of the library for floats, which others have from
+/// the C library.
+struct Version {
+  Module plain;
+  Module predicated;  ///< for several lanes
+
+  explicit Version(Module module) : plain(std::move(module)), predicated(clone(plain)) { predicate(predicated); }
+};
+
+Module withLibrary(const Module& module, const CompileLibrary& compileLibrary) {
+  Module linked = clone(module);
+  callLibrary(linked, linkLibrary(linked, compileLibrary));
+  return linked;
+}
+
+class Compilation {
+ public:
+  Compilation(const Module& module, const CompileLibrary& compileLibrary, const Options& options)
+      : options_(options),
+        target_(options),
+        plain_(module),
+        ofFloats_(withLibrary(module, compileLibrary)),
+        code_(module.file, context_) {
+    code_.setTargetTriple(target_.triple());
+    code_.setDataLayout(target_.machine().createDataLayout());
+    code_.setPICLevel(llvm::PICLevel::BigPIC);
+    if (options.debugInfo) debug_.emplace(code_, plain_);
+  }
+
+  void add(const KernelRequest& request) {
+    const Kernel& kernel = plain_.kernels[request.kernel];
+    const SlotPlan slots = planSlots(plain_, kernel);
+    CodeTable table{.symbol = request.symbol, .entries = {}, .slots = slots.slots, .isUneven = false, .isOrdered = false};
+    table.isUneven = emit::streamUses(plain_, kernel).loops;
+    table.isOrdered = isOrdered(kernel);
+    for (const EntryKind kind : entriesOf(plain_, kernel)) {
+      for (const CpuLevel& level : levelsFor(request, Real::Float)) addEntry(table, request, slots, kind, Real::Float, level);
+      if (request.inDoubles) {
+        for (const CpuLevel& level : levelsFor(request, Real::Double)) addEntry(table, request, slots, kind, Real::Double, level);
+      }
+      if (request.inQuads) addEntry(table, request, slots, kind, Real::Quad, target_.levels().front());
+    }
+    writeCodeTable(code_, table);
+  }
+
+  std::string write(Output output) {
+    if (debug_) debug_->finish();
+    if (llvm::verifyModule(code_, &llvm::errs())) llvm::report_fatal_error("skc wrote LLVM IR that is not valid");
+    optimize(code_, target_.machine());
+    llvm::SmallVector<char, 0> bytes;
+    llvm::raw_svector_ostream stream(bytes);
+    if (output == Output::Llvm) {
+      code_.print(stream, nullptr);
+    } else {
+      llvm::legacy::PassManager passes;
+      const auto type = output == Output::Object ? llvm::CodeGenFileType::ObjectFile : llvm::CodeGenFileType::AssemblyFile;
+      target_.machine().addPassesToEmitFile(passes, stream, nullptr, type, /*DisableVerify=*/true);
+      passes.run(code_);
+    }
+    return {bytes.begin(), bytes.end()};
+  }
+
+ private:
+  static bool isOrdered(const Kernel& kernel) {
+    return std::ranges::any_of(kernel.params, [](const KernelParam& param) {
+      return param.role == ParamRole::VariableOutput || param.role == ParamRole::Scatter;
+    });
+  }
+
+  /// What is seldom run, and what computes in wider numbers than the kernel says, is compiled for one level.
+  std::vector<CpuLevel> levelsFor(const KernelRequest& request, Real real) const {
+    if (!request.isCold && real == Real::Float) return target_.levels();
+    return {target_.levels().front()};
+  }
+
+  void addEntry(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind, Real real,
+                const CpuLevel& level) {
+    const Kernel& kernel = plain_.kernels[request.kernel];
+    Form form{.lanes = 1, .real = real, .hasMaskRegisters = level.hasMaskRegisters, .isContracted = false};
+    if (isInLanes(kernel, kind, real)) form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
+    const bool isPredicated = form.lanes > 1;
+    const Version& version = versionFor(real);
+    const Module& module = isPredicated ? version.predicated : version.plain;
+    std::optional<analysis::Uniformity> uniformity;
+    if (isPredicated) uniformity.emplace(module, module.kernels[request.kernel]);
+    const EntrySource source{module, module.kernels[request.kernel], slots, uniformity ? &*uniformity : nullptr,
+                             form,   level,                          debug_ ? &*debug_ : nullptr};
+    const std::string name = request.symbol + suffix(kind, real, level);
+    table.entries.push_back({writeEntry(code_, source, kind, name), kind, real, level.level, false, form.lanes});
+  }
+
+  const Version& versionFor(Real real) {
+    if (real == Real::Float) return ofFloats_;
+    if (!ofOthers_) ofOthers_.emplace(clone(plain_));
+    return *ofOthers_;
+  }
+
+  /// Elements are folded side by side only where their order does not matter, and pushed or scattered one by one.
+  static bool isInLanes(const Kernel& kernel, EntryKind kind, Real real) {
+    if (real == Real::Quad || isOrdered(kernel)) return false;
+    if (kind == EntryKind::Identity || kind == EntryKind::Borders) return false;
+    return kind != EntryKind::Fold || kernel.reduction->commutative;
+  }
+
+  static std::string suffix(EntryKind kind, Real real, const CpuLevel& level) {
+    static constexpr const char* kinds[] = {".run", ".fold", ".combine", ".identity", ".borders"};
+    static constexpr const char* reals[] = {"", ".double", ".quad"};
+    static constexpr const char* levels[] = {"", ".v3", ".v4"};
+    return std::string(kinds[static_cast<std::size_t>(kind)]) + reals[static_cast<std::size_t>(real)] +
+           levels[static_cast<std::size_t>(level.level)];
+  }
+
+  const Options& options_;
+  Target target_;
+  const Module& plain_;
+  Version ofFloats_;
+  std::optional<Version> ofOthers_;
+  llvm::LLVMContext context_;
+  llvm::Module code_;
+  std::optional<DebugInfo> debug_;
+};
+
+}  // namespace
+
+std::string compile(const Module& module, const std::vector<KernelRequest>& kernels,
+                    const CompileLibrary& compileLibrary, const Options& options, Output output) {
+  Compilation compilation(module, compileLibrary, options);
+  for (const KernelRequest& request : kernels) compilation.add(request);
+  return compilation.write(output);
+}
+
+}  // namespace skc::native

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: MIT
+#include "native/entries.hpp"
+
+#include <algorithm>
+
+#include <llvm/IR/Constants.h>
+
+#include "native/debug_info.hpp"
+#include "native/function_code.hpp"
+#include "native/leaves.hpp"
+#include "transforms/predicate.hpp"
+
+namespace skc::native {
+
+using namespace ir;
+using sk::native::EntryKind;
+
+namespace {
+
+class EntryWriter {
+ public:
+  EntryWriter(llvm::Module& code, const EntrySource& source, const std::string& name)
+      : s_(source),
+        b_(code.getContext()),
+        l_(b_, source.form),
+        streams_(l_, source.module, source.kernel, source.slots,
+                 [this](const Expr& expr) { return constantParts(context_, expr); }),
+        context_{l_, source.module, source.kernel, streams_, source.uniformity, {}, source.debug},
+        code_(code),
+        name_(name) {
+    if (source.form.isContracted) {
+      llvm::FastMathFlags flags;
+      flags.setAllowContract();
+      b_.setFastMathFlags(flags);
+    }
+  }
+
+  llvm::Function* write(EntryKind kind) {
+    switch (kind) {
+      case EntryKind::Run: run(); break;
+      case EntryKind::Fold: fold(); break;
+      case EntryKind::Combine: combine(); break;
+      case EntryKind::Identity: values(ParamRole::Accumulator, [&] { return identities(); }); break;
+      case EntryKind::Borders: values(ParamRole::Gather, [&] { return borders(); }); break;
+    }
+    return function_;
+  }
+
+ private:
+  // ---- functions and loops ----------------------------------------------------------------------
+
+  /// Starts a function with so many addresses and then numbers of 64 bits. Code for its prologue goes to its entry block.
+  void begin(unsigned addresses, unsigned numbers) {
+    std::vector<llvm::Type*> types(addresses, b_.getPtrTy());
+    types.insert(types.end(), numbers, b_.getInt64Ty());
+    function_ = llvm::Function::Create(llvm::FunctionType::get(b_.getVoidTy(), types, false),
+                                       llvm::Function::InternalLinkage, name_, code_);
+    for (unsigned i = 0; i < addresses; ++i) function_->addParamAttr(i, llvm::Attribute::NoCapture);
+    function_->setDoesNotThrow();
+    setLevel(*function_, s_.level);
+    prologue_ = llvm::BasicBlock::Create(b_.getContext(), "entry", function_);
+    llvm::BasicBlock* const start = llvm::BasicBlock::Create(b_.getContext(), "start", function_);
+    b_.SetInsertPoint(start);
+    if (s_.debug != nullptr) s_.debug->begin(b_, *function_, entryFunction());
+  }
+  void end() {
+    b_.CreateRetVoid();
+    llvm::BasicBlock* const start = prologue_->getNextNode();
+    b_.SetInsertPoint(prologue_);
+    b_.CreateBr(start);
+    if (s_.debug != nullptr) s_.debug->end(b_);
+  }
+
+  const Function& entryFunction() const { return s_.module.functions[s_.kernel.entry]; }
+  llvm::Value* number(std::int64_t value) { return b_.getInt64(static_cast<std::uint64_t>(value)); }
+
+  /// for (i = first; i < count; i += step) body(i)
+  void loop(llvm::Value* first, llvm::Value* count, std::int64_t step, const std::function<void(llvm::Value*)>& body) {
+    llvm::BasicBlock* const before = b_.GetInsertBlock();
+    const auto block = [&](const char* name) { return llvm::BasicBlock::Create(b_.getContext(), name, function_); };
+    llvm::BasicBlock* const round = block("elements");
+    llvm::BasicBlock* const end = block("end");
+    b_.CreateCondBr(b_.CreateICmpSLT(first, count), round, end);
+    b_.SetInsertPoint(round);
+    llvm::PHINode* const i = b_.CreatePHI(b_.getInt64Ty(), 2);
+    i->addIncoming(first, before);
+    body(i);
+    llvm::Value* const next = b_.CreateAdd(i, number(step), "", true, true);
+    i->addIncoming(next, b_.GetInsertBlock());
+    b_.CreateCondBr(b_.CreateICmpSLT(next, count), round, end);
+    b_.SetInsertPoint(end);
+  }
+
+  // ---- arguments --------------------------------------------------------------------------------
+
+  Parts zeros(Type type) const {
+    Parts parts;
+    for (const Scalar scalar : scalarsOf(s_.module, type)) {
+      parts.push_back({llvm::Constant::getNullValue(l_.type(scalar))});
+    }
+    return parts;
+  }
+
+  /// Of every parameter; those of accumulators and, of what combines, of inputs come from elsewhere.
+  Parts argument(std::uint32_t i) {
+    switch (s_.kernel.params[i].role) {
+      case ParamRole::Uniform:
+      case ParamRole::Spec: return streams_.uniform(i);
+      case ParamRole::Input: return streams_.input(i);
+      case ParamRole::Iterator: return streams_.iterator(i);
+      case ParamRole::Output: return zeros(s_.kernel.params[i].type);
+      case ParamRole::Gather:
+      case ParamRole::Accumulator:
+      case ParamRole::VariableOutput:
+      case ParamRole::Scatter: break;
+    }
+    return {};
+  }
+
+  std::vector<std::uint32_t> paramsOf(ParamRole role) const {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t i = 0; i < s_.kernel.params.size(); ++i) {
+      if (s_.kernel.params[i].role == role) found.push_back(i);
+    }
+    return found;
+  }
+
+  /// Calls the entry; its mask says which lanes have an element.
+  CallResult call(std::vector<Parts> arguments, llvm::Value* element, llvm::Value* count) {
+    if (l_.count() > 1 && entryMask(s_.module, s_.kernel)) {
+      llvm::Value* const left = b_.CreateTrunc(b_.CreateSub(count, element), b_.getInt32Ty());
+      arguments.push_back({{b_.CreateICmpSLT(l_.laneNumbers(b_.getInt32Ty()), l_.spread(left))}});
+    }
+    return inlineCall(context_, s_.kernel.entry, arguments);
+  }
+
+  // ---- kernels ----------------------------------------------------------------------------------
+
+  void run() {
+    begin(2, 0);
+    streams_.begin(function_->getArg(0), function_->getArg(1), prologue_);
+    llvm::Value* const count = streams_.chunkCount();
+    loop(number(0), count, l_.count(), [&](llvm::Value* element) {
+      streams_.moveTo(element);
+      std::vector<Parts> arguments;
+      for (std::uint32_t i = 0; i < s_.kernel.params.size(); ++i) arguments.push_back(argument(i));
+      const CallResult called = call(std::move(arguments), element, count);
+      const std::vector<std::uint32_t> outputs = paramsOf(ParamRole::Output);
+      for (std::size_t i = 0; i < outputs.size(); ++i) streams_.storeOutput(outputs[i], called.outputs[i]);
+    });
+    end();
+  }
+
+  // ---- reduces ----------------------------------------------------------------------------------
+
+  struct State {
+    std::vector<Scalar> scalars;
+    std::vector<llvm::Value*> arrays;
+  };
+  State stateIn(llvm::Value* pointers) {
+    State state;
+    for (const std::uint32_t i : paramsOf(ParamRole::Accumulator)) {
+      for (const Scalar scalar : scalarsOf(s_.module, s_.kernel.params[i].type)) {
+        llvm::Value* const place = l_.at(b_.getPtrTy(), pointers, number(static_cast<std::int64_t>(state.arrays.size())));
+        state.scalars.push_back(scalar);
+        state.arrays.push_back(b_.CreateLoad(b_.getPtrTy(), place));
+      }
+    }
+    return state;
+  }
+  Parts loadState(const State& state, llvm::Value* column) {
+    Parts parts;
+    for (std::size_t c = 0; c < state.arrays.size(); ++c) {
+      parts.push_back(l_.loadNeighbors(state.scalars[c], l_.at(l_.stored(state.scalars[c]), state.arrays[c], column)));
+    }
+    return parts;
+  }
+  void storeState(const State& state, llvm::Value* column, const Parts& parts) {
+    for (std::size_t c = 0; c < state.arrays.size(); ++c) {
+      l_.storeNeighbors(state.scalars[c], parts[c], l_.at(l_.stored(state.scalars[c]), state.arrays[c], column));
+    }
+  }
+
+  Parts identities() {
+    Parts parts;
+    for (const std::uint32_t i : paramsOf(ParamRole::Accumulator)) {
+      const Parts one = constantParts(context_, *s_.kernel.params[i].identity);
+      parts.insert(parts.end(), one.begin(), one.end());
+    }
+    return parts;
+  }
+  /// Where a column begins: with the identities, or the element itself.
+  Parts startOf(llvm::Value* element) {
+    Parts parts;
+    if (s_.kernel.reduction->seeded) {
+      streams_.moveTo(element);
+      for (const std::uint32_t i : paramsOf(ParamRole::Input)) {
+        const Parts one = streams_.input(i);
+        parts.insert(parts.end(), one.begin(), one.end());
+      }
+    } else {
+      parts = identities();
+    }
+    for (Part& part : parts) part = {l_.spread(part)};
+    return parts;
+  }
+
+  /// The accumulators after the entry's call; `state` is split among them.
+  Parts folded(const Parts& state, const std::function<Parts(std::uint32_t)>& others, llvm::Value* element,
+               llvm::Value* count) {
+    std::vector<Parts> arguments;
+    auto next = state.begin();
+    for (std::uint32_t i = 0; i < s_.kernel.params.size(); ++i) {
+      if (s_.kernel.params[i].role != ParamRole::Accumulator) {
+        arguments.push_back(others(i));
+        continue;
+      }
+      const auto parts = static_cast<std::ptrdiff_t>(componentCount(s_.module, s_.kernel.params[i].type));
+      arguments.emplace_back(next, next + parts);
+      next += parts;
+    }
+    Parts result;
+    for (const Parts& output : call(std::move(arguments), element, count).outputs) {
+      for (const Part& part : output) result.push_back({l_.spread(part)});
+    }
+    return result;
+  }
+
+  void fold() {
+    begin(3, 3);
+    streams_.begin(function_->getArg(0), function_->getArg(1), prologue_);
+    const State state = stateIn(function_->getArg(2));
+    llvm::Value* const columns = function_->getArg(3);
+    llvm::Value* const rounds = function_->getArg(4);
+    llvm::Value* const starts = b_.CreateICmpNE(function_->getArg(5), number(0));
+    llvm::Value* const firstRound =
+        s_.kernel.reduction->seeded ? b_.CreateZExt(starts, b_.getInt64Ty()) : number(0);
+    loop(number(0), columns, l_.count(), [&](llvm::Value* column) {
+      const auto block = [&](const char* name) { return llvm::BasicBlock::Create(b_.getContext(), name, function_); };
+      llvm::BasicBlock* const start = block("begin");
+      llvm::BasicBlock* const resume = block("resume");
+      llvm::BasicBlock* const fold = block("fold");
+      std::vector<llvm::Value*> memory;
+      llvm::IRBuilder<> allocas(prologue_, prologue_->begin());
+      for (const Scalar scalar : state.scalars) memory.push_back(allocas.CreateAlloca(l_.vector(l_.type(scalar))));
+      const auto keep = [&](const Parts& parts) {
+        for (std::size_t c = 0; c < parts.size(); ++c) b_.CreateStore(parts[c].value, memory[c]);
+      };
+      const auto kept = [&] {
+        Parts parts;
+        for (std::size_t c = 0; c < memory.size(); ++c) {
+          parts.push_back({b_.CreateLoad(l_.vector(l_.type(state.scalars[c])), memory[c])});
+        }
+        return parts;
+      };
+      b_.CreateCondBr(starts, start, resume);
+      b_.SetInsertPoint(start);
+      keep(startOf(column));
+      b_.CreateBr(fold);
+      b_.SetInsertPoint(resume);
+      keep(loadState(state, column));
+      b_.CreateBr(fold);
+      b_.SetInsertPoint(fold);
+      loop(firstRound, rounds, 1, [&](llvm::Value* round) {
+        llvm::Value* const element = b_.CreateAdd(b_.CreateMul(round, columns), column);
+        streams_.moveTo(element);
+        keep(folded(kept(), [&](std::uint32_t i) { return argument(i); }, column, columns));
+      });
+      storeState(state, column, kept());
+    });
+    end();
+  }
+
+  void combine() {
+    begin(3, 1);
+    streams_.begin(function_->getArg(0), nullptr, prologue_);
+    const State state = stateIn(function_->getArg(1));
+    const State later = stateIn(function_->getArg(2));
+    llvm::Value* const columns = function_->getArg(3);
+    loop(number(0), columns, l_.count(), [&](llvm::Value* column) {
+      const Parts loaded = loadState(later, column);
+      auto next = loaded.begin();
+      const auto others = [&](std::uint32_t i) {
+        if (s_.kernel.params[i].role != ParamRole::Input) return argument(i);
+        const auto parts = static_cast<std::ptrdiff_t>(componentCount(s_.module, s_.kernel.params[i].type));
+        next += parts;
+        return Parts(next - parts, next);
+      };
+      storeState(state, column, folded(loadState(state, column), others, column, columns));
+    });
+    end();
+  }
+
+  // ---- values -----------------------------------------------------------------------------------
+
+  Parts borders() {
+    Parts parts;
+    for (const std::uint32_t i : paramsOf(ParamRole::Gather)) {
+      if (s_.kernel.params[i].boundary != Boundary::Border) continue;
+      const Parts one = streams_.border(i);
+      parts.insert(parts.end(), one.begin(), one.end());
+    }
+    return parts;
+  }
+  /// Of the accumulators, or of the gathers that have a border.
+  std::vector<Scalar> scalarsOfAll(ParamRole role) const {
+    std::vector<Scalar> scalars;
+    for (const std::uint32_t i : paramsOf(role)) {
+      const KernelParam& param = s_.kernel.params[i];
+      if (role == ParamRole::Gather && param.boundary != Boundary::Border) continue;
+      const std::vector<Scalar> own = scalarsOf(s_.module, param.type);
+      scalars.insert(scalars.end(), own.begin(), own.end());
+    }
+    return scalars;
+  }
+  void values(ParamRole role, const std::function<Parts()>& make) {
+    begin(2, 0);
+    streams_.begin(function_->getArg(0), nullptr, prologue_);
+    const Parts parts = make();
+    const std::vector<Scalar> scalars = scalarsOfAll(role);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      llvm::Value* const place = l_.at(b_.getPtrTy(), function_->getArg(1), number(static_cast<std::int64_t>(i)));
+      l_.storeOne(scalars[i], parts[i].value, b_.CreateLoad(b_.getPtrTy(), place));
+    }
+    end();
+  }
+
+  const EntrySource& s_;
+  llvm::IRBuilder<> b_;
+  Lanes l_;
+  Streams streams_;
+  KernelContext context_;
+  llvm::Module& code_;
+  std::string name_;
+  llvm::Function* function_ = nullptr;
+  llvm::BasicBlock* prologue_ = nullptr;
+};
+
+/// Whether the inputs are of the accumulators' types: it can fold partial results.
+bool combines(const Kernel& kernel) {
+  std::vector<Type> inputs, accumulators;
+  for (const KernelParam& param : kernel.params) {
+    if (param.role == ParamRole::Input) inputs.push_back(param.type);
+    if (param.role == ParamRole::Accumulator) accumulators.push_back(param.type);
+  }
+  return inputs == accumulators;
+}
+
+bool hasIdentities(const Kernel& kernel) {
+  return std::ranges::none_of(kernel.params, [](const KernelParam& param) {
+    return param.role == ParamRole::Accumulator && param.identity == nullptr;
+  });
+}
+
+}  // namespace
+
+llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, EntryKind kind, const std::string& name) {
+  return EntryWriter(code, source, name).write(kind);
+}
+
+std::vector<EntryKind> entriesOf(const Module&, const Kernel& kernel) {
+  std::vector<EntryKind> kinds;
+  if (kernel.reduction) {
+    kinds.push_back(EntryKind::Fold);
+    if (combines(kernel)) kinds.push_back(EntryKind::Combine);
+    if (hasIdentities(kernel)) kinds.push_back(EntryKind::Identity);
+  } else {
+    kinds.push_back(EntryKind::Run);
+  }
+  const bool hasBorders = std::ranges::any_of(kernel.params, [](const KernelParam& param) {
+    return param.role == ParamRole::Gather && param.boundary == Boundary::Border;
+  });
+  if (hasBorders && !kernel.reduction) kinds.push_back(EntryKind::Borders);
+  return kinds;
+}
+
+}  // namespace skc::native

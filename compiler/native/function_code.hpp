@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+//
+// The code of a function of the IR, written into an LLVM function in place of each call: statements here, expressions in
+// expression_code.cpp, variables in places.cpp. It needs nothing of control flow but that it is the same for all lanes,
+// which `predicate` sees to; with one lane, any function will do.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "analysis/uniformity.hpp"
+#include "ir/ir.hpp"
+#include "native/intrinsics.hpp"
+#include "native/lanes.hpp"
+#include "native/leaves.hpp"
+#include "native/streams.hpp"
+
+namespace skc::native {
+
+class DebugInfo;
+
+/// What all functions of a kernel share.
+struct KernelContext {
+  Lanes& lanes;
+  const ir::Module& module;
+  const ir::Kernel& kernel;
+  Streams& streams;
+  const analysis::Uniformity* uniformity;  ///< null with one lane
+  LibraryCall library;
+  DebugInfo* debug = nullptr;
+};
+
+/// What a call gives: its result, and what it leaves in each InOut parameter, in their order.
+struct CallResult {
+  Parts result;
+  std::vector<Parts> outputs;
+};
+
+/// Writes the body of a function at the insertion point, which is afterwards where it has returned. There is one argument
+/// for each parameter; those of streams are empty.
+CallResult inlineCall(const KernelContext& context, ir::FunctionId function, const std::vector<Parts>& arguments);
+
+/// The parts of an expression without variables: a constant, a border, an identity.
+Parts constantParts(const KernelContext& context, const ir::Expr& expr);
+
+// ---- for the parts of this folder's function code ----------------------------------------------------
+
+/// The memory of one leaf of a variable: an array where the variable has arrays around it.
+struct LeafMemory {
+  llvm::Value* memory;
+  llvm::Type* element;  ///< what it holds: a scalar, or a vector of lanes
+  ir::Scalar scalar;
+  std::vector<std::uint32_t> dimensions;
+  analysis::Shape shape;
+};
+
+/// Leaves of a variable, or of a part of one, and how far into their arrays it is.
+struct Place {
+  struct Leaf {
+    const LeafMemory* memory;
+    Part offset;             ///< an int, in elements
+    std::size_t dimensions;  ///< that have been indexed
+  };
+  ir::Type type;
+  std::vector<Leaf> leaves;
+};
+
+class FunctionCode {
+ public:
+  FunctionCode(const KernelContext& context, ir::FunctionId function);
+
+  CallResult write(const std::vector<Parts>& arguments);
+  Parts expression(const ir::Expr& expr);
+
+ private:
+  // ---- variables and places (places.cpp)
+  void declareAll();
+  LeafMemory memoryOf(const std::string& name, const Leaf& leaf, analysis::Shape shape) const;
+  std::optional<Place> placeOf(const ir::Expr& expr);
+  Place variable(ir::VarId var) const;
+  Part indexInside(const ir::Expr& index, std::uint32_t length);
+  Parts load(const Place& place);
+  void store(const Place& place, const Parts& value);
+  Part loadComponent(const Place::Leaf& leaf, std::uint32_t offset);
+  void storeComponent(const Place::Leaf& leaf, std::uint32_t offset, const Part& value);
+  llvm::Value* addressOf(const Place::Leaf& leaf, std::uint32_t offset, bool* isScattered);
+  void assign(const ir::Expr& place, const Parts& value);
+  void assignComponent(const ir::Index& place, const Parts& value);
+
+  // ---- statements (function_code.cpp)
+  void block(const ir::Block& statements);
+  void write(const ir::Declare& n);
+  void write(const ir::Assign& n);
+  void write(const ir::CallStmt& n);
+  void write(const ir::If& n);
+  void write(const ir::Loop& n);
+  void write(const ir::Switch& n);
+  void write(const ir::Break& n);
+  void write(const ir::Continue& n);
+  void write(const ir::Return& n);
+  void write(const ir::Scope& n);
+  void write(const ir::Push& n);
+  void write(const ir::Scatter& n);
+  llvm::BasicBlock* newBlock(const char* name) const;
+  void branch(llvm::BasicBlock* to);
+  void startUnreachable();
+  llvm::Value* condition(const ir::Expr& expr);
+
+  // ---- expressions (expression_code.cpp)
+  Parts parts(const ir::Expr& expr, const ir::Literal& n);
+  Parts parts(const ir::Expr& expr, const ir::VarRef& n);
+  Parts parts(const ir::Expr& expr, const ir::ConstantRef& n);
+  Parts parts(const ir::Expr& expr, const ir::Unary& n);
+  Parts parts(const ir::Expr& expr, const ir::Binary& n);
+  Parts parts(const ir::Expr& expr, const ir::Select& n);
+  Parts parts(const ir::Expr& expr, const ir::Convert& n);
+  Parts parts(const ir::Expr& expr, const ir::Construct& n);
+  Parts parts(const ir::Expr& expr, const ir::Swizzle& n);
+  Parts parts(const ir::Expr& expr, const ir::Member& n);
+  Parts parts(const ir::Expr& expr, const ir::Index& n);
+  Parts parts(const ir::Expr& expr, const ir::Call& n);
+  Parts parts(const ir::Expr& expr, const ir::IntrinsicCall& n);
+  Parts parts(const ir::Expr& expr, const ir::GatherRead& n);
+  Parts parts(const ir::Expr& expr, const ir::NeighborRead& n);
+  Parts parts(const ir::Expr& expr, const ir::Sample& n);
+  Parts parts(const ir::Expr& expr, const ir::IndexOf& n);
+  Parts parts(const ir::Expr& expr, const ir::ExtentOf& n);
+  Parts matrixProduct(const Parts& a, const Parts& c, std::size_t width, bool isVector);
+  std::vector<Parts> expressions(const std::vector<ir::ExprPtr>& list);
+  /// Branches to one of both, where the condition is the same for all lanes.
+  Parts either(llvm::Value* condition, const std::function<Parts()>& yes, const std::function<Parts()>& no);
+  bool isCostly(const ir::Expr& expr) const;
+  Parts lookUp(ir::FunctionId function, const Parts& argument);
+  Part tableValue(llvm::Value* table, const Part& argument);
+
+  const KernelContext& k;
+  Lanes& l;
+  llvm::IRBuilder<>& b;
+  const ir::Function& function_;
+  ir::FunctionId id_;
+  std::vector<std::vector<LeafMemory>> variables_;
+  std::vector<LeafMemory> result_;
+  llvm::BasicBlock* exit_ = nullptr;
+  /// Where a jump goes to: of a Switch, `next` is that of the loop around it.
+  struct Target {
+    llvm::BasicBlock* end;
+    llvm::BasicBlock* next;
+  };
+  std::vector<Target> targets_;
+};
+
+}  // namespace skc::native

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+//
+// Variables of functions in memory, which LLVM makes registers of, and the places in them that are read and assigned.
+#include <llvm/IR/Constants.h>
+#include <llvm/IR/Intrinsics.h>
+
+#include "native/arithmetic.hpp"
+#include "native/function_code.hpp"
+
+namespace skc::native {
+
+using namespace ir;
+using analysis::Shape;
+
+/// Bools that lanes do not share are words outside of arrays, unless the CPU has registers for masks: so LLVM keeps them as
+/// the words that comparisons give.
+LeafMemory FunctionCode::memoryOf(const std::string& name, const Leaf& leaf, Shape shape) const {
+  llvm::Type* element = leaf.dimensions.empty() ? l.type(leaf.scalar) : l.stored(leaf.scalar);
+  const bool isMask = leaf.scalar == Scalar::Bool && leaf.dimensions.empty() && shape == Shape::Varying;
+  if (isMask && l.count() > 1 && !l.form().hasMaskRegisters) element = l.int32();
+  if (shape == Shape::Varying) element = l.vector(element);
+  llvm::Type* type = element;
+  if (!leaf.dimensions.empty()) type = llvm::ArrayType::get(element, leaf.count());
+  llvm::BasicBlock& entry = b.GetInsertBlock()->getParent()->getEntryBlock();
+  llvm::IRBuilder<> allocas(&entry, entry.begin());
+  return {allocas.CreateAlloca(type, nullptr, name), element, leaf.scalar, leaf.dimensions, shape};
+}
+
+void FunctionCode::declareAll() {
+  for (VarId var = 0; var < function_.variables.size(); ++var) {
+    const Variable& variable = function_.variables[var];
+    std::vector<LeafMemory> memory;
+    if (variable.role != VarRole::Gather && variable.role != VarRole::Sink) {
+      const std::vector<Leaf> leaves = leavesOf(k.module, variable.type);
+      for (std::size_t i = 0; i < leaves.size(); ++i) {
+        const Shape shape = k.uniformity == nullptr ? Shape::Uniform : k.uniformity->of(id_, var)[i];
+        memory.push_back(memoryOf(variable.name, leaves[i], shape));
+      }
+    }
+    variables_.push_back(std::move(memory));
+  }
+  const std::vector<Leaf> leaves = leavesOf(k.module, function_.result);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const Shape shape = k.uniformity == nullptr ? Shape::Uniform : k.uniformity->resultOf(id_)[i];
+    result_.push_back(memoryOf("result", leaves[i], shape));
+  }
+}
+
+Place FunctionCode::variable(VarId var) const {
+  Place place{function_.variables[var].type, {}};
+  for (const LeafMemory& memory : variables_[var]) place.leaves.push_back({&memory, {l.integer(l.int32(), 0)}, 0});
+  return place;
+}
+
+/// The nearest index inside.
+Part FunctionCode::indexInside(const Expr& index, std::uint32_t length) {
+  Part i = expression(index)[0];
+  if (i.isConsecutive) i = {l.spread(i)};
+  llvm::Type* const type = i.value->getType();
+  llvm::Value* const last = l.integer(type, length - 1);
+  if (index.type.scalar == Scalar::Uint) return {b.CreateBinaryIntrinsic(llvm::Intrinsic::umin, i.value, last)};
+  llvm::Value* const low = b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, i.value, l.integer(type, 0));
+  return {b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, low, last)};
+}
+
+namespace {
+
+/// The constant that a Literal index is, brought inside; nothing for other indices.
+std::optional<std::uint32_t> literalIndex(const Expr& index, std::uint32_t length) {
+  const auto* literal = std::get_if<Literal>(&index.node);
+  if (literal == nullptr) return std::nullopt;
+  const bool isNegative = index.type.scalar == Scalar::Int && static_cast<std::int32_t>(literal->bits) < 0;
+  return isNegative ? 0 : std::min(literal->bits, length - 1);
+}
+
+}  // namespace
+
+/// Nothing where the expression is no place, or a component of a vector at an index that is known only when it runs.
+std::optional<Place> FunctionCode::placeOf(const Expr& expr) {
+  if (const auto* n = std::get_if<VarRef>(&expr.node)) return variable(n->var);
+  if (const auto* n = std::get_if<Member>(&expr.node)) {
+    std::optional<Place> base = placeOf(*n->base);
+    if (!base) return std::nullopt;
+    const std::uint32_t first = leavesBefore(k.module, n->base->type, n->field);
+    const auto begin = base->leaves.begin() + first;
+    const auto count = static_cast<std::ptrdiff_t>(leavesOf(k.module, expr.type).size());
+    return Place{expr.type, {begin, begin + count}};
+  }
+  if (const auto* n = std::get_if<Swizzle>(&expr.node)) {
+    std::optional<Place> base = placeOf(*n->base);
+    if (!base) return std::nullopt;
+    Place place{expr.type, {}};
+    for (const std::uint8_t component : n->components) place.leaves.push_back(base->leaves[component]);
+    return place;
+  }
+  const auto* n = std::get_if<Index>(&expr.node);
+  if (n == nullptr) return std::nullopt;
+  std::optional<Place> place = placeOf(*n->base);
+  if (!place) return std::nullopt;
+  const Type type = n->base->type;
+  if (type.kind != Type::Kind::Array) {
+    const std::optional<std::uint32_t> row = literalIndex(*n->index, type.width);
+    if (!row) return std::nullopt;
+    const std::uint32_t width = type.isMatrix() ? type.width : 1;
+    const auto begin = place->leaves.begin() + *row * width;
+    return Place{expr.type, {begin, begin + width}};
+  }
+  const Part index = indexInside(*n->index, k.module.arrays[type.index].length);
+  for (Place::Leaf& leaf : place->leaves) {
+    std::uint32_t inner = 1;
+    ++leaf.dimensions;
+    for (std::size_t d = leaf.dimensions; d < leaf.memory->dimensions.size(); ++d) inner *= leaf.memory->dimensions[d];
+    const Part scaled = binary(l, BinaryOp::Mul, Scalar::Int, index, {l.integer(l.int32(), inner)});
+    leaf.offset = binary(l, BinaryOp::Add, Scalar::Int, leaf.offset, scaled);
+  }
+  place->type = expr.type;
+  return place;
+}
+
+/// Where a component is. Where lanes have different offsets, a vector of addresses of scalars, and isScattered is set.
+llvm::Value* FunctionCode::addressOf(const Place::Leaf& leaf, std::uint32_t offset, bool* isScattered) {
+  const LeafMemory& memory = *leaf.memory;
+  *isScattered = false;
+  if (memory.dimensions.empty()) return memory.memory;
+  llvm::Type* const type = leaf.offset.value->getType();
+  llvm::Value* const element = b.CreateAdd(leaf.offset.value, l.integer(type, offset));
+  if (!l.isVector(element)) return l.at(memory.element, memory.memory, element);
+  *isScattered = true;
+  if (memory.shape != Shape::Varying) return l.at(memory.element, memory.memory, element);
+  llvm::Value* const scalars = b.CreateMul(element, l.integer(type, l.count()));
+  return l.at(l.stored(memory.scalar), memory.memory, b.CreateAdd(scalars, l.laneNumbers(l.int32())));
+}
+
+Part FunctionCode::loadComponent(const Place::Leaf& leaf, std::uint32_t offset) {
+  const LeafMemory& memory = *leaf.memory;
+  bool isScattered = false;
+  llvm::Value* const address = addressOf(leaf, offset, &isScattered);
+  const bool isArray = !memory.dimensions.empty();
+  if (isScattered) {
+    llvm::Value* const value =
+        b.CreateMaskedGather(l.vector(l.stored(memory.scalar)), address, llvm::Align(l.storedBytes(memory.scalar)));
+    return {l.fromStored(memory.scalar, value)};
+  }
+  llvm::Value* const value = b.CreateLoad(memory.element, address);
+  if (isArray) return {l.fromStored(memory.scalar, value), memory.shape == Shape::Consecutive};
+  const bool isWord = memory.scalar == Scalar::Bool && !memory.element->getScalarType()->isIntegerTy(1);
+  if (isWord) return {b.CreateICmpSLT(value, llvm::Constant::getNullValue(value->getType()))};
+  return {value, memory.shape == Shape::Consecutive};
+}
+
+void FunctionCode::storeComponent(const Place::Leaf& leaf, std::uint32_t offset, const Part& part) {
+  const LeafMemory& memory = *leaf.memory;
+  bool isScattered = false;
+  llvm::Value* const address = addressOf(leaf, offset, &isScattered);
+  llvm::Value* value = memory.shape == Shape::Varying ? l.spread(part) : part.value;
+  if (isScattered) {
+    b.CreateMaskedScatter(l.toStored(memory.scalar, value), address, llvm::Align(l.storedBytes(memory.scalar)));
+    return;
+  }
+  if (!memory.dimensions.empty()) {
+    value = l.toStored(memory.scalar, value);
+  } else if (value->getType() != memory.element) {
+    value = b.CreateSExt(value, memory.element);  // a mask of words
+  }
+  b.CreateStore(value, address);
+}
+
+Parts FunctionCode::load(const Place& place) {
+  Parts parts;
+  for (const Component& component : componentsOf(k.module, place.type)) {
+    parts.push_back(loadComponent(place.leaves[component.leaf], component.offset));
+  }
+  return parts;
+}
+
+void FunctionCode::store(const Place& place, const Parts& value) {
+  const std::vector<Component> components = componentsOf(k.module, place.type);
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    storeComponent(place.leaves[components[i].leaf], components[i].offset, value[i]);
+  }
+}
+
+void FunctionCode::assign(const Expr& place, const Parts& value) {
+  if (const std::optional<Place> found = placeOf(place)) return store(*found, value);
+  if (const auto* n = std::get_if<Swizzle>(&place.node)) {
+    Parts whole = expression(*n->base);
+    for (std::size_t i = 0; i < n->components.size(); ++i) whole[n->components[i]] = value[i];
+    return assign(*n->base, whole);
+  }
+  assignComponent(std::get<Index>(place.node), value);
+}
+
+/// Of a vector, a component, or of a matrix, a row, at an index that is known only when it runs.
+void FunctionCode::assignComponent(const Index& place, const Parts& value) {
+  Parts whole = expression(*place.base);
+  const std::uint32_t length = place.base->type.width;
+  const Part index = indexInside(*place.index, length);
+  for (std::uint32_t i = 0; i < length; ++i) {
+    const Part isHere = binary(l, BinaryOp::Equal, Scalar::Int, index, {l.integer(l.int32(), i)});
+    for (std::size_t c = 0; c < value.size(); ++c) {
+      Part& part = whole[i * value.size() + c];
+      part = l.select(isHere, value[c], part);
+    }
+  }
+  assign(*place.base, whole);
+}
+
+}  // namespace skc::native

@@ -1,0 +1,675 @@
+// SPDX-License-Identifier: MIT
+#include "native/streams.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+
+#include <llvm/IR/Constants.h>
+#include <llvm/IR/Intrinsics.h>
+#include <llvm/IR/MDBuilder.h>
+#include <llvm/IR/Module.h>
+
+#include "ir/evaluate.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+#include "native/arithmetic.hpp"
+#include "native/intrinsics.hpp"
+#include "native/leaves.hpp"
+
+namespace skc::native {
+
+using namespace ir;
+using sk::native::Argument;
+using sk::native::Chunk;
+using sk::native::Frame;
+using sk::native::Sink;
+using sk::native::Slot;
+
+// ---- slots ----------------------------------------------------------------------------------------
+
+namespace {
+
+/// Rows of neighbours farther away are gathers like any other.
+constexpr std::int32_t farthest = 8;
+
+bool isNear(const std::vector<std::int32_t>& offset) {
+  return std::ranges::all_of(offset, [](std::int32_t d) { return std::abs(d) <= farthest; });
+}
+
+Slot slotOf(std::uint32_t param, bool isOutput) {
+  return {.parameter = static_cast<std::uint8_t>(param), .row = {}, .reach = 0, .isOutput = isOutput};
+}
+
+void addNeighbor(SlotPlan& plan, std::uint32_t param, const std::vector<std::int32_t>& offset) {
+  Slot slot = slotOf(param, false);
+  for (std::size_t d = 1; d < offset.size(); ++d) slot.row[d - 1] = static_cast<std::int8_t>(offset[d]);
+  const auto reach = static_cast<std::uint8_t>(std::abs(offset[0]));
+  for (Slot& known : plan.slots) {
+    if (known.parameter == param && std::ranges::equal(known.row, slot.row)) {
+      known.reach = std::max(known.reach, reach);
+      return;
+    }
+  }
+  slot.reach = reach;
+  plan.slots.push_back(slot);
+}
+
+}  // namespace
+
+std::optional<SlotPlan::Place> SlotPlan::find(std::uint32_t parameter, const std::int8_t (&row)[3]) const {
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i].parameter == parameter && std::ranges::equal(slots[i].row, row)) return Place{i, firstArrays[i]};
+  }
+  return std::nullopt;
+}
+
+std::optional<std::vector<std::int32_t>> constantOffset(const Module& module, const Expr& offset) {
+  if (const auto* n = std::get_if<Construct>(&offset.node)) {
+    std::vector<std::int32_t> all;
+    for (const ExprPtr& arg : n->args) {
+      const auto part = constantOffset(module, *arg);
+      if (!part) return std::nullopt;
+      all.insert(all.end(), part->begin(), part->end());
+    }
+    if (all.size() == 1) all.assign(offset.type.width, all[0]);  // splat
+    return all;
+  }
+  if (!offset.type.isScalar()) return std::nullopt;
+  const std::optional<std::uint32_t> bits = evaluate(module, offset, Constants::LookThrough);
+  if (!bits) return std::nullopt;
+  return std::vector{static_cast<std::int32_t>(*bits)};
+}
+
+SlotPlan planSlots(const Module& module, const Kernel& kernel) {
+  SlotPlan plan;
+  for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
+    const ParamRole role = kernel.params[i].role;
+    if (role == ParamRole::Input || role == ParamRole::Output) plan.slots.push_back(slotOf(i, role == ParamRole::Output));
+  }
+  if (!kernel.reduction) {
+    for (const FunctionId id : functionsOf(module, kernel)) {
+      walkExprs(module.functions[id].body, [&](const Expr& expr) {
+        const auto* n = std::get_if<NeighborRead>(&expr.node);
+        if (n == nullptr) return;
+        const auto offset = constantOffset(module, *n->offset);
+        if (offset && isNear(*offset)) addNeighbor(plan, n->stream.id, *offset);
+      });
+    }
+  }
+  std::size_t next = 0;
+  for (const Slot& slot : plan.slots) {
+    plan.firstArrays.push_back(next);
+    next += componentCount(module, kernel.params[slot.parameter].type);
+  }
+  return plan;
+}
+
+// ---- what the runtime hands over ------------------------------------------------------------------
+
+Streams::Streams(Lanes& lanes, const Module& module, const Kernel& kernel, const SlotPlan& slots,
+                 std::function<Parts(const Expr&)> value)
+    : l(lanes), module_(module), kernel_(kernel), slots_(slots), value_(std::move(value)) {}
+
+void Streams::begin(llvm::Value* frame, llvm::Value* chunk, llvm::BasicBlock* prologue) {
+  frame_ = frame;
+  chunk_ = chunk;
+  prologue_ = prologue;
+  loads_.clear();
+}
+
+llvm::Value* Streams::inPrologue(const std::function<llvm::Value*()>& emit) {
+  const llvm::IRBuilderBase::InsertPointGuard guard(l.b);
+  if (llvm::Instruction* end = prologue_->getTerminator()) {
+    l.b.SetInsertPoint(end);
+  } else {
+    l.b.SetInsertPoint(prologue_);
+  }
+  return emit();
+}
+
+llvm::Value* Streams::load(llvm::Value* base, std::size_t offset, llvm::Type* type) {
+  llvm::Value*& known = loads_[{base, offset}];
+  if (known != nullptr) return known;
+  return known = inPrologue([&]() -> llvm::Value* {
+           llvm::Value* const address = l.b.CreateConstGEP1_64(l.b.getInt8Ty(), base, offset);
+           llvm::LoadInst* const value = l.b.CreateAlignedLoad(type, address, llvm::Align(8));
+           value->setMetadata(llvm::LLVMContext::MD_invariant_load, llvm::MDNode::get(l.b.getContext(), {}));
+           return value;
+         });
+}
+
+llvm::Value* Streams::frameField(std::size_t offset, llvm::Type* type) { return load(frame_, offset, type); }
+llvm::Value* Streams::chunkField(std::size_t offset) { return load(chunk_, offset, l.int64()); }
+llvm::Value* Streams::first(std::size_t dimension) {
+  return chunkField(offsetof(Chunk, first) + dimension * sizeof(std::int64_t));
+}
+llvm::Value* Streams::tables() { return frameField(offsetof(Frame, tables), l.b.getPtrTy()); }
+
+llvm::Value* Streams::argumentField(std::uint32_t param, std::size_t offset, llvm::Type* type) {
+  llvm::Value* const arguments = frameField(offsetof(Frame, arguments), l.b.getPtrTy());
+  return load(arguments, param * sizeof(Argument) + offset, type);
+}
+llvm::Value* Streams::argumentExtent(std::uint32_t param, std::size_t dimension, std::size_t field) {
+  return argumentField(param, field + dimension * sizeof(std::int64_t), l.int64());
+}
+llvm::Value* Streams::component(std::uint32_t param, std::size_t component) {
+  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
+  return load(all, component * sizeof(void*), l.b.getPtrTy());
+}
+llvm::Value* Streams::array(std::size_t number) {
+  llvm::Value* const all = load(chunk_, offsetof(Chunk, arrays), l.b.getPtrTy());
+  return load(all, number * sizeof(void*), l.b.getPtrTy());
+}
+
+const std::vector<Scalar>& Streams::scalars(std::uint32_t param) {
+  std::vector<Scalar>& known = scalars_[param];
+  if (known.empty()) known = scalarsOf(module_, kernel_.params[param].type);
+  return known;
+}
+
+// ---- values, elements and indices -----------------------------------------------------------------
+
+Parts Streams::uniform(std::uint32_t param) {
+  Parts parts;
+  for (std::size_t c = 0; c < scalars(param).size(); ++c) {
+    llvm::Value* const address = component(param, c);
+    parts.push_back({inPrologue([&] { return l.loadOne(scalars(param)[c], address).value; })});
+  }
+  return parts;
+}
+
+Parts Streams::input(std::uint32_t param) {
+  const SlotPlan::Place place = *slots_.find(param, {});
+  Parts parts;
+  for (std::size_t c = 0; c < scalars(param).size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    parts.push_back(l.loadNeighbors(scalar, l.at(l.stored(scalar), array(place.firstArray + c), element_)));
+  }
+  return parts;
+}
+
+void Streams::storeOutput(std::uint32_t param, const Parts& value) {
+  const SlotPlan::Place place = *slots_.find(param, {});
+  for (std::size_t c = 0; c < value.size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    l.storeNeighbors(scalar, value[c], l.at(l.stored(scalar), array(place.firstArray + c), element_));
+  }
+}
+
+Parts Streams::index(const StreamRef& stream) {
+  const bool isInput = stream.space == StreamRef::Space::KernelParameter &&
+                       kernel_.params[stream.id].role == ParamRole::Input;
+  Parts parts;
+  for (std::size_t d = 0; d < 4; ++d) {
+    llvm::Value* position = first(d);
+    if (isInput) {
+      llvm::Value* const multiply = argumentExtent(stream.id, d, offsetof(Argument, multiply));
+      llvm::Value* const divide = argumentExtent(stream.id, d, offsetof(Argument, divide));
+      position = inPrologue([&] { return l.b.CreateSDiv(l.b.CreateMul(position, multiply), divide); });
+    }
+    if (d == 0) position = l.b.CreateAdd(position, element_);
+    parts.push_back({l.b.CreateTrunc(position, l.int32()), d == 0});
+  }
+  return parts;
+}
+
+Parts Streams::extent(const StreamRef& stream) {
+  const bool isDomain = stream.space == StreamRef::Space::Domain;
+  Parts parts;
+  for (std::size_t d = 0; d < 4; ++d) {
+    llvm::Value* const value = isDomain ? frameField(offsetof(Frame, domain) + d * sizeof(std::int64_t), l.int64())
+                                        : argumentExtent(stream.id, d, offsetof(Argument, extent));
+    parts.push_back({l.b.CreateTrunc(value, l.int32())});
+  }
+  return parts;
+}
+
+/// begin + (end - begin) * k / n, rounded once where that is exact; of integers, begin + (end - begin) / n * k.
+Parts Streams::iterator(std::uint32_t param) {
+  const std::size_t width = scalars(param).size();
+  llvm::Value* const counts = argumentField(param, offsetof(Argument, countsElements), l.int64());
+  llvm::Value* const byNumber = l.b.CreateICmpNE(counts, l.integer(l.int64(), 0));
+  const auto domain = [&](std::size_t d) {
+    return frameField(offsetof(Frame, domain) + d * sizeof(std::int64_t), l.int64());
+  };
+  llvm::Value* number = first(3);
+  llvm::Value* total = domain(3);
+  for (std::size_t d = 3; d-- > 0;) {
+    number = l.b.CreateAdd(l.b.CreateMul(number, domain(d)), first(d));
+    total = l.b.CreateMul(total, domain(d));
+  }
+  number = l.b.CreateAdd(number, element_);
+  Parts parts;
+  for (std::size_t c = 0; c < width; ++c) {
+    const Scalar scalar = scalars(param)[c];
+    const auto end = [&](std::int64_t i) {
+      return l.loadOne(scalar, l.at(l.stored(scalar), component(param, c), l.integer(l.int64(), i)));
+    };
+    llvm::Value* const own = c == 0 ? l.b.CreateAdd(first(0), element_) : first(c);
+    llvm::Value* const from = l.b.CreateSelect(byNumber, number, own);
+    llvm::Value* const steps = l.b.CreateSelect(byNumber, total, domain(c));
+    // x grows from lane to lane, and so does the number of the element
+    llvm::Value* grows = l.integer(l.int64(), 1);
+    if (c > 0) grows = l.b.CreateZExt(byNumber, l.int64());
+    llvm::Value* const k = l.b.CreateAdd(l.spread(from), l.b.CreateMul(l.laneNumbers(l.int64()), l.spread(grows)));
+    const Part begin = end(0), last = end(1);
+    if (scalar == Scalar::Int || scalar == Scalar::Uint) {
+      const auto widened = [&](const Part& part) {
+        return scalar == Scalar::Int ? l.b.CreateSExt(part.value, l.int64()) : l.b.CreateZExt(part.value, l.int64());
+      };
+      llvm::Value* const step = l.b.CreateSDiv(l.b.CreateSub(widened(last), widened(begin)), steps);
+      llvm::Value* const way = l.b.CreateMul(l.spread(step), k);
+      parts.push_back({l.b.CreateTrunc(l.b.CreateAdd(l.spread(widened(begin)), way), l.vector(l.int32()))});
+      continue;
+    }
+    llvm::Type* const wide = l.type(Scalar::Double);
+    const auto widened = [&](llvm::Value* value) { return l.b.CreateFPCast(value, wide); };
+    llvm::Value* const a = widened(begin.value);
+    llvm::Value* const way = l.b.CreateFSub(widened(last.value), a);
+    llvm::Value* const offset =
+        l.b.CreateFDiv(l.b.CreateFMul(l.spread(way), l.b.CreateSIToFP(k, l.vector(wide))),
+                       l.spread(l.b.CreateSIToFP(steps, wide)));
+    parts.push_back({l.b.CreateFPCast(l.b.CreateFAdd(l.spread(a), offset), l.vector(l.type(scalar)))});
+  }
+  return parts;
+}
+
+// ---- gathers --------------------------------------------------------------------------------------
+
+Parts Streams::border(std::uint32_t param) { return value_(*kernel_.params[param].border); }
+
+Parts Streams::orBorder(std::uint32_t param, llvm::Value* isOutside, const Parts& value) {
+  if (isOutside == nullptr) return value;
+  const Parts outside = border(param);
+  Parts parts;
+  for (std::size_t c = 0; c < value.size(); ++c) parts.push_back(l.select({isOutside}, outside[c], value[c]));
+  return parts;
+}
+
+Streams::Inside Streams::inside(std::uint32_t param, std::size_t dimension, llvm::Value* index) {
+  llvm::Value* const n = argumentExtent(param, dimension, offsetof(Argument, extent));
+  llvm::Value* const i = l.b.CreateSExt(index, l.int64());
+  llvm::Value* const zero = l.integer(l.int64(), 0);
+  llvm::Value* const one = l.integer(l.int64(), 1);
+  switch (kernel_.params[param].boundary) {
+    case Boundary::Clamp: {
+      llvm::Value* const most = l.b.CreateSub(n, one);
+      return {l.b.CreateBinaryIntrinsic(
+                  llvm::Intrinsic::smax,
+                  l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, most), zero), nullptr};
+    }
+    case Boundary::Border: {
+      llvm::Value* const isOutside = l.b.CreateICmpUGE(i, n);
+      return {l.b.CreateSelect(isOutside, zero, i), isOutside};
+    }
+    case Boundary::Wrap:
+    case Boundary::Mirror: break;
+  }
+  const bool isMirror = kernel_.params[param].boundary == Boundary::Mirror;
+  llvm::Value* const period = isMirror ? l.b.CreateShl(n, 1) : n;
+  llvm::Value* const rest = l.b.CreateSRem(i, period);
+  llvm::Value* const isBelow = l.b.CreateICmpSLT(rest, zero);
+  llvm::Value* result = l.b.CreateSelect(isBelow, l.b.CreateAdd(rest, period), rest);
+  if (isMirror) {
+    llvm::Value* const back = l.b.CreateSub(l.b.CreateSub(period, one), result);
+    result = l.b.CreateSelect(l.b.CreateICmpSLT(result, n), result, back);
+  }
+  return {result, nullptr};
+}
+
+/// One element for all lanes.
+Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
+  llvm::Value* number = argumentField(param, offsetof(Argument, first), l.int64());
+  llvm::Value* isOutside = nullptr;
+  for (std::size_t d = 0; d < index.size(); ++d) {
+    const Inside in = inside(param, d, index[d].value);
+    llvm::Value* const stride = argumentExtent(param, d, offsetof(Argument, stride));
+    number = l.b.CreateAdd(number, d == 0 ? in.index : l.b.CreateMul(in.index, stride));
+    if (in.isOutside != nullptr) isOutside = isOutside == nullptr ? in.isOutside : l.b.CreateOr(isOutside, in.isOutside);
+  }
+  Parts parts;
+  for (std::size_t c = 0; c < scalars(param).size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    parts.push_back(l.loadOne(scalar, l.at(l.stored(scalar), component(param, c), number)));
+  }
+  return orBorder(param, isOutside, parts);
+}
+
+Parts Streams::choose(llvm::Value* condition, const std::function<Parts()>& yes, const std::function<Parts()>& no,
+                      const std::vector<Scalar>& scalars) {
+  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
+  const auto block = [&](const char* name) { return llvm::BasicBlock::Create(l.b.getContext(), name, function); };
+  llvm::BasicBlock* const yesBlock = block("inside");
+  llvm::BasicBlock* const noBlock = block("anywhere");
+  llvm::BasicBlock* const end = block("read");
+  l.b.CreateCondBr(condition, yesBlock, noBlock, llvm::MDBuilder(l.b.getContext()).createLikelyBranchWeights());
+  l.b.SetInsertPoint(yesBlock);
+  Parts a = yes();
+  for (Part& part : a) part = {l.spread(part)};
+  llvm::BasicBlock* const yesEnd = l.b.GetInsertBlock();
+  l.b.CreateBr(end);
+  l.b.SetInsertPoint(noBlock);
+  Parts c = no();
+  for (Part& part : c) part = {l.spread(part)};
+  llvm::BasicBlock* const noEnd = l.b.GetInsertBlock();
+  l.b.CreateBr(end);
+  l.b.SetInsertPoint(end);
+  Parts result;
+  for (std::size_t i = 0; i < scalars.size(); ++i) {
+    llvm::PHINode* const phi = l.b.CreatePHI(a[i].value->getType(), 2);
+    phi->addIncoming(a[i].value, yesEnd);
+    phi->addIncoming(c[i].value, noEnd);
+    result.push_back({phi});
+  }
+  return result;
+}
+
+/// Neighbours along x, where all of them are inside.
+Parts Streams::gatherNeighbors(std::uint32_t param, const Parts& index) {
+  llvm::Value* const x = l.b.CreateSExt(index[0].value, l.int64());
+  llvm::Value* const extent = argumentExtent(param, 0, offsetof(Argument, extent));
+  llvm::Value* const end = l.b.CreateAdd(x, l.integer(l.int64(), l.count()));
+  llvm::Value* const isInside = l.b.CreateAnd(l.b.CreateICmpSGE(x, l.integer(l.int64(), 0)), l.b.CreateICmpSLE(end, extent));
+  return choose(
+      isInside,
+      [&] {
+        llvm::Value* number = l.b.CreateAdd(argumentField(param, offsetof(Argument, first), l.int64()), x);
+        llvm::Value* isOutside = nullptr;
+        for (std::size_t d = 1; d < index.size(); ++d) {
+          const Inside in = inside(param, d, index[d].value);
+          number = l.b.CreateAdd(number, l.b.CreateMul(in.index, argumentExtent(param, d, offsetof(Argument, stride))));
+          if (in.isOutside != nullptr) {
+            isOutside = isOutside == nullptr ? in.isOutside : l.b.CreateOr(isOutside, in.isOutside);
+          }
+        }
+        Parts parts;
+        for (std::size_t c = 0; c < scalars(param).size(); ++c) {
+          const Scalar scalar = scalars(param)[c];
+          parts.push_back(l.loadNeighbors(scalar, l.at(l.stored(scalar), component(param, c), number)));
+        }
+        return orBorder(param, isOutside, parts);
+      },
+      [&] { return gatherByLanes(param, index); }, scalars(param));
+}
+
+/// Numbers of elements as vectors of 32 bits; for streams that have no more.
+Parts Streams::gatherByNumbers(std::uint32_t param, const Parts& index) {
+  const Boundary boundary = kernel_.params[param].boundary;
+  llvm::Value* number = nullptr;
+  llvm::Value* isOutside = nullptr;
+  for (std::size_t d = 0; d < index.size(); ++d) {
+    llvm::Value* const extent = l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32());
+    llvm::Value* i = l.spread(index[d]);
+    llvm::Value* const zero = l.integer(i->getType(), 0);
+    if (boundary == Boundary::Clamp) {
+      llvm::Value* const most = l.spread(l.b.CreateSub(extent, l.integer(l.int32(), 1)));
+      i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, most);
+      i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, i, zero);
+    } else if (boundary == Boundary::Border) {
+      llvm::Value* const beyond = l.b.CreateICmpUGE(i, l.spread(extent));
+      i = l.b.CreateSelect(beyond, zero, i);
+      isOutside = isOutside == nullptr ? beyond : l.b.CreateOr(isOutside, beyond);
+    }
+    if (d > 0) {
+      llvm::Value* const stride = l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, stride)), l.int32());
+      i = l.b.CreateMul(i, l.spread(stride));
+    }
+    number = number == nullptr ? i : l.b.CreateAdd(number, i);
+  }
+  llvm::Value* const start = argumentField(param, offsetof(Argument, first), l.int64());
+  Parts parts;
+  for (std::size_t c = 0; c < scalars(param).size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    parts.push_back(l.gather(scalar, l.at(l.stored(scalar), component(param, c), start), number));
+  }
+  return orBorder(param, isOutside, parts);
+}
+
+/// Whether every lane's index needs no boundary.
+static llvm::Value* areAllInside(Lanes& l, const Parts& index, const std::vector<llvm::Value*>& extents) {
+  llvm::Value* all = nullptr;
+  for (std::size_t d = 0; d < index.size(); ++d) {
+    llvm::Value* const in = l.b.CreateICmpULT(l.spread(index[d]), l.spread(extents[d]));
+    all = all == nullptr ? in : l.b.CreateAnd(all, in);
+  }
+  return l.isVector(all) ? l.b.CreateAndReduce(all) : all;
+}
+
+Parts Streams::gatherAnywhere(std::uint32_t param, const Parts& index) {
+  const Boundary boundary = kernel_.params[param].boundary;
+  llvm::Value* isFast = l.b.CreateICmpNE(argumentField(param, offsetof(Argument, isSmall), l.int64()),
+                                         l.integer(l.int64(), 0));
+  if (boundary == Boundary::Wrap || boundary == Boundary::Mirror) {
+    std::vector<llvm::Value*> extents;
+    for (std::size_t d = 0; d < index.size(); ++d) {
+      extents.push_back(l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32()));
+    }
+    isFast = l.b.CreateAnd(isFast, areAllInside(l, index, extents));
+  }
+  return choose(
+      isFast, [&] { return gatherByNumbers(param, index); }, [&] { return gatherByLanes(param, index); },
+      scalars(param));
+}
+
+/// Lane by lane, by a function of its own: for what is rare.
+Parts Streams::gatherByLanes(std::uint32_t param, const Parts& index) {
+  if (l.count() == 1) {
+    Parts own;
+    for (const Part& part : index) own.push_back({part.value});
+    return gatherOne(param, own);
+  }
+  llvm::Function* const function = laneGather(param);
+  llvm::BasicBlock& entry = l.b.GetInsertBlock()->getParent()->getEntryBlock();
+  llvm::IRBuilder<> allocas(&entry, entry.begin());
+  llvm::Type* const indices = l.vector(l.int32());
+  std::vector<llvm::Value*> arguments = {frame_};
+  for (const Part& part : index) {
+    llvm::Value* const memory = allocas.CreateAlloca(indices);
+    l.b.CreateStore(l.spread(part), memory);
+    arguments.push_back(memory);
+  }
+  std::vector<llvm::Value*> results;
+  for (const Scalar scalar : scalars(param)) {
+    results.push_back(allocas.CreateAlloca(l.vector(l.stored(scalar))));
+    arguments.push_back(results.back());
+  }
+  l.b.CreateCall(function, arguments);
+  Parts parts;
+  for (std::size_t c = 0; c < results.size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    parts.push_back({l.fromStored(scalar, l.b.CreateLoad(l.vector(l.stored(scalar)), results[c]))});
+  }
+  return parts;
+}
+
+/// void(frame, indices of each dimension ..., results of each component ...).
+llvm::Function* Streams::laneGather(std::uint32_t param) {
+  llvm::Function*& known = laneGathers_[param];
+  if (known != nullptr) return known;
+  llvm::Function* const around = l.b.GetInsertBlock()->getParent();
+  const std::size_t rank = kernel_.params[param].rank;
+  const std::vector<llvm::Type*> types(1 + rank + scalars(param).size(), l.b.getPtrTy());
+  known = llvm::Function::Create(llvm::FunctionType::get(l.b.getVoidTy(), types, false),
+                                 llvm::Function::InternalLinkage, around->getName() + ".lanes",
+                                 around->getParent());
+  known->copyAttributesFrom(around);
+  known->addFnAttr(llvm::Attribute::NoInline);
+  known->addFnAttr(llvm::Attribute::Cold);
+
+  const llvm::IRBuilderBase::InsertPointGuard guard(l.b);
+  llvm::LLVMContext& context = l.b.getContext();
+  llvm::BasicBlock* const entry = llvm::BasicBlock::Create(context, "entry", known);
+  llvm::BasicBlock* const loop = llvm::BasicBlock::Create(context, "lane", known);
+  llvm::BasicBlock* const end = llvm::BasicBlock::Create(context, "end", known);
+  Form form = l.form();
+  form.lanes = 1;
+  Lanes one(l.b, form);
+  Streams streams(one, module_, kernel_, slots_, value_);
+  streams.begin(known->getArg(0), nullptr, entry);
+  l.b.SetInsertPoint(loop);
+  llvm::PHINode* const lane = l.b.CreatePHI(l.int64(), 2);
+  lane->addIncoming(l.integer(l.int64(), 0), entry);
+  Parts index;
+  for (std::size_t d = 0; d < rank; ++d) {
+    index.push_back({l.b.CreateLoad(l.int32(), l.at(l.int32(), known->getArg(static_cast<unsigned>(1 + d)), lane))});
+  }
+  const Parts value = streams.gatherOne(param, index);
+  for (std::size_t c = 0; c < value.size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    one.storeOne(scalar, value[c].value,
+                 l.at(l.stored(scalar), known->getArg(static_cast<unsigned>(1 + rank + c)), lane));
+  }
+  llvm::Value* const next = l.b.CreateAdd(lane, l.integer(l.int64(), 1));
+  lane->addIncoming(next, l.b.GetInsertBlock());
+  l.b.CreateCondBr(l.b.CreateICmpULT(next, l.integer(l.int64(), l.count())), loop, end);
+  l.b.SetInsertPoint(end);
+  l.b.CreateRetVoid();
+  l.b.SetInsertPoint(entry);
+  l.b.CreateBr(loop);
+  return known;
+}
+
+Parts Streams::gather(std::uint32_t param, const Parts& index) {
+  const auto areUniformFrom = [&](std::size_t d) {
+    return std::all_of(index.begin() + static_cast<std::ptrdiff_t>(d), index.end(),
+                       [&](const Part& part) { return l.isUniform(part); });
+  };
+  if (l.count() == 1 || areUniformFrom(0)) return gatherOne(param, index);
+  if (index[0].isConsecutive && areUniformFrom(1)) return gatherNeighbors(param, index);
+  return gatherAnywhere(param, index);
+}
+
+Parts Streams::neighbor(std::uint32_t param, const Parts& offset,
+                        const std::optional<std::vector<std::int32_t>>& constant) {
+  if (constant && isNear(*constant) && !kernel_.reduction) {
+    std::int8_t row[3] = {};
+    for (std::size_t d = 1; d < constant->size(); ++d) row[d - 1] = static_cast<std::int8_t>((*constant)[d]);
+    const SlotPlan::Place place = *slots_.find(param, row);
+    llvm::Value* const element = l.b.CreateAdd(element_, l.integer(l.int64(), (*constant)[0]));
+    Parts parts;
+    for (std::size_t c = 0; c < scalars(param).size(); ++c) {
+      const Scalar scalar = scalars(param)[c];
+      parts.push_back(l.loadNeighbors(scalar, l.at(l.stored(scalar), array(place.firstArray + c), element)));
+    }
+    return parts;
+  }
+  const Parts here = index({StreamRef::Space::Domain, 0});
+  Parts there;
+  for (std::size_t d = 0; d < offset.size(); ++d) {
+    there.push_back(binary(l, BinaryOp::Add, Scalar::Int, here[d], offset[d]));
+  }
+  return gather(param, there);
+}
+
+/// By dimensions, the last of these first; a neighbour of no weight is not looked at.
+Parts Streams::weighted(std::uint32_t param, const Parts& low, const Parts& weights, std::size_t dimensions) {
+  if (dimensions == 0) {
+    const Parts element = gather(param, low);
+    Parts parts;
+    for (std::size_t c = 0; c < element.size(); ++c) {
+      parts.push_back(convert(l, scalars(param)[c], carrierOf(scalars(param)[c]), element[c]));
+    }
+    return parts;
+  }
+  const std::size_t d = dimensions - 1;
+  Parts high = low;
+  high[d] = binary(l, BinaryOp::Add, Scalar::Int, low[d], {l.integer(l.int32(), 1)});
+  const Parts a = weighted(param, low, weights, d);
+  const Parts c = weighted(param, high, weights, d);
+  const Part& t = weights[d];
+  const auto number = [&](double value) { return Part{l.number(l.real(), value)}; };
+  const auto real = [&](BinaryOp op, const Part& x, const Part& y) { return binary(l, op, Scalar::Float, x, y); };
+  const Part isLow = real(BinaryOp::LessEqual, t, number(0));
+  const Part isHigh = real(BinaryOp::GreaterEqual, t, number(1));
+  const Part rest = real(BinaryOp::Sub, number(1), t);
+  Parts parts;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Part between = real(BinaryOp::Add, real(BinaryOp::Mul, a[i], rest), real(BinaryOp::Mul, c[i], t));
+    parts.push_back(l.select(isLow, a[i], l.select(isHigh, c[i], between)));
+  }
+  return parts;
+}
+
+Parts Streams::sample(std::uint32_t param, const Parts& position) {
+  Parts low, weights;
+  for (const Part& x : position) {
+    const Part whole = floorOf(l, x);
+    const Part size = {l.b.CreateUnaryIntrinsic(llvm::Intrinsic::fabs, x.value)};
+    const Part isWhole = binary(l, BinaryOp::GreaterEqual, Scalar::Float, size, {l.number(l.real(), 16777216)});
+    low.push_back(wholeIndex(l, whole));
+    // infinity has no fraction
+    weights.push_back(l.select(isWhole, {l.number(l.real(), 0)}, binary(l, BinaryOp::Sub, Scalar::Float, x, whole)));
+  }
+  return weighted(param, low, weights, position.size());
+}
+
+// ---- pushes and scatters --------------------------------------------------------------------------
+
+llvm::Value* Streams::isGiven(std::uint32_t param) {
+  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
+  return l.b.CreateIsNotNull(all);
+}
+
+void Streams::push(std::uint32_t param, const Parts& value) {
+  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
+  const auto block = [&](const char* name) { return llvm::BasicBlock::Create(l.b.getContext(), name, function); };
+  llvm::BasicBlock* const given = block("push");
+  llvm::BasicBlock* const grow = block("grow");
+  llvm::BasicBlock* const store = block("append");
+  llvm::BasicBlock* const end = block("pushed");
+  llvm::Value* const sink = argumentField(param, offsetof(Argument, sink), l.b.getPtrTy());
+  const auto field = [&](std::size_t offset) { return l.b.CreateConstGEP1_64(l.b.getInt8Ty(), sink, offset); };
+  l.b.CreateCondBr(l.b.CreateIsNotNull(sink), given, end);
+  l.b.SetInsertPoint(given);
+  llvm::Value* const count = l.b.CreateLoad(l.int64(), field(offsetof(Sink, count)));
+  llvm::Value* const capacity = l.b.CreateLoad(l.int64(), field(offsetof(Sink, capacity)));
+  l.b.CreateCondBr(l.b.CreateICmpEQ(count, capacity), grow, store);
+  l.b.SetInsertPoint(grow);
+  llvm::Value* const more = l.b.CreateLoad(l.b.getPtrTy(), field(offsetof(Sink, grow)));
+  l.b.CreateCall(llvm::FunctionType::get(l.b.getVoidTy(), {l.b.getPtrTy()}, false), more, {sink});
+  l.b.CreateBr(store);
+  l.b.SetInsertPoint(store);
+  llvm::Value* const arrays = l.b.CreateLoad(l.b.getPtrTy(), field(offsetof(Sink, arrays)));
+  for (std::size_t c = 0; c < value.size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    llvm::Value* const slot = l.at(l.b.getPtrTy(), arrays, l.integer(l.int64(), static_cast<std::int64_t>(c)));
+    llvm::Value* const array = l.b.CreateLoad(l.b.getPtrTy(), slot);
+    l.storeOne(scalar, value[c].value, l.at(l.stored(scalar), array, count));
+  }
+  l.b.CreateStore(l.b.CreateAdd(count, l.integer(l.int64(), 1)), field(offsetof(Sink, count)));
+  l.b.CreateBr(end);
+  l.b.SetInsertPoint(end);
+}
+
+void Streams::scatter(std::uint32_t param, const Parts& index, const std::function<Parts(const Parts&)>& combined) {
+  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
+  llvm::BasicBlock* const inside = llvm::BasicBlock::Create(l.b.getContext(), "put", function);
+  llvm::BasicBlock* const end = llvm::BasicBlock::Create(l.b.getContext(), "scattered", function);
+  llvm::Value* isInside = isGiven(param);
+  llvm::Value* number = argumentField(param, offsetof(Argument, first), l.int64());
+  for (std::size_t d = 0; d < index.size(); ++d) {
+    llvm::Value* const i = l.b.CreateSExt(index[d].value, l.int64());
+    isInside = l.b.CreateAnd(isInside, l.b.CreateICmpULT(i, argumentExtent(param, d, offsetof(Argument, extent))));
+    number = l.b.CreateAdd(number, l.b.CreateMul(i, argumentExtent(param, d, offsetof(Argument, stride))));
+  }
+  l.b.CreateCondBr(isInside, inside, end);
+  l.b.SetInsertPoint(inside);
+  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
+  std::vector<llvm::Value*> addresses;
+  Parts old;
+  for (std::size_t c = 0; c < scalars(param).size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    // not in the prologue: a stream that is left out has no arrays
+    llvm::Value* const array =
+        l.b.CreateLoad(l.b.getPtrTy(), l.at(l.b.getPtrTy(), all, l.integer(l.int64(), static_cast<std::int64_t>(c))));
+    addresses.push_back(l.at(l.stored(scalar), array, number));
+    old.push_back(l.loadOne(scalar, addresses.back()));
+  }
+  const Parts value = combined(old);
+  for (std::size_t c = 0; c < value.size(); ++c) l.storeOne(scalars(param)[c], value[c].value, addresses[c]);
+  l.b.CreateBr(end);
+  l.b.SetInsertPoint(end);
+}
+
+}  // namespace skc::native

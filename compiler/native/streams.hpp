@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+//
+// How a kernel's code reads and writes its parameters (sk/native/code.hpp says how they lie in memory). The elements that
+// are computed together are neighbours along x. What is the same for a whole chunk is loaded in the function's prologue.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "ir/ir.hpp"
+#include "native/lanes.hpp"
+#include "sk/native/code.hpp"
+
+namespace skc::native {
+
+/// The slots of a kernel's chunks.
+struct SlotPlan {
+  std::vector<sk::native::Slot> slots;
+
+  /// The first array of a slot that has this parameter and row.
+  struct Place {
+    std::size_t slot;
+    std::size_t firstArray;
+  };
+  std::optional<Place> find(std::uint32_t parameter, const std::int8_t (&row)[3]) const;
+  std::vector<std::size_t> firstArrays;  ///< of each slot
+};
+
+/// Inputs and outputs, and, except in folds, the rows of neighbours at constant offsets.
+SlotPlan planSlots(const ir::Module& module, const ir::Kernel& kernel);
+
+/// The components of a constant offset, x first; nothing where it is not constant.
+std::optional<std::vector<std::int32_t>> constantOffset(const ir::Module& module, const ir::Expr& offset);
+
+class Streams {
+ public:
+  /// `value` computes a constant expression: a border.
+  Streams(Lanes& lanes, const ir::Module& module, const ir::Kernel& kernel, const SlotPlan& slots,
+          std::function<Parts(const ir::Expr&)> value);
+
+  /// The arguments of the function; `chunk` may be null where there is none. Loads are added to `prologue`, which must
+  /// have no terminator yet.
+  void begin(llvm::Value* frame, llvm::Value* chunk, llvm::BasicBlock* prologue);
+  /// From here on, code is for the elements from number `element` of the chunk on.
+  void moveTo(llvm::Value* element) { element_ = element; }
+
+  llvm::Value* chunkCount() { return chunkField(offsetof(sk::native::Chunk, count)); }
+
+  Parts uniform(std::uint32_t param);
+  Parts input(std::uint32_t param);
+  Parts iterator(std::uint32_t param);
+  void storeOutput(std::uint32_t param, const Parts& value);
+
+  Parts index(const ir::StreamRef& stream);
+  Parts extent(const ir::StreamRef& stream);
+  /// Indices x first, one int for each dimension.
+  Parts gather(std::uint32_t param, const Parts& index);
+  /// `constant`: the offset, if it is known.
+  Parts neighbor(std::uint32_t param, const Parts& offset, const std::optional<std::vector<std::int32_t>>& constant);
+  Parts sample(std::uint32_t param, const Parts& position);
+
+  /// Of one lane.
+  void push(std::uint32_t param, const Parts& value);
+  /// Of one lane. `combined` makes the new element of the old one; both are parts.
+  void scatter(std::uint32_t param, const Parts& index, const std::function<Parts(const Parts& old)>& combined);
+
+  /// What the gather has outside, of a Boundary::Border.
+  Parts border(std::uint32_t param);
+  /// The table for function number `table`: its address, or null.
+  llvm::Value* tables();
+
+ private:
+  llvm::Value* inPrologue(const std::function<llvm::Value*()>& emit);
+  llvm::Value* load(llvm::Value* base, std::size_t offset, llvm::Type* type);
+  llvm::Value* argumentField(std::uint32_t param, std::size_t offset, llvm::Type* type);
+  llvm::Value* argumentExtent(std::uint32_t param, std::size_t dimension, std::size_t field);
+  llvm::Value* frameField(std::size_t offset, llvm::Type* type);
+  llvm::Value* chunkField(std::size_t offset);
+  llvm::Value* first(std::size_t dimension);
+  llvm::Value* component(std::uint32_t param, std::size_t component);
+  llvm::Value* array(std::size_t number);
+  llvm::Value* isGiven(std::uint32_t param);
+
+  const std::vector<ir::Scalar>& scalars(std::uint32_t param);
+
+  struct Inside {
+    llvm::Value* index;      ///< i64, in range
+    llvm::Value* isOutside;  ///< of Border; null else
+  };
+  Inside inside(std::uint32_t param, std::size_t dimension, llvm::Value* index);
+  Parts gatherOne(std::uint32_t param, const Parts& index);
+  Parts gatherNeighbors(std::uint32_t param, const Parts& index);
+  Parts gatherAnywhere(std::uint32_t param, const Parts& index);
+  Parts gatherByNumbers(std::uint32_t param, const Parts& index);
+  Parts gatherByLanes(std::uint32_t param, const Parts& index);
+  llvm::Function* laneGather(std::uint32_t param);
+  Parts orBorder(std::uint32_t param, llvm::Value* isOutside, const Parts& value);
+  Parts choose(llvm::Value* condition, const std::function<Parts()>& yes, const std::function<Parts()>& no,
+               const std::vector<ir::Scalar>& scalars);
+  Parts weighted(std::uint32_t param, const Parts& low, const Parts& weights, std::size_t dimensions);
+
+  Lanes& l;
+  const ir::Module& module_;
+  const ir::Kernel& kernel_;
+  const SlotPlan& slots_;
+  std::function<Parts(const ir::Expr&)> value_;
+  llvm::Value* frame_ = nullptr;
+  llvm::Value* chunk_ = nullptr;
+  llvm::BasicBlock* prologue_ = nullptr;
+  llvm::Value* element_ = nullptr;
+  std::map<std::pair<llvm::Value*, std::size_t>, llvm::Value*> loads_;
+  std::map<std::uint32_t, std::vector<ir::Scalar>> scalars_;
+  std::map<std::uint32_t, llvm::Function*> laneGathers_;
+};
+
+}  // namespace skc::native

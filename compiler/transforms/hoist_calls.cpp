@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/hoist_calls.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ir/build.hpp"
+#include "ir/counted_loop.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+#include "support/overloaded.hpp"
+
+namespace skc {
+
+using namespace ir;
+
+namespace {
+
+bool hasOpenLoop(const Module& module, const Function& function) {
+  bool found = false;
+  walkStmts(function.body, [&](const Stmt& stmt) {
+    const auto* loop = std::get_if<Loop>(&stmt.node);
+    found = found || (loop != nullptr && !isCounted(module, *loop));
+  });
+  return found;
+}
+
+class Hoister {
+ public:
+  Hoister(Function& function, const std::set<FunctionId>& functions)
+      : function_(function), functions_(functions) {}
+
+  void block(Block& statements) {
+    Block result;
+    for (Stmt& stmt : statements) {
+      if (auto* loop = std::get_if<Loop>(&stmt.node)) {
+        condition(*loop, stmt.loc);
+      } else {
+        forEachOperand(stmt, [&](ExprPtr& operand) { expression(operand, result); });
+      }
+      forEachBlock(stmt, [&](Block& inner) { block(inner); });
+      result.push_back(std::move(stmt));
+    }
+    statements = std::move(result);
+  }
+
+ private:
+  bool isLong(const Expr& expr) const { return callsOneOf(functions_, expr); }
+
+  /// Puts statements that compute what cannot stay in the expression in front of it.
+  void expression(ExprPtr& slot, Block& before) {
+    if (!isLong(*slot)) return;
+    if (auto* n = std::get_if<Select>(&slot->node);
+        n != nullptr && n->cond->type.isScalar() && (isLong(*n->yes) || isLong(*n->no))) {
+      return choice(slot, *n, before);
+    }
+    if (auto* n = std::get_if<Binary>(&slot->node);
+        n != nullptr && (n->op == BinaryOp::LogicalAnd || n->op == BinaryOp::LogicalOr) && isLong(*n->rhs)) {
+      return logical(slot, *n, before);
+    }
+    forEachOperand(*slot, [&](ExprPtr& operand) { expression(operand, before); });
+  }
+
+  void choice(ExprPtr& slot, Select& n, Block& before) {
+    const Loc loc = slot->loc;
+    expression(n.cond, before);
+    const VarId var = addVariable(function_, "chosen", slot->type, VarRole::Local, loc);
+    const auto side = [&](ExprPtr& value) {
+      Block statements;
+      expression(value, statements);
+      statements.push_back(assign(varRef(function_, var, loc), std::move(value), loc));
+      return statements;
+    };
+    Block yes = side(n.yes), no = side(n.no);
+    before.push_back(declare(var, nullptr, loc));
+    before.push_back(ifStmt(std::move(n.cond), std::move(yes), std::move(no), loc));
+    slot = varRef(function_, var, loc);
+  }
+
+  void logical(ExprPtr& slot, Binary& n, Block& before) {
+    const Loc loc = slot->loc;
+    expression(n.lhs, before);
+    const VarId var = addVariable(function_, "decided", slot->type, VarRole::Local, loc);
+    before.push_back(declare(var, std::move(n.lhs), loc));
+    Block rest;
+    expression(n.rhs, rest);
+    rest.push_back(assign(varRef(function_, var, loc), std::move(n.rhs), loc));
+    ExprPtr isOpen = varRef(function_, var, loc);
+    if (n.op == BinaryOp::LogicalOr) isOpen = unary(UnaryOp::LogicalNot, std::move(isOpen), loc);
+    before.push_back(ifStmt(std::move(isOpen), std::move(rest), {}, loc));
+    slot = varRef(function_, var, loc);
+  }
+
+  /// The condition of a loop is evaluated in every round: at the body's start; that of `do` in the step of a `for`.
+  void condition(Loop& loop, Loc loc) {
+    if (!loop.cond) return;
+    Block before;
+    expression(loop.cond, before);
+    if (before.empty()) return;
+    if (loop.kind == LoopKind::DoWhile) {
+      const VarId again = addVariable(function_, "again", loop.cond->type, VarRole::Local, loc);
+      loop.kind = LoopKind::For;
+      loop.init = ir::block(declare(again, literal(true, loc), loc));
+      loop.step = std::move(before);
+      loop.step.push_back(assign(varRef(function_, again, loc), std::move(loop.cond), loc));
+      loop.cond = varRef(function_, again, loc);
+      return;
+    }
+    before.push_back(ifStmt(unary(UnaryOp::LogicalNot, std::move(loop.cond), loc), ir::block(breakStmt(loc)), {}, loc));
+    std::move(loop.body.begin(), loop.body.end(), std::back_inserter(before));
+    loop.body = std::move(before);
+  }
+
+  Function& function_;
+  const std::set<FunctionId>& functions_;
+};
+
+}  // namespace
+
+std::set<FunctionId> longFunctions(const Module& module) {
+  std::set<FunctionId> found;
+  for (const Kernel& kernel : module.kernels) {
+    for (const FunctionId id : functionsOf(module, kernel)) {   // callees first
+      const Function& function = module.functions[id];
+      const std::vector<FunctionId> called = callees(function);
+      const bool callsLong = std::ranges::any_of(called, [&](FunctionId callee) { return found.contains(callee); });
+      if (callsLong || hasOpenLoop(module, function)) found.insert(id);
+    }
+  }
+  return found;
+}
+
+bool callsOneOf(const std::set<FunctionId>& functions, const Expr& expr) {
+  bool found = false;
+  walkExprs(expr, [&](const Expr& inner) {
+    const auto* n = std::get_if<Call>(&inner.node);
+    found = found || (n != nullptr && functions.contains(n->callee));
+  });
+  return found;
+}
+
+void hoistCalls(Function& function, const std::set<FunctionId>& functions) {
+  Hoister(function, functions).block(function.body);
+}
+
+}  // namespace skc

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+//
+// For tests: runs functions of ints and bools for several elements at once, one in each lane. Control flow is that of lane 0, and
+// has to be the same for all lanes; so a function as the frontend gives it runs with a single lane.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "analysis/uniformity.hpp"
+#include "ir/ir.hpp"
+
+namespace skc {
+
+class LaneEvaluator {
+ public:
+  using Value = std::vector<std::int32_t>;   ///< all scalars, one after the other
+  using Lanes = std::vector<Value>;
+
+  /// `&&`, `||` and `?:` evaluate all their operands only where `inFull`. Values are checked against `shapes`.
+  LaneEvaluator(const ir::Module& module, std::size_t lanes, bool inFull, const analysis::Uniformity* shapes = nullptr)
+      : module_(module), count_(lanes), inFull_(inFull), shapes_(shapes), pushed(lanes) {}
+
+  /// Runs a function; returns what its parameters are at the end.
+  std::vector<Lanes> run(ir::FunctionId id, std::vector<Lanes> arguments) {
+    Lanes result;
+    return call(id, std::move(arguments), result);
+  }
+
+ private:
+  enum class Flow : std::uint8_t { Next, Break, Continue, Return };
+  struct Frame {
+    ir::FunctionId id;
+    const ir::Function& function;
+    std::vector<Lanes> variables;
+    Lanes result;
+  };
+
+  std::vector<Lanes> call(ir::FunctionId id, std::vector<Lanes> arguments, Lanes& result);
+  Flow block(Frame& frame, const ir::Block& statements);
+  Flow statement(Frame& frame, const ir::Stmt& stmt);
+  Flow loop(Frame& frame, const ir::Loop& loop);
+  Flow choice(Frame& frame, const ir::Switch& choice);
+  void assign(Frame& frame, const ir::Expr& place, const Lanes& value);
+  std::int32_t* scalars(Frame& frame, const ir::Expr& place, std::size_t lane, std::vector<std::size_t>& swizzle);
+  Lanes unassigned(ir::FunctionId id, ir::VarId var) const;
+  void check(const Frame& frame, ir::VarId var) const;
+  void tick() {
+    if (++steps_ > 5000000) throw std::runtime_error("it does not end");
+  }
+
+  Lanes of(Frame& frame, const ir::Expr& expr);
+  Lanes logical(Frame& frame, const ir::Binary& n);
+  bool uniform(Frame& frame, const ir::Expr& expr);
+  std::size_t size(ir::Type type) const;
+  template <class Fn>
+  Lanes each(Fn&& fn) const {
+    Lanes lanes;
+    for (std::size_t i = 0; i < count_; ++i) lanes.push_back(fn(i));
+    return lanes;
+  }
+
+  const ir::Module& module_;
+  std::size_t count_;
+  bool inFull_;
+  const analysis::Uniformity* shapes_;
+  int steps_ = 0;
+
+ public:
+  std::vector<Value> pushed;   ///< by each lane
+  std::int32_t firstIndex = 0;   ///< of lane 0
+};
+
+}  // namespace skc

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/predicate.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ranges>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/uniformity.hpp"
+#include "analysis/validate_predicated.hpp"
+#include "ir/print.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+#include "transforms/blend_cost.hpp"
+#include "transforms/hoist_calls.hpp"
+#include "transforms/predicate_function.hpp"
+
+namespace skc {
+
+using namespace ir;
+
+namespace {
+
+/// Whether a statement must not run, or not on and on, in lanes that do not want it.
+bool wantsMask(const analysis::Uniformity& uniformity, FunctionId id, const Stmt& stmt) {
+  if (std::holds_alternative<Push>(stmt.node) || std::holds_alternative<Scatter>(stmt.node)) return true;
+  return std::holds_alternative<Loop>(stmt.node) && uniformity.diverges(id, stmt);
+}
+
+/// Whether lanes that do not want it can make a function run a branch that takes long.
+bool gainsByMask(const analysis::Uniformity& uniformity, BlendCost& cost, FunctionId id, const Stmt& stmt) {
+  const bool isBranch = std::holds_alternative<If>(stmt.node) || std::holds_alternative<Switch>(stmt.node);
+  return isBranch && uniformity.diverges(id, stmt) && !cost.isShort({&stmt, 1});
+}
+
+template <class Fn>
+bool anyStmt(const Block& block, Fn&& fn) {
+  bool found = false;
+  walkStmts(block, [&](const Stmt& stmt) { found = found || fn(stmt); });
+  return found;
+}
+
+/// The functions that take a mask. `functions` has callees before their callers.
+std::set<FunctionId> maskedFunctions(const Module& module, const Kernel& kernel,
+                                     const analysis::Uniformity& uniformity, BlendCost& cost,
+                                     const std::vector<FunctionId>& functions) {
+  std::set<FunctionId> wanting, masked;
+  bool entryWants = false;
+  for (const FunctionId id : functions) {
+    const Function& function = module.functions[id];
+    const bool must = anyStmt(function.body, [&](const Stmt& stmt) { return wantsMask(uniformity, id, stmt); });
+    entryWants = entryWants || must;
+    const bool gains = anyStmt(
+        function.body, [&](const Stmt& stmt) { return gainsByMask(uniformity, cost, id, stmt); });
+    const bool callsWanting = std::ranges::any_of(
+        callees(function), [&](FunctionId callee) { return wanting.contains(callee); });
+    if (must || gains || callsWanting) wanting.insert(id);
+  }
+  if (entryWants) masked.insert(kernel.entry);
+  for (const FunctionId id : functions | std::views::reverse) {
+    if (id != kernel.entry && wanting.contains(id) && uniformity.isCalledDivergently(id)) masked.insert(id);
+    if (!masked.contains(id)) continue;
+    for (const FunctionId callee : callees(module.functions[id])) {
+      if (wanting.contains(callee)) masked.insert(callee);
+    }
+  }
+  return masked;
+}
+
+/// A violation is a bug of ours: shows the module.
+void validateOrAbort([[maybe_unused]] const Module& module) {
+#ifndef NDEBUG
+  const std::string violation = analysis::validatePredicated(module);
+  if (violation.empty()) return;
+  std::fprintf(stderr, "skc: internal error: invalid IR after predicate: %s\n\n%s", violation.c_str(),
+               print(module).c_str());
+  std::abort();
+#endif
+}
+
+}  // namespace
+
+void predicate(Module& module) {
+  std::set<FunctionId> isLong = longFunctions(module);
+  for (const Kernel& kernel : module.kernels) {
+    const std::vector<FunctionId> functions = functionsOf(module, kernel);
+    for (const FunctionId id : functions) hoistCalls(module.functions[id], isLong);
+    const analysis::Uniformity uniformity(module, kernel);
+    BlendCost cost(module);
+    const PredicateContext context{module, uniformity,
+                                   maskedFunctions(module, kernel, uniformity, cost, functions), isLong};
+    std::vector<Function> results;   // the analysis knows the statements by their addresses
+    for (const FunctionId id : functions) results.push_back(predicated(context, cost, id));
+    for (std::size_t i = 0; i < functions.size(); ++i) module.functions[functions[i]] = std::move(results[i]);
+  }
+  validateOrAbort(module);
+}
+
+std::optional<VarId> entryMask(const Module& module, const Kernel& kernel) {
+  const auto count = static_cast<VarId>(kernel.params.size());
+  return module.functions[kernel.entry].parameterCount > count ? std::optional(count) : std::nullopt;
+}
+
+}  // namespace skc
