@@ -3,8 +3,16 @@
 // Compiling in memory: the same as from files, as often as one likes.
 #include "driver/compile.hpp"
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 
+using skc::driver::compile;
 using skc::driver::compileText;
 using skc::driver::Emit;
 using skc::driver::Options;
@@ -30,6 +38,33 @@ TEST_CASE("a text compiles without a file") {
   CHECK(contains(compileText(options, "twice.sk", program).output, "#version 330 core"));
   options.emit = Emit::Ast;
   CHECK(contains(compileText(options, "twice.sk", program).output, "FunctionDecl"));
+  for (const Emit native : {Emit::Llvm, Emit::Assembly}) {
+    options.emit = native;
+    CHECK(contains(compileText(options, "twice.sk", program).output, "_twice"));
+  }
+}
+
+TEST_CASE("files are written for the targets that are asked for") {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("skc_compile_test." + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "twice.sk") << program;
+  Options options;
+  options.outputDirectory = (folder / "all").string();
+  options.depfile = (folder / "twice.d").string();
+  CHECK(compile(options, (folder / "twice.sk").string()) == 0);
+  options.outputDirectory = (folder / "drawn").string();
+  options.depfile.clear();
+  options.nativeTarget = false;
+  CHECK(compile(options, (folder / "twice.sk").string()) == 0);
+  for (const char* extension : {".hpp", ".cpp", ".o"}) {
+    const std::string name = std::string("twice.sk") + extension;
+    CHECK(fs::exists(folder / "all" / name));
+    CHECK(fs::exists(folder / "drawn" / name) == (extension != std::string(".o")));
+    std::ifstream rule(folder / "twice.d");
+    CHECK(contains(std::string(std::istreambuf_iterator<char>(rule), {}), "all/" + name));
+  }
+  fs::remove_all(folder);
 }
 
 TEST_CASE("mistakes come back as messages, with the name that was given") {

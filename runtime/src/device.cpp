@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cstdlib>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -106,18 +107,18 @@ DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, co
 }
 
 /// A device with the choices of a file and with a trace, if they are named.
-std::unique_ptr<DeviceState> configured(std::unique_ptr<DeviceState> state, const std::string& file) {
+detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const std::string& file) {
   const std::string name = chosen(file, "SK_CONFIG");
   if (!name.empty()) state->configuration = Configuration(name);
   const std::string trace = chosen({}, "SK_TRACE");
   if (!trace.empty()) state->startTrace(trace);
-  return state;
+  return detail::DeviceOwner(state.release());
 }
 
 constexpr std::array<std::pair<std::string_view, RealType>, 3> nativeDevices = {
     {{"native", RealType::Float}, {"reference", RealType::Double}, {"reference:quad", RealType::Quad}}};
 
-std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
+detail::DeviceOwner open(const DeviceOptions& options) {
   const std::string device = chosen(options.device, "SK_DEVICE");
   for (const auto& [name, real] : nativeDevices) {
     if (device == name) return configured(std::make_unique<NativeDevice>(real), options.configuration);
@@ -132,10 +133,12 @@ std::unique_ptr<DeviceState> open(const DeviceOptions& options) {
 
 }  // namespace
 
+void detail::DeviceDeleter::operator()(DeviceState* state) const noexcept { delete state; }
+
 Device::Device() : Device(DeviceOptions{}) {}
 Device::Device(std::string_view device) : Device(DeviceOptions{.device = std::string(device)}) {}
 Device::Device(const DeviceOptions& options) : state_(open(options)) {}
-Device::Device(std::unique_ptr<DeviceState> state) : state_(std::move(state)) {}
+Device::Device(detail::DeviceOwner state) : state_(std::move(state)) {}
 Device::~Device() = default;
 Device::Device(Device&& other) noexcept = default;
 Device& Device::operator=(Device&& other) noexcept = default;

@@ -33,6 +33,7 @@ struct Settings {
   double sampleMilliseconds = 30.0;
   std::filesystem::path skc = SK_BENCH_SKC;
   std::filesystem::path sources = SK_BENCH_SOURCES;
+  std::vector<std::string> compiler = {SK_BENCH_CXX, "-std=c++20", "-O2", "-I" SK_BENCH_INCLUDE};
   std::filesystem::path json;
   bool check = false;
 };
@@ -80,6 +81,11 @@ void compileTimes(const Settings& settings, bench::Report& report) {
     report.add(
         {fmt::format("skc {}.sk", name), "ms", bench::compileTime(settings.skc, file, folder, 20), 60.0, {}});
   }
+  report.add({"from a kernel and a sum to objects: skc, and C++",
+              "ms",
+              bench::editTime(settings.skc, settings.compiler, SK_BENCH_SMALL, folder, 10),
+              1000.0,
+              {}});
   std::filesystem::remove_all(folder);
 }
 

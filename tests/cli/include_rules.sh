@@ -15,10 +15,10 @@ compiler/analysis     support ir analysis
 compiler/split        support ir split
 compiler/transforms   support ir analysis transforms split
 compiler/native       support ir analysis transforms emit native llvm sk/native/code.hpp sk/native/table.hpp
+compiler/native/library support ir transforms native
 compiler/emit         support ir transforms native/native.hpp emit assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/frontend     support ir frontend clang llvm
-compiler/native/library support ir transforms
-compiler/driver       support ir split transforms native/native.hpp emit frontend driver assemble sk/program.hpp
+compiler/driver       support ir split transforms native/native.hpp native/library/link_library.hpp emit frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
 runtime/src           sk assemble gl native
 runtime/tools         sk native
@@ -32,9 +32,7 @@ tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 tests/fuzz            sk ir emit driver
 '
-compiler/transforms   support ir analysis transforms split
-compiler/native       support ir analysis transforms emit native llvm sk/native/code.hpp sk/native/table.hpp
-compiler/emit         support ir transforms native/native.hpp emit assemble sk/program.hpp sk/scalar_bytes.hpp
+guarded='support|ir|analysis|split|transforms|native|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)

@@ -8,7 +8,7 @@ set -euo pipefail
 skc=$(realpath "$1")
 source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
 
-# vectorised INSTRUCTION KERNEL: both levels have this instruction on whole vectors.
+# vectorised PATTERN KERNEL: both levels have such an instruction on whole vectors.
 vectorised() {
   local instruction=$1 level registers
   printf '%s\n' "$2" >kernel.sk
@@ -30,7 +30,7 @@ vectorised vpaddd 'struct Pair { float a; int b; };
 kernel void pairs(Pair p<>, out Pair q<>) { q.a = max(p.a, 0.0f); q.b = p.b + indexof(p).x; }'
 vectorised vaddps '[[accumulate(tree)]] reduce void sum(float x<>, reduce float total<> = 0) { total += x; }'
 vectorised vmulps 'reduce void dots(float x<>, float y<>, reduce float total<>) { total += x * y; }'
-vectorised vmaxps 'reduce void most(float x<>, reduce float m<>) { m = max(m, x); }'
+vectorised 'v(max|blendv|blendm)ps' 'reduce void most(float x<>, reduce float m<>) { m = max(m, x); }'
 
 # Loops whose trip counts differ, and gathers at computed indices.
 vectorised vmulps 'kernel void escape(float2 c<>, int most, out int steps<>) {

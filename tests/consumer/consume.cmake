@@ -86,6 +86,12 @@ step("configuring" ${CMAKE_COMMAND} -G "${GENERATOR}" -S "${WORK}/project" -B "$
 
 built("anew" RUNS scale.sk solver/scale.sk)
 prints("3 4 5 6 ")
+foreach(kind static object shared)
+  step("running native code of a ${kind} library" ${CMAKE_COMMAND} -E env SK_DEVICE=native "${WORK}/build/uses_library_${kind}")
+  if(NOT output STREQUAL "1.5")
+    message(FATAL_ERROR "the ${kind} library prints '${output}', not '1.5'")
+  endif()
+endforeach()
 built("again without a change")
 edit(common.sk "factor = 2.0f" "factor = 3.0f")
 built("after a change of an included file" RUNS scale.sk solver/scale.sk)

@@ -5,12 +5,12 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sk/arithmetic.hpp"
+#include "sk/owner.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
 #include "sk/table.hpp"
@@ -19,6 +19,15 @@
 namespace sk {
 
 class DeviceState;  // the runtime's own
+
+namespace detail {
+
+struct DeviceDeleter {
+  void operator()(DeviceState* state) const noexcept;
+};
+using DeviceOwner = Owner<DeviceState, DeviceDeleter>;
+
+}  // namespace detail
 
 struct DeviceOptions {
   /// Which device: "native" (the kernels' own C++ on the CPU, no GL), "reference" (the same, computing in double
@@ -155,10 +164,10 @@ class Device {
   void release();
 
  private:
-  explicit Device(std::unique_ptr<DeviceState> state);
+  explicit Device(detail::DeviceOwner state);
   DeviceState& state() const;
 
-  std::unique_ptr<DeviceState> state_;
+  detail::DeviceOwner state_;
 };
 
 }  // namespace sk

@@ -5,9 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <utility>
 #include <vector>
+
+#include "sk/owner.hpp"
 
 namespace sk {
 
@@ -18,7 +19,7 @@ namespace detail {
 struct TransferDeleter {
   void operator()(TransferState* state) const noexcept;
 };
-using TransferOwner = std::unique_ptr<TransferState, TransferDeleter>;
+using TransferOwner = Owner<TransferState, TransferDeleter>;
 
 bool isReady(const TransferOwner& transfer);
 void wait(const TransferOwner& transfer);
@@ -37,7 +38,7 @@ class Future {
   Future(detail::TransferOwner transfer, std::size_t size) : transfer_(std::move(transfer)), size_(size) {}
 
   /// Whether there are elements to get.
-  bool valid() const noexcept { return transfer_ != nullptr; }
+  bool valid() const noexcept { return static_cast<bool>(transfer_); }
   /// Whether get() would return without waiting for the device. This and what follows throw sk::Error where the future is
   /// not valid, or the driver has failed.
   bool ready() const { return detail::isReady(transfer_); }

@@ -7,13 +7,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "sk/future.hpp"
+#include "sk/owner.hpp"
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
 #include "sk/types.hpp"
@@ -60,7 +60,7 @@ namespace detail {
 struct StreamDeleter {
   void operator()(StreamState* state) const noexcept;
 };
-using StreamOwner = std::unique_ptr<StreamState, StreamDeleter>;
+using StreamOwner = Owner<StreamState, StreamDeleter>;
 
 StreamRegion wholeRegion(StreamState* state);
 StreamRegion partOf(const StreamRegion& region, const Index& begin, const Index& end);
