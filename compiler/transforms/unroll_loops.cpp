@@ -35,34 +35,6 @@ class Followers {
     walkStmts(loop.body, [&](const Stmt& stmt) { follow(stmt, countsInBody); });
   }
 
-  /// Whether the loop has an offset of a neighbour or an index of an array that follows from them.
-  bool areIndices(const Block& body) const {
-    bool found = false;
-    walkExprs(body, [&](const Expr& expr) { found = found || isIndexed(expr); });
-    walkStmts(body, [&](const Stmt& stmt) {
-      const auto* n = std::get_if<Scatter>(&stmt.node);
-      found = found || (n != nullptr && mentions(*n->index));
-    });
-    return found;
-  }
-
- private:
-  bool isIndexed(const Expr& expr) const {
-    if (const auto* n = std::get_if<NeighborRead>(&expr.node)) return mentions(*n->offset);
-    if (const auto* n = std::get_if<GatherRead>(&expr.node)) return mentions(*n->index);
-    const auto* n = std::get_if<Index>(&expr.node);
-    return n != nullptr && mentions(*n->index);
-  }
-
-  void follow(const Stmt& stmt, bool always) {
-    if (const auto* n = std::get_if<Declare>(&stmt.node)) {
-      if (always || (n->init && mentions(*n->init))) variables_.push_back(n->var);
-    }
-    if (const auto* n = std::get_if<Assign>(&stmt.node)) {
-      if (always || mentions(*n->value)) variables_.push_back(rootOf(*n->place));
-    }
-  }
-
   bool mentions(const Expr& expr) const {
     bool found = false;
     walkExprs(expr, [&](const Expr& inner) {
@@ -72,8 +44,31 @@ class Followers {
     return found;
   }
 
+ private:
+  void follow(const Stmt& stmt, bool always) {
+    if (const auto* n = std::get_if<Declare>(&stmt.node)) {
+      if (always || (n->init && mentions(*n->init))) variables_.push_back(n->var);
+    }
+    if (const auto* n = std::get_if<Assign>(&stmt.node)) {
+      if (always || mentions(*n->value)) variables_.push_back(rootOf(*n->place));
+    }
+  }
+
   std::vector<VarId> variables_;
 };
+
+/// fn(index) for each offset of a neighbour, and each index of a gather, an array, a vector or a scatter output.
+template <class Fn>
+void forEachIndex(const Block& body, Fn&& fn) {
+  walkExprs(body, [&](const Expr& expr) {
+    if (const auto* n = std::get_if<NeighborRead>(&expr.node)) fn(*n->offset);
+    if (const auto* n = std::get_if<GatherRead>(&expr.node)) fn(*n->index);
+    if (const auto* n = std::get_if<Index>(&expr.node)) fn(*n->index);
+  });
+  walkStmts(body, [&](const Stmt& stmt) {
+    if (const auto* n = std::get_if<Scatter>(&stmt.node)) fn(*n->index);
+  });
+}
 
 std::int64_t expressionsIn(const Block& statements) {
   std::int64_t count = 0;
@@ -107,8 +102,7 @@ class Unroller {
     bool asks = false;
     walkStmts(statements, [&](const Stmt& stmt) {
       const auto* loop = std::get_if<Loop>(&stmt.node);
-      asks =
-          asks || (loop != nullptr && !roundsIn(module_, *loop) && Followers(*loop).areIndices(loop->body));
+      asks = asks || (loop != nullptr && !roundsIn(module_, *loop) && makesIndices(*loop));
     });
     return asks;
   }
@@ -118,7 +112,9 @@ class Unroller {
     for (Stmt& stmt : statements) {
       const auto* loop = std::get_if<Loop>(&stmt.node);
       if (loop != nullptr && isWanted(*loop) && unrollNest(*loop, stmt.loc, result)) continue;
+      if (loop != nullptr) around_.emplace_back(*loop);
       forEachBlock(stmt, [&](Block& inner) { block(inner); });
+      if (loop != nullptr) around_.pop_back();
       result.push_back(std::move(stmt));
     }
     statements = std::move(result);
@@ -147,9 +143,21 @@ class Unroller {
   }
 
   bool isWanted(const Loop& loop) const {
-    if (Followers(loop).areIndices(loop.body)) return true;
+    if (makesIndices(loop)) return true;
     const std::optional<std::int64_t> rounds = roundsOf(module_, loop);
     return rounds && *rounds * expressionsIn(loop.body) <= tinyExpressions && *rounds <= tinyExpressions;
+  }
+
+  /// Whether indices follow from the loop's counter, and from none of a loop around it that stays.
+  bool makesIndices(const Loop& loop) const {
+    const Followers followers(loop);
+    bool makes = false;
+    forEachIndex(loop.body, [&](const Expr& index) {
+      makes = makes || (followers.mentions(index) && std::ranges::none_of(around_, [&](const Followers& one) {
+                          return one.mentions(index);
+                        }));
+    });
+    return makes;
   }
 
   // ---- reasons ----------------------------------------------------------------------------------
@@ -276,6 +284,7 @@ class Unroller {
   bool hasUnrolled_ = false;
   std::int64_t rounds_ = 0;  ///< of the loop that is being unrolled, and of those in it
   std::vector<LoopNote> inner_;
+  std::vector<Followers> around_;  ///< of the loops that stay around the current block
 };
 
 }  // namespace
