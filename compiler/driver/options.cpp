@@ -116,7 +116,8 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
   app.add_option("-D", options.definitions, "Define a macro")
       ->type_name("NAME[=VALUE]")
       ->allow_extra_args(false);
-  app.add_option("-W", options.warnings, "Warnings, as Clang names them; -Werror makes them errors")
+  app.add_option("-W", options.warnings, "Warnings, as Clang names them, and 'performance': what keeps kernels from full speed; -Werror makes "
+                 "them errors")
       ->type_name("NAME")
       ->allow_extra_args(false);
   app.add_option("--depfile", options.depfile, "Write the files that the stubs depend on, as a Makefile rule")
