@@ -91,6 +91,12 @@ bool isNamedWord(const Token& token, std::initializer_list<llvm::StringRef> word
   return false;
 }
 
+std::string repeated(std::string_view text, int times) {
+  std::string result;
+  for (int i = 0; i < times; ++i) result += text;
+  return result;
+}
+
 }  // namespace
 
 std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind kind) {
@@ -312,12 +318,6 @@ std::vector<Mend> ParameterEditor::removedBrackets(const Parts& parts) {
 std::vector<Mend> ParameterEditor::asAccumulator(const Parts& parts) {
   if (!parts.isElement || parts.rank > 0) return {};
   return {Mend::replace(locOf(parts.qualifier), "reduce")};
-}
-
-static std::string repeated(std::string_view text, int times) {
-  std::string result;
-  for (int i = 0; i < times; ++i) result += text;
-  return result;
 }
 
 /// The table of DESIGN's parameters: qualifier, `<>` and brackets decide together.
