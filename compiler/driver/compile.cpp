@@ -16,6 +16,7 @@
 #include "assemble/assemble.hpp"
 #include "driver/glsl_listing.hpp"
 #include "driver/native_library.hpp"
+#include "driver/performance_warnings.hpp"
 #include "driver/plan_listing.hpp"
 #include "emit/program.hpp"
 #include "emit/stub.hpp"
@@ -199,6 +200,9 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   checkOutputs(*module, frontend.diagnostics());   // on what the user wrote, before anything is rewritten
   if (!frontend.diagnostics().hasErrors()) {
     runTransforms(*module, frontend.diagnostics(), transformOptions(options, job.output));
+  }
+  if (!frontend.diagnostics().hasErrors() && wantsPerformanceWarnings(options.warnings)) {
+    warnOfPerformance(*module, frontend.diagnostics());
   }
   if (frontend.diagnostics().hasErrors()) return std::nullopt;
   printPredicated(job, *module);

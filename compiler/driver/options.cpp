@@ -118,7 +118,8 @@ void addSourceOptions(CLI::App& app, Words& words) {
       ->type_name("NAME[=VALUE]")
       ->allow_extra_args(false);
   app.add_option("-W", words.options.warnings,
-                 "Enable or disable a warning by Clang's name for it; -Werror turns warnings into errors")
+                 "Enable or disable a warning by Clang's name for it, or 'performance': what keeps kernels from full speed; "
+                 "-Werror turns warnings into errors")
       ->type_name("NAME")
       ->allow_extra_args(false);
   app.add_option("--color", words.color, "Colour messages: auto, always or never")

@@ -35,6 +35,7 @@ class PlanPrinter {
       text_ += fmt::format("\n{} {}{}: ", kernel.reduction ? "reduce" : "kernel", qualifier(kernel.scope),
                            kernel.name);
       kernel.reduction ? printReduce() : printKernel(kernel);
+      for (const LoopNote& loop : kernel.loops) printLoop(loop);
     }
     return std::move(text_);
   }
@@ -105,6 +106,13 @@ class PlanPrinter {
                                   ir::print(module_, bundle.type), join(names, ", ")),
                       100, 4) +
              "\n";
+  }
+
+  void printLoop(const LoopNote& loop) {
+    const std::string rounds = loop.rounds ? counted(static_cast<std::size_t>(*loop.rounds), "round") : "";
+    const std::string what =
+        loop.whyNot.empty() ? rounds + ", unrolled" : "not unrolled, because " + loop.whyNot;
+    text_ += wrapLine(fmt::format("  loop in line {}: {}", loop.loc.line, what), 100, 4) + "\n";
   }
 
   // ---- reduces ----------------------------------------------------------------------------------

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <optional>
 
 #include "ir/counted_loop.hpp"
 #include "ir/evaluate.hpp"
@@ -14,23 +13,6 @@ namespace skc::emit {
 namespace {
 
 using namespace ir;
-
-/// The largest |component| of an offset, if all are known.
-std::optional<std::int32_t> reachOf(const Module& module, const Expr& offset) {
-  if (const auto* n = std::get_if<Construct>(&offset.node)) {
-    std::int32_t largest = 0;
-    for (const ExprPtr& arg : n->args) {
-      const std::optional<std::int32_t> one = reachOf(module, *arg);
-      if (!one) return std::nullopt;
-      largest = std::max(largest, *one);
-    }
-    return largest;
-  }
-  const std::optional<std::uint32_t> bits = evaluate(module, offset, Constants::LookThrough);
-  if (!bits) return std::nullopt;
-  const auto value = static_cast<std::int32_t>(*bits);
-  return value == INT32_MIN ? std::nullopt : std::optional(std::abs(value));
-}
 
 class Collector {
  public:
@@ -89,6 +71,22 @@ class Collector {
 };
 
 }  // namespace
+
+std::optional<std::int32_t> reachOf(const Module& module, const Expr& offset) {
+  if (const auto* n = std::get_if<Construct>(&offset.node)) {
+    std::int32_t largest = 0;
+    for (const ExprPtr& arg : n->args) {
+      const std::optional<std::int32_t> one = reachOf(module, *arg);
+      if (!one) return std::nullopt;
+      largest = std::max(largest, *one);
+    }
+    return largest;
+  }
+  const std::optional<std::uint32_t> bits = evaluate(module, offset, Constants::LookThrough);
+  if (!bits) return std::nullopt;
+  const auto value = static_cast<std::int32_t>(*bits);
+  return value == INT32_MIN ? std::nullopt : std::optional(std::abs(value));
+}
 
 StreamUses streamUses(const Module& module, const Kernel& kernel) { return Collector(module, kernel).run(); }
 

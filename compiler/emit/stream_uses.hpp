@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "ir/ir.hpp"
@@ -27,6 +28,9 @@ struct StreamUses {
 };
 
 StreamUses streamUses(const ir::Module& module, const ir::Kernel& kernel);
+
+/// The largest |component| of a neighbour's offset, if all are known.
+std::optional<std::int32_t> reachOf(const ir::Module& module, const ir::Expr& offset);
 
 /// The parameter whose shape is the domain's: the first output; the number of parameters where there is none.
 std::uint32_t domainParam(const ir::Kernel& kernel);

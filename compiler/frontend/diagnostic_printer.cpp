@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "frontend/diagnostic_printer.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+
 #include <clang/AST/DeclarationName.h>
 #include <clang/AST/Type.h>
+#include <clang/Basic/DiagnosticLex.h>
+#include <clang/Basic/DiagnosticParse.h>
 #include <clang/Basic/DiagnosticSema.h>
+#include <clang/Lex/Lexer.h>
 
 #include "frontend/foreign_names.hpp"
 #include "support/diagnostics.hpp"
@@ -28,12 +35,63 @@ bool isBoolOfVector(const clang::Diagnostic& diagnostic) {
          to->getKind() == clang::BuiltinType::Bool;
 }
 
-/// The name that nobody declared; "" in any other message.
-std::string unknownName(const clang::Diagnostic& diagnostic) {
-  if (diagnostic.getID() != clang::diag::err_undeclared_var_use) return {};
-  if (diagnostic.getArgKind(0) == DiagnosticsEngine::ak_identifierinfo)
-    return diagnostic.getArgIdentifier(0)->getName().str();
-  return clang::DeclarationName::getFromOpaqueInteger(diagnostic.getRawArg(0)).getAsString();
+/// The text of an argument that is a name.
+std::string nameIn(const clang::Diagnostic& diagnostic, unsigned argument) {
+  switch (diagnostic.getArgKind(argument)) {
+    case DiagnosticsEngine::ak_identifierinfo: return diagnostic.getArgIdentifier(argument)->getName().str();
+    case DiagnosticsEngine::ak_declarationname:
+      return clang::DeclarationName::getFromOpaqueInteger(diagnostic.getRawArg(argument)).getAsString();
+    case DiagnosticsEngine::ak_std_string: return diagnostic.getArgStdStr(argument);
+    default: return {};
+  }
+}
+
+/// What stands in for a name that nobody declared.
+std::string adviceOnName(const clang::Diagnostic& diagnostic) {
+  const std::string name = nameIn(diagnostic, 0);
+  const std::string_view advice = insteadOf(name);
+  return advice.empty() ? std::string() : format(Diag::ForeignName, {name, advice});
+}
+
+/// A header of C++'s library, which has no suffix, or of C's.
+bool isLibraryHeader(std::string_view file) {
+  constexpr std::string_view ofC[] = {"math.h",   "stdio.h",  "stdint.h", "stdlib.h", "string.h",
+                                      "stddef.h", "assert.h", "float.h",  "limits.h", "stdbool.h"};
+  return file.find_first_of("./") == std::string_view::npos || std::ranges::find(ofC, file) != std::end(ofC);
+}
+
+std::string adviceOnHeader(const clang::Diagnostic& diagnostic) {
+  const std::string file = nameIn(diagnostic, 0);
+  return isLibraryHeader(file) ? format(Diag::LibraryHeader, {file}) : std::string();
+}
+
+/// An index of what has none: `x[0]` where x is an element.
+std::string adviceOnIndex(const clang::Diagnostic& diagnostic) {
+  if (diagnostic.getNumRanges() == 0) return {};
+  const llvm::StringRef base = clang::Lexer::getSourceText(
+      diagnostic.getRange(0), diagnostic.getSourceManager(), clang::LangOptions());
+  const llvm::StringRef name =
+      base.take_while([](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });
+  return name.empty() ? std::string() : format(Diag::IndexedValue, {base.str(), name.str()});
+}
+
+std::string adviceOnCall(const clang::Diagnostic& diagnostic) {
+  const std::string name = nameIn(diagnostic, 0);
+  if (name == "neighbor") return format(Diag::GatherArguments, {name, "an offset in each"});
+  if (name == "sample") return format(Diag::GatherArguments, {name, "a position with a component for each"});
+  return {};
+}
+
+/// Our words for a message of Clang's; "" where its own will do.
+std::string adviceOn(const clang::Diagnostic& diagnostic) {
+  switch (diagnostic.getID()) {
+    case clang::diag::err_undeclared_var_use:
+    case clang::diag::err_unknown_typename: return adviceOnName(diagnostic);
+    case clang::diag::err_pp_file_not_found: return adviceOnHeader(diagnostic);
+    case clang::diag::err_typecheck_subscript_value: return adviceOnIndex(diagnostic);
+    case clang::diag::err_ovl_no_viable_function_in_call: return adviceOnCall(diagnostic);
+    default: return {};
+  }
 }
 
 }  // namespace
@@ -43,10 +101,10 @@ void DiagnosticPrinter::HandleDiagnostic(DiagnosticsEngine::Level level,
   if (level != DiagnosticsEngine::Note) isDropping_ = isBoolOfVector(diagnostic);
   if (isDropping_) return;
   if (level == DiagnosticsEngine::Warning && isNarrowing(diagnostic)) level = DiagnosticsEngine::Error;
-  const std::string name = unknownName(diagnostic);
-  if (const std::string_view advice = insteadOf(name); !advice.empty()) {
-    const std::string text = format(Diag::ForeignName, {name, advice});
-    return TextDiagnosticPrinter::HandleDiagnostic(level, clang::Diagnostic(diagnostic.getDiags(), text));
+  const std::string advice = level == DiagnosticsEngine::Note ? "" : adviceOn(diagnostic);
+  if (!advice.empty()) {
+    isDropping_ = true;  // the candidates that Clang has seen are no help either
+    return TextDiagnosticPrinter::HandleDiagnostic(level, clang::Diagnostic(diagnostic.getDiags(), advice));
   }
   TextDiagnosticPrinter::HandleDiagnostic(level, diagnostic);
 }

@@ -52,7 +52,9 @@ std::vector<std::string> compilerArguments(const Options& options, const std::st
       "-ferror-limit", "20", "-fmessage-length=0"};
   for (const std::string& directory : options.includeDirectories) arguments.push_back("-I" + directory);
   for (const std::string& definition : options.definitions) arguments.push_back("-D" + definition);
-  for (const std::string& warning : options.warnings) arguments.push_back("-W" + warning);
+  for (const std::string& warning : options.warnings) {
+    if (!warning.ends_with("performance")) arguments.push_back("-W" + warning);  // the driver's own
+  }
   if (options.fixIts) arguments.push_back("-fdiagnostics-parseable-fixits");
   if (options.color) arguments.push_back("-fcolor-diagnostics");
   arguments.push_back(path);

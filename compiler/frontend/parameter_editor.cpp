@@ -27,6 +27,7 @@ struct ParameterEditor::Parts {
   int rank = 0;                    ///< pairs of empty brackets
   Token open, close;               ///< the first and the last bracket of either kind
   Tokens length;                   ///< `[9]`, brackets included, of a uniform array
+  int lengths = 0;                 ///< of an array of arrays, which is none, more than one
   Tokens value;                    ///< after `=`
   Token attribute;                 ///< the last word in [[...]]
   bool hasAttribute = false;
@@ -88,6 +89,12 @@ bool isNamedWord(const Token& token, std::initializer_list<llvm::StringRef> word
     if (isWord(token, word)) return true;
   }
   return false;
+}
+
+std::string repeated(std::string_view text, int times) {
+  std::string result;
+  for (int i = 0; i < times; ++i) result += text;
+  return result;
 }
 
 }  // namespace
@@ -263,6 +270,7 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
                             removal(parameter, at, tok::r_square));
         return false;
       }
+      ++parts.lengths;
       parts.length.push_back(bracket);
       for (int depth = 1; depth > 0 && at < parameter.size(); ++at) {
         if (parameter[at].is(tok::l_square)) ++depth;
@@ -325,6 +333,10 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   if (qualifier == "kernel") {
     diagnostics_.report(Diag::QualifierUnknown, locOf(parts.qualifier), {qualifier});
     return false;
+  }
+  if (parts.lengths > 1) {
+    const std::string brackets = repeated("[]", parts.lengths);
+    return fail(Diag::ArrayOfLengths, {name, std::to_string(parts.lengths), brackets});
   }
   if (!parts.length.empty() &&
       (parts.isElement || parts.rank > 0 || parts.hasAttribute || !qualifier.empty())) {

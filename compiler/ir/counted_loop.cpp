@@ -1,31 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "ir/counted_loop.hpp"
 
+#include <utility>
+
+#include "ir/assigned.hpp"
 #include "ir/build.hpp"
 #include "ir/evaluate.hpp"
-#include "ir/walk.hpp"
 
 namespace skc::ir {
 namespace {
 
-bool assigns(const Block& block, VarId var) {
-  bool found = false;
-  walkStmts(block, [&](const Stmt& stmt) {
-    if (const auto* n = std::get_if<Assign>(&stmt.node)) found = found || rootOf(*n->place) == var;
-    if (const auto* n = std::get_if<CallStmt>(&stmt.node)) {
-      for (const ExprPtr& arg : n->args)
-        walkExprs(*arg, [&](const Expr& expr) {
-          const auto* ref = std::get_if<VarRef>(&expr.node);
-          found = found || (ref != nullptr && ref->var == var);
-        });
-      if (n->result) found = found || rootOf(*n->result) == var;
-    }
-  });
-  return found;
-}
-
 /// The parts of a counted loop's head: `from; var op to; var stepOp by`.
 struct Head {
+  VarId counter;
   Type type;
   std::uint32_t from, to, by;
   BinaryOp op, stepOp;
@@ -46,7 +33,7 @@ std::optional<Head> headOf(const Module& module, const Loop& loop) {
   const auto to = evaluate(module, *test->rhs, Constants::LookThrough);
   const auto by = evaluate(module, *step->value, Constants::LookThrough);
   if (!from || !to || !by) return std::nullopt;
-  return Head{init->init->type, *from, *to, *by, test->op, *step->op};
+  return Head{init->var, init->init->type, *from, *to, *by, test->op, *step->op};
 }
 
 /// ceil(distance / step), 0 where there is nothing to go.
@@ -54,22 +41,9 @@ std::int64_t stepsOver(std::int64_t distance, std::int64_t step) {
   return distance <= 0 ? 0 : (distance + step - 1) / step;
 }
 
-}  // namespace
-
-bool isCounted(const Module& module, const Loop& loop) { return headOf(module, loop).has_value(); }
-
-std::optional<std::int64_t> roundsOf(const Module& module, const Loop& loop) {
-  const std::optional<Head> head = headOf(module, loop);
-  if (!head || !head->type.isScalar() || !head->type.isInteger()) return std::nullopt;
-  if (head->stepOp != BinaryOp::Add && head->stepOp != BinaryOp::Sub) return std::nullopt;
-  const auto integer = [&](std::uint32_t bits) {
-    return head->type.scalar == Scalar::Int ? std::int64_t{static_cast<std::int32_t>(bits)}
-                                            : std::int64_t{bits};
-  };
-  const std::int64_t signedBy = static_cast<std::int32_t>(head->by);
-  const std::int64_t by = head->stepOp == BinaryOp::Add ? signedBy : -signedBy;
-  const std::int64_t distance = integer(head->to) - integer(head->from);
-  switch (head->op) {
+/// The steps of `by` from 0 until `counter op distance` is false; none where it stays true.
+std::optional<std::int64_t> stepsTo(BinaryOp op, std::int64_t distance, std::int64_t by) {
+  switch (op) {
     case BinaryOp::Less: return by > 0 ? std::optional(stepsOver(distance, by)) : std::nullopt;
     case BinaryOp::LessEqual: return by > 0 ? std::optional(stepsOver(distance + 1, by)) : std::nullopt;
     case BinaryOp::Greater: return by < 0 ? std::optional(stepsOver(-distance, -by)) : std::nullopt;
@@ -79,6 +53,40 @@ std::optional<std::int64_t> roundsOf(const Module& module, const Loop& loop) {
                                                                  : std::nullopt;
     default: return std::nullopt;
   }
+}
+
+}  // namespace
+
+bool isCounted(const Module& module, const Loop& loop) { return headOf(module, loop).has_value(); }
+
+ExprPtr Rounds::value(std::int64_t round, Loc loc) const {
+  return makeExpr(type, Literal{static_cast<std::uint32_t>(first + round * step)}, loc);
+}
+
+std::optional<Rounds> roundsIn(const Module& module, const Loop& loop) {
+  const std::optional<Head> head = headOf(module, loop);
+  if (!head || !head->type.isScalar() || !head->type.isInteger()) return std::nullopt;
+  if (head->stepOp != BinaryOp::Add && head->stepOp != BinaryOp::Sub) return std::nullopt;
+  const bool isSigned = head->type.scalar == Scalar::Int;
+  const auto integer = [&](std::uint32_t bits) {
+    return isSigned ? std::int64_t{static_cast<std::int32_t>(bits)} : std::int64_t{bits};
+  };
+  const std::int64_t signedBy = static_cast<std::int32_t>(head->by);
+  const std::int64_t by = head->stepOp == BinaryOp::Add ? signedBy : -signedBy;
+  const std::int64_t from = integer(head->from);
+  const std::optional<std::int64_t> count = stepsTo(head->op, integer(head->to) - from, by);
+  if (!count) return std::nullopt;
+  // `for (uint i = 3; i >= 0; --i)` wraps around, and goes on.
+  const std::int64_t end = from + *count * by;
+  const auto [low, high] = isSigned ? std::pair{-(std::int64_t{1} << 31), (std::int64_t{1} << 31) - 1}
+                                    : std::pair{std::int64_t{0}, (std::int64_t{1} << 32) - 1};
+  if (end < low || end > high) return std::nullopt;
+  return Rounds{head->counter, head->type, from, by, *count};
+}
+
+std::optional<std::int64_t> roundsOf(const Module& module, const Loop& loop) {
+  const std::optional<Rounds> rounds = roundsIn(module, loop);
+  return rounds ? std::optional(rounds->count) : std::nullopt;
 }
 
 }  // namespace skc::ir

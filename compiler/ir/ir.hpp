@@ -346,6 +346,13 @@ struct Choices {
   std::uint8_t precision = 0, accumulate = 0, intrinsics = 0, tables = 0;
 };
 
+/// A loop that unroll-loops has looked at.
+struct LoopNote {
+  Loc loc;
+  std::optional<std::int64_t> rounds;  ///< where their number is known
+  std::string whyNot = {};  ///< it stays a loop; empty where it was unrolled
+};
+
 struct Kernel {
   std::string name;  ///< without namespaces
   std::vector<std::string> scope;  ///< enclosing namespaces, outermost first
@@ -361,6 +368,7 @@ struct Kernel {
   std::optional<PassOf> pass;
   Forms forms;
   Choices choices;
+  std::vector<LoopNote> loops = {};  ///< those with neighbours or array elements at their counters
   Loc loc;
 };
 

@@ -20,4 +20,9 @@ namespace skc {
 
 void foldConstants(ir::Module& module, Diagnostics& diagnostics);
 
+/// The same for a function into which another transform has put literals, but for arithmetic on floats, whose results stay
+/// those of the device, and of the forms that compute in doubles. Locals that hold a known integer all the time, vectors of
+/// integers, and elements of constant arrays are computed as well.
+void foldWholeNumbers(const ir::Module& module, ir::Function& function);
+
 }  // namespace skc

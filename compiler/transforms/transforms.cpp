@@ -14,6 +14,7 @@
 #include "transforms/bound_pushes.hpp"
 #include "transforms/compensate_sums.hpp"
 #include "transforms/derive_combine.hpp"
+#include "transforms/find_neighbors.hpp"
 #include "transforms/fold_constants.hpp"
 #include "transforms/forward_continues.hpp"
 #include "transforms/guard_streams.hpp"
@@ -22,6 +23,7 @@
 #include "transforms/specialize_gathers.hpp"
 #include "transforms/sum_exactly.hpp"
 #include "transforms/tabulate.hpp"
+#include "transforms/unroll_loops.hpp"
 #include "transforms/widen_floats.hpp"
 
 namespace skc {
@@ -52,6 +54,9 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // Tables at any time before forms for other precisions, which do without.
 // Folding before deriving, so that what a branch on a literal switches off does not hide the pattern
 // of a fold.
+// Unrolling after folding, which makes constants of bounds; and before all that look at what a kernel does, because a round
+// whose number is known has decided branches, constant offsets and components with names. It folds what it creates.
+// Finding neighbours after unrolling, which makes constants of their offsets; and before whatever asks how streams are used.
 // Folding before guarding, too: a branch that is gone needs no stream.
 // Bounding the pushes after folding, which makes loops of a known number of rounds and takes out what
 // never runs.
@@ -67,6 +72,8 @@ constexpr Transform transforms[] = {
     {"specialize-gathers", plain<specializeGathers>},
     {"tabulate", plain<tabulate>},
     {"fold-constants", plain<foldConstants>},
+    {"unroll-loops", plain<unrollLoops>},
+    {"find-neighbors", plain<findNeighbors>},
     {"guard-streams", plain<guardStreams>},
     {"bound-pushes", plain<boundPushes>},
     {"derive-combine", plain<deriveCombine>},

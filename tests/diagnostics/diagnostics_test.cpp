@@ -5,6 +5,8 @@
 //   // expected-error {{text}}        on this line, containing the text
 //   // expected-warning@-1 {{text}}   on the line before; @+1 on the next; @* on any line or none
 //
+// A first line `// options: -W...` gives skc these.
+//
 // Every expectation must be met, and no error or warning may come that is not expected.
 #include <array>
 #include <cstdio>
@@ -12,6 +14,7 @@
 #include <fstream>
 #include <regex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -50,9 +53,18 @@ struct Outcome {
   std::vector<Message> messages;
 };
 
+std::string optionsOf(const fs::path& file) {
+  constexpr std::string_view start = "// options: ";
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line.starts_with(start) ? line.substr(start.size()) : "";
+}
+
 Outcome compile(const fs::path& file) {
   static const std::regex pattern(R"re(^(?:[^:]+:(\d+):\d+: )?(?:fatal )?(error|warning|note): (.*)$)re");
-  const std::string command = std::string(SKC_PATH) + " --emit=glsl '" + file.string() + "' 2>&1 >/dev/null";
+  const std::string command =
+      std::string(SKC_PATH) + " --emit=glsl " + optionsOf(file) + " '" + file.string() + "' 2>&1 >/dev/null";
   Outcome outcome{-1, {}};
   FILE* pipe = popen(command.c_str(), "r");
   REQUIRE(pipe);

@@ -82,7 +82,9 @@ TEST_CASE("every block that is shown as wrong gives the message that is quoted a
     if (!isWrong(*block)) continue;
     const std::string name = docs::fileName(*block);
     docs::writeFile(folder / name, docs::wholeFile(*block));
-    command += fmt::format("skc --emit=glsl {} >/dev/null; echo 'status' {} $?\n", name, name);
+    const std::string warning = block->value("W");
+    command += fmt::format("skc --emit=glsl {} {} >/dev/null; echo 'status' {} $?\n",
+                           warning.empty() ? "" : "-W" + warning, name, name);
   }
   const std::string output = docs::run(command, folder).output;
   for (const Block* block : docs::blocksOf("sk")) {

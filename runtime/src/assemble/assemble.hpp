@@ -101,6 +101,9 @@ bool mayPack(const program::Element& held);
 /// times as long to compile.
 bool mayWritePacked(const program::Kernel& kernel);
 
+/// Characters of the longest body that is worth it.
+constexpr std::size_t longestPackedBody = 4096;
+
 /// What a program of a kernel computes (sinks.hpp).
 enum class Work : std::uint8_t {
   Elements,  ///< its outputs; it has no sinks

@@ -304,8 +304,7 @@ bool mayPack(const program::Element& held) {
 }
 
 bool mayWritePacked(const Kernel& kernel) {
-  constexpr std::size_t longest = 4096;
-  return !kernel.usesLoops && kernel.body.size() <= longest &&
+  return !kernel.usesLoops && kernel.body.size() <= longestPackedBody &&
          std::ranges::all_of(kernel.parameters, [](const Parameter& parameter) {
            return !isSink(parameter) && (parameter.role != Role::Output || mayPack(heldBy(parameter)));
          });

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "driver/performance_warnings.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include "assemble/assemble.hpp"
+#include "emit/program.hpp"
+#include "emit/stream_uses.hpp"
+#include "ir/counted_loop.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+
+namespace skc::driver {
+namespace {
+
+using namespace ir;
+
+/// Functions of doubles that no instruction computes.
+bool isLibraryFunction(Intrinsic intrinsic) {
+  using enum Intrinsic;
+  constexpr Intrinsic all[] = {Sin,   Cos,   Tan,   Asin, Acos, Atan, Atan2, Sinh,  Cosh, Tanh,
+                               Asinh, Acosh, Atanh, Exp,  Exp2, Log,  Log2,  Log10, Pow};
+  return std::ranges::find(all, intrinsic) != std::end(all);
+}
+
+class Advisor {
+ public:
+  Advisor(const Module& module, Diagnostics& diagnostics) : module_(module), diagnostics_(diagnostics) {}
+
+  void kernel(const Kernel& kernel, const sk::program::Kernel& program) {
+    kernel_ = &kernel;
+    reads_.assign(kernel.params.size(), false);
+    for (const FunctionId id : functionsOf(module_, kernel)) block(module_.functions[id].body);
+    if (!kernel.reduction) outputs(program);
+    sinks();
+    if (kernel.reduction && !kernel.reduction->commutative) report(Diag::SlowFold, kernel.loc, {kernel.name});
+  }
+
+ private:
+  // ---- what a body does -------------------------------------------------------------------------
+
+  void block(const Block& statements) {
+    for (const Stmt& stmt : statements) {
+      forEachOperand(stmt, [&](const ExprPtr& operand) {
+        walkExprs(std::as_const(*operand), [&](const Expr& expr) { expression(expr); });
+      });
+      const bool isLoop = std::holds_alternative<Loop>(stmt.node);
+      if (isLoop) loops_.push_back(stmt.loc);
+      forEachBlock(stmt, [&](const Block& inner) { block(inner); });
+      if (isLoop) loops_.pop_back();
+    }
+  }
+
+  void expression(const Expr& expr) {
+    if (const auto* n = std::get_if<NeighborRead>(&expr.node)) neighbor(*n, expr.loc);
+    if (const auto* n = std::get_if<GatherRead>(&expr.node)) gather(*n, expr.loc);
+    if (const auto* n = std::get_if<IntrinsicCall>(&expr.node)) call(*n, expr.loc);
+  }
+
+  void neighbor(const NeighborRead& n, Loc loc) {
+    if (emit::reachOf(module_, *n.offset)) return;
+    const std::string& name = kernel_->params[n.stream.id].name;
+    const std::string whyNot = whyNotUnrolled();
+    if (whyNot.empty()) {
+      report(Diag::SlowOffset, loc, {name});
+    } else {
+      report(Diag::SlowOffsetInLoop, loc, {name, whyNot});
+    }
+  }
+
+  /// The reason of the innermost loop that unroll-loops would have liked to unroll; "" where there is none.
+  std::string whyNotUnrolled() const {
+    for (auto loop = loops_.rbegin(); loop != loops_.rend(); ++loop) {
+      const auto note = std::ranges::find_if(
+          kernel_->loops, [&](const LoopNote& one) { return one.loc.token == loop->token; });
+      if (note != kernel_->loops.end() && !note->whyNot.empty()) return note->whyNot;
+    }
+    return {};
+  }
+
+  /// The first of each gather; in a reduce, and at an index that is the same for all elements, it does no harm.
+  void gather(const GatherRead& n, Loc loc) {
+    if (kernel_->reduction || reads_[n.stream.id] || isSame(*n.index)) return;
+    reads_[n.stream.id] = true;
+    report(Diag::SlowIndex, loc, {kernel_->params[n.stream.id].name});
+  }
+
+  /// Whether an index is made of literals, constants and uniforms.
+  bool isSame(const Expr& index) const {
+    bool is = true;
+    walkExprs(index, [&](const Expr& expr) {
+      const auto* ref = std::get_if<VarRef>(&expr.node);
+      const bool isUniform = ref != nullptr && ref->var < kernel_->params.size() &&
+                             (kernel_->params[ref->var].role == ParamRole::Uniform ||
+                              kernel_->params[ref->var].role == ParamRole::Spec);
+      is = is && (isUniform || std::holds_alternative<Literal>(expr.node) ||
+                  std::holds_alternative<ConstantRef>(expr.node) ||
+                  std::holds_alternative<Construct>(expr.node) || std::holds_alternative<Binary>(expr.node));
+    });
+    return is;
+  }
+
+  void call(const IntrinsicCall& n, Loc loc) {
+    const bool takesDouble =
+        std::ranges::any_of(n.args, [](const ExprPtr& arg) { return arg->type.isDouble(); });
+    if (takesDouble && isLibraryFunction(n.intrinsic))
+      report(Diag::SlowDouble, loc, {row(n.intrinsic).spelling});
+  }
+
+  // ---- outputs ----------------------------------------------------------------------------------
+
+  /// Why outputs that could be packed are not.
+  void outputs(const sk::program::Kernel& program) {
+    const auto mayPack = [](const sk::program::Parameter& parameter) {
+      return parameter.role == sk::program::Role::Output && sk::assemble::mayPack(*parameter.element);
+    };
+    if (std::ranges::none_of(program.parameters, mayPack) || sk::assemble::mayWritePacked(program)) return;
+    if (program.usesLoops) return loops();
+    if (program.body.size() > sk::assemble::longestPackedBody) {
+      report(Diag::SlowLength, kernel_->loc,
+             {kernel_->name, std::to_string(program.body.size()),
+              std::to_string(sk::assemble::longestPackedBody)});
+    }
+  }
+
+  void loops() {
+    for (const FunctionId id : functionsOf(module_, *kernel_)) {
+      walkStmts(module_.functions[id].body, [&](const Stmt& stmt) {
+        const auto* loop = std::get_if<Loop>(&stmt.node);
+        if (loop != nullptr && !isCounted(module_, *loop)) report(Diag::SlowLoop, stmt.loc, {kernel_->name});
+      });
+    }
+  }
+
+  void sinks() {
+    for (const KernelParam& param : kernel_->params) {
+      if (param.role == ParamRole::VariableOutput || param.role == ParamRole::Scatter)
+        report(Diag::SlowOrder, param.loc, {param.name});
+    }
+  }
+
+  /// Instances of a template, and helpers of several kernels, share their places.
+  void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments) {
+    if (reported_.emplace(diag, loc.token).second) diagnostics_.report(diag, loc, arguments);
+  }
+
+  const Module& module_;
+  Diagnostics& diagnostics_;
+  const Kernel* kernel_ = nullptr;
+  std::vector<bool> reads_;  ///< gathers of which a computed index is reported
+  std::vector<Loc> loops_;  ///< around the current statement, outer ones first
+  std::set<std::pair<Diag, std::uint32_t>> reported_;
+};
+
+}  // namespace
+
+bool wantsPerformanceWarnings(const std::vector<std::string>& warnings) {
+  bool wants = false;
+  for (const std::string& warning : warnings) {
+    if (warning == "performance") wants = true;
+    if (warning == "no-performance") wants = false;
+  }
+  return wants;
+}
+
+void warnOfPerformance(const Module& module, Diagnostics& diagnostics) {
+  Advisor advisor(module, diagnostics);
+  const emit::Program program(module);
+  for (const emit::Unit& unit : program.units()) {
+    const Kernel& kernel = module.kernels[unit.id];
+    if (!kernel.isMade && !kernel.pass) advisor.kernel(kernel, unit.kernel);
+  }
+}
+
+}  // namespace skc::driver

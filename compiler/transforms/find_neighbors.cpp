@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/find_neighbors.hpp"
+
+#include <cstdlib>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "ir/assigned.hpp"
+#include "ir/build.hpp"
+#include "ir/component.hpp"
+#include "ir/evaluate.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+/// Beyond this, an index and an offset may overflow an int as they are added.
+constexpr std::int64_t farthest = 1 << 20;
+
+/// An integer that is component `dimension` of the domain's index, where it has one, plus a constant.
+struct Place {
+  std::optional<std::uint8_t> dimension;
+  std::int64_t offset = 0;
+};
+
+class Finder {
+ public:
+  Finder(const Module& module, const Kernel& kernel, Function& function)
+      : module_(module), kernel_(kernel), function_(function), values_(function.variables.size()) {
+    const std::vector<bool> assigned = assignedVariables(function);
+    walkStmts(function.body, [&](const Stmt& stmt) {
+      const auto* n = std::get_if<Declare>(&stmt.node);
+      if (n == nullptr || !n->init || assigned[n->var]) return;
+      if (n->init->type.isInteger()) values_[n->var] = clone(n->init);
+    });
+  }
+
+  void run() {
+    rewriteExprs(function_.body, [&](ExprPtr& slot) {
+      const auto* read = std::get_if<GatherRead>(&slot->node);
+      ExprPtr offset = read == nullptr ? nullptr : offsetOf(*read->index);
+      if (offset) slot = neighborRead(slot->type, read->stream, std::move(offset), slot->loc);
+    });
+  }
+
+ private:
+  /// Of an index from that of the domain; null where it is not constant.
+  ExprPtr offsetOf(const Expr& index) const {
+    std::vector<ExprPtr> offsets;
+    for (std::uint8_t d = 0; d < index.type.width; ++d) {
+      const std::optional<Place> place = placeOf(*componentOf(index, d));
+      if (!place || place->dimension != d || std::abs(place->offset) > farthest) return nullptr;
+      offsets.push_back(literal(static_cast<std::int32_t>(place->offset), index.loc));
+    }
+    if (offsets.size() == 1) return std::move(offsets.front());
+    return construct(index.type, std::move(offsets), index.loc);
+  }
+
+  std::optional<Place> placeOf(const Expr& scalar) const {
+    if (const auto bits = evaluate(module_, scalar, Constants::LookThrough)) {
+      return Place{{}, static_cast<std::int32_t>(*bits)};
+    }
+    if (const auto* n = std::get_if<Binary>(&scalar.node)) return placeOfSum(*n);
+    if (const auto* n = std::get_if<VarRef>(&scalar.node)) {
+      return values_[n->var] ? placeOf(*values_[n->var]) : std::nullopt;
+    }
+    const auto* n = std::get_if<Swizzle>(&scalar.node);
+    return n == nullptr ? std::nullopt : placeOfComponent(*n->base, n->components.front());
+  }
+
+  std::optional<Place> placeOfSum(const Binary& n) const {
+    if ((n.op != BinaryOp::Add && n.op != BinaryOp::Sub) || n.lhs->type.scalar != Scalar::Int)
+      return std::nullopt;
+    const std::optional<Place> lhs = placeOf(*n.lhs), rhs = placeOf(*n.rhs);
+    if (!lhs || !rhs || (rhs->dimension && (lhs->dimension || n.op == BinaryOp::Sub))) return std::nullopt;
+    const std::int64_t offset = n.op == BinaryOp::Add ? lhs->offset + rhs->offset : lhs->offset - rhs->offset;
+    return Place{lhs->dimension ? lhs->dimension : rhs->dimension, offset};
+  }
+
+  /// Of a vector that componentOf() cannot take apart.
+  std::optional<Place> placeOfComponent(const Expr& vector, std::uint8_t component) const {
+    if (const auto* n = std::get_if<IndexOf>(&vector.node)) {
+      return isDomain(n->stream) ? std::optional(Place{component}) : std::nullopt;
+    }
+    const auto* n = std::get_if<VarRef>(&vector.node);
+    return n != nullptr && values_[n->var] ? placeOf(*componentOf(*values_[n->var], component))
+                                           : std::nullopt;
+  }
+
+  /// An input may have another shape, and its element another index.
+  bool isDomain(StreamRef stream) const {
+    return stream.space == StreamRef::Space::Domain || (stream.space == StreamRef::Space::KernelParameter &&
+                                                        kernel_.params[stream.id].role == ParamRole::Output);
+  }
+
+  const Module& module_;
+  const Kernel& kernel_;
+  Function& function_;
+  std::vector<ExprPtr> values_;  ///< of locals that never change
+};
+
+}  // namespace
+
+void findNeighbors(Module& module, Diagnostics&) {
+  for (const Kernel& kernel : module.kernels) {
+    if (kernel.reduction) continue;
+    for (const FunctionId id : functionsOf(module, kernel)) {
+      Finder(module, kernel, module.functions[id]).run();
+    }
+  }
+}
+
+}  // namespace skc

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/unroll_loops.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "ir/assigned.hpp"
+#include "ir/build.hpp"
+#include "ir/counted_loop.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+#include "transforms/fold_constants.hpp"
+#include "transforms/leave_rounds.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+/// A loop whose rounds come to no more expressions is unrolled whatever it does: its head takes as much.
+constexpr std::int64_t tinyExpressions = 24;
+
+/// Variables whose values follow from a loop's counter, or from whatever else a loop changes.
+class Followers {
+ public:
+  explicit Followers(const Loop& loop) {
+    for (const Stmt& stmt : loop.init) follow(stmt, true);
+    walkStmts(loop.step, [&](const Stmt& stmt) { follow(stmt, true); });
+    // a `while` counts in its body
+    const bool countsInBody = loop.step.empty();
+    walkStmts(loop.body, [&](const Stmt& stmt) { follow(stmt, countsInBody); });
+  }
+
+  bool mentions(const Expr& expr) const {
+    bool found = false;
+    walkExprs(expr, [&](const Expr& inner) {
+      const auto* ref = std::get_if<VarRef>(&inner.node);
+      found = found || (ref != nullptr && std::ranges::find(variables_, ref->var) != variables_.end());
+    });
+    return found;
+  }
+
+ private:
+  void follow(const Stmt& stmt, bool always) {
+    if (const auto* n = std::get_if<Declare>(&stmt.node)) {
+      if (always || (n->init && mentions(*n->init))) variables_.push_back(n->var);
+    }
+    if (const auto* n = std::get_if<Assign>(&stmt.node)) {
+      if (always || mentions(*n->value)) variables_.push_back(rootOf(*n->place));
+    }
+  }
+
+  std::vector<VarId> variables_;
+};
+
+/// fn(index) for each offset of a neighbour, and each index of a gather, an array, a vector or a scatter output.
+template <class Fn>
+void forEachIndex(const Block& body, Fn&& fn) {
+  walkExprs(body, [&](const Expr& expr) {
+    if (const auto* n = std::get_if<NeighborRead>(&expr.node)) fn(*n->offset);
+    if (const auto* n = std::get_if<GatherRead>(&expr.node)) fn(*n->index);
+    if (const auto* n = std::get_if<Index>(&expr.node)) fn(*n->index);
+  });
+  walkStmts(body, [&](const Stmt& stmt) {
+    if (const auto* n = std::get_if<Scatter>(&stmt.node)) fn(*n->index);
+  });
+}
+
+std::int64_t expressionsIn(const Block& statements) {
+  std::int64_t count = 0;
+  walkExprs(statements, [&](const Expr&) { ++count; });
+  return count;
+}
+
+class Unroller {
+ public:
+  Unroller(const Module& module, Kernel& kernel) : module_(module), kernel_(kernel) {}
+
+  void run(Function& function) {
+    function_ = &function;
+    if (asksForValues(function.body)) foldWholeNumbers(module_, function);
+    do {
+      hasUnrolled_ = false;
+      block(function.body);
+      if (hasUnrolled_) foldWholeNumbers(module_, function);
+    } while (hasUnrolled_);
+  }
+
+ private:
+  /// Either the rounds of a loop, or why it stays.
+  struct Attempt {
+    Block rounds;
+    std::string whyNot;
+  };
+
+  /// Whether a loop would be unrolled if its bounds, which may be locals of a known value, were constants.
+  bool asksForValues(const Block& statements) const {
+    bool asks = false;
+    walkStmts(statements, [&](const Stmt& stmt) {
+      const auto* loop = std::get_if<Loop>(&stmt.node);
+      asks = asks || (loop != nullptr && !roundsIn(module_, *loop) && makesIndices(*loop));
+    });
+    return asks;
+  }
+
+  void block(Block& statements) {
+    Block result;
+    for (Stmt& stmt : statements) {
+      const auto* loop = std::get_if<Loop>(&stmt.node);
+      if (loop != nullptr && isWanted(*loop) && unrollNest(*loop, stmt.loc, result)) continue;
+      if (loop != nullptr) around_.emplace_back(*loop);
+      forEachBlock(stmt, [&](Block& inner) { block(inner); });
+      if (loop != nullptr) around_.pop_back();
+      result.push_back(std::move(stmt));
+    }
+    statements = std::move(result);
+  }
+
+  /// Appends the rounds of a loop and of those in it: all, or none and false.
+  bool unrollNest(const Loop& loop, Loc loc, Block& result) {
+    const std::size_t variables = function_->variables.size();
+    rounds_ = 0;
+    inner_.clear();
+    Attempt attempt = written(loop, loc);
+    const std::int64_t expressions = written_ + expressionsIn(attempt.rounds);
+    if (attempt.whyNot.empty() && expressions > mostUnrolledExpressions)
+      attempt.whyNot = tooLong(expressions);
+    const std::optional<Rounds> rounds = roundsIn(module_, loop);
+    note({loc, rounds ? std::optional(rounds->count) : std::nullopt, attempt.whyNot});
+    if (!attempt.whyNot.empty()) {
+      function_->variables.resize(variables);
+      return false;
+    }
+    written_ = expressions;
+    hasUnrolled_ = true;
+    for (LoopNote& one : inner_) note(std::move(one));
+    std::ranges::move(attempt.rounds, std::back_inserter(result));
+    return true;
+  }
+
+  bool isWanted(const Loop& loop) const {
+    if (makesIndices(loop)) return true;
+    const std::optional<std::int64_t> rounds = roundsOf(module_, loop);
+    return rounds && *rounds * expressionsIn(loop.body) <= tinyExpressions && *rounds <= tinyExpressions;
+  }
+
+  /// Whether indices follow from the loop's counter, and from none of a loop around it that stays.
+  bool makesIndices(const Loop& loop) const {
+    const Followers followers(loop);
+    bool makes = false;
+    forEachIndex(loop.body, [&](const Expr& index) {
+      makes = makes || (followers.mentions(index) && std::ranges::none_of(around_, [&](const Followers& one) {
+                          return one.mentions(index);
+                        }));
+    });
+    return makes;
+  }
+
+  // ---- reasons ----------------------------------------------------------------------------------
+
+  static std::string tooLong(std::int64_t expressions) {
+    return fmt::format("the unrolled loops of the kernel would come to {} expressions, and may come to {}",
+                       expressions, mostUnrolledExpressions);
+  }
+
+  std::string whyUnknown(const Loop& loop) const {
+    const auto* init = loop.init.size() == 1 ? std::get_if<Declare>(&loop.init.front().node) : nullptr;
+    if (init == nullptr || loop.step.size() != 1 || !loop.cond) {
+      return "it does not count like 'for (int i = a; i < b; ++i)'";
+    }
+    const std::string& name = function_->variables[init->var].name;
+    if (assigns(loop.body, init->var)) return fmt::format("its body changes the counter '{}'", name);
+    return fmt::format("the bounds of its counter '{}' are not constants", name);
+  }
+
+  // ---- rounds -----------------------------------------------------------------------------------
+
+  Attempt written(const Loop& loop, Loc loc) {
+    const std::optional<Rounds> rounds = roundsIn(module_, loop);
+    if (!rounds) return {{}, whyUnknown(loop)};
+    rounds_ += rounds->count;
+    if (rounds_ > mostUnrolledRounds) {
+      return {{},
+              fmt::format("with the loops in it, it takes {} rounds or more, and at most {} are unrolled",
+                          rounds_, mostUnrolledRounds)};
+    }
+    const std::int64_t expressions = rounds->count * expressionsIn(loop.body);
+    if (expressions > mostUnrolledExpressions) return {{}, tooLong(expressions)};
+    Attempt result;
+    for (std::int64_t round = 0; round < rounds->count; ++round) {
+      Block body = bodyOf(loop, *rounds, round);
+      const RoundEnd end = leaveRound(module_, body);
+      if (end == RoundEnd::Unknown)
+        return {{}, "elements may leave it, or a part of a round, at different times"};
+      result.whyNot = writeInner(body);
+      if (!result.whyNot.empty()) return result;
+      append(result.rounds, std::move(body), loc);
+      if (end == RoundEnd::LeavesLoop) break;
+    }
+    return result;
+  }
+
+  /// Unrolls the loops in a round; says why one of them stays.
+  std::string writeInner(Block& statements) {
+    Block result;
+    std::string whyNot;
+    for (Stmt& stmt : statements) {
+      const auto* loop = std::get_if<Loop>(&stmt.node);
+      if (loop == nullptr || !isWanted(*loop)) {
+        forEachBlock(stmt, [&](Block& inner) {
+          if (whyNot.empty()) whyNot = writeInner(inner);
+        });
+        result.push_back(std::move(stmt));
+      } else {
+        Attempt attempt = written(*loop, stmt.loc);
+        whyNot = std::move(attempt.whyNot);
+        inner_.push_back({stmt.loc, roundsOf(module_, *loop)});
+        std::ranges::move(attempt.rounds, std::back_inserter(result));
+      }
+      if (!whyNot.empty()) return whyNot;
+    }
+    statements = std::move(result);
+    return {};
+  }
+
+  /// The body with a literal in the counter's place; all rounds but the first have locals of their own.
+  Block bodyOf(const Loop& loop, const Rounds& rounds, std::int64_t round) {
+    Block body = clone(loop.body);
+    std::map<VarId, VarId> locals;
+    if (round > 0) {
+      walkStmts(body, [&](Stmt& stmt) {
+        if (auto* n = std::get_if<Declare>(&stmt.node)) n->var = locals[n->var] = copyOf(n->var);
+      });
+    }
+    rewriteExprs(body, [&](ExprPtr& slot) {
+      auto* ref = std::get_if<VarRef>(&slot->node);
+      if (ref == nullptr) return;
+      if (ref->var == rounds.counter) {
+        slot = rounds.value(round, slot->loc);
+      } else if (const auto local = locals.find(ref->var); local != locals.end()) {
+        ref->var = local->second;
+      }
+    });
+    return body;
+  }
+
+  VarId copyOf(VarId var) {
+    Variable copy = function_->variables[var];
+    function_->variables.push_back(std::move(copy));
+    return static_cast<VarId>(function_->variables.size() - 1);
+  }
+
+  /// In place where the round declares nothing, else as a scope.
+  static void append(Block& result, Block&& round, Loc loc) {
+    const bool declares = std::ranges::any_of(
+        round, [](const Stmt& stmt) { return std::holds_alternative<Declare>(stmt.node); });
+    if (declares) {
+      result.push_back(scope(std::move(round), loc));
+    } else {
+      std::ranges::move(round, std::back_inserter(result));
+    }
+  }
+
+  /// A loop in one that is unrolled is met in each round.
+  void note(LoopNote found) {
+    const auto known = std::ranges::find_if(kernel_.loops, [&](const LoopNote& one) {
+      return one.loc.file == found.loc.file && one.loc.token == found.loc.token;
+    });
+    if (known == kernel_.loops.end()) {
+      kernel_.loops.push_back(std::move(found));
+    } else {
+      *known = std::move(found);
+    }
+  }
+
+  const Module& module_;
+  Kernel& kernel_;
+  Function* function_ = nullptr;
+  std::int64_t written_ = 0;  ///< expressions of all that was unrolled
+  bool hasUnrolled_ = false;
+  std::int64_t rounds_ = 0;  ///< of the loop that is being unrolled, and of those in it
+  std::vector<LoopNote> inner_;
+  std::vector<Followers> around_;  ///< of the loops that stay around the current block
+};
+
+}  // namespace
+
+void unrollLoops(Module& module, Diagnostics&) {
+  for (Kernel& kernel : module.kernels) {
+    Unroller unroller(module, kernel);
+    for (const FunctionId id : functionsOf(module, kernel)) unroller.run(module.functions[id]);
+  }
+}
+
+}  // namespace skc

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+//
+// rounds.sk: unrolling and finding neighbors change no bit, whatever the boundary and the shapes, beside loops that stay because
+// their bounds come from the program.
+#include <algorithm>
+
+#include "rounds.sk.hpp"
+#include "support/devices.hpp"
+#include "support/values.hpp"
+
+using namespace run_tests;
+using sk::int4;
+
+TEST_CASE("an unrolled blur has the bits of its loop") {
+  for (const sk::Shape shape : {sk::Shape{13, 24}, sk::Shape{5, 7}}) {
+    const std::vector<float> x = values<float>(shape.size());
+    onEveryProfile([&](sk::Device& device) {
+      auto a = device.stream<float>(shape), r = device.stream<float>(shape), s = device.stream<float>(shape);
+      a.write(x);
+      rounds::unrolled_2(a, r);
+      rounds::rolled(2, a, s);
+      CHECK(r.read() == s.read());
+    });
+  }
+}
+
+TEST_CASE("an index that is a neighbor's means the same for every boundary, and beside every shape of the gather") {
+  for (const sk::Shape shape : {sk::Shape{9, 12}, sk::Shape{4, 5}, sk::Shape{20, 31}}) {
+    const std::vector<int> x = values<int>(shape.size());
+    onEveryProfile([&](sk::Device& device) {
+      auto a = device.stream<int>(shape);
+      auto r = device.stream<int4>({9, 12}), s = device.stream<int4>({9, 12});
+      a.write(x);
+      rounds::indices(a, a, a, a, r);
+      rounds::hidden(1, a, a, a, a, s);
+      CHECK(r.read() == s.read());
+    });
+  }
+}
+
+TEST_CASE("rounds that are left early leave what they should") {
+  const std::vector<float> x = values<float>(101);
+  onEveryProfile([&](sk::Device& device) {
+    auto a = streamOf<float>(device, x);
+    auto r = device.stream<float>({101}), s = device.stream<float>({101});
+    rounds::leaving(a, r);
+    rounds::leavingSlowly(9, a, s);
+    CHECK(r.read() == s.read());
+  });
+}
+
+TEST_CASE("elements of local arrays keep their numbers") {
+  const std::vector<float> x = values<float>(50);
+  onEveryProfile([&](sk::Device& device) {
+    auto r = device.stream<float>({50});
+    rounds::median(streamOf<float>(device, x), r);
+    CHECK(difference(r.read(), [&](std::size_t i) {
+            std::vector<float> v;
+            for (int d = -2; d <= 2; ++d) {
+              v.push_back(x[static_cast<std::size_t>(std::clamp(static_cast<int>(i) + d, 0, 49))]);
+            }
+            std::sort(v.begin(), v.end());
+            return v[2];
+          }) == "");
+  });
+}
