@@ -189,7 +189,7 @@ def loaded():
 
 
 start = r"(?:^|[|&;(`]|[!{]\s|\b(?:then|do|else|if|elif|while|until|exec|xargs|command -v|env|time)\s)\s*"
-command_word = re.compile(start + r"(?:-\S+\s+|\d+\s+|[A-Z_]+=\S*\s+)*([a-z][a-z0-9.+_-]*)(?![\w=/(.:-])", re.M)
+command_word = re.compile(start + r"(?:-\S+\s+|\d+\s+|[A-Z_]+=\S*\s+)*([a-z][a-z0-9.+_-]+)(?![\w=/(.:-])", re.M)
 started_by_cpp = re.compile(r'\b(?:popen|system|runProgram|run)\(\s*\{?"([a-z][a-z0-9.+_-]*)[" ]')
 started_by_python = re.compile(r'(?:run|which|output)\(\[?\s*"([a-z][a-z0-9.+_-]*)"')
 
