@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: MIT
+#
+# packages_test.py SOURCE BUILD [WITHOUT]: what a bare Debian 12 would lack. Everything of the system that the build
+# reads and that scripts, programs and tests start or load, also at run time, must belong to a package that [build] of
+# packages.txt brings: one that it names, one that those depend on, or one that every Debian has. A machine where more
+# is installed hides a package that is missing from the list; here dpkg says whose each file is, so that such a
+# machine notices, too. WITHOUT is a package that packages.txt is to be read without.
+import collections
+import glob
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+source, build = os.path.realpath(sys.argv[1]), os.path.realpath(sys.argv[2])
+without = sys.argv[3:]
+skipped = 77
+
+# Programs that are started only where somebody has them, and why a test can do without.
+optional = {
+    "ffmpeg": "writes films, which no test wants",
+    "git": "fetches the sources, which are here",
+    "sudo": "installs packages, which are here",
+}
+
+
+def output(*command, **environment):
+    """What a command prints; its failure is for the caller to see in that."""
+    return subprocess.run(
+        command, capture_output=True, text=True, errors="replace", env={**os.environ, "LC_ALL": "C", **environment}
+    ).stdout
+
+
+def skip(why):
+    print(f"skipped: {why}")
+    sys.exit(skipped)
+
+
+# ---- packages ---------------------------------------------------------------------------------------------------
+
+
+def listed():
+    """The packages of packages.txt, by section."""
+    packages = collections.defaultdict(list)
+    section = ""
+    with open(os.path.join(source, "packages.txt")) as lines:
+        for line in lines:
+            line = line.partition("#")[0].strip()
+            if line.startswith("["):
+                section = line.strip("[]")
+            elif line and line not in without:
+                packages[section].append(line)
+    return packages
+
+
+class Installed:
+    """What dpkg knows of the packages on this machine."""
+
+    def __init__(self):
+        self.depends = {}
+        self.present = set()  # what a Debian without anything has: debootstrap --variant=minbase
+        self.providers = collections.defaultdict(list)
+        form = r"${db:Status-Status}\t${Package}\t${Essential}\t${Priority}\t${Provides}\t${Pre-Depends}, ${Depends}\n"
+        for line in output("dpkg-query", "-W", "-f", form).splitlines():
+            status, package, essential, priority, provides, depends = line.split("\t")
+            if status != "installed":
+                continue
+            self.depends[package] = [self.names(group, "|") for group in depends.split(",")]
+            for name in self.names(provides, ","):
+                self.providers[name].append(package)
+            if essential == "yes" or priority == "required" or package == "apt":
+                self.present.add(package)
+
+    @staticmethod
+    def names(text, separator):
+        """`libc6 (>= 2.34) | libc6:any` without versions and architectures."""
+        return [re.split("[ (:]", part.strip())[0] for part in text.split(separator) if part.strip()]
+
+    def brought(self, packages):
+        """These packages and all that they depend on. Of alternatives apt takes the first unless another comes anyway,
+        so that they wait until nothing else does."""
+        found = set()
+        waiting = [*self.present, *packages]
+        choices = []
+        while waiting or choices:
+            if not waiting:
+                choice = choices.pop(0)
+                waiting = [] if found.intersection(choice) else choice[:1]
+                continue
+            package = waiting.pop()
+            if package in found:
+                continue
+            found.add(package)
+            for alternatives in self.depends.get(package, ()):
+                candidates = [one for name in alternatives for one in [name, *self.providers[name]]]
+                candidates = [one for one in candidates if one in self.depends]
+                if len(candidates) == 1:
+                    waiting += candidates
+                else:
+                    choices.append(candidates)
+        return found
+
+
+def owners(files):
+    """File: its package. A file of no package, such as one of our own or of a driver's installer, is left out."""
+    spellings = collections.defaultdict(set)  # as dpkg may know it: file
+    for file in files:
+        for name in (os.path.normpath(file), os.path.realpath(file)):
+            spellings[name].add(file)
+            merged = re.match("(/usr)?(/(?:bin|sbin|lib|lib32|lib64|libx32)/.*)", name)
+            if merged:  # /lib is /usr/lib, and packages say either
+                spellings[merged[2]].add(file)
+                spellings["/usr" + merged[2]].add(file)
+    found = {}
+    for line in output("dpkg-query", "-S", *spellings).splitlines():
+        package, _, name = line.partition(": ")
+        if not package.startswith("diversion "):
+            for file in spellings.get(name, ()):
+                found.setdefault(file, re.split("[:,]", package)[0])
+    return found
+
+
+# ---- what is used -----------------------------------------------------------------------------------------------
+
+
+def is_measurement(file):
+    """Benchmarks and ./dev itself may use what its other sections bring."""
+    return file == "dev" or "tests/bench/" in file
+
+
+def read_by_the_build():
+    """Headers that compilers read, and what CMake found for our own CMakeLists.txt: (file, who wants it)."""
+    wanted = ""
+    headers = {}
+    for line in output("ninja", "-C", build, "-t", "deps").splitlines():
+        if not line.startswith(" "):
+            wanted = line.partition(":")[0]
+        elif not is_measurement(wanted):
+            headers.setdefault(line, wanted)
+    for header, wanted in headers.items():  # ccache may have made it relative to the build folder
+        file = os.path.normpath(os.path.join(build, header.strip()))
+        if not file.startswith((source, build)):
+            yield file, wanted
+    with open(os.path.join(build, "CMakeCache.txt")) as cache:
+        for variable, file in re.findall(r"^(SK_\w+|PKG_CONFIG\w+):FILEPATH=(/.*)$", cache.read(), re.M):
+            yield file, variable
+
+
+def binaries():
+    """The programs and shared libraries that were built."""
+    for folder, folders, names in os.walk(build):
+        folders[:] = [name for name in folders if name != "CMakeFiles" and not name.startswith(".")]
+        for name in names:
+            file = os.path.join(folder, name)
+            if os.access(file, os.X_OK) and not os.path.islink(file) and not is_measurement(file):
+                with open(file, "rb") as start:
+                    if start.read(4) == b"\x7fELF":
+                        yield file
+
+
+def linked():
+    """Libraries that the loader finds for our programs: (file, who wants it)."""
+    programs = list(binaries())
+    for program in programs:
+        for file in re.findall(r"(?:=> |^\t)(/\S+) \(0x", output("ldd", program), re.M):
+            yield file, program
+
+
+def loaded():
+    """Libraries and drivers that an OpenGL and an OpenGL ES program load while they run: (file, who wants it)."""
+    program = os.path.join(build, "runtime/tests/no_device_test")
+    mesa = {
+        "SK_DEVICE": "llvmpipe",
+        "SK_CACHE": "off",
+        "__EGL_VENDOR_LIBRARY_FILENAMES": "/usr/share/glvnd/egl_vendor.d/50_mesa.json",
+    }
+    for profile in ("glsl330", "essl300"):
+        with tempfile.TemporaryDirectory() as folder:
+            log = os.path.join(folder, "log")
+            said = output(program, "opens", profile, **mesa, SK_PROFILE=profile, LD_DEBUG="files", LD_DEBUG_OUTPUT=log)
+            if f", {profile}" not in said:
+                sys.exit(f"no {profile} device was opened: {said}")
+            for name in glob.glob(log + ".*"):
+                with open(name) as lines:
+                    for file in re.findall(r"calling init: (/\S+)", lines.read()):
+                        yield file, f"the {profile} device"
+
+
+start = r"(?:^|[|&;(`]|[!{]\s|\b(?:then|do|else|if|elif|while|until|exec|xargs|command -v|env|time)\s)\s*"
+command_word = re.compile(start + r"(?:-\S+\s+|\d+\s+|[A-Z_]+=\S*\s+)*([a-z][a-z0-9.+_-]+)(?![\w=/(.:-])", re.M)
+started_by_cpp = re.compile(r'\b(?:popen|system|runProgram|run)\(\s*\{?"([a-z][a-z0-9.+_-]*)[" ]')
+started_by_python = re.compile(r'(?:run|which|output)\(\[?\s*"([a-z][a-z0-9.+_-]*)"')
+
+
+def without_texts(script):
+    """A shell script without comments and quoted text, but with the commands in quotes: "$(dirname x)"."""
+    quoted = re.compile(r"""\\.|(?<!\S)\#[^\n]*|\$?'(?:[^'])*'|"(?:\\.|[^"\\])*\"""", re.S)
+    return quoted.sub(lambda text: "".join(re.findall(r"\$\([^\s()]+", text[0])), script)
+
+
+def scripts():
+    """Texts that start programs: (file, text, how a program's name looks there)."""
+    for folder in ("", ".ci", "compiler", "docs", "examples", "runtime", "tests"):
+        for path, folders, names in os.walk(os.path.join(source, folder)):
+            if not folder:
+                folders.clear()
+            for name in names:
+                file = os.path.relpath(os.path.join(path, name), source)
+                suffix = os.path.splitext(name)[1]
+                if suffix not in (".sh", ".py", ".cpp", ".md") and file not in ("dev", ".ci/run"):
+                    continue
+                with open(os.path.join(source, file)) as opened:
+                    text = opened.read()
+                if suffix == ".md":
+                    yield file, without_texts("\n".join(re.findall(r"^```sh\n(.*?)^```", text, re.M | re.S))), command_word
+                elif suffix in (".cpp", ".py"):
+                    yield file, text, started_by_cpp if suffix == ".cpp" else started_by_python
+                else:
+                    yield file, without_texts(text), command_word
+
+
+def started():
+    """Programs of the system that scripts and programs name where a command stands: (file, who wants it)."""
+    for file, text, pattern in scripts():
+        for word in set(pattern.findall(text)) - optional.keys():
+            program = shutil.which(word, path="/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin")
+            if program:
+                yield program, file
+
+
+# ---- the test ---------------------------------------------------------------------------------------------------
+
+if not shutil.which("dpkg-query"):
+    skip("this is no Debian; packages.txt is about Debian 12")
+with open("/etc/os-release") as release:
+    if not re.search('^VERSION_ID="?12"?$', release.read(), re.M):
+        skip("this is no Debian 12, which packages.txt is about")
+installed = Installed()
+packages = listed()
+absent = [package for package in packages["build"] if package not in installed.depends]
+if absent:
+    skip(f"{' '.join(absent)} of packages.txt not installed, so that their dependencies are not known")
+
+bare = installed.brought(packages["build"])
+everything = installed.brought([package for section in packages.values() for package in section])
+uses = {*read_by_the_build(), *linked(), *loaded(), *started()}
+owner = owners({file for file, user in uses})
+findings = {}  # one a file
+for file, user in sorted(uses):
+    may = everything if is_measurement(user) else bare
+    if file in owner and owner[file] not in may:
+        user = os.path.relpath(user, source) if user.startswith("/") else user
+        findings[file] = f"{owner[file]} is not in packages.txt: {user} uses {file}"
+for finding in findings.values():
+    print(finding)
+if findings:
+    sys.exit(1)
+print(f"{len(packages['build'])} packages bring the {len(owner)} files that are used")
