@@ -107,6 +107,8 @@ function(sk_add_kernel_file target file options)
     COMMENT "skc ${file}"
     VERBATIM)
   target_sources(${target} PRIVATE "${output}/${name}.cpp" "${output}/${name}.hpp")
+  # A unity build would read every stub into one source; each is large enough alone.
+  set_source_files_properties("${output}/${name}.cpp" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set_property(SOURCE "${output}/${name}.cpp" APPEND PROPERTY
                COMPILE_OPTIONS "$<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:${SK_NATIVE_OPTIONS}>")
   target_include_directories(${target} PRIVATE "${tree}")
