@@ -23,6 +23,23 @@ function(sk_library target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endfunction()
 
+# sk_compile_together(TARGET [APART SOURCE...]): with SK_UNITY, compiles a dozen sources of a target as one, so that what
+# all of them include is read and instantiated once. APART names sources that stay alone because names in their
+# anonymous namespaces are also another source's. (Precompiled headers cost more than they save: g++ 12 writes 600 MB
+# for Clang's, and reading these takes longer than reading the headers that a source needs.)
+function(sk_compile_together target)
+  if(NOT SK_UNITY)
+    return()
+  endif()
+  cmake_parse_arguments(PARSE_ARGV 1 together "" "" "APART")
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+  if(together_APART)
+    set_source_files_properties(${together_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
+  # Warnings are for sources one by one: a local name of one is a global name of another.
+  target_compile_options(${target} PRIVATE -w)
+endfunction()
+
 # sk_unit_tests(TARGET SOURCES... ): the *_test.cpp files of this folder as one program, linked
 # with the folder's TARGET and Catch2, registered with CTest.
 function(sk_unit_tests target)

@@ -556,10 +556,28 @@ Parts Streams::neighbor(std::uint32_t param, const Parts& offset,
   }
   const Parts here = index({StreamRef::Space::Domain, 0});
   Parts there;
-  for (std::size_t d = 0; d < offset.size(); ++d) {
-    there.push_back(binary(l, BinaryOp::Add, Scalar::Int, here[d], offset[d]));
-  }
+  for (std::size_t d = 0; d < offset.size(); ++d) there.push_back(moved(param, d, here[d], offset[d]));
   return gather(param, there);
+}
+
+/// An index and an offset, whose sum may be no int: what is as far outside serves as well.
+Part Streams::moved(std::uint32_t param, std::size_t dimension, const Part& index, const Part& offset) {
+  const Boundary boundary = kernel_.params[param].boundary;
+  if (boundary == Boundary::Wrap || boundary == Boundary::Mirror) {
+    llvm::Value* const extent = argumentExtent(param, dimension, offsetof(Argument, extent));
+    llvm::Value* const period = boundary == Boundary::Mirror ? l.b.CreateShl(extent, 1) : extent;
+    const Part rest = binary(l, BinaryOp::Rem, Scalar::Int, offset, {l.b.CreateTrunc(period, l.int32())});
+    return binary(l, BinaryOp::Add, Scalar::Int, index, rest);
+  }
+  if (l.isUniform(offset)) {  // so that consecutive indices stay consecutive
+    llvm::Value* const most = l.integer(l.int32(), 1 << 30);
+    llvm::Value* const least = l.integer(l.int32(), -(1 << 30));
+    llvm::Value* const low = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, offset.value, least);
+    return binary(l, BinaryOp::Add, Scalar::Int, index, {l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, low, most)});
+  }
+  Part a = index, c = offset;
+  l.unify(a, c);
+  return {l.b.CreateBinaryIntrinsic(llvm::Intrinsic::sadd_sat, a.value, c.value)};
 }
 
 /// By dimensions, the last of these first; a neighbour of no weight is not looked at.

@@ -99,6 +99,7 @@ class Streams {
   Parts orBorder(std::uint32_t param, llvm::Value* isOutside, const Parts& value);
   Parts choose(llvm::Value* condition, const std::function<Parts()>& yes, const std::function<Parts()>& no,
                const std::vector<ir::Scalar>& scalars);
+  Part moved(std::uint32_t param, std::size_t dimension, const Part& index, const Part& offset);
   Parts weighted(std::uint32_t param, const Parts& low, const Parts& weights, std::size_t dimensions);
 
   Lanes& l;

@@ -47,7 +47,7 @@ struct PrecisionMode {
   double unit;  ///< relative error of an operation
 };
 
-constexpr PrecisionMode modes[] = {
+constexpr PrecisionMode polynomialModes[] = {
     {"single", sk::Precision::Single, 0x1p-24},
     {"extended", sk::Precision::Extended, 0x1p-44},
     {"double", sk::Precision::Double, 0x1p-53},
@@ -86,7 +86,7 @@ Experiment measureCase(sk::Device& device, const Measurement& measurement, const
   auto rs = device.stream<float>(shape);
   xs.write(x);
   std::vector<Mode> candidates;
-  for (const PrecisionMode& mode : modes) {
+  for (const PrecisionMode& mode : polynomialModes) {
     candidates.push_back({mode.name, [&] {
                             return Trial{[&] {
                                            accuracy::polynomial.with({.precision = mode.precision})(

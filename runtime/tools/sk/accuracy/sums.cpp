@@ -47,7 +47,7 @@ struct SumMode {
 
 /// Bounds as sk/call.hpp has them (Higham, Accuracy and Stability of Numerical Algorithms, section 4.2; Ogita, Rump and
 /// Oishi 2005, for sums and products with what they lose). One rounding to float is in each.
-constexpr SumMode modes[] = {
+constexpr SumMode sumModes[] = {
     {"tree",
      {.accumulate = Accumulate::Tree},
      [](double condition, double depth) { return (depth + 1) * u * condition; }},
@@ -102,7 +102,7 @@ using Call = std::function<std::vector<float>(const sk::CallOptions&)>;
 std::vector<Row> compareSums(sk::Device& device, const Measurement& measurement, const Truths& truths,
                              const Call& call) {
   std::vector<Mode> candidates;
-  for (const SumMode& mode : modes) {
+  for (const SumMode& mode : sumModes) {
     candidates.push_back({mode.name, [&] {
                             auto results = std::make_shared<std::vector<float>>();
                             return Trial{[&mode, &call, results] { *results = call(mode.options); },

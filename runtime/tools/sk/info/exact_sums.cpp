@@ -16,7 +16,7 @@ namespace sk_tool {
 
 namespace {
 
-constexpr std::size_t count = 1 << 14;
+constexpr std::size_t pairCount = 1 << 14;
 
 const RawKernel& twoSumAndProduct() {
   static const RawKernel kernel = RawKernel::of<sk::float2, sk::float4>(
@@ -53,8 +53,8 @@ Json trial(const sk::Device& like, const std::string& barrier) {
   options.barrier = barrier;
   try {
     sk::Device device(options);
-    const std::vector<sk::float2> pairs = sk::trialPairs(count);
-    const sk::Shape shape = squareOf(count);
+    const std::vector<sk::float2> pairs = sk::trialPairs(pairCount);
+    const sk::Shape shape = squareOf(pairCount);
     auto x = device.stream<sk::float2>(shape);
     auto r = device.stream<sk::float4>(shape);
     x.write(pairs);
@@ -62,12 +62,12 @@ Json trial(const sk::Device& like, const std::string& barrier) {
     const std::vector<sk::float4> got = r.read();
     std::size_t sums = 0;
     std::size_t products = 0;
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < pairCount; ++i) {
       const sk::float4 exact = sk::exactSumAndProduct(pairs[i]);
       sums += got[i].x != exact.x || got[i].y != exact.y;
       products += got[i].z != exact.z || got[i].w != exact.w;
     }
-    const auto share = [](std::size_t wrong) { return rounded(static_cast<double>(wrong) / count); };
+    const auto share = [](std::size_t wrong) { return rounded(static_cast<double>(wrong) / pairCount); };
     return {{"wrong_sums", share(sums)}, {"wrong_products", share(products)}};
   } catch (const sk::Error&) {
     return "not in the language";
@@ -81,7 +81,7 @@ bool holds(const Json& trial) {
 }  // namespace
 
 Json probeExactSums(sk::Device& device) {
-  Json json = {{"pairs", count},
+  Json json = {{"pairs", pairCount},
                {"none", trial(device, "none")},
                {"xor", trial(device, "xor")},
                {"precise", trial(device, "precise")}};

@@ -22,9 +22,9 @@ namespace sk_tool {
 namespace {
 
 /// Of the entries; another one makes what was kept worthless.
-constexpr int schema = 2;
+constexpr int infoSchema = 2;
 
-struct Options {
+struct InfoOptions {
   std::string device;
   std::string profile;
   std::string jsonFile;
@@ -37,7 +37,7 @@ Json kept(const std::string& key) {
   const std::optional<std::string> text = sk::readCached("info", key);
   Json info = text ? Json::parse(*text, nullptr, false) : Json();
   try {
-    if (info.is_object() && info.at("schema") == schema && !report(info).empty()) return info;
+    if (info.is_object() && info.at("schema") == infoSchema && !report(info).empty()) return info;
   } catch (const Json::exception&) {
     return {};  // somebody else wrote it
   }
@@ -48,7 +48,7 @@ Json infoOf(sk::Device& device, bool refresh) {
   const std::string key = keyOf(device);
   Json info = refresh ? Json() : kept(key);
   if (info.is_null()) {
-    info = {{"schema", schema}, {"streamkernel", SK_VERSION}};
+    info = {{"schema", infoSchema}, {"streamkernel", SK_VERSION}};
     info.update(describe(device));
     std::fprintf(stderr, "sk info: measuring %s ...\n", device.name().c_str());
     measure(device, info);
@@ -66,7 +66,7 @@ sk::Device openPlain(sk::DeviceOptions options) {
 }
 
 /// The device that is asked for; else the best one with GL, if any, and native code.
-Json infoOfAll(const Options& options) {
+Json infoOfAll(const InfoOptions& options) {
   Json all;
   all["devices"] = Json::array();
   const char* chosen = std::getenv("SK_DEVICE");
@@ -97,7 +97,7 @@ void writeJson(const std::string& file, const std::string& text) {
   if (!out) throw std::runtime_error(fmt::format("cannot write '{}'", file));
 }
 
-void runInfo(const Options& options) {
+void runInfo(const InfoOptions& options) {
   dropWishes();
   const Json all = infoOfAll(options);
   const std::string json = all.dump(2) + '\n';
@@ -114,7 +114,7 @@ void runInfo(const Options& options) {
 
 void addInfo(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Devices: what they are, hold, compute and cost");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoOptions>();
   command
       ->add_option("--device", options->device,
                    "Only this one: native, reference, gpu, gpu:N, software, or a part of a renderer's name")

@@ -16,13 +16,13 @@ namespace sk_tool {
 
 namespace {
 
-constexpr std::size_t count = 1 << 16;
+constexpr std::size_t operandCount = 1 << 16;
 constexpr sk::CallOptions fast{.intrinsics = sk::Intrinsics::Fast};
 
 /// Numbers of all magnitudes whose products, quotients and sums are normal ones.
-std::vector<float> operands(unsigned seed) {
+std::vector<float> floatOperands(unsigned seed) {
   Numbers numbers(seed);
-  std::vector<float> made(count);
+  std::vector<float> made(operandCount);
   for (float& x : made) x = numbers.anySign(numbers.logarithmic(0x1p-30, 0x1p30));
   return made;
 }
@@ -33,14 +33,14 @@ Json errorsOf(const char* name, const std::vector<float>& got, const std::vector
               const Reference& reference) {
   ErrorStatistics errors;
   std::size_t right = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < operandCount; ++i) {
     const double exact = reference(i);
     errors.add(got[i], exact, first[i]);
     right += got[i] == static_cast<float>(exact);
   }
   Json json = {{"name", name}};
   json.update(errors.json());
-  json["correctly_rounded"] = right == count;
+  json["correctly_rounded"] = right == operandCount;
   return json;
 }
 
@@ -93,8 +93,8 @@ std::string judgeOwnFma(sk::Device& device, const Products& given) {
 }  // namespace
 
 Json probeOperations(sk::Device& device) {
-  const std::vector<float> a = operands(1);
-  const std::vector<float> b = operands(2);
+  const std::vector<float> a = floatOperands(1);
+  const std::vector<float> b = floatOperands(2);
   std::vector<float> p = a;  // without a sign, hence without cancellation
   std::vector<float> q = b;
   for (float& x : p) x = std::fabs(x);
