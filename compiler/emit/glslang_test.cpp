@@ -64,6 +64,7 @@ TEST_CASE("every overload of every intrinsic") {
   k.output("r", floatType);
   Block body;
   for (const IntrinsicRow& entry : intrinsicRows()) {
+    if (entry.id == Intrinsic::AnyLane) continue;  // of native code alone
     for (const IntrinsicOverload& overload : overloads(entry.id)) {
       std::vector<ExprPtr> args;
       for (Type type : overload.arguments) {

@@ -15,7 +15,7 @@
 #include <catch2/catch.hpp>
 
 #include "lanes.sk.hpp"
-#include "sk/native/lanes.hpp"
+#include "sk/native/code.hpp"
 #include "sk/sk.hpp"
 
 namespace {
@@ -24,7 +24,7 @@ using Limits = std::numeric_limits<float>;
 
 /// Every row length up to two full sets of lanes and one more, and longer ones with a rest.
 std::vector<std::int64_t> lengths() {
-  std::vector<std::int64_t> result(2 * sk::native::laneCount + 1);
+  std::vector<std::int64_t> result(2 * sk::native::mostLanes + 1);
   std::iota(result.begin(), result.end(), 1);
   result.insert(result.end(), {64, 65, 143, 300});
   return result;

@@ -39,9 +39,7 @@
 #include "sk/table.hpp"
 
 namespace sk::native {
-struct Call;
 struct Code;
-struct ReduceCall;
 }  // namespace sk::native
 
 namespace sk::program {
@@ -207,26 +205,6 @@ struct TableUse {
   std::string_view name;  ///< of the function in the body
 };
 
-/// A kernel as native code (sk/native): computing in float, and in double, or in __float128, wherever the kernel says
-/// float. Null is what it was not made for: forms are for floats alone, and `quad` is made where skc is asked for it.
-struct NativeKernel {
-  void (*single)(const native::Call& call);
-  void (*reference)(const native::Call& call);
-  void (*quad)(const native::Call& call) = nullptr;
-};
-
-/// A reduction likewise.
-struct NativeReduction {
-  struct Code {
-    void (*run)(const native::ReduceCall& call) = nullptr;  ///< has at least one element in each block
-    /// The identities, to the one element of the results; null where there are none.
-    void (*identity)(const native::ReduceCall& call) = nullptr;
-  };
-  Code single;
-  Code reference = {};
-  Code quad = {};
-};
-
 /// A kernel. Its GLSL entry function takes, in order, every Uniform, Iterator, Spec, Input (by value) and
 /// Output (as `out`) parameter; gathers, variable outputs and scatter outputs are no parameters of it.
 struct Kernel {
@@ -247,7 +225,6 @@ struct Kernel {
   const Plan* plans = nullptr;  ///< for devices that cannot run it in one pass, most generous first
   std::uint8_t planCount = 0;
   CallOptions options = {};  ///< what its declaration chooses, where a call does not
-  const NativeKernel* native = nullptr;  ///< null where skc was not asked for native code
   const Kernel* half = nullptr;  ///< the form that rounds every float to half; null where there is none
   const Kernel* wide = nullptr;  ///< the form that computes in doubles what this one does in floats; likewise
   std::string_view whyNotHalf = {}, whyNotWide = {};  ///< where it computes floats, yet has no such form
@@ -322,7 +299,6 @@ struct Reduction {
   bool seeded;  ///< a run may start from its first elements, taken as the accumulators
       ///< (they have the same types); else it starts from the identities, which
       ///< then all exist
-  const NativeReduction* native = nullptr;
   const CompensatedReduction* compensated = nullptr;  ///< null where it sums no floats
   const Reduction* half = nullptr;  ///< its forms for other precisions, as those of Kernel
   const WideReduction* wide = nullptr;

@@ -8,7 +8,7 @@
 
 #include "native/entries.hpp"
 #include "native/slot_arrays.hpp"
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 #include "sk/native/code.hpp"
 
 namespace sk {

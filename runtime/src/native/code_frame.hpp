@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 #include "sk/native/code.hpp"
 #include "sk/program.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <span>
 
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 #include "sk/program.hpp"
 
 namespace sk {

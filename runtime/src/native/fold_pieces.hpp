@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 
 namespace sk {
 

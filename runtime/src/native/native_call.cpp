@@ -241,16 +241,6 @@ class Operands {
   std::list<std::pair<NativeStream*, Components>> written_;
 };
 
-const program::NativeReduction::Code& codeOf(const program::NativeReduction& reduction, RealType real) {
-  return real == RealType::Float    ? reduction.single
-         : real == RealType::Double ? reduction.reference
-                                    : reduction.quad;
-}
-
-auto codeOf(const program::NativeKernel& kernel, RealType real) {
-  return real == RealType::Float ? kernel.single : real == RealType::Double ? kernel.reference : kernel.quad;
-}
-
 /// A reduction's call, but for its results.
 class Folding {
  public:
@@ -272,20 +262,10 @@ class Folding {
   void run(Extents block) {
     const native::Call whole = fold.call(block);
     const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block};
-    if (reduction_.fold.code != nullptr) {
-      foldCode(reduction_, call, {.real = real_});
-    } else {
-      codeOf(*reduction_.native, real_).run(call);
-    }
+    foldCode(reduction_, call, {.real = real_});
   }
   void storeIdentity() {
-    const native::Call whole = fold.callAsItIs();
-    if (reduction_.fold.code != nullptr) {
-      storeIdentities(reduction_, whole, {.real = real_});
-    } else {
-      codeOf(*reduction_.native, real_)
-          .identity({whole, {combine_, {1, 1, 1, 1}, combineTables_}, {1, 1, 1, 1}});
-    }
+    storeIdentities(reduction_, fold.callAsItIs(), {.real = real_});
   }
 
  private:
@@ -336,11 +316,7 @@ void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments
   Operands operands(real, kernel, arguments, domain, tablesOf(kernel, real, options));
   {
     const NativePass traced(*this, kernel, {}, arguments, domain);
-    if (kernel.code != nullptr) {
-      runCode(kernel, operands.call(), {.real = real});
-    } else {
-      codeOf(*kernel.native, real)(operands.call());
-    }
+    runCode(kernel, operands.call(), {.real = real});
   }
   operands.settle();
 }

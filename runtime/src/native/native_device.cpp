@@ -21,6 +21,7 @@ namespace {
 }
 
 void checkCode(const program::Kernel& kernel, RealType real) {
+  if (kernel.code == nullptr) failWithoutCode(kernel);
   if (real == RealType::Quad && !hasCodeFor(*kernel.code, real)) failWithoutQuad(kernel);
 }
 
@@ -51,31 +52,9 @@ NativeDevice::~NativeDevice() {
   }
 }
 
-void NativeDevice::checkProgram(const program::Kernel& kernel) {
-  if (kernel.code != nullptr) {
-    checkCode(kernel, real_);
-    return;
-  }
-  if (kernel.native == nullptr) {
-    failWithoutCode(kernel);
-  }
-  if (real_ == RealType::Quad && kernel.native->quad == nullptr) {
-    failWithoutQuad(kernel);
-  }
-}
+void NativeDevice::checkProgram(const program::Kernel& kernel) { checkCode(kernel, real_); }
 
-void NativeDevice::checkProgram(const program::Reduction& reduction) {
-  if (reduction.fold.code != nullptr) {
-    checkCode(reduction.fold, real_);
-    return;
-  }
-  if (reduction.native == nullptr) {
-    failWithoutCode(reduction.fold);
-  }
-  if (real_ == RealType::Quad && reduction.native->quad.run == nullptr) {
-    failWithoutQuad(reduction.fold);
-  }
-}
+void NativeDevice::checkProgram(const program::Reduction& reduction) { checkCode(reduction.fold, real_); }
 
 void NativeDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
   if (asked == Target::Fragment || asked == Target::Compute) {

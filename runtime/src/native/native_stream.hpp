@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "native/components.hpp"
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 #include "stream_state.hpp"
 
 namespace sk {

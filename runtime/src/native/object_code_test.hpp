@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "native/slot_arrays.hpp"
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 #include "sk/native/code.hpp"
 #include "sk/program.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "native/code_frame.hpp"
 #include "native/components.hpp"
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 #include "sk/native/code.hpp"
 #include "sk/program.hpp"
 

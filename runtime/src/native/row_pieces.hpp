@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 #include "sk/native/parallel.hpp"
 
 namespace sk {

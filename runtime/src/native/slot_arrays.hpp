@@ -14,7 +14,7 @@
 #include "native/code_frame.hpp"
 #include "native/entries.hpp"
 #include "native/scalars.hpp"
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 #include "sk/native/code.hpp"
 #include "sk/native/parallel.hpp"
 #include "sk/program.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "native/entries.hpp"
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 #include "sk/program.hpp"
 
 namespace sk {

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "native/entries.hpp"
-#include "sk/native/call.hpp"
+#include "native/call.hpp"
 #include "sk/program.hpp"
 
 namespace sk {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <span>
 
 namespace sk::native {
 
@@ -27,19 +26,6 @@ struct Table {
     const float* const c = coefficients + static_cast<std::ptrdiff_t>(interval) * (isCubic ? 4 : 2);
     return isCubic ? c[0] + t * (c[1] + t * (c[2] + t * c[3])) : c[0] + t * c[1];
   }
-};
-
-/// One of a call's tables, if it has any: a call that computes its functions has none.
-template <class Real>
-class TableOf {
- public:
-  TableOf(std::span<const Table> tables, std::size_t number)
-      : table_(tables.empty() ? nullptr : &tables[number]) {}
-  bool isGiven() const { return table_ != nullptr; }
-  Real at(Real x) const { return static_cast<Real>(table_->at(static_cast<float>(x))); }
-
- private:
-  const Table* table_;
 };
 
 }  // namespace sk::native
