@@ -63,7 +63,9 @@ Division divide(Lanes& l, bool isSigned, llvm::Value* a, llvm::Value* c) {
   return {quotient, remainder};
 }
 
-llvm::Value* shiftCount(Lanes& l, llvm::Value* count) { return l.b.CreateAnd(count, l.integer(count->getType(), 31)); }
+llvm::Value* shiftCount(Lanes& l, llvm::Value* count) {
+  return l.b.CreateAnd(count, l.integer(count->getType(), 31));
+}
 
 llvm::Value* realOperation(Lanes& l, BinaryOp op, llvm::Value* a, llvm::Value* c) {
   switch (op) {
@@ -202,7 +204,8 @@ Part convert(Lanes& l, Scalar from, Scalar to, const Part& operand) {
   if (from == to) return operand;
   if (isNarrow(from)) return convert(l, carrierOf(from), to, fromNarrow(l, from, operand));
   if (isNarrow(to)) return toNarrow(l, to, convert(l, from, carrierOf(to), operand));
-  const bool areWords = (from == Scalar::Int || from == Scalar::Uint) && (to == Scalar::Int || to == Scalar::Uint);
+  const bool areWords =
+      (from == Scalar::Int || from == Scalar::Uint) && (to == Scalar::Int || to == Scalar::Uint);
   if (areWords) return operand;
   llvm::Value* const x = l.value(operand);
   llvm::Type* const type = l.sameShape(x, l.type(to));
@@ -226,8 +229,8 @@ Part floatOfHalf(Lanes& l, const Part& stored) {
   llvm::Value* const shifted = l.b.CreateShl(magnitude, 13);
   llvm::Value* const normal = l.b.CreateAdd(shifted, l.integer(word, 112 << 23));
   llvm::Value* const special = l.b.CreateAdd(shifted, l.integer(word, 224 << 23));  // infinity, NaN
-  llvm::Value* const denormal = l.b.CreateBitCast(
-      l.b.CreateFMul(l.b.CreateUIToFP(magnitude, real), l.number(real, 0x1p-24)), word);
+  llvm::Value* const denormal =
+      l.b.CreateBitCast(l.b.CreateFMul(l.b.CreateUIToFP(magnitude, real), l.number(real, 0x1p-24)), word);
   llvm::Value* result =
       l.b.CreateSelect(l.b.CreateICmpUGE(magnitude, l.integer(word, 0x7c00)), special, normal);
   result = l.b.CreateSelect(l.b.CreateICmpULT(magnitude, l.integer(word, 0x400)), denormal, result);

@@ -24,8 +24,12 @@ class Constants {
  public:
   explicit Constants(llvm::Module& module) : module_(module), context_(module.getContext()) {}
 
-  llvm::Constant* byte(std::uint64_t value) { return llvm::ConstantInt::get(llvm::Type::getInt8Ty(context_), value); }
-  llvm::Constant* word(std::uint64_t value) { return llvm::ConstantInt::get(llvm::Type::getInt32Ty(context_), value); }
+  llvm::Constant* byte(std::uint64_t value) {
+    return llvm::ConstantInt::get(llvm::Type::getInt8Ty(context_), value);
+  }
+  llvm::Constant* word(std::uint64_t value) {
+    return llvm::ConstantInt::get(llvm::Type::getInt32Ty(context_), value);
+  }
   llvm::Constant* record(const std::vector<llvm::Constant*>& members) {
     return llvm::ConstantStruct::getAnon(context_, members);
   }
@@ -52,8 +56,8 @@ void writeCodeTable(llvm::Module& code, const CodeTable& table) {
   for (const EntryFunction& entry : table.entries) {
     entries.push_back(c.record({entry.function, c.byte(static_cast<std::uint64_t>(entry.kind)),
                                 c.byte(static_cast<std::uint64_t>(entry.real)),
-                                c.byte(static_cast<std::uint64_t>(entry.level)), c.byte(entry.isContracted ? 1 : 0),
-                                c.byte(entry.lanes)}));
+                                c.byte(static_cast<std::uint64_t>(entry.level)),
+                                c.byte(entry.isContracted ? 1 : 0), c.byte(entry.lanes)}));
   }
   for (const Slot& slot : table.slots) {
     std::vector<llvm::Constant*> members = {c.byte(slot.parameter)};
@@ -65,8 +69,8 @@ void writeCodeTable(llvm::Module& code, const CodeTable& table) {
   llvm::Constant* const value =
       c.record({c.word(Code::currentVersion), c.word(entries.size()), c.array(entries), c.array(slots),
                 c.word(slots.size()), c.byte(table.isUneven ? 1 : 0), c.byte(table.isOrdered ? 1 : 0)});
-  auto* const global = new llvm::GlobalVariable(code, value->getType(), true, llvm::GlobalValue::ExternalLinkage, value,
-                                                table.symbol);
+  auto* const global = new llvm::GlobalVariable(code, value->getType(), true,
+                                                llvm::GlobalValue::ExternalLinkage, value, table.symbol);
   global->setVisibility(llvm::GlobalValue::HiddenVisibility);
   global->setAlignment(llvm::Align(8));
 }

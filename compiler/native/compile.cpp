@@ -33,7 +33,9 @@ struct Version {
   Module plain;
   Module predicated;  ///< for several lanes
 
-  explicit Version(Module module) : plain(std::move(module)), predicated(clone(plain)) { predicate(predicated); }
+  explicit Version(Module module) : plain(std::move(module)), predicated(clone(plain)) {
+    predicate(predicated);
+  }
 };
 
 Module withLibrary(const Module& module, const CompileLibrary& compileLibrary) {
@@ -59,13 +61,16 @@ class Compilation {
   void add(const KernelRequest& request) {
     const Kernel& kernel = plain_.kernels[request.kernel];
     const SlotPlan slots = planSlots(plain_, kernel);
-    CodeTable table{.symbol = request.symbol, .entries = {}, .slots = slots.slots, .isUneven = false, .isOrdered = false};
+    CodeTable table{
+        .symbol = request.symbol, .entries = {}, .slots = slots.slots, .isUneven = false, .isOrdered = false};
     table.isUneven = emit::streamUses(plain_, kernel).loops;
     table.isOrdered = isOrdered(kernel);
     for (const EntryKind kind : entriesOf(plain_, kernel)) {
-      for (const CpuLevel& level : levelsFor(request, Real::Float)) addEntry(table, request, slots, kind, Real::Float, level);
+      for (const CpuLevel& level : levelsFor(request, Real::Float))
+        addEntry(table, request, slots, kind, Real::Float, level);
       if (request.inDoubles) {
-        for (const CpuLevel& level : levelsFor(request, Real::Double)) addEntry(table, request, slots, kind, Real::Double, level);
+        for (const CpuLevel& level : levelsFor(request, Real::Double))
+          addEntry(table, request, slots, kind, Real::Double, level);
       }
       if (request.inQuads) addEntry(table, request, slots, kind, Real::Quad, target_.levels().front());
     }
@@ -74,7 +79,8 @@ class Compilation {
 
   std::string write(Output output) {
     if (debug_) debug_->finish();
-    if (llvm::verifyModule(code_, &llvm::errs())) llvm::report_fatal_error("skc wrote LLVM IR that is not valid");
+    if (llvm::verifyModule(code_, &llvm::errs()))
+      llvm::report_fatal_error("skc wrote LLVM IR that is not valid");
     optimize(code_, target_.machine());
     llvm::SmallVector<char, 0> bytes;
     llvm::raw_svector_ostream stream(bytes);
@@ -82,7 +88,8 @@ class Compilation {
       code_.print(stream, nullptr);
     } else {
       llvm::legacy::PassManager passes;
-      const auto type = output == Output::Object ? llvm::CodeGenFileType::ObjectFile : llvm::CodeGenFileType::AssemblyFile;
+      const auto type =
+          output == Output::Object ? llvm::CodeGenFileType::ObjectFile : llvm::CodeGenFileType::AssemblyFile;
       target_.machine().addPassesToEmitFile(passes, stream, nullptr, type, /*DisableVerify=*/true);
       passes.run(code_);
     }
@@ -102,20 +109,23 @@ class Compilation {
     return {target_.levels().front()};
   }
 
-  void addEntry(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind, Real real,
-                const CpuLevel& level) {
+  void addEntry(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind,
+                Real real, const CpuLevel& level) {
     const Kernel& kernel = plain_.kernels[request.kernel];
     Form form{.lanes = 1, .real = real, .hasMaskRegisters = level.hasMaskRegisters, .isContracted = false};
-    if (isInLanes(kernel, kind, real)) form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
+    if (isInLanes(kernel, kind, real))
+      form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
     const bool isPredicated = form.lanes > 1;
     const Version& version = versionFor(real);
     const Module& module = isPredicated ? version.predicated : version.plain;
     std::optional<analysis::Uniformity> uniformity;
     if (isPredicated) uniformity.emplace(module, module.kernels[request.kernel]);
-    const EntrySource source{module, module.kernels[request.kernel], slots, uniformity ? &*uniformity : nullptr,
-                             form,   level,                          debug_ ? &*debug_ : nullptr};
+    const EntrySource source{
+        module, module.kernels[request.kernel], slots, uniformity ? &*uniformity : nullptr, form,
+        level,  debug_ ? &*debug_ : nullptr};
     const std::string name = request.symbol + suffix(kind, real, level);
-    table.entries.push_back({writeEntry(code_, source, kind, name), kind, real, level.level, false, form.lanes});
+    table.entries.push_back(
+        {writeEntry(code_, source, kind, name), kind, real, level.level, false, form.lanes});
   }
 
   const Version& versionFor(Real real) {

@@ -61,20 +61,24 @@ void DebugInfo::leave(llvm::IRBuilder<>& b) {
 void DebugInfo::moveTo(llvm::IRBuilder<>& b, const Loc& loc) {
   if (loc.line == 0) return;  // what transforms have added belongs to the line before it
   const Scope& scope = scopes_.back();
-  b.SetCurrentDebugLocation(llvm::DILocation::get(b.getContext(), loc.line, 0, scope.program, scope.calledAt));
+  b.SetCurrentDebugLocation(
+      llvm::DILocation::get(b.getContext(), loc.line, 0, scope.program, scope.calledAt));
 }
 
 llvm::DIType* DebugInfo::scalarType(Scalar scalar, llvm::Type* memory) {
   const std::uint64_t bits = memory->getScalarSizeInBits();
   switch (carrierOf(scalar)) {
-    case Scalar::Bool: return builder_.createBasicType("bool", std::max<std::uint64_t>(bits, 8), llvm::dwarf::DW_ATE_boolean);
+    case Scalar::Bool:
+      return builder_.createBasicType("bool", std::max<std::uint64_t>(bits, 8), llvm::dwarf::DW_ATE_boolean);
     case Scalar::Int: return builder_.createBasicType("int", bits, llvm::dwarf::DW_ATE_signed);
     case Scalar::Uint: return builder_.createBasicType("uint", bits, llvm::dwarf::DW_ATE_unsigned);
     default: break;
   }
   const bool isReal = scalar == Scalar::Float || scalar == Scalar::Double;
-  return builder_.createBasicType(bits == 32 ? "float" : bits == 64 ? "double" : "half", bits,
-                                  isReal ? llvm::dwarf::DW_ATE_float : llvm::dwarf::DW_ATE_unsigned);
+  return builder_.createBasicType(bits == 32   ? "float"
+                                  : bits == 64 ? "double"
+                                               : "half",
+                                  bits, isReal ? llvm::dwarf::DW_ATE_float : llvm::dwarf::DW_ATE_unsigned);
 }
 
 void DebugInfo::declare(llvm::IRBuilder<>& b, const Variable& variable, llvm::Value* memory) {

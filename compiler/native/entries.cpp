@@ -76,9 +76,12 @@ class EntryWriter {
   llvm::Value* number(std::int64_t value) { return b_.getInt64(static_cast<std::uint64_t>(value)); }
 
   /// for (i = first; i < count; i += step) body(i)
-  void loop(llvm::Value* first, llvm::Value* count, std::int64_t step, const std::function<void(llvm::Value*)>& body) {
+  void loop(llvm::Value* first, llvm::Value* count, std::int64_t step,
+            const std::function<void(llvm::Value*)>& body) {
     llvm::BasicBlock* const before = b_.GetInsertBlock();
-    const auto block = [&](const char* name) { return llvm::BasicBlock::Create(b_.getContext(), name, function_); };
+    const auto block = [&](const char* name) {
+      return llvm::BasicBlock::Create(b_.getContext(), name, function_);
+    };
     llvm::BasicBlock* const round = block("elements");
     llvm::BasicBlock* const end = block("end");
     b_.CreateCondBr(b_.CreateICmpSLT(first, count), round, end);
@@ -162,7 +165,8 @@ class EntryWriter {
     State state;
     for (const std::uint32_t i : paramsOf(ParamRole::Accumulator)) {
       for (const Scalar scalar : scalarsOf(s_.module, s_.kernel.params[i].type)) {
-        llvm::Value* const place = l_.at(b_.getPtrTy(), pointers, number(static_cast<std::int64_t>(state.arrays.size())));
+        llvm::Value* const place =
+            l_.at(b_.getPtrTy(), pointers, number(static_cast<std::int64_t>(state.arrays.size())));
         state.scalars.push_back(scalar);
         state.arrays.push_back(b_.CreateLoad(b_.getPtrTy(), place));
       }
@@ -172,13 +176,15 @@ class EntryWriter {
   Parts loadState(const State& state, llvm::Value* column) {
     Parts parts;
     for (std::size_t c = 0; c < state.arrays.size(); ++c) {
-      parts.push_back(l_.loadNeighbors(state.scalars[c], l_.at(l_.stored(state.scalars[c]), state.arrays[c], column)));
+      parts.push_back(
+          l_.loadNeighbors(state.scalars[c], l_.at(l_.stored(state.scalars[c]), state.arrays[c], column)));
     }
     return parts;
   }
   void storeState(const State& state, llvm::Value* column, const Parts& parts) {
     for (std::size_t c = 0; c < state.arrays.size(); ++c) {
-      l_.storeNeighbors(state.scalars[c], parts[c], l_.at(l_.stored(state.scalars[c]), state.arrays[c], column));
+      l_.storeNeighbors(state.scalars[c], parts[c],
+                        l_.at(l_.stored(state.scalars[c]), state.arrays[c], column));
     }
   }
 
@@ -237,13 +243,16 @@ class EntryWriter {
     llvm::Value* const firstRound =
         s_.kernel.reduction->seeded ? b_.CreateZExt(starts, b_.getInt64Ty()) : number(0);
     loop(number(0), columns, l_.count(), [&](llvm::Value* column) {
-      const auto block = [&](const char* name) { return llvm::BasicBlock::Create(b_.getContext(), name, function_); };
+      const auto block = [&](const char* name) {
+        return llvm::BasicBlock::Create(b_.getContext(), name, function_);
+      };
       llvm::BasicBlock* const start = block("begin");
       llvm::BasicBlock* const resume = block("resume");
       llvm::BasicBlock* const fold = block("fold");
       std::vector<llvm::Value*> memory;
       llvm::IRBuilder<> allocas(prologue_, prologue_->begin());
-      for (const Scalar scalar : state.scalars) memory.push_back(allocas.CreateAlloca(l_.vector(l_.type(scalar))));
+      for (const Scalar scalar : state.scalars)
+        memory.push_back(allocas.CreateAlloca(l_.vector(l_.type(scalar))));
       const auto keep = [&](const Parts& parts) {
         for (std::size_t c = 0; c < parts.size(); ++c) b_.CreateStore(parts[c].value, memory[c]);
       };
@@ -320,7 +329,8 @@ class EntryWriter {
     const Parts parts = make();
     const std::vector<Scalar> scalars = scalarsOfAll(role);
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      llvm::Value* const place = l_.at(b_.getPtrTy(), function_->getArg(1), number(static_cast<std::int64_t>(i)));
+      llvm::Value* const place =
+          l_.at(b_.getPtrTy(), function_->getArg(1), number(static_cast<std::int64_t>(i)));
       l_.storeOne(scalars[i], parts[i].value, b_.CreateLoad(b_.getPtrTy(), place));
     }
     end();
@@ -355,7 +365,8 @@ bool hasIdentities(const Kernel& kernel) {
 
 }  // namespace
 
-llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, EntryKind kind, const std::string& name) {
+llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, EntryKind kind,
+                           const std::string& name) {
   return EntryWriter(code, source, name).write(kind);
 }
 

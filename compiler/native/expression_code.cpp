@@ -110,8 +110,12 @@ Parts FunctionCode::either(llvm::Value* condition, const std::function<Parts()>&
 }
 
 Parts FunctionCode::matrixProduct(const Parts& a, const Parts& c, std::size_t n, bool isVector) {
-  const auto product = [&](const Part& x, const Part& y) { return binary(l, BinaryOp::Mul, Scalar::Float, x, y); };
-  const auto sum = [&](const Part& x, const Part& y) { return binary(l, BinaryOp::Add, Scalar::Float, x, y); };
+  const auto product = [&](const Part& x, const Part& y) {
+    return binary(l, BinaryOp::Mul, Scalar::Float, x, y);
+  };
+  const auto sum = [&](const Part& x, const Part& y) {
+    return binary(l, BinaryOp::Add, Scalar::Float, x, y);
+  };
   const std::size_t columns = isVector ? 1 : n;
   Parts result;
   for (std::size_t i = 0; i < n; ++i) {
@@ -130,7 +134,8 @@ Parts FunctionCode::parts(const Expr& expr, const Binary& n) {
   if (isLogical && lhs.size() == 1 && l.isUniform(lhs[0]) && isCostly(*n.rhs)) {
     const auto known = [&]() -> Parts { return {{b.getInt1(n.op == BinaryOp::LogicalOr)}}; };
     const auto asked = [&] { return expression(*n.rhs); };
-    return n.op == BinaryOp::LogicalAnd ? either(lhs[0].value, asked, known) : either(lhs[0].value, known, asked);
+    return n.op == BinaryOp::LogicalAnd ? either(lhs[0].value, asked, known)
+                                        : either(lhs[0].value, known, asked);
   }
   const Parts rhs = expression(*n.rhs);
   const Type left = n.lhs->type, right = n.rhs->type;
@@ -158,7 +163,8 @@ Parts FunctionCode::parts(const Expr&, const Select& n) {
   }
   const Parts yes = expression(*n.yes), no = expression(*n.no);
   Parts all;
-  for (std::size_t i = 0; i < yes.size(); ++i) all.push_back(l.select(cond[cond.size() == 1 ? 0 : i], yes[i], no[i]));
+  for (std::size_t i = 0; i < yes.size(); ++i)
+    all.push_back(l.select(cond[cond.size() == 1 ? 0 : i], yes[i], no[i]));
   return all;
 }
 
@@ -217,7 +223,8 @@ Parts FunctionCode::parts(const Expr& expr, const Index& n) {
   if (const std::optional<Place> place = placeOf(expr)) return load(*place);
   const Parts base = expression(*n.base);
   const Type type = n.base->type;
-  const std::uint32_t length = type.kind == Type::Kind::Array ? k.module.arrays[type.index].length : type.width;
+  const std::uint32_t length =
+      type.kind == Type::Kind::Array ? k.module.arrays[type.index].length : type.width;
   const std::size_t size = base.size() / length;
   const Part index = indexInside(*n.index, length);
   if (const auto* known = llvm::dyn_cast<llvm::ConstantInt>(index.value)) {
@@ -231,7 +238,8 @@ Parts FunctionCode::parts(const Expr& expr, const Index& n) {
     for (std::uint32_t i = 0; i < length; ++i) column.push_back(base[i * size + c]);
     if (length > 4 && areConstants(column)) {
       std::vector<llvm::Constant*> values;
-      for (const Part& part : column) values.push_back(llvm::cast<llvm::Constant>(l.toStored(scalars[c], part.value)));
+      for (const Part& part : column)
+        values.push_back(llvm::cast<llvm::Constant>(l.toStored(scalars[c], part.value)));
       llvm::Type* const stored = l.stored(scalars[c]);
       auto* const data = llvm::ConstantArray::get(llvm::ArrayType::get(stored, length), values);
       auto* const global = new llvm::GlobalVariable(*b.GetInsertBlock()->getModule(), data->getType(), true,
@@ -267,7 +275,8 @@ Parts FunctionCode::lookUp(FunctionId function, const Parts& argument) {
       b.CreateIsNull(tables), [&] { return inlineCall(k, function, {argument}).result; },
       [&]() -> Parts {
         constexpr auto bytes = static_cast<std::int64_t>(sizeof(sk::native::Table));
-        llvm::Value* const table = b.CreateConstGEP1_64(b.getInt8Ty(), tables, static_cast<std::uint64_t>(number * bytes));
+        llvm::Value* const table =
+            b.CreateConstGEP1_64(b.getInt8Ty(), tables, static_cast<std::uint64_t>(number * bytes));
         return {tableValue(table, argument[0])};
       });
 }
@@ -278,8 +287,12 @@ Part FunctionCode::tableValue(llvm::Value* table, const Part& x) {
   const auto field = [&](std::size_t offset, llvm::Type* type) {
     return b.CreateLoad(type, b.CreateConstGEP1_64(b.getInt8Ty(), table, offset));
   };
-  const auto real = [&](BinaryOp op, const Part& a, const Part& c) { return binary(l, op, Scalar::Float, a, c); };
-  const auto integer = [&](BinaryOp op, const Part& a, const Part& c) { return binary(l, op, Scalar::Int, a, c); };
+  const auto real = [&](BinaryOp op, const Part& a, const Part& c) {
+    return binary(l, op, Scalar::Float, a, c);
+  };
+  const auto integer = [&](BinaryOp op, const Part& a, const Part& c) {
+    return binary(l, op, Scalar::Int, a, c);
+  };
   const Part intervals = {field(offsetof(Table, intervals), l.int32())};
   const Part end = convert(l, Scalar::Int, Scalar::Float, intervals);
   const Part low = {field(offsetof(Table, low), l.real())};
@@ -304,7 +317,8 @@ Part FunctionCode::tableValue(llvm::Value* table, const Part& x) {
                                   : l.loadOne(Scalar::Float, l.at(l.real(), coefficients, at.value));
     };
     Part value = coefficient(count - 1);
-    for (std::int64_t i = count - 1; i-- > 0;) value = real(BinaryOp::Add, coefficient(i), real(BinaryOp::Mul, t, value));
+    for (std::int64_t i = count - 1; i-- > 0;)
+      value = real(BinaryOp::Add, coefficient(i), real(BinaryOp::Mul, t, value));
     return {value};
   };
   const Parts value = either(isCubic, [&] { return polynomial(4); }, [&] { return polynomial(2); });

@@ -12,7 +12,8 @@ namespace skc::native {
 
 using namespace ir;
 
-CallResult inlineCall(const KernelContext& context, FunctionId function, const std::vector<Parts>& arguments) {
+CallResult inlineCall(const KernelContext& context, FunctionId function,
+                      const std::vector<Parts>& arguments) {
   return FunctionCode(context, function).write(arguments);
 }
 

@@ -39,7 +39,8 @@ struct CallResult {
 
 /// Writes the body of a function at the insertion point, which is afterwards where it has returned. There is one argument
 /// for each parameter; those of streams are empty.
-CallResult inlineCall(const KernelContext& context, ir::FunctionId function, const std::vector<Parts>& arguments);
+CallResult inlineCall(const KernelContext& context, ir::FunctionId function,
+                      const std::vector<Parts>& arguments);
 
 /// The parts of an expression without variables: a constant, a border, an identity.
 Parts constantParts(const KernelContext& context, const ir::Expr& expr);
@@ -59,7 +60,7 @@ struct LeafMemory {
 struct Place {
   struct Leaf {
     const LeafMemory* memory;
-    Part offset;             ///< an int, in elements
+    Part offset;  ///< an int, in elements
     std::size_t dimensions;  ///< that have been indexed
   };
   ir::Type type;

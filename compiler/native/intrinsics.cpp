@@ -38,7 +38,9 @@ class Formula {
   Part either(const Part& a, const Part& c) const { return logic(BinaryOp::LogicalOr, a, c); }
   Part select(const Part& c, const Part& yes, const Part& no) const { return l.select(c, yes, no); }
   /// A number of the type of `like`.
-  Part number(const Part& like, double value) const { return {l.number(like.value->getType()->getScalarType(), value)}; }
+  Part number(const Part& like, double value) const {
+    return {l.number(like.value->getType()->getScalarType(), value)};
+  }
 
   Part decimal(const Part& like, const char* text) const {
     return {llvm::ConstantFP::get(like.value->getType()->getScalarType(), llvm::StringRef(text))};
@@ -126,7 +128,8 @@ Part sign(const Formula& f, Scalar scalar, const Part& x) {
 Part belowOne(const Part& x) {
   llvm::APFloat one(1.0);
   bool isInexact = false;
-  one.convert(x.value->getType()->getScalarType()->getFltSemantics(), llvm::APFloat::rmNearestTiesToEven, &isInexact);
+  one.convert(x.value->getType()->getScalarType()->getFltSemantics(), llvm::APFloat::rmNearestTiesToEven,
+              &isInexact);
   one.next(/*nextDown=*/true);
   return {llvm::ConstantFP::get(x.value->getType()->getScalarType(), one)};
 }
@@ -134,8 +137,8 @@ Part belowOne(const Part& x) {
 /// Below 1, also where x is a little less than a whole number.
 Part fraction(const Formula& f, const Part& x) {
   const Part rest = f.sub(x, f.floor(x));
-  const Part inside = f.select(f.less(rest, f.number(x, 1)), rest,
-                               f.select(f.differs(rest, rest), rest, belowOne(x)));
+  const Part inside =
+      f.select(f.less(rest, f.number(x, 1)), rest, f.select(f.differs(rest, rest), rest, belowOne(x)));
   return f.select(f.isInfinite(x), f.number(x, std::numeric_limits<double>::quiet_NaN()), inside);
 }
 
@@ -208,7 +211,8 @@ Part quadFrexp(const Formula& f, const Part& x, bool isExponent) {
   llvm::Value* const exponent = entry.CreateAlloca(l.int32());
   llvm::Type* const quad = x.value->getType()->getScalarType();
   const llvm::FunctionCallee frexp = around->getParent()->getOrInsertFunction(
-      std::string("frexp") + f.quadSuffix(), llvm::FunctionType::get(quad, {quad, exponent->getType()}, false));
+      std::string("frexp") + f.quadSuffix(),
+      llvm::FunctionType::get(quad, {quad, exponent->getType()}, false));
   return l.perLane({x}, isExponent ? l.int32() : quad, [&](llvm::ArrayRef<llvm::Value*> a) -> llvm::Value* {
     llvm::Value* const mantissa = l.b.CreateCall(frexp, {a[0], exponent});
     return isExponent ? l.b.CreateLoad(l.int32(), exponent) : mantissa;
@@ -227,7 +231,8 @@ Part frexpExponent(const Formula& f, const Part& x) {
   if (bits.isScaled != nullptr) {
     exponent = l.b.CreateSelect(bits.isScaled, l.b.CreateSub(exponent, l.integer(word, 54)), exponent);
   }
-  return f.select(isWithoutExponent(f, x), zero, {l.b.CreateTrunc(exponent, l.sameShape(x.value, l.int32()))});
+  return f.select(isWithoutExponent(f, x), zero,
+                  {l.b.CreateTrunc(exponent, l.sameShape(x.value, l.int32()))});
 }
 
 Part frexpMantissa(const Formula& f, const Part& x) {
@@ -255,7 +260,8 @@ Part ldexp(const Formula& f, const Part& number, const Part& exponent) {
   llvm::Value* n = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, e.value, l.integer(word, -400));
   n = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, n, l.integer(word, 400));
   llvm::Type* const longWord = l.sameShape(x.value, l.int64());
-  llvm::Value* const bits = l.b.CreateShl(l.b.CreateSExt(l.b.CreateAdd(n, l.integer(word, 1023)), longWord), 52);
+  llvm::Value* const bits =
+      l.b.CreateShl(l.b.CreateSExt(l.b.CreateAdd(n, l.integer(word, 1023)), longWord), 52);
   llvm::Type* const wide = l.sameShape(x.value, l.b.getDoubleTy());
   llvm::Value* const product = l.b.CreateFMul(l.b.CreateFPExt(x.value, wide), l.b.CreateBitCast(bits, wide));
   return {l.b.CreateFPTrunc(product, x.value->getType())};
@@ -408,7 +414,8 @@ Part largest(const Formula& f, const Parts& a) {
 /// A power of 2 by which vectors with this largest component are multiplied, so that no square overflows or vanishes. All
 /// of its values are in the range of float, whose powers of 2 they are.
 Part lengthScale(const Formula& f, const Part& most) {
-  const Part small = f.select(f.less(most, f.number(most, 0x1p-40)), f.number(most, 0x1p86), f.number(most, 1));
+  const Part small =
+      f.select(f.less(most, f.number(most, 0x1p-40)), f.number(most, 0x1p86), f.number(most, 1));
   const Part isLarge = binary(f.l, BinaryOp::GreaterEqual, Scalar::Float, most, f.number(most, 0x1p62));
   return f.select(isLarge, f.number(most, 0x1p-66), small);
 }
@@ -432,7 +439,9 @@ Parts normalize(const Formula& f, const Parts& a) {
 }
 
 Parts cross(const Formula& f, const Parts& a, const Parts& c) {
-  const auto minor = [&](std::size_t i, std::size_t k) { return f.sub(f.mul(a[i], c[k]), f.mul(c[i], a[k])); };
+  const auto minor = [&](std::size_t i, std::size_t k) {
+    return f.sub(f.mul(a[i], c[k]), f.mul(c[i], a[k]));
+  };
   return {minor(1, 2), minor(2, 0), minor(0, 1)};
 }
 

@@ -12,6 +12,7 @@ namespace skc::native {
 
 /// Lanes that fill the CPU's vectors; several vectors of each where the kernel waits for results in loops and has
 /// registers to spare.
-std::uint32_t laneCount(const ir::Module& module, const ir::Kernel& kernel, sk::native::Real real, const CpuLevel& level);
+std::uint32_t laneCount(const ir::Module& module, const ir::Kernel& kernel, sk::native::Real real,
+                        const CpuLevel& level);
 
 }  // namespace skc::native

@@ -37,7 +37,9 @@ llvm::Type* Lanes::type(Scalar scalar) const {
   return b.getInt16Ty();
 }
 
-llvm::Type* Lanes::stored(Scalar scalar) const { return scalar == Scalar::Bool ? b.getInt8Ty() : type(scalar); }
+llvm::Type* Lanes::stored(Scalar scalar) const {
+  return scalar == Scalar::Bool ? b.getInt8Ty() : type(scalar);
+}
 
 std::uint32_t Lanes::storedBytes(Scalar scalar) const { return stored(scalar)->getPrimitiveSizeInBits() / 8; }
 
@@ -151,7 +153,8 @@ llvm::Value* Lanes::toStored(Scalar scalar, llvm::Value* value) const {
 }
 
 llvm::Value* Lanes::fromStored(Scalar scalar, llvm::Value* value) const {
-  return scalar == Scalar::Bool ? b.CreateICmpNE(value, llvm::Constant::getNullValue(value->getType())) : value;
+  return scalar == Scalar::Bool ? b.CreateICmpNE(value, llvm::Constant::getNullValue(value->getType()))
+                                : value;
 }
 
 Part Lanes::loadOne(Scalar scalar, llvm::Value* address) const {
@@ -176,8 +179,8 @@ Part Lanes::gather(Scalar scalar, llvm::Value* base, llvm::Value* index) const {
   llvm::Type* const element = stored(scalar);
   llvm::Value* const addresses = at(element, base, index);
   if (count() == 1) return loadOne(scalar, addresses);
-  return {fromStored(scalar,
-                     b.CreateMaskedGather(vector(element), addresses, llvm::Align(storedBytes(scalar))))};
+  return {
+      fromStored(scalar, b.CreateMaskedGather(vector(element), addresses, llvm::Align(storedBytes(scalar))))};
 }
 
 void Lanes::scatter(Scalar scalar, const Part& part, llvm::Value* base, llvm::Value* index) const {

@@ -27,7 +27,7 @@ struct Form {
   std::uint32_t lanes = 1;
   sk::native::Real real = sk::native::Real::Float;
   bool hasMaskRegisters = false;  ///< vectors of bool cost nothing to keep (AVX-512)
-  bool isContracted = false;      ///< a multiplication and an addition may become one operation
+  bool isContracted = false;  ///< a multiplication and an addition may become one operation
 };
 
 class Lanes {
@@ -79,7 +79,9 @@ class Lanes {
   Part select(const Part& cond, const Part& yes, const Part& no) const;
   /// Whether a bool is true in some lane: an i1.
   llvm::Value* any(const Part& mask) const;
-  llvm::Value* lane(llvm::Value* vector, std::uint32_t number) const { return b.CreateExtractElement(vector, number); }
+  llvm::Value* lane(llvm::Value* vector, std::uint32_t number) const {
+    return b.CreateExtractElement(vector, number);
+  }
 
   /// function(lane by lane) of scalars: for what has no vector form. With uniform parts only, it is called once.
   Part perLane(const std::vector<Part>& parts, llvm::Type* result,

@@ -10,7 +10,8 @@ using namespace ir;
 
 namespace {
 
-void addLeaves(const Module& module, Type type, std::vector<std::uint32_t>& dimensions, std::vector<Leaf>& leaves) {
+void addLeaves(const Module& module, Type type, std::vector<std::uint32_t>& dimensions,
+               std::vector<Leaf>& leaves) {
   switch (type.kind) {
     case Type::Kind::Void: return;
     case Type::Kind::Scalar:
@@ -87,7 +88,8 @@ std::vector<Component> componentsOf(const Module& module, Type type) {
 std::vector<Scalar> scalarsOf(const Module& module, Type type) {
   const std::vector<Leaf> leaves = leavesOf(module, type);
   std::vector<Scalar> scalars;
-  for (const Component& component : componentsOf(module, type)) scalars.push_back(leaves[component.leaf].scalar);
+  for (const Component& component : componentsOf(module, type))
+    scalars.push_back(leaves[component.leaf].scalar);
   return scalars;
 }
 

@@ -23,17 +23,17 @@ enum class Output : std::uint8_t { Object, Assembly, Llvm };
 /// A kernel that gets native code.
 struct KernelRequest {
   ir::KernelId kernel;
-  std::string symbol;      ///< of its Code
+  std::string symbol;  ///< of its Code
   bool inDoubles = false;  ///< computing in double, too, wherever the kernel says float
-  bool inQuads = false;    ///< and in binary128
-  bool isCold = false;     ///< computes a handful of elements: one level of the CPU does
+  bool inQuads = false;  ///< and in binary128
+  bool isCold = false;  ///< computes a handful of elements: one level of the CPU does
 };
 
 struct Options {
-  std::string triple = {};               ///< empty: of the machine that skc runs on
+  std::string triple = {};  ///< empty: of the machine that skc runs on
   std::vector<std::string> levels = {};  ///< of the CPU, as levelNames() has them; empty: all
-  std::uint32_t lanes = 0;               ///< elements computed together; 0: chosen for each kernel
-  bool debugInfo = false;                ///< lines and variables of the .sk file for debuggers
+  std::uint32_t lanes = 0;  ///< elements computed together; 0: chosen for each kernel
+  bool debugInfo = false;  ///< lines and variables of the .sk file for debuggers
 };
 
 /// A mistake in the options, lower-case and without a period: an unknown triple, level or number of lanes.

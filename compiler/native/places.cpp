@@ -48,7 +48,8 @@ void FunctionCode::declareAll() {
 
 Place FunctionCode::variable(VarId var) const {
   Place place{function_.variables[var].type, {}};
-  for (const LeafMemory& memory : variables_[var]) place.leaves.push_back({&memory, {l.integer(l.int32(), 0)}, 0});
+  for (const LeafMemory& memory : variables_[var])
+    place.leaves.push_back({&memory, {l.integer(l.int32(), 0)}, 0});
   return place;
 }
 
@@ -58,7 +59,8 @@ Part FunctionCode::indexInside(const Expr& index, std::uint32_t length) {
   if (i.isConsecutive) i = {l.spread(i)};
   llvm::Type* const type = i.value->getType();
   llvm::Value* const last = l.integer(type, length - 1);
-  if (index.type.scalar == Scalar::Uint) return {b.CreateBinaryIntrinsic(llvm::Intrinsic::umin, i.value, last)};
+  if (index.type.scalar == Scalar::Uint)
+    return {b.CreateBinaryIntrinsic(llvm::Intrinsic::umin, i.value, last)};
   llvm::Value* const low = b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, i.value, l.integer(type, 0));
   return {b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, low, last)};
 }
@@ -109,7 +111,8 @@ std::optional<Place> FunctionCode::placeOf(const Expr& expr) {
   for (Place::Leaf& leaf : place->leaves) {
     std::uint32_t inner = 1;
     ++leaf.dimensions;
-    for (std::size_t d = leaf.dimensions; d < leaf.memory->dimensions.size(); ++d) inner *= leaf.memory->dimensions[d];
+    for (std::size_t d = leaf.dimensions; d < leaf.memory->dimensions.size(); ++d)
+      inner *= leaf.memory->dimensions[d];
     const Part scaled = binary(l, BinaryOp::Mul, Scalar::Int, index, {l.integer(l.int32(), inner)});
     leaf.offset = binary(l, BinaryOp::Add, Scalar::Int, leaf.offset, scaled);
   }
@@ -137,8 +140,8 @@ Part FunctionCode::loadComponent(const Place::Leaf& leaf, std::uint32_t offset) 
   llvm::Value* const address = addressOf(leaf, offset, &isScattered);
   const bool isArray = !memory.dimensions.empty();
   if (isScattered) {
-    llvm::Value* const value =
-        b.CreateMaskedGather(l.vector(l.stored(memory.scalar)), address, llvm::Align(l.storedBytes(memory.scalar)));
+    llvm::Value* const value = b.CreateMaskedGather(l.vector(l.stored(memory.scalar)), address,
+                                                    llvm::Align(l.storedBytes(memory.scalar)));
     return {l.fromStored(memory.scalar, value)};
   }
   llvm::Value* const value = b.CreateLoad(memory.element, address);
@@ -154,7 +157,8 @@ void FunctionCode::storeComponent(const Place::Leaf& leaf, std::uint32_t offset,
   llvm::Value* const address = addressOf(leaf, offset, &isScattered);
   llvm::Value* value = memory.shape == Shape::Varying ? l.spread(part) : part.value;
   if (isScattered) {
-    b.CreateMaskedScatter(l.toStored(memory.scalar, value), address, llvm::Align(l.storedBytes(memory.scalar)));
+    b.CreateMaskedScatter(l.toStored(memory.scalar, value), address,
+                          llvm::Align(l.storedBytes(memory.scalar)));
     return;
   }
   if (!memory.dimensions.empty()) {

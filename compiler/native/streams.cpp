@@ -10,9 +10,6 @@
 #include <llvm/IR/MDBuilder.h>
 #include <llvm/IR/Module.h>
 
-#include "ir/evaluate.hpp"
-#include "ir/reach.hpp"
-#include "ir/walk.hpp"
 #include "native/arithmetic.hpp"
 #include "native/intrinsics.hpp"
 #include "native/leaves.hpp"
@@ -23,87 +20,6 @@ using namespace ir;
 using sk::native::Argument;
 using sk::native::Chunk;
 using sk::native::Frame;
-using sk::native::Sink;
-using sk::native::Slot;
-
-// ---- slots ----------------------------------------------------------------------------------------
-
-namespace {
-
-/// Rows of neighbours farther away are gathers like any other.
-constexpr std::int32_t farthest = 8;
-
-bool isNear(const std::vector<std::int32_t>& offset) {
-  return std::ranges::all_of(offset, [](std::int32_t d) { return std::abs(d) <= farthest; });
-}
-
-Slot slotOf(std::uint32_t param, bool isOutput) {
-  return {.parameter = static_cast<std::uint8_t>(param), .row = {}, .reach = 0, .isOutput = isOutput};
-}
-
-void addNeighbor(SlotPlan& plan, std::uint32_t param, const std::vector<std::int32_t>& offset) {
-  Slot slot = slotOf(param, false);
-  for (std::size_t d = 1; d < offset.size(); ++d) slot.row[d - 1] = static_cast<std::int8_t>(offset[d]);
-  const auto reach = static_cast<std::uint8_t>(std::abs(offset[0]));
-  for (Slot& known : plan.slots) {
-    if (known.parameter == param && std::ranges::equal(known.row, slot.row)) {
-      known.reach = std::max(known.reach, reach);
-      return;
-    }
-  }
-  slot.reach = reach;
-  plan.slots.push_back(slot);
-}
-
-}  // namespace
-
-std::optional<SlotPlan::Place> SlotPlan::find(std::uint32_t parameter, const std::int8_t (&row)[3]) const {
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (slots[i].parameter == parameter && std::ranges::equal(slots[i].row, row)) return Place{i, firstArrays[i]};
-  }
-  return std::nullopt;
-}
-
-std::optional<std::vector<std::int32_t>> constantOffset(const Module& module, const Expr& offset) {
-  if (const auto* n = std::get_if<Construct>(&offset.node)) {
-    std::vector<std::int32_t> all;
-    for (const ExprPtr& arg : n->args) {
-      const auto part = constantOffset(module, *arg);
-      if (!part) return std::nullopt;
-      all.insert(all.end(), part->begin(), part->end());
-    }
-    if (all.size() == 1) all.assign(offset.type.width, all[0]);  // splat
-    return all;
-  }
-  if (!offset.type.isScalar()) return std::nullopt;
-  const std::optional<std::uint32_t> bits = evaluate(module, offset, Constants::LookThrough);
-  if (!bits) return std::nullopt;
-  return std::vector{static_cast<std::int32_t>(*bits)};
-}
-
-SlotPlan planSlots(const Module& module, const Kernel& kernel) {
-  SlotPlan plan;
-  for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
-    const ParamRole role = kernel.params[i].role;
-    if (role == ParamRole::Input || role == ParamRole::Output) plan.slots.push_back(slotOf(i, role == ParamRole::Output));
-  }
-  if (!kernel.reduction) {
-    for (const FunctionId id : functionsOf(module, kernel)) {
-      walkExprs(module.functions[id].body, [&](const Expr& expr) {
-        const auto* n = std::get_if<NeighborRead>(&expr.node);
-        if (n == nullptr) return;
-        const auto offset = constantOffset(module, *n->offset);
-        if (offset && isNear(*offset)) addNeighbor(plan, n->stream.id, *offset);
-      });
-    }
-  }
-  std::size_t next = 0;
-  for (const Slot& slot : plan.slots) {
-    plan.firstArrays.push_back(next);
-    next += componentCount(module, kernel.params[slot.parameter].type);
-  }
-  return plan;
-}
 
 // ---- what the runtime hands over ------------------------------------------------------------------
 
@@ -198,8 +114,8 @@ void Streams::storeOutput(std::uint32_t param, const Parts& value) {
 }
 
 Parts Streams::index(const StreamRef& stream) {
-  const bool isInput = stream.space == StreamRef::Space::KernelParameter &&
-                       kernel_.params[stream.id].role == ParamRole::Input;
+  const bool isInput =
+      stream.space == StreamRef::Space::KernelParameter && kernel_.params[stream.id].role == ParamRole::Input;
   Parts parts;
   for (std::size_t d = 0; d < 4; ++d) {
     llvm::Value* position = first(d);
@@ -218,8 +134,9 @@ Parts Streams::extent(const StreamRef& stream) {
   const bool isDomain = stream.space == StreamRef::Space::Domain;
   Parts parts;
   for (std::size_t d = 0; d < 4; ++d) {
-    llvm::Value* const value = isDomain ? frameField(offsetof(Frame, domain) + d * sizeof(std::int64_t), l.int64())
-                                        : argumentExtent(stream.id, d, offsetof(Argument, extent));
+    llvm::Value* const value = isDomain
+                                   ? frameField(offsetof(Frame, domain) + d * sizeof(std::int64_t), l.int64())
+                                   : argumentExtent(stream.id, d, offsetof(Argument, extent));
     parts.push_back({l.b.CreateTrunc(value, l.int32())});
   }
   return parts;
@@ -252,11 +169,13 @@ Parts Streams::iterator(std::uint32_t param) {
     // x grows from lane to lane, and so does the number of the element
     llvm::Value* grows = l.integer(l.int64(), 1);
     if (c > 0) grows = l.b.CreateZExt(byNumber, l.int64());
-    llvm::Value* const k = l.b.CreateAdd(l.spread(from), l.b.CreateMul(l.laneNumbers(l.int64()), l.spread(grows)));
+    llvm::Value* const k =
+        l.b.CreateAdd(l.spread(from), l.b.CreateMul(l.laneNumbers(l.int64()), l.spread(grows)));
     const Part begin = end(0), last = end(1);
     if (scalar == Scalar::Int || scalar == Scalar::Uint) {
       const auto widened = [&](const Part& part) {
-        return scalar == Scalar::Int ? l.b.CreateSExt(part.value, l.int64()) : l.b.CreateZExt(part.value, l.int64());
+        return scalar == Scalar::Int ? l.b.CreateSExt(part.value, l.int64())
+                                     : l.b.CreateZExt(part.value, l.int64());
       };
       llvm::Value* const step = l.b.CreateSDiv(l.b.CreateSub(widened(last), widened(begin)), steps);
       llvm::Value* const way = l.b.CreateMul(l.spread(step), k);
@@ -295,9 +214,9 @@ Streams::Inside Streams::inside(std::uint32_t param, std::size_t dimension, llvm
   switch (kernel_.params[param].boundary) {
     case Boundary::Clamp: {
       llvm::Value* const most = l.b.CreateSub(n, one);
-      return {l.b.CreateBinaryIntrinsic(
-                  llvm::Intrinsic::smax,
-                  l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, most), zero), nullptr};
+      return {l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax,
+                                        l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, most), zero),
+              nullptr};
     }
     case Boundary::Border: {
       llvm::Value* const isOutside = l.b.CreateICmpUGE(i, n);
@@ -326,7 +245,8 @@ Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
     const Inside in = inside(param, d, index[d].value);
     llvm::Value* const stride = argumentExtent(param, d, offsetof(Argument, stride));
     number = l.b.CreateAdd(number, d == 0 ? in.index : l.b.CreateMul(in.index, stride));
-    if (in.isOutside != nullptr) isOutside = isOutside == nullptr ? in.isOutside : l.b.CreateOr(isOutside, in.isOutside);
+    if (in.isOutside != nullptr)
+      isOutside = isOutside == nullptr ? in.isOutside : l.b.CreateOr(isOutside, in.isOutside);
   }
   Parts parts;
   for (std::size_t c = 0; c < scalars(param).size(); ++c) {
@@ -336,14 +256,17 @@ Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
   return orBorder(param, isOutside, parts);
 }
 
-Parts Streams::choose(llvm::Value* condition, const std::function<Parts()>& yes, const std::function<Parts()>& no,
-                      const std::vector<Scalar>& scalars) {
+Parts Streams::choose(llvm::Value* condition, const std::function<Parts()>& yes,
+                      const std::function<Parts()>& no, const std::vector<Scalar>& scalars) {
   llvm::Function* const function = l.b.GetInsertBlock()->getParent();
-  const auto block = [&](const char* name) { return llvm::BasicBlock::Create(l.b.getContext(), name, function); };
+  const auto block = [&](const char* name) {
+    return llvm::BasicBlock::Create(l.b.getContext(), name, function);
+  };
   llvm::BasicBlock* const yesBlock = block("inside");
   llvm::BasicBlock* const noBlock = block("anywhere");
   llvm::BasicBlock* const end = block("read");
-  l.b.CreateCondBr(condition, yesBlock, noBlock, llvm::MDBuilder(l.b.getContext()).createLikelyBranchWeights());
+  l.b.CreateCondBr(condition, yesBlock, noBlock,
+                   llvm::MDBuilder(l.b.getContext()).createLikelyBranchWeights());
   l.b.SetInsertPoint(yesBlock);
   Parts a = yes();
   for (Part& part : a) part = {l.spread(part)};
@@ -370,7 +293,8 @@ Parts Streams::gatherNeighbors(std::uint32_t param, const Parts& index) {
   llvm::Value* const x = l.b.CreateSExt(index[0].value, l.int64());
   llvm::Value* const extent = argumentExtent(param, 0, offsetof(Argument, extent));
   llvm::Value* const end = l.b.CreateAdd(x, l.integer(l.int64(), l.count()));
-  llvm::Value* const isInside = l.b.CreateAnd(l.b.CreateICmpSGE(x, l.integer(l.int64(), 0)), l.b.CreateICmpSLE(end, extent));
+  llvm::Value* const isInside =
+      l.b.CreateAnd(l.b.CreateICmpSGE(x, l.integer(l.int64(), 0)), l.b.CreateICmpSLE(end, extent));
   return choose(
       isInside,
       [&] {
@@ -378,7 +302,8 @@ Parts Streams::gatherNeighbors(std::uint32_t param, const Parts& index) {
         llvm::Value* isOutside = nullptr;
         for (std::size_t d = 1; d < index.size(); ++d) {
           const Inside in = inside(param, d, index[d].value);
-          number = l.b.CreateAdd(number, l.b.CreateMul(in.index, argumentExtent(param, d, offsetof(Argument, stride))));
+          number = l.b.CreateAdd(
+              number, l.b.CreateMul(in.index, argumentExtent(param, d, offsetof(Argument, stride))));
           if (in.isOutside != nullptr) {
             isOutside = isOutside == nullptr ? in.isOutside : l.b.CreateOr(isOutside, in.isOutside);
           }
@@ -399,7 +324,8 @@ Parts Streams::gatherByNumbers(std::uint32_t param, const Parts& index) {
   llvm::Value* number = nullptr;
   llvm::Value* isOutside = nullptr;
   for (std::size_t d = 0; d < index.size(); ++d) {
-    llvm::Value* const extent = l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32());
+    llvm::Value* const extent =
+        l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32());
     llvm::Value* i = l.spread(index[d]);
     llvm::Value* const zero = l.integer(i->getType(), 0);
     if (boundary == Boundary::Clamp) {
@@ -412,7 +338,8 @@ Parts Streams::gatherByNumbers(std::uint32_t param, const Parts& index) {
       isOutside = isOutside == nullptr ? beyond : l.b.CreateOr(isOutside, beyond);
     }
     if (d > 0) {
-      llvm::Value* const stride = l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, stride)), l.int32());
+      llvm::Value* const stride =
+          l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, stride)), l.int32());
       i = l.b.CreateMul(i, l.spread(stride));
     }
     number = number == nullptr ? i : l.b.CreateAdd(number, i);
@@ -438,8 +365,8 @@ static llvm::Value* areAllInside(Lanes& l, const Parts& index, const std::vector
 
 Parts Streams::gatherAnywhere(std::uint32_t param, const Parts& index) {
   const Boundary boundary = kernel_.params[param].boundary;
-  llvm::Value* isFast = l.b.CreateICmpNE(argumentField(param, offsetof(Argument, isSmall), l.int64()),
-                                         l.integer(l.int64(), 0));
+  llvm::Value* isFast =
+      l.b.CreateICmpNE(argumentField(param, offsetof(Argument, isSmall), l.int64()), l.integer(l.int64(), 0));
   if (boundary == Boundary::Wrap || boundary == Boundary::Mirror) {
     std::vector<llvm::Value*> extents;
     for (std::size_t d = 0; d < index.size(); ++d) {
@@ -512,7 +439,8 @@ llvm::Function* Streams::laneGather(std::uint32_t param) {
   lane->addIncoming(l.integer(l.int64(), 0), entry);
   Parts index;
   for (std::size_t d = 0; d < rank; ++d) {
-    index.push_back({l.b.CreateLoad(l.int32(), l.at(l.int32(), known->getArg(static_cast<unsigned>(1 + d)), lane))});
+    index.push_back(
+        {l.b.CreateLoad(l.int32(), l.at(l.int32(), known->getArg(static_cast<unsigned>(1 + d)), lane))});
   }
   const Parts value = streams.gatherOne(param, index);
   for (std::size_t c = 0; c < value.size(); ++c) {
@@ -573,7 +501,8 @@ Part Streams::moved(std::uint32_t param, std::size_t dimension, const Part& inde
     llvm::Value* const most = l.integer(l.int32(), 1 << 30);
     llvm::Value* const least = l.integer(l.int32(), -(1 << 30));
     llvm::Value* const low = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, offset.value, least);
-    return binary(l, BinaryOp::Add, Scalar::Int, index, {l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, low, most)});
+    return binary(l, BinaryOp::Add, Scalar::Int, index,
+                  {l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, low, most)});
   }
   Part a = index, c = offset;
   l.unify(a, c);
@@ -597,7 +526,9 @@ Parts Streams::weighted(std::uint32_t param, const Parts& low, const Parts& weig
   const Parts c = weighted(param, high, weights, d);
   const Part& t = weights[d];
   const auto number = [&](double value) { return Part{l.number(l.real(), value)}; };
-  const auto real = [&](BinaryOp op, const Part& x, const Part& y) { return binary(l, op, Scalar::Float, x, y); };
+  const auto real = [&](BinaryOp op, const Part& x, const Part& y) {
+    return binary(l, op, Scalar::Float, x, y);
+  };
   const Part isLow = real(BinaryOp::LessEqual, t, number(0));
   const Part isHigh = real(BinaryOp::GreaterEqual, t, number(1));
   const Part rest = real(BinaryOp::Sub, number(1), t);
@@ -614,80 +545,14 @@ Parts Streams::sample(std::uint32_t param, const Parts& position) {
   for (const Part& x : position) {
     const Part whole = floorOf(l, x);
     const Part size = {l.b.CreateUnaryIntrinsic(llvm::Intrinsic::fabs, x.value)};
-    const Part isWhole = binary(l, BinaryOp::GreaterEqual, Scalar::Float, size, {l.number(l.real(), 16777216)});
+    const Part isWhole =
+        binary(l, BinaryOp::GreaterEqual, Scalar::Float, size, {l.number(l.real(), 16777216)});
     low.push_back(wholeIndex(l, whole));
     // infinity has no fraction
-    weights.push_back(l.select(isWhole, {l.number(l.real(), 0)}, binary(l, BinaryOp::Sub, Scalar::Float, x, whole)));
+    weights.push_back(
+        l.select(isWhole, {l.number(l.real(), 0)}, binary(l, BinaryOp::Sub, Scalar::Float, x, whole)));
   }
   return weighted(param, low, weights, position.size());
-}
-
-// ---- pushes and scatters --------------------------------------------------------------------------
-
-llvm::Value* Streams::isGiven(std::uint32_t param) {
-  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
-  return l.b.CreateIsNotNull(all);
-}
-
-void Streams::push(std::uint32_t param, const Parts& value) {
-  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
-  const auto block = [&](const char* name) { return llvm::BasicBlock::Create(l.b.getContext(), name, function); };
-  llvm::BasicBlock* const given = block("push");
-  llvm::BasicBlock* const grow = block("grow");
-  llvm::BasicBlock* const store = block("append");
-  llvm::BasicBlock* const end = block("pushed");
-  llvm::Value* const sink = argumentField(param, offsetof(Argument, sink), l.b.getPtrTy());
-  const auto field = [&](std::size_t offset) { return l.b.CreateConstGEP1_64(l.b.getInt8Ty(), sink, offset); };
-  l.b.CreateCondBr(l.b.CreateIsNotNull(sink), given, end);
-  l.b.SetInsertPoint(given);
-  llvm::Value* const count = l.b.CreateLoad(l.int64(), field(offsetof(Sink, count)));
-  llvm::Value* const capacity = l.b.CreateLoad(l.int64(), field(offsetof(Sink, capacity)));
-  l.b.CreateCondBr(l.b.CreateICmpEQ(count, capacity), grow, store);
-  l.b.SetInsertPoint(grow);
-  llvm::Value* const more = l.b.CreateLoad(l.b.getPtrTy(), field(offsetof(Sink, grow)));
-  l.b.CreateCall(llvm::FunctionType::get(l.b.getVoidTy(), {l.b.getPtrTy()}, false), more, {sink});
-  l.b.CreateBr(store);
-  l.b.SetInsertPoint(store);
-  llvm::Value* const arrays = l.b.CreateLoad(l.b.getPtrTy(), field(offsetof(Sink, arrays)));
-  for (std::size_t c = 0; c < value.size(); ++c) {
-    const Scalar scalar = scalars(param)[c];
-    llvm::Value* const slot = l.at(l.b.getPtrTy(), arrays, l.integer(l.int64(), static_cast<std::int64_t>(c)));
-    llvm::Value* const array = l.b.CreateLoad(l.b.getPtrTy(), slot);
-    l.storeOne(scalar, value[c].value, l.at(l.stored(scalar), array, count));
-  }
-  l.b.CreateStore(l.b.CreateAdd(count, l.integer(l.int64(), 1)), field(offsetof(Sink, count)));
-  l.b.CreateBr(end);
-  l.b.SetInsertPoint(end);
-}
-
-void Streams::scatter(std::uint32_t param, const Parts& index, const std::function<Parts(const Parts&)>& combined) {
-  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
-  llvm::BasicBlock* const inside = llvm::BasicBlock::Create(l.b.getContext(), "put", function);
-  llvm::BasicBlock* const end = llvm::BasicBlock::Create(l.b.getContext(), "scattered", function);
-  llvm::Value* isInside = isGiven(param);
-  llvm::Value* number = argumentField(param, offsetof(Argument, first), l.int64());
-  for (std::size_t d = 0; d < index.size(); ++d) {
-    llvm::Value* const i = l.b.CreateSExt(index[d].value, l.int64());
-    isInside = l.b.CreateAnd(isInside, l.b.CreateICmpULT(i, argumentExtent(param, d, offsetof(Argument, extent))));
-    number = l.b.CreateAdd(number, l.b.CreateMul(i, argumentExtent(param, d, offsetof(Argument, stride))));
-  }
-  l.b.CreateCondBr(isInside, inside, end);
-  l.b.SetInsertPoint(inside);
-  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
-  std::vector<llvm::Value*> addresses;
-  Parts old;
-  for (std::size_t c = 0; c < scalars(param).size(); ++c) {
-    const Scalar scalar = scalars(param)[c];
-    // not in the prologue: a stream that is left out has no arrays
-    llvm::Value* const array =
-        l.b.CreateLoad(l.b.getPtrTy(), l.at(l.b.getPtrTy(), all, l.integer(l.int64(), static_cast<std::int64_t>(c))));
-    addresses.push_back(l.at(l.stored(scalar), array, number));
-    old.push_back(l.loadOne(scalar, addresses.back()));
-  }
-  const Parts value = combined(old);
-  for (std::size_t c = 0; c < value.size(); ++c) l.storeOne(scalars(param)[c], value[c].value, addresses[c]);
-  l.b.CreateBr(end);
-  l.b.SetInsertPoint(end);
 }
 
 }  // namespace skc::native

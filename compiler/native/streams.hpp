@@ -11,28 +11,10 @@
 
 #include "ir/ir.hpp"
 #include "native/lanes.hpp"
+#include "native/slots.hpp"
 #include "sk/native/code.hpp"
 
 namespace skc::native {
-
-/// The slots of a kernel's chunks.
-struct SlotPlan {
-  std::vector<sk::native::Slot> slots;
-
-  /// The first array of a slot that has this parameter and row.
-  struct Place {
-    std::size_t slot;
-    std::size_t firstArray;
-  };
-  std::optional<Place> find(std::uint32_t parameter, const std::int8_t (&row)[3]) const;
-  std::vector<std::size_t> firstArrays;  ///< of each slot
-};
-
-/// Inputs and outputs, and, except in folds, the rows of neighbours at constant offsets.
-SlotPlan planSlots(const ir::Module& module, const ir::Kernel& kernel);
-
-/// The components of a constant offset, x first; nothing where it is not constant.
-std::optional<std::vector<std::int32_t>> constantOffset(const ir::Module& module, const ir::Expr& offset);
 
 class Streams {
  public:
@@ -58,13 +40,15 @@ class Streams {
   /// Indices x first, one int for each dimension.
   Parts gather(std::uint32_t param, const Parts& index);
   /// `constant`: the offset, if it is known.
-  Parts neighbor(std::uint32_t param, const Parts& offset, const std::optional<std::vector<std::int32_t>>& constant);
+  Parts neighbor(std::uint32_t param, const Parts& offset,
+                 const std::optional<std::vector<std::int32_t>>& constant);
   Parts sample(std::uint32_t param, const Parts& position);
 
   /// Of one lane.
   void push(std::uint32_t param, const Parts& value);
   /// Of one lane. `combined` makes the new element of the old one; both are parts.
-  void scatter(std::uint32_t param, const Parts& index, const std::function<Parts(const Parts& old)>& combined);
+  void scatter(std::uint32_t param, const Parts& index,
+               const std::function<Parts(const Parts& old)>& combined);
 
   /// What the gather has outside, of a Boundary::Border.
   Parts border(std::uint32_t param);
@@ -86,7 +70,7 @@ class Streams {
   const std::vector<ir::Scalar>& scalars(std::uint32_t param);
 
   struct Inside {
-    llvm::Value* index;      ///< i64, in range
+    llvm::Value* index;  ///< i64, in range
     llvm::Value* isOutside;  ///< of Border; null else
   };
   Inside inside(std::uint32_t param, std::size_t dimension, llvm::Value* index);

@@ -18,7 +18,8 @@
 namespace skc::native {
 
 struct CpuLevel {
-  std::string_view name;  ///< as --levels has it; also LLVM's name of the CPU. Empty: the target has no levels
+  std::string_view
+      name;  ///< as --levels has it; also LLVM's name of the CPU. Empty: the target has no levels
   sk::native::Level level;
   std::uint32_t vectorBits;
   bool hasMaskRegisters;

@@ -13,8 +13,8 @@
 #include <catch2/catch.hpp>
 
 #include "native.sk.hpp"
-#include "sk/native/parallel.hpp"
 #include "sk/narrow.hpp"
+#include "sk/native/parallel.hpp"
 #include "sk/sk.hpp"
 #include "support/devices.hpp"
 
@@ -163,7 +163,8 @@ TEST_CASE("a sum of floats sees no bits beyond them") {
 TEST_CASE("floats are rounded to halves as the host does it") {
   std::vector<float> x;
   for (std::uint64_t bits = 0; bits < 1ULL << 32U; bits += 0x1000) {  // all halves, and what is between two
-    for (const int beside : {-1, 0, 1, 77}) x.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(bits + beside)));
+    for (const int beside : {-1, 0, 1, 77})
+      x.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(bits + beside)));
   }
   sk::Device device = sk::Device::native();
   auto r = device.stream<float>({std::ssize(x)});
@@ -171,7 +172,10 @@ TEST_CASE("floats are rounded to halves as the host does it") {
   const std::vector<float> rounded = r.read();
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    wrong += std::bit_cast<std::uint32_t>(rounded[i]) == std::bit_cast<std::uint32_t>(static_cast<float>(sk::half(x[i]))) ? 0 : 1;
+    wrong += std::bit_cast<std::uint32_t>(rounded[i]) ==
+                     std::bit_cast<std::uint32_t>(static_cast<float>(sk::half(x[i])))
+                 ? 0
+                 : 1;
   }
   CHECK(wrong == 0);
 }

@@ -60,8 +60,9 @@ class KernelCalls {
       std::vector<ExprPtr> args;
       for (VarId var = 0; var < types.size(); ++var) {
         ExprPtr whole = varRef(made, var);
-        args.push_back(types[var].isScalar() ? std::move(whole)
-                                             : makeExpr(types[var].component(), Swizzle{std::move(whole), {i}}));
+        args.push_back(types[var].isScalar()
+                           ? std::move(whole)
+                           : makeExpr(types[var].component(), Swizzle{std::move(whole), {i}}));
       }
       components.push_back(call(module_, component, std::move(args)));
     }

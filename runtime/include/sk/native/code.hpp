@@ -23,23 +23,26 @@ inline constexpr std::int64_t mostLanes = 64;
 /// Where a variable output's elements go.
 struct Sink {
   std::byte* const* arrays;  ///< one for each component
-  std::int64_t count;        ///< elements pushed so far
-  std::int64_t capacity;     ///< elements that the arrays have room for
-  void (*grow)(Sink* sink);  ///< called where count == capacity: makes room for one more, and may move the arrays
+  std::int64_t count;  ///< elements pushed so far
+  std::int64_t capacity;  ///< elements that the arrays have room for
+  void (*grow)(
+      Sink* sink);  ///< called where count == capacity: makes room for one more, and may move the arrays
 };
 
 /// An argument of a call, one for each parameter. A uniform argument is a stream of one element; an iterator has two
 /// elements, its ends.
 struct Argument {
-  void* const* components;   ///< an array for each scalar of the element; null where the stream is left out (sk::none)
-  std::int64_t first;        ///< number of the region's first element in the arrays
-  std::int64_t extent[4];    ///< of the region
-  std::int64_t stride[4];    ///< in elements; stride[0] of a gather or scatter output is 1
+  void* const*
+      components;  ///< an array for each scalar of the element; null where the stream is left out (sk::none)
+  std::int64_t first;  ///< number of the region's first element in the arrays
+  std::int64_t extent[4];  ///< of the region
+  std::int64_t stride[4];  ///< in elements; stride[0] of a gather or scatter output is 1
   std::int64_t multiply[4];  ///< an element input's index is the domain's, times this,
-  std::int64_t divide[4];    ///< divided by this
-  Sink* sink;                ///< of a variable output
-  std::int64_t countsElements;  ///< of an iterator: 1 where it goes by element number, 0 by index in each dimension
-  std::int64_t isSmall;         ///< 1 where the numbers of all elements fit 32 bits
+  std::int64_t divide[4];  ///< divided by this
+  Sink* sink;  ///< of a variable output
+  std::int64_t
+      countsElements;  ///< of an iterator: 1 where it goes by element number, 0 by index in each dimension
+  std::int64_t isSmall;  ///< 1 where the numbers of all elements fit 32 bits
 };
 
 /// A call of a kernel.
@@ -51,16 +54,17 @@ struct Frame {
 
 /// Elements `x`, `x + step` ... of a row of the domain.
 struct Chunk {
-  void* const* arrays;    ///< for each slot, its component arrays from the chunk's first element on (Slot)
+  void* const* arrays;  ///< for each slot, its component arrays from the chunk's first element on (Slot)
   std::int64_t first[4];  ///< index of the first element
-  std::int64_t count;     ///< elements; of a fold, in all rounds
-  std::int64_t step;      ///< between the x of one element and the next: 1, except in folds
+  std::int64_t count;  ///< elements; of a fold, in all rounds
+  std::int64_t step;  ///< between the x of one element and the next: 1, except in folds
 };
 
 /// A parameter whose elements a chunk has arrays for: an element input, an output, or a row of neighbours of a gather.
 struct Slot {
   std::uint8_t parameter;
-  std::int8_t row[3];  ///< of a gather: offsets in y, z and w. x + dx of the array is the neighbour at dx, within `reach`
+  std::int8_t row
+      [3];  ///< of a gather: offsets in y, z and w. x + dx of the array is the neighbour at dx, within `reach`
   std::uint8_t reach;  ///< of a gather: the largest |dx|
   std::uint8_t isOutput;
 };
@@ -70,8 +74,8 @@ using RunFunction = void(const Frame*, const Chunk*);
 /// Folds a chunk into `columns` accumulators side by side. Element k + r * columns is folded into column k, in order of r.
 /// `state` has an array for each scalar of the accumulators. Where `starts` is 1, columns begin with the identity or, of a
 /// seeded reduction, with their first element; else with what `state` holds.
-using FoldFunction = void(const Frame*, const Chunk*, void* const* state, std::int64_t columns, std::int64_t rounds,
-                          std::int64_t starts);
+using FoldFunction = void(const Frame*, const Chunk*, void* const* state, std::int64_t columns,
+                          std::int64_t rounds, std::int64_t starts);
 /// Folds later results into earlier ones, column by column.
 using CombineFunction = void(const Frame*, void* const* state, void* const* later, std::int64_t columns);
 /// Writes one element of each array: the identities of a reduction, or what a gather with Boundary::Border has outside,
@@ -89,7 +93,7 @@ struct Entry {
   Real real;
   Level level;
   std::uint8_t isContracted;  ///< multiplications and additions may be fused
-  std::uint8_t lanes;         ///< elements computed together: a power of 2
+  std::uint8_t lanes;  ///< elements computed together: a power of 2
 };
 
 /// All that was compiled for one kernel.
@@ -100,7 +104,8 @@ struct Code {
   const Entry* entries;
   const Slot* slots;
   std::uint32_t slotCount;
-  std::uint8_t isUneven;   ///< elements may take very different times: it has loops whose trip count depends on data
+  std::uint8_t
+      isUneven;  ///< elements may take very different times: it has loops whose trip count depends on data
   std::uint8_t isOrdered;  ///< elements are computed in order: it pushes or scatters
 };
 
