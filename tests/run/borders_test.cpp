@@ -113,7 +113,7 @@ TEST_CASE("borders of vectors, matrices and narrow types") {
 TEST_CASE("a template's border is of the type that it is instantiated for") {
   const HostArray<float2> a({5}, [](std::size_t i) { return float2{float(i), 2}; });
   const HostArray<Hit> b({5}, hitAt);
-  onEveryProfile([&](sk::Device& device) {
+  onEveryLayout([&](sk::Device& device) {
     auto r = device.stream<float2>({count});
     auto s = device.stream<Hit>({count});
     const auto i = streamOf<int>(device, indices);

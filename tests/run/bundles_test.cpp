@@ -20,13 +20,17 @@ namespace {
 /// the device as it is.
 template <class Test>
 void onEveryLimit(const Test& test) {
-  for (const std::string profile : {"glsl330", "essl300"}) {
-    for (const auto& [limits, textureLimit] :
-         {std::pair("guaranteed", 0), std::pair("guaranteed", smallLimits[1]), std::pair("device", 0)}) {
-      INFO("profile " << profile << ", limits " << limits << ", texture limit " << textureLimit);
-      sk::Device device({.profile = profile, .textureLimit = textureLimit, .limits = limits});
-      test(device);
-    }
+  struct Limits {
+    const char* profile;
+    const char* limits;
+    std::int32_t texture;
+  };
+  for (const auto& [profile, limits, texture] :
+       {Limits{"glsl330", "guaranteed", 0}, Limits{"glsl330", "device", 0},
+        Limits{"glsl330", "guaranteed", smallLimits[1]}, Limits{"essl300", "guaranteed", smallLimits[1]}}) {
+    INFO("profile " << profile << ", limits " << limits << ", texture limit " << texture);
+    sk::Device device({.profile = profile, .textureLimit = texture, .limits = limits});
+    test(device);
   }
 }
 

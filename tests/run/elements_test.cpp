@@ -126,7 +126,7 @@ TEST_CASE("structs are made from scalars and taken apart") {
   const auto x = values<float>(97);
   auto n = values<int>(97);
   for (int& k : n) k = k % 1000;
-  onEveryProfile([&](sk::Device& device) {
+  onEveryLayout([&](sk::Device& device) {
     auto marks = device.stream<streams::Mark>({97});
     streams::makeMark(streamOf<float>(device, x), streamOf<int>(device, n), marks);
     auto sum = device.stream<float>({97});

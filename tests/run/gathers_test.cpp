@@ -179,7 +179,7 @@ void checkFloatIndices(sk::Device& device, const char* mode, Inside inside, cons
 }  // namespace
 
 TEST_CASE("a float index names the nearest element") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryLayout([](sk::Device& device) {
     checkFloatIndices(device, "clamp", clampIndex, gathers::float_clamp);
     checkFloatIndices(device, "wrap", wrapIndex, gathers::float_wrap);
     checkFloatIndices(device, "mirror", mirrorIndex, gathers::float_mirror);

@@ -176,7 +176,7 @@ TEST_CASE("indices of four dimensions, with an input that repeats") {
 }
 
 TEST_CASE("helpers push in the order of the calls") {
-  run_tests::onEveryProfile([](sk::Device& device) {
+  run_tests::onEveryLayout([](sk::Device& device) {
     for (const std::int64_t size : sizes) {
       INFO("size " << size);
       std::vector<int> list, r, s, counts;

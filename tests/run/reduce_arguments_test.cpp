@@ -81,7 +81,7 @@ TEST_CASE("inputs of extent 1 repeat, also each in another dimension") {
 }
 
 TEST_CASE("inputs of different types") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryLayout([](sk::Device& device) {
     const sk::Shape shape{1021};
     const HostArray<std::uint32_t> a(shape, [](std::size_t i) { return bitsAt(i) % 4; });
     const HostArray<uint2> b(shape,
@@ -243,7 +243,7 @@ TEST_CASE("iterators count the elements that are folded") {
 }
 
 TEST_CASE("specialisation constants leave streams out") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryLayout([](sk::Device& device) {
     const HostArray<float> x({1021}, smallAt), y({1021}, otherAt);
     float squares = 0, sum = 0, least = INFINITY;
     for (std::size_t i = 0; i < 1021; ++i) {

@@ -146,8 +146,8 @@ void checkOne(sk::Device& device, std::uint32_t seed) {
 
 TEST_CASE("random folds") {
   for (std::uint32_t seed = 0; seed < 120; ++seed) {
-    const int limits[] = {0, smallLimits[0], smallLimits[1]};
-    checkOne(run_tests::device(seed % 2 == 0 ? "glsl330" : "essl300", limits[seed / 2 % 3]), seed);
+    const Layout& layout = layouts[seed % std::size(layouts)];
+    checkOne(run_tests::device(layout.profile, layout.textureLimit), seed);
     checkOne(run_tests::device("native"), seed);
   }
 }

@@ -110,7 +110,7 @@ TEST_CASE("bits and bools fold") {
 }
 
 TEST_CASE("how partial results combine follows from the body, or from an overload") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryLayout([](sk::Device& device) {
     check<float>(device, "squares", smallAt, reduces::squares, 0.0f, [](float& r, float x) { r += x * x; });
     check<float2>(
         device, "sumSwapped", [](std::size_t i) { return float2{smallAt(i), smallAt(i + 1)}; },
@@ -141,7 +141,7 @@ TEST_CASE("how partial results combine follows from the body, or from an overloa
 }
 
 TEST_CASE("structs fold: the nearest, the first of the greatest") {
-  onEveryProfile([](sk::Device& device) {
+  onEveryLayout([](sk::Device& device) {
     for (const sk::Shape& shape : fewShapes) {
       INFO("shape " << sk::toString(shape));
       std::vector<reduces::Hit> hits;

@@ -271,7 +271,7 @@ TEST_CASE("reading and writing one stream, and nothing at all") {
 }
 
 TEST_CASE("helpers scatter for their kernels") {
-  run_tests::onEveryProfile([](sk::Device& device) {
+  run_tests::onEveryLayout([](sk::Device& device) {
     for (const std::int64_t size : sizes) {
       INFO("size " << size);
       const std::vector<int> at = indicesInto(67, size, 21);
