@@ -8,6 +8,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -67,8 +68,7 @@ sk::Device openPlain(sk::DeviceOptions options) {
 
 /// The device that is asked for; else native code and the best device with GL, if any, the better one first.
 Json infoOfAll(const Options& options) {
-  Json all;
-  Json& devices = all["devices"] = Json::array();
+  Json all, devices = Json::array();
   const char* chosen = std::getenv("SK_DEVICE");
   const std::string name = options.device.empty() && chosen != nullptr ? chosen : options.device;
   bool hasGpu = false;
@@ -84,6 +84,7 @@ Json infoOfAll(const Options& options) {
     sk::Device native = sk::Device::native();
     devices.insert(hasGpu ? devices.end() : devices.begin(), infoOf(native, options.refresh));
   }
+  all["devices"] = std::move(devices);
   return all;
 }
 
