@@ -47,7 +47,7 @@ class Search {
 
   /// Throws sk::Error with all attempts.
   [[noreturn]] void report() const {
-    const std::string what = request_.device.empty()
+    const std::string what = wanted_.kind == WantedDevice::Kind::Best
                                  ? "no device was found"
                                  : fmt::format("no device '{}' was found", request_.device);
     throw Error(fmt::format(
