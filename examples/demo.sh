@@ -42,6 +42,23 @@ example() {
   fi
 }
 
+# everywhere NAME ARGUMENTS...: runs an example on each device that there is, and shows what it took there.
+everywhere() {
+  local name=$1 device said all=$out/devices.tsv
+  shift
+  : >"$all"
+  for device in native software gpu:{0..7}; do
+    if ! said=$("$programs/$name" "$@" --device "$device" --summary "$all" 2>&1); then
+      [[ $said == *"no device '$device' was found"* ]] && continue
+      printf '%s\n' "$said" >&2
+      failed=1
+    fi
+  done
+  printf '\nthe same on every device of this machine:\n\n'
+  awk -F '\t' '{ printf "  %-40s %10s   %s\n", $7, $5, $6 }' "$all"
+  rm "$all"
+}
+
 programs=$(cd "$programs" 2>/dev/null && pwd) || {
   echo "demo.sh: '$1' holds no built examples" >&2
   exit 1
@@ -49,6 +66,7 @@ programs=$(cd "$programs" 2>/dev/null && pwd) || {
 examples=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd) || exit 1
 cd "$out" || exit 1
 example saxpy --size "$elements"
+everywhere saxpy --size "$elements"
 example edges --size "$size" --output edges.png
 example edges --size "$size" --low 0.01 --high 0.05 --style ink edges_input.png edges_linked.png
 example gray_scott --pattern theta --size "$size" --steps "$steps" --frames 4

@@ -6,6 +6,7 @@
 
 #include <map>
 
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 
 #include "emit/sample_module.hpp"
@@ -162,7 +163,21 @@ TEST_CASE("native code computes in __float128 where that is asked for, and is le
   }
   const Stub without = stubOf(module);
   CHECK(without.native.empty());
-  CHECK_FALSE(contains(without.source, "native"));
+  CHECK_FALSE(contains(without.source, "native::"));
+}
+
+TEST_CASE("a stub registers the code that its kernels have") {
+  const Module module = sampleModule();
+  const auto registers = [](const Stub& stub, std::string_view code) {
+    return contains(stub.source, fmt::format("const LinkedFile linkedFile({{{}}});", code));
+  };
+  const Program fragments(module, {.compute = false});
+  CHECK(registers(emitStub(module, fragments, "heat.sk", {}), ".glsl = true, .native = true"));
+  CHECK(
+      registers(emitStub(module, fragments, "heat.sk", {.native = false}), ".glsl = true, .native = false"));
+  const Program nativeAlone(module, {.fragment = false, .compute = false});
+  CHECK(registers(emitStub(module, nativeAlone, "heat.sk", {}), ".glsl = false, .native = true"));
+  CHECK_FALSE(contains(emitStub(Module(), Program(Module()), "empty.sk", {}).source, "LinkedFile"));
 }
 
 TEST_CASE("symbols of files that can be linked together differ, wherever the files are") {

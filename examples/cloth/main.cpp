@@ -117,12 +117,19 @@ examples::PictureSize sizeOf(const std::string& text) {
   return {width, height};
 }
 
+/// Films are drawn in the device's own context where it has one.
+sk::Device openDevice(const std::string& name, bool isFilmed) {
+  sk::Device device(name);
+  if (isFilmed && device.profile() != "native") device = sk::Device({.device = name, .sharesContext = true});
+  return device;
+}
+
 void runScene(examples::Application& app, const Settings& s) {
   const examples::Scene scene = sceneOf(s);
   const sk::Precision precision = precisionOf(s.precision);
   const examples::PictureSize size = sizeOf(s.size);
   if (s.window) return examples::runLive(scene, precision, app.device(), size);
-  sk::Device device({.device = app.device(), .sharesContext = !scene.record.film.empty()});
+  sk::Device device = openDevice(app.device(), !scene.record.film.empty());
 
   examples::Simulation simulation(device, scene, examples::Features::of(scene), precision);
   std::optional<examples::Filming> filming;

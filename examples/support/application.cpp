@@ -40,8 +40,9 @@ bool closer(const Verification& a, const Verification& b) {
 
 Application::Application(std::string name, std::string purpose)
     : name_(std::move(name)), cli_(std::move(purpose), name_) {
-  cli_.add_option("--device", device_,
-                  "where to run: gpu, gpu:1, software, or part of a renderer's name (default: the best)");
+  cli_.add_option(
+      "--device", device_,
+      "where to run: native, gpu, gpu:1, software, gl, or part of a renderer's name (default: the best)");
   cli_.add_option("--summary", summary_,
                   "append what was done and verified to this file, as one line with tabs");
 }

@@ -18,6 +18,7 @@
 #include "native/native_device.hpp"
 #include "probe.hpp"
 #include "sk/error.hpp"
+#include "sk/linked_file.hpp"
 #include "stream_state.hpp"
 
 namespace sk {
@@ -118,17 +119,49 @@ detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const std::st
 constexpr std::array<std::pair<std::string_view, RealType>, 3> nativeDevices = {
     {{"native", RealType::Float}, {"reference", RealType::Double}, {"reference:quad", RealType::Quad}}};
 
-detail::DeviceOwner open(const DeviceOptions& options) {
-  const std::string device = chosen(options.device, "SK_DEVICE");
+/// The options, with what the environment says where they say nothing.
+DeviceOptions withEnvironment(DeviceOptions options) {
+  options.device = chosen(options.device, "SK_DEVICE");
+  options.profile = chosen(options.profile, "SK_PROFILE");
+  options.textureLimit = textureLimitOf(options.textureLimit);
+  options.limits = chosen(options.limits, "SK_LIMITS");
+  options.doubles = chosen(options.doubles, "SK_DOUBLES");
+  options.barrier = chosen(options.barrier, "SK_BARRIER");
+  return options;
+}
+
+/// Whether no device is named and nothing is asked for that devices with GL alone have.
+bool mayBeAny(const DeviceOptions& options) {
+  return options.device.empty() && options.profile.empty() && options.textureLimit == 0 &&
+         options.limits.empty() && options.doubles.empty() && options.barrier.empty() &&
+         !options.sharesContext;
+}
+
+std::unique_ptr<DeviceState> openGl(const DeviceOptions& options, gl::OpenedContext context) {
+  const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles,
+                                          options.barrier, options.profile, options.sharesContext);
+  return std::make_unique<GlDevice>(std::move(context), choices);
+}
+
+/// The fastest device that has code of every .sk file: a GPU, else native code, else a software renderer.
+std::unique_ptr<DeviceState> openBest(const DeviceOptions& options) {
+  const program::LinkedFile::Code code = program::LinkedFile::ofAll();
+  if (!code.native) return openGl(options, gl::openContext({}));
+  std::optional<gl::OpenedContext> gpu = code.glsl ? gl::findGpu() : std::nullopt;
+  if (gpu) return openGl(options, std::move(*gpu));
+  return std::make_unique<NativeDevice>(RealType::Float);
+}
+
+std::unique_ptr<DeviceState> openState(const DeviceOptions& options) {
   for (const auto& [name, real] : nativeDevices) {
-    if (device == name) return configured(std::make_unique<NativeDevice>(real), options.configuration);
+    if (options.device == name) return std::make_unique<NativeDevice>(real);
   }
-  const std::string profile = chosen(options.profile, "SK_PROFILE");
-  const gl::OpenRequest request{device, apiOf(profile)};
-  const DeviceChoices choices = choicesOf(
-      options.textureLimit, chosen(options.limits, "SK_LIMITS"), chosen(options.doubles, "SK_DOUBLES"),
-      chosen(options.barrier, "SK_BARRIER"), profile, options.sharesContext);
-  return configured(std::make_unique<GlDevice>(gl::openContext(request), choices), options.configuration);
+  if (mayBeAny(options)) return openBest(options);
+  return openGl(options, gl::openContext({options.device, apiOf(options.profile)}));
+}
+
+detail::DeviceOwner open(const DeviceOptions& options) {
+  return configured(openState(withEnvironment(options)), options.configuration);
 }
 
 }  // namespace

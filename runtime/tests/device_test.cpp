@@ -66,6 +66,15 @@ TEST_CASE("a device is chosen by a part of its name, in any case") {
         "there is no profile 'glsl110'; choose one of glsl330, essl300, glsl430 (option or SK_PROFILE)");
 }
 
+TEST_CASE("a kernel without native code names the way out on a native device") {
+  Device native("native");
+  auto x = native.stream<float>(2);
+  CHECK(
+      errorOf([&] { twice()(x, x); }) ==
+      "twice: it has no native code; compile its .sk file with skc --target=fragment,native, or run it on a "
+      "device with GL (SK_DEVICE=gl)");
+}
+
 TEST_CASE("devices of both profiles in one process, used in turn") {
   Device gl({.profile = "glsl330"});
   Device es({.profile = "essl300"});

@@ -28,7 +28,7 @@
 namespace {
 
 struct Settings {
-  std::string device;
+  std::string device = "gl";
   int rounds = 21;
   double sampleMilliseconds = 30.0;
   std::filesystem::path skc = SK_BENCH_SKC;
@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
       "the cost "
       "of a call, and skc's speed.",
       "sk_bench");
-  cli.add_option("--device", s.device, "where to run (default: the best)");
+  cli.add_option("--device", s.device, "where to run: a device with GL (default: the best)");
   cli.add_option("--rounds", s.rounds, "rounds in which contenders take turns (default: 21)")
       ->check(CLI::Range(1, 10'000));
   cli.add_option("--sample", s.sampleMilliseconds, "milliseconds of a contender in each round (default: 30)")

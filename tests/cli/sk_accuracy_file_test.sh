@@ -9,7 +9,8 @@ sk=$(realpath "$1")
 skc=$(realpath "$2")
 tested=("$sk" accuracy)
 source "$(dirname "${BASH_SOURCE[0]}")/frame.sh"
-unset SK_DEVICE SK_PROFILE SK_INCLUDE CXX
+export SK_DEVICE=gl   # which has more modes than native code
+unset SK_PROFILE SK_INCLUDE CXX
 export SK_SKC=$skc SK_CACHE=$place/cache
 
 # json EXPRESSION: what Python makes of the JSON in all.json, `kernels` being its records by program and mode.

@@ -32,12 +32,14 @@ function(built what)
   endforeach()
 endfunction()
 
-# prints(EXPECTED): what the consumer computes.
+# prints(EXPECTED): what the consumer computes, with GL and natively.
 function(prints expected)
-  step("running the consumer" "${WORK}/build/consumer")
-  if(NOT output STREQUAL expected)
-    message(FATAL_ERROR "the consumer prints '${output}', not '${expected}'")
-  endif()
+  foreach(device gl native)
+    step("running the consumer" ${CMAKE_COMMAND} -E env SK_DEVICE=${device} "${WORK}/build/consumer")
+    if(NOT output STREQUAL expected)
+      message(FATAL_ERROR "on ${device} the consumer prints '${output}', not '${expected}'")
+    endif()
+  endforeach()
 endfunction()
 
 # edit(FILE OLD NEW)

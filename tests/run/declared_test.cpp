@@ -61,7 +61,7 @@ TEST_CASE("a file chooses what declared streams hold their floats as") {
       "[streams.mine]\nstorage = \"single\"\n");
   constexpr float third = 1.0F / 3;
   for (const bool isNative : {false, true}) {
-    sk::Device device({.device = isNative ? "native" : "", .configuration = file.path});
+    sk::Device device({.device = isNative ? "native" : "gl", .configuration = file.path});
     declared::DeclaredStreams s(device, 1, 2, 1);
     s.field.write(std::vector<float>{third, 1});
     CHECK(s.field.read() == std::vector<float>{sk::half(third), 1});

@@ -96,14 +96,16 @@ TEST_CASE("streams of two devices, and streams that are gone") {
   CHECK(errorOf([&] { misuse::diffuse(1, u, v); }) == "misuse::diffuse: 'u' is a stream that was moved from");
   CHECK_THAT(errorOf([&] { (void)misuse::sum(u); }),
              Contains("misuse::sum: 'x' is a stream that was moved from"));
-  auto orphan = [] {
-    sk::Device gone;
-    return gone.stream<float>({3});
-  }();
-  CHECK_THAT(errorOf([&] { misuse::diffuse(1, orphan, v); }),
-             Contains("misuse::diffuse: 'u' is a stream whose device has been destroyed"));
-  CHECK_THAT(errorOf([&] { (void)misuse::sum(orphan); }),
-             Contains("misuse::sum: 'x' is a stream whose device"));
+  for (const char* name : {"gl", "native"}) {
+    auto orphan = [&] {
+      sk::Device gone(name);
+      return gone.stream<float>({3});
+    }();
+    CHECK_THAT(errorOf([&] { misuse::diffuse(1, orphan, v); }),
+               Contains("misuse::diffuse: 'u' is a stream whose device has been destroyed"));
+    CHECK_THAT(errorOf([&] { (void)misuse::sum(orphan); }),
+               Contains("misuse::sum: 'x' is a stream whose device"));
+  }
 }
 
 TEST_CASE("reduces that do not fit") {

@@ -30,10 +30,12 @@ using DeviceOwner = Owner<DeviceState, DeviceDeleter>;
 }  // namespace detail
 
 struct DeviceOptions {
-  /// Which device: "native" (the kernels' own C++ on the CPU, no GL), "reference" (the same, computing in double
+  /// Which device: "native" (the kernels' native code on the CPU, no GL), "reference" (the same, computing in double
   /// wherever a kernel says float) or "reference:quad" (in __float128), "gpu" or "gpu:N" (the N-th hardware device, from
-  /// 0), "software", or a part of the renderer's name in any case ("llvmpipe", "nvidia"). Empty: environment variable
-  /// SK_DEVICE, and without it the best one, which is the first GPU, or a software renderer where there is none.
+  /// 0), "software", "gl" (the first GPU, or "software" where there is none), or a part of the renderer's name in any case
+  /// ("llvmpipe", "nvidia"). Empty: environment variable SK_DEVICE, and without it the best one, which is the first GPU;
+  /// where there is none, native code; and "software" where a .sk file of the program has no native code, or where options
+  /// below ask for what devices with GL alone have (docs/runtime.md, The best device).
   std::string device = {};
   /// "glsl330" (fragment programs), "glsl430" (compute programs, wherever these serve) or "essl300". Empty: environment
   /// variable SK_PROFILE, and without it OpenGL where the device has 3.3, of which the faster programs are taken, else
@@ -57,7 +59,8 @@ struct DeviceOptions {
   /// variable SK_BARRIER, and without it the first of precise and xor that proves itself (Device::arithmetic).
   std::string barrier = {};
   /// The application draws in the device's own context, too, off screen: the context is current after makeCurrent(), and every
-  /// call puts back the GL state that it changes, as in an adopted one. Devices without GL ignore it.
+  /// call puts back the GL state that it changes, as in an adopted one. The best device then has GL; a native one that is
+  /// named ignores it.
   bool sharesContext = false;
 };
 
@@ -91,7 +94,7 @@ enum class Reference : std::uint8_t { Double, Quad };
 /// there was none leaves its own.
 class Device {
  public:
-  /// The best device, or the one that environment variable SK_DEVICE names. Throws sk::Error with
+  /// The best device (DeviceOptions::device), or the one that environment variable SK_DEVICE names. Throws sk::Error with
   /// everything that was tried, why it failed, and what to do.
   Device();
   explicit Device(std::string_view device);
@@ -106,7 +109,7 @@ class Device {
   /// conditional rendering may be in progress during a call: it would count, or drop, what is drawn.
   static Device adopt(const DeviceOptions& options = {});
 
-  /// The device that needs no GL: kernels run as the C++ that skc wrote of them, streams lie in host memory.
+  /// The device that needs no GL: kernels run as the native code that skc compiled, streams lie in host memory.
   /// Arithmetic is IEEE 754's, and defined for every operand (docs/language.md).
   static Device native();
   /// The same with doubles for floats, in streams and in kernels, or with __float128 for floats and doubles: what results

@@ -24,10 +24,11 @@ class Search {
   explicit Search(const OpenRequest& request)
       : request_(request), wanted_(WantedDevice::parse(request.device)) {}
 
-  OpenedContext run() {
+  /// The context that is asked for, if any.
+  std::optional<OpenedContext> find() {
     if (const std::string why = whyNoEglLibrary(); !why.empty()) {
       failed("EGL", why);
-      report();
+      return std::nullopt;
     }
     for (const DisplayCandidate& candidate : displayCandidates()) {
       std::optional<OpenedContext> opened = isWorthTrying(candidate) ? tryCandidate(candidate) : std::nullopt;
@@ -35,16 +36,29 @@ class Search {
         continue;
       }
       if (wanted_.kind != WantedDevice::Kind::Best || !opened->capabilities.isSoftware) {
-        return std::move(*opened);
+        return opened;
       }
       if (!software_) {
         software_.emplace(std::move(*opened));
       }
     }
-    if (!software_) {
-      report();
-    }
-    return std::move(*software_);
+    return std::move(software_);
+  }
+
+  /// Throws sk::Error with all attempts.
+  [[noreturn]] void report() const {
+    const std::string what = wanted_.kind == WantedDevice::Kind::Best
+                                 ? "no device was found"
+                                 : fmt::format("no device '{}' was found", request_.device);
+    throw Error(fmt::format(
+        "{}; tried without a window:{}\n"
+        "  what can be done: install a driver (for software rendering on Debian: apt-get install libegl1 "
+        "libgl1 "
+        "libgles2 libgl1-mesa-dri); let the user read and write /dev/dri/renderD*; choose another device by "
+        "SK_DEVICE (gpu, gpu:N, software, native, or a part of a renderer's name); see what EGL itself says "
+        "by "
+        "EGL_LOG_LEVEL=debug; or adopt the context of a window (sk::Device::adopt)",
+        what, attempts_));
   }
 
  private:
@@ -121,20 +135,6 @@ class Search {
     return false;
   }
 
-  [[noreturn]] void report() const {
-    const std::string what = request_.device.empty()
-                                 ? "no device was found"
-                                 : fmt::format("no device '{}' was found", request_.device);
-    throw Error(fmt::format(
-        "{}; tried without a window:{}\n"
-        "  what can be done: install a driver (for software rendering on Debian: apt-get install libegl1 "
-        "libgl1 "
-        "libgles2 libgl1-mesa-dri); let the user read and write /dev/dri/renderD*; choose another device by "
-        "SK_DEVICE (gpu, gpu:N, software, or a part of a renderer's name); see what EGL itself says by "
-        "EGL_LOG_LEVEL=debug; or adopt the context of a window (sk::Device::adopt)",
-        what, attempts_));
-  }
-
   const OpenRequest& request_;
   WantedDevice wanted_;
   std::string attempts_;
@@ -153,7 +153,19 @@ std::string whyUnfitSaved(const Capabilities& capabilities) {
 
 }  // namespace
 
-OpenedContext openContext(const OpenRequest& request) { return Search(request).run(); }
+OpenedContext openContext(const OpenRequest& request) {
+  Search search(request);
+  std::optional<OpenedContext> found = search.find();
+  if (!found) search.report();
+  return std::move(*found);
+}
+
+std::optional<OpenedContext> findGpu() {
+  const OpenRequest best;
+  std::optional<OpenedContext> found = Search(best).find();
+  if (found && found->capabilities.isSoftware) found.reset();
+  return found;
+}
 
 OpenedContext adoptContext(std::optional<Api> api) {
   std::optional<Context> context = Context::current();

@@ -12,7 +12,7 @@
 namespace sk::gl {
 
 struct OpenRequest {
-  std::string device;        ///< as DeviceOptions::device; empty: the best
+  std::string device;        ///< as DeviceOptions::device; empty: the best one with GL
   std::optional<Api> api;    ///< none: GL, or where that cannot be had ES
 };
 
@@ -23,6 +23,9 @@ struct OpenedContext {
 
 /// Throws sk::Error with every attempt, why it failed, and what can be done.
 OpenedContext openContext(const OpenRequest& request);
+
+/// The best context without a window, if it is that of a GPU.
+std::optional<OpenedContext> findGpu();
 
 /// The context that is current on this thread, if it serves; else throws sk::Error. An application's
 /// state is put back.

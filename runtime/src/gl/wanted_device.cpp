@@ -36,7 +36,7 @@ int parseNumber(const std::string& text) {
 
 WantedDevice WantedDevice::parse(const std::string& text) {
   const std::string name = lowerCase(text);
-  if (name.empty()) {
+  if (name.empty() || name == "gl") {
     return {};
   }
   if (name == "gpu") {

@@ -15,7 +15,7 @@ struct WantedDevice {
   int number = 0;             ///< NumberedGpu
   std::string renderer;       ///< Renderer: a part of its name, lower-case
 
-  /// "", "gpu", "gpu:N", "software", or a part of a renderer's name. Throws sk::Error where N is no
+  /// "" and "gl" for the best, "gpu", "gpu:N", "software", or a part of a renderer's name. Throws sk::Error where N is no
   /// number.
   static WantedDevice parse(const std::string& text);
 

@@ -25,6 +25,7 @@ TEST_CASE("what a device's name asks for") {
   const Capabilities software = renderer("llvmpipe (LLVM 15.0.6, 256 bits)", true);
   CHECK(WantedDevice::parse("").whyNot(gpu).empty());
   CHECK(WantedDevice::parse("").whyNot(software).empty());
+  CHECK(WantedDevice::parse("gl").kind == WantedDevice::Kind::Best);
   CHECK(WantedDevice::parse("GPU").whyNot(gpu).empty());
   CHECK(WantedDevice::parse("gpu:12").number == 12);
   CHECK(WantedDevice::parse("gpu").whyNot(software) == "'llvmpipe (LLVM 15.0.6, 256 bits)' is no GPU");

@@ -13,7 +13,9 @@ namespace sk {
 namespace {
 
 [[noreturn]] void failWithoutCode(const program::Kernel& kernel) {
-  fail(kernel, "it has no native code; compile its .sk file with skc --target=fragment,native");
+  fail(kernel,
+       "it has no native code; compile its .sk file with skc --target=fragment,native, or run it on a device "
+       "with GL (SK_DEVICE=gl)");
 }
 
 [[noreturn]] void failWithoutQuad(const program::Kernel& kernel) {
@@ -41,7 +43,8 @@ NativeDevice::NativeDevice(RealType real)
 }
 
 void NativeDevice::makeCurrent() {
-  throw Error(fmt::format("'{}' has no GL context to make current; draw in that of a GL device", name_));
+  throw Error(fmt::format(
+      "'{}' has no GL context to make current; draw in that of a device with GL (SK_DEVICE=gl)", name_));
 }
 
 NativeDevice::~NativeDevice() {
@@ -58,7 +61,9 @@ void NativeDevice::checkProgram(const program::Reduction& reduction) { checkCode
 
 void NativeDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
   if (asked == Target::Fragment || asked == Target::Compute) {
-    fail(kernel, "its streams are on '{}', which runs native code; {} programs run on streams of a GL device",
+    fail(kernel,
+         "its streams are on '{}', which runs native code; {} programs run on streams of a device with GL "
+         "(SK_DEVICE=gl)",
          name_, asked == Target::Fragment ? "fragment" : "compute");
   }
 }

@@ -120,12 +120,14 @@ Components& NativeStream::spare() {
 
 StreamTexture NativeStream::texture(int) {
   throw Error(
-      fmt::format("texture: '{}' has no textures; read() the stream, or use a GL device", owner().name()));
+      fmt::format("texture: '{}' has no textures; read() the stream, or use a device with GL (SK_DEVICE=gl)",
+                  owner().name()));
 }
 
 void NativeStream::fillBuffer(std::uint32_t, std::int64_t, int) {
-  throw Error(fmt::format("fillBuffer: '{}' has no GL; read() the stream and upload it, or use a GL device",
-                          owner().name()));
+  throw Error(fmt::format(
+      "fillBuffer: '{}' has no GL; read() the stream and upload it, or use a device with GL (SK_DEVICE=gl)",
+      owner().name()));
 }
 
 void NativeStream::become(const native::Pushed& pushed, RealType real) {

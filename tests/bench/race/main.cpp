@@ -26,7 +26,7 @@ namespace {
 struct CommandLine {
   race::Settings settings;
   std::string sizes;
-  std::string device;
+  std::string device = "gl";
   std::filesystem::path peers;
   std::filesystem::path json;
   bool noPeers = false;

@@ -20,7 +20,7 @@ struct Ours {
 
 class OurDevices {
  public:
-  /// `gl`: the device of the GL contenders, as SK_DEVICE names it; empty: the best.
+  /// `gl`: the device of the GL contenders, as SK_DEVICE names it.
   explicit OurDevices(const std::string& gl);
 
   const std::vector<Ours>& contenders() const { return contenders_; }

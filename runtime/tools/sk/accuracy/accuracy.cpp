@@ -190,7 +190,7 @@ void addAccuracy(CLI::App& app) {
       ->type_name("");
   command
       ->add_option("--device", options->device,
-                   "native, gpu, gpu:N, software, or a part of a renderer's name (default: the best)")
+                   "native, gpu, gpu:N, software, gl, or a part of a renderer's name (default: the best)")
       ->type_name("NAME");
   command
       ->add_option(

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -65,23 +66,25 @@ sk::Device openPlain(sk::DeviceOptions options) {
   return sk::Device(options);
 }
 
-/// The device that is asked for; else the best one with GL, if any, and native code.
+/// The device that is asked for; else native code and the best device with GL, if any, the better one first.
 Json infoOfAll(const InfoOptions& options) {
-  Json all;
-  all["devices"] = Json::array();
+  Json all, devices = Json::array();
   const char* chosen = std::getenv("SK_DEVICE");
   const std::string name = options.device.empty() && chosen != nullptr ? chosen : options.device;
+  bool hasGpu = false;
   try {
-    sk::Device device = openPlain({.device = name, .profile = options.profile});
-    all["devices"].push_back(infoOf(device, options.refresh));
+    sk::Device device = openPlain({.device = name.empty() ? "gl" : name, .profile = options.profile});
+    hasGpu = !device.isSoftware();
+    devices.push_back(infoOf(device, options.refresh));
   } catch (const sk::Error& error) {
     if (!name.empty() || !options.profile.empty()) throw;
     all["no_gl"] = error.what();
   }
   if (name.empty()) {
     sk::Device native = sk::Device::native();
-    all["devices"].push_back(infoOf(native, options.refresh));
+    devices.insert(hasGpu ? devices.end() : devices.begin(), infoOf(native, options.refresh));
   }
+  all["devices"] = std::move(devices);
   return all;
 }
 
@@ -116,8 +119,9 @@ void addInfo(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Devices: what they are, hold, compute and cost");
   auto options = std::make_shared<InfoOptions>();
   command
-      ->add_option("--device", options->device,
-                   "Only this one: native, reference, gpu, gpu:N, software, or a part of a renderer's name")
+      ->add_option(
+          "--device", options->device,
+          "Only this one: native, reference, gpu, gpu:N, software, gl, or a part of a renderer's name")
       ->type_name("NAME");
   command->add_option("--profile", options->profile, "glsl330 or essl300 (default: the device's best)")
       ->type_name("NAME");
