@@ -47,12 +47,14 @@ const llvm::Target& findTarget(const std::string& triple) {
   std::string why;
   const llvm::Target* const target = llvm::TargetRegistry::lookupTarget(triple, why);
   if (target == nullptr) {
-    throw Error(fmt::format("unknown target triple '{}'; use one like x86_64-linux-gnu or aarch64-linux-gnu", triple));
+    throw Error(fmt::format("unknown target triple '{}'; use one like x86_64-linux-gnu or aarch64-linux-gnu",
+                            triple));
   }
   if (!llvm::Triple(triple).isArch64Bit() || !llvm::Triple(triple).isLittleEndian()) {
-    throw Error(fmt::format("target triple '{}' is not a 64-bit little-endian machine, which native code is for; use "
-                            "--target=fragment,compute there",
-                            triple));
+    throw Error(
+        fmt::format("target triple '{}' is not a 64-bit little-endian machine, which native code is for; use "
+                    "--target=fragment,compute there",
+                    triple));
   }
   return *target;
 }
@@ -78,7 +80,8 @@ std::vector<CpuLevel> chosenLevels(const std::string& triple, const std::vector<
 void checkLanes(std::uint32_t lanes) {
   const bool isPowerOf2 = lanes != 0 && (lanes & (lanes - 1)) == 0;
   if (lanes == 0 || (isPowerOf2 && lanes <= sk::native::mostLanes)) return;
-  throw Error(fmt::format("{} lanes are not possible; use a power of 2 from 1 to {}", lanes, sk::native::mostLanes));
+  throw Error(
+      fmt::format("{} lanes are not possible; use a power of 2 from 1 to {}", lanes, sk::native::mostLanes));
 }
 
 }  // namespace
@@ -89,8 +92,9 @@ Target::Target(const Options& options) : triple_(normalized(options.triple)) {
   levels_ = chosenLevels(triple_, options.levels);
   llvm::TargetOptions targetOptions;
   targetOptions.AllowFPOpFusion = llvm::FPOpFusion::Standard;  // what is marked, and nothing else
-  machine_.reset(target.createTargetMachine(triple_, levels_.front().name, "", targetOptions, llvm::Reloc::PIC_,
-                                            std::nullopt, llvm::CodeGenOptLevel::Default));
+  machine_.reset(target.createTargetMachine(
+      triple_, levels_.front().name, "", targetOptions, llvm::Reloc::PIC_, std::nullopt,
+      options.optimizes ? llvm::CodeGenOptLevel::Default : llvm::CodeGenOptLevel::None));
 }
 
 void setLevel(llvm::Function& function, const CpuLevel& level) {

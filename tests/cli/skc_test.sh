@@ -36,7 +36,7 @@ echo '#define WEIGHT 0.25f' >include/weights.sk
 # Help and version.
 run 0 --help
 prints 'FILE'
-for option in -o --emit --target --profile --kernel -I -D -W -g --depfile --print-after --library --device --target-triple --levels \
+for option in -o --emit --target --profile --kernel -I -D -W -g -O --depfile --print-after --library --device --target-triple --levels \
   --lanes --quad --version; do
   prints " $option"
 done
