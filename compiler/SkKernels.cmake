@@ -47,7 +47,7 @@ endfunction()
 
 # sk_native_options(LIST): appends to skc's options what the build says of native code.
 function(sk_native_options list)
-  set(options ${${list}} "$<$<CONFIG:Debug,RelWithDebInfo>:-g>")
+  set(options ${${list}} "$<$<CONFIG:Debug,RelWithDebInfo>:-g>" "$<$<CONFIG:Debug>:-O0>")
   if(NOT "${options}" MATCHES "--target-triple")
     if(CMAKE_CXX_COMPILER_TARGET)
       list(APPEND options "--target-triple=${CMAKE_CXX_COMPILER_TARGET}")

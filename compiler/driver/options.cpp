@@ -80,6 +80,7 @@ struct Words {
   std::string emit = "stubs", color = "auto";
   std::vector<std::string> targets;
   std::string deviceFile;
+  int optimization = 2;
 };
 
 void addOutputOptions(CLI::App& app, Words& words) {
@@ -118,7 +119,8 @@ void addSourceOptions(CLI::App& app, Words& words) {
       ->type_name("NAME[=VALUE]")
       ->allow_extra_args(false);
   app.add_option("-W", words.options.warnings,
-                 "Enable or disable a warning by Clang's name for it, or 'performance': what keeps kernels from full speed; "
+                 "Enable or disable a warning by Clang's name for it, or 'performance': what keeps kernels "
+                 "from full speed; "
                  "-Werror turns warnings into errors")
       ->type_name("NAME")
       ->allow_extra_args(false);
@@ -159,6 +161,11 @@ void addNativeOptions(CLI::App& app, Words& words) {
                  "Elements that native code computes together (default: chosen for each kernel)")
       ->type_name("N");
   app.add_flag("-g", options.debugInfo, "Add debug information for the .sk file to the objects");
+  app.add_option("-O", words.optimization,
+                 "Optimise native code (2, the default), or keep every variable where debuggers find it (0)")
+      ->check(CLI::IsMember({0, 2}))
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
+      ->type_name("LEVEL");
   app.add_flag(
       "--quad", words.options.quad,
       "Also compile native code that computes in __float128, as a reference for accuracy; programs with "
@@ -175,6 +182,7 @@ std::string checkTogether(Words& words) {
   options.fragmentTarget = serves("fragment");
   options.computeTarget = serves("compute");
   options.nativeTarget = serves("native");
+  options.native.optimizes = words.optimization != 0;
   options.color = words.color == "always" || (words.color == "auto" && isatty(STDERR_FILENO));
   const bool printsNative = options.emit == Emit::Llvm || options.emit == Emit::Assembly;
   if (printsNative && !options.nativeTarget)

@@ -55,7 +55,7 @@ class Compilation {
     code_.setTargetTriple(target_.triple());
     code_.setDataLayout(target_.machine().createDataLayout());
     code_.setPICLevel(llvm::PICLevel::BigPIC);
-    if (options.debugInfo) debug_.emplace(code_, plain_);
+    if (options.debugInfo) debug_.emplace(code_, plain_, options.optimizes);
   }
 
   void add(const KernelRequest& request) {
@@ -81,7 +81,7 @@ class Compilation {
     if (debug_) debug_->finish();
     if (llvm::verifyModule(code_, &llvm::errs()))
       llvm::report_fatal_error("skc wrote LLVM IR that is not valid");
-    optimize(code_, target_.machine());
+    if (options_.optimizes) optimize(code_, target_.machine());
     llvm::SmallVector<char, 0> bytes;
     llvm::raw_svector_ostream stream(bytes);
     if (output == Output::Llvm) {
@@ -112,7 +112,9 @@ class Compilation {
   void addEntry(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind,
                 Real real, const CpuLevel& level) {
     const Kernel& kernel = plain_.kernels[request.kernel];
-    Form form{.lanes = 1, .real = real, .hasMaskRegisters = level.hasMaskRegisters, .isContracted = false};
+    const bool hasMaskRegisters =
+        level.hasMaskRegisters && options_.optimizes;  // debuggers see no single bits
+    Form form{.lanes = 1, .real = real, .hasMaskRegisters = hasMaskRegisters, .isContracted = false};
     if (isInLanes(kernel, kind, real))
       form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
     const bool isPredicated = form.lanes > 1;

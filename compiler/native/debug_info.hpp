@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Lines and variables of the .sk file for debuggers and profilers (DWARF). Functions of the IR are written into one LLVM
-// function; here they are inlined functions of it, as after any compiler's inliner.
+// function; here they are inlined functions of it, as after any compiler's inliner. A variable that varies from lane to
+// lane is a vector with one entry for each lane; of consecutive numbers, the first lane's is shown. What the library has added
+// is not shown.
 #pragma once
 
 #include <map>
@@ -12,12 +14,13 @@
 #include <llvm/IR/IRBuilder.h>
 
 #include "ir/ir.hpp"
+#include "native/function_code.hpp"
 
 namespace skc::native {
 
 class DebugInfo {
  public:
-  DebugInfo(llvm::Module& code, const ir::Module& module);
+  DebugInfo(llvm::Module& code, const ir::Module& module, bool isOptimized);
 
   /// The LLVM function is the code of this function of the IR.
   void begin(llvm::IRBuilder<>& b, llvm::Function& code, const ir::Function& function);
@@ -29,27 +32,39 @@ class DebugInfo {
 
   /// What follows belongs to this source location.
   void moveTo(llvm::IRBuilder<>& b, const Loc& loc);
-  /// A variable that `memory` holds: of the element in the first lane where lanes have their own.
-  void declare(llvm::IRBuilder<>& b, const ir::Variable& variable, llvm::Value* memory);
+  /// A variable of the current function, whose leaves are in `memory`. Parameters count from 1; 0 is no parameter.
+  void declare(llvm::IRBuilder<>& b, const ir::Variable& variable, unsigned parameter,
+               const std::vector<LeafMemory>& memory);
 
   void finish() { builder_.finalize(); }
 
  private:
+  using Leaves = std::vector<LeafMemory>::const_iterator;
   struct Scope {
     llvm::DISubprogram* program;
-    llvm::DILocation* calledAt;
+    llvm::DILocation* calledAt;  ///< null in the LLVM function's own code
+    llvm::DebugLoc before;  ///< where the caller was
+  };
+  struct Member {
+    std::string name;
+    llvm::DIType* type;
   };
 
   llvm::DIFile* file(std::uint32_t number);
-  llvm::DISubprogram* programOf(const ir::Function& function);
-  llvm::DISubprogram* makeProgram(const ir::Function& function, llvm::StringRef linkage);
-  llvm::DIType* scalarType(ir::Scalar scalar, llvm::Type* memory);
+  llvm::DISubprogram* makeProgram(const ir::Function& function);
+  llvm::DIType* scalarType(ir::Scalar scalar, std::uint64_t bits);
+  llvm::DIType* leafType(const LeafMemory& leaf);
+  llvm::DIType* recordType(const std::string& name, const std::vector<Member>& members);
+  /// Of a value whose leaves begin at `next`, which moves behind them.
+  llvm::DIType* typeOf(ir::Type type, Leaves& next);
 
   const ir::Module& module_;
+  bool isOptimized_;
   llvm::DIBuilder builder_;
   std::vector<llvm::DIFile*> files_;
   llvm::DICompileUnit* unit_;
-  std::map<const ir::Function*, llvm::DISubprogram*> programs_;
+  const ir::Function* begun_ = nullptr;
+  std::map<const ir::Function*, llvm::DISubprogram*> programs_;  ///< of the current LLVM function
   std::vector<Scope> scopes_;
 };
 

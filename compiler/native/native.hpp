@@ -34,6 +34,7 @@ struct Options {
   std::vector<std::string> levels = {};  ///< of the CPU, as levelNames() has them; empty: all
   std::uint32_t lanes = 0;  ///< elements computed together; 0: chosen for each kernel
   bool debugInfo = false;  ///< lines and variables of the .sk file for debuggers
+  bool optimizes = true;  ///< else every variable stays in memory, where debuggers find it
 };
 
 /// A mistake in the options, lower-case and without a period: an unknown triple, level or number of lanes.

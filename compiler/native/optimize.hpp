@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// LLVM's passes over a module of kernels. They are vectors already: nothing looks for loops to vectorise.
+// LLVM's passes over a module of kernels (-O2). They are vectors already: nothing looks for loops to vectorise.
 #pragma once
 
 #include <llvm/IR/Module.h>

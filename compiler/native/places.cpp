@@ -5,6 +5,7 @@
 #include <llvm/IR/Intrinsics.h>
 
 #include "native/arithmetic.hpp"
+#include "native/debug_info.hpp"
 #include "native/function_code.hpp"
 
 namespace skc::native {
@@ -37,6 +38,8 @@ void FunctionCode::declareAll() {
         memory.push_back(memoryOf(variable.name, leaves[i], shape));
       }
     }
+    const bool isParameter = var < function_.parameterCount;
+    if (k.debug != nullptr) k.debug->declare(b, variable, isParameter ? var + 1 : 0, memory);
     variables_.push_back(std::move(memory));
   }
   const std::vector<Leaf> leaves = leavesOf(k.module, function_.result);

@@ -92,8 +92,9 @@ Target::Target(const Options& options) : triple_(normalized(options.triple)) {
   levels_ = chosenLevels(triple_, options.levels);
   llvm::TargetOptions targetOptions;
   targetOptions.AllowFPOpFusion = llvm::FPOpFusion::Standard;  // what is marked, and nothing else
-  machine_.reset(target.createTargetMachine(triple_, levels_.front().name, "", targetOptions,
-                                            llvm::Reloc::PIC_, std::nullopt, llvm::CodeGenOptLevel::Default));
+  machine_.reset(target.createTargetMachine(
+      triple_, levels_.front().name, "", targetOptions, llvm::Reloc::PIC_, std::nullopt,
+      options.optimizes ? llvm::CodeGenOptLevel::Default : llvm::CodeGenOptLevel::None));
 }
 
 void setLevel(llvm::Function& function, const CpuLevel& level) {

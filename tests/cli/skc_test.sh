@@ -36,7 +36,7 @@ echo '#define WEIGHT 0.25f' >include/weights.sk
 # Help and version.
 run 0 --help
 prints 'FILE'
-for option in -o --emit --target --profile --kernel -I -D -W -g --depfile --print-after --library --device --target-triple --levels \
+for option in -o --emit --target --profile --kernel -I -D -W -g -O --depfile --print-after --library --device --target-triple --levels \
   --lanes --quad --version; do
   prints " $option"
 done
@@ -151,9 +151,19 @@ refuses '--nosuch' --nosuch heat.sk
 refuses 'glsll' --emit=glsll heat.sk
 refuses 'glsl990' --emit=glsl --profile=glsl990 heat.sk
 refuses 'quantum' --target=quantum heat.sk
-refuses 'quantum-unknown' --target-triple=quantum-unknown heat.sk
-refuses 'x86-64-v9' --levels=x86-64,x86-64-v9 heat.sk
-refuses '3' --lanes=3 heat.sk
+refuses "unknown target triple 'quantum-unknown'; use one like" --target-triple=quantum-unknown heat.sk
+for triple in i686-linux-gnu s390x-linux-gnu; do
+  refuses 'use --target=fragment,compute there' --target-triple=$triple heat.sk
+done
+run 0 -Iinclude -o unneeded --target=fragment,compute --target-triple=quantum-unknown heat.sk   # it compiles no native code
+silent
+refuses "unknown level 'x86-64-v9' of the CPU; use one of x86-64, x86-64-v3, x86-64-v4" \
+  --target-triple=x86_64-linux-gnu --levels=x86-64,x86-64-v9 heat.sk
+refuses 'leave out --levels' --target-triple=aarch64-linux-gnu --levels=x86-64 heat.sk
+for lanes in 3 128; do
+  refuses "$lanes lanes are not possible; use a power of 2 from 1 to 64" --lanes=$lanes heat.sk
+done
+refuses '-O' -O1 heat.sk
 refuses '--emit=asm prints native code' --emit=asm --target=fragment heat.sk
 run 0 -Iinclude -o compute --target=compute heat.sk
 grep -qF '.drawn = false' compute/heat.sk.cpp || broken "--target=compute has fragment programs"

@@ -2,11 +2,13 @@
 #include "native/entries.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <span>
 #include <string_view>
 #include <tuple>
 
 #include "check_argument.hpp"
+#include "sk/error.hpp"
 
 namespace sk {
 
@@ -55,24 +57,38 @@ std::string_view nameOf(RealType real) {
   if (lowest == nullptr) {
     fail(kernel, "its native code has no function that {} in {}", nameOf(kind), nameOf(real));
   }
-  fail(
-      kernel,
-      "its native code was compiled for {} and later CPUs alone, which this one is not; compile its .sk file "
-      "with skc --levels=x86-64,...",
-      nameOf(lowest->level));
+  fail(kernel,
+       "its native code was compiled for {} and later CPUs alone, which this one is not (or SK_CPU says so); "
+       "compile its .sk file with skc --levels=x86-64,...",
+       nameOf(lowest->level));
+}
+
+Level levelOfHardware() {
+#if defined(__x86_64__) && defined(__GNUC__)
+  return __builtin_cpu_supports("x86-64-v4")   ? Level::V4
+         : __builtin_cpu_supports("x86-64-v3") ? Level::V3
+                                               : Level::Base;
+#else
+  return Level::Base;
+#endif
 }
 
 }  // namespace
 
+Level levelNamed(std::string_view name) {
+  for (const Level level : {Level::Base, Level::V3, Level::V4}) {
+    if (name == nameOf(level)) return level;
+  }
+  throw Error(
+      fmt::format("there is no level '{}' of the CPU; choose x86-64, x86-64-v3 or x86-64-v4 (SK_CPU)", name));
+}
+
 Level levelOfCpu() {
-#if defined(__x86_64__) && defined(__GNUC__)
-  static const Level level = __builtin_cpu_supports("x86-64-v4")   ? Level::V4
-                             : __builtin_cpu_supports("x86-64-v3") ? Level::V3
-                                                                   : Level::Base;
+  static const Level level = [] {
+    const char* const most = std::getenv("SK_CPU");
+    return most == nullptr ? levelOfHardware() : std::min(levelNamed(most), levelOfHardware());
+  }();
   return level;
-#else
-  return Level::Base;
-#endif
 }
 
 const Entry* findEntry(const Code& code, EntryKind kind, const CodeChoice& choice, Level level) {

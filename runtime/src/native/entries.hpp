@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "native/components.hpp"
 #include "sk/native/code.hpp"
@@ -18,7 +19,10 @@ struct CodeChoice {
   bool mayContract = false;  ///< multiplications and additions may be fused
 };
 
-/// The newest generation that this CPU runs.
+/// The level of this name, such as x86-64-v3. Throws sk::Error where there is none.
+native::Level levelNamed(std::string_view name);
+
+/// The newest generation that this CPU runs; not above the one that SK_CPU names.
 native::Level levelOfCpu();
 
 /// The best entry of a kind for a CPU of that level; null where there is none.

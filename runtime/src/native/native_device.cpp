@@ -40,6 +40,7 @@ NativeDevice::NativeDevice(RealType real)
             .drawBuffers = unlimited,
             .textureUnits = unlimited,
             .uniformComponents = unlimited};
+  static_cast<void>(levelOfCpu());  // throws where SK_CPU names no level
 }
 
 void NativeDevice::makeCurrent() {
