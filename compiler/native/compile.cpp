@@ -9,6 +9,7 @@
 #include "emit/stream_uses.hpp"
 #include "ir/clone_module.hpp"
 #include "native/code_table.hpp"
+#include "native/contraction.hpp"
 #include "native/debug_info.hpp"
 #include "native/entries.hpp"
 #include "native/lane_count.hpp"
@@ -63,11 +64,13 @@ class Compilation {
     table.isUneven = emit::streamUses(plain_, kernel).loops;
     table.isOrdered = isOrdered(kernel);
     for (const EntryKind kind : entriesOf(plain_, kernel)) {
-      for (const CpuLevel& level : levelsFor(request, Real::Float)) addEntry(table, request, slots, kind, Real::Float, level);
-      if (request.inDoubles) {
-        for (const CpuLevel& level : levelsFor(request, Real::Double)) addEntry(table, request, slots, kind, Real::Double, level);
-      }
-      if (request.inQuads) addEntry(table, request, slots, kind, Real::Quad, target_.levels().front());
+      const auto addEntries = [&](Real real) {
+        for (const CpuLevel& level : levelsFor(request, real)) addEntry(table, request, slots, {kind, real, level});
+      };
+      addEntries(Real::Float);
+      if (mayContract(request, kind)) addContracted(table, request, slots, kind);
+      if (request.inDoubles) addEntries(Real::Double);
+      if (request.inQuads) addEntries(Real::Quad);
     }
     writeCodeTable(code_, table);
   }
@@ -96,16 +99,35 @@ class Compilation {
     });
   }
 
+  /// What an entry is compiled as.
+  struct EntryForm {
+    EntryKind kind;
+    Real real;
+    const CpuLevel& level;
+    bool isContracted = false;
+  };
+
   /// What is seldom run, and what computes in wider numbers than the kernel says, is compiled for one level.
   std::vector<CpuLevel> levelsFor(const KernelRequest& request, Real real) const {
     if (!request.isCold && real == Real::Float) return target_.levels();
     return {target_.levels().front()};
   }
 
-  void addEntry(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind, Real real,
-                const CpuLevel& level) {
+  /// Identities and borders are constants, and what is seldom run gains nothing.
+  bool mayContract(const KernelRequest& request, EntryKind kind) const {
+    const bool computes = kind == EntryKind::Run || kind == EntryKind::Fold || kind == EntryKind::Combine;
+    return computes && !request.isCold && canContract(plain_, plain_.kernels[request.kernel]);
+  }
+  void addContracted(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind) {
+    for (const CpuLevel& level : target_.levels()) {
+      if (level.hasFusedMultiplyAdd) addEntry(table, request, slots, {kind, Real::Float, level, /*isContracted=*/true});
+    }
+  }
+
+  void addEntry(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, const EntryForm& made) {
+    const auto& [kind, real, level, isContracted] = made;
     const Kernel& kernel = plain_.kernels[request.kernel];
-    Form form{.lanes = 1, .real = real, .hasMaskRegisters = level.hasMaskRegisters, .isContracted = false};
+    Form form{.lanes = 1, .real = real, .hasMaskRegisters = level.hasMaskRegisters, .isContracted = isContracted};
     if (isInLanes(kernel, kind, real)) form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
     const bool isPredicated = form.lanes > 1;
     const Version& version = versionFor(real);
@@ -114,8 +136,8 @@ class Compilation {
     if (isPredicated) uniformity.emplace(module, module.kernels[request.kernel]);
     const EntrySource source{module, module.kernels[request.kernel], slots, uniformity ? &*uniformity : nullptr,
                              form,   level,                          debug_ ? &*debug_ : nullptr};
-    const std::string name = request.symbol + suffix(kind, real, level);
-    table.entries.push_back({writeEntry(code_, source, kind, name), kind, real, level.level, false, form.lanes});
+    const std::string name = request.symbol + suffix(made);
+    table.entries.push_back({writeEntry(code_, source, kind, name), kind, real, level.level, isContracted, form.lanes});
   }
 
   const Version& versionFor(Real real) {
@@ -131,12 +153,12 @@ class Compilation {
     return kind != EntryKind::Fold || kernel.reduction->commutative;
   }
 
-  static std::string suffix(EntryKind kind, Real real, const CpuLevel& level) {
+  static std::string suffix(const EntryForm& made) {
     static constexpr const char* kinds[] = {".run", ".fold", ".combine", ".identity", ".borders"};
     static constexpr const char* reals[] = {"", ".double", ".quad"};
     static constexpr const char* levels[] = {"", ".v3", ".v4"};
-    return std::string(kinds[static_cast<std::size_t>(kind)]) + reals[static_cast<std::size_t>(real)] +
-           levels[static_cast<std::size_t>(level.level)];
+    return std::string(kinds[static_cast<std::size_t>(made.kind)]) + reals[static_cast<std::size_t>(made.real)] +
+           levels[static_cast<std::size_t>(made.level.level)] + (made.isContracted ? ".contracted" : "");
   }
 
   const Options& options_;

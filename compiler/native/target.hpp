@@ -22,6 +22,7 @@ struct CpuLevel {
   sk::native::Level level;
   std::uint32_t vectorBits;
   bool hasMaskRegisters;
+  bool hasFusedMultiplyAdd;
 };
 
 class Target {

@@ -251,16 +251,20 @@ auto codeOf(const program::NativeKernel& kernel, RealType real) {
   return real == RealType::Float ? kernel.single : real == RealType::Double ? kernel.reference : kernel.quad;
 }
 
+CodeChoice codeChoice(RealType real, const CallOptions& options) {
+  return {.real = real, .mayContract = options.contraction == Contraction::Fast};
+}
+
 /// A reduction's call, but for its results.
 class Folding {
  public:
   Operands fold;
 
-  Folding(RealType real, const program::Reduction& reduction, std::span<const Argument> arguments,
+  Folding(const CodeChoice& choice, const program::Reduction& reduction, std::span<const Argument> arguments,
           const Shape& domain, std::vector<native::Table> foldTables,
           std::vector<native::Table> combineTables)
-      : fold(real, reduction.fold, arguments, domain, std::move(foldTables)),
-        real_(real),
+      : fold(choice.real, reduction.fold, arguments, domain, std::move(foldTables)),
+        choice_(choice),
         reduction_(reduction),
         combineTables_(std::move(combineTables)) {
     for (const std::uint8_t operand : reduction.combineOperands) {
@@ -273,23 +277,23 @@ class Folding {
     const native::Call whole = fold.call(block);
     const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block};
     if (reduction_.fold.code != nullptr) {
-      foldCode(reduction_, call, {.real = real_});
+      foldCode(reduction_, call, choice_);
     } else {
-      codeOf(*reduction_.native, real_).run(call);
+      codeOf(*reduction_.native, choice_.real).run(call);
     }
   }
   void storeIdentity() {
     const native::Call whole = fold.callAsItIs();
     if (reduction_.fold.code != nullptr) {
-      storeIdentities(reduction_, whole, {.real = real_});
+      storeIdentities(reduction_, whole, choice_);
     } else {
-      codeOf(*reduction_.native, real_)
+      codeOf(*reduction_.native, choice_.real)
           .identity({whole, {combine_, {1, 1, 1, 1}, combineTables_}, {1, 1, 1, 1}});
     }
   }
 
  private:
-  RealType real_;
+  CodeChoice choice_;
   const program::Reduction& reduction_;
   std::vector<native::Table> combineTables_;
   std::vector<Operand> combine_;
@@ -337,7 +341,7 @@ void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments
   {
     const NativePass traced(*this, kernel, {}, arguments, domain);
     if (kernel.code != nullptr) {
-      runCode(kernel, operands.call(), {.real = real});
+      runCode(kernel, operands.call(), codeChoice(real, options));
     } else {
       codeOf(*kernel.native, real)(operands.call());
     }
@@ -350,7 +354,7 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
   checkTarget(called.fold, options.target);
   const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
   const RealType real = realOf(options);
-  Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
+  Folding folding(codeChoice(real, options), reduction, arguments, domain, tablesOf(reduction.fold, real, options),
                   tablesOf(reduction.combine, real, options));
   std::vector<std::pair<const program::Element*, const Components*>> values;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -376,7 +380,7 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
   checkTarget(called.fold, options.target);
   const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
   const RealType real = realOf(options);
-  Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
+  Folding folding(codeChoice(real, options), reduction, arguments, domain, tablesOf(reduction.fold, real, options),
                   tablesOf(reduction.combine, real, options));
   const Extents counts = fastestFirst(blocks);
   std::vector<std::size_t> results;
@@ -437,7 +441,7 @@ std::optional<std::vector<float>> NativeDevice::sumExactly(const program::Reduct
   for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
   const NativePass traced(*this, kernel, "fold", all, domain);
   const native::Call call = operands.call(block);
-  return sk::sumExactly(reduction, sum, call, block, {.real = real});
+  return sk::sumExactly(reduction, sum, call, block, {.real = real});  // the same bits on every device: never contracted
 }
 
 }  // namespace sk
