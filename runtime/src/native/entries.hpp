@@ -21,7 +21,8 @@ struct CodeChoice {
 /// The newest generation that this CPU runs.
 native::Level levelOfCpu();
 
-/// The best entry of a kind for a CPU of that level; null where there is none.
+/// The best entry of a kind for a CPU of that level; null where there is none. A contracted one, where the call allows it, is
+/// better than one for a later level.
 const native::Entry* findEntry(const native::Code& code, native::EntryKind kind, const CodeChoice& choice,
                                native::Level level = levelOfCpu());
 
