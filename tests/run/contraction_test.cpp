@@ -72,7 +72,10 @@ TEST_CASE("every operation is rounded by default") {
 }
 
 TEST_CASE("products and sums are fused where a call, the source or a file asks for it") {
-  if (!cpuFuses()) return WARN("this CPU has no fused multiply-add");
+  if (!cpuFuses()) {
+    WARN("this CPU has no fused multiply-add");
+    return;
+  }
   const Squares in;
   sk::Device device = sk::Device::native();
   constexpr sk::CallOptions fast{.contraction = Contraction::Fast};
@@ -110,7 +113,10 @@ TEST_CASE("sums are contracted in a plain tree alone") {
        {sk::Accumulate::Default, sk::Accumulate::Compensated, sk::Accumulate::Exact}) {
     CHECK(dotOf(accumulate, Contraction::Fast) == dotOf(accumulate, Contraction::Exact));
   }
-  if (!cpuFuses()) return WARN("this CPU has no fused multiply-add");
+  if (!cpuFuses()) {
+    WARN("this CPU has no fused multiply-add");
+    return;
+  }
   CHECK(dotOf(sk::Accumulate::Tree, Contraction::Fast) != dotOf(sk::Accumulate::Tree, Contraction::Exact));
 }
 
