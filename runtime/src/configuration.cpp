@@ -54,9 +54,10 @@ CallOptions optionsOf(const std::string& file, const toml::table& table) {
     } else if (key == "contraction") {
       options.contraction = choiceOf<Contraction>(contractions, file, "contraction", node);
     } else {
-      throw Error(fmt::format("{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables, target "
-                              "and contraction",
-                              file, key.source().begin.line, key.str()));
+      throw Error(fmt::format(
+          "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables, target "
+          "and contraction",
+          file, key.source().begin.line, key.str()));
     }
   }
   return options;

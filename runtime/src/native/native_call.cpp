@@ -354,8 +354,8 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
   checkTarget(called.fold, options.target);
   const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
   const RealType real = realOf(options);
-  Folding folding(codeChoice(real, options), reduction, arguments, domain, tablesOf(reduction.fold, real, options),
-                  tablesOf(reduction.combine, real, options));
+  Folding folding(codeChoice(real, options), reduction, arguments, domain,
+                  tablesOf(reduction.fold, real, options), tablesOf(reduction.combine, real, options));
   std::vector<std::pair<const program::Element*, const Components*>> values;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const Parameter& parameter = reduction.fold.parameters[i];
@@ -380,8 +380,8 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
   checkTarget(called.fold, options.target);
   const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
   const RealType real = realOf(options);
-  Folding folding(codeChoice(real, options), reduction, arguments, domain, tablesOf(reduction.fold, real, options),
-                  tablesOf(reduction.combine, real, options));
+  Folding folding(codeChoice(real, options), reduction, arguments, domain,
+                  tablesOf(reduction.fold, real, options), tablesOf(reduction.combine, real, options));
   const Extents counts = fastestFirst(blocks);
   std::vector<std::size_t> results;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -441,7 +441,8 @@ std::optional<std::vector<float>> NativeDevice::sumExactly(const program::Reduct
   for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
   const NativePass traced(*this, kernel, "fold", all, domain);
   const native::Call call = operands.call(block);
-  return sk::sumExactly(reduction, sum, call, block, {.real = real});  // the same bits on every device: never contracted
+  return sk::sumExactly(reduction, sum, call, block,
+                        {.real = real});  // the same bits on every device: never contracted
 }
 
 }  // namespace sk

@@ -54,7 +54,8 @@ class Field {
   }
 
   void advance(int count) {
-    const auto step = accuracy::diffuse.with({.precision = mode_.precision, .contraction = mode_.contraction});
+    const auto step =
+        accuracy::diffuse.with({.precision = mode_.precision, .contraction = mode_.contraction});
     for (int i = 0; i < count; i += 2) {
       step(rate, now_, next_);
       step(rate, next_, now_);
@@ -105,7 +106,8 @@ std::vector<Experiment> measureDiffusion(sk::Device& device, const Measurement& 
   std::vector<Mode> candidates;
   for (const DiffusionMode& mode : modes) {
     const bool isContracted = mode.contraction == sk::Contraction::Fast;
-    if (isContracted && !device.shadingLanguage().empty()) continue;  // GL devices would only repeat their results
+    if (isContracted && !device.shadingLanguage().empty())
+      continue;  // GL devices would only repeat their results
     candidates.push_back({mode.name, [&] {
                             auto field = std::make_shared<Field>(device, shape, mode, start);
                             return Trial{[field] { field->advance(timedSteps); },
