@@ -44,6 +44,37 @@ TEST_CASE("a text compiles without a file") {
   }
 }
 
+TEST_CASE("products and sums are fused in entries of their own alone, and never in the library") {
+  Options options;
+  options.emit = Emit::Llvm;
+  options.native.triple = "x86_64-linux-gnu";
+  const auto codeOf = [&](const std::string& body, const std::string& attributes = "") {
+    const std::string text = attributes + " kernel void f(float x<>, out float r<>) { " + body + " }\n";
+    return compileText(options, "f.sk", text).output;
+  };
+  const std::string fused = codeOf("r = x * x - 2;");
+  CHECK(contains(fused, ".run.v3.contracted"));
+  CHECK_FALSE(contains(fused, ".run.v4.contracted"));
+  CHECK(contains(codeOf("r = x * x - 2;", "[[contraction(fast)]]"), ".run.v4.contracted"));
+  CHECK(contains(fused, "fmul contract"));
+  CHECK_FALSE(contains(fused, ".run.contracted"));  // plain x86-64 has no such operation
+  CHECK_FALSE(contains(codeOf("r = x * 3;"), "contract"));
+  CHECK_FALSE(contains(codeOf("r = sin(x);"), "contract"));
+  CHECK_FALSE(contains(codeOf("r = length(float2(x, 2)) - 1;"), "contract"));
+  const std::string sine = codeOf("r = 3 * sin(x) + 1;");  // the library computes in doubles
+  CHECK(contains(sine, "fmul contract <8 x float>"));
+  CHECK_FALSE(contains(sine, "contract <8 x double>"));
+  options.emit = Emit::Assembly;
+  options.native.levels = {"x86-64"};
+  CHECK_FALSE(contains(codeOf("r = x * x - 2;"), "vfm"));
+  options.native.levels = {"x86-64-v3"};
+  const std::string assembly = codeOf("r = x * x - 2;");
+  const std::size_t contracted = assembly.find(".run.v3.contracted\":\n");
+  REQUIRE(contracted != std::string::npos);
+  CHECK(assembly.substr(0, contracted).find("vfm") == std::string::npos);
+  CHECK(assembly.find("vfm", contracted) != std::string::npos);
+}
+
 TEST_CASE("files are written for the targets that are asked for") {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / ("skc_compile_test." + std::to_string(::getpid()));

@@ -64,7 +64,8 @@ static_assert(static_cast<int>(Scalar::Snorm16) == static_cast<int>(sk::program:
 static_assert(static_cast<int>(ParamRole::Spec) == static_cast<int>(sk::program::Role::Spec));
 static_assert(static_cast<int>(ScatterOp::Max) == static_cast<int>(sk::program::ScatterOp::Max));
 static_assert(static_cast<int>(sk::Precision::Double) == 4 && static_cast<int>(sk::Accumulate::Exact) == 4 &&
-                  static_cast<int>(sk::Intrinsics::Accurate) == 2 && static_cast<int>(sk::Tables::On) == 2,
+                  static_cast<int>(sk::Intrinsics::Accurate) == 2 && static_cast<int>(sk::Tables::On) == 2 &&
+                  static_cast<int>(sk::Contraction::Fast) == 2,
               "frontend/choices.cpp has the same order");
 static_assert(static_cast<int>(Boundary::Border) == static_cast<int>(sk::program::Boundary::Border));
 
@@ -86,10 +87,11 @@ class Builder {
     const Kernel& kernel = module_.kernels[id];
     if (kernel.pass || kernel.isMade) return;
     Unit unit{.id = id, .kernel = whole(kernel)};
-    unit.kernel.options = {static_cast<sk::Accumulate>(kernel.choices.accumulate),
-                           static_cast<sk::Precision>(kernel.choices.precision),
-                           static_cast<sk::Intrinsics>(kernel.choices.intrinsics),
-                           static_cast<sk::Tables>(kernel.choices.tables)};
+    unit.kernel.options = {.accumulate = static_cast<sk::Accumulate>(kernel.choices.accumulate),
+                           .precision = static_cast<sk::Precision>(kernel.choices.precision),
+                           .intrinsics = static_cast<sk::Intrinsics>(kernel.choices.intrinsics),
+                           .tables = static_cast<sk::Tables>(kernel.choices.tables),
+                           .contraction = static_cast<sk::Contraction>(kernel.choices.contraction)};
     unit.kernel.whyNotHalf = storage_.keep(kernel.forms.whyNotHalf);
     unit.kernel.whyNotWide = storage_.keep(kernel.forms.whyNotWide);
     if (kernel.reduction) {

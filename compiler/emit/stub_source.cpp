@@ -403,12 +403,16 @@ class SourceWriter {
     constexpr std::string_view precisions[] = {"Default", "Half", "Single", "Extended", "Double"};
     constexpr std::string_view intrinsics[] = {"Default", "Fast", "Accurate"};
     constexpr std::string_view tables[] = {"Default", "Off", "On"};
+    constexpr std::string_view contractions[] = {"Default", "Exact", "Fast"};
     if (options == CallOptions{}) return;
-    members.push_back(fmt::format(".options = {{Accumulate::{}, Precision::{}, Intrinsics::{}, Tables::{}}}",
-                                  accumulates[static_cast<std::size_t>(options.accumulate)],
-                                  precisions[static_cast<std::size_t>(options.precision)],
-                                  intrinsics[static_cast<std::size_t>(options.intrinsics)],
-                                  tables[static_cast<std::size_t>(options.tables)]));
+    members.push_back(
+        fmt::format(".options = {{.accumulate = Accumulate::{}, .precision = Precision::{}, "
+                    ".intrinsics = Intrinsics::{}, .tables = Tables::{}, .contraction = Contraction::{}}}",
+                    accumulates[static_cast<std::size_t>(options.accumulate)],
+                    precisions[static_cast<std::size_t>(options.precision)],
+                    intrinsics[static_cast<std::size_t>(options.intrinsics)],
+                    tables[static_cast<std::size_t>(options.tables)],
+                    contractions[static_cast<std::size_t>(options.contraction)]));
   }
 
   /// The name of a parameter's condition.

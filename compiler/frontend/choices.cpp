@@ -20,7 +20,7 @@ struct Choice {
   std::array<std::string_view, 6> values;
   std::string_view list;  ///< for messages
 };
-constexpr std::array<Choice, 4> choices = {{
+constexpr std::array<Choice, 5> choices = {{
     {"precision",
      &ir::Choices::precision,
      {"", "half", "single", "extended", "double"},
@@ -31,6 +31,7 @@ constexpr std::array<Choice, 4> choices = {{
      "tree, compensated, extended, exact"},
     {"intrinsics", &ir::Choices::intrinsics, {"", "fast", "accurate"}, "fast, accurate"},
     {"tables", &ir::Choices::tables, {"", "off", "on"}, "off, on"},
+    {"contraction", &ir::Choices::contraction, {"", "exact", "fast"}, "exact, fast"},
 }};
 
 bool startsAttributes(const TokenCursor& cursor, std::size_t at) {

@@ -316,7 +316,8 @@ Function clone(const Function& function) {
           .parameterCount = function.parameterCount,
           .body = clone(function.body),
           .loc = function.loc,
-          .table = function.table};
+          .table = function.table,
+          .isLibrary = function.isLibrary};
 }
 
 }  // namespace skc::ir

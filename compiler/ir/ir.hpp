@@ -183,6 +183,7 @@ struct Function {
   Block body;
   Loc loc;
   std::optional<TableId> table = {};   ///< that may stand for a Call of it
+  bool isLibrary = false;              ///< of the native library: its errors are bounded as it is written
 };
 
 /// A table of the values of a function, which takes one float In and gives a float. `kernel`, set by tabulate where
@@ -341,9 +342,9 @@ struct PassOf {
 };
 
 /// What the author chooses by [[precision(extended)]] and the like, in front of a kernel: numbers of the enumerators of
-/// sk::Precision, sk::Accumulate, sk::Intrinsics and sk::Tables; 0 where nothing is said.
+/// sk::Precision, sk::Accumulate, sk::Intrinsics, sk::Tables and sk::Contraction; 0 where nothing is said.
 struct Choices {
-  std::uint8_t precision = 0, accumulate = 0, intrinsics = 0, tables = 0;
+  std::uint8_t precision = 0, accumulate = 0, intrinsics = 0, tables = 0, contraction = 0;
 };
 
 /// A loop that unroll-loops has looked at.

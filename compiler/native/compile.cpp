@@ -9,6 +9,7 @@
 #include "emit/stream_uses.hpp"
 #include "ir/clone_module.hpp"
 #include "native/code_table.hpp"
+#include "native/contraction.hpp"
 #include "native/debug_info.hpp"
 #include "native/entries.hpp"
 #include "native/lane_count.hpp"
@@ -16,6 +17,7 @@
 #include "native/native.hpp"
 #include "native/optimize.hpp"
 #include "native/target.hpp"
+#include "sk/options.hpp"
 #include "transforms/predicate.hpp"
 
 namespace skc::native {
@@ -66,13 +68,14 @@ class Compilation {
     table.isUneven = emit::streamUses(plain_, kernel).loops;
     table.isOrdered = isOrdered(kernel);
     for (const EntryKind kind : entriesOf(plain_, kernel)) {
-      for (const CpuLevel& level : levelsFor(request, Real::Float))
-        addEntry(table, request, slots, kind, Real::Float, level);
-      if (request.inDoubles) {
-        for (const CpuLevel& level : levelsFor(request, Real::Double))
-          addEntry(table, request, slots, kind, Real::Double, level);
-      }
-      if (request.inQuads) addEntry(table, request, slots, kind, Real::Quad, target_.levels().front());
+      const auto addEntries = [&](Real real) {
+        for (const CpuLevel& level : levelsFor(request, real))
+          addEntry(table, request, slots, {kind, real, level});
+      };
+      addEntries(Real::Float);
+      if (mayContract(request, kind)) addContracted(table, request, slots, kind);
+      if (request.inDoubles) addEntries(Real::Double);
+      if (request.inQuads) addEntries(Real::Quad);
     }
     writeCodeTable(code_, table);
   }
@@ -103,18 +106,43 @@ class Compilation {
     });
   }
 
+  /// What an entry is compiled as.
+  struct EntryForm {
+    EntryKind kind;
+    Real real;
+    const CpuLevel& level;
+    bool isContracted = false;
+  };
+
   /// What is seldom run, and what computes in wider numbers than the kernel says, is compiled for one level.
   std::vector<CpuLevel> levelsFor(const KernelRequest& request, Real real) const {
     if (!request.isCold && real == Real::Float) return target_.levels();
     return {target_.levels().front()};
   }
 
-  void addEntry(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind,
-                Real real, const CpuLevel& level) {
+  /// Identities and borders are constants, and what is seldom run gains nothing.
+  bool mayContract(const KernelRequest& request, EntryKind kind) const {
+    const bool computes = kind == EntryKind::Run || kind == EntryKind::Fold || kind == EntryKind::Combine;
+    return computes && !request.isCold && canContract(plain_, plain_.kernels[request.kernel]);
+  }
+  /// A kernel that asks for it has such code for every level that can fuse. Others have it for the lowest of them, which
+  /// later CPUs run, too: for all levels it would add a third to the time that skc takes.
+  void addContracted(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind) {
+    constexpr auto fast = static_cast<std::uint8_t>(sk::Contraction::Fast);
+    for (const CpuLevel& level : target_.levels()) {
+      if (!level.hasFusedMultiplyAdd) continue;
+      addEntry(table, request, slots, {kind, Real::Float, level, /*isContracted=*/true});
+      if (plain_.kernels[request.kernel].choices.contraction != fast) return;
+    }
+  }
+
+  void addEntry(CodeTable& table, const KernelRequest& request, const SlotPlan& slots,
+                const EntryForm& made) {
+    const auto& [kind, real, level, isContracted] = made;
     const Kernel& kernel = plain_.kernels[request.kernel];
     const bool hasMaskRegisters =
         level.hasMaskRegisters && options_.optimizes;  // debuggers see no single bits
-    Form form{.lanes = 1, .real = real, .hasMaskRegisters = hasMaskRegisters, .isContracted = false};
+    Form form{.lanes = 1, .real = real, .hasMaskRegisters = hasMaskRegisters, .isContracted = isContracted};
     if (isInLanes(kernel, kind, real))
       form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
     const bool isPredicated = form.lanes > 1;
@@ -125,9 +153,9 @@ class Compilation {
     const EntrySource source{
         module, module.kernels[request.kernel], slots, uniformity ? &*uniformity : nullptr, form,
         level,  debug_ ? &*debug_ : nullptr};
-    const std::string name = request.symbol + suffix(kind, real, level);
+    const std::string name = request.symbol + suffix(made);
     table.entries.push_back(
-        {writeEntry(code_, source, kind, name), kind, real, level.level, false, form.lanes});
+        {writeEntry(code_, source, kind, name), kind, real, level.level, isContracted, form.lanes});
   }
 
   const Version& versionFor(Real real) {
@@ -143,12 +171,13 @@ class Compilation {
     return kind != EntryKind::Fold || kernel.reduction->commutative;
   }
 
-  static std::string suffix(EntryKind kind, Real real, const CpuLevel& level) {
+  static std::string suffix(const EntryForm& made) {
     static constexpr const char* kinds[] = {".run", ".fold", ".combine", ".identity", ".borders"};
     static constexpr const char* reals[] = {"", ".double", ".quad"};
     static constexpr const char* levels[] = {"", ".v3", ".v4"};
-    return std::string(kinds[static_cast<std::size_t>(kind)]) + reals[static_cast<std::size_t>(real)] +
-           levels[static_cast<std::size_t>(level.level)];
+    return std::string(kinds[static_cast<std::size_t>(made.kind)]) +
+           reals[static_cast<std::size_t>(made.real)] + levels[static_cast<std::size_t>(made.level.level)] +
+           (made.isContracted ? ".contracted" : "");
   }
 
   const Options& options_;

@@ -28,13 +28,7 @@ class EntryWriter {
                  [this](const Expr& expr) { return constantParts(context_, expr); }),
         context_{l_, source.module, source.kernel, streams_, source.uniformity, {}, source.debug},
         code_(code),
-        name_(name) {
-    if (source.form.isContracted) {
-      llvm::FastMathFlags flags;
-      flags.setAllowContract();
-      b_.setFastMathFlags(flags);
-    }
-  }
+        name_(name) {}
 
   llvm::Function* write(EntryKind kind) {
     switch (kind) {

@@ -109,6 +109,12 @@ Parts FunctionCode::either(llvm::Value* condition, const std::function<Parts()>&
   return result;
 }
 
+llvm::FastMathFlags FunctionCode::flagsOfText() const {
+  llvm::FastMathFlags flags;
+  flags.setAllowContract(l.form().isContracted && !function_.isLibrary);
+  return flags;
+}
+
 Parts FunctionCode::matrixProduct(const Parts& a, const Parts& c, std::size_t n, bool isVector) {
   const auto product = [&](const Part& x, const Part& y) {
     return binary(l, BinaryOp::Mul, Scalar::Float, x, y);
@@ -138,6 +144,8 @@ Parts FunctionCode::parts(const Expr& expr, const Binary& n) {
                                         : either(lhs[0].value, known, asked);
   }
   const Parts rhs = expression(*n.rhs);
+  const llvm::IRBuilderBase::FastMathFlagGuard guard(b);
+  b.setFastMathFlags(flagsOfText());
   const Type left = n.lhs->type, right = n.rhs->type;
   if (n.op == BinaryOp::Mul && left.isMatrix() && !right.isScalar()) {
     return matrixProduct(lhs, rhs, left.width, right.isVector());
@@ -329,6 +337,8 @@ Parts FunctionCode::parts(const Expr&, const IntrinsicCall& n) {
   if (n.intrinsic == Intrinsic::AnyLane) return {{l.any(expression(*n.args[0])[0])}};
   std::vector<IntrinsicArgument> arguments;
   for (const ExprPtr& arg : n.args) arguments.push_back({arg->type, expression(*arg)});
+  const llvm::IRBuilderBase::FastMathFlagGuard guard(b);
+  if (n.intrinsic == Intrinsic::Fma || n.intrinsic == Intrinsic::Dot) b.setFastMathFlags(flagsOfText());
   return intrinsic(l, n.intrinsic, arguments, k.library);
 }
 

@@ -109,6 +109,8 @@ class FunctionCode {
   llvm::Value* condition(const ir::Expr& expr);
 
   // ---- expressions (expression_code.cpp)
+  /// For products and sums that the text writes, unlike those within functions of the library and in conversions.
+  llvm::FastMathFlags flagsOfText() const;
   Parts parts(const ir::Expr& expr, const ir::Literal& n);
   Parts parts(const ir::Expr& expr, const ir::VarRef& n);
   Parts parts(const ir::Expr& expr, const ir::ConstantRef& n);

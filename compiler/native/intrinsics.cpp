@@ -294,14 +294,6 @@ Part productError(const Formula& f, const Part& x, const Part& y) {
   return f.select(f.isFinite(p), error, f.number(p, 0));
 }
 
-/// What no compiler may fuse, whatever the call allows.
-template <class Compute>
-Part asWritten(const Formula& f, Compute&& compute) {
-  const llvm::IRBuilderBase::FastMathFlagGuard guard(f.l.b);
-  f.l.b.clearFastMathFlags();
-  return compute();
-}
-
 Part component(const Formula& f, Intrinsic intrinsic, Scalar scalar, const std::vector<Part>& x) {
   const auto call = [&](const char* name) { return f.function(intrinsic, name, x); };
   switch (intrinsic) {
@@ -371,10 +363,10 @@ Part component(const Formula& f, Intrinsic intrinsic, Scalar scalar, const std::
     case Intrinsic::ModfFraction:
       return f.copySign(f.select(f.isInfinite(x[0]), f.number(x[0], 0), f.sub(x[0], f.trunc(x[0]))), x[0]);
     case Intrinsic::Nearest: return wholeIndex(f.l, f.floor(f.add(x[0], f.number(x[0], 0.5))));
-    case Intrinsic::RoundedSum: return asWritten(f, [&] { return f.add(x[0], x[1]); });
-    case Intrinsic::RoundedProduct: return asWritten(f, [&] { return f.mul(x[0], x[1]); });
-    case Intrinsic::SumError: return asWritten(f, [&] { return sumError(f, x[0], x[1]); });
-    case Intrinsic::ProductError: return asWritten(f, [&] { return productError(f, x[0], x[1]); });
+    case Intrinsic::RoundedSum: return f.add(x[0], x[1]);
+    case Intrinsic::RoundedProduct: return f.mul(x[0], x[1]);
+    case Intrinsic::SumError: return sumError(f, x[0], x[1]);
+    case Intrinsic::ProductError: return productError(f, x[0], x[1]);
     case Intrinsic::LessThan: return binary(f.l, BinaryOp::Less, scalar, x[0], x[1]);
     case Intrinsic::LessThanEqual: return binary(f.l, BinaryOp::LessEqual, scalar, x[0], x[1]);
     case Intrinsic::GreaterThan: return binary(f.l, BinaryOp::Greater, scalar, x[0], x[1]);

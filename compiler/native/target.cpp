@@ -18,18 +18,47 @@ using sk::native::Level;
 
 namespace {
 
-constexpr CpuLevel x86Levels[] = {{"x86-64", Level::Base, 128, false},
-                                  {"x86-64-v3", Level::V3, 256, false},
-                                  {"x86-64-v4", Level::V4, 512, true}};
-constexpr CpuLevel otherLevels[] = {{"", Level::Base, 128, false}};
+constexpr CpuLevel x86Levels[] = {
+    {.name = "x86-64",
+     .level = Level::Base,
+     .vectorBits = 128,
+     .hasMaskRegisters = false,
+     .hasFusedMultiplyAdd = false},
+    {.name = "x86-64-v3",
+     .level = Level::V3,
+     .vectorBits = 256,
+     .hasMaskRegisters = false,
+     .hasFusedMultiplyAdd = true},
+    {.name = "x86-64-v4",
+     .level = Level::V4,
+     .vectorBits = 512,
+     .hasMaskRegisters = true,
+     .hasFusedMultiplyAdd = true},
+};
+constexpr CpuLevel armLevels[] = {
+    {.name = "",
+     .level = Level::Base,
+     .vectorBits = 128,
+     .hasMaskRegisters = false,
+     .hasFusedMultiplyAdd = true},
+};
+constexpr CpuLevel otherLevels[] = {
+    {.name = "",
+     .level = Level::Base,
+     .vectorBits = 128,
+     .hasMaskRegisters = false,
+     .hasFusedMultiplyAdd = false},
+};
 
 std::string normalized(const std::string& triple) {
   return triple.empty() ? llvm::sys::getDefaultTargetTriple() : llvm::Triple::normalize(triple);
 }
 
 std::span<const CpuLevel> levelsOf(const std::string& triple) {
-  return llvm::Triple(triple).getArch() == llvm::Triple::x86_64 ? std::span<const CpuLevel>(x86Levels)
-                                                                : std::span<const CpuLevel>(otherLevels);
+  const llvm::Triple machine(triple);
+  if (machine.getArch() == llvm::Triple::x86_64) return x86Levels;
+  if (machine.isAArch64()) return armLevels;
+  return otherLevels;
 }
 
 void initialize() {

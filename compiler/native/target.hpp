@@ -23,6 +23,7 @@ struct CpuLevel {
   sk::native::Level level;
   std::uint32_t vectorBits;
   bool hasMaskRegisters;
+  bool hasFusedMultiplyAdd;
 };
 
 class Target {

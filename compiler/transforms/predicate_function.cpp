@@ -90,7 +90,8 @@ class Predicator {
                  .parameterCount = source_.parameterCount,
                  .body = {},
                  .loc = source_.loc,
-                 .table = source_.table};
+                 .table = source_.table,
+                 .isLibrary = source_.isLibrary};
   }
 
   Function run() {

@@ -23,6 +23,7 @@ constexpr std::string_view intrinsics[] = {"fast", "accurate"};
 constexpr std::string_view storages[] = {"single", "half", "extended", "double"};
 constexpr std::string_view tableUses[] = {"off", "on"};
 constexpr std::string_view targets[] = {"fragment", "compute", "native"};
+constexpr std::string_view contractions[] = {"exact", "fast"};
 
 /// The enumerator of a name: they follow Default in this order.
 template <class Choice>
@@ -50,9 +51,12 @@ CallOptions optionsOf(const std::string& file, const toml::table& table) {
       options.tables = choiceOf<Tables>(tableUses, file, "tables", node);
     } else if (key == "target") {
       options.target = choiceOf<Target>(targets, file, "target", node);
+    } else if (key == "contraction") {
+      options.contraction = choiceOf<Contraction>(contractions, file, "contraction", node);
     } else {
       throw Error(fmt::format(
-          "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables and target",
+          "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables, target "
+          "and contraction",
           file, key.source().begin.line, key.str()));
     }
   }
@@ -124,6 +128,7 @@ CallOptions merged(CallOptions first, const CallOptions& second) {
   if (first.intrinsics == Intrinsics::Default) first.intrinsics = second.intrinsics;
   if (first.tables == Tables::Default) first.tables = second.tables;
   if (first.target == Target::Default) first.target = second.target;
+  if (first.contraction == Contraction::Default) first.contraction = second.contraction;
   return first;
 }
 

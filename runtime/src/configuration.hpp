@@ -8,6 +8,7 @@
 //   [kernels."*"]
 //   intrinsics = "fast"
 //   target = "fragment"
+//   contraction = "fast"
 //
 //   [tables."heat::response"]
 //   low = -4.0

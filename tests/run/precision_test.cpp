@@ -297,6 +297,9 @@ TEST_CASE("mistakes in a file are told with their line") {
   CHECK(errorIn("[kernels.a]\nprecision = \"quad\"\n")
             .find(":2: precision is one of \"half\", \"single\", \"extended\", \"double\"") !=
         std::string::npos);
+  CHECK(
+      errorIn("[kernels.a]\ncontraction = \"on\"\n").find(":2: contraction is one of \"exact\", \"fast\"") !=
+      std::string::npos);
   CHECK(errorIn("[kernels.a]\n\nspeed = 1\n").find(":3: there is no choice 'speed'") != std::string::npos);
   CHECK(errorIn("[kernel]\n").find(":1: expected tables like [kernels.") != std::string::npos);
   CHECK(errorIn("precision\n").find(":1: ") != std::string::npos);

@@ -14,6 +14,7 @@ FunctionId FunctionImporter::import(FunctionId id) {
   if (const auto known = functions_.find(id); known != functions_.end()) return known->second;
   Function copy = clone(from_.functions[id]);
   copy.loc = {};
+  copy.isLibrary = true;
   copy.result = importType(copy.result);
   for (Variable& variable : copy.variables) {
     variable.type = importType(variable.type);

@@ -52,6 +52,14 @@ enum class Tables : std::uint8_t {
   On,  ///< with the error that Device::tables() tells
 };
 
+/// Whether native code may fuse a product with the sum that it feeds, as in `a * b + c`: one operation, which rounds once.
+/// GLSL leaves that to the driver, so that GL devices ignore the choice.
+enum class Contraction : std::uint8_t {
+  Default,  ///< what the kernel is declared with, which is Exact where it says nothing
+  Exact,  ///< every operation is rounded, in the order of the text: the same bits on every CPU
+  Fast,  ///< they are fused where the CPU has the operation; compensated and exact sums stay as they are
+};
+
 /// What programs of a kernel are run as. Results are the same, but for the order in which a reduce adds.
 enum class Target : std::uint8_t {
   Default,  ///< what is faster on the device
@@ -67,6 +75,7 @@ struct CallOptions {
   Intrinsics intrinsics = Intrinsics::Default;
   Tables tables = Tables::Default;
   Target target = Target::Default;
+  Contraction contraction = Contraction::Default;
 
   bool operator==(const CallOptions&) const = default;
 };

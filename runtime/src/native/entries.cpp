@@ -92,7 +92,7 @@ Level levelOfCpu() {
 }
 
 const Entry* findEntry(const Code& code, EntryKind kind, const CodeChoice& choice, Level level) {
-  const auto rank = [](const Entry& entry) { return std::tuple(entry.level, entry.isContracted); };
+  const auto rank = [](const Entry& entry) { return std::tuple(entry.isContracted, entry.level); };
   const Entry* best = nullptr;
   for (const Entry& entry : entriesOf(code)) {
     if (!serves(entry, kind, choice.real) || entry.level > level) continue;

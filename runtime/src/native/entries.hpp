@@ -25,7 +25,8 @@ native::Level levelNamed(std::string_view name);
 /// The newest generation that this CPU runs; not above the one that SK_CPU names.
 native::Level levelOfCpu();
 
-/// The best entry of a kind for a CPU of that level; null where there is none.
+/// The best entry of a kind for a CPU of that level; null where there is none. A contracted one, where the call allows it, is
+/// better than one for a later level.
 const native::Entry* findEntry(const native::Code& code, native::EntryKind kind, const CodeChoice& choice,
                                native::Level level = levelOfCpu());
 

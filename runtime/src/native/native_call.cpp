@@ -241,16 +241,20 @@ class Operands {
   std::list<std::pair<NativeStream*, Components>> written_;
 };
 
+CodeChoice codeChoice(RealType real, const CallOptions& options) {
+  return {.real = real, .mayContract = options.contraction == Contraction::Fast};
+}
+
 /// A reduction's call, but for its results.
 class Folding {
  public:
   Operands fold;
 
-  Folding(RealType real, const program::Reduction& reduction, std::span<const Argument> arguments,
+  Folding(const CodeChoice& choice, const program::Reduction& reduction, std::span<const Argument> arguments,
           const Shape& domain, std::vector<native::Table> foldTables,
           std::vector<native::Table> combineTables)
-      : fold(real, reduction.fold, arguments, domain, std::move(foldTables)),
-        real_(real),
+      : fold(choice.real, reduction.fold, arguments, domain, std::move(foldTables)),
+        choice_(choice),
         reduction_(reduction),
         combineTables_(std::move(combineTables)) {
     for (const std::uint8_t operand : reduction.combineOperands) {
@@ -262,14 +266,12 @@ class Folding {
   void run(Extents block) {
     const native::Call whole = fold.call(block);
     const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block};
-    foldCode(reduction_, call, {.real = real_});
+    foldCode(reduction_, call, choice_);
   }
-  void storeIdentity() {
-    storeIdentities(reduction_, fold.callAsItIs(), {.real = real_});
-  }
+  void storeIdentity() { storeIdentities(reduction_, fold.callAsItIs(), choice_); }
 
  private:
-  RealType real_;
+  CodeChoice choice_;
   const program::Reduction& reduction_;
   std::vector<native::Table> combineTables_;
   std::vector<Operand> combine_;
@@ -316,7 +318,7 @@ void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments
   Operands operands(real, kernel, arguments, domain, tablesOf(kernel, real, options));
   {
     const NativePass traced(*this, kernel, {}, arguments, domain);
-    runCode(kernel, operands.call(), {.real = real});
+    runCode(kernel, operands.call(), codeChoice(real, options));
   }
   operands.settle();
 }
@@ -326,8 +328,8 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
   checkTarget(called.fold, options.target);
   const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
   const RealType real = realOf(options);
-  Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
-                  tablesOf(reduction.combine, real, options));
+  Folding folding(codeChoice(real, options), reduction, arguments, domain,
+                  tablesOf(reduction.fold, real, options), tablesOf(reduction.combine, real, options));
   std::vector<std::pair<const program::Element*, const Components*>> values;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const Parameter& parameter = reduction.fold.parameters[i];
@@ -352,8 +354,8 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
   checkTarget(called.fold, options.target);
   const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
   const RealType real = realOf(options);
-  Folding folding(real, reduction, arguments, domain, tablesOf(reduction.fold, real, options),
-                  tablesOf(reduction.combine, real, options));
+  Folding folding(codeChoice(real, options), reduction, arguments, domain,
+                  tablesOf(reduction.fold, real, options), tablesOf(reduction.combine, real, options));
   const Extents counts = fastestFirst(blocks);
   std::vector<std::size_t> results;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -413,7 +415,8 @@ std::optional<std::vector<float>> NativeDevice::sumExactly(const program::Reduct
   for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
   const NativePass traced(*this, kernel, "fold", all, domain);
   const native::Call call = operands.call(block);
-  return sk::sumExactly(reduction, sum, call, block, {.real = real});
+  return sk::sumExactly(reduction, sum, call, block,
+                        {.real = real});  // the same bits on every device: never contracted
 }
 
 }  // namespace sk

@@ -364,6 +364,12 @@ TEST_CASE("the newest entry that the CPU runs is taken, and fused ones only wher
     }
   }
   CHECK(findEntry(f.code, EntryKind::Fold, {}) == nullptr);
+  f.entries.pop_back();  // the fused one of the latest level: an earlier one comes before a plain one
+  f.finish();
+  const native::Entry* fused = findEntry(f.code, EntryKind::Run, {.mayContract = true}, Level::V4);
+  REQUIRE(fused != nullptr);
+  CHECK(fused->level == Level::V3);
+  CHECK(fused->isContracted == 1);
   CHECK(findEntry(f.code, EntryKind::Run, {.real = RealType::Double}) == nullptr);
 }
 

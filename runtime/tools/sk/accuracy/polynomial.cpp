@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A polynomial of degree 9 in each precision: where it is harmless, and near a root of multiplicity 9, where what is
+// A polynomial of degree 9 in each precision, natively also with fused multiply-adds: where it is harmless, and near a root of multiplicity 9, where what is
 // left of its terms is far below their roundings.
 #include <algorithm>
 #include <array>
@@ -41,22 +41,29 @@ constexpr Case cases[] = {
      2.05},
 };
 
-struct PrecisionMode {
+struct PolynomialMode {
   const char* name;
   sk::Precision precision;
   double unit;  ///< relative error of an operation
+  sk::Contraction contraction = sk::Contraction::Exact;
 };
 
-constexpr PrecisionMode polynomialModes[] = {
+constexpr PolynomialMode polynomialModes[] = {
     {"single", sk::Precision::Single, 0x1p-24},
+    {"contracted", sk::Precision::Single, 0x1p-24, sk::Contraction::Fast},
     {"extended", sk::Precision::Extended, 0x1p-44},
     {"double", sk::Precision::Double, 0x1p-53},
     {"half", sk::Precision::Half, 0x1p-11},
 };
 
+/// GL devices would only repeat their results.
+bool isOf(const sk::Device& device, const PolynomialMode& mode) {
+  return mode.contraction == sk::Contraction::Exact || device.shadingLanguage().empty();
+}
+
 /// In ulp of the results, the most that Horner's rule is off by: 2 n + 1 roundings of the terms' magnitudes (Higham,
 /// Accuracy and Stability of Numerical Algorithms, section 5.1), and that of the result to float.
-double boundOf(const PrecisionMode& mode, const Case& polynomial, const std::vector<float>& x,
+double boundOf(const PolynomialMode& mode, const Case& polynomial, const std::vector<float>& x,
                const std::vector<double>& reference) {
   double bound = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -86,10 +93,12 @@ Experiment measureCase(sk::Device& device, const Measurement& measurement, const
   auto rs = device.stream<float>(shape);
   xs.write(x);
   std::vector<Mode> candidates;
-  for (const PrecisionMode& mode : polynomialModes) {
+  for (const PolynomialMode& mode : polynomialModes) {
+    if (!isOf(device, mode)) continue;
     candidates.push_back({mode.name, [&] {
                             return Trial{[&] {
-                                           accuracy::polynomial.with({.precision = mode.precision})(
+                                           accuracy::polynomial.with({.precision = mode.precision,
+                                                                      .contraction = mode.contraction})(
                                                polynomial.coefficients, xs, rs);
                                          },
                                          [&] {

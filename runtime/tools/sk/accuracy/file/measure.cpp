@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -15,12 +16,14 @@
 #include "accuracy/file/call.hpp"
 #include "accuracy/file/errors.hpp"
 #include "sk/error.hpp"
+#include "sk/native/code.hpp"
 
 namespace sk_tool {
 
 namespace {
 
 using sk::Accumulate;
+using sk::Contraction;
 using sk::Intrinsics;
 using sk::Precision;
 using sk::Tables;
@@ -94,21 +97,42 @@ struct CallMode {
   sk::CallOptions options;
 };
 
+/// Whether products and sums of a kernel may be fused; the native code of others has no such entries.
+bool hasContractedCode(const sk::program::Kernel& kernel) {
+  if (kernel.code == nullptr) return false;
+  const std::span<const sk::native::Entry> entries(kernel.code->entries, kernel.code->entryCount);
+  return std::ranges::any_of(entries, [](const sk::native::Entry& entry) { return entry.isContracted != 0; });
+}
+
 /// Everything is said, so that nothing that the kernel's declaration chooses counts.
 std::vector<CallMode> modesOf(const Subject& subject, const sk::Device& device) {
   const sk::program::Kernel& kernel = subject.signature();
-  const bool hasFast = !kernel.intrinsics.empty() && !device.shadingLanguage().empty();
+  const bool isNative = device.shadingLanguage().empty();
+  const bool hasFast = !kernel.intrinsics.empty() && !isNative;
   const auto said = [](Accumulate accumulate, Precision precision) {
-    return sk::CallOptions{accumulate, precision, Intrinsics::Accurate, Tables::Off};
+    return sk::CallOptions{.accumulate = accumulate,
+                           .precision = precision,
+                           .intrinsics = Intrinsics::Accurate,
+                           .tables = Tables::Off,
+                           .contraction = Contraction::Exact};
   };
   const Accumulate plain = subject.isReduce() ? Accumulate::Tree : Accumulate::Default;
   std::vector<CallMode> modes{{subject.isReduce() ? "tree" : "single", said(plain, Precision::Single)}};
   const std::string first = modes.front().name;
   if (hasFast) {
-    modes.push_back({first + ", fast", {plain, Precision::Single, Intrinsics::Fast, Tables::Off}});
+    sk::CallOptions fast = said(plain, Precision::Single);
+    fast.intrinsics = Intrinsics::Fast;
+    modes.push_back({first + ", fast", fast});
   }
   if (!kernel.tables.empty()) {
-    modes.push_back({first + ", tables", {plain, Precision::Single, Intrinsics::Accurate, Tables::On}});
+    sk::CallOptions tables = said(plain, Precision::Single);
+    tables.tables = Tables::On;
+    modes.push_back({first + ", tables", tables});
+  }
+  if (isNative && hasContractedCode(kernel)) {
+    sk::CallOptions contracted = said(plain, Precision::Single);
+    contracted.contraction = Contraction::Fast;
+    modes.push_back({first + ", contracted", contracted});
   }
   if (subject.isReduce()) modes.push_back({"compensated", said(Accumulate::Compensated, Precision::Single)});
   modes.push_back({"extended", said(plain, Precision::Extended)});
