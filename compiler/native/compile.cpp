@@ -17,7 +17,6 @@
 #include "native/native.hpp"
 #include "native/optimize.hpp"
 #include "native/target.hpp"
-#include "sk/options.hpp"
 #include "transforms/predicate.hpp"
 
 namespace skc::native {
@@ -125,14 +124,9 @@ class Compilation {
     const bool computes = kind == EntryKind::Run || kind == EntryKind::Fold || kind == EntryKind::Combine;
     return computes && !request.isCold && canContract(plain_, plain_.kernels[request.kernel]);
   }
-  /// A kernel that asks for it has such code for every level that can fuse. Others have it for the lowest of them, which
-  /// later CPUs run, too: for all levels it would add a third to the time that skc takes.
   void addContracted(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind) {
-    constexpr auto fast = static_cast<std::uint8_t>(sk::Contraction::Fast);
     for (const CpuLevel& level : target_.levels()) {
-      if (!level.hasFusedMultiplyAdd) continue;
-      addEntry(table, request, slots, {kind, Real::Float, level, /*isContracted=*/true});
-      if (plain_.kernels[request.kernel].choices.contraction != fast) return;
+      if (level.hasFusedMultiplyAdd) addEntry(table, request, slots, {kind, Real::Float, level, /*isContracted=*/true});
     }
   }
 
