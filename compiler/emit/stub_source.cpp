@@ -126,6 +126,12 @@ class SourceWriter {
                                  .isCold = speed == Speed::Any};
   }
 
+  /// For reduces that combine partial results and that no call runs.
+  static std::optional<native::KernelRequest> combining(std::optional<native::KernelRequest> request) {
+    if (request) request->onlyCombines = true;
+    return request;
+  }
+
   /// Those of a reduction: NAMEHalfReduction and NAMEWide.
   void forms(const sk::program::Reduction& made, const Kernel& declared, const std::string& name) {
     if (made.half != nullptr)
@@ -142,7 +148,7 @@ class SourceWriter {
                      const std::optional<native::KernelRequest>& code) {
     const KernelId combine = *module_.kernels[id].reduction->combine;
     kernel(made.fold, id, name, code);
-    if (combine != id) kernel(made.combine, combine, name + "Combine", code);
+    if (combine != id) kernel(made.combine, combine, name + "Combine", combining(code));
     reduction(made, module_.kernels[id], name, combine == id ? name : name + "Combine");
   }
 
@@ -194,7 +200,7 @@ class SourceWriter {
     const Kernel& fold = module_.kernels[second.fold];
     const CompensatedNames names(name);
     const Speed speed = made.inDoubles ? Speed::Any : Speed::Best;  // seldom run, where doubles serve
-    kernel(made.reduction.combine, *fold.reduction->combine, names.combine, inAnyReal(speed));
+    kernel(made.reduction.combine, *fold.reduction->combine, names.combine, combining(inAnyReal(speed)));
     kernel(made.reduction.fold, second.fold, names.fold, inAnyReal(speed));
     reduction(made.reduction, fold, names.fold, names.combine);
     kernel(made.finish, second.finish, names.finish, inAnyReal(Speed::Any));
@@ -236,7 +242,8 @@ class SourceWriter {
   std::string exactCombination(const sk::program::Reduction& made, KernelId id) {
     const std::string name = exactCombinationName(module_.kernels[id]);
     if (combinations_.insert(id).second) {
-      kernel(made.combine, id, name, foldsDigitsNatively(id) ? inFloats(Speed::Any) : std::nullopt);
+      kernel(made.combine, id, name,
+             foldsDigitsNatively(id) ? combining(inFloats(Speed::Any)) : std::nullopt);
     }
     return name;
   }
@@ -275,7 +282,7 @@ class SourceWriter {
       return names_[other];
     }
     const std::string name = names_[unit] + "Combine";
-    kernel(made.combine, id, name, inAnyReal(Speed::Best));
+    kernel(made.combine, id, name, combining(inAnyReal(Speed::Best)));
     return name;
   }
 

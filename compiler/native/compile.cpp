@@ -63,6 +63,7 @@ class Compilation {
     table.isUneven = emit::streamUses(plain_, kernel).loops;
     table.isOrdered = isOrdered(kernel);
     for (const EntryKind kind : entriesOf(plain_, kernel)) {
+      if (request.onlyCombines && kind != EntryKind::Combine) continue;
       for (const CpuLevel& level : levelsFor(request, Real::Float)) addEntry(table, request, slots, kind, Real::Float, level);
       if (request.inDoubles) {
         for (const CpuLevel& level : levelsFor(request, Real::Double)) addEntry(table, request, slots, kind, Real::Double, level);
