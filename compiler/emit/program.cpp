@@ -35,6 +35,7 @@ struct Program::Storage {
   std::deque<sk::program::Kernel> forms;
   std::deque<std::vector<sk::program::ExactSum>> exact;
   std::deque<std::vector<std::uint8_t>> combineOperands;
+  std::deque<std::vector<std::uint8_t>> factors;
   std::deque<std::vector<sk::program::Layer>> layers;
   std::deque<std::vector<sk::program::IntrinsicUse>> intrinsics;
   std::deque<sk::program::Table> tables;
@@ -145,7 +146,7 @@ class Builder {
     Polyfills polyfills;
     const GlslContext context{module_, types_, names, kernel, polyfills};
     const StreamUses uses = streamUses(module_, kernel);
-    GlslBody text = glslBody(context);
+    GlslBody text = kernel.isNativeOnly ? GlslBody() : glslBody(context);
     std::vector<sk::program::Parameter>& parameters = storage_.parameters.emplace_back();
     for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
       parameters.push_back(parameter(context, i, uses.params[i]));
@@ -172,8 +173,8 @@ class Builder {
             .usesExactSums = usesExactSums(module_, kernel),
             .intrinsics = storage_.intrinsics.emplace_back(polyfills.intrinsics()),
             .tables = tables,
-            .drawn = targets_.fragment,
-            .dispatched = targets_.compute};
+            .drawn = targets_.fragment && !kernel.isNativeOnly,
+            .dispatched = targets_.compute && !kernel.isNativeOnly};
   }
 
   /// Reduction::addition.
@@ -207,20 +208,46 @@ class Builder {
             .addition = addition(kernel, combine),
             .seeded = kernel.reduction->seeded,
             .compensated = compensated(*kernel.reduction),
-            .exact = exactSums(*kernel.reduction),
-            .commutative = kernel.reduction->commutative};
+            .exact = exactSums(kernel),
+            .commutative = kernel.reduction->commutative,
+            .term = sumInDoubles(*kernel.reduction)};
   }
 
-  std::span<const sk::program::ExactSum> exactSums(const Reduction& plain) {
-    if (plain.exact.empty()) return {};
+  /// Reduction::term.
+  sk::program::SumTerm sumInDoubles(const Reduction& plain) {
+    if (!plain.compensated || plain.compensated->term.empty()) return {};
+    return {.factors = parameterNumbers(plain.compensated->term)};
+  }
+
+  std::span<const sk::program::ExactSum> exactSums(const Kernel& reduce) {
+    if (reduce.reduction->exact.empty()) return {};
     std::vector<sk::program::ExactSum> sums;
-    for (const ExactSum& sum : plain.exact) {
+    for (const ExactSum& sum : reduce.reduction->exact) {
       const Kernel& fold = module_.kernels[sum.fold];
-      sums.push_back({reduction(fold, describe(fold)), whole(module_.kernels[sum.finish]),
-                      static_cast<std::uint8_t>(sum.accumulator)});
+      sums.push_back({.reduction = reduction(fold, describe(fold)),
+                      .finish = whole(module_.kernels[sum.finish]),
+                      .accumulator = static_cast<std::uint8_t>(sum.accumulator),
+                      .offset = offsetOf(reduce, sum),
+                      .ofProducts = sum.ofProducts,
+                      .term = term(sum.term)});
       sums.back().reduction.commutative = true;
     }
     return storage_.exact.emplace_back(std::move(sums));
+  }
+
+  std::uint32_t offsetOf(const Kernel& reduce, const ExactSum& sum) const {
+    const Type accumulator = reduce.params[sum.accumulator].type;
+    const std::uint32_t whole = emit::offsetOf(module_, types_, accumulator, sum.members);
+    return whole + sum.component * static_cast<std::uint32_t>(sizeof(float));
+  }
+
+  sk::program::SumTerm term(const ExactTerm& made) {
+    if (made.kernel) return {.factors = {}, .kernel = &form(*made.kernel)};
+    return {.factors = parameterNumbers(made.factors)};
+  }
+
+  std::span<const std::uint8_t> parameterNumbers(const std::vector<VarId>& parameters) {
+    return storage_.factors.emplace_back(parameters.begin(), parameters.end());
   }
 
   /// Null where there is no second form.
@@ -230,7 +257,7 @@ class Builder {
     std::vector<sk::program::CompensatedSum>& sums = storage_.compensatedSums.emplace_back();
     for (const auto& [accumulator, members] : plain.compensated->sums) {
       sums.push_back({static_cast<std::uint8_t>(accumulator),
-                      offsetOf(module_, types_, fold.params[accumulator].type, members)});
+                      emit::offsetOf(module_, types_, fold.params[accumulator].type, members)});
     }
     sk::program::CompensatedReduction& made =
         storage_.compensated.emplace_back(sk::program::CompensatedReduction{

@@ -138,6 +138,12 @@ class SourceWriter {
                                  .isCold = speed == Speed::Any};
   }
 
+  /// For reduces that combine partial results and that no call runs.
+  static std::optional<native::KernelRequest> combining(std::optional<native::KernelRequest> request) {
+    if (request) request->onlyCombines = true;
+    return request;
+  }
+
   /// Those of a reduction: NAMEHalfReduction and NAMEWide.
   void forms(const sk::program::Reduction& made, const Kernel& declared, const std::string& name) {
     if (made.half != nullptr)
@@ -154,7 +160,7 @@ class SourceWriter {
                      const std::optional<native::KernelRequest>& code) {
     const KernelId combine = *module_.kernels[id].reduction->combine;
     kernel(made.fold, id, name, code);
-    if (combine != id) kernel(made.combine, combine, name + "Combine", code);
+    if (combine != id) kernel(made.combine, combine, name + "Combine", combining(code));
     reduction(made, module_.kernels[id], name, combine == id ? name : name + "Combine");
   }
 
@@ -194,6 +200,7 @@ class SourceWriter {
     if (made.wide != nullptr) members.push_back(fmt::format(".wide = &{}Wide", name));
     if (!made.exact.empty()) members.push_back(fmt::format(".exact = {}Exact", name));
     if (made.commutative) members.emplace_back(".commutative = true");
+    if (!made.term.factors.empty()) members.push_back(".term = " + factors(made.term, name));
     text_ +=
         fmt::format("constexpr Reduction {}Reduction = {{\n    {}}};\n\n", name, join(members, ",\n    "));
   }
@@ -205,7 +212,7 @@ class SourceWriter {
     const Kernel& fold = module_.kernels[second.fold];
     const CompensatedNames names(name);
     const Speed speed = made.inDoubles ? Speed::Any : Speed::Best;  // seldom run, where doubles serve
-    kernel(made.reduction.combine, *fold.reduction->combine, names.combine, inAnyReal(speed));
+    kernel(made.reduction.combine, *fold.reduction->combine, names.combine, combining(inAnyReal(speed)));
     kernel(made.reduction.fold, second.fold, names.fold, inAnyReal(speed));
     reduction(made.reduction, fold, names.fold, names.combine);
     kernel(made.finish, second.finish, names.finish, inAnyReal(Speed::Any));
@@ -224,22 +231,58 @@ class SourceWriter {
                  const std::string& name) {
     std::vector<std::string> items;
     for (std::size_t k = 0; k < made.size(); ++k) {
-      const ExactSum& sum = declared.reduction->exact[k];
-      const Kernel& fold = module_.kernels[sum.fold];
-      const KernelId combine = *fold.reduction->combine;
-      const ExactNames names(name, k);
-      const std::string combineName = exactCombinationName(module_.kernels[combine]);
-      if (combinations_.insert(combine).second) {
-        kernel(made[k].reduction.combine, combine, combineName, inFloats(Speed::Any));
-      }
-      kernel(made[k].reduction.fold, sum.fold, names.fold, inFloats(Speed::Any));
-      reduction(made[k].reduction, fold, names.fold, combineName);
-      kernel(made[k].finish, sum.finish, names.finish, inFloats(Speed::Any));
-      items.push_back(
-          fmt::format("{{{}Reduction, {}Kernel, {}}}", names.fold, names.finish, sum.accumulator));
+      items.push_back(exactSum(made[k], declared.reduction->exact[k], ExactNames(name, k)));
     }
     list("ExactSum", name + "Exact", items);
     if (!items.empty()) text_ += "\n";
+  }
+
+  /// What a sum refers to, and its item in the list. Digits need native code only where there is no term.
+  std::string exactSum(const sk::program::ExactSum& made, const ExactSum& declared, const ExactNames& names) {
+    const auto code = declared.term.isEmpty() ? inFloats(Speed::Any) : std::nullopt;
+    const Kernel& fold = module_.kernels[declared.fold];
+    const std::string combine = exactCombination(made.reduction, *fold.reduction->combine);
+    kernel(made.reduction.fold, declared.fold, names.fold, code);
+    reduction(made.reduction, fold, names.fold, combine);
+    kernel(made.finish, declared.finish, names.finish, code);
+    return fmt::format("{{{}Reduction, {}Kernel, {}, {}, {}, {}}}", names.fold, names.finish,
+                       made.accumulator, made.offset, made.ofProducts,
+                       exactTerm(made.term, declared.term, names.term));
+  }
+
+  /// The name of what combines digits, which this writes unless it is there.
+  std::string exactCombination(const sk::program::Reduction& made, KernelId id) {
+    const std::string name = exactCombinationName(module_.kernels[id]);
+    if (combinations_.insert(id).second) {
+      kernel(made.combine, id, name,
+             foldsDigitsNatively(id) ? combining(inFloats(Speed::Any)) : std::nullopt);
+    }
+    return name;
+  }
+
+  /// Whether some sum that this combines has no term, so that native code folds its digits.
+  bool foldsDigitsNatively(KernelId combine) const {
+    return std::ranges::any_of(module_.kernels, [&](const Kernel& reduce) {
+      return reduce.reduction && std::ranges::any_of(reduce.reduction->exact, [&](const ExactSum& sum) {
+               return sum.term.isEmpty() && module_.kernels[sum.fold].reduction->combine == combine;
+             });
+    });
+  }
+
+  std::string exactTerm(const sk::program::SumTerm& made, const ExactTerm& declared,
+                        const std::string& name) {
+    if (!made.factors.empty()) return factors(made, name);
+    if (made.kernel == nullptr || !options_.native) return "{}";
+    kernel(*made.kernel, *declared.kernel, name, inFloats(Speed::Any));
+    return fmt::format("{{{{}}, &{}Kernel}}", name);
+  }
+
+  /// A term that is made of inputs, and the constant NAMEFactors that it refers to.
+  std::string factors(const sk::program::SumTerm& made, const std::string& name) {
+    std::vector<std::string> numbers;
+    for (const std::uint8_t parameter : made.factors) numbers.push_back(std::to_string(parameter));
+    list("std::uint8_t", name + "Factors", numbers);
+    return fmt::format("{{{}Factors}}", name);
   }
 
   /// The descriptor of what combines, which this writes unless it is there: "sum", "squaresCombine".
@@ -251,7 +294,7 @@ class SourceWriter {
       return names_[other];
     }
     const std::string name = names_[unit] + "Combine";
-    kernel(made.combine, id, name, inAnyReal(Speed::Best));
+    kernel(made.combine, id, name, combining(inAnyReal(Speed::Best)));
     return name;
   }
 
@@ -371,9 +414,10 @@ class SourceWriter {
   static std::string kernelText(const sk::program::Kernel& kernel, const std::string& name,
                                 std::size_t column, const std::string& codeSymbol = {}) {
     const std::string declarations = kernel.declarations.empty() ? "{}" : name + "Declarations";
+    const std::string body = kernel.body.empty() ? "{}" : name + "Body";
     std::vector<std::string> members = {
         fmt::format(".name = \"{}\"", kernel.name), fmt::format(".entry = \"{}\"", kernel.entry),
-        ".declarations = " + declarations,          ".body = " + name + "Body",
+        ".declarations = " + declarations,          ".body = " + body,
         ".parameters = " + name + "Parameters",     ".sources = sources"};
     if (kernel.usesIndex) members.emplace_back(".usesIndex = true");
     if (kernel.usesExtent) members.emplace_back(".usesExtent = true");

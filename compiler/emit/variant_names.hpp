@@ -21,8 +21,9 @@ struct CompensatedNames {
 struct ExactNames {
   ExactNames(const std::string& reduce, std::size_t sum)
       : fold(reduce + "ExactFold" + std::to_string(sum)),
-        finish(reduce + "ExactFinish" + std::to_string(sum)) {}
-  std::string fold, finish;
+        finish(reduce + "ExactFinish" + std::to_string(sum)),
+        term(reduce + "ExactTerm" + std::to_string(sum)) {}
+  std::string fold, finish, term;
 };
 
 /// The reduce that combines the digits of exact sums. A file has one of each kind for all of its sums.

@@ -19,6 +19,7 @@ Kernel clone(const Kernel& kernel) {
               .params = {},
               .reduction = kernel.reduction,
               .isMade = kernel.isMade,
+              .isNativeOnly = kernel.isNativeOnly,
               .plans = kernel.plans,
               .pass = kernel.pass,
               .forms = kernel.forms,

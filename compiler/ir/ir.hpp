@@ -168,17 +168,17 @@ struct Stmt {
 enum class VarRole : std::uint8_t { Local, In, InOut, Element, Gather, Sink };
 struct Variable {
   std::string name;
-  Type type;               ///< Gather, Sink: the element's type
+  Type type;  ///< Gather, Sink: the element's type
   VarRole role = VarRole::Local;
-  std::uint8_t rank = 0;   ///< Gather, Sink of a scatter output: 1 to 4
+  std::uint8_t rank = 0;  ///< Gather, Sink of a scatter output: 1 to 4
   bool isConst = false;
   Loc loc;
 };
 
 struct Function {
-  std::string name;                    ///< as in the source, without namespaces
-  Type result;                         ///< may be void
-  std::vector<Variable> variables;     ///< parameters first
+  std::string name;  ///< as in the source, without namespaces
+  Type result;  ///< may be void
+  std::vector<Variable> variables;  ///< parameters first
   std::uint32_t parameterCount = 0;
   Block body;
   Loc loc;
@@ -257,12 +257,26 @@ struct Compensated {
   std::vector<VarId> term = {};
 };
 
+/// What each element adds to an exact sum, for code that has an accumulator of its own. Empty where an element may add any
+/// number of terms: then only the fold of digits adds them.
+struct ExactTerm {
+  std::vector<VarId> factors = {};  ///< inputs of one float: every element adds it, or the product of two
+  /// Otherwise a kernel that runs natively alone. It has all parameters of the reduce but accumulators, then an output of
+  /// one float for each term; of a sum of products, two: its factors. A term that an element does not add is -0.
+  std::optional<KernelId> kernel = {};
+  bool isEmpty() const { return factors.empty() && !kernel; }
+};
+
 /// A scalar sum of floats of a reduce, set by sum-exactly: the reduce `fold` has, after all parameters but accumulators, those
 /// that hold the sum as digits of an integer. `finish` is a kernel that takes the accumulator as it is and these, and
 /// gives the accumulator with the rounded sum in its place.
 struct ExactSum {
   KernelId fold, finish;
   VarId accumulator;
+  std::vector<std::uint32_t> members;  ///< way from the accumulator to the float or vector
+  std::uint32_t component;  ///< of that; 0 of a float
+  bool ofProducts;  ///< the digits have room for products of two floats
+  ExactTerm term;
 };
 
 /// How partial results of a reduce combine; set by derive-combine (frontend: where the user wrote
@@ -365,6 +379,7 @@ struct Kernel {
   std::vector<KernelParam> params;
   std::optional<Reduction> reduction;  ///< set for `reduce`
   bool isMade = false;  ///< made by a transform, for another one: C++ cannot call it
+  bool isNativeOnly = false;  ///< no GLSL program runs it
   std::vector<Plan> plans;  ///< for targets that it is too large for, the most generous first
   std::optional<PassOf> pass;
   Forms forms;

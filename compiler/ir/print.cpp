@@ -166,6 +166,7 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
     for (const ExactSum& sum : kernel.reduction->exact) {
       text += fmt::format(", exactly by @{}, @{}", module.kernels[sum.fold].entry,
                           module.kernels[sum.finish].entry);
+      if (sum.term.kernel) text += fmt::format(" or @{}", module.kernels[*sum.term.kernel].entry);
     }
   }
   if (kernel.pass) text += fmt::format(", pass {} of {}", kernel.pass->number, kernel.pass->count);

@@ -67,6 +67,7 @@ class Compilation {
     table.isUneven = emit::streamUses(plain_, kernel).loops;
     table.isOrdered = isOrdered(kernel);
     for (const EntryKind kind : entriesOf(plain_, kernel)) {
+      if (request.onlyCombines && kind != EntryKind::Combine) continue;
       const auto addEntries = [&](Real real) {
         for (const CpuLevel& level : levelsFor(request, real))
           addEntry(table, request, slots, {kind, real, level});
@@ -126,7 +127,8 @@ class Compilation {
   }
   void addContracted(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind) {
     for (const CpuLevel& level : target_.levels()) {
-      if (level.hasFusedMultiplyAdd) addEntry(table, request, slots, {kind, Real::Float, level, /*isContracted=*/true});
+      if (level.hasFusedMultiplyAdd)
+        addEntry(table, request, slots, {kind, Real::Float, level, /*isContracted=*/true});
     }
   }
 

@@ -27,6 +27,7 @@ struct KernelRequest {
   bool inDoubles = false;  ///< computing in double, too, wherever the kernel says float
   bool inQuads = false;  ///< and in binary128
   bool isCold = false;  ///< computes a handful of elements: one level of the CPU does
+  bool onlyCombines = false;  ///< a reduce that nothing runs but to combine partial results of another
 };
 
 struct Options {

@@ -67,7 +67,8 @@ void splitKernels(Module& module, std::span<const Limits> limits) {
                     [](const Limits& one) { return std::pair(one.drawBuffers, one.textureUnits); });
   const std::size_t count = module.kernels.size();   // passes are added behind
   for (KernelId id = 0; id < count; ++id) {
-    if (module.kernels[id].reduction || hasSinks(module.kernels[id])) continue;
+    const Kernel& kernel = module.kernels[id];
+    if (kernel.reduction || kernel.isNativeOnly || hasSinks(kernel)) continue;
     const Limits demand = demandOf(module, module.kernels[id]);
     for (const Limits& limit : generousFirst) {
       const std::vector<Plan>& plans = module.kernels[id].plans;

@@ -62,6 +62,10 @@ VarId FoldCopy::addInput(std::string name, Type type) {
   return add(makeParam(std::move(name), ParamRole::Input, type, kernel_.loc));
 }
 
+VarId FoldCopy::addOutput(std::string name, Type type) {
+  return add(makeParam(std::move(name), ParamRole::Output, type, kernel_.loc));
+}
+
 VarId FoldCopy::addAccumulator(std::string name, Type type, ExprPtr identity) {
   KernelParam param = makeParam(std::move(name), ParamRole::Accumulator, type, kernel_.loc);
   param.identity = std::move(identity);
@@ -117,13 +121,17 @@ void FoldCopy::renumber() {
   for (const auto& [old, made] : copies_) walkExprs(module_.functions[made].body, stream);
 }
 
-KernelId FoldCopy::finish(KernelId combine, std::size_t operands, bool seeded) {
+KernelId FoldCopy::addToModule() {
   renumber();
   module_.functions[kernel_.entry] = std::move(entry_);
-  operands_.resize(operands);
-  kernel_.reduction = Reduction{combine, std::move(operands_), seeded};
   module_.kernels.push_back(std::move(kernel_));
   return static_cast<KernelId>(module_.kernels.size() - 1);
+}
+
+KernelId FoldCopy::finish(KernelId combine, std::size_t operands, bool seeded) {
+  operands_.resize(operands);
+  kernel_.reduction = Reduction{combine, std::move(operands_), seeded};
+  return addToModule();
 }
 
 KernelId FoldCopy::finish(KernelId combine) {
@@ -133,6 +141,11 @@ KernelId FoldCopy::finish(KernelId combine) {
 KernelId FoldCopy::finishCombination() {
   for (KernelParam& param : kernel_.params) param.identity = nullptr;
   return finish(static_cast<KernelId>(module_.kernels.size()), kernel_.params.size(), true);
+}
+
+KernelId FoldCopy::finishNativeKernel() {
+  kernel_.isNativeOnly = true;
+  return addToModule();
 }
 
 }  // namespace skc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A reduce in the making that does what another does, with other accumulators.
+// A reduce in the making that does what another does, with other accumulators, or a kernel with outputs in their place.
 #pragma once
 
 #include <string>
@@ -21,8 +21,9 @@ class FoldCopy {
   ir::Function& entry() { return entry_; }
   ir::KernelParam& param(ir::VarId var) { return kernel_.params[var]; }
 
-  /// A new input or accumulator, of which nobody knows yet, after all other parameters.
+  /// A new input, output or accumulator, of which nobody knows yet, after all other parameters.
   ir::VarId addInput(std::string name, ir::Type type);
+  ir::VarId addOutput(std::string name, ir::Type type);
   ir::VarId addAccumulator(std::string name, ir::Type type, ir::ExprPtr identity = nullptr);
   /// The accumulators that there were go; the body does not name them any more.
   void dropAccumulators();
@@ -31,10 +32,13 @@ class FoldCopy {
   /// what combines that; or one that combines by itself and has no identities.
   ir::KernelId finish(ir::KernelId combine);
   ir::KernelId finishCombination();
+  /// The same, as a kernel that runs natively alone. It has no accumulators.
+  ir::KernelId finishNativeKernel();
 
  private:
   ir::VarId add(ir::KernelParam param);
   void renumber();
+  ir::KernelId addToModule();
   ir::KernelId finish(ir::KernelId combine, std::size_t operands, bool seeded);
 
   ir::Module& module_;

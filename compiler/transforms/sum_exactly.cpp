@@ -11,10 +11,12 @@
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
+#include "transforms/exact_term.hpp"
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
 #include "transforms/made_kernel.hpp"
+#include "transforms/scalar_sum.hpp"
 #include "transforms/sum_terms.hpp"
 
 namespace skc {
@@ -33,12 +35,6 @@ struct Format {
 constexpr Format ofFloats = {3, 0};
 constexpr Format ofProducts = {6, 149};
 constexpr std::uint32_t mostGroups = 6;
-
-/// A component of a sum.
-struct ScalarSum {
-  FloatSum whole;
-  unsigned component;
-};
 
 /// The variables that hold a sum.
 struct Digits {
@@ -101,31 +97,24 @@ class State {
   explicit State(Module& module) : module_(module) {}
 
   void sum(KernelId id, const ScalarSum& scalar) {
-    const Format& format = hasProducts(id, scalar) ? ofProducts : ofFloats;
-    const KernelId fold = makeFold(id, scalar, format);
-    const KernelId finish = makeFinish(id, scalar, format);
-    module_.kernels[id].reduction->exact.push_back({fold, finish, scalar.whole.accumulator});
+    const bool areProducts = hasProducts(id, scalar);
+    const Format& format = areProducts ? ofProducts : ofFloats;
+    ExactSum made{.fold = makeFold(id, scalar, format),
+                  .finish = makeFinish(id, scalar, format),
+                  .accumulator = scalar.whole.accumulator,
+                  .members = scalar.whole.members,
+                  .component = scalar.component,
+                  .ofProducts = areProducts,
+                  .term = exactTerm(module_, id, scalar, areProducts)};
+    module_.kernels[id].reduction->exact.push_back(std::move(made));
   }
 
  private:
-  /// The statement's part in the sum: which component of what it adds; nothing if none.
-  static std::optional<unsigned> componentIn(const Kernel& kernel, const Stmt& stmt, const ScalarSum& sum) {
-    const std::optional<FoldPart> part = foldedBy(kernel, stmt);
-    const bool isOfSum = part && sum.whole.holds(*part) && (part->components >> sum.component & 1U) != 0;
-    if (!isOfSum) return std::nullopt;
-    const auto* swizzled = std::get_if<Swizzle>(&std::get<Assign>(stmt.node).place->node);
-    if (swizzled == nullptr) return sum.component;
-    unsigned place = 0;
-    while (swizzled->components[place] != sum.component) ++place;
-    return place;
-  }
-
   bool hasProducts(KernelId id, const ScalarSum& sum) const {
     const Kernel& kernel = module_.kernels[id];
     bool found = false;
     walkStmts(module_.functions[kernel.entry].body, [&](const Stmt& stmt) {
-      if (!componentIn(kernel, stmt, sum)) return;
-      for (const Term& term : termsOf(std::get<Assign>(stmt.node))) found = found || term.factor != nullptr;
+      for (const Term& term : termsOf(kernel, stmt, sum)) found = found || term.factor != nullptr;
     });
     return found;
   }
@@ -168,12 +157,10 @@ class State {
           made.push_back(std::move(stmt));
           continue;
         }
-        const std::optional<unsigned> component = componentIn(kernel, stmt, sum);
-        if (!component) continue;   // of an accumulator that this form has not
-        for (const Term& term : termsOf(std::get<Assign>(stmt.node))) {
+        // this form does not have the other accumulators
+        for (const Term& term : termsOf(kernel, stmt, sum)) {
           if (inLoop) settle(made, entry, digits);
-          const ExprPtr factor = term.factor ? componentOf(*term.factor, *component) : nullptr;
-          add(made, entry, digits, format, *componentOf(*term.value, *component), factor.get());
+          add(made, entry, digits, format, *term.value, term.factor.get());
           terms += inLoop ? 0 : 1;
         }
       }

@@ -17,6 +17,9 @@
 // The digits of a product of two floats are exact, and take twice as many places; what else is added (sum_terms.hpp) is
 // rounded to a float first. A digit has room for 32 summands: an element that may bring more than one settles
 // the digits before. Everything is integers, which all devices agree about.
+//
+// Native code does not fold digits: the runtime adds terms to an accumulator of its own. What these terms are is in
+// ExactSum::term (exact_term.hpp).
 #pragma once
 
 #include "ir/ir.hpp"

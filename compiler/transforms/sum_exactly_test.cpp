@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: each scalar that is a sum of floats gets an exact form that is valid IR, of twice as many digits where it
-// sums products; what is no such sum does not. (What they compute: tests/numerics.)
+// sums products; what is no such sum does not. Its term is made of inputs, or a kernel with outputs for all terms that an
+// element adds, unless it adds them in a loop. (What they compute: tests/numerics.)
 #include "transforms/sum_exactly.hpp"
 
 #include <catch2/catch.hpp>
@@ -68,6 +69,57 @@ TEST_CASE("a vector has a form for each component, and one combination") {
   const std::vector<ExactSum>& sums = transform(module);
   REQUIRE(sums.size() == 3);
   CHECK(module.kernels[sums[0].fold].reduction->combine == module.kernels[sums[2].fold].reduction->combine);
+}
+
+std::size_t outputs(const Module& module, KernelId id) {
+  std::size_t count = 0;
+  for (const KernelParam& param : module.kernels[id].params) count += param.role == ParamRole::Output ? 1 : 0;
+  return count;
+}
+
+/// reduce void r(reduce float total<>, float x<>), whose body is made of `total += x`.
+template <class Body>
+Module moduleAround(Body&& body) {
+  Module module = testModule();
+  KernelMaker maker(module, "r");
+  const VarId total = maker.accumulator("total", floatType);
+  const VarId x = maker.input("x", floatType);
+  const auto isPositive = [&] { return binary(BinaryOp::Greater, maker.ref(x), literal(0.0F)); };
+  maker.finish(body(assign(maker.ref(total), BinaryOp::Add, maker.ref(x)), isPositive()));
+  return module;
+}
+
+TEST_CASE("a term of inputs names them, and any other has a kernel") {
+  Module plain = reduceModule(floatType, BinaryOp::Add, element);
+  const ExactTerm inputs = transform(plain).at(0).term;
+  CHECK(inputs.factors == std::vector<VarId>{1});
+  CHECK_FALSE(inputs.kernel);
+  Module products = reduceModule(floatType, BinaryOp::Add, weighted);
+  const ExactTerm computed = transform(products).at(0).term;
+  REQUIRE(computed.kernel);
+  CHECK(outputs(products, *computed.kernel) == 2);
+  CHECK(products.kernels[*computed.kernel].isNativeOnly);
+  CHECK_FALSE(products.kernels[*computed.kernel].reduction);
+}
+
+TEST_CASE("an element may leave a term out, by a branch around it or a return before") {
+  Module branch = moduleAround(
+      [](Stmt sum, ExprPtr cond) { return block(ifStmt(std::move(cond), block(std::move(sum)))); });
+  Module after = moduleAround([](Stmt sum, ExprPtr cond) {
+    return block(ifStmt(std::move(cond), block(returnStmt())), std::move(sum));
+  });
+  for (Module* module : {&branch, &after}) {
+    const ExactTerm term = transform(*module).at(0).term;
+    CHECK(term.factors.empty());
+    REQUIRE(term.kernel);
+    CHECK(outputs(*module, *term.kernel) == 1);
+  }
+}
+
+TEST_CASE("a loop adds any number of terms") {
+  Module module = moduleAround(
+      [](Stmt sum, ExprPtr cond) { return block(whileLoop(std::move(cond), block(std::move(sum)))); });
+  CHECK(transform(module).at(0).term.isEmpty());
 }
 
 TEST_CASE("products, integers and doubles have no exact form") {

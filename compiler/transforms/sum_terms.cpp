@@ -123,26 +123,29 @@ std::vector<Term> termsOf(const Assign& fold) {
   return terms;
 }
 
-std::vector<VarId> onlyTerm(const Module& module, const Kernel& reduce) {
-  const Block& body = module.functions[reduce.entry].body;
-  const std::optional<FoldPart> part = body.size() == 1 ? foldedBy(reduce, body[0]) : std::nullopt;
-  const Type floatType = Type::of(Scalar::Float);
-  if (!part || part->op != FoldOp(BinaryOp::Add) || reduce.params[part->accumulator].type != floatType ||
-      std::ranges::count(reduce.params, ParamRole::Accumulator, &KernelParam::role) != 1) {
-    return {};
-  }
-  const std::vector<Term> terms = termsOf(std::get<Assign>(body[0].node));
+std::vector<VarId> inputsOf(const Kernel& reduce, const Term& term) {
   std::vector<VarId> inputs;
-  if (terms.size() != 1) return {};
-  for (const ExprPtr* factor : {&terms[0].value, &terms[0].factor}) {
+  for (const ExprPtr* factor : {&term.value, &term.factor}) {
     if (*factor == nullptr) continue;
     const auto* n = std::get_if<VarRef>(&(*factor)->node);
     if (n == nullptr || n->var >= reduce.params.size()) return {};
     const KernelParam& param = reduce.params[n->var];
-    if (param.role != ParamRole::Input || param.held || param.type != floatType) return {};
+    if (param.role != ParamRole::Input || param.held || param.type != Type::of(Scalar::Float)) return {};
     inputs.push_back(n->var);
   }
   return inputs;
+}
+
+std::vector<VarId> onlyTerm(const Module& module, const Kernel& reduce) {
+  const Block& body = module.functions[reduce.entry].body;
+  const std::optional<FoldPart> part = body.size() == 1 ? foldedBy(reduce, body[0]) : std::nullopt;
+  if (!part || part->op != FoldOp(BinaryOp::Add) ||
+      reduce.params[part->accumulator].type != Type::of(Scalar::Float) ||
+      std::ranges::count(reduce.params, ParamRole::Accumulator, &KernelParam::role) != 1) {
+    return {};
+  }
+  const std::vector<Term> terms = termsOf(std::get<Assign>(body[0].node));
+  return terms.size() == 1 ? inputsOf(reduce, terms[0]) : std::vector<VarId>();
 }
 
 ExprPtr ofType(Type type, ExprPtr value) {

@@ -20,6 +20,9 @@ struct Term {
 /// a vector of products, or a choice of some, is a product of what is made of their factors.
 std::vector<Term> termsOf(const ir::Assign& fold);
 
+/// The inputs that a term is, or is the product of; nothing where it is made of others. They are of one float.
+std::vector<ir::VarId> inputsOf(const ir::Kernel& reduce, const Term& term);
+
 /// Where all that an element does is to add itself to one float, or the product of two: those inputs. Nothing of others.
 std::vector<ir::VarId> onlyTerm(const ir::Module& module, const ir::Kernel& reduce);
 

@@ -169,6 +169,23 @@ TEST_CASE("products in members, in a loop over a gather, beside others that the 
   }
 }
 
+TEST_CASE("products of expressions beside terms that are none, in members, under a condition") {
+  const Pairs pairs = illConditionedDot(3001, 1e10, 11);
+  TrueSum all, positive;
+  for (std::size_t i = 0; i < pairs.x.size(); ++i) {
+    const float x = pairs.x[i];
+    const float y = pairs.y[i];
+    all.addProduct(x, y + 1);  // y + 1 is rounded, its product is not
+    all.add(-y);
+    if (x > 0) positive.addProduct(x - 1, y);
+  }
+  onEveryProfile([&](sk::Device& device) {
+    const dots::Parts p = dots::parts.with(exact)(streamOf(device, pairs.x), streamOf(device, pairs.y));
+    CHECK(bits(p.all) == bits(all.rounded()));
+    CHECK(bits(p.positive) == bits(positive.rounded()));
+  });
+}
+
 TEST_CASE("compensated products at the ends of the range") {
   onEveryProfile([](sk::Device& device) {
     const auto dot = [&](const std::vector<float>& x, const std::vector<float>& y) {

@@ -284,6 +284,31 @@ TEST_CASE("members of a struct, and components in another order") {
   });
 }
 
+TEST_CASE("several terms of members, which an element may leave out") {
+  const std::vector<float> x = illConditionedSum(2003, 1e12, 18);
+  const std::vector<float> y = illConditionedSum(2003, 1e10, 19);
+  TrueSum positive, greater, less;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] > 0) {
+      positive.add(x[i]);
+      greater.add(y[i] - 1);
+    } else {
+      less.add(x[i]);
+      less.add(-y[i]);
+    }
+  }
+  onEveryProfile([&](sk::Device& device) {
+    const sums::Signs s = sums::signs.with(exact)(streamOf(device, x), streamOf(device, y));
+    CHECK(s.n == 2003);
+    CHECK(bits(s.positive) == bits(positive.rounded()));
+    CHECK(bits(s.others.x) == bits(greater.rounded()));
+    CHECK(bits(s.others.y) == bits(less.rounded()));
+    const std::vector<float> none(70, -1.0F);  // of what no element adds, the identity is left
+    CHECK(bits(sums::signs.with(exact)(streamOf(device, none), streamOf(device, none)).positive) ==
+          bits(0.0F));
+  });
+}
+
 TEST_CASE("ill-conditioned sums of members, combined by the compiler and by the author") {
   for (const double wanted : {1e6, 1e10, 1e14}) {  // squares of others overflow
     const std::vector<float> x = illConditionedSum(4001, wanted, 15);
