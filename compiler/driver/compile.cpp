@@ -158,8 +158,8 @@ std::vector<OutputFile> outputsOf(const Options& options, const ir::Module& modu
   files.push_back({base + ".hpp", std::move(stub.header)});
   files.push_back({base + ".cpp", std::move(stub.source)});
   if (options.nativeTarget) {
-    files.push_back(
-        {base + ".o", native::compile(module, stub.native, compileLibrary, options.native, native::Output::Object)});
+    files.push_back({base + ".o", native::compile(module, stub.native, compileLibrary, options.native,
+                                                  native::Output::Object)});
   }
   return files;
 }
@@ -168,7 +168,7 @@ bool writeStubs(const Job& job, const ir::Module& module, const frontend::Fronte
   const Options& options = job.options;
   const std::vector<OutputFile> files = outputsOf(options, module);
   std::error_code error;
-  fs::create_directories(options.outputDirectory, error);   // a failure shows when the files are written
+  fs::create_directories(options.outputDirectory, error);  // a failure shows when the files are written
   std::string rule;
   for (const OutputFile& file : files) {
     if (!writeFile(file.path, file.text, job.messages)) return false;
@@ -197,7 +197,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   if (!module || options.emit == Emit::Ast) return module;
   if (!options.kernel.empty() && !selectKernel(*module, options.kernel, job.messages)) return std::nullopt;
   checkLimits(*module, frontend.diagnostics());
-  checkOutputs(*module, frontend.diagnostics());   // on what the user wrote, before anything is rewritten
+  checkOutputs(*module, frontend.diagnostics());  // on what the user wrote, before anything is rewritten
   if (!frontend.diagnostics().hasErrors()) {
     runTransforms(*module, frontend.diagnostics(), transformOptions(options, job.output));
   }
@@ -213,7 +213,7 @@ int compile(const Job& job) {
   const Options& options = job.options;
   frontend::Frontend frontend(frontendOptions(job));
   const std::optional<ir::Module> module = translate(job, frontend);
-  if (options.emit == Emit::Ast) frontend.dumpAst(job.output);   // of a program with mistakes, too
+  if (options.emit == Emit::Ast) frontend.dumpAst(job.output);  // of a program with mistakes, too
   if (!module) return 1;
   if (options.emit == Emit::Stubs && job.text == nullptr) return writeStubs(job, *module, frontend) ? 0 : 1;
   job.output << emitText(options, *module);
@@ -236,7 +236,7 @@ std::string emitText(const Options& options, const ir::Module& module) {
     }
     case Emit::Llvm: return nativeText(options, module, native::Output::Llvm);
     case Emit::Assembly: return nativeText(options, module, native::Output::Assembly);
-    case Emit::Ast: break;   // the tree is the frontend's
+    case Emit::Ast: break;  // the tree is the frontend's
   }
   return {};
 }

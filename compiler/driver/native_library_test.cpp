@@ -42,7 +42,7 @@ TEST_CASE("intrinsics of floats get functions, and what these need") {
   CHECK(module.functions[*angle].parameterCount == 2);
   CHECK(*sine >= functions);
   CHECK_FALSE(linked.find(ir::Intrinsic::Cos, ir::Scalar::Float));
-  CHECK(linked.find(ir::Intrinsic::Sin, ir::Scalar::Double));   // of the form in doubles
+  CHECK(linked.find(ir::Intrinsic::Sin, ir::Scalar::Double));  // of the form in doubles
   INFO(ir::print(module));
   CHECK(ir::validate(module, ir::Stage::Specialized).empty());
 }

@@ -61,8 +61,7 @@ class SourceWriter {
     text_ += "}  // namespace\n}  // namespace sk::program\n";
   }
 
-  /// Registers the code of the file with the runtime. Of its initializers it is the earliest that applications may have,
-  /// so that devices which are static objects find every file registered.
+  /// Registers the file before static objects of the application are constructed, devices among them.
   void linkedFile() {
     const sk::program::Kernel& any = program_.units().front().kernel;
     text_ += fmt::format(

@@ -182,8 +182,8 @@ struct Function {
   std::uint32_t parameterCount = 0;
   Block body;
   Loc loc;
-  std::optional<TableId> table = {};   ///< that may stand for a Call of it
-  bool isLibrary = false;              ///< of the native library: its errors are bounded as it is written
+  std::optional<TableId> table = {};  ///< that may stand for a Call of it
+  bool isLibrary = false;  ///< of the native library: its errors are bounded as it is written
 };
 
 /// A table of the values of a function, which takes one float In and gives a float. `kernel`, set by tabulate where

@@ -13,7 +13,7 @@ namespace skc::ir {
 enum class Stage : std::uint8_t {
   Lowered,      ///< as the frontend gives it
   Specialized,  ///< from specialize-gathers on: streams are parameters of kernels
-  Predicated,   ///< after predicate, too: with masks. That control flow is uniform is for validatePredicated to say
+  Predicated,  ///< after predicate, too: with masks. That control flow is uniform is for validatePredicated to say
 };
 
 /// The first violation found, with the way to it: "kernel diffuse: function 2 'diffuse': line 7:

@@ -232,7 +232,8 @@ struct Kernel {
   bool drawn =
       true;  ///< whether fragment programs may run it; false where skc was asked for other targets alone
   bool dispatched = true;  ///< whether compute programs may
-  const native::Code* code = nullptr;  ///< what skc compiled for it (sk/native/code.hpp); null without native code
+  const native::Code* code =
+      nullptr;  ///< what skc compiled for it (sk/native/code.hpp); null without native code
 };
 
 /// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.
@@ -281,7 +282,7 @@ inline constexpr int longestRun = 32;
 /// one for each term, or, where the sum is one of products, two, its factors. A term that an element does not add is -0.
 struct SumTerm {
   std::span<const std::uint8_t> factors = {};  ///< parameters of the fold: Inputs of one float
-  const Kernel* kernel = nullptr;              ///< where there are no factors
+  const Kernel* kernel = nullptr;  ///< where there are no factors
 };
 
 /// A reduction. `fold` is a kernel whose entry takes every Input by value and every Accumulator as `inout`,
@@ -339,8 +340,8 @@ struct ExactSum {
   Kernel finish;
   std::uint8_t accumulator;  ///< a parameter of the plain fold
   std::uint32_t offset = 0;  ///< of the scalar: bytes from the accumulator's start in host memory
-  bool ofProducts = false;   ///< its terms are products of two floats, which are added as they are
-  SumTerm term = {};         ///< null where an element may add any number of terms
+  bool ofProducts = false;  ///< its terms are products of two floats, which are added as they are
+  SumTerm term = {};  ///< null where an element may add any number of terms
 };
 
 }  // namespace sk::program

@@ -6,9 +6,9 @@
 
 #include <cstdint>
 
+#include "native/call.hpp"
 #include "native/entries.hpp"
 #include "native/slot_arrays.hpp"
-#include "native/call.hpp"
 #include "sk/native/code.hpp"
 
 namespace sk {

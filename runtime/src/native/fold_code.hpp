@@ -3,8 +3,8 @@
 // Runs reductions that skc compiled to object code.
 #pragma once
 
-#include "native/entries.hpp"
 #include "native/call.hpp"
+#include "native/entries.hpp"
 #include "sk/program.hpp"
 
 namespace sk {

@@ -170,7 +170,8 @@ std::uint64_t hashOfResults(const Reduced& what, const program::Reduction& reduc
         foldCode(reduction, call, {.real = real});
       });
       for (const std::vector<std::byte>& bytes : all) {
-        for (const std::byte byte : bytes) hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3;
+        for (const std::byte byte : bytes)
+          hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3;
       }
     }
   }

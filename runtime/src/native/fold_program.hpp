@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "native/call.hpp"
 #include "native/fold_state.hpp"
 #include "native/slot_arrays.hpp"
-#include "native/call.hpp"
 #include "sk/native/code.hpp"
 #include "sk/program.hpp"
 

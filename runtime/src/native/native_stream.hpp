@@ -5,8 +5,8 @@
 
 #include <utility>
 
-#include "native/components.hpp"
 #include "native/call.hpp"
+#include "native/components.hpp"
 #include "stream_state.hpp"
 
 namespace sk {

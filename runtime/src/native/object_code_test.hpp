@@ -8,8 +8,8 @@
 #include <deque>
 #include <vector>
 
-#include "native/slot_arrays.hpp"
 #include "native/call.hpp"
+#include "native/slot_arrays.hpp"
 #include "sk/native/code.hpp"
 #include "sk/program.hpp"
 

@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "native/call.hpp"
 #include "native/code_frame.hpp"
 #include "native/components.hpp"
-#include "native/call.hpp"
 #include "sk/native/code.hpp"
 #include "sk/program.hpp"
 

@@ -3,8 +3,8 @@
 // Runs kernels that skc compiled to object code over their domains.
 #pragma once
 
-#include "native/entries.hpp"
 #include "native/call.hpp"
+#include "native/entries.hpp"
 #include "sk/program.hpp"
 
 namespace sk {

@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
+#include "native/call.hpp"
 #include "native/call_memory.hpp"
 #include "native/code_frame.hpp"
 #include "native/entries.hpp"
 #include "native/scalars.hpp"
-#include "native/call.hpp"
 #include "sk/native/code.hpp"
 #include "sk/native/parallel.hpp"
 #include "sk/program.hpp"

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "native/entries.hpp"
 #include "native/call.hpp"
+#include "native/entries.hpp"
 #include "sk/program.hpp"
 
 namespace sk {

@@ -4,8 +4,8 @@
 // itself, in the order of all other reductions.
 #pragma once
 
-#include "native/entries.hpp"
 #include "native/call.hpp"
+#include "native/entries.hpp"
 #include "sk/program.hpp"
 
 namespace sk {

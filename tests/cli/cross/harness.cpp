@@ -73,7 +73,8 @@ Level levelOfCpu() {
 std::vector<const Entry*> entriesOf(const Code& code, EntryKind kind, Real real) {
   std::vector<const Entry*> found;
   for (const Entry& entry : std::span(code.entries, code.entryCount)) {
-    if (entry.kind == kind && entry.real == real && entry.level <= levelOfCpu()) found.push_back(&entry);
+    const bool runs = entry.level <= levelOfCpu() && entry.isContracted == 0;
+    if (entry.kind == kind && entry.real == real && runs) found.push_back(&entry);
   }
   return found;
 }

@@ -6,9 +6,7 @@
 
 #include "library/shift.hpp"
 
-int main() try {
-  std::printf("%g", shifted(1));
-} catch (const std::exception& error) {
+int main() try { std::printf("%g", shifted(1)); } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;
 }
