@@ -13,6 +13,7 @@
 #include "emit/cpp_literals.hpp"
 #include "emit/elements.hpp"
 #include "emit/float_intrinsics.hpp"
+#include "emit/options_text.hpp"
 #include "emit/stub_parts.hpp"
 #include "emit/variant_names.hpp"
 #include "ir/print.hpp"
@@ -428,7 +429,7 @@ class SourceWriter {
       members.push_back(fmt::format(".plans = {}Plans", name));
       members.push_back(fmt::format(".planCount = {}", kernel.planCount));
     }
-    addOptions(kernel.options, members);
+    if (kernel.options != CallOptions{}) members.push_back(".options = " + optionsText(kernel.options));
     if (kernel.half != nullptr) members.push_back(fmt::format(".half = &{}HalfKernel", name));
     if (kernel.wide != nullptr) members.push_back(fmt::format(".wide = &{}WideKernel", name));
     if (!kernel.whyNotHalf.empty()) members.push_back(".whyNotHalf = " + quoted(kernel.whyNotHalf));
@@ -439,23 +440,6 @@ class SourceWriter {
     if (!codeSymbol.empty()) members.push_back(".code = &native::" + codeSymbol);
     const std::string newLine = "\n" + std::string(column, ' ');
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
-  }
-
-  static void addOptions(const CallOptions& options, std::vector<std::string>& members) {
-    constexpr std::string_view accumulates[] = {"Default", "Tree", "Compensated", "Extended", "Exact"};
-    constexpr std::string_view precisions[] = {"Default", "Half", "Single", "Extended", "Double"};
-    constexpr std::string_view intrinsics[] = {"Default", "Fast", "Accurate"};
-    constexpr std::string_view tables[] = {"Default", "Off", "On"};
-    constexpr std::string_view contractions[] = {"Default", "Exact", "Fast"};
-    if (options == CallOptions{}) return;
-    members.push_back(
-        fmt::format(".options = {{.accumulate = Accumulate::{}, .precision = Precision::{}, "
-                    ".intrinsics = Intrinsics::{}, .tables = Tables::{}, .contraction = Contraction::{}}}",
-                    accumulates[static_cast<std::size_t>(options.accumulate)],
-                    precisions[static_cast<std::size_t>(options.precision)],
-                    intrinsics[static_cast<std::size_t>(options.intrinsics)],
-                    tables[static_cast<std::size_t>(options.tables)],
-                    contractions[static_cast<std::size_t>(options.contraction)]));
   }
 
   /// The name of a parameter's condition.
