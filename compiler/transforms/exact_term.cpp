@@ -20,7 +20,7 @@ namespace {
 using namespace ir;
 
 /// Descriptors number parameters by a byte.
-constexpr std::size_t mostParameters = std::numeric_limits<std::uint8_t>::max();
+constexpr std::size_t mostNumberedParameters = std::numeric_limits<std::uint8_t>::max();
 
 /// How many terms an element adds.
 struct TermCount {
@@ -121,7 +121,7 @@ ExactTerm exactTerm(Module& module, KernelId id, const ScalarSum& sum, bool areP
   const Block& body = module.functions[reduce.entry].body;
   const TermCount count = countTerms(reduce, body, sum);
   const std::size_t outputs = count.terms * (areProducts ? 2 : 1);
-  if (count.isInLoop || reduce.params.size() + outputs > mostParameters) return {};
+  if (count.isInLoop || reduce.params.size() + outputs > mostNumberedParameters) return {};
   if (count.terms == 1) {
     std::vector<VarId> factors = factorsOf(reduce, body, sum);
     if (!factors.empty()) return {.factors = std::move(factors)};
