@@ -15,7 +15,7 @@ namespace skc::driver {
 /// Whether the options of -W, in their order, ask for these warnings.
 bool wantsPerformanceWarnings(const std::vector<std::string>& warnings);
 
-/// Of a module that has been through runTransforms.
+/// Reports what slows kernels down. Takes the module that runTransforms leaves.
 void warnOfPerformance(const ir::Module& module, Diagnostics& diagnostics);
 
 }  // namespace skc::driver

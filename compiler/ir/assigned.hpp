@@ -13,7 +13,7 @@ namespace skc::ir {
 /// Whether a statement of the block changes the variable.
 bool assigns(const Block& block, VarId var);
 
-/// The same of each variable of a function, whatever statement does it.
+/// Does the same for every variable of a function, whatever statement assigns it.
 std::vector<bool> assignedVariables(const Function& function);
 
 }  // namespace skc::ir

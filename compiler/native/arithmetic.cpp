@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "native/arithmetic.hpp"
 
-#include <utility>
-
 #include <llvm/IR/Constants.h>
 #include <llvm/IR/Intrinsics.h>
 

@@ -23,7 +23,6 @@ namespace skc::native {
 
 using namespace ir;
 using sk::native::EntryKind;
-using sk::native::Level;
 using sk::native::Real;
 
 namespace {

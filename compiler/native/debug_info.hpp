@@ -55,7 +55,7 @@ class DebugInfo {
   llvm::DIType* scalarType(ir::Scalar scalar, std::uint64_t bits);
   llvm::DIType* leafType(const LeafMemory& leaf);
   llvm::DIType* recordType(const std::string& name, const std::vector<Member>& members);
-  /// Of a value whose leaves begin at `next`, which moves behind them.
+  /// The type of a value whose leaves begin at `next`. Advances `next` past them.
   llvm::DIType* typeOf(ir::Type type, Leaves& next);
 
   const ir::Module& module_;

@@ -44,14 +44,18 @@ class EntryWriter {
  private:
   // ---- functions and loops ----------------------------------------------------------------------
 
-  /// Starts a function with so many addresses and then numbers of 64 bits. Code for its prologue goes to its entry block.
+  /// Starts a function that takes `addresses` pointers, then `numbers` 64-bit integers. Its entry block is the prologue.
   void begin(unsigned addresses, unsigned numbers) {
     std::vector<llvm::Type*> types(addresses, b_.getPtrTy());
     types.insert(types.end(), numbers, b_.getInt64Ty());
     function_ = llvm::Function::Create(llvm::FunctionType::get(b_.getVoidTy(), types, false),
                                        llvm::Function::InternalLinkage, name_, code_);
     for (unsigned i = 0; i < addresses; ++i) function_->addParamAttr(i, llvm::Attribute::NoCapture);
-    function_->setDoesNotThrow();
+    if (paramsOf(ParamRole::VariableOutput).empty()) {
+      function_->setDoesNotThrow();
+    } else {
+      function_->setUWTableKind(llvm::UWTableKind::Default);  // Sink::grow may find no memory
+    }
     setLevel(*function_, s_.level);
     prologue_ = llvm::BasicBlock::Create(b_.getContext(), "entry", function_);
     llvm::BasicBlock* const start = llvm::BasicBlock::Create(b_.getContext(), "start", function_);
@@ -99,7 +103,7 @@ class EntryWriter {
     return parts;
   }
 
-  /// Of every parameter; those of accumulators and, of what combines, of inputs come from elsewhere.
+  /// The value that the entry takes for a parameter. Accumulators have none here: the callers pass their state.
   Parts argument(std::uint32_t i) {
     switch (s_.kernel.params[i].role) {
       case ParamRole::Uniform:
@@ -306,7 +310,7 @@ class EntryWriter {
     }
     return parts;
   }
-  /// Of the accumulators, or of the gathers that have a border.
+  /// The scalars of all accumulators, or of all gathers that have a border.
   std::vector<Scalar> scalarsOfAll(ParamRole role) const {
     std::vector<Scalar> scalars;
     for (const std::uint32_t i : paramsOf(role)) {

@@ -419,7 +419,7 @@ Part length(const Formula& f, const Parts& a) {
   return f.select(f.isInfinite(most), most, f.div(f.sqrt(dot(f, scaled, scaled)), scale));
 }
 
-/// Of zero, zero.
+/// Returns a zero vector unchanged.
 Parts normalize(const Formula& f, const Parts& a) {
   const Parts scaled = times(f, a, lengthScale(f, largest(f, a)));
   const Part square = dot(f, scaled, scaled);

@@ -49,7 +49,7 @@ class Lanes {
   llvm::Type* stored(ir::Scalar scalar) const;
   /// Bytes of it.
   std::uint32_t storedBytes(ir::Scalar scalar) const;
-  /// One for each lane; the type itself where there is one lane.
+  /// The vector with one entry per lane, or the scalar type itself if there is a single lane.
   llvm::Type* vector(llvm::Type* scalar) const;
   bool isVector(const llvm::Value* value) const { return value->getType()->isVectorTy(); }
   bool isVarying(const Part& part) const { return isVector(part.value); }

@@ -80,7 +80,7 @@ std::optional<std::uint32_t> literalIndex(const Expr& index, std::uint32_t lengt
 
 }  // namespace
 
-/// Nothing where the expression is no place, or a component of a vector at an index that is known only when it runs.
+/// Returns nullopt for an expression that is no place, and for a vector component at a dynamic index.
 std::optional<Place> FunctionCode::placeOf(const Expr& expr) {
   if (const auto* n = std::get_if<VarRef>(&expr.node)) return variable(n->var);
   if (const auto* n = std::get_if<Member>(&expr.node)) {
@@ -197,7 +197,7 @@ void FunctionCode::assign(const Expr& place, const Parts& value) {
   assignComponent(std::get<Index>(place.node), value);
 }
 
-/// Of a vector, a component, or of a matrix, a row, at an index that is known only when it runs.
+/// Assigns a component of a vector, or a row of a matrix, at a dynamic index.
 void FunctionCode::assignComponent(const Index& place, const Parts& value) {
   Parts whole = expression(*place.base);
   const std::uint32_t length = place.base->type.width;

@@ -124,10 +124,22 @@ Parts Streams::index(const StreamRef& stream) {
       llvm::Value* const divide = argumentExtent(stream.id, d, offsetof(Argument, divide));
       position = inPrologue([&] { return l.b.CreateSDiv(l.b.CreateMul(position, multiply), divide); });
     }
-    if (d == 0) position = l.b.CreateAdd(position, element_);
-    parts.push_back({l.b.CreateTrunc(position, l.int32()), d == 0});
+    if (d > 0) {
+      parts.push_back({l.b.CreateTrunc(position, l.int32())});
+    } else if (kernel_.reduction) {
+      parts.push_back({l.b.CreateTrunc(foldedPosition(position), l.vector(l.int32()))});
+    } else {
+      parts.push_back({l.b.CreateTrunc(l.b.CreateAdd(position, element_), l.int32()), true});
+    }
   }
   return parts;
+}
+
+/// In each lane, the x of its element: a fold's elements are `step` apart.
+llvm::Value* Streams::foldedPosition(llvm::Value* first) {
+  llvm::Value* const elements = l.b.CreateAdd(l.spread(element_), l.laneNumbers(l.int64()));
+  llvm::Value* const step = l.spread(chunkField(offsetof(Chunk, step)));
+  return l.b.CreateAdd(l.spread(first), l.b.CreateMul(elements, step));
 }
 
 Parts Streams::extent(const StreamRef& stream) {
@@ -156,19 +168,23 @@ Parts Streams::iterator(std::uint32_t param) {
     number = l.b.CreateAdd(l.b.CreateMul(number, domain(d)), first(d));
     total = l.b.CreateMul(total, domain(d));
   }
-  number = l.b.CreateAdd(number, element_);
+  // elements are neighbours, except in folds
+  llvm::Value* const spacing =
+      kernel_.reduction ? chunkField(offsetof(Chunk, step)) : l.integer(l.int64(), 1);
+  llvm::Value* const moved = l.b.CreateMul(element_, spacing);
+  number = l.b.CreateAdd(number, moved);
   Parts parts;
   for (std::size_t c = 0; c < width; ++c) {
     const Scalar scalar = scalars(param)[c];
     const auto end = [&](std::int64_t i) {
       return l.loadOne(scalar, l.at(l.stored(scalar), component(param, c), l.integer(l.int64(), i)));
     };
-    llvm::Value* const own = c == 0 ? l.b.CreateAdd(first(0), element_) : first(c);
+    llvm::Value* const own = c == 0 ? l.b.CreateAdd(first(0), moved) : first(c);
     llvm::Value* const from = l.b.CreateSelect(byNumber, number, own);
     llvm::Value* const steps = l.b.CreateSelect(byNumber, total, domain(c));
     // x grows from lane to lane, and so does the number of the element
-    llvm::Value* grows = l.integer(l.int64(), 1);
-    if (c > 0) grows = l.b.CreateZExt(byNumber, l.int64());
+    llvm::Value* grows = spacing;
+    if (c > 0) grows = l.b.CreateSelect(byNumber, spacing, l.integer(l.int64(), 0));
     llvm::Value* const k =
         l.b.CreateAdd(l.spread(from), l.b.CreateMul(l.laneNumbers(l.int64()), l.spread(grows)));
     const Part begin = end(0), last = end(1);

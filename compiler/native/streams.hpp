@@ -44,9 +44,9 @@ class Streams {
                  const std::optional<std::vector<std::int32_t>>& constant);
   Parts sample(std::uint32_t param, const Parts& position);
 
-  /// Of one lane.
+  /// Appends the element of a single lane.
   void push(std::uint32_t param, const Parts& value);
-  /// Of one lane. `combined` makes the new element of the old one; both are parts.
+  /// Stores for a single lane. `combined` makes the new element of the old one; both are parts.
   void scatter(std::uint32_t param, const Parts& index,
                const std::function<Parts(const Parts& old)>& combined);
 
@@ -83,6 +83,7 @@ class Streams {
   Parts orBorder(std::uint32_t param, llvm::Value* isOutside, const Parts& value);
   Parts choose(llvm::Value* condition, const std::function<Parts()>& yes, const std::function<Parts()>& no,
                const std::vector<ir::Scalar>& scalars);
+  llvm::Value* foldedPosition(llvm::Value* first);
   Part moved(std::uint32_t param, std::size_t dimension, const Part& index, const Part& offset);
   Parts weighted(std::uint32_t param, const Parts& low, const Parts& weights, std::size_t dimensions);
 
