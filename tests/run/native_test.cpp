@@ -160,6 +160,30 @@ TEST_CASE("a sum of floats sees no bits beyond them") {
   CHECK(sum.with({.precision = sk::Precision::Double})(x) == static_cast<float>(1000 * (1 + 0x1p-25)));
 }
 
+TEST_CASE("folds know the index of each element, in blocks of any width") {
+  constexpr int columns = 37, rows = 3;
+  sk::Device device = sk::Device::native();
+  for (const int width : {1, 2, 3, 5, 8, 16}) {
+    CAPTURE(width);
+    auto x = device.stream<float>({2 * rows, width * columns});
+    x.write(std::vector<float>(static_cast<std::size_t>(2 * rows * width * columns)));
+    auto totals = device.stream<std::int32_t>({rows, columns});
+    auto ramps = device.stream<float>({rows, columns});
+    addIndices(x, sk::iter(0.0F, static_cast<float>(2 * rows * width * columns)), totals, ramps);
+    std::vector<std::int32_t> expected(rows * columns);
+    std::vector<float> numbers(rows * columns);  // whole numbers below 2^24, so that no sum rounds
+    for (int row = 0; row < 2 * rows; ++row) {
+      for (int k = 0; k < width * columns; ++k) {
+        const auto block = static_cast<std::size_t>(row / 2 * columns + k / width);
+        expected[block] += 3 * k + row;
+        numbers[block] += static_cast<float>(row * width * columns + k);
+      }
+    }
+    CHECK(totals.read() == expected);
+    CHECK(ramps.read() == numbers);
+  }
+}
+
 TEST_CASE("floats are rounded to halves as the host does it") {
   std::vector<float> x;
   for (std::uint64_t bits = 0; bits < 1ULL << 32U; bits += 0x1000) {  // all halves, and what is between two
