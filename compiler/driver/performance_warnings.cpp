@@ -6,9 +6,9 @@
 #include <set>
 #include <utility>
 
+#include "analysis/stream_uses.hpp"
 #include "assemble/assemble.hpp"
 #include "emit/program.hpp"
-#include "emit/stream_uses.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
@@ -61,7 +61,7 @@ class Advisor {
   }
 
   void neighbor(const NeighborRead& n, Loc loc) {
-    if (emit::reachOf(module_, *n.offset)) return;
+    if (analysis::reachOf(module_, *n.offset)) return;
     const std::string& name = kernel_->params[n.stream.id].name;
     const std::string whyNot = whyNotUnrolled();
     if (whyNot.empty()) {

@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
+#include "analysis/stream_uses.hpp"
 #include "emit/doubles.hpp"
 #include "emit/float_intrinsics.hpp"
 #include "emit/partial_operations.hpp"
-#include "emit/stream_uses.hpp"
 #include "ir/print.hpp"
 #include "support/overloaded.hpp"
 #include "support/text.hpp"
@@ -281,7 +281,7 @@ class GlslExpr {
   /// "sk_at_u"; the domain has the shape of the first output, where there is one.
   std::string call(std::string_view function, StreamRef stream) const {
     const bool isDomain = stream.space == StreamRef::Space::Domain;
-    const std::uint32_t param = isDomain ? domainParam(context_.kernel) : stream.id;
+    const std::uint32_t param = isDomain ? analysis::domainParam(context_.kernel) : stream.id;
     if (param == context_.kernel.params.size()) return std::string(function);
     return fmt::format("{}_{}", function, context_.names.symbol(param));
   }

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "native/native.hpp"
+#include "native/kernel_request.hpp"
 
 namespace skc::emit {
 

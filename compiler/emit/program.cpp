@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
+#include "analysis/stream_uses.hpp"
 #include "emit/conditions.hpp"
 #include "emit/elements.hpp"
 #include "emit/glsl_body.hpp"
-#include "emit/stream_uses.hpp"
 #include "ir/print.hpp"
 #include "ir/reach.hpp"
 
@@ -145,7 +145,7 @@ class Builder {
     const KernelNames names(module_, kernel, types_);
     Polyfills polyfills;
     const GlslContext context{module_, types_, names, kernel, polyfills};
-    const StreamUses uses = streamUses(module_, kernel);
+    const analysis::StreamUses uses = analysis::streamUses(module_, kernel);
     GlslBody text = kernel.isNativeOnly ? GlslBody() : glslBody(context);
     std::vector<sk::program::Parameter>& parameters = storage_.parameters.emplace_back();
     for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
@@ -322,7 +322,8 @@ class Builder {
     return storage_.layers.emplace_back(std::move(layers));
   }
 
-  sk::program::Parameter parameter(const GlslContext& context, std::uint32_t index, const StreamUse& use) {
+  sk::program::Parameter parameter(const GlslContext& context, std::uint32_t index,
+                                   const analysis::StreamUse& use) {
     const KernelParam& param = context.kernel.params[index];
     const auto constant = [&](const ExprPtr& expr) {
       return expr ? storage_.keep(glslExpr(context, std::nullopt, *expr)) : std::string_view();

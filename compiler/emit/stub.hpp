@@ -10,7 +10,7 @@
 
 #include "emit/program.hpp"
 #include "ir/ir.hpp"
-#include "native/native.hpp"
+#include "native/kernel_request.hpp"
 
 namespace skc::emit {
 

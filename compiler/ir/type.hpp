@@ -31,6 +31,7 @@ enum class Scalar : std::uint8_t {
 };
 
 constexpr bool isNarrow(Scalar scalar) { return scalar >= Scalar::Half; }
+constexpr bool isReal(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Double; }
 
 /// The scalar that a value of this one is computed in: Int or Float for a narrow one, else itself.
 constexpr Scalar carrierOf(Scalar scalar) {

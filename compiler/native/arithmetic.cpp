@@ -12,7 +12,6 @@ using namespace ir;
 
 namespace {
 
-bool isReal(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Double; }
 bool isSigned(Scalar scalar) { return scalar != Scalar::Uint && scalar != Scalar::Bool; }
 
 /// Consecutive numbers stay consecutive where the same number is added to all, or taken away.

@@ -5,8 +5,8 @@
 #include <llvm/IR/Verifier.h>
 #include <llvm/Support/raw_ostream.h>
 
+#include "analysis/stream_uses.hpp"
 #include "analysis/uniformity.hpp"
-#include "emit/stream_uses.hpp"
 #include "ir/clone_module.hpp"
 #include "native/code_table.hpp"
 #include "native/contraction.hpp"
@@ -63,7 +63,7 @@ class Compilation {
     const SlotPlan slots = planSlots(plain_, kernel);
     CodeTable table{
         .symbol = request.symbol, .entries = {}, .slots = slots.slots, .isUneven = false, .isOrdered = false};
-    table.isUneven = emit::streamUses(plain_, kernel).loops;
+    table.isUneven = analysis::streamUses(plain_, kernel).loops;
     table.isOrdered = isOrdered(kernel);
     for (const EntryKind kind : entriesOf(plain_, kernel)) {
       if (request.onlyCombines && kind != EntryKind::Combine) continue;

@@ -10,12 +10,11 @@ using namespace ir;
 
 namespace {
 
-bool isReal(const Type& type) { return type.scalar == Scalar::Float || type.scalar == Scalar::Double; }
 bool isSum(BinaryOp op) { return op == BinaryOp::Add || op == BinaryOp::Sub; }
 
 bool isProduct(const Expr& expr) {
   const auto* n = std::get_if<Binary>(&expr.node);
-  return n != nullptr && n->op == BinaryOp::Mul && isReal(expr.type);
+  return n != nullptr && n->op == BinaryOp::Mul && isReal(expr.type.scalar);
 }
 
 /// What a kernel computes, as far as contraction is concerned.
@@ -26,7 +25,7 @@ class Operations {
   void add(const Block& body) {
     walkStmts(body, [&](const Stmt& stmt) {
       const auto* n = std::get_if<Assign>(&stmt.node);
-      if (n == nullptr || !n->op || !isReal(n->place->type)) return;
+      if (n == nullptr || !n->op || !isReal(n->place->type.scalar)) return;
       if (isSum(*n->op)) ++sums_;
       if (*n->op == BinaryOp::Mul) ++products_;
     });
@@ -42,7 +41,7 @@ class Operations {
     }
     if (isProduct(expr)) ++products_;
     const auto* n = std::get_if<Binary>(&expr.node);
-    if (n == nullptr || !isReal(expr.type)) return;
+    if (n == nullptr || !isReal(expr.type.scalar)) return;
     if (isSum(n->op)) ++sums_;
     if (isProduct(expr) && n->lhs->type.isMatrix() && !n->rhs->type.isScalar()) ++sums_;
   }
@@ -50,7 +49,7 @@ class Operations {
   void add(Intrinsic intrinsic, const Type& type) {
     const bool isCarriedExactly = intrinsic >= Intrinsic::RoundedSum && intrinsic <= Intrinsic::ExactRounded;
     isExact_ = isExact_ || isCarriedExactly;
-    if (!isReal(type) || (intrinsic != Intrinsic::Fma && intrinsic != Intrinsic::Dot)) return;
+    if (!isReal(type.scalar) || (intrinsic != Intrinsic::Fma && intrinsic != Intrinsic::Dot)) return;
     ++products_;
     ++sums_;
   }

@@ -142,11 +142,10 @@ llvm::DIType* DebugInfo::scalarType(Scalar scalar, std::uint64_t bits) {
     return builder_.createEnumerationType(unit_, "bool", nullptr, 0, bits, 0, values,
                                           builder_.createBasicType("int", bits, llvm::dwarf::DW_ATE_signed));
   }
-  const bool isReal = scalar == Scalar::Float || scalar == Scalar::Double;
-  const char* const name = !isReal      ? nameOf(scalar)
-                           : bits == 32 ? "float"
-                           : bits == 64 ? "double"
-                                        : "__float128";
+  const char* const name = !isReal(scalar) ? nameOf(scalar)
+                           : bits == 32    ? "float"
+                           : bits == 64    ? "double"
+                                           : "__float128";
   return builder_.createBasicType(name, bits, encodingOf(scalar));
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "native/lane_count.hpp"
 
-#include "emit/stream_uses.hpp"
+#include "analysis/stream_uses.hpp"
 #include "ir/reach.hpp"
 #include "native/leaves.hpp"
 
@@ -20,7 +20,7 @@ std::uint32_t laneCount(const Module& module, const Kernel& kernel, sk::native::
   }
   // a chain of dependent operations leaves units idle; a second vector fills them
   constexpr std::size_t few = 16;
-  const bool waits = emit::streamUses(module, kernel).loops;
+  const bool waits = analysis::streamUses(module, kernel).loops;
   return waits && scalars <= few ? 2 * one : one;
 }
 

@@ -13,22 +13,13 @@
 #include <vector>
 
 #include "ir/ir.hpp"
+#include "native/kernel_request.hpp"
 #include "native/library/link_library.hpp"
 
 namespace skc::native {
 
 /// What is written for a module.
 enum class Output : std::uint8_t { Object, Assembly, Llvm };
-
-/// A kernel that gets native code.
-struct KernelRequest {
-  ir::KernelId kernel;
-  std::string symbol;  ///< of its Code
-  bool inDoubles = false;  ///< computing in double, too, wherever the kernel says float
-  bool inQuads = false;  ///< and in binary128
-  bool isCold = false;  ///< computes a handful of elements: one level of the CPU does
-  bool onlyCombines = false;  ///< a reduce that nothing runs but to combine partial results of another
-};
 
 struct Options {
   std::string triple = {};  ///< empty: of the machine that skc runs on

@@ -14,11 +14,11 @@ compiler/ir           support ir
 compiler/analysis     support ir analysis
 compiler/split        support ir split
 compiler/transforms   support ir analysis transforms split
-compiler/native       support ir analysis transforms emit native llvm sk/native/code.hpp sk/native/table.hpp
+compiler/native       support ir analysis transforms native llvm sk/native/code.hpp sk/native/table.hpp
 compiler/native/library support ir transforms native
-compiler/emit         support ir transforms native/native.hpp emit assemble sk/program.hpp sk/scalar_bytes.hpp
+compiler/emit         support ir analysis native/kernel_request.hpp emit assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/frontend     support ir frontend clang llvm
-compiler/driver       support ir split transforms native/native.hpp native/library/link_library.hpp emit frontend driver assemble sk/program.hpp
+compiler/driver       support ir analysis split transforms native/native.hpp native/library/link_library.hpp emit frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
 runtime/src           sk assemble gl native
 runtime/tools         sk native

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "emit/stream_uses.hpp"
+#include "analysis/stream_uses.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -9,7 +9,7 @@
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 
-namespace skc::emit {
+namespace skc::analysis {
 namespace {
 
 using namespace ir;
@@ -96,4 +96,4 @@ std::uint32_t domainParam(const Kernel& kernel) {
   return static_cast<std::uint32_t>(found - kernel.params.begin());
 }
 
-}  // namespace skc::emit
+}  // namespace skc::analysis

@@ -9,7 +9,7 @@
 
 #include "ir/ir.hpp"
 
-namespace skc::emit {
+namespace skc::analysis {
 
 struct StreamUse {
   bool index = false;
@@ -35,4 +35,4 @@ std::optional<std::int32_t> reachOf(const ir::Module& module, const ir::Expr& of
 /// The parameter whose shape is the domain's: the first output; the number of parameters where there is none.
 std::uint32_t domainParam(const ir::Kernel& kernel);
 
-}  // namespace skc::emit
+}  // namespace skc::analysis
