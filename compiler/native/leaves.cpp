@@ -4,6 +4,9 @@
 #include <functional>
 #include <numeric>
 
+#include "analysis/shapes.hpp"
+#include "ir/value_size.hpp"
+
 namespace skc::native {
 
 using namespace ir;
@@ -48,7 +51,7 @@ void addComponents(const Module& module, Type type, std::uint32_t leaf, std::vec
     case Type::Kind::Struct:
       for (const StructField& field : module.structs[type.index].fields) {
         addComponents(module, field.type, leaf, components);
-        leaf += static_cast<std::uint32_t>(leavesOf(module, field.type).size());
+        leaf += static_cast<std::uint32_t>(analysis::leafCount(module, field.type));
       }
       return;
     case Type::Kind::Array: {
@@ -94,15 +97,14 @@ std::vector<Scalar> scalarsOf(const Module& module, Type type) {
 }
 
 std::uint32_t componentCount(const Module& module, Type type) {
-  std::uint32_t count = 0;
-  for (const Leaf& leaf : leavesOf(module, type)) count += leaf.count();
-  return count;
+  return static_cast<std::uint32_t>(numbersIn(module, type));
 }
 
 std::uint32_t leavesBefore(const Module& module, Type type, std::uint32_t field) {
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < field; ++i) {
-    count += static_cast<std::uint32_t>(leavesOf(module, module.structs[type.index].fields[i].type).size());
+    count +=
+        static_cast<std::uint32_t>(analysis::leafCount(module, module.structs[type.index].fields[i].type));
   }
   return count;
 }

@@ -4,6 +4,7 @@
 #include <llvm/IR/Constants.h>
 #include <llvm/IR/Intrinsics.h>
 
+#include "analysis/shapes.hpp"
 #include "native/arithmetic.hpp"
 #include "native/debug_info.hpp"
 #include "native/function_code.hpp"
@@ -88,7 +89,7 @@ std::optional<Place> FunctionCode::placeOf(const Expr& expr) {
     if (!base) return std::nullopt;
     const std::uint32_t first = leavesBefore(k.module, n->base->type, n->field);
     const auto begin = base->leaves.begin() + first;
-    const auto count = static_cast<std::ptrdiff_t>(leavesOf(k.module, expr.type).size());
+    const auto count = static_cast<std::ptrdiff_t>(analysis::leafCount(k.module, expr.type));
     return Place{expr.type, {begin, begin + count}};
   }
   if (const auto* n = std::get_if<Swizzle>(&expr.node)) {
