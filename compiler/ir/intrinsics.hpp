@@ -15,7 +15,7 @@
 namespace skc::ir {
 
 enum class Intrinsic : std::uint16_t {
-#define SKC_INTRINSIC(Name, spelling, signatures, glsl, glslVector, polyfill) Name,
+#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) Name,
 #include "ir/intrinsics.def"
 #undef SKC_INTRINSIC
 };

@@ -26,7 +26,7 @@ class EntryWriter {
         l_(b_, source.form),
         streams_(l_, source.module, source.kernel, source.slots,
                  [this](const Expr& expr) { return constantParts(context_, expr); }),
-        context_{l_, source.module, source.kernel, streams_, source.uniformity, {}, source.debug},
+        context_{l_, source.module, source.kernel, streams_, source.uniformity, source.debug},
         code_(code),
         name_(name) {}
 

@@ -334,12 +334,11 @@ Part FunctionCode::tableValue(llvm::Value* table, const Part& x) {
 }
 
 Parts FunctionCode::parts(const Expr&, const IntrinsicCall& n) {
-  if (n.intrinsic == Intrinsic::AnyLane) return {{l.any(expression(*n.args[0])[0])}};
   std::vector<IntrinsicArgument> arguments;
   for (const ExprPtr& arg : n.args) arguments.push_back({arg->type, expression(*arg)});
   const llvm::IRBuilderBase::FastMathFlagGuard guard(b);
   if (n.intrinsic == Intrinsic::Fma || n.intrinsic == Intrinsic::Dot) b.setFastMathFlags(flagsOfText());
-  return intrinsic(l, n.intrinsic, arguments, k.library);
+  return intrinsic(l, n.intrinsic, arguments);
 }
 
 // ---- streams --------------------------------------------------------------------------------------

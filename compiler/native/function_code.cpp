@@ -191,7 +191,7 @@ void FunctionCode::write(const Scatter& n) {
       } else {
         const Intrinsic extreme = n.op == ScatterOp::Min ? Intrinsic::Min : Intrinsic::Max;
         const Type type = Type::of(scalars[i]);
-        combined.push_back(intrinsic(l, extreme, {{type, {old[i]}}, {type, {value[i]}}}, k.library)[0]);
+        combined.push_back(intrinsic(l, extreme, {{type, {old[i]}}, {type, {value[i]}}})[0]);
       }
     }
     return combined;

@@ -27,7 +27,6 @@ struct KernelContext {
   const ir::Kernel& kernel;
   Streams& streams;
   const analysis::Uniformity* uniformity;  ///< null with one lane
-  LibraryCall library;
   DebugInfo* debug = nullptr;
 };
 

@@ -11,7 +11,7 @@
 #include <llvm/IR/Module.h>
 
 #include "native/arithmetic.hpp"
-#include "native/intrinsics.hpp"
+#include "native/component_functions.hpp"
 #include "native/leaves.hpp"
 
 namespace skc::native {

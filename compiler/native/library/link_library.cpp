@@ -2,9 +2,12 @@
 #include "native/library/link_library.hpp"
 
 #include <algorithm>
-#include <cassert>
-#include <span>
+#include <cstdint>
+#include <iterator>
+#include <stdexcept>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
@@ -16,62 +19,56 @@ namespace {
 
 using namespace ir;
 
-/// An intrinsic, and the name of the library's function that computes it.
+/// The files of the library that have a function for an intrinsic.
+enum class In : std::uint8_t { None, Floats, Reals, Sums };
+
 struct Row {
   Intrinsic intrinsic;
+  In in;
   std::string_view function;
 };
 
-// Functions of doubles do without the last two.
-constexpr Row functionsOfReals[] = {
-    {Intrinsic::Sin, "sin"},     {Intrinsic::Cos, "cos"},     {Intrinsic::Tan, "tan"},
-    {Intrinsic::Asin, "asin"},   {Intrinsic::Acos, "acos"},   {Intrinsic::Atan, "atan"},
-    {Intrinsic::Sinh, "sinh"},   {Intrinsic::Cosh, "cosh"},   {Intrinsic::Tanh, "tanh"},
-    {Intrinsic::Asinh, "asinh"}, {Intrinsic::Acosh, "acosh"}, {Intrinsic::Atanh, "atanh"},
-    {Intrinsic::AtanYX, "atan"}, {Intrinsic::Atan2, "atan2"}, {Intrinsic::Pow, "pow"},
-    {Intrinsic::Exp, "exp"},     {Intrinsic::Exp2, "exp2"},   {Intrinsic::Log, "log"},
-    {Intrinsic::Log2, "log2"},   {Intrinsic::Log10, "log10"}, {Intrinsic::Fmod, "fmod"},
-    {Intrinsic::Mod, "mod"},
-};
-constexpr Row functionsOfExactSums[] = {
-    {Intrinsic::ExactDigits, "exact_digits"},
-    {Intrinsic::ExactFlags, "exact_flags"},
-    {Intrinsic::ExactProductDigits, "exact_product_digits"},
-    {Intrinsic::ExactProductFlags, "exact_product_flags"},
-    {Intrinsic::ExactCarry, "exact_carry"},
-    {Intrinsic::ExactSettled, "exact_settled"},
-    {Intrinsic::ExactRounded, "exact_rounded"},
+// The forms of the column `library`.
+#define SKC_LIBRARY_None In::None, ""
+#define SKC_LIBRARY_Floats(function) In::Floats, #function
+#define SKC_LIBRARY_Reals(function) In::Reals, #function
+#define SKC_LIBRARY_Sums(function) In::Sums, #function
+constexpr Row rows[] = {
+#define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) \
+  {Intrinsic::Name, SKC_LIBRARY_##library},
+#include "ir/intrinsics.def"
+#undef SKC_INTRINSIC
 };
 
 struct Library {
   std::string_view file;
   std::string_view (*text)();
-  std::span<const Row> rows;
+  bool (*has)(In in);
   std::optional<Scalar> scalar;   ///< of the first argument, if intrinsics of others are not the library's
 };
-const Library libraries[] = {
-    {"float_functions.sk", floatFunctions, functionsOfReals, Scalar::Float},
-    {"double_functions.sk", doubleFunctions, std::span(functionsOfReals).first(20), Scalar::Double},
-    {"exact_sums.sk", exactSums, functionsOfExactSums, std::nullopt},
+constexpr Library libraries[] = {
+    {"float_functions.sk", floatFunctions, [](In in) { return in == In::Floats || in == In::Reals; },
+     Scalar::Float},
+    {"double_functions.sk", doubleFunctions, [](In in) { return in == In::Reals; }, Scalar::Double},
+    {"exact_sums.sk", exactSums, [](In in) { return in == In::Sums; }, std::nullopt},
 };
 
 /// Rows whose intrinsics kernels call, with arguments that the library is for.
 std::vector<Row> wantedRows(const Library& library, const Module& module) {
-  std::vector<bool> isWanted(library.rows.size());
+  std::vector<bool> isWanted(std::size(rows));
   const auto look = [&](const Expr& expr) {
     const auto* call = std::get_if<IntrinsicCall>(&expr.node);
     if (call == nullptr) return;
-    const auto row = std::ranges::find(library.rows, call->intrinsic, &Row::intrinsic);
-    if (row == library.rows.end()) return;
-    if (!library.scalar || call->args.front()->type.scalar == *library.scalar)
-      isWanted[static_cast<std::size_t>(row - library.rows.begin())] = true;
+    const auto index = static_cast<std::size_t>(call->intrinsic);
+    const bool isForType = !library.scalar || call->args.front()->type.scalar == *library.scalar;
+    if (isForType && library.has(rows[index].in)) isWanted[index] = true;
   };
   for (const Kernel& kernel : module.kernels) {
     for (const FunctionId id : functionsOf(module, kernel)) walkExprs(module.functions[id].body, look);
   }
   std::vector<Row> wanted;
   for (std::size_t i = 0; i < isWanted.size(); ++i) {
-    if (isWanted[i]) wanted.push_back(library.rows[i]);
+    if (isWanted[i]) wanted.push_back(rows[i]);
   }
   return wanted;
 }
@@ -87,7 +84,10 @@ bool implements(const Function& function, const Row& row) {
 FunctionId implementation(const Module& library, const Row& row) {
   const auto found = std::ranges::find_if(
       library.functions, [&](const Function& function) { return implements(function, row); });
-  assert(found != library.functions.end());
+  if (found == library.functions.end()) {
+    throw std::logic_error(fmt::format("{} has no function {} with the types of the intrinsic {}",
+                                       library.file, row.function, ir::row(row.intrinsic).name));
+  }
   return static_cast<FunctionId>(found - library.functions.begin());
 }
 

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "native/component_functions.hpp"
+
+#include <limits>
+#include <string>
+
+#include <llvm/IR/Constants.h>
+#include <llvm/IR/Module.h>
+
+namespace skc::native {
+
+using namespace ir;
+
+namespace {
+
+Part extreme(const Formula& f, bool isMin, Scalar scalar, const Part& x, const Part& y) {
+  const BinaryOp before = isMin ? BinaryOp::Less : BinaryOp::Greater;
+  if (scalar == Scalar::Int || scalar == Scalar::Uint) {
+    return f.select(binary(f.l, before, scalar, y, x), y, x);
+  }
+  Part a = x, c = y;
+  f.l.unify(a, c);
+  const Part isFirst = f.either(binary(f.l, before, scalar, a, c), f.differs(c, c));
+  const Part ofEqual = isMin ? f.select(f.isNegative(a), a, c) : f.select(f.isNegative(a), c, a);
+  return f.select(f.equal(a, c), ofEqual, f.select(isFirst, a, c));
+}
+
+/// The largest number below 1.
+Part belowOne(const Part& x) {
+  llvm::APFloat one(1.0);
+  bool isInexact = false;
+  one.convert(x.value->getType()->getScalarType()->getFltSemantics(), llvm::APFloat::rmNearestTiesToEven,
+              &isInexact);
+  one.next(/*nextDown=*/true);
+  return {llvm::ConstantFP::get(x.value->getType()->getScalarType(), one)};
+}
+
+/// The bits of a number as a normal double.
+struct DoubleBits {
+  llvm::Value* word;
+  llvm::Value* exponent;  ///< biased
+  llvm::Value* isScaled;  ///< by 2^54; null where that cannot be
+};
+DoubleBits doubleBits(const Formula& f, const Part& x) {
+  Lanes& l = f.l;
+  const bool isFloat = x.value->getType()->getScalarType()->isFloatTy();
+  llvm::Type* const wide = l.sameShape(x.value, l.b.getDoubleTy());
+  llvm::Type* const word = l.sameShape(x.value, l.int64());
+  llvm::Value* value = l.b.CreateFPCast(x.value, wide);
+  llvm::Value* isScaled = nullptr;
+  if (!isFloat) {
+    isScaled = l.b.CreateFCmpOLT(f.abs({value}).value, l.number(wide, 0x1p-1022));
+    value = l.b.CreateSelect(isScaled, l.b.CreateFMul(value, l.number(wide, 0x1p54)), value);
+  }
+  llvm::Value* const bits = l.b.CreateBitCast(value, word);
+  llvm::Value* const field = l.b.CreateAnd(l.b.CreateLShr(bits, 52), l.integer(word, 0x7ff));
+  return {bits, field, isScaled};
+}
+
+/// Whether frexp returns x itself with an exponent of 0.
+Part isWithoutExponent(const Formula& f, const Part& x) {
+  return f.either(f.equal(x, f.number(x, 0)), unary(f.l, UnaryOp::LogicalNot, Scalar::Bool, f.isFinite(x)));
+}
+
+/// Calls frexpq() lane by lane; gives its mantissa or its exponent.
+Part quadFrexp(const Formula& f, const Part& x, bool isExponent) {
+  Lanes& l = f.l;
+  llvm::Function* const around = l.b.GetInsertBlock()->getParent();
+  llvm::IRBuilder<> entry(&around->getEntryBlock(), around->getEntryBlock().begin());
+  llvm::Value* const exponent = entry.CreateAlloca(l.int32());
+  llvm::Type* const quad = x.value->getType()->getScalarType();
+  const llvm::FunctionCallee frexp = around->getParent()->getOrInsertFunction(
+      std::string("frexp") + f.quadSuffix(),
+      llvm::FunctionType::get(quad, {quad, exponent->getType()}, false));
+  return l.perLane({x}, isExponent ? l.int32() : quad, [&](llvm::ArrayRef<llvm::Value*> a) -> llvm::Value* {
+    llvm::Value* const mantissa = l.b.CreateCall(frexp, {a[0], exponent});
+    return isExponent ? l.b.CreateLoad(l.int32(), exponent) : mantissa;
+  });
+}
+
+}  // namespace
+
+Part minimum(const Formula& f, Scalar scalar, const Part& x, const Part& y) {
+  return extreme(f, true, scalar, x, y);
+}
+Part maximum(const Formula& f, Scalar scalar, const Part& x, const Part& y) {
+  return extreme(f, false, scalar, x, y);
+}
+
+Part absolute(const Formula& f, Scalar scalar, const Part& x) {
+  if (scalar != Scalar::Int) return f.abs(x);
+  const Part zero = {f.l.integer(f.l.int32(), 0)};
+  return f.select(binary(f.l, BinaryOp::Less, scalar, x, zero), unary(f.l, UnaryOp::Negate, scalar, x), x);
+}
+
+Part sign(const Formula& f, Scalar scalar, const Part& x) {
+  const auto constant = [&](int value) { return Part{f.l.constant(scalar, value)}; };
+  const Part below = f.select(binary(f.l, BinaryOp::Less, scalar, x, constant(0)), constant(-1), constant(0));
+  return f.select(binary(f.l, BinaryOp::Greater, scalar, x, constant(0)), constant(1), below);
+}
+
+Part fraction(const Formula& f, const Part& x) {
+  const Part rest = f.sub(x, f.floor(x));
+  const Part inside =
+      f.select(f.less(rest, f.number(x, 1)), rest, f.select(f.differs(rest, rest), rest, belowOne(x)));
+  return f.select(f.isInfinite(x), f.number(x, std::numeric_limits<double>::quiet_NaN()), inside);
+}
+
+Part modulo(const Formula& f, const Part& x, const Part& y) {
+  const Part left = f.libm("fmod", {x, y});
+  const Part zero = f.number(x, 0);
+  Part a = f.less(left, zero), c = f.less(y, zero);
+  const Part otherSign = binary(f.l, BinaryOp::BitXor, Scalar::Bool, a, c);
+  return f.select(f.both(f.differs(left, zero), otherSign), f.add(left, y), left);
+}
+
+Part mix(const Formula& f, const Part& x, const Part& y, const Part& t) {
+  return f.add(f.mul(x, f.sub(f.number(t, 1), t)), f.mul(y, t));
+}
+
+Part clamp(const Formula& f, Scalar scalar, const Part& x, const Part& low, const Part& high) {
+  return minimum(f, scalar, maximum(f, scalar, x, low), high);
+}
+
+Part smoothstep(const Formula& f, const Part& low, const Part& high, const Part& x) {
+  const Part t =
+      clamp(f, Scalar::Float, f.div(f.sub(x, low), f.sub(high, low)), f.number(x, 0), f.number(x, 1));
+  return f.mul(f.mul(t, t), f.sub(f.number(x, 3), f.mul(f.number(x, 2), t)));
+}
+
+Part bitsOf(const Formula& f, const Part& x) {
+  const Part narrow = {f.l.b.CreateFPCast(x.value, f.l.sameShape(x.value, f.l.b.getFloatTy()))};
+  return {f.l.b.CreateBitCast(narrow.value, f.l.sameShape(x.value, f.l.int32()))};
+}
+Part realOfBits(const Formula& f, const Part& x) {
+  llvm::Value* const bits = f.l.value(x);
+  llvm::Value* const value = f.l.b.CreateBitCast(bits, f.l.sameShape(bits, f.l.b.getFloatTy()));
+  return {f.l.b.CreateFPCast(value, f.l.sameShape(bits, f.l.real()))};
+}
+
+Part frexpExponent(const Formula& f, const Part& x) {
+  Lanes& l = f.l;
+  const Part zero = {l.integer(l.int32(), 0)};
+  if (x.value->getType()->getScalarType()->isFP128Ty()) {
+    return f.select(isWithoutExponent(f, x), zero, quadFrexp(f, x, true));
+  }
+  const DoubleBits bits = doubleBits(f, x);
+  llvm::Type* const word = bits.word->getType();
+  llvm::Value* exponent = l.b.CreateSub(bits.exponent, l.integer(word, 1022));
+  if (bits.isScaled != nullptr) {
+    exponent = l.b.CreateSelect(bits.isScaled, l.b.CreateSub(exponent, l.integer(word, 54)), exponent);
+  }
+  return f.select(isWithoutExponent(f, x), zero,
+                  {l.b.CreateTrunc(exponent, l.sameShape(x.value, l.int32()))});
+}
+
+Part frexpMantissa(const Formula& f, const Part& x) {
+  Lanes& l = f.l;
+  if (x.value->getType()->getScalarType()->isFP128Ty()) {
+    return f.select(isWithoutExponent(f, x), x, quadFrexp(f, x, false));
+  }
+  const DoubleBits bits = doubleBits(f, x);
+  llvm::Type* const word = bits.word->getType();
+  llvm::Value* const mantissa = l.b.CreateOr(l.b.CreateAnd(bits.word, l.integer(word, ~(0x7ffLL << 52))),
+                                             l.integer(word, 1022LL << 52));
+  llvm::Value* const wide = l.b.CreateBitCast(mantissa, l.sameShape(x.value, l.b.getDoubleTy()));
+  return f.select(isWithoutExponent(f, x), x, {l.b.CreateFPCast(wide, x.value->getType())});
+}
+
+Part modfFraction(const Formula& f, const Part& x) {
+  const Part rest = f.select(f.isInfinite(x), f.number(x, 0), f.sub(x, f.trunc(x)));
+  return f.copySign(rest, x);
+}
+
+Part ldexp(const Formula& f, const Part& number, const Part& exponent) {
+  Lanes& l = f.l;
+  Part x = number, e = exponent;
+  l.unify(x, e);
+  if (!x.value->getType()->getScalarType()->isFloatTy()) {
+    return f.libm("ldexp", {x, e});
+  }
+  // The product of any float and any power of 2 that matters to a float is exact in double.
+  llvm::Type* const word = e.value->getType();
+  llvm::Value* n = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, e.value, l.integer(word, -400));
+  n = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, n, l.integer(word, 400));
+  llvm::Type* const longWord = l.sameShape(x.value, l.int64());
+  llvm::Value* const bits =
+      l.b.CreateShl(l.b.CreateSExt(l.b.CreateAdd(n, l.integer(word, 1023)), longWord), 52);
+  llvm::Type* const wide = l.sameShape(x.value, l.b.getDoubleTy());
+  llvm::Value* const product = l.b.CreateFMul(l.b.CreateFPExt(x.value, wide), l.b.CreateBitCast(bits, wide));
+  return {l.b.CreateFPTrunc(product, x.value->getType())};
+}
+
+Part sumError(const Formula& f, const Part& a, const Part& c) {
+  const Part s = f.add(a, c);
+  const Part d = f.sub(s, a);
+  return f.add(f.sub(a, f.sub(s, d)), f.sub(c, d));
+}
+
+Part productError(const Formula& f, const Part& x, const Part& y) {
+  Lanes& l = f.l;
+  Part a = x, c = y;
+  l.unify(a, c);
+  const Part p = f.mul(a, c);
+  llvm::Type* const type = a.value->getType();
+  Part error;
+  if (type->getScalarType()->isFloatTy()) {
+    llvm::Type* const wide = l.sameShape(a.value, l.b.getDoubleTy());
+    llvm::Value* const exact = l.b.CreateFMul(l.b.CreateFPExt(a.value, wide), l.b.CreateFPExt(c.value, wide));
+    error = {l.b.CreateFPTrunc(l.b.CreateFSub(exact, l.b.CreateFPExt(p.value, wide)), type)};
+  } else if (type->getScalarType()->isFP128Ty()) {
+    error = f.libm("fma", {a, c, f.negate(p)});
+  } else {
+    error = {l.b.CreateIntrinsic(llvm::Intrinsic::fma, {type}, {a.value, c.value, f.negate(p).value})};
+  }
+  return f.select(f.isFinite(p), error, f.number(p, 0));
+}
+
+Part floorOf(Lanes& lanes, const Part& x) { return Formula(lanes).floor(x); }
+
+Part wholeIndex(Lanes& lanes, const Part& x) {
+  constexpr double last = 2147483520;
+  const Formula f(lanes);
+  const Part isBeyond = binary(lanes, BinaryOp::Greater, Scalar::Float, x, f.number(x, last));
+  const Part index = convert(lanes, Scalar::Float, Scalar::Int, x);
+  return f.select(isBeyond, {lanes.integer(lanes.int32(), static_cast<std::int64_t>(last))}, index);
+}
+
+}  // namespace skc::native

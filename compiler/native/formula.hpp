@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+//
+// Arithmetic of one component, in all lanes, in the notation of formulas: what rows of ir/intrinsics.def and the functions that
+// they name (component_functions.hpp, vector_functions.hpp) are written with.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <llvm/IR/Intrinsics.h>
+
+#include "native/arithmetic.hpp"
+
+namespace skc::native {
+
+class Formula {
+ public:
+  using BinaryOp = ir::BinaryOp;
+  using Scalar = ir::Scalar;
+
+  explicit Formula(Lanes& lanes) : l(lanes) {}
+
+  Lanes& l;
+
+  Part add(const Part& a, const Part& c) const { return op(BinaryOp::Add, a, c); }
+  Part sub(const Part& a, const Part& c) const { return op(BinaryOp::Sub, a, c); }
+  Part mul(const Part& a, const Part& c) const { return op(BinaryOp::Mul, a, c); }
+  Part div(const Part& a, const Part& c) const { return op(BinaryOp::Div, a, c); }
+  Part less(const Part& a, const Part& c) const { return op(BinaryOp::Less, a, c); }
+  Part equal(const Part& a, const Part& c) const { return op(BinaryOp::Equal, a, c); }
+  Part differs(const Part& a, const Part& c) const { return op(BinaryOp::NotEqual, a, c); }
+  Part both(const Part& a, const Part& c) const { return logic(BinaryOp::LogicalAnd, a, c); }
+  Part either(const Part& a, const Part& c) const { return logic(BinaryOp::LogicalOr, a, c); }
+  Part select(const Part& c, const Part& yes, const Part& no) const { return l.select(c, yes, no); }
+  Part negate(const Part& x) const { return unary(l, ir::UnaryOp::Negate, Scalar::Float, x); }
+
+  /// A number of the type of `like`.
+  Part number(const Part& like, double value) const;
+  /// The same with more digits than a double has.
+  Part decimal(const Part& like, const char* text) const;
+
+  Part abs(const Part& x) const;
+  Part copySign(const Part& magnitude, const Part& sign) const;
+  Part isInfinite(const Part& x) const { return equal(abs(x), number(x, infinity)); }
+  Part isFinite(const Part& x) const { return less(abs(x), number(x, infinity)); }
+  /// Whether the sign bit is set, also that of -0 and of a NaN.
+  Part isNegative(const Part& x) const;
+
+  Part sqrt(const Part& x) const { return instruction(llvm::Intrinsic::sqrt, "sqrt", x); }
+  Part floor(const Part& x) const { return instruction(llvm::Intrinsic::floor, "floor", x); }
+  Part trunc(const Part& x) const { return instruction(llvm::Intrinsic::trunc, "trunc", x); }
+  /// An operation that CPUs have. For binary128 it is the function `name` of libm.
+  Part instruction(llvm::Intrinsic::ID id, const char* name, const Part& x) const;
+
+  /// A function of the C library, lane by lane, for the type of its first argument, which is also that of its result.
+  Part libm(std::string name, const std::vector<Part>& x) const;
+  /// How its functions of binary128 end: libquadmath's or, where long double is binary128, those of the C library.
+  const char* quadSuffix() const;
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  Part op(BinaryOp o, const Part& a, const Part& c) const { return binary(l, o, Scalar::Float, a, c); }
+  Part logic(BinaryOp o, const Part& a, const Part& c) const { return binary(l, o, Scalar::Bool, a, c); }
+};
+
+}  // namespace skc::native
