@@ -25,7 +25,9 @@ clang::FixItHint hint(const Mend& mend, const clang::SourceManager& sources) {
   const clang::SourceLocation first = clangLocation(mend.first);
   switch (mend.kind) {
     case Mend::Kind::Remove: return clang::FixItHint::CreateRemoval({first, clangLocation(mend.last)});
-    case Mend::Kind::Replace: return clang::FixItHint::CreateReplacement(first, mend.text);
+    case Mend::Kind::Replace:
+      return clang::FixItHint::CreateReplacement(clang::SourceRange(first, clangLocation(mend.last)),
+                                                 mend.text);
     case Mend::Kind::InsertBefore: return clang::FixItHint::CreateInsertion(first, mend.text);
     case Mend::Kind::InsertAfter: break;
   }

@@ -5,14 +5,17 @@
 #include <cctype>
 #include <iterator>
 
+#include <clang/AST/Decl.h>
 #include <clang/AST/DeclarationName.h>
 #include <clang/AST/Type.h>
 #include <clang/Basic/DiagnosticLex.h>
 #include <clang/Basic/DiagnosticParse.h>
 #include <clang/Basic/DiagnosticSema.h>
 #include <clang/Lex/Lexer.h>
+#include <fmt/format.h>
 
 #include "frontend/foreign_names.hpp"
+#include "ir/intrinsics.hpp"
 #include "support/diagnostics.hpp"
 
 namespace skc::frontend {
@@ -46,11 +49,23 @@ std::string nameIn(const clang::Diagnostic& diagnostic, unsigned argument) {
   }
 }
 
+/// The intrinsic that is one letter away from a name. Clang suggests none where there are two, as `sin` and `sinh` for `sinn`.
+std::string_view intrinsicLike(llvm::StringRef name) {
+  if (name.size() < 4) return {};
+  for (const ir::IntrinsicRow& row : ir::intrinsicRows()) {
+    if (!row.spelling.empty() && name.edit_distance(row.spelling, true, 1) == 1) return row.spelling;
+  }
+  return {};
+}
+
 /// What stands in for a name that nobody declared.
 std::string adviceOnName(const clang::Diagnostic& diagnostic) {
   const std::string name = nameIn(diagnostic, 0);
-  const std::string_view advice = insteadOf(name);
-  return advice.empty() ? std::string() : format(Diag::ForeignName, {name, advice});
+  if (const std::string_view advice = insteadOf(name); !advice.empty())
+    return format(Diag::ForeignName, {name, advice});
+  const std::string_view intrinsic = intrinsicLike(name);
+  return intrinsic.empty() ? std::string()
+                           : format(Diag::ForeignName, {name, fmt::format("did you mean '{}'?", intrinsic)});
 }
 
 /// A header of C++'s library, which has no suffix, or of C's.
@@ -65,13 +80,21 @@ std::string adviceOnHeader(const clang::Diagnostic& diagnostic) {
   return isLibraryHeader(file) ? format(Diag::LibraryHeader, {file}) : std::string();
 }
 
+/// A text that a message is about, in the order in which Clang marks them.
+llvm::StringRef textOf(const clang::Diagnostic& diagnostic, unsigned range = 0) {
+  if (diagnostic.getNumRanges() <= range) return {};
+  return clang::Lexer::getSourceText(diagnostic.getRange(range), diagnostic.getSourceManager(),
+                                     clang::LangOptions());
+}
+
+/// The name at the beginning of a text.
+llvm::StringRef nameAt(llvm::StringRef text) {
+  return text.take_while([](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });
+}
+
 /// An index of what has none: `x[0]` where x is an element.
 std::string adviceOnIndex(const clang::Diagnostic& diagnostic) {
-  if (diagnostic.getNumRanges() == 0) return {};
-  const llvm::StringRef base = clang::Lexer::getSourceText(
-      diagnostic.getRange(0), diagnostic.getSourceManager(), clang::LangOptions());
-  const llvm::StringRef name =
-      base.take_while([](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });
+  const llvm::StringRef base = textOf(diagnostic), name = nameAt(base);
   return name.empty() ? std::string() : format(Diag::IndexedValue, {base.str(), name.str()});
 }
 
@@ -82,6 +105,27 @@ std::string adviceOnCall(const clang::Diagnostic& diagnostic) {
   return {};
 }
 
+/// `a[0] = 1`: what Clang cannot assign to and has an index is an element of a gather, or a row of a matrix that is a parameter.
+std::string adviceOnAssignment(const clang::Diagnostic& diagnostic) {
+  const llvm::StringRef place = textOf(diagnostic), name = nameAt(place);
+  const bool isIndexed = !name.empty() && place.drop_front(name.size()).ltrim().starts_with("[");
+  return isIndexed ? format(Diag::GatherAssigned, {place.str(), name.str()}) : std::string();
+}
+
+/// `a.size()`, of an element or a gather: members that containers have.
+std::string adviceOnMember(std::string_view member) {
+  constexpr std::string_view ofContainers[] = {"size", "length", "begin", "end", "empty", "data"};
+  return std::ranges::find(ofContainers, member) != std::end(ofContainers)
+             ? format(Diag::StreamMember, {member})
+             : std::string();
+}
+
+bool isInGather(const clang::Diagnostic& diagnostic) {
+  const auto* context = reinterpret_cast<const clang::DeclContext*>(diagnostic.getRawArg(1));
+  const auto* type = llvm::dyn_cast_or_null<clang::NamedDecl>(context);
+  return type != nullptr && type->getName().starts_with("gather_");
+}
+
 /// Our words for a message of Clang's; "" where its own will do.
 std::string adviceOn(const clang::Diagnostic& diagnostic) {
   switch (diagnostic.getID()) {
@@ -90,6 +134,13 @@ std::string adviceOn(const clang::Diagnostic& diagnostic) {
     case clang::diag::err_pp_file_not_found: return adviceOnHeader(diagnostic);
     case clang::diag::err_typecheck_subscript_value: return adviceOnIndex(diagnostic);
     case clang::diag::err_ovl_no_viable_function_in_call: return adviceOnCall(diagnostic);
+    case clang::diag::err_typecheck_expression_not_modifiable_lvalue: return adviceOnAssignment(diagnostic);
+    case clang::diag::err_typecheck_member_reference_struct_union:
+      return adviceOnMember(textOf(diagnostic, 1));
+    case clang::diag::err_no_member:
+      return isInGather(diagnostic) ? adviceOnMember(nameIn(diagnostic, 0)) : std::string();
+    case clang::diag::err_ext_vector_component_name_illegal: return adviceOnMember(textOf(diagnostic));
+    case clang::diag::err_for_range_invalid: return format(Diag::RangeFor, {});
     default: return {};
   }
 }

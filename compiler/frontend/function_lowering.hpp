@@ -154,6 +154,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr outParameterIntrinsic(const clang::CallExpr* e, llvm::StringRef name);
   ir::ExprPtr neighbor(const clang::CallExpr* e);
   ir::ExprPtr sample(const clang::CallExpr* e);
+  std::string elementBeside(const clang::ValueDecl* parameter);
   ir::ExprPtr indexOrExtent(const clang::CallExpr* e, bool isIndex);
   ir::ExprPtr gatherRead(const clang::CXXOperatorCallExpr* e);
   ir::ExprPtr classOperator(const clang::CXXOperatorCallExpr* e);

@@ -299,6 +299,21 @@ ir::VarId FunctionLowering::gatherVariable(const clang::Expr* e) {
   return *stream;
 }
 
+/// A parameter that has a current element, of the kernel that `parameter` is one of; or what to declare.
+std::string FunctionLowering::elementBeside(const clang::ValueDecl* parameter) {
+  const auto* kernel = llvm::dyn_cast<clang::FunctionDecl>(parameter->getDeclContext());
+  if (kernel != nullptr) {
+    for (const clang::ParmVarDecl* other : kernel->parameters()) {
+      const ParamSyntax* syntax = module_.syntax().param(other->getLocation());
+      const bool isElement = syntax != nullptr &&
+                             (syntax->role == ir::ParamRole::Output || syntax->role == ir::ParamRole::Input ||
+                              syntax->role == ir::ParamRole::Iterator);
+      if (isElement) return "'" + other->getName().str() + "'";
+    }
+  }
+  return "an output 'out T r<>' or an input 'T x<>'";
+}
+
 /// indexof(p) and extentof(p): of a stream parameter; an output's and an iterator's are those of the domain.
 ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) {
   const clang::Expr* argument = withoutCopies(e->getArg(0));
@@ -313,9 +328,11 @@ ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) 
   const auto found = variables_.find(reference->getDecl());
   if (found == variables_.end()) throw Abandoned{};
   const std::string& parameter = function_.variables[found->second].name;
-  if (isIndex && syntax->role == ir::ParamRole::Gather) module_.fail(Diag::IndexOfGather, where, {parameter});
+  if (isIndex && syntax->role == ir::ParamRole::Gather)
+    module_.fail(Diag::IndexOfGather, where, {parameter, elementBeside(reference->getDecl())});
   const bool isSink = function_.variables[found->second].role == ir::VarRole::Sink;
-  if (isIndex && isSink) module_.fail(Diag::IndexOfSink, where, {parameter});
+  if (isIndex && isSink)
+    module_.fail(Diag::IndexOfSink, where, {parameter, elementBeside(reference->getDecl())});
   if (syntax->role == ir::ParamRole::VariableOutput) module_.fail(Diag::ExtentOfSink, where, {parameter});
   ir::StreamRef stream{ir::StreamRef::Space::Variable, found->second};
   if (syntax->role == ir::ParamRole::Output || syntax->role == ir::ParamRole::Iterator) {

@@ -236,6 +236,11 @@ ir::VarId FunctionLowering::temporary(ir::Type type, Loc loc) {
 /// The place that `e` names. Clang has checked that it may be written.
 ExprPtr FunctionLowering::place(const clang::Expr* e) {
   ExprPtr result = value(e);
+  if (const auto* read =
+          std::get_if<ir::GatherRead>(&result->node)) {  // of structs, which C++ lets one assign to
+    const std::string& gather = function_.variables[read->stream.id].name;
+    module_.fail(Diag::GatherAssigned, e->getBeginLoc(), {gather + "[...]", gather});
+  }
   if (!isPlace(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
   return result;
 }

@@ -203,7 +203,7 @@ void FunctionLowering::statement(const clang::Stmt* s) {
     case clang::Stmt::LabelStmtClass: module_.fail(Diag::Goto, where);
     case clang::Stmt::CaseStmtClass:
     case clang::Stmt::DefaultStmtClass: module_.fail(Diag::CaseInsideStatement, where);
-    case clang::Stmt::CXXForRangeStmtClass: module_.fail(Diag::Statement, where, {"a range-based for loop"});
+    case clang::Stmt::CXXForRangeStmtClass: module_.fail(Diag::RangeFor, where);
     case clang::Stmt::GCCAsmStmtClass:
     case clang::Stmt::MSAsmStmtClass: module_.fail(Diag::Statement, where, {"assembly"});
     default: break;

@@ -91,6 +91,10 @@ bool isNamedWord(const Token& token, std::initializer_list<llvm::StringRef> word
   return false;
 }
 
+bool isQualifier(const Token& token) {
+  return isNamedWord(token, {"out", "inout", "reduce", "iter", "vout", "spec", "kernel"});
+}
+
 std::string repeated(std::string_view text, int times) {
   std::string result;
   for (int i = 0; i < times; ++i) result += text;
@@ -137,6 +141,7 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
   if (!takeAttributes(parameter, at, parts)) return;
   takeQualifier(parameter, at, parts);
   if (!takeDeclarator(parameter, at, parts)) return;
+  if (hasLateQualifier(parts)) return;
   if (!takeSuffix(parameter, at, parts)) return;
   if (!resolveRole(parts, kind)) return;
   print(parts, kind, out);
@@ -213,7 +218,7 @@ void ParameterEditor::takeQualifier(const Tokens& parameter, std::size_t& at, Pa
     return i < parameter.size() && (parameter[i].getIdentifierInfo() || parameter[i].is(tok::coloncolon));
   };
   if (!isWordOrScope(at + 1) || !isWordOrScope(at + 2)) return;
-  if (isNamedWord(parameter[at], {"out", "inout", "reduce", "iter", "vout", "spec", "kernel"})) {
+  if (isQualifier(parameter[at])) {
     parts.qualifier = parameter[at++];
     parts.hasQualifier = true;
   }
@@ -242,6 +247,20 @@ bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, P
                     parameter.begin() + static_cast<std::ptrdiff_t>(end) - 1);
   parts.name = parameter[end - 1];
   at = end;
+  return true;
+}
+
+/// `float out r<>`, whose type is not called `float out`.
+bool ParameterEditor::hasLateQualifier(const Parts& parts) {
+  const Token& last = parts.type.back();
+  if (parts.hasQualifier || parts.type.size() < 2 || !isQualifier(last)) return false;
+  const Token& before = parts.type[parts.type.size() - 2];
+  if (before.isOneOf(tok::coloncolon, tok::kw_const, tok::kw_struct)) return false;
+  std::string reordered = nameOf(last);
+  for (auto token = parts.type.begin(); token + 1 != parts.type.end(); ++token)
+    reordered += " " + preprocessor_.getSpelling(*token);
+  diagnostics_.report(Diag::QualifierOrder, locOf(last), {nameOf(last), nameOf(parts.name)},
+                      {Mend::replace(locOf(parts.type.front()), locOf(last), std::move(reordered))});
   return true;
 }
 

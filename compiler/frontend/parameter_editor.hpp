@@ -55,6 +55,7 @@ class ParameterEditor {
   bool takeBorder(const Tokens& parameter, std::size_t& at, Parts& parts);
   void takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts);
+  bool hasLateQualifier(const Parts& parts);
   bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
   static std::vector<Mend> addedBrackets(const Parts& parts);
   static std::vector<Mend> removedBrackets(const Parts& parts);

@@ -36,11 +36,14 @@ struct Mend {
   enum class Kind : std::uint8_t { Remove, Replace, InsertBefore, InsertAfter };
   Kind kind;
   Loc first;           ///< the token that it is about; of Remove, the first one
-  Loc last;            ///< of Remove, the last one
+  Loc last;            ///< of Remove and Replace, the last one
   std::string text;    ///< to insert, or to put in place
 
   static Mend remove(Loc first, Loc last) { return {Kind::Remove, first, last, {}}; }
-  static Mend replace(Loc token, std::string text) { return {Kind::Replace, token, {}, std::move(text)}; }
+  static Mend replace(Loc token, std::string text) { return replace(token, token, std::move(text)); }
+  static Mend replace(Loc first, Loc last, std::string text) {
+    return {Kind::Replace, first, last, std::move(text)};
+  }
   static Mend insertBefore(Loc token, std::string text) {
     return {Kind::InsertBefore, token, {}, std::move(text)};
   }

@@ -5,8 +5,10 @@
 #include <map>
 
 #include "ir/build.hpp"
+#include "ir/value_size.hpp"
 #include "support/overloaded.hpp"
 #include "transforms/guard_streams.hpp"
+#include "transforms/unwritten_reads.hpp"
 
 namespace skc {
 namespace {
@@ -70,24 +72,7 @@ class Follower {
     bool isSpec = false;  ///< of a switch on spec parameters: the paths are of different programs
   };
 
-  std::size_t width(ir::Type type) const {
-    switch (type.kind) {
-      case ir::Type::Kind::Void: return 0;
-      case ir::Type::Kind::Scalar:
-      case ir::Type::Kind::Vector: return type.width;
-      case ir::Type::Kind::Matrix: return std::size_t{type.width} * type.width;
-      case ir::Type::Kind::Struct: {
-        std::size_t sum = 0;
-        for (const ir::StructField& field : module_.structs[type.index].fields) sum += width(field.type);
-        return sum;
-      }
-      case ir::Type::Kind::Array: {
-        const ir::Array& array = module_.arrays[type.index];
-        return array.length * width(array.element);
-      }
-    }
-    return 0;
-  }
+  std::size_t width(ir::Type type) const { return static_cast<std::size_t>(ir::numbersIn(module_, type)); }
 
   /// Positions of a place's components within its root variable.
   std::vector<std::size_t> components(const ir::Expr& place) const {
@@ -270,10 +255,15 @@ void checkOutputs(const ir::Module& module, Diagnostics& diagnostics) {
     summaries.push_back(follower.run());
     if (follower.neverReturns()) diagnostics.report(Diag::NeverReturns, function.loc, {function.name});
   }
+  const std::vector<UnwrittenReads> reads = unwrittenReads(module);
   for (const ir::Kernel& kernel : module.kernels) {
     for (VarId i = 0; i < kernel.params.size(); ++i) {
       const ir::KernelParam& param = kernel.params[i];
       if (param.role != ir::ParamRole::Output) continue;
+      if (const auto read = reads[kernel.entry].find(i); read != reads[kernel.entry].end()) {
+        diagnostics.report(Diag::OutputRead, read->second, {param.name});
+        continue;
+      }
       const std::vector<bool>& written = summaries[kernel.entry].at(i);
       if (std::find(written.begin(), written.end(), false) != written.end()) {
         diagnostics.report(Diag::OutputNotWritten, param.loc, {param.name});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Warns of outputs that some path through a kernel leaves unwritten. It changes nothing.
+// Warns of outputs that some path through a kernel leaves unwritten, or that are read first. It changes nothing.
 //
 //   kernel void f(float x<>, out float2 v<>) {   // warning: output 'v' is not written on every path
 //     v.x = x;

@@ -272,14 +272,16 @@ class State {
   }
 
   void needCombine(const Kernel& kernel) {
-    std::string parts, totals;
+    std::string parts, totals, identities;
     for (const KernelParam& param : kernel.params) {
       if (param.role != ParamRole::Accumulator) continue;
       const std::string type = print(module_, param.type);
+      const std::string total = "reduce " + type + " " + param.name + "<>";
       parts += type + " " + param.name + "_part<>, ";
-      totals += (totals.empty() ? "reduce " : ", reduce ") + type + " " + param.name + "<>";
+      totals += (totals.empty() ? "" : ", ") + total;
+      if (!param.identity) identities += "an identity, '" + total + " = ...', and ";
     }
-    diagnostics_.report(Diag::ReduceNeedsCombine, kernel.loc, {kernel.name, parts + totals});
+    diagnostics_.report(Diag::ReduceNeedsCombine, kernel.loc, {kernel.name, parts + totals, identities});
   }
 
   Module& module_;

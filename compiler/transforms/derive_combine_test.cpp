@@ -241,9 +241,11 @@ TEST_CASE("a general body on two types needs an overload or an identity") {
     return block(ifStmt(binary(Less, convert(Scalar::Float, k.ref(x)), k.ref(total)),
                         block(assign(k.ref(total), convert(Scalar::Float, k.ref(x))))));
   };
-  CHECK(derive(intType, floatType, literal(0.0F), general).error ==
-        "how partial results of 'fold' combine does not follow from its body; add an overload that folds "
-        "accumulators: 'reduce void fold(float total_part<>, reduce float total<>)'");
+  CHECK(
+      derive(intType, floatType, literal(0.0F), general).error ==
+      "how partial results of 'fold' combine does not follow from its body; fold each number by an operator, "
+      "min or max, or add an overload that folds accumulators: 'reduce void fold(float total_part<>, reduce "
+      "float total<>)'");
 }
 
 /// reduce void fold(float a<>, reduce float b<>) { b += a; }, as the author's overload.
@@ -343,7 +345,7 @@ TEST_CASE("sums of matrices are known, products are not") {
   };
   CHECK(with(Add).combine == "{\n  total = total + total_part;\n}\n");
   CHECK(with(Add).identity == "float2x2{float2{0.0}, float2{0.0}}");
-  CHECK(with(Mul).error.find("add an overload that folds accumulators") != std::string::npos);
+  CHECK(with(Mul).error.find("an overload that folds accumulators") != std::string::npos);
 }
 
 TEST_CASE("an index belongs to an element, not to a partial result") {
@@ -351,7 +353,7 @@ TEST_CASE("an index belongs to an element, not to a partial result") {
     ExprPtr at = convert(Scalar::Float, swizzle(indexOf({StreamRef::Space::KernelParameter, x}), "x"));
     return block(ifStmt(binary(Less, k.ref(x), k.ref(total)), block(assign(k.ref(total), std::move(at)))));
   };
-  CHECK(derive(asks).error.find("'fold' asks where an element is") == 0);
+  CHECK(derive(asks).error.find("'fold' asks for the index of an element") == 0);
   const Outcome last = derive(floatType, intType, nullptr, [](Module&, KernelMaker& k) {
     ExprPtr at = swizzle(indexOf({StreamRef::Space::KernelParameter, x}), "x");
     return block(assign(k.ref(total), intrinsic(Intrinsic::Max, exprs(k.ref(total), std::move(at)))));
