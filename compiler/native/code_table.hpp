@@ -26,7 +26,7 @@ struct CodeTable {
   std::vector<EntryFunction> entries;
   std::vector<sk::native::Slot> slots;
   bool isUneven;
-  bool isOrdered;
+  bool isReordered;
 };
 
 void writeCodeTable(llvm::Module& code, const CodeTable& table);

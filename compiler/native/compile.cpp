@@ -16,6 +16,7 @@
 #include "native/library/call_library.hpp"
 #include "native/native.hpp"
 #include "native/optimize.hpp"
+#include "native/record_order.hpp"
 #include "native/target.hpp"
 #include "transforms/predicate.hpp"
 
@@ -62,13 +63,13 @@ class Compilation {
     const Kernel& kernel = plain_.kernels[request.kernel];
     const SlotPlan slots = planSlots(plain_, kernel);
     CodeTable table{
-        .symbol = request.symbol, .entries = {}, .slots = slots.slots, .isUneven = false, .isOrdered = false};
+        .symbol = request.symbol, .entries = {}, .slots = slots.slots, .isUneven = false, .isReordered = false};
     table.isUneven = analysis::streamUses(plain_, kernel).loops;
-    table.isOrdered = isOrdered(kernel);
+    table.isReordered = isReordered(plain_, kernel);
     for (const EntryKind kind : entriesOf(plain_, kernel)) {
       if (request.onlyCombines && kind != EntryKind::Combine) continue;
       const auto addEntries = [&](Real real) {
-        for (const CpuLevel& level : levelsFor(request, real))
+        for (const CpuLevel& level : levelsFor(request, kind, real))
           addEntry(table, request, slots, {kind, real, level});
       };
       addEntries(Real::Float);
@@ -99,12 +100,6 @@ class Compilation {
   }
 
  private:
-  static bool isOrdered(const Kernel& kernel) {
-    return std::ranges::any_of(kernel.params, [](const KernelParam& param) {
-      return param.role == ParamRole::VariableOutput || param.role == ParamRole::Scatter;
-    });
-  }
-
   /// What an entry is compiled as.
   struct EntryForm {
     EntryKind kind;
@@ -113,9 +108,9 @@ class Compilation {
     bool isContracted = false;
   };
 
-  /// What is seldom run, and what computes in wider numbers than the kernel says, is compiled for one level.
-  std::vector<CpuLevel> levelsFor(const KernelRequest& request, Real real) const {
-    if (!request.isCold && real == Real::Float) return target_.levels();
+  /// What is seldom run, what computes in wider numbers than the kernel says, and what has no lanes, is compiled for one level.
+  std::vector<CpuLevel> levelsFor(const KernelRequest& request, EntryKind kind, Real real) const {
+    if (!request.isCold && real == Real::Float && kind != EntryKind::Apply) return target_.levels();
     return {target_.levels().front()};
   }
 
@@ -159,15 +154,15 @@ class Compilation {
     return *ofOthers_;
   }
 
-  /// Elements are folded side by side only where their order does not matter, and pushed or scattered one by one.
+  /// Elements are folded side by side only where their order does not matter.
   static bool isInLanes(const Kernel& kernel, EntryKind kind, Real real) {
-    if (real == Real::Quad || isOrdered(kernel)) return false;
-    if (kind == EntryKind::Identity || kind == EntryKind::Borders) return false;
+    if (real == Real::Quad) return false;
+    if (kind == EntryKind::Identity || kind == EntryKind::Borders || kind == EntryKind::Apply) return false;
     return kind != EntryKind::Fold || kernel.reduction->commutative;
   }
 
   static std::string suffix(const EntryForm& made) {
-    static constexpr const char* kinds[] = {".run", ".fold", ".combine", ".identity", ".borders"};
+    static constexpr const char* kinds[] = {".run", ".fold", ".combine", ".identity", ".borders", ".apply"};
     static constexpr const char* reals[] = {"", ".double", ".quad"};
     static constexpr const char* levels[] = {"", ".v3", ".v4"};
     return std::string(kinds[static_cast<std::size_t>(made.kind)]) +

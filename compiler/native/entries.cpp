@@ -6,9 +6,12 @@
 #include <llvm/IR/Constants.h>
 
 #include "ir/reach.hpp"
+#include "native/arithmetic.hpp"
 #include "native/debug_info.hpp"
 #include "native/function_code.hpp"
+#include "native/intrinsics.hpp"
 #include "native/leaves.hpp"
+#include "native/record_order.hpp"
 #include "transforms/predicate.hpp"
 
 namespace skc::native {
@@ -37,6 +40,7 @@ class EntryWriter {
       case EntryKind::Combine: combine(); break;
       case EntryKind::Identity: values(ParamRole::Accumulator, [&] { return identities(); }); break;
       case EntryKind::Borders: values(ParamRole::Gather, [&] { return borders(); }); break;
+      case EntryKind::Apply: apply(); break;
     }
     return function_;
   }
@@ -51,7 +55,7 @@ class EntryWriter {
     function_ = llvm::Function::Create(llvm::FunctionType::get(b_.getVoidTy(), types, false),
                                        llvm::Function::InternalLinkage, name_, code_);
     for (unsigned i = 0; i < addresses; ++i) function_->addParamAttr(i, llvm::Attribute::NoCapture);
-    if (paramsOf(ParamRole::VariableOutput).empty()) {
+    if (paramsOf(ParamRole::VariableOutput).empty() && paramsOf(ParamRole::Scatter).empty()) {
       function_->setDoesNotThrow();
     } else {
       function_->setUWTableKind(llvm::UWTableKind::Default);  // Sink::grow may find no memory
@@ -141,6 +145,7 @@ class EntryWriter {
   void run() {
     begin(2, 0);
     streams_.begin(function_->getArg(0), function_->getArg(1), prologue_);
+    if (isReordered(s_.module, s_.kernel)) streams_.numberRecords();
     llvm::Value* const count = streams_.chunkCount();
     loop(number(0), count, l_.count(), [&](llvm::Value* element) {
       streams_.moveTo(element);
@@ -151,6 +156,41 @@ class EntryWriter {
       for (std::size_t i = 0; i < outputs.size(); ++i) streams_.storeOutput(outputs[i], called.outputs[i]);
     });
     end();
+  }
+
+  /// A switch over the scatter outputs.
+  void apply() {
+    begin(2, 1);
+    streams_.begin(function_->getArg(0), nullptr, prologue_);
+    llvm::BasicBlock* const end = llvm::BasicBlock::Create(b_.getContext(), "end", function_);
+    llvm::SwitchInst* const jump = b_.CreateSwitch(function_->getArg(2), end);
+    for (const std::uint32_t i : paramsOf(ParamRole::Scatter)) {
+      llvm::BasicBlock* const output = llvm::BasicBlock::Create(b_.getContext(), "output", function_);
+      jump->addCase(b_.getInt64(i), output);
+      b_.SetInsertPoint(output);
+      streams_.apply(i, function_->getArg(1), [&](const Parts& old, const Parts& value) {
+        return combined(s_.kernel.params[i], old, value);
+      });
+      b_.CreateBr(end);
+    }
+    b_.SetInsertPoint(end);
+    this->end();
+  }
+  /// What a scatter output's element becomes.
+  Parts combined(const KernelParam& param, const Parts& old, const Parts& value) {
+    const std::vector<Scalar> scalars = scalarsOf(s_.module, param.type);
+    Parts result;
+    for (std::size_t c = 0; c < value.size(); ++c) {
+      const Type type = Type::of(scalars[c]);
+      const std::vector<IntrinsicArgument> both = {{type, {old[c]}}, {type, {value[c]}}};
+      switch (param.scatter) {
+        case ScatterOp::Store: result.push_back(value[c]); break;
+        case ScatterOp::Add: result.push_back(binary(l_, BinaryOp::Add, scalars[c], old[c], value[c])); break;
+        case ScatterOp::Min: result.push_back(intrinsic(l_, Intrinsic::Min, both, context_.library)[0]); break;
+        case ScatterOp::Max: result.push_back(intrinsic(l_, Intrinsic::Max, both, context_.library)[0]); break;
+      }
+    }
+    return result;
   }
 
   // ---- reduces ----------------------------------------------------------------------------------
@@ -381,6 +421,9 @@ std::vector<EntryKind> entriesOf(const Module& module, const Kernel& kernel) {
     return param.role == ParamRole::Gather && param.boundary == Boundary::Border;
   });
   if (hasBorders && !kernel.reduction) kinds.push_back(EntryKind::Borders);
+  const bool scatters = std::ranges::any_of(
+      kernel.params, [](const KernelParam& param) { return param.role == ParamRole::Scatter; });
+  if (scatters) kinds.push_back(EntryKind::Apply);
   return kinds;
 }
 

@@ -35,7 +35,7 @@ llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, sk::na
                            const std::string& name);
 
 /// What a kernel needs: Run, or Fold and, with identities, Identity; Combine where it folds accumulators into
-/// accumulators; Borders where a gather with slots has one.
+/// accumulators; Borders where a gather with slots has one; Apply where it scatters.
 std::vector<sk::native::EntryKind> entriesOf(const ir::Module& module, const ir::Kernel& kernel);
 
 }  // namespace skc::native

@@ -176,26 +176,20 @@ void FunctionCode::write(const Return& n) {
 
 void FunctionCode::write(const Scope& n) { block(n.body); }
 
-void FunctionCode::write(const Push& n) { k.streams.push(n.stream.id, expression(*n.value)); }
+void FunctionCode::write(const Push& n) {
+  const Parts value = expression(*n.value);
+  k.streams.push(n.stream.id, value, maskOf(n.mask));
+}
 
 void FunctionCode::write(const Scatter& n) {
   const Parts index = expression(*n.index);
   const Parts value = expression(*n.value);
-  const std::vector<Scalar> scalars = scalarsOf(k.module, n.value->type);
-  k.streams.scatter(n.stream.id, index, [&](const Parts& old) -> Parts {
-    if (n.op == ScatterOp::Store) return value;
-    Parts combined;
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      if (n.op == ScatterOp::Add) {
-        combined.push_back(binary(l, BinaryOp::Add, scalars[i], old[i], value[i]));
-      } else {
-        const Intrinsic extreme = n.op == ScatterOp::Min ? Intrinsic::Min : Intrinsic::Max;
-        const Type type = Type::of(scalars[i]);
-        combined.push_back(intrinsic(l, extreme, {{type, {old[i]}}, {type, {value[i]}}})[0]);
-      }
-    }
-    return combined;
-  });
+  k.streams.scatter(n.stream.id, index, value, maskOf(n.mask));
+}
+
+/// The lanes in which a statement runs: all where there is no mask.
+llvm::Value* FunctionCode::maskOf(const ExprPtr& mask) {
+  return l.spread(mask ? expression(*mask)[0] : Part{b.getTrue()});
 }
 
 }  // namespace skc::native

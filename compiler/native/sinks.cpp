@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Pushes to variable outputs and stores to scatter outputs, of one element at a time.
+// Pushes to variable outputs and stores to scatter outputs: several lanes append records, and what they store is carried out
+// later, one record after the other.
+#include <algorithm>
 #include <cstddef>
 
 #include <llvm/IR/Constants.h>
+#include <llvm/IR/Intrinsics.h>
+#include <llvm/IR/IntrinsicsX86.h>
 
 #include "native/streams.hpp"
 
@@ -13,76 +17,210 @@ using namespace ir;
 using sk::native::Argument;
 using sk::native::Sink;
 
-llvm::Value* Streams::isGiven(std::uint32_t param) {
-  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
-  return l.b.CreateIsNotNull(all);
+/// An array of records, and what each lane has for it.
+struct Streams::Column {
+  std::size_t field;  ///< of Sink
+  std::size_t component;  ///< of Sink::arrays
+  llvm::Value* values;
+  llvm::Value* array = nullptr;
+};
+
+namespace {
+
+/// Fewer bits than these make no vector that is compressed.
+constexpr std::uint32_t leastCompressed = 128;
+constexpr std::uint32_t mostCompressed = 512;
+
+llvm::Value* lanesFrom(Lanes& l, llvm::Value* vector, std::uint32_t first, std::uint32_t count) {
+  std::vector<int> numbers;
+  for (std::uint32_t i = 0; i < count; ++i) numbers.push_back(static_cast<int>(first + i));
+  return l.b.CreateShuffleVector(vector, numbers);
 }
 
-void Streams::push(std::uint32_t param, const Parts& value) {
-  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
-  const auto block = [&](const char* name) {
-    return llvm::BasicBlock::Create(l.b.getContext(), name, function);
-  };
-  llvm::BasicBlock* const given = block("push");
-  llvm::BasicBlock* const grow = block("grow");
-  llvm::BasicBlock* const store = block("append");
-  llvm::BasicBlock* const end = block("pushed");
-  llvm::Value* const sink = argumentField(param, offsetof(Argument, sink), l.b.getPtrTy());
-  const auto field = [&](std::size_t offset) {
-    return l.b.CreateConstGEP1_64(l.b.getInt8Ty(), sink, offset);
-  };
-  l.b.CreateCondBr(l.b.CreateIsNotNull(sink), given, end);
-  l.b.SetInsertPoint(given);
-  llvm::Value* const count = l.b.CreateLoad(l.int64(), field(offsetof(Sink, count)));
-  llvm::Value* const capacity = l.b.CreateLoad(l.int64(), field(offsetof(Sink, capacity)));
-  l.b.CreateCondBr(l.b.CreateICmpEQ(count, capacity), grow, store);
-  l.b.SetInsertPoint(grow);
-  llvm::Value* const more = l.b.CreateLoad(l.b.getPtrTy(), field(offsetof(Sink, grow)));
-  l.b.CreateCall(llvm::FunctionType::get(l.b.getVoidTy(), {l.b.getPtrTy()}, false), more, {sink});
-  l.b.CreateBr(store);
-  l.b.SetInsertPoint(store);
-  llvm::Value* const arrays = l.b.CreateLoad(l.b.getPtrTy(), field(offsetof(Sink, arrays)));
-  for (std::size_t c = 0; c < value.size(); ++c) {
-    const Scalar scalar = scalars(param)[c];
-    llvm::Value* const slot =
-        l.at(l.b.getPtrTy(), arrays, l.integer(l.int64(), static_cast<std::int64_t>(c)));
-    llvm::Value* const array = l.b.CreateLoad(l.b.getPtrTy(), slot);
-    l.storeOne(scalar, value[c].value, l.at(l.stored(scalar), array, count));
+/// The entries of a vector whose bits are set, first; what follows is anything.
+llvm::Value* compressed(Lanes& l, llvm::Value* vector, llvm::Value* mask) {
+  llvm::Type* const type = vector->getType();
+  return l.b.CreateIntrinsic(llvm::Intrinsic::x86_avx512_mask_compress, {type},
+                             {vector, llvm::Constant::getNullValue(type), mask});
+}
+
+llvm::Value* maskOfBits(Lanes& l, llvm::Value* bits) {
+  return l.b.CreateBitCast(bits, l.vector(l.b.getInt1Ty()));
+}
+
+/// Stores the values of set lanes one behind the other, and perhaps others behind them.
+void storeCompressed(Lanes& l, llvm::Value* values, llvm::Value* array, llvm::Value* bits,
+                     llvm::Value* count) {
+  llvm::Type* const stored = values->getType()->getScalarType();
+  const bool isNarrow = stored->getScalarSizeInBits() < 32;
+  if (isNarrow) values = l.b.CreateZExt(values, l.vector(l.int32()));
+  const std::uint32_t width = values->getType()->getScalarSizeInBits();
+  const std::uint32_t together = std::min(l.count(), mostCompressed / width);
+  for (std::uint32_t first = 0; first < l.count(); first += together) {
+    llvm::Value* part = compressed(l, lanesFrom(l, values, first, together),
+                                   lanesFrom(l, maskOfBits(l, bits), first, together));
+    if (isNarrow) part = l.b.CreateTrunc(part, llvm::FixedVectorType::get(stored, together));
+    llvm::Value* const before =
+        l.b.CreateAnd(bits, llvm::ConstantInt::get(bits->getType(), llvm::APInt::getLowBitsSet(l.count(), first)));
+    llvm::Value* const skipped =
+        l.b.CreateZExt(l.b.CreateUnaryIntrinsic(llvm::Intrinsic::ctpop, before), l.int64());
+    l.b.CreateAlignedStore(part, l.at(stored, array, l.b.CreateAdd(count, skipped)),
+                           llvm::Align(stored->getScalarSizeInBits() / 8));
   }
-  l.b.CreateStore(l.b.CreateAdd(count, l.integer(l.int64(), 1)), field(offsetof(Sink, count)));
+}
+
+}  // namespace
+
+llvm::Value* Streams::loadField(llvm::Value* record, std::size_t offset, llvm::Type* type) {
+  return l.b.CreateLoad(type, l.b.CreateConstGEP1_64(l.b.getInt8Ty(), record, offset));
+}
+
+void Streams::push(std::uint32_t param, const Parts& value, llvm::Value* mask) {
+  std::vector<Column> columns;
+  for (std::size_t c = 0; c < value.size(); ++c)
+    columns.push_back({offsetof(Sink, arrays), c, l.toStored(scalars(param)[c], l.spread(value[c]))});
+  record(param, mask, std::move(columns));
+}
+
+void Streams::scatter(std::uint32_t param, const Parts& index, const Parts& value, llvm::Value* mask) {
+  llvm::Value* number = l.spread(argumentField(param, offsetof(Argument, first), l.int64()));
+  for (std::size_t d = 0; d < index.size(); ++d) {
+    llvm::Value* const i = l.spread(index[d]);
+    // an index is an int, so that none is inside behind 2^31, and a negative one is behind that
+    llvm::Value* const extent =
+        l.b.CreateBinaryIntrinsic(llvm::Intrinsic::umin, argumentExtent(param, d, offsetof(Argument, extent)),
+                                  l.integer(l.int64(), std::int64_t{1} << 31));
+    mask = l.b.CreateAnd(mask, l.b.CreateICmpULT(i, l.spread(l.b.CreateTrunc(extent, l.int32()))));
+    llvm::Value* step = l.b.CreateSExt(i, l.vector(l.int64()));
+    if (d > 0)
+      step = l.b.CreateMul(step, l.spread(argumentExtent(param, d, offsetof(Argument, stride))));
+    number = l.b.CreateAdd(number, step);
+  }
+  std::vector<Column> columns = {{offsetof(Sink, targets), 0, number}};
+  for (std::size_t c = 0; c < value.size(); ++c)
+    columns.push_back({offsetof(Sink, arrays), c, l.toStored(scalars(param)[c], l.spread(value[c]))});
+  record(param, mask, std::move(columns));
+}
+
+void Streams::record(std::uint32_t param, llvm::Value* mask, std::vector<Column> columns) {
+  if (numbersRecords_ && l.count() > 1) {
+    llvm::Value* const first = l.b.CreateTrunc(element_, l.int32());
+    columns.push_back({offsetof(Sink, elements), 0, l.spread({first, /*isConsecutive=*/true})});
+  }
+  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
+  llvm::BasicBlock* const some = llvm::BasicBlock::Create(l.b.getContext(), "record", function);
+  llvm::BasicBlock* const end = llvm::BasicBlock::Create(l.b.getContext(), "recorded", function);
+  llvm::Value* const sink = argumentField(param, offsetof(Argument, sink), l.b.getPtrTy());
+  llvm::Value* const bits = l.b.CreateBitCast(mask, l.b.getIntNTy(l.count()));
+  l.b.CreateCondBr(l.b.CreateAnd(l.b.CreateIsNotNull(sink), l.b.CreateIsNotNull(bits)), some, end);
+  l.b.SetInsertPoint(some);
+  makeRoom(sink);
+  for (Column& column : columns) {
+    column.array = loadField(sink, column.field, l.b.getPtrTy());
+    if (column.field == offsetof(Sink, arrays))
+      column.array = loadField(column.array, column.component * sizeof(void*), l.b.getPtrTy());
+  }
+  llvm::Value* const count = loadField(sink, offsetof(Sink, count), l.int64());
+  llvm::Value* const next = storeRecords(columns, bits, count);
+  l.b.CreateStore(next, l.b.CreateConstGEP1_64(l.b.getInt8Ty(), sink, offsetof(Sink, count)));
   l.b.CreateBr(end);
   l.b.SetInsertPoint(end);
 }
 
-void Streams::scatter(std::uint32_t param, const Parts& index,
-                      const std::function<Parts(const Parts&)>& combined) {
+void Streams::makeRoom(llvm::Value* sink) {
   llvm::Function* const function = l.b.GetInsertBlock()->getParent();
-  llvm::BasicBlock* const inside = llvm::BasicBlock::Create(l.b.getContext(), "put", function);
-  llvm::BasicBlock* const end = llvm::BasicBlock::Create(l.b.getContext(), "scattered", function);
-  llvm::Value* isInside = isGiven(param);
-  llvm::Value* number = argumentField(param, offsetof(Argument, first), l.int64());
-  for (std::size_t d = 0; d < index.size(); ++d) {
-    llvm::Value* const i = l.b.CreateSExt(index[d].value, l.int64());
-    isInside =
-        l.b.CreateAnd(isInside, l.b.CreateICmpULT(i, argumentExtent(param, d, offsetof(Argument, extent))));
-    number = l.b.CreateAdd(number, l.b.CreateMul(i, argumentExtent(param, d, offsetof(Argument, stride))));
+  llvm::BasicBlock* const grow = llvm::BasicBlock::Create(l.b.getContext(), "grow", function);
+  llvm::BasicBlock* const append = llvm::BasicBlock::Create(l.b.getContext(), "append", function);
+  llvm::Value* const count = loadField(sink, offsetof(Sink, count), l.int64());
+  llvm::Value* const capacity = loadField(sink, offsetof(Sink, capacity), l.int64());
+  l.b.CreateCondBr(l.b.CreateICmpSGE(count, capacity), grow, append);
+  l.b.SetInsertPoint(grow);
+  llvm::Value* const more = loadField(sink, offsetof(Sink, grow), l.b.getPtrTy());
+  l.b.CreateCall(llvm::FunctionType::get(l.b.getVoidTy(), {l.b.getPtrTy()}, false), more, {sink});
+  l.b.CreateBr(append);
+  l.b.SetInsertPoint(append);
+}
+
+/// Stores the set lanes behind `count` records, and returns how many there are then.
+llvm::Value* Streams::storeRecords(const std::vector<Column>& columns, llvm::Value* bits,
+                                   llvm::Value* count) {
+  const auto addressAt = [&](const Column& column, llvm::Value* number) {
+    return l.at(column.values->getType()->getScalarType(), column.array, number);
+  };
+  const auto store = [&](llvm::Value* value, llvm::Value* address) {
+    l.b.CreateAlignedStore(value, address, llvm::Align(value->getType()->getScalarSizeInBits() / 8));
+  };
+  const auto storeAll = [&] {
+    for (const Column& column : columns) store(column.values, addressAt(column, count));
+    return l.b.CreateAdd(count, l.integer(l.int64(), l.count()));
+  };
+  if (l.count() == 1) return storeAll();
+  if (l.form().hasMaskRegisters && l.count() * 32 >= leastCompressed) {
+    for (const Column& column : columns) storeCompressed(l, column.values, column.array, bits, count);
+    llvm::Value* const added = l.b.CreateUnaryIntrinsic(llvm::Intrinsic::ctpop, bits);
+    return l.b.CreateAdd(count, l.b.CreateZExt(added, l.int64()));
   }
-  l.b.CreateCondBr(isInside, inside, end);
-  l.b.SetInsertPoint(inside);
-  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
-  std::vector<llvm::Value*> addresses;
-  Parts old;
-  for (std::size_t c = 0; c < scalars(param).size(); ++c) {
-    const Scalar scalar = scalars(param)[c];
-    // not in the prologue: a stream that is left out has no arrays
-    llvm::Value* const array = l.b.CreateLoad(
-        l.b.getPtrTy(), l.at(l.b.getPtrTy(), all, l.integer(l.int64(), static_cast<std::int64_t>(c))));
-    addresses.push_back(l.at(l.stored(scalar), array, number));
-    old.push_back(l.loadOne(scalar, addresses.back()));
-  }
-  const Parts value = combined(old);
-  for (std::size_t c = 0; c < value.size(); ++c) l.storeOne(scalars(param)[c], value[c].value, addresses[c]);
+  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
+  const auto block = [&](const char* name) {
+    return llvm::BasicBlock::Create(l.b.getContext(), name, function);
+  };
+  llvm::BasicBlock* const all = block("all");
+  llvm::BasicBlock* const some = block("some");
+  llvm::BasicBlock* const end = block("stored");
+  l.b.CreateCondBr(l.b.CreateICmpEQ(bits, llvm::Constant::getAllOnesValue(bits->getType())), all, some);
+  l.b.SetInsertPoint(all);
+  llvm::Value* const afterAll = storeAll();
   l.b.CreateBr(end);
+  // each lane stores, and the next one stores over it where its bit is not set
+  l.b.SetInsertPoint(some);
+  llvm::Value* const mask = l.b.CreateZExt(bits, l.int64());
+  llvm::Value* next = count;
+  for (std::uint32_t lane = 0; lane < l.count(); ++lane) {
+    for (const Column& column : columns) store(l.lane(column.values, lane), addressAt(column, next));
+    next = l.b.CreateAdd(next, l.b.CreateAnd(l.b.CreateLShr(mask, lane), 1));
+  }
+  l.b.CreateBr(end);
+  l.b.SetInsertPoint(end);
+  llvm::PHINode* const after = l.b.CreatePHI(l.int64(), 2);
+  after->addIncoming(afterAll, all);
+  after->addIncoming(next, some);
+  return after;
+}
+
+void Streams::apply(std::uint32_t param, llvm::Value* sink,
+                    const std::function<Parts(const Parts&, const Parts&)>& combined) {
+  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
+  llvm::BasicBlock* const before = l.b.GetInsertBlock();
+  llvm::BasicBlock* const one = llvm::BasicBlock::Create(l.b.getContext(), "apply", function);
+  llvm::BasicBlock* const end = llvm::BasicBlock::Create(l.b.getContext(), "applied", function);
+  llvm::Value* const count = loadField(sink, offsetof(Sink, count), l.int64());
+  llvm::Value* const targets = loadField(sink, offsetof(Sink, targets), l.b.getPtrTy());
+  llvm::Value* const records = loadField(sink, offsetof(Sink, arrays), l.b.getPtrTy());
+  // not in the prologue: a stream that is left out has no arrays
+  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
+  std::vector<llvm::Value*> from, to;
+  for (std::size_t c = 0; c < scalars(param).size(); ++c) {
+    from.push_back(loadField(records, c * sizeof(void*), l.b.getPtrTy()));
+    to.push_back(loadField(all, c * sizeof(void*), l.b.getPtrTy()));
+  }
+  llvm::Value* const zero = l.integer(l.int64(), 0);
+  l.b.CreateCondBr(l.b.CreateICmpSLT(zero, count), one, end);
+  l.b.SetInsertPoint(one);
+  llvm::PHINode* const i = l.b.CreatePHI(l.int64(), 2);
+  i->addIncoming(zero, before);
+  llvm::Value* const target = l.b.CreateLoad(l.int64(), l.at(l.int64(), targets, i));
+  Parts old, value;
+  for (std::size_t c = 0; c < to.size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    value.push_back(l.loadOne(scalar, l.at(l.stored(scalar), from[c], i)));
+    to[c] = l.at(l.stored(scalar), to[c], target);
+    old.push_back(l.loadOne(scalar, to[c]));
+  }
+  const Parts result = combined(old, value);
+  for (std::size_t c = 0; c < to.size(); ++c) l.storeOne(scalars(param)[c], result[c].value, to[c]);
+  llvm::Value* const next = l.b.CreateAdd(i, l.integer(l.int64(), 1), "", true, true);
+  i->addIncoming(next, l.b.GetInsertBlock());
+  l.b.CreateCondBr(l.b.CreateICmpSLT(next, count), one, end);
   l.b.SetInsertPoint(end);
 }
 

@@ -28,6 +28,9 @@ class Streams {
   /// From here on, code is for the elements from number `element` of the chunk on.
   void moveTo(llvm::Value* element) { element_ = element; }
 
+  /// Records tell from which elements they come.
+  void numberRecords() { numbersRecords_ = true; }
+
   llvm::Value* chunkCount() { return chunkField(offsetof(sk::native::Chunk, count)); }
 
   Parts uniform(std::uint32_t param);
@@ -44,11 +47,13 @@ class Streams {
                  const std::optional<std::vector<std::int32_t>>& constant);
   Parts sample(std::uint32_t param, const Parts& position);
 
-  /// Appends the element of a single lane.
-  void push(std::uint32_t param, const Parts& value);
-  /// Stores for a single lane. `combined` makes the new element of the old one; both are parts.
-  void scatter(std::uint32_t param, const Parts& index,
-               const std::function<Parts(const Parts& old)>& combined);
+  /// Records that the lanes of the mask push their elements.
+  void push(std::uint32_t param, const Parts& value, llvm::Value* mask);
+  /// Likewise that they store, or combine, them where their indices are inside.
+  void scatter(std::uint32_t param, const Parts& index, const Parts& value, llvm::Value* mask);
+  /// Carries out the records of a scatter output, in their order. `combined` makes the new element of the old one.
+  void apply(std::uint32_t param, llvm::Value* sink,
+             const std::function<Parts(const Parts& old, const Parts& value)>& combined);
 
   /// What the gather has outside, of a Boundary::Border.
   Parts border(std::uint32_t param);
@@ -65,7 +70,11 @@ class Streams {
   llvm::Value* first(std::size_t dimension);
   llvm::Value* component(std::uint32_t param, std::size_t component);
   llvm::Value* array(std::size_t number);
-  llvm::Value* isGiven(std::uint32_t param);
+  struct Column;
+  void record(std::uint32_t param, llvm::Value* mask, std::vector<Column> columns);
+  llvm::Value* loadField(llvm::Value* record, std::size_t offset, llvm::Type* type);
+  void makeRoom(llvm::Value* sink);
+  llvm::Value* storeRecords(const std::vector<Column>& columns, llvm::Value* bits, llvm::Value* count);
 
   const std::vector<ir::Scalar>& scalars(std::uint32_t param);
 
@@ -96,6 +105,7 @@ class Streams {
   llvm::Value* chunk_ = nullptr;
   llvm::BasicBlock* prologue_ = nullptr;
   llvm::Value* element_ = nullptr;
+  bool numbersRecords_ = false;
   std::map<std::pair<llvm::Value*, std::size_t>, llvm::Value*> loads_;
   std::map<std::uint32_t, std::vector<ir::Scalar>> scalars_;
   std::map<std::uint32_t, llvm::Function*> laneGathers_;

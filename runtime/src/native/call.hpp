@@ -11,14 +11,18 @@
 #include <span>
 #include <vector>
 
+#include "native/memory.hpp"
 #include "sk/native/table.hpp"
 
 namespace sk::native {
 
 using Extents = std::array<std::int64_t, 4>;
 
-/// Elements pushed to a variable output: an array a component, grown as they come.
-using Pushed = std::vector<std::vector<std::byte>>;
+/// Elements pushed to a variable output: an array for each component; none where the domain was empty.
+struct Pushed {
+  std::vector<Memory> arrays;
+  std::int64_t count = 0;
+};
 
 /// An argument of a call, in the order of the parameters.
 struct Operand {

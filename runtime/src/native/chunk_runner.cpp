@@ -2,24 +2,20 @@
 #include "native/chunk_runner.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <utility>
 
 namespace sk {
 
-namespace {
-
 using native::Extents;
 
-constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
-
-}  // namespace
-
-ChunkRunner::ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame)
+ChunkRunner::ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame,
+                         ChunkHook hook)
     : layout_(layout),
       function_(functionOf<native::RunFunction>(run)),
       lanes_(run.lanes),
       frame_(frame),
-      arrays_(layout, mostLaidOut, layout.isDirect() ? 0 : mostLaidOut) {
+      arrays_(layout, mostLaidOut, layout.isDirect() ? 0 : mostLaidOut),
+      hook_(std::move(hook)) {
   chunk_.arrays = arrays_.get();
   chunk_.step = 1;
 }
@@ -35,7 +31,7 @@ void ChunkRunner::run(const Extents& first, std::int64_t count) {
     for (std::int64_t x = begin; x < end; ++x) call(x, 1, lanes_);
     return;
   }
-  const std::int64_t longest = layout_.isDirect() ? unlimited : mostLaidOut;
+  const std::int64_t longest = layout_.isDirect() ? hook_.longest : std::min(mostLaidOut, hook_.longest);
   if (!layout_.hasGathers()) {
     runPart(begin, end, longest);
     return;
@@ -67,6 +63,7 @@ void ChunkRunner::call(std::int64_t x, std::int64_t count, std::int64_t room) {
   chunk_.count = count;
   function_(frame_, &chunk_);
   if (count < room) arrays_.storeOutputs(x, count);
+  if (hook_.after) hook_.after();
 }
 
 }  // namespace sk

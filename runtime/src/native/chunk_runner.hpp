@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <limits>
 
 #include "native/call.hpp"
 #include "native/entries.hpp"
@@ -13,10 +15,17 @@
 
 namespace sk {
 
+/// What is to happen between chunks.
+struct ChunkHook {
+  std::int64_t longest = std::numeric_limits<std::int64_t>::max();  ///< elements of a chunk; a multiple of mostLanes
+  std::function<void()> after = {};  ///< called after each chunk
+};
+
 /// For one thread.
 class ChunkRunner {
  public:
-  ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame);
+  ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame,
+              ChunkHook hook = {});
 
   /// `count` elements from `first` on.
   void run(const native::Extents& first, std::int64_t count);
@@ -41,6 +50,7 @@ class ChunkRunner {
   const native::Frame* frame_;
   SlotArrays arrays_;
   native::Chunk chunk_{};
+  ChunkHook hook_;
 };
 
 }  // namespace sk

@@ -96,12 +96,9 @@ Components::Components(const program::Element& element, RealType real, std::int6
 }
 
 Components::Components(const program::Element& element, RealType real,
-                       std::span<const std::vector<std::byte>> arrays)
-    : real_(real), types_(componentsOf(element, real)) {
-  allocate(static_cast<std::int64_t>(arrays[0].size() / types_[0].storedBytes));
-  for (std::size_t c = 0; c < types_.size(); ++c) {
-    if (!arrays[c].empty()) std::memcpy(arrays_[c].get(), arrays[c].data(), arrays[c].size());
-  }
+                       std::vector<Memory> arrays)
+    : real_(real), types_(componentsOf(element, real)), arrays_(std::move(arrays)) {
+  for (const Memory& array : arrays_) pointers_.push_back(array.get());
 }
 
 void Components::allocate(std::int64_t count) {

@@ -41,8 +41,8 @@ class Components {
  public:
   Components() = default;
   Components(const program::Element& element, RealType real, std::int64_t count);
-  /// Takes the bytes of each array.
-  Components(const program::Element& element, RealType real, std::span<const std::vector<std::byte>> arrays);
+  /// Takes arrays that hold floats as `real`.
+  Components(const program::Element& element, RealType real, std::vector<Memory> arrays);
 
   RealType real() const { return real_; }
   std::span<const ComponentType> types() const { return types_; }

@@ -130,10 +130,10 @@ void NativeStream::fillBuffer(std::uint32_t, std::int64_t, int) {
       owner().name()));
 }
 
-void NativeStream::become(const native::Pushed& pushed, RealType real) {
-  const std::size_t bytes = componentsOf(*element, real)[0].storedBytes;
-  const auto count = static_cast<std::int64_t>(pushed[0].size() / bytes);
-  Components given(*element, real, pushed);
+void NativeStream::become(native::Pushed pushed, RealType real) {
+  const std::int64_t count = pushed.count;
+  Components given = pushed.arrays.empty() ? Components(*element, real, 0)
+                                           : Components(*element, real, std::move(pushed.arrays));
   components = real == components.real() ? std::move(given) : given.clone(count, components.real());
   spare_ = {};
   shape = Shape(count);

@@ -29,7 +29,7 @@ class NativeStream final : public StreamState {
   void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
 
   /// Takes what a kernel has pushed for its elements, which has floats as `real`.
-  void become(const native::Pushed& pushed, RealType real);
+  void become(native::Pushed pushed, RealType real);
 
   /// After kernels have written to it: floats that are held as halves are rounded to these.
   void keepStorage();

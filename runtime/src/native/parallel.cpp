@@ -24,12 +24,6 @@ thread_local bool haveThreads = false;
 /// Elements that a thread must have to do: those that take as long as waking it, of the simplest kernels.
 constexpr std::int64_t worthAThread = 1 << 13;
 
-int threadsFor(std::int64_t count, std::int64_t cost) {
-  if (omp_in_parallel() != 0) return 1;
-  return static_cast<int>(
-      std::min<std::int64_t>({omp_get_max_threads(), count, count * cost / worthAThread}));
-}
-
 /// No exception may leave a thread: the last one is kept.
 class Guarded {
  public:
@@ -60,8 +54,14 @@ Range partOf(std::int64_t count, std::int64_t number, std::int64_t parts) {
 
 }  // namespace
 
+std::int64_t threadsFor(std::int64_t count, std::int64_t cost) {
+  if (omp_in_parallel() != 0) return 1;
+  const std::int64_t worthIt = std::min(count, count * cost / worthAThread);
+  return std::clamp<std::int64_t>(worthIt, 1, omp_get_max_threads());
+}
+
 void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(void*, Range), void* context) {
-  const int threads = threadsFor(count, cost);
+  const int threads = static_cast<int>(threadsFor(count, cost));
   if (threads <= 1) {
     work(context, {0, count});
     return;
@@ -86,6 +86,7 @@ void restThreads() {
 
 #else
 
+std::int64_t threadsFor(std::int64_t, std::int64_t) { return 1; }
 void inParallel(std::int64_t count, std::int64_t, Deal, void (*work)(void*, Range), void* context) {
   work(context, {0, count});
 }

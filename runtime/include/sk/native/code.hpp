@@ -20,13 +20,17 @@ namespace sk::native {
 /// its count rounded up to Entry::lanes.
 inline constexpr std::int64_t mostLanes = 64;
 
-/// Where a variable output's elements go.
+/// Records of what elements push to a variable output or store to a scatter output: the latest group of lanes last, and within a
+/// group in the order in which its code comes to them. The runtime brings them into the order of elements (Code::isReordered)
+/// and, where they were stored, carries them out (ApplyFunction).
 struct Sink {
   std::byte* const* arrays;  ///< one for each component
-  std::int64_t count;  ///< elements pushed so far
-  std::int64_t capacity;  ///< elements that the arrays have room for
-  void (*grow)(
-      Sink* sink);  ///< called where count == capacity: makes room for one more, and may move the arrays
+  std::int64_t* targets;  ///< of a scatter output: numbers of the elements to store to, all of which exist
+  std::uint32_t* elements;  ///< of Code::isReordered: numbers in the chunk of the elements that records come from
+  std::int64_t count;  ///< records so far
+  std::int64_t capacity;  ///< records that the arrays have room for, with mostLanes more behind them
+  /// Called where count >= capacity: makes room for more, and may move the arrays. What it throws goes through the code.
+  void (*grow)(Sink* sink);
 };
 
 /// An argument of a call, one for each parameter. A uniform argument is a stream of one element; an iterator has two
@@ -39,7 +43,7 @@ struct Argument {
   std::int64_t stride[4];  ///< in elements; stride[0] of a gather or scatter output is 1
   std::int64_t multiply[4];  ///< an element input's index is the domain's, times this,
   std::int64_t divide[4];  ///< divided by this
-  Sink* sink;  ///< of a variable output
+  Sink* sink;  ///< of a variable or scatter output; null where the stream is left out
   std::int64_t
       countsElements;  ///< of an iterator: 1 where it goes by element number, 0 by index in each dimension
   std::int64_t isSmall;  ///< 1 where the numbers of all elements fit 32 bits
@@ -78,11 +82,13 @@ using FoldFunction = void(const Frame*, const Chunk*, void* const* state, std::i
                           std::int64_t rounds, std::int64_t starts);
 /// Folds later results into earlier ones, column by column.
 using CombineFunction = void(const Frame*, void* const* state, void* const* later, std::int64_t columns);
+/// Carries out the records of a scatter output, in their order. `sink` has no `elements`.
+using ApplyFunction = void(const Frame*, const Sink* sink, std::int64_t parameter);
 /// Writes one element of each array: the identities of a reduction, or what a gather with Boundary::Border has outside,
 /// all components of one parameter after the other.
 using ValuesFunction = void(const Frame*, void* const* values);
 
-enum class EntryKind : std::uint8_t { Run, Fold, Combine, Identity, Borders };
+enum class EntryKind : std::uint8_t { Run, Fold, Combine, Identity, Borders, Apply };
 enum class Real : std::uint8_t { Float, Double, Quad };  ///< what stands for the language's float
 /// Generations of a CPU, of which each runs what those before it run: x86-64, x86-64-v3, x86-64-v4. Other CPUs have one.
 enum class Level : std::uint8_t { Base, V3, V4 };
@@ -98,7 +104,7 @@ struct Entry {
 
 /// All that was compiled for one kernel.
 struct Code {
-  static constexpr std::uint32_t currentVersion = 1;
+  static constexpr std::uint32_t currentVersion = 2;
   std::uint32_t version;
   std::uint32_t entryCount;
   const Entry* entries;
@@ -106,7 +112,8 @@ struct Code {
   std::uint32_t slotCount;
   std::uint8_t
       isUneven;  ///< elements may take very different times: it has loops whose trip count depends on data
-  std::uint8_t isOrdered;  ///< elements are computed in order: it pushes or scatters
+  /// An element may have several records: where more than one element is computed together, they come with its number.
+  std::uint8_t isReordered;
 };
 
 }  // namespace sk::native

@@ -20,6 +20,9 @@ enum class Deal : std::uint8_t {
   AsTheyCome,  ///< small runs, to whoever is free
 };
 
+/// Threads that inParallel would run such a loop on: one where it is small, or where another loop of ours runs it.
+std::int64_t threadsFor(std::int64_t count, std::int64_t cost);
+
 /// work(context, range) for ranges that together are all numbers below `count`, on several threads where there is enough to do.
 /// `cost` is what a number takes, in elements or their like. What a call throws is thrown here, after all have ended.
 void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(void*, Range), void* context);

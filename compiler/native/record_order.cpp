@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "native/record_order.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "ir/walk.hpp"
+#include "support/overloaded.hpp"
+
+namespace skc::native {
+
+using namespace ir;
+
+namespace {
+
+/// Counts, up to `many`, how often a group of lanes may record for one parameter.
+class Counter {
+ public:
+  static constexpr std::uint32_t many = 2;
+
+  Counter(const Module& module, std::uint32_t param) : module_(module), param_(param) {}
+
+  std::uint32_t function(FunctionId id) {
+    const auto known = functions_.find(id);
+    if (known != functions_.end()) return known->second;
+    return functions_[id] = block(module_.functions[id].body);
+  }
+
+ private:
+  /// Lanes may take all branches of a statement.
+  std::uint32_t block(const Block& statements) {
+    std::uint32_t sum = 0;
+    for (const Stmt& stmt : statements) {
+      std::uint32_t count = own(stmt);
+      forEachBlock(stmt, [&](const Block& inner) { count += block(inner); });
+      const bool repeats = count > 0 && std::holds_alternative<Loop>(stmt.node);
+      sum = std::min(many, sum + (repeats ? many : count));
+    }
+    return sum;
+  }
+  std::uint32_t own(const Stmt& stmt) {
+    if (const auto* n = std::get_if<Push>(&stmt.node)) return n->stream.id == param_ ? 1 : 0;
+    if (const auto* n = std::get_if<Scatter>(&stmt.node)) return n->stream.id == param_ ? 1 : 0;
+    if (const auto* n = std::get_if<CallStmt>(&stmt.node)) return function(n->callee);
+    return 0;
+  }
+
+  const Module& module_;
+  std::uint32_t param_;
+  std::map<FunctionId, std::uint32_t> functions_;
+};
+
+}  // namespace
+
+bool isReordered(const Module& module, const Kernel& kernel) {
+  for (std::uint32_t i = 0; i < kernel.params.size(); ++i) {
+    const ParamRole role = kernel.params[i].role;
+    if (role != ParamRole::VariableOutput && role != ParamRole::Scatter) continue;
+    if (Counter(module, i).function(kernel.entry) >= Counter::many) return true;
+  }
+  return false;
+}
+
+}  // namespace skc::native

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+//
+// Whether the records of a kernel's variable and scatter outputs (sk/native/code.hpp) come in the order of elements by themselves.
+#pragma once
+
+#include "ir/ir.hpp"
+
+namespace skc::native {
+
+/// True if a group of lanes may record more than once for one output. The lanes of one statement are in order; those of a
+/// second are behind all of the first.
+bool isReordered(const ir::Module& module, const ir::Kernel& kernel);
+
+}  // namespace skc::native

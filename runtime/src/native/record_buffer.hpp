@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+//
+// Memory for the records that object code appends for variable and scatter outputs (sk/native/code.hpp), and their order. Each
+// thread has buffers of its own.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "native/code_frame.hpp"
+#include "native/components.hpp"
+#include "native/memory.hpp"
+#include "sk/native/code.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+/// What a record of one output consists of.
+struct RecordShape {
+  std::vector<std::size_t> bytes;  ///< of each component
+  bool hasTarget;  ///< it is of a scatter output
+  bool hasElement;
+
+  RecordShape(const program::Parameter& parameter, RealType real, bool isReordered);
+};
+
+class RecordBuffer {
+ public:
+  explicit RecordBuffer(const RecordShape& shape);
+  RecordBuffer(const RecordBuffer&) = delete;
+  RecordBuffer& operator=(const RecordBuffer&) = delete;
+
+  native::Sink* sink() { return &sink_; }
+  const native::Sink& records() const { return sink_; }
+  std::int64_t count() const { return sink_.count; }
+  /// The bytes of each array, and where it is: the components, then the targets.
+  std::span<const std::size_t> bytes() const { return {bytes_.data(), sortedColumns_}; }
+  std::byte* array(std::size_t column) const { return pointers_[column]; }
+
+  /// Makes room for so many records. Throws std::bad_alloc.
+  void reserve(std::int64_t count);
+  /// Adds records whose arrays the caller writes; there is room for them.
+  void addUnwritten(std::int64_t count) { sink_.count += count; }
+  void clear() { sink_.count = sorted_ = 0; }
+
+  /// Brings the records since the last call, which are of one chunk, into the order of its elements. Those of one element stay
+  /// in their order. Does nothing where records have no element.
+  void sort();
+
+ private:
+  struct Sink : native::Sink {
+    RecordBuffer* buffer;
+  };
+  void setPointers();
+  void permute(std::size_t column, std::int64_t first, std::span<const std::size_t> positions);
+
+  Sink sink_;
+  std::vector<std::size_t> bytes_;
+  std::size_t sortedColumns_;  ///< all but the elements
+  bool hasTarget_;
+  bool hasElement_;
+  std::vector<Memory> arrays_;
+  std::vector<std::byte*> pointers_;
+  std::int64_t sorted_ = 0;  ///< records that are in order
+  std::vector<std::size_t> starts_, positions_;
+  std::vector<std::byte> copy_;
+};
+
+/// The arguments of a call with one thread's buffers as sinks.
+class RecordFrame {
+ public:
+  RecordFrame(const program::Kernel& kernel, const CodeFrame& frame, RealType real, bool isReordered);
+
+  const native::Frame* get() const { return &frame_; }
+  void sort();
+
+  struct Output {
+    std::size_t parameter;
+    std::unique_ptr<RecordBuffer> buffer;
+  };
+  /// Of variable outputs and of scatter outputs that are not left out, in the order of parameters.
+  std::span<Output> pushed() { return pushed_; }
+  std::span<Output> scattered() { return scattered_; }
+
+ private:
+  std::vector<native::Argument> arguments_;
+  native::Frame frame_;
+  std::vector<Output> pushed_, scattered_;
+};
+
+}  // namespace sk

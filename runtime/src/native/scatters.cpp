@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "native/scatters.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "native/scalars.hpp"
+#include "sk/native/parallel.hpp"
+
+namespace sk {
+
+namespace {
+
+constexpr std::size_t mostBuckets = 64;
+/// Threads do not share cache lines, but at the borders of buckets.
+constexpr int leastShift = 4;
+
+/// Where records go: which bucket, and where in it.
+struct Places {
+  std::vector<std::uint8_t> buckets;
+  std::vector<std::int64_t> positions;
+};
+
+template <std::size_t bytes>
+void moveTo(const Places& places, const std::byte* from, std::span<std::byte* const> to) {
+  for (std::size_t i = 0; i < places.positions.size(); ++i) {
+    std::memcpy(to[places.buckets[i]] + places.positions[i] * static_cast<std::int64_t>(bytes),
+                from + i * bytes, bytes);
+  }
+}
+
+void moveTo(std::size_t bytes, const Places& places, const std::byte* from, std::span<std::byte* const> to) {
+  switch (bytes) {
+    case 1: return moveTo<1>(places, from, to);
+    case 2: return moveTo<2>(places, from, to);
+    case 4: return moveTo<4>(places, from, to);
+    case 8: return moveTo<8>(places, from, to);
+    default: return moveTo<mostScalarBytes>(places, from, to);
+  }
+}
+
+}  // namespace
+
+Scatters::Scatters(const program::Kernel& kernel, const CodeFrame& frame, const CodeChoice& choice)
+    : frame_(frame) {
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const program::Parameter& parameter = kernel.parameters[i];
+    const native::Argument& argument = frame.arguments()[i];
+    if (parameter.role != program::Role::Scatter || argument.components == nullptr) continue;
+    std::int64_t last = 0;
+    for (std::size_t d = 0; d < 4; ++d) last += (argument.extent[d] - 1) * argument.stride[d];
+    last = std::max<std::int64_t>(last, 0);  // of no elements nothing is recorded
+    int shift = leastShift;
+    while (last >> shift >= static_cast<std::int64_t>(mostBuckets)) ++shift;
+    const auto buckets = static_cast<std::size_t>(last >> shift) + 1;
+    targets_.push_back({i, RecordShape(parameter, choice.real, false), argument.first, shift, buckets});
+  }
+  if (targets_.empty()) return;
+  function_ = functionOf<native::ApplyFunction>(entryOf(kernel, native::EntryKind::Apply, choice));
+}
+
+void Scatters::apply(RecordFrame& records) const {
+  for (RecordFrame::Output& output : records.scattered()) {
+    function_(frame_.get(), output.buffer->sink(), static_cast<std::int64_t>(output.parameter));
+    output.buffer->clear();
+  }
+}
+
+std::unique_ptr<Scatters::Log> Scatters::newLog() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!unused_.empty()) {
+      std::unique_ptr<Log> log = std::move(unused_.back());
+      unused_.pop_back();
+      return log;
+    }
+  }
+  auto log = std::make_unique<Log>();
+  for (const Target& target : targets_) {
+    auto& buckets = log->buckets.emplace_back();
+    for (std::size_t b = 0; b < target.buckets; ++b)
+      buckets.push_back(std::make_unique<RecordBuffer>(target.shape));
+  }
+  return log;
+}
+
+void Scatters::move(RecordFrame& records, Log& log) const {
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    RecordBuffer& buffer = *records.scattered()[k].buffer;
+    distribute(buffer, targets_[k], log.buckets[k]);
+    buffer.clear();
+  }
+}
+
+void Scatters::distribute(const RecordBuffer& records, const Target& target,
+                          std::vector<std::unique_ptr<RecordBuffer>>& buckets) const {
+  thread_local Places places;
+  const auto count = static_cast<std::size_t>(records.count());
+  places.buckets.resize(count);
+  places.positions.resize(count);
+  std::array<std::int64_t, mostBuckets> counts{}, next{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto bucket =
+        static_cast<std::uint8_t>((records.records().targets[i] - target.first) >> target.shift);
+    places.buckets[i] = bucket;
+    ++counts[bucket];
+  }
+  for (std::size_t b = 0; b < buckets.size(); ++b) {
+    next[b] = buckets[b]->count();
+    buckets[b]->reserve(next[b] + counts[b]);
+    buckets[b]->addUnwritten(counts[b]);
+  }
+  for (std::size_t i = 0; i < count; ++i) places.positions[i] = next[places.buckets[i]]++;
+  const std::span<const std::size_t> bytes = buckets[0]->bytes();
+  for (std::size_t column = 0; column < bytes.size(); ++column) {
+    std::array<std::byte*, mostBuckets> to{};
+    for (std::size_t b = 0; b < buckets.size(); ++b) to[b] = buckets[b]->array(column);
+    moveTo(bytes[column], places, records.array(column), to);
+  }
+}
+
+void Scatters::add(std::int64_t order, std::unique_ptr<Log> log) {
+  log->order = order;
+  const std::lock_guard lock(mutex_);
+  logs_.push_back(std::move(log));
+}
+
+void Scatters::applyLogs() {
+  std::ranges::sort(logs_, {}, [](const auto& log) { return log->order; });
+  std::vector<std::pair<std::size_t, std::size_t>> work;
+  std::int64_t records = 0;
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    for (std::size_t b = 0; b < targets_[k].buckets; ++b) {
+      work.emplace_back(k, b);
+      for (const auto& log : logs_) records += log->buckets[k][b]->count();
+    }
+  }
+  const auto count = static_cast<std::int64_t>(work.size());
+  native::inParallel(count, records / count, native::Deal::AsTheyCome, [&](native::Range range) {
+    for (std::int64_t i = range.begin; i < range.end; ++i) {
+      const auto& [target, bucket] = work[static_cast<std::size_t>(i)];
+      applyBucket(target, bucket);
+    }
+  });
+  std::ranges::move(logs_, std::back_inserter(unused_));
+  logs_.clear();
+}
+
+void Scatters::applyBucket(std::size_t target, std::size_t bucket) const {
+  for (const auto& log : logs_) {
+    RecordBuffer& records = *log->buckets[target][bucket];
+    function_(frame_.get(), records.sink(), static_cast<std::int64_t>(targets_[target].parameter));
+    records.clear();
+  }
+}
+
+}  // namespace sk
