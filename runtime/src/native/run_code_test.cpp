@@ -3,6 +3,7 @@
 // Kernels whose object code is written by hand, against plain loops.
 #include "native/run_code.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <numeric>
 #include <string>
@@ -314,29 +315,112 @@ void pushSome(const Frame* frame, const Chunk* chunk) {
   }
 }
 
+/// Likewise, group by group: first all odd numbers of a group, then those that 5 divides.
+void pushInGroups(const Frame* frame, const Chunk* chunk) {
+  native::Sink* sink = frame->arguments[1].sink;
+  const auto* x = arrayOf<float>(chunk, 0);
+  for (std::int64_t group = 0; group < chunk->count; group += testLanes) {
+    const std::int64_t end = std::min<std::int64_t>(group + testLanes, chunk->count);
+    for (const bool isSecond : {false, true}) {
+      for (std::int64_t i = group; i < end; ++i) {
+        const int value = static_cast<int>(x[i]);
+        if (isSecond ? value % 5 != 0 : value % 2 != 1) continue;
+        if (sink->count >= sink->capacity) sink->grow(sink);
+        sink->elements[sink->count] = static_cast<std::uint32_t>(i);
+        reinterpret_cast<float*>(sink->arrays[0])[sink->count++] = x[i];
+      }
+    }
+  }
+}
+
+void checkPushes(TestKernel& f) {
+  std::vector<float> x(100001);
+  std::iota(x.begin(), x.end(), 0.0F);
+  std::vector<float> expected;
+  for (const float value : x) {
+    if (static_cast<int>(value) % 2 == 1) expected.push_back(value);
+    if (static_cast<int>(value) % 5 == 0) expected.push_back(value);
+  }
+  for (const std::uint8_t isUneven : {0, 1}) {
+    f.code.isUneven = isUneven;
+    f.finish();
+    native::Pushed pushed;
+    TestOperands operands;
+    operands.add(x, {100001, 1, 1, 1});
+    operands.addNone().pushed = &pushed;
+    runCode(f.kernel, operands.call({100001, 1, 1, 1}), {});
+    REQUIRE(pushed.count == static_cast<std::int64_t>(expected.size()));
+    CHECK(std::memcmp(pushed.arrays[0].get(), expected.data(), expected.size() * sizeof(float)) == 0);
+  }
+}
+
 TEST_CASE("pushes of all threads come in the order of elements") {
   TestKernel f;
   f.add(Role::Input);
   f.add(Role::VariableOutput);
   f.slot(0);
   f.entries = {entry(EntryKind::Run, &pushSome)};
+  checkPushes(f);
+}
+
+TEST_CASE("pushes of lanes are brought into the order of elements") {
+  TestKernel f;
+  f.add(Role::Input);
+  f.add(Role::VariableOutput);
+  f.slot(0);
+  f.entries = {entry(EntryKind::Run, &pushInGroups)};
+  f.code.isReordered = 1;
+  checkPushes(f);
+}
+
+// ---- scatters --------------------------------------------------------------------------------------
+
+/// Multiplies what is there by 3 and adds the value, modulo 2^32: the order matters.
+void recordStores(const Frame* frame, const Chunk* chunk) {
+  native::Sink* sink = frame->arguments[1].sink;
+  const auto* x = arrayOf<std::int32_t>(chunk, 0);
+  for (std::int64_t i = 0; i < chunk->count; ++i) {
+    if (sink->count >= sink->capacity) sink->grow(sink);
+    sink->targets[sink->count] = frame->arguments[1].first + x[i] % frame->arguments[1].extent[0];
+    reinterpret_cast<std::int32_t*>(sink->arrays[0])[sink->count++] = x[i];
+  }
+}
+void multiplyAndAdd(const Frame* frame, const native::Sink* sink, std::int64_t parameter) {
+  auto* r = static_cast<std::uint32_t*>(frame->arguments[parameter].components[0]);
+  for (std::int64_t i = 0; i < sink->count; ++i) {
+    std::uint32_t& to = r[sink->targets[i]];
+    to = to * 3 + reinterpret_cast<const std::uint32_t*>(sink->arrays[0])[i];
+  }
+}
+
+TEST_CASE("scatters are carried out in the order of elements, on any number of threads") {
+  TestKernel f;
+  f.add(Role::Input, intElement);
+  f.add(Role::Scatter, intElement);
+  f.slot(0);
+  f.entries = {entry(EntryKind::Run, &recordStores), entry(EntryKind::Apply, &multiplyAndAdd)};
   for (const std::uint8_t isUneven : {0, 1}) {
-    f.code.isUneven = isUneven;
-    f.finish();
-    std::vector<float> x(100001);
-    std::iota(x.begin(), x.end(), 0.0F);
-    native::Pushed pushed;
-    TestOperands operands;
-    operands.add(x, {100001, 1, 1, 1});
-    operands.addNone().pushed = &pushed;
-    runCode(f.kernel, operands.call({100001, 1, 1, 1}), {});
-    std::vector<float> expected;
-    for (const float value : x) {
-      if (static_cast<int>(value) % 2 == 1) expected.push_back(value);
-      if (static_cast<int>(value) % 5 == 0) expected.push_back(value);
+    for (const std::int64_t targets : {1, 17, 1024, 70001}) {
+      f.code.isUneven = isUneven;
+      f.finish();
+      const std::int64_t count = 400009;
+      std::vector<std::int32_t> x(static_cast<std::size_t>(count));
+      std::uint32_t state = 1;
+      for (std::int32_t& value : x)
+        value = static_cast<std::int32_t>((state = state * 1664525U + 1013904223U) >> 8);
+      std::vector<std::uint32_t> r(static_cast<std::size_t>(targets + 20), 1);
+      std::vector<std::uint32_t> expected = r;
+      for (const std::int32_t value : x) {
+        std::uint32_t& to = expected[static_cast<std::size_t>(10 + value % targets)];
+        to = to * 3 + static_cast<std::uint32_t>(value);
+      }
+      TestOperands operands;
+      operands.add(x, {count, 1, 1, 1});
+      operands.add(r, {targets, 1, 1, 1}).first = 10;
+      runCode(f.kernel, operands.call({count, 1, 1, 1}), {});
+      CAPTURE(static_cast<int>(isUneven), targets);
+      CHECK(r == expected);
     }
-    REQUIRE(pushed.count == static_cast<std::int64_t>(expected.size()));
-    CHECK(std::memcmp(pushed.arrays[0].get(), expected.data(), expected.size() * sizeof(float)) == 0);
   }
 }
 
