@@ -18,7 +18,7 @@ namespace {
 static_assert(sizeof(Entry) == 16 && offsetof(Entry, kind) == 8 && offsetof(Entry, lanes) == 12);
 static_assert(sizeof(Slot) == 6);
 static_assert(sizeof(Code) == 32 && offsetof(Code, entries) == 8 && offsetof(Code, slotCount) == 24 &&
-              offsetof(Code, isReordered) == 29);
+              offsetof(Code, isReordered) == 29 && offsetof(Code, isLight) == 30);
 
 class Constants {
  public:
@@ -68,7 +68,8 @@ void writeCodeTable(llvm::Module& code, const CodeTable& table) {
   }
   llvm::Constant* const value =
       c.record({c.word(Code::currentVersion), c.word(entries.size()), c.array(entries), c.array(slots),
-                c.word(slots.size()), c.byte(table.isUneven ? 1 : 0), c.byte(table.isReordered ? 1 : 0)});
+                c.word(slots.size()), c.byte(table.isUneven ? 1 : 0), c.byte(table.isReordered ? 1 : 0),
+                c.byte(table.isLight ? 1 : 0)});
   auto* const global = new llvm::GlobalVariable(code, value->getType(), true,
                                                 llvm::GlobalValue::ExternalLinkage, value, table.symbol);
   global->setVisibility(llvm::GlobalValue::HiddenVisibility);

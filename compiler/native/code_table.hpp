@@ -27,6 +27,7 @@ struct CodeTable {
   std::vector<sk::native::Slot> slots;
   bool isUneven;
   bool isReordered;
+  bool isLight;
 };
 
 void writeCodeTable(llvm::Module& code, const CodeTable& table);

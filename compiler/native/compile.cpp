@@ -16,7 +16,7 @@
 #include "native/library/call_library.hpp"
 #include "native/native.hpp"
 #include "native/optimize.hpp"
-#include "native/record_order.hpp"
+#include "native/records.hpp"
 #include "native/target.hpp"
 #include "transforms/predicate.hpp"
 
@@ -63,9 +63,12 @@ class Compilation {
     const Kernel& kernel = plain_.kernels[request.kernel];
     const SlotPlan slots = planSlots(plain_, kernel);
     CodeTable table{
-        .symbol = request.symbol, .entries = {}, .slots = slots.slots, .isUneven = false, .isReordered = false};
-    table.isUneven = analysis::streamUses(plain_, kernel).loops;
-    table.isReordered = isReordered(plain_, kernel);
+        .symbol = request.symbol,
+        .entries = {},
+        .slots = slots.slots,
+        .isUneven = analysis::streamUses(plain_, kernel).loops,
+        .isReordered = isReordered(plain_, kernel),
+        .isLight = isLight(plain_, kernel)};
     for (const EntryKind kind : entriesOf(plain_, kernel)) {
       if (request.onlyCombines && kind != EntryKind::Combine) continue;
       const auto addEntries = [&](Real real) {

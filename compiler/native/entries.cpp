@@ -6,12 +6,10 @@
 #include <llvm/IR/Constants.h>
 
 #include "ir/reach.hpp"
-#include "native/arithmetic.hpp"
 #include "native/debug_info.hpp"
 #include "native/function_code.hpp"
-#include "native/intrinsics.hpp"
 #include "native/leaves.hpp"
-#include "native/record_order.hpp"
+#include "native/records.hpp"
 #include "transforms/predicate.hpp"
 
 namespace skc::native {
@@ -168,29 +166,11 @@ class EntryWriter {
       llvm::BasicBlock* const output = llvm::BasicBlock::Create(b_.getContext(), "output", function_);
       jump->addCase(b_.getInt64(i), output);
       b_.SetInsertPoint(output);
-      streams_.apply(i, function_->getArg(1), [&](const Parts& old, const Parts& value) {
-        return combined(s_.kernel.params[i], old, value);
-      });
+      streams_.apply(i, function_->getArg(1));
       b_.CreateBr(end);
     }
     b_.SetInsertPoint(end);
     this->end();
-  }
-  /// What a scatter output's element becomes.
-  Parts combined(const KernelParam& param, const Parts& old, const Parts& value) {
-    const std::vector<Scalar> scalars = scalarsOf(s_.module, param.type);
-    Parts result;
-    for (std::size_t c = 0; c < value.size(); ++c) {
-      const Type type = Type::of(scalars[c]);
-      const std::vector<IntrinsicArgument> both = {{type, {old[c]}}, {type, {value[c]}}};
-      switch (param.scatter) {
-        case ScatterOp::Store: result.push_back(value[c]); break;
-        case ScatterOp::Add: result.push_back(binary(l_, BinaryOp::Add, scalars[c], old[c], value[c])); break;
-        case ScatterOp::Min: result.push_back(intrinsic(l_, Intrinsic::Min, both, context_.library)[0]); break;
-        case ScatterOp::Max: result.push_back(intrinsic(l_, Intrinsic::Max, both, context_.library)[0]); break;
-      }
-    }
-    return result;
   }
 
   // ---- reduces ----------------------------------------------------------------------------------

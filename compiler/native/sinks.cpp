@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Pushes to variable outputs and stores to scatter outputs: several lanes append records, and what they store is carried out
-// later, one record after the other.
+// Pushes to variable outputs and stores to scatter outputs: several lanes append records. What they store is carried out later, or
+// at once where nothing has to be put in order.
 #include <algorithm>
 #include <cstddef>
 
@@ -9,6 +9,8 @@
 #include <llvm/IR/Intrinsics.h>
 #include <llvm/IR/IntrinsicsX86.h>
 
+#include "native/arithmetic.hpp"
+#include "native/intrinsics.hpp"
 #include "native/streams.hpp"
 
 namespace skc::native {
@@ -96,10 +98,107 @@ void Streams::scatter(std::uint32_t param, const Parts& index, const Parts& valu
       step = l.b.CreateMul(step, l.spread(argumentExtent(param, d, offsetof(Argument, stride))));
     number = l.b.CreateAdd(number, step);
   }
-  std::vector<Column> columns = {{offsetof(Sink, targets), 0, number}};
+  Parts stored;
   for (std::size_t c = 0; c < value.size(); ++c)
-    columns.push_back({offsetof(Sink, arrays), c, l.toStored(scalars(param)[c], l.spread(value[c]))});
-  record(param, mask, std::move(columns));
+    stored.push_back({l.toStored(scalars(param)[c], l.spread(value[c]))});
+  const auto logged = [&] {
+    std::vector<Column> columns = {{offsetof(Sink, targets), 0, number}};
+    for (std::size_t c = 0; c < stored.size(); ++c)
+      columns.push_back({offsetof(Sink, arrays), c, stored[c].value});
+    record(param, mask, std::move(columns));
+  };
+  if (numbersRecords_) return logged();
+  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
+  const auto block = [&](const char* name) {
+    return llvm::BasicBlock::Create(l.b.getContext(), name, function);
+  };
+  llvm::BasicBlock* const log = block("log");
+  llvm::BasicBlock* const direct = block("direct");
+  llvm::BasicBlock* const end = block("scattered");
+  llvm::Value* const sink = argumentField(param, offsetof(Argument, sink), l.b.getPtrTy());
+  l.b.CreateCondBr(l.b.CreateIsNotNull(sink), log, direct);
+  l.b.SetInsertPoint(log);
+  logged();
+  l.b.CreateBr(end);
+  l.b.SetInsertPoint(direct);
+  applyLanes(param, number, stored, mask);
+  l.b.CreateBr(end);
+  l.b.SetInsertPoint(end);
+}
+
+/// Stores the elements of set lanes at once, one after the other.
+void Streams::applyLanes(std::uint32_t param, llvm::Value* number, const Parts& stored, llvm::Value* mask) {
+  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
+  llvm::IRBuilder<> allocas(&function->getEntryBlock(), function->getEntryBlock().begin());
+  const auto inMemory = [&](llvm::Value* lanes) {
+    llvm::Value* const memory = allocas.CreateAlloca(lanes->getType());
+    l.b.CreateStore(lanes, memory);
+    return memory;
+  };
+  llvm::BasicBlock* const some = llvm::BasicBlock::Create(l.b.getContext(), "some", function);
+  llvm::BasicBlock* const one = llvm::BasicBlock::Create(l.b.getContext(), "lane", function);
+  llvm::BasicBlock* const end = llvm::BasicBlock::Create(l.b.getContext(), "stored", function);
+  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
+  llvm::Value* const bits =
+      l.b.CreateZExt(l.b.CreateBitCast(mask, l.b.getIntNTy(l.count())), l.int64());
+  l.b.CreateCondBr(l.b.CreateAnd(l.b.CreateIsNotNull(all), l.b.CreateIsNotNull(bits)), some, end);
+  l.b.SetInsertPoint(some);
+  llvm::Value* const targets = inMemory(number);
+  std::vector<llvm::Value*> from;
+  for (const Part& part : stored) from.push_back(inMemory(part.value));
+  const std::vector<llvm::Value*> to = componentsNow(param);
+  l.b.CreateBr(one);
+  l.b.SetInsertPoint(one);
+  llvm::PHINode* const left = l.b.CreatePHI(l.int64(), 2);
+  left->addIncoming(bits, some);
+  llvm::Value* const lane = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, left, l.b.getTrue());
+  applyOne(param, targets, from, to, lane);
+  llvm::Value* const rest = l.b.CreateAnd(left, l.b.CreateSub(left, l.integer(l.int64(), 1)));
+  left->addIncoming(rest, l.b.GetInsertBlock());
+  l.b.CreateCondBr(l.b.CreateIsNotNull(rest), one, end);
+  l.b.SetInsertPoint(end);
+}
+
+/// The arrays of a parameter. Not in the prologue: a stream that is left out has none.
+std::vector<llvm::Value*> Streams::componentsNow(std::uint32_t param) {
+  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
+  std::vector<llvm::Value*> arrays;
+  for (std::size_t c = 0; c < scalars(param).size(); ++c)
+    arrays.push_back(loadField(all, c * sizeof(void*), l.b.getPtrTy()));
+  return arrays;
+}
+
+/// Carries out record `i` of those whose targets and components are in these arrays.
+void Streams::applyOne(std::uint32_t param, llvm::Value* targets, const std::vector<llvm::Value*>& from,
+                       const std::vector<llvm::Value*>& to, llvm::Value* i) {
+  llvm::Value* const target = l.b.CreateLoad(l.int64(), l.at(l.int64(), targets, i));
+  std::vector<llvm::Value*> addresses;
+  Parts old, value;
+  for (std::size_t c = 0; c < to.size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    value.push_back(l.loadOne(scalar, l.at(l.stored(scalar), from[c], i)));
+    addresses.push_back(l.at(l.stored(scalar), to[c], target));
+    old.push_back(l.loadOne(scalar, addresses[c]));
+  }
+  const Parts result = combined(param, old, value);
+  for (std::size_t c = 0; c < to.size(); ++c) l.storeOne(scalars(param)[c], result[c].value, addresses[c]);
+}
+
+/// What an element of a scatter output becomes.
+Parts Streams::combined(std::uint32_t param, const Parts& old, const Parts& value) {
+  Parts result;
+  for (std::size_t c = 0; c < value.size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
+    const Type type = Type::of(scalar);
+    const std::vector<IntrinsicArgument> both = {{type, {old[c]}}, {type, {value[c]}}};
+    switch (kernel_.params[param].scatter) {
+      case ScatterOp::Store: result.push_back(value[c]); break;
+      case ScatterOp::Add: result.push_back(binary(l, BinaryOp::Add, scalar, old[c], value[c])); break;
+      case ScatterOp::Min: result.push_back(intrinsic(l, Intrinsic::Min, both, {})[0]); break;
+      case ScatterOp::Max: result.push_back(intrinsic(l, Intrinsic::Max, both, {})[0]); break;
+    }
+  }
+  return result;
 }
 
 void Streams::record(std::uint32_t param, llvm::Value* mask, std::vector<Column> columns) {
@@ -187,37 +286,24 @@ llvm::Value* Streams::storeRecords(const std::vector<Column>& columns, llvm::Val
   return after;
 }
 
-void Streams::apply(std::uint32_t param, llvm::Value* sink,
-                    const std::function<Parts(const Parts&, const Parts&)>& combined) {
+void Streams::apply(std::uint32_t param, llvm::Value* sink) {
   llvm::Function* const function = l.b.GetInsertBlock()->getParent();
   llvm::BasicBlock* const before = l.b.GetInsertBlock();
   llvm::BasicBlock* const one = llvm::BasicBlock::Create(l.b.getContext(), "apply", function);
   llvm::BasicBlock* const end = llvm::BasicBlock::Create(l.b.getContext(), "applied", function);
   llvm::Value* const count = loadField(sink, offsetof(Sink, count), l.int64());
   llvm::Value* const targets = loadField(sink, offsetof(Sink, targets), l.b.getPtrTy());
-  llvm::Value* const records = loadField(sink, offsetof(Sink, arrays), l.b.getPtrTy());
-  // not in the prologue: a stream that is left out has no arrays
-  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
-  std::vector<llvm::Value*> from, to;
-  for (std::size_t c = 0; c < scalars(param).size(); ++c) {
-    from.push_back(loadField(records, c * sizeof(void*), l.b.getPtrTy()));
-    to.push_back(loadField(all, c * sizeof(void*), l.b.getPtrTy()));
-  }
+  llvm::Value* const arrays = loadField(sink, offsetof(Sink, arrays), l.b.getPtrTy());
+  std::vector<llvm::Value*> from;
+  for (std::size_t c = 0; c < scalars(param).size(); ++c)
+    from.push_back(loadField(arrays, c * sizeof(void*), l.b.getPtrTy()));
+  const std::vector<llvm::Value*> to = componentsNow(param);
   llvm::Value* const zero = l.integer(l.int64(), 0);
   l.b.CreateCondBr(l.b.CreateICmpSLT(zero, count), one, end);
   l.b.SetInsertPoint(one);
   llvm::PHINode* const i = l.b.CreatePHI(l.int64(), 2);
   i->addIncoming(zero, before);
-  llvm::Value* const target = l.b.CreateLoad(l.int64(), l.at(l.int64(), targets, i));
-  Parts old, value;
-  for (std::size_t c = 0; c < to.size(); ++c) {
-    const Scalar scalar = scalars(param)[c];
-    value.push_back(l.loadOne(scalar, l.at(l.stored(scalar), from[c], i)));
-    to[c] = l.at(l.stored(scalar), to[c], target);
-    old.push_back(l.loadOne(scalar, to[c]));
-  }
-  const Parts result = combined(old, value);
-  for (std::size_t c = 0; c < to.size(); ++c) l.storeOne(scalars(param)[c], result[c].value, to[c]);
+  applyOne(param, targets, from, to, i);
   llvm::Value* const next = l.b.CreateAdd(i, l.integer(l.int64(), 1), "", true, true);
   i->addIncoming(next, l.b.GetInsertBlock());
   l.b.CreateCondBr(l.b.CreateICmpSLT(next, count), one, end);

@@ -49,11 +49,10 @@ class Streams {
 
   /// Records that the lanes of the mask push their elements.
   void push(std::uint32_t param, const Parts& value, llvm::Value* mask);
-  /// Likewise that they store, or combine, them where their indices are inside.
+  /// Likewise that they store, or combine, them where their indices are inside; or does so, where records are not asked for.
   void scatter(std::uint32_t param, const Parts& index, const Parts& value, llvm::Value* mask);
-  /// Carries out the records of a scatter output, in their order. `combined` makes the new element of the old one.
-  void apply(std::uint32_t param, llvm::Value* sink,
-             const std::function<Parts(const Parts& old, const Parts& value)>& combined);
+  /// Carries out the records of a scatter output, in their order.
+  void apply(std::uint32_t param, llvm::Value* sink);
 
   /// What the gather has outside, of a Boundary::Border.
   Parts border(std::uint32_t param);
@@ -74,6 +73,11 @@ class Streams {
   void record(std::uint32_t param, llvm::Value* mask, std::vector<Column> columns);
   llvm::Value* loadField(llvm::Value* record, std::size_t offset, llvm::Type* type);
   void makeRoom(llvm::Value* sink);
+  void applyLanes(std::uint32_t param, llvm::Value* number, const Parts& stored, llvm::Value* mask);
+  std::vector<llvm::Value*> componentsNow(std::uint32_t param);
+  void applyOne(std::uint32_t param, llvm::Value* targets, const std::vector<llvm::Value*>& from,
+                const std::vector<llvm::Value*>& to, llvm::Value* i);
+  Parts combined(std::uint32_t param, const Parts& old, const Parts& value);
   llvm::Value* storeRecords(const std::vector<Column>& columns, llvm::Value* bits, llvm::Value* count);
 
   const std::vector<ir::Scalar>& scalars(std::uint32_t param);

@@ -94,17 +94,16 @@ void RecordBuffer::permute(std::size_t column, std::int64_t first, std::span<con
 
 // ---- frames ----------------------------------------------------------------------------------------
 
-RecordFrame::RecordFrame(const program::Kernel& kernel, const CodeFrame& frame, RealType real,
-                         bool isReordered)
+RecordFrame::RecordFrame(const program::Kernel& kernel, const CodeFrame& frame, const RecordOptions& options)
     : arguments_(frame.arguments().begin(), frame.arguments().end()), frame_(*frame.get()) {
   frame_.arguments = arguments_.data();
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     const program::Parameter& parameter = kernel.parameters[i];
     const bool isPushed = parameter.role == program::Role::VariableOutput;
-    const bool isScattered =
-        parameter.role == program::Role::Scatter && arguments_[i].components != nullptr;
+    const bool isScattered = parameter.role == program::Role::Scatter && options.scatters &&
+                             arguments_[i].components != nullptr;
     if (!isPushed && !isScattered) continue;
-    auto buffer = std::make_unique<RecordBuffer>(RecordShape(parameter, real, isReordered));
+    auto buffer = std::make_unique<RecordBuffer>(RecordShape(parameter, options.real, options.isReordered));
     arguments_[i].sink = buffer->sink();
     (isPushed ? pushed_ : scattered_).push_back({i, std::move(buffer)});
   }

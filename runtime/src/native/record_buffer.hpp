@@ -69,10 +69,17 @@ class RecordBuffer {
   std::vector<std::byte> copy_;
 };
 
+/// What code records of a call.
+struct RecordOptions {
+  RealType real;
+  bool isReordered;  ///< records have elements
+  bool scatters;  ///< what is scattered, too, which is else stored at once
+};
+
 /// The arguments of a call with one thread's buffers as sinks.
 class RecordFrame {
  public:
-  RecordFrame(const program::Kernel& kernel, const CodeFrame& frame, RealType real, bool isReordered);
+  RecordFrame(const program::Kernel& kernel, const CodeFrame& frame, const RecordOptions& options);
 
   const native::Frame* get() const { return &frame_; }
   void sort();
@@ -81,7 +88,7 @@ class RecordFrame {
     std::size_t parameter;
     std::unique_ptr<RecordBuffer> buffer;
   };
-  /// Of variable outputs and of scatter outputs that are not left out, in the order of parameters.
+  /// Of variable outputs, and of scatter outputs that are recorded, in the order of parameters.
   std::span<Output> pushed() { return pushed_; }
   std::span<Output> scattered() { return scattered_; }
 

@@ -67,48 +67,70 @@ class CodeRun {
 
   // ---- variable and scatter outputs --------------------------------------------------------------
 
+  /// Several records of an element carry its number where several elements are computed together.
   bool isReordered() const { return kernel_.code->isReordered != 0 && entry_.lanes > 1; }
+
+  /// Logs cost something for each record, which a few threads gain only where there is more to compute.
+  bool keepsLogs(std::int64_t threads) const {
+    constexpr std::int64_t enoughForAll = 4;
+    return has(Role::Scatter) && threads >= (kernel_.code->isLight != 0 ? enoughForAll : 2);
+  }
 
   /// What is scattered by many elements is carried out before the next ones are computed, so that logs stay small.
   void record() const {
     PushParts pushes;
-    Scatters scatters(kernel_, frame_, choice_);
     const std::int64_t threads = native::threadsFor(pieces_.count(), costOfPiece());
-    const bool keepsLogs = !scatters.isEmpty() && threads > 1;
-    const std::int64_t batch =
-        keepsLogs ? std::max<std::int64_t>(1, threads * elementsOfLog / pieces_.elementsOfOne())
-                  : pieces_.count();
-    for (std::int64_t begin = 0; begin < pieces_.count(); begin += batch) {
-      inParallel(std::min(batch, pieces_.count() - begin), [&](Range range) {
-        const Range part{begin + range.begin, begin + range.end};
-        RecordFrame frame(kernel_, frame_, choice_.real, isReordered());
-        std::unique_ptr<Scatters::Log> log = keepsLogs ? scatters.newLog() : nullptr;
-        recordPieces(part, frame, scatters, log.get());
-        if (!frame.pushed().empty()) pushes.add(part.begin, frame.pushed());
-        if (log) scatters.add(part.begin, std::move(log));
-      });
-      if (keepsLogs) scatters.applyLogs();
+    if (keepsLogs(threads)) {
+      Scatters scatters(kernel_, frame_, choice_);
+      const std::int64_t batch =
+          std::max<std::int64_t>(1, threads * elementsOfLog / pieces_.elementsOfOne());
+      for (std::int64_t begin = 0; begin < pieces_.count(); begin += batch) {
+        inParallel(std::min(batch, pieces_.count() - begin), [&](Range range) {
+          logPieces({begin + range.begin, begin + range.end}, scatters, pushes);
+        });
+        scatters.applyLogs();
+      }
+    } else if (has(Role::Scatter)) {
+      scatterPieces({0, pieces_.count()}, pushes);
+    } else {
+      inParallel(pieces_.count(), [&](Range range) { pushPieces(range, pushes); });
     }
     pushes.store(call_.operands);
   }
 
-  void recordPieces(Range pieces, RecordFrame& frame, const Scatters& scatters, Scatters::Log* log) const {
-    const auto settle = [&] {
-      frame.sort();
-      if (log != nullptr) {
-        scatters.move(frame, *log);
-      } else {
-        scatters.apply(frame);
-      }
-    };
-    const bool needsNothing = scatters.isEmpty() && !isReordered();
-    runPieces(pieces, frame.get(), needsNothing ? ChunkHook{} : ChunkHook{elementsOfChunk, settle});
+  void pushPieces(Range pieces, PushParts& pushes) const {
+    RecordFrame frame(kernel_, frame_, {choice_.real, isReordered(), /*scatters=*/false});
+    runPieces(pieces, frame.get(), isReordered() ? ChunkHook{elementsOfChunk, [&] { frame.sort(); }} : ChunkHook{});
+    pushes.add(pieces.begin, frame.pushed());
   }
 
-  /// Elements whose records are sorted and carried out together: these stay in the nearest cache.
+  /// On one thread.
+  void scatterPieces(Range pieces, PushParts& pushes) const {
+    if (!isReordered()) return pushPieces(pieces, pushes);
+    const Scatters scatters(kernel_, frame_, choice_);
+    RecordFrame frame(kernel_, frame_, {choice_.real, isReordered(), /*scatters=*/true});
+    runPieces(pieces, frame.get(), {elementsOfChunk, [&] {
+                                      frame.sort();
+                                      scatters.apply(frame);
+                                    }});
+    pushes.add(pieces.begin, frame.pushed());
+  }
+
+  void logPieces(Range pieces, Scatters& scatters, PushParts& pushes) const {
+    RecordFrame frame(kernel_, frame_, {choice_.real, isReordered(), /*scatters=*/true});
+    std::unique_ptr<Scatters::Log> log = scatters.newLog();
+    runPieces(pieces, frame.get(), {elementsOfChunk, [&] {
+                                      frame.sort();
+                                      scatters.move(frame, *log);
+                                    }});
+    pushes.add(pieces.begin, frame.pushed());
+    scatters.add(pieces.begin, std::move(log));
+  }
+
+  /// Elements whose records are sorted and moved together: these stay in the nearest cache.
   static constexpr std::int64_t elementsOfChunk = 1 << 10;
-  /// Elements of a thread whose records are carried out later: they stay in a cache.
-  static constexpr std::int64_t elementsOfLog = 1 << 16;
+  /// Elements of a thread whose records are carried out later. Those of the simplest kernels stay in a cache.
+  static constexpr std::int64_t elementsOfLog = 1 << 17;
 
   const Kernel& kernel_;
   const native::Call& call_;

@@ -17,21 +17,16 @@ constexpr std::size_t mostBuckets = 64;
 /// Threads do not share cache lines, but at the borders of buckets.
 constexpr int leastShift = 4;
 
-/// Where records go: which bucket, and where in it.
-struct Places {
-  std::vector<std::uint8_t> buckets;
-  std::vector<std::int64_t> positions;
-};
-
 template <std::size_t bytes>
-void moveTo(const Places& places, const std::byte* from, std::span<std::byte* const> to) {
-  for (std::size_t i = 0; i < places.positions.size(); ++i) {
-    std::memcpy(to[places.buckets[i]] + places.positions[i] * static_cast<std::int64_t>(bytes),
-                from + i * bytes, bytes);
+void moveTo(std::span<const Scatters::Place> places, const std::byte* from, std::byte* const* to) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Scatters::Place place = places[i];
+    std::memcpy(to[place.bucket] + place.position * bytes, from + i * bytes, bytes);
   }
 }
 
-void moveTo(std::size_t bytes, const Places& places, const std::byte* from, std::span<std::byte* const> to) {
+void moveTo(std::size_t bytes, std::span<const Scatters::Place> places, const std::byte* from,
+            std::byte* const* to) {
   switch (bytes) {
     case 1: return moveTo<1>(places, from, to);
     case 2: return moveTo<2>(places, from, to);
@@ -89,35 +84,37 @@ std::unique_ptr<Scatters::Log> Scatters::newLog() {
 void Scatters::move(RecordFrame& records, Log& log) const {
   for (std::size_t k = 0; k < targets_.size(); ++k) {
     RecordBuffer& buffer = *records.scattered()[k].buffer;
-    distribute(buffer, targets_[k], log.buckets[k]);
+    distribute(buffer, targets_[k], log, log.buckets[k]);
     buffer.clear();
   }
 }
 
-void Scatters::distribute(const RecordBuffer& records, const Target& target,
-                          std::vector<std::unique_ptr<RecordBuffer>>& buckets) const {
-  thread_local Places places;
+void Scatters::distribute(const RecordBuffer& records, const Target& target, Log& log,
+                          std::span<const std::unique_ptr<RecordBuffer>> buckets) {
   const auto count = static_cast<std::size_t>(records.count());
-  places.buckets.resize(count);
-  places.positions.resize(count);
-  std::array<std::int64_t, mostBuckets> counts{}, next{};
+  if (log.places.size() < count) log.places.resize(count);
+  const std::span<Place> places(log.places.data(), count);
+  const std::int64_t* const targets = records.records().targets;
+  const std::int64_t first = target.first;
+  const int shift = target.shift;
+  std::array<std::uint32_t, mostBuckets> counts{};
+  std::array<std::int64_t, mostBuckets> next{};
   for (std::size_t i = 0; i < count; ++i) {
-    const auto bucket =
-        static_cast<std::uint8_t>((records.records().targets[i] - target.first) >> target.shift);
-    places.buckets[i] = bucket;
-    ++counts[bucket];
+    const auto bucket = static_cast<std::uint32_t>((targets[i] - first) >> shift);
+    places[i] = {bucket, counts[bucket]++};
   }
+  std::array<std::byte*, mostBuckets> to{};
   for (std::size_t b = 0; b < buckets.size(); ++b) {
-    next[b] = buckets[b]->count();
-    buckets[b]->reserve(next[b] + counts[b]);
+    const std::int64_t before = buckets[b]->count();
+    buckets[b]->reserve(before + counts[b]);
     buckets[b]->addUnwritten(counts[b]);
+    next[b] = before;
   }
-  for (std::size_t i = 0; i < count; ++i) places.positions[i] = next[places.buckets[i]]++;
   const std::span<const std::size_t> bytes = buckets[0]->bytes();
   for (std::size_t column = 0; column < bytes.size(); ++column) {
-    std::array<std::byte*, mostBuckets> to{};
-    for (std::size_t b = 0; b < buckets.size(); ++b) to[b] = buckets[b]->array(column);
-    moveTo(bytes[column], places, records.array(column), to);
+    for (std::size_t b = 0; b < buckets.size(); ++b)
+      to[b] = buckets[b]->array(column) + static_cast<std::size_t>(next[b]) * bytes[column];
+    moveTo(bytes[column], places, records.array(column), to.data());
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "native/code_frame.hpp"
@@ -23,15 +24,18 @@ class Scatters {
   /// The kernel and the frame must outlive this.
   Scatters(const program::Kernel& kernel, const CodeFrame& frame, const CodeChoice& choice);
 
-  bool isEmpty() const { return targets_.empty(); }
-
   /// For a single thread: carries out the records of a frame, and clears them.
   void apply(RecordFrame& records) const;
 
+  /// Where a record goes: to which bucket, behind how many others of its chunk.
+  struct Place {
+    std::uint32_t bucket, position;
+  };
   /// Records of neighbouring elements: for each output, its buckets.
   struct Log {
     std::int64_t order = 0;
     std::vector<std::vector<std::unique_ptr<RecordBuffer>>> buckets;
+    std::vector<Place> places;
   };
   /// An empty log. Any thread may ask for one.
   std::unique_ptr<Log> newLog();
@@ -50,8 +54,8 @@ class Scatters {
     int shift;  ///< a bucket has 2^shift elements
     std::size_t buckets;
   };
-  void distribute(const RecordBuffer& records, const Target& target,
-                  std::vector<std::unique_ptr<RecordBuffer>>& buckets) const;
+  static void distribute(const RecordBuffer& records, const Target& target, Log& log,
+                         std::span<const std::unique_ptr<RecordBuffer>> buckets);
   void applyBucket(std::size_t target, std::size_t bucket) const;
 
   const CodeFrame& frame_;

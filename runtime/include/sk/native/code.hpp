@@ -43,7 +43,9 @@ struct Argument {
   std::int64_t stride[4];  ///< in elements; stride[0] of a gather or scatter output is 1
   std::int64_t multiply[4];  ///< an element input's index is the domain's, times this,
   std::int64_t divide[4];  ///< divided by this
-  Sink* sink;  ///< of a variable or scatter output; null where the stream is left out
+  /// Of a variable or scatter output; null where the stream is left out. Unless Code::isReordered, null asks a scatter output
+  /// to be stored to at once.
+  Sink* sink;
   std::int64_t
       countsElements;  ///< of an iterator: 1 where it goes by element number, 0 by index in each dimension
   std::int64_t isSmall;  ///< 1 where the numbers of all elements fit 32 bits
@@ -114,6 +116,7 @@ struct Code {
       isUneven;  ///< elements may take very different times: it has loops whose trip count depends on data
   /// An element may have several records: where more than one element is computed together, they come with its number.
   std::uint8_t isReordered;
+  std::uint8_t isLight;  ///< an element takes less time than recording what it scatters
 };
 
 }  // namespace sk::native

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Whether the records of a kernel's variable and scatter outputs (sk/native/code.hpp) come in the order of elements by themselves.
+// What the runtime is to know of the records of a kernel's variable and scatter outputs (sk/native/code.hpp).
 #pragma once
 
 #include "ir/ir.hpp"
@@ -10,5 +10,8 @@ namespace skc::native {
 /// True if a group of lanes may record more than once for one output. The lanes of one statement are in order; those of a
 /// second are behind all of the first.
 bool isReordered(const ir::Module& module, const ir::Kernel& kernel);
+
+/// True if an element is computed in less time than it takes to keep and carry out a record.
+bool isLight(const ir::Module& module, const ir::Kernel& kernel);
 
 }  // namespace skc::native

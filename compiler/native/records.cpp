@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "native/record_order.hpp"
+#include "native/records.hpp"
 
 #include <algorithm>
 #include <map>
 
+#include "ir/reach.hpp"
 #include "ir/walk.hpp"
-#include "support/overloaded.hpp"
 
 namespace skc::native {
 
@@ -50,6 +50,18 @@ class Counter {
   std::map<FunctionId, std::uint32_t> functions_;
 };
 
+/// Operations of an expression alone, compared to an addition.
+std::uint32_t costOf(const Expr& expr) {
+  constexpr std::uint32_t intrinsic = 4, gather = 4, sample = 16;
+  if (std::holds_alternative<IntrinsicCall>(expr.node)) return intrinsic * expr.type.width;
+  if (std::holds_alternative<GatherRead>(expr.node)) return gather;
+  if (std::holds_alternative<Sample>(expr.node)) return sample;
+  const bool isOperation =
+      std::holds_alternative<Unary>(expr.node) || std::holds_alternative<Binary>(expr.node) ||
+      std::holds_alternative<Select>(expr.node) || std::holds_alternative<Convert>(expr.node);
+  return isOperation ? expr.type.width : 0;
+}
+
 }  // namespace
 
 bool isReordered(const Module& module, const Kernel& kernel) {
@@ -59,6 +71,17 @@ bool isReordered(const Module& module, const Kernel& kernel) {
     if (Counter(module, i).function(kernel.entry) >= Counter::many) return true;
   }
   return false;
+}
+
+bool isLight(const Module& module, const Kernel& kernel) {
+  constexpr std::uint32_t limit = 64;  // several elements are computed together, and records are moved one by one
+  std::uint32_t cost = 0;
+  for (const FunctionId id : functionsOf(module, kernel)) {
+    const Block& body = module.functions[id].body;
+    walkStmts(body, [&](const Stmt& stmt) { cost += std::holds_alternative<Loop>(stmt.node) ? limit : 0; });
+    walkExprs(body, [&](const Expr& expr) { cost += costOf(expr); });
+  }
+  return cost < limit;
 }
 
 }  // namespace skc::native
