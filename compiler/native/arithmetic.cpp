@@ -197,6 +197,20 @@ Part binary(Lanes& l, BinaryOp op, Scalar scalar, const Part& lhs, const Part& r
                          : integerOperation(l, op, isSigned(scalar), a.value, c.value)};
 }
 
+/// The nearest int of each lane, 0 for NaN: what fptosi.sat says, which LLVM does lane by lane on x86.
+static llvm::Value* saturatedInts(Lanes& l, llvm::Value* x) {
+  llvm::Type* const type = l.sameShape(x, l.int32());
+  const bool isFloat = x->getType()->getScalarType()->isFloatTy();
+  llvm::Value* const least = l.number(x->getType(), -2147483648.0);
+  llvm::Value* const most = l.number(x->getType(), isFloat ? 2147483520.0 : 2147483647.0);
+  llvm::Value* const low = l.b.CreateSelect(l.b.CreateFCmpOGT(x, least), x, least);
+  llvm::Value* const inside = l.b.CreateSelect(l.b.CreateFCmpOLT(low, most), low, most);
+  llvm::Value* const isAbove = l.b.CreateFCmpOGE(x, l.number(x->getType(), 2147483648.0));
+  llvm::Value* const nearest =
+      l.b.CreateSelect(isAbove, l.integer(type, 0x7fffffff), l.b.CreateFPToSI(inside, type));
+  return l.b.CreateSelect(l.b.CreateFCmpUNO(x, x), llvm::Constant::getNullValue(type), nearest);
+}
+
 Part convert(Lanes& l, Scalar from, Scalar to, const Part& operand) {
   if (from == to) return operand;
   if (isNarrow(from)) return convert(l, carrierOf(from), to, fromNarrow(l, from, operand));
@@ -213,6 +227,7 @@ Part convert(Lanes& l, Scalar from, Scalar to, const Part& operand) {
   if (from == Scalar::Bool) return {isReal(to) ? l.b.CreateUIToFP(x, type) : l.b.CreateZExt(x, type)};
   if (isReal(from) && isReal(to)) return {l.b.CreateFPCast(x, type)};
   if (isReal(to)) return {from == Scalar::Int ? l.b.CreateSIToFP(x, type) : l.b.CreateUIToFP(x, type)};
+  if (to == Scalar::Int && l.isVector(x)) return {saturatedInts(l, x)};
   const auto saturating = to == Scalar::Int ? llvm::Intrinsic::fptosi_sat : llvm::Intrinsic::fptoui_sat;
   return {l.b.CreateIntrinsic(saturating, {type, x->getType()}, {x})};
 }

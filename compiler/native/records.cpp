@@ -52,7 +52,7 @@ class Counter {
 
 /// Operations of an expression alone, compared to an addition.
 std::uint32_t costOf(const Expr& expr) {
-  constexpr std::uint32_t intrinsic = 4, gather = 4, sample = 16;
+  constexpr std::uint32_t intrinsic = 8, gather = 4, sample = 16;
   if (std::holds_alternative<IntrinsicCall>(expr.node)) return intrinsic * expr.type.width;
   if (std::holds_alternative<GatherRead>(expr.node)) return gather;
   if (std::holds_alternative<Sample>(expr.node)) return sample;
@@ -74,7 +74,7 @@ bool isReordered(const Module& module, const Kernel& kernel) {
 }
 
 bool isLight(const Module& module, const Kernel& kernel) {
-  constexpr std::uint32_t limit = 64;  // several elements are computed together, and records are moved one by one
+  constexpr std::uint32_t limit = 192;  // several elements are computed together, and records are moved one by one
   std::uint32_t cost = 0;
   for (const FunctionId id : functionsOf(module, kernel)) {
     const Block& body = module.functions[id].body;

@@ -129,30 +129,59 @@ void Streams::scatter(std::uint32_t param, const Parts& index, const Parts& valu
 /// Stores the elements of set lanes at once, one after the other.
 void Streams::applyLanes(std::uint32_t param, llvm::Value* number, const Parts& stored, llvm::Value* mask) {
   llvm::Function* const function = l.b.GetInsertBlock()->getParent();
+  const auto block = [&](const char* name) {
+    return llvm::BasicBlock::Create(l.b.getContext(), name, function);
+  };
+  llvm::BasicBlock* const given = block("given");
+  llvm::BasicBlock* const every = block("every");
+  llvm::BasicBlock* const some = block("some");
+  llvm::BasicBlock* const end = block("stored");
+  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
+  llvm::Value* const bits = l.b.CreateBitCast(mask, l.b.getIntNTy(l.count()));
+  l.b.CreateCondBr(l.b.CreateAnd(l.b.CreateIsNotNull(all), l.b.CreateIsNotNull(bits)), given, end);
+  l.b.SetInsertPoint(given);
+  const std::vector<llvm::Value*> to = componentsNow(param);
+  l.b.CreateCondBr(l.b.CreateICmpEQ(bits, llvm::Constant::getAllOnesValue(bits->getType())), every, some);
+  l.b.SetInsertPoint(every);
+  const auto inLane = [&](llvm::Value* lanes, std::uint32_t lane) {
+    return l.isVector(lanes) ? l.lane(lanes, lane) : lanes;
+  };
+  for (std::uint32_t lane = 0; lane < l.count(); ++lane) {
+    Parts value;
+    for (std::size_t c = 0; c < stored.size(); ++c)
+      value.push_back({l.fromStored(scalars(param)[c], inLane(stored[c].value, lane))});
+    applyOne(param, inLane(number, lane), value, to);
+  }
+  l.b.CreateBr(end);
+  l.b.SetInsertPoint(some);
+  applySomeLanes(param, number, stored, bits, to);
+  l.b.CreateBr(end);
+  l.b.SetInsertPoint(end);
+}
+
+/// A loop over the set lanes, of which there is one at least.
+void Streams::applySomeLanes(std::uint32_t param, llvm::Value* number, const Parts& stored, llvm::Value* bits,
+                             const std::vector<llvm::Value*>& to) {
+  llvm::Function* const function = l.b.GetInsertBlock()->getParent();
   llvm::IRBuilder<> allocas(&function->getEntryBlock(), function->getEntryBlock().begin());
   const auto inMemory = [&](llvm::Value* lanes) {
     llvm::Value* const memory = allocas.CreateAlloca(lanes->getType());
     l.b.CreateStore(lanes, memory);
     return memory;
   };
-  llvm::BasicBlock* const some = llvm::BasicBlock::Create(l.b.getContext(), "some", function);
+  llvm::BasicBlock* const before = l.b.GetInsertBlock();
   llvm::BasicBlock* const one = llvm::BasicBlock::Create(l.b.getContext(), "lane", function);
-  llvm::BasicBlock* const end = llvm::BasicBlock::Create(l.b.getContext(), "stored", function);
-  llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
-  llvm::Value* const bits =
-      l.b.CreateZExt(l.b.CreateBitCast(mask, l.b.getIntNTy(l.count())), l.int64());
-  l.b.CreateCondBr(l.b.CreateAnd(l.b.CreateIsNotNull(all), l.b.CreateIsNotNull(bits)), some, end);
-  l.b.SetInsertPoint(some);
+  llvm::BasicBlock* const end = llvm::BasicBlock::Create(l.b.getContext(), "lanes", function);
   llvm::Value* const targets = inMemory(number);
   std::vector<llvm::Value*> from;
   for (const Part& part : stored) from.push_back(inMemory(part.value));
-  const std::vector<llvm::Value*> to = componentsNow(param);
+  llvm::Value* const set = l.b.CreateZExt(bits, l.int64());
   l.b.CreateBr(one);
   l.b.SetInsertPoint(one);
   llvm::PHINode* const left = l.b.CreatePHI(l.int64(), 2);
-  left->addIncoming(bits, some);
+  left->addIncoming(set, before);
   llvm::Value* const lane = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, left, l.b.getTrue());
-  applyOne(param, targets, from, to, lane);
+  applyRecord(param, targets, from, to, lane);
   llvm::Value* const rest = l.b.CreateAnd(left, l.b.CreateSub(left, l.integer(l.int64(), 1)));
   left->addIncoming(rest, l.b.GetInsertBlock());
   l.b.CreateCondBr(l.b.CreateIsNotNull(rest), one, end);
@@ -169,14 +198,22 @@ std::vector<llvm::Value*> Streams::componentsNow(std::uint32_t param) {
 }
 
 /// Carries out record `i` of those whose targets and components are in these arrays.
-void Streams::applyOne(std::uint32_t param, llvm::Value* targets, const std::vector<llvm::Value*>& from,
-                       const std::vector<llvm::Value*>& to, llvm::Value* i) {
-  llvm::Value* const target = l.b.CreateLoad(l.int64(), l.at(l.int64(), targets, i));
-  std::vector<llvm::Value*> addresses;
-  Parts old, value;
-  for (std::size_t c = 0; c < to.size(); ++c) {
+void Streams::applyRecord(std::uint32_t param, llvm::Value* targets, const std::vector<llvm::Value*>& from,
+                          const std::vector<llvm::Value*>& to, llvm::Value* i) {
+  Parts value;
+  for (std::size_t c = 0; c < from.size(); ++c) {
     const Scalar scalar = scalars(param)[c];
     value.push_back(l.loadOne(scalar, l.at(l.stored(scalar), from[c], i)));
+  }
+  applyOne(param, l.b.CreateLoad(l.int64(), l.at(l.int64(), targets, i)), value, to);
+}
+
+void Streams::applyOne(std::uint32_t param, llvm::Value* target, const Parts& value,
+                       const std::vector<llvm::Value*>& to) {
+  std::vector<llvm::Value*> addresses;
+  Parts old;
+  for (std::size_t c = 0; c < to.size(); ++c) {
+    const Scalar scalar = scalars(param)[c];
     addresses.push_back(l.at(l.stored(scalar), to[c], target));
     old.push_back(l.loadOne(scalar, addresses[c]));
   }
@@ -303,7 +340,7 @@ void Streams::apply(std::uint32_t param, llvm::Value* sink) {
   l.b.SetInsertPoint(one);
   llvm::PHINode* const i = l.b.CreatePHI(l.int64(), 2);
   i->addIncoming(zero, before);
-  applyOne(param, targets, from, to, i);
+  applyRecord(param, targets, from, to, i);
   llvm::Value* const next = l.b.CreateAdd(i, l.integer(l.int64(), 1), "", true, true);
   i->addIncoming(next, l.b.GetInsertBlock());
   l.b.CreateCondBr(l.b.CreateICmpSLT(next, count), one, end);

@@ -75,8 +75,12 @@ class Streams {
   void makeRoom(llvm::Value* sink);
   void applyLanes(std::uint32_t param, llvm::Value* number, const Parts& stored, llvm::Value* mask);
   std::vector<llvm::Value*> componentsNow(std::uint32_t param);
-  void applyOne(std::uint32_t param, llvm::Value* targets, const std::vector<llvm::Value*>& from,
-                const std::vector<llvm::Value*>& to, llvm::Value* i);
+  void applySomeLanes(std::uint32_t param, llvm::Value* number, const Parts& stored, llvm::Value* bits,
+                      const std::vector<llvm::Value*>& to);
+  void applyRecord(std::uint32_t param, llvm::Value* targets, const std::vector<llvm::Value*>& from,
+                   const std::vector<llvm::Value*>& to, llvm::Value* i);
+  void applyOne(std::uint32_t param, llvm::Value* target, const Parts& value,
+                const std::vector<llvm::Value*>& to);
   Parts combined(std::uint32_t param, const Parts& old, const Parts& value);
   llvm::Value* storeRecords(const std::vector<Column>& columns, llvm::Value* bits, llvm::Value* count);
 

@@ -72,7 +72,7 @@ class CodeRun {
 
   /// Logs cost something for each record, which a few threads gain only where there is more to compute.
   bool keepsLogs(std::int64_t threads) const {
-    constexpr std::int64_t enoughForAll = 4;
+    constexpr std::int64_t enoughForAll = 8;
     return has(Role::Scatter) && threads >= (kernel_.code->isLight != 0 ? enoughForAll : 2);
   }
 
@@ -130,7 +130,7 @@ class CodeRun {
   /// Elements whose records are sorted and moved together: these stay in the nearest cache.
   static constexpr std::int64_t elementsOfChunk = 1 << 10;
   /// Elements of a thread whose records are carried out later. Those of the simplest kernels stay in a cache.
-  static constexpr std::int64_t elementsOfLog = 1 << 17;
+  static constexpr std::int64_t elementsOfLog = 1 << 15;
 
   const Kernel& kernel_;
   const native::Call& call_;
