@@ -136,7 +136,7 @@ class Compilation {
     const bool hasMaskRegisters =
         level.hasMaskRegisters && options_.optimizes;  // debuggers see no single bits
     Form form{.lanes = 1, .real = real, .hasMaskRegisters = hasMaskRegisters, .isContracted = isContracted};
-    if (isInLanes(kernel, kind, real))
+    if (isInLanes(kind, real))
       form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
     const bool isPredicated = form.lanes > 1;
     const Version& version = versionFor(real);
@@ -157,11 +157,9 @@ class Compilation {
     return *ofOthers_;
   }
 
-  /// Elements are folded side by side only where their order does not matter.
-  static bool isInLanes(const Kernel& kernel, EntryKind kind, Real real) {
+  static bool isInLanes(EntryKind kind, Real real) {
     if (real == Real::Quad) return false;
-    if (kind == EntryKind::Identity || kind == EntryKind::Borders || kind == EntryKind::Apply) return false;
-    return kind != EntryKind::Fold || kernel.reduction->commutative;
+    return kind == EntryKind::Run || kind == EntryKind::Fold || kind == EntryKind::Combine;
   }
 
   static std::string suffix(const EntryForm& made) {

@@ -34,20 +34,18 @@ class PieceFolder {
         combiner_(combinerOf(program)),
         runs_(program.shape, combiner_, 1),
         columnRuns_(program.shape, combiner_, side_),
-        rest_(program.shape, side_) {}
+        rest_(program.shape, side_),
+        leafColumns_(program.shape, side_) {}
 
   /// Of the block that is there. It has one element at least. The result is one column.
   const StateColumns& fold(const Extents& block, std::int64_t piece) {
     pieces_.forEachRow(block, piece, [&](const Extents& first, std::int64_t count) {
       leaves_.moveToRow(first);
       const std::int64_t end = first[0] + count;
+      if (!program_.isCommutative) return foldInOrder(first[0], count);
       for (std::int64_t x = first[0]; x < end;) {
         const std::int64_t now = std::min(end - x, leaves_.longest());
-        if (program_.isCommutative) {
-          foldColumns(x, now);
-        } else {
-          foldInOrder(x, now);
-        }
+        foldColumns(x, now);
         x += now;
       }
     });
@@ -97,7 +95,14 @@ class PieceFolder {
   // ---- in order ----------------------------------------------------------------------------------
 
   void foldInOrder(std::int64_t x, std::int64_t count) {
+    const std::int64_t together = side_ * leafRounds;
     while (count > 0) {
+      if (count >= together && folded_ == 0 && leaves_.foldsApart() && runs_.mayAdd(side_)) {
+        foldLeaves(x);
+        x += together;
+        count -= together;
+        continue;
+      }
       const std::int64_t now = std::min(count, leafRounds - folded_);
       leaves_.fold(runs_.next(), x, 1, now, folded_ == 0 ? Start::New : Start::Continued);
       folded_ += now;
@@ -105,6 +110,24 @@ class PieceFolder {
       count -= now;
       if (folded_ == leafRounds) endLeaf();
     }
+  }
+
+  /// Folds leaves that lie one behind the other side by side. They are combined as they would be one by one: neighbours first,
+  /// and so those whose numbers differ in the lowest bit are half of the columns apart.
+  void foldLeaves(std::int64_t x) {
+    for (std::int64_t round = 0; round < leafRounds; ++round) {
+      leaves_.fold(leafColumns_, x + round, side_, 1, round == 0 ? Start::New : Start::Continued, leafRounds);
+    }
+    std::int64_t place = 0;
+    for (std::int64_t leaf = 0; leaf < side_; ++leaf) {
+      rest_.assign(place, leafColumns_, leaf, 1);
+      std::int64_t bit = side_ / 2;  // counts with the bits turned round
+      for (; (place & bit) != 0; bit /= 2) place -= bit;
+      place += bit;
+    }
+    combiner_.gather(rest_, side_);
+    runs_.next().assign(0, rest_, 0, 1);
+    runs_.add(side_);
   }
 
   void endLeaf() {
@@ -124,7 +147,8 @@ class PieceFolder {
   ColumnCombiner combiner_;
   StateRuns runs_;  ///< of single columns
   StateRuns columnRuns_;
-  StateColumns rest_;  ///< of what is left of rows
+  StateColumns rest_;  ///< of what is left of rows; in order, leaves that are combined
+  StateColumns leafColumns_;
   std::int64_t restUsed_ = 0;
   std::int64_t folded_ =
       0;  ///< elements of the leaf so far, in order, or of what is left of rows, in each column

@@ -103,8 +103,8 @@ StateColumns& StateRuns::next() {
   return *runs_[leaves_.size()];
 }
 
-void StateRuns::add() {
-  leaves_.push_back(1);
+void StateRuns::add(std::int64_t leaves) {
+  leaves_.push_back(leaves);
   while (leaves_.size() > 1 && leaves_[leaves_.size() - 2] == leaves_.back()) merge();
 }
 

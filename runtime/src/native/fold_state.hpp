@@ -94,8 +94,10 @@ class StateRuns {
   bool isEmpty() const { return leaves_.empty(); }
   /// Where the next leaf is to be stored,
   StateColumns& next();
-  /// and that it is there.
-  void add();
+  /// and that it is there; or several, combined as add() would have combined them, where mayAdd() says so.
+  void add(std::int64_t leaves = 1);
+  /// Whether so many leaves, a power of 2, are combined with each other before any other.
+  bool mayAdd(std::int64_t leaves) const { return leaves_.empty() || leaves_.back() >= leaves; }
   /// Of all that were added, in order; there is one at least.
   StateColumns& take();
 

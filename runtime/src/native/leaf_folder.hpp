@@ -22,6 +22,8 @@ class LeafFolder {
   void moveToRow(const native::Extents& first);
   /// How many neighbours are folded as if they were a row of their own.
   std::int64_t longest() const { return longest_; }
+  /// Whether elements that are no neighbours are folded several together.
+  bool foldsApart() const { return program_.fold.lanes > 1 && !goesOneByOne(); }
 
   /// Folds the elements at x, x + step ... into the columns of `state`: `rounds` of them into each, every `columns`-th. Columns
   /// beyond the last change.
@@ -31,6 +33,7 @@ class LeafFolder {
   void foldInto(StateColumns& state, std::int64_t first, std::int64_t x, std::int64_t count, Start start);
 
  private:
+  bool goesOneByOne() const { return program_.layout.goesByElement() || program_.layout.hasGathers(); }
   void call(void* const* state, std::int64_t x, std::int64_t columns, std::int64_t rounds, Start start,
             std::int64_t step);
   void foldOneByOne(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
