@@ -3,6 +3,7 @@
 // The loops around reductions. A block of the domain is divided into pieces, which are folded by themselves and then combined in order;
 // narrow blocks are folded side by side.
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <vector>
 
@@ -35,7 +36,9 @@ class PieceFolder {
         runs_(program.shape, combiner_, 1),
         columnRuns_(program.shape, combiner_, side_),
         rest_(program.shape, side_),
-        leafColumns_(program.shape, side_) {}
+        group_(program.isCommutative ? 0 : groupOf(program.shape)),
+        leafColumns_(program.shape, group_),
+        orderedColumns_(program.shape, group_) {}
 
   /// Of the block that is there. It has one element at least. The result is one column.
   const StateColumns& fold(const Extents& block, std::int64_t piece) {
@@ -95,12 +98,12 @@ class PieceFolder {
   // ---- in order ----------------------------------------------------------------------------------
 
   void foldInOrder(std::int64_t x, std::int64_t count) {
-    const std::int64_t together = side_ * leafRounds;
     while (count > 0) {
-      if (count >= together && folded_ == 0 && leaves_.foldsApart() && runs_.mayAdd(side_)) {
-        foldLeaves(x);
-        x += together;
-        count -= together;
+      const std::int64_t together = leavesTogether(count);
+      if (together > 0) {
+        foldLeaves(x, together);
+        x += together * leafRounds;
+        count -= together * leafRounds;
         continue;
       }
       const std::int64_t now = std::min(count, leafRounds - folded_);
@@ -112,22 +115,23 @@ class PieceFolder {
     }
   }
 
+  /// How many leaves may be folded side by side, a power of 2; 0 where that gains nothing.
+  std::int64_t leavesTogether(std::int64_t count) const {
+    if (folded_ != 0 || !leaves_.foldsApart()) return 0;
+    const std::int64_t most = std::min({group_, runs_.mostTogether(), count / leafRounds});
+    return most < program_.fold.lanes ? 0 : static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(most)));
+  }
+
   /// Folds leaves that lie one behind the other side by side. They are combined as they would be one by one: neighbours first,
   /// and so those whose numbers differ in the lowest bit are half of the columns apart.
-  void foldLeaves(std::int64_t x) {
+  void foldLeaves(std::int64_t x, std::int64_t count) {
     for (std::int64_t round = 0; round < leafRounds; ++round) {
-      leaves_.fold(leafColumns_, x + round, side_, 1, round == 0 ? Start::New : Start::Continued, leafRounds);
+      leaves_.fold(leafColumns_, x + round, count, 1, round == 0 ? Start::New : Start::Continued, leafRounds);
     }
-    std::int64_t place = 0;
-    for (std::int64_t leaf = 0; leaf < side_; ++leaf) {
-      rest_.assign(place, leafColumns_, leaf, 1);
-      std::int64_t bit = side_ / 2;  // counts with the bits turned round
-      for (; (place & bit) != 0; bit /= 2) place -= bit;
-      place += bit;
-    }
-    combiner_.gather(rest_, side_);
-    runs_.next().assign(0, rest_, 0, 1);
-    runs_.add(side_);
+    orderedColumns_.assignReversed(leafColumns_, count);
+    combiner_.gather(orderedColumns_, count);
+    runs_.next().assign(0, orderedColumns_, 0, 1);
+    runs_.add(count);
   }
 
   void endLeaf() {
@@ -147,11 +151,12 @@ class PieceFolder {
   ColumnCombiner combiner_;
   StateRuns runs_;  ///< of single columns
   StateRuns columnRuns_;
-  StateColumns rest_;  ///< of what is left of rows; in order, leaves that are combined
-  StateColumns leafColumns_;
+  StateColumns rest_;  ///< of what is left of rows
   std::int64_t restUsed_ = 0;
   std::int64_t folded_ =
       0;  ///< elements of the leaf so far, in order, or of what is left of rows, in each column
+  std::int64_t group_;  ///< leaves that are folded side by side, at most
+  StateColumns leafColumns_, orderedColumns_;
 };
 
 /// Folds groups of narrow blocks.

@@ -2,6 +2,7 @@
 #include "native/fold_state.hpp"
 
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "native/scalars.hpp"
@@ -54,6 +55,29 @@ void StateColumns::assign(std::int64_t first, const StateColumns& other, std::in
   for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {
     std::memcpy(at(scalar, first), other.at(scalar, from),
                 static_cast<std::size_t>(count) * shape_->bytesOf(scalar));
+  }
+}
+
+void StateColumns::assignReversed(const StateColumns& other, std::int64_t count) {
+  const auto copy = [&]<std::size_t bytes>(std::size_t scalar, std::integral_constant<std::size_t, bytes>) {
+    std::byte* const to = at(scalar, 0);
+    const std::byte* const from = other.at(scalar, 0);
+    std::int64_t reversed = 0;
+    for (std::int64_t i = 0; i < count; ++i) {
+      std::memcpy(to + reversed * static_cast<std::int64_t>(bytes), from + i * static_cast<std::int64_t>(bytes), bytes);
+      std::int64_t bit = count / 2;  // counts from the highest bit on
+      for (; (reversed & bit) != 0; bit /= 2) reversed -= bit;
+      reversed += bit;
+    }
+  };
+  for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {
+    switch (shape_->bytesOf(scalar)) {
+      case 1: copy(scalar, std::integral_constant<std::size_t, 1>{}); break;
+      case 2: copy(scalar, std::integral_constant<std::size_t, 2>{}); break;
+      case 4: copy(scalar, std::integral_constant<std::size_t, 4>{}); break;
+      case 8: copy(scalar, std::integral_constant<std::size_t, 8>{}); break;
+      default: copy(scalar, std::integral_constant<std::size_t, mostScalarBytes>{}); break;
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -50,6 +51,8 @@ class StateColumns {
   }
   /// Takes `count` columns from `first` on from those of another one from `from` on.
   void assign(std::int64_t first, const StateColumns& other, std::int64_t from, std::int64_t count);
+  /// Takes `count` columns, a power of 2, to the numbers that have their bits in the opposite order.
+  void assignReversed(const StateColumns& other, std::int64_t count);
 
   /// A column's scalars one behind the other: StateShape::bytes().
   void pack(std::int64_t column, std::byte* bytes) const;
@@ -94,10 +97,12 @@ class StateRuns {
   bool isEmpty() const { return leaves_.empty(); }
   /// Where the next leaf is to be stored,
   StateColumns& next();
-  /// and that it is there; or several, combined as add() would have combined them, where mayAdd() says so.
+  /// and that it is there; or `leaves` of them, a power of 2 up to mostTogether(), combined as if added one by one.
   void add(std::int64_t leaves = 1);
-  /// Whether so many leaves, a power of 2, are combined with each other before any other.
-  bool mayAdd(std::int64_t leaves) const { return leaves_.empty() || leaves_.back() >= leaves; }
+  /// How many leaves are combined with each other before any other.
+  std::int64_t mostTogether() const {
+    return leaves_.empty() ? std::numeric_limits<std::int64_t>::max() : leaves_.back();
+  }
   /// Of all that were added, in order; there is one at least.
   StateColumns& take();
 
