@@ -62,13 +62,12 @@ class Compilation {
   void add(const KernelRequest& request) {
     const Kernel& kernel = plain_.kernels[request.kernel];
     const SlotPlan slots = planSlots(plain_, kernel);
-    CodeTable table{
-        .symbol = request.symbol,
-        .entries = {},
-        .slots = slots.slots,
-        .isUneven = analysis::streamUses(plain_, kernel).loops,
-        .isReordered = isReordered(plain_, kernel),
-        .isLight = isLight(plain_, kernel)};
+    CodeTable table{.symbol = request.symbol,
+                    .entries = {},
+                    .slots = slots.slots,
+                    .isUneven = analysis::streamUses(plain_, kernel).loops,
+                    .isReordered = isReordered(plain_, kernel),
+                    .isLight = isLight(plain_, kernel)};
     for (const EntryKind kind : entriesOf(plain_, kernel)) {
       if (request.onlyCombines && kind != EntryKind::Combine) continue;
       const auto addEntries = [&](Real real) {

@@ -74,7 +74,8 @@ bool isReordered(const Module& module, const Kernel& kernel) {
 }
 
 bool isLight(const Module& module, const Kernel& kernel) {
-  constexpr std::uint32_t limit = 192;  // several elements are computed together, and records are moved one by one
+  constexpr std::uint32_t limit =
+      192;  // several elements are computed together, and records are moved one by one
   std::uint32_t cost = 0;
   for (const FunctionId id : functionsOf(module, kernel)) {
     const Block& body = module.functions[id].body;

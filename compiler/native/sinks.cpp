@@ -62,8 +62,8 @@ void storeCompressed(Lanes& l, llvm::Value* values, llvm::Value* array, llvm::Va
     llvm::Value* part = compressed(l, lanesFrom(l, values, first, together),
                                    lanesFrom(l, maskOfBits(l, bits), first, together));
     if (isNarrow) part = l.b.CreateTrunc(part, llvm::FixedVectorType::get(stored, together));
-    llvm::Value* const before =
-        l.b.CreateAnd(bits, llvm::ConstantInt::get(bits->getType(), llvm::APInt::getLowBitsSet(l.count(), first)));
+    llvm::Value* const before = l.b.CreateAnd(
+        bits, llvm::ConstantInt::get(bits->getType(), llvm::APInt::getLowBitsSet(l.count(), first)));
     llvm::Value* const skipped =
         l.b.CreateZExt(l.b.CreateUnaryIntrinsic(llvm::Intrinsic::ctpop, before), l.int64());
     l.b.CreateAlignedStore(part, l.at(stored, array, l.b.CreateAdd(count, skipped)),
@@ -94,8 +94,7 @@ void Streams::scatter(std::uint32_t param, const Parts& index, const Parts& valu
                                   l.integer(l.int64(), std::int64_t{1} << 31));
     mask = l.b.CreateAnd(mask, l.b.CreateICmpULT(i, l.spread(l.b.CreateTrunc(extent, l.int32()))));
     llvm::Value* step = l.b.CreateSExt(i, l.vector(l.int64()));
-    if (d > 0)
-      step = l.b.CreateMul(step, l.spread(argumentExtent(param, d, offsetof(Argument, stride))));
+    if (d > 0) step = l.b.CreateMul(step, l.spread(argumentExtent(param, d, offsetof(Argument, stride))));
     number = l.b.CreateAdd(number, step);
   }
   Parts stored;

@@ -282,7 +282,8 @@ TEST_CASE("a view of a stream is written at its own indices") {
   for (int i = 0; i < 40000; ++i) x.push_back(i);
   forEachInside(at, 40, [&](std::size_t i, std::size_t to) {
     const std::int64_t column = static_cast<std::int64_t>(to) / 2;
-    if (column < 15) expected[static_cast<std::size_t>((static_cast<std::int64_t>(to) + 5) * width + column + 30)] = x[i];
+    if (column < 15)
+      expected[static_cast<std::size_t>((static_cast<std::int64_t>(to) + 5) * width + column + 30)] = x[i];
   });
   storeFar(streamOf(device, at), streamOf(device, x), target.domain({5, 30}, {45, 45}));
   CHECK(haveSameBits(target.read(), expected));

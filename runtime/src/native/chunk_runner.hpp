@@ -17,7 +17,8 @@ namespace sk {
 
 /// What is to happen between chunks.
 struct ChunkHook {
-  std::int64_t longest = std::numeric_limits<std::int64_t>::max();  ///< elements of a chunk; a multiple of mostLanes
+  std::int64_t longest =
+      std::numeric_limits<std::int64_t>::max();  ///< elements of a chunk; a multiple of mostLanes
   std::function<void()> after = {};  ///< called after each chunk
 };
 

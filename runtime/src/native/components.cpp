@@ -95,8 +95,7 @@ Components::Components(const program::Element& element, RealType real, std::int6
   allocate(count);
 }
 
-Components::Components(const program::Element& element, RealType real,
-                       std::vector<Memory> arrays)
+Components::Components(const program::Element& element, RealType real, std::vector<Memory> arrays)
     : real_(real), types_(componentsOf(element, real)), arrays_(std::move(arrays)) {
   for (const Memory& array : arrays_) pointers_.push_back(array.get());
 }

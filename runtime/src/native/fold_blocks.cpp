@@ -119,7 +119,9 @@ class PieceFolder {
   std::int64_t leavesTogether(std::int64_t count) const {
     if (folded_ != 0 || !leaves_.foldsApart()) return 0;
     const std::int64_t most = std::min({group_, runs_.mostTogether(), count / leafRounds});
-    return most < program_.fold.lanes ? 0 : static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(most)));
+    return most < program_.fold.lanes
+               ? 0
+               : static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(most)));
   }
 
   /// Folds leaves that lie one behind the other side by side. They are combined as they would be one by one: neighbours first,

@@ -64,7 +64,8 @@ void StateColumns::assignReversed(const StateColumns& other, std::int64_t count)
     const std::byte* const from = other.at(scalar, 0);
     std::int64_t reversed = 0;
     for (std::int64_t i = 0; i < count; ++i) {
-      std::memcpy(to + reversed * static_cast<std::int64_t>(bytes), from + i * static_cast<std::int64_t>(bytes), bytes);
+      std::memcpy(to + reversed * static_cast<std::int64_t>(bytes),
+                  from + i * static_cast<std::int64_t>(bytes), bytes);
       std::int64_t bit = count / 2;  // counts from the highest bit on
       for (; (reversed & bit) != 0; bit /= 2) reversed -= bit;
       reversed += bit;

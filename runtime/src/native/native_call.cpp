@@ -101,7 +101,8 @@ class Operands {
   /// Streams get what was pushed to them, and what was written to a copy in another real type.
   void settle() {
     for (std::size_t i = 0; i < list_.size(); ++i) {
-      if (list_[i].pushed != nullptr) nativeStream(arguments_[i].region).become(std::move(*list_[i].pushed), real_);
+      if (list_[i].pushed != nullptr)
+        nativeStream(arguments_[i].region).become(std::move(*list_[i].pushed), real_);
     }
     for (const auto& [stream, copy] : written_) stream->components.assign(copy, stream->shape.size());
     for (std::size_t i = 0; i < list_.size(); ++i) {

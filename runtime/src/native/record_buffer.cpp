@@ -35,9 +35,7 @@ RecordBuffer::RecordBuffer(const RecordShape& shape)
   if (hasElement_) bytes_.push_back(sizeof(std::uint32_t));
   arrays_.resize(bytes_.size());
   pointers_.resize(bytes_.size());
-  const auto grow = [](native::Sink* sink) {
-    static_cast<Sink*>(sink)->buffer->reserve(sink->count + 1);
-  };
+  const auto grow = [](native::Sink* sink) { static_cast<Sink*>(sink)->buffer->reserve(sink->count + 1); };
   sink_ = {{pointers_.data(), nullptr, nullptr, 0, 0, grow}, this};
 }
 
@@ -100,8 +98,8 @@ RecordFrame::RecordFrame(const program::Kernel& kernel, const CodeFrame& frame, 
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     const program::Parameter& parameter = kernel.parameters[i];
     const bool isPushed = parameter.role == program::Role::VariableOutput;
-    const bool isScattered = parameter.role == program::Role::Scatter && options.scatters &&
-                             arguments_[i].components != nullptr;
+    const bool isScattered =
+        parameter.role == program::Role::Scatter && options.scatters && arguments_[i].components != nullptr;
     if (!isPushed && !isScattered) continue;
     auto buffer = std::make_unique<RecordBuffer>(RecordShape(parameter, options.real, options.isReordered));
     arguments_[i].sink = buffer->sink();

@@ -82,8 +82,7 @@ class CodeRun {
     const std::int64_t threads = native::threadsFor(pieces_.count(), costOfPiece());
     if (keepsLogs(threads)) {
       Scatters scatters(kernel_, frame_, choice_);
-      const std::int64_t batch =
-          std::max<std::int64_t>(1, threads * elementsOfLog / pieces_.elementsOfOne());
+      const std::int64_t batch = std::max<std::int64_t>(1, threads * elementsOfLog / pieces_.elementsOfOne());
       for (std::int64_t begin = 0; begin < pieces_.count(); begin += batch) {
         inParallel(std::min(batch, pieces_.count() - begin), [&](Range range) {
           logPieces({begin + range.begin, begin + range.end}, scatters, pushes);
@@ -100,7 +99,8 @@ class CodeRun {
 
   void pushPieces(Range pieces, PushParts& pushes) const {
     RecordFrame frame(kernel_, frame_, {choice_.real, isReordered(), /*scatters=*/false});
-    runPieces(pieces, frame.get(), isReordered() ? ChunkHook{elementsOfChunk, [&] { frame.sort(); }} : ChunkHook{});
+    runPieces(pieces, frame.get(),
+              isReordered() ? ChunkHook{elementsOfChunk, [&] { frame.sort(); }} : ChunkHook{});
     pushes.add(pieces.begin, frame.pushed());
   }
 

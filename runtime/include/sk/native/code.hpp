@@ -26,7 +26,8 @@ inline constexpr std::int64_t mostLanes = 64;
 struct Sink {
   std::byte* const* arrays;  ///< one for each component
   std::int64_t* targets;  ///< of a scatter output: numbers of the elements to store to, all of which exist
-  std::uint32_t* elements;  ///< of Code::isReordered: numbers in the chunk of the elements that records come from
+  std::uint32_t*
+      elements;  ///< of Code::isReordered: numbers in the chunk of the elements that records come from
   std::int64_t count;  ///< records so far
   std::int64_t capacity;  ///< records that the arrays have room for, with mostLanes more behind them
   /// Called where count >= capacity: makes room for more, and may move the arrays. What it throws goes through the code.
