@@ -17,7 +17,7 @@ DivergenceWalk::DivergenceWalk(Uniformity& whole, FunctionId id)
       id_(id),
       function_(whole.module_.functions[id]),
       facts_(whole.facts_.at(id)),
-      exprs_(whole.module_, whole.kernel_, whole.shapes_),
+      exprs_(whole.module_, whole.kernel_, whole.shapes_, whole.axis_),
       lastUses_(function_),
       declared_(function_.variables.size()) {
   for (VarId i = 0; i < function_.parameterCount; ++i) {

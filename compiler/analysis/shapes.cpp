@@ -86,7 +86,11 @@ std::optional<std::uint32_t> literalIndex(const Expr& index, std::uint32_t lengt
 class ExprRule {
  public:
   ExprRule(const ExprShapes& shapes, FunctionId function)
-      : module_(shapes.module_), kernel_(shapes.kernel_), shapes_(shapes.shapes_), function_(function) {}
+      : module_(shapes.module_),
+        kernel_(shapes.kernel_),
+        shapes_(shapes.shapes_),
+        axis_(shapes.axis_),
+        function_(function) {}
 
   Leaves of(const Expr& expr) const {
     return match(expr.node, [&](const auto& node) { return rule(expr.type, node); });
@@ -205,7 +209,7 @@ class ExprRule {
   }
   Leaves rule(Type, const Call& n) const { return shapes_.at(n.callee).result; }
   Leaves rule(Type type, const IntrinsicCall& n) const {
-    if (n.intrinsic == Intrinsic::AnyLane) return uniform(type);
+    if (n.intrinsic == Intrinsic::AnyLane && axis_ == Axis::X) return uniform(type);
     Leaves result = uniform(type);
     for (const ExprPtr& arg : n.args) {
       const Leaves leaves = of(*arg);
@@ -224,6 +228,10 @@ class ExprRule {
   /// is the domain's after a multiplication and a division.
   Leaves rule(Type type, const IndexOf& n) const {
     Leaves result = uniform(type);
+    if (axis_ == Axis::Y) {
+      result[1] = Shape::Varying;
+      return result;
+    }
     const bool isInput = n.stream.space == StreamRef::Space::KernelParameter &&
                          kernel_.params[n.stream.id].role == ParamRole::Input;
     result[0] = isInput || kernel_.reduction ? Shape::Varying : Shape::Consecutive;
@@ -242,6 +250,7 @@ class ExprRule {
   const Module& module_;
   const Kernel& kernel_;
   const KernelShapes& shapes_;
+  Axis axis_;
   FunctionId function_;
 };
 

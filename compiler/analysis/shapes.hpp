@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How the lanes' values of an expression relate to each other, given those of the variables. A value is a list of scalar
-// leaves, each with a shape, or without one as long as nothing is known to be assigned to it.
+// How the values that neighbouring elements have of an expression relate to each other, given those of the variables. A value
+// is a list of scalar leaves, each with a shape, or without one as long as nothing is known to be assigned to it.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,12 @@
 
 namespace skc::analysis {
 
+/// Which elements are compared: the lanes, which are neighbours along x; or elements of consecutive rows, which have the same x.
+enum class Axis : std::uint8_t { X, Y };
+
 enum class Shape : std::uint8_t {
-  Uniform,  ///< one value for all lanes
-  Consecutive,  ///< an int; each lane has 1 more than the lane before
+  Uniform,  ///< one value for all elements
+  Consecutive,  ///< an int along x; each lane has 1 more than the lane before
   Varying,  ///< anything else
 };
 
@@ -40,8 +43,8 @@ inline bool isVarying(Leaf leaf) { return leaf && *leaf != Shape::Uniform; }
 
 class ExprShapes {
  public:
-  ExprShapes(const ir::Module& module, const ir::Kernel& kernel, const KernelShapes& shapes)
-      : module_(module), kernel_(kernel), shapes_(shapes) {}
+  ExprShapes(const ir::Module& module, const ir::Kernel& kernel, const KernelShapes& shapes, Axis axis)
+      : module_(module), kernel_(kernel), shapes_(shapes), axis_(axis) {}
 
   Leaves of(ir::FunctionId function, const ir::Expr& expr) const;
   /// What `place op= value` assigns.
@@ -56,6 +59,7 @@ class ExprShapes {
   const ir::Module& module_;
   const ir::Kernel& kernel_;
   const KernelShapes& shapes_;
+  Axis axis_;
 };
 
 }  // namespace skc::analysis

@@ -24,8 +24,9 @@ void makeUniform(Leaves& leaves) {
 }
 
 /// What the entry's variables are when it starts.
-Leaf atEntry(const Kernel& kernel, VarId var) {
-  if (var >= kernel.params.size()) return Shape::Varying;  // the mask of predicate
+Leaf atEntry(const Kernel& kernel, VarId var, Axis axis) {
+  // the mask of predicate says which lanes have an element; all rows have the same
+  if (var >= kernel.params.size()) return axis == Axis::X ? Shape::Varying : Shape::Uniform;
   switch (kernel.params[var].role) {
     case ParamRole::Input:
     case ParamRole::Iterator:
@@ -42,7 +43,8 @@ Leaf atEntry(const Kernel& kernel, VarId var) {
 
 }  // namespace
 
-Uniformity::Uniformity(const Module& module, const Kernel& kernel) : module_(module), kernel_(kernel) {
+Uniformity::Uniformity(const Module& module, const Kernel& kernel, Axis axis)
+    : module_(module), kernel_(kernel), axis_(axis) {
   const std::vector<FunctionId> functions = functionsOf(module, kernel);
   for (const FunctionId id : functions) {
     const Function& function = module.functions[id];
@@ -50,7 +52,7 @@ Uniformity::Uniformity(const Module& module, const Kernel& kernel) : module_(mod
     for (VarId i = 0; i < function.variables.size(); ++i) {
       const bool isParameter = id == kernel.entry && i < function.parameterCount;
       own.variables.emplace_back(leafCount(module, function.variables[i].type),
-                                 isParameter ? atEntry(kernel, i) : std::nullopt);
+                                 isParameter ? atEntry(kernel, i, axis) : std::nullopt);
     }
     own.result.resize(leafCount(module, function.result));
     facts_[id] = {};
@@ -85,11 +87,11 @@ std::span<const Shape> Uniformity::of(FunctionId function, VarId var) const {
 std::span<const Shape> Uniformity::resultOf(FunctionId function) const { return at(function).result; }
 
 std::vector<Shape> Uniformity::leavesOf(FunctionId function, const Expr& expr) const {
-  return known(ExprShapes(module_, kernel_, shapes_).of(function, expr));
+  return known(ExprShapes(module_, kernel_, shapes_, axis_).of(function, expr));
 }
 
 Shape Uniformity::of(FunctionId function, const Expr& expr) const {
-  const Leaf all = join(ExprShapes(module_, kernel_, shapes_).of(function, expr));
+  const Leaf all = join(ExprShapes(module_, kernel_, shapes_, axis_).of(function, expr));
   const bool isPart = all == Shape::Consecutive && !expr.type.isScalar();
   return isPart ? Shape::Varying : all.value_or(Shape::Uniform);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How the values of elements that are computed together, each in a lane, relate to each other, and where their control flow
-// diverges. The lanes are neighbours along x, in one row of the domain. Every value starts as uniform, and what makes it
+// How the values of elements that are computed together relate to each other, and where their control flow diverges. Along x,
+// the elements are lanes: neighbours in one row of the domain. Along y, they are in consecutive rows. Every value starts as uniform, and what makes it
 // vary is propagated to a fixed point (R. Karrenberg and S. Hack, "Whole-function vectorization", 2011).
 //
 // Values count for the active lanes only: in a loop that lanes leave at different times, a counter is uniform for as long as
@@ -22,7 +22,7 @@ namespace skc::analysis {
 class Uniformity {
  public:
   /// After specialize-gathers.
-  Uniformity(const ir::Module& module, const ir::Kernel& kernel);
+  Uniformity(const ir::Module& module, const ir::Kernel& kernel, Axis axis = Axis::X);
 
   // A function is one that the kernel reaches. A value has a shape for each scalar leaf: 1 for a scalar, one a component
   // for a vector, width * width for a matrix, row by row, those of the fields in order for a struct; and for an array those of one
@@ -62,6 +62,7 @@ class Uniformity {
 
   const ir::Module& module_;
   const ir::Kernel& kernel_;
+  Axis axis_;
   KernelShapes shapes_;
   std::map<ir::FunctionId, Facts> facts_;
 };

@@ -175,5 +175,25 @@ TEST_CASE("lanes of a fold stand apart along x") {
   CHECK(letters(found.of(module.kernels[id].entry, sum)) == "v");
 }
 
+TEST_CASE("along y, the row's index varies and the column's is uniform") {
+  Sample s;
+  const VarId p = s.k.local("p", int2Type), i = s.k.local("i", intType), kept = s.k.local("kept", intType);
+  Block body =
+      block(declare(p, swizzle(indexOf(domain), "xy")), declare(i, literal(0)), declare(kept, literal(0)),
+            ifStmt(binary(BinaryOp::Less, swizzle(s.k.ref(p), "x"), literal(3)),
+                   block(assign(s.k.ref(i), swizzle(s.k.ref(p), "x")))),
+            ifStmt(binary(BinaryOp::Less, swizzle(s.k.ref(p), "y"), literal(3)),
+                   block(assign(s.k.ref(kept), literal(1)))),
+            assign(s.k.ref(s.r), binary(BinaryOp::Add, s.k.ref(i), s.k.ref(kept))));
+  const KernelId id = s.k.finish(std::move(body));
+  const Uniformity found(s.module, s.module.kernels[id], Axis::Y);
+  CHECK(letters(found.of(s.entry(), p)) == "uv");
+  CHECK(letters(found.of(s.entry(), s.x)) == "v");
+  CHECK(letters(found.of(s.entry(), i)) == "u");
+  CHECK(letters(found.of(s.entry(), kept)) == "v");
+  CHECK(!found.diverges(s.entry(), s.body()[3]));
+  CHECK(found.diverges(s.entry(), s.body()[4]));
+}
+
 }  // namespace
 }  // namespace skc::analysis

@@ -16,10 +16,4 @@ Part unary(Lanes& lanes, ir::UnaryOp op, ir::Scalar scalar, const Part& operand)
 Part binary(Lanes& lanes, ir::BinaryOp op, ir::Scalar scalar, const Part& lhs, const Part& rhs);
 Part convert(Lanes& lanes, ir::Scalar from, ir::Scalar to, const Part& operand);
 
-/// The float that a half of these bits is, and the bits of the half that is nearest to a float.
-Part floatOfHalf(Lanes& lanes, const Part& bits);
-Part halfOfFloat(Lanes& lanes, const Part& value);
-/// The float that a float becomes as a half.
-Part roundedToHalf(Lanes& lanes, const Part& value);
-
 }  // namespace skc::native

@@ -15,14 +15,15 @@ using sk::native::Slot;
 namespace {
 
 // The structs below have the members of the C++ ones, in their order; their layouts are the same on all 64-bit machines.
-static_assert(sizeof(Entry) == 16 && offsetof(Entry, kind) == 8 && offsetof(Entry, lanes) == 12);
+static_assert(sizeof(Entry) == 16 && offsetof(Entry, kind) == 8 && offsetof(Entry, lanes) == 12 &&
+              offsetof(Entry, rows) == 13);
 static_assert(sizeof(Slot) == 6);
 static_assert(sizeof(Code) == 32 && offsetof(Code, entries) == 8 && offsetof(Code, slotCount) == 24 &&
               offsetof(Code, isReordered) == 29 && offsetof(Code, isLight) == 30);
 
-class Constants {
+class TableData {
  public:
-  explicit Constants(llvm::Module& module) : module_(module), context_(module.getContext()) {}
+  explicit TableData(llvm::Module& module) : module_(module), context_(module.getContext()) {}
 
   llvm::Constant* byte(std::uint64_t value) {
     return llvm::ConstantInt::get(llvm::Type::getInt8Ty(context_), value);
@@ -51,13 +52,13 @@ class Constants {
 }  // namespace
 
 void writeCodeTable(llvm::Module& code, const CodeTable& table) {
-  Constants c(code);
+  TableData c(code);
   std::vector<llvm::Constant*> entries, slots;
   for (const EntryFunction& entry : table.entries) {
-    entries.push_back(c.record({entry.function, c.byte(static_cast<std::uint64_t>(entry.kind)),
-                                c.byte(static_cast<std::uint64_t>(entry.real)),
-                                c.byte(static_cast<std::uint64_t>(entry.level)),
-                                c.byte(entry.isContracted ? 1 : 0), c.byte(entry.lanes)}));
+    entries.push_back(c.record(
+        {entry.function, c.byte(static_cast<std::uint64_t>(entry.kind)),
+         c.byte(static_cast<std::uint64_t>(entry.real)), c.byte(static_cast<std::uint64_t>(entry.level)),
+         c.byte(entry.isContracted ? 1 : 0), c.byte(entry.lanes), c.byte(entry.rows)}));
   }
   for (const Slot& slot : table.slots) {
     std::vector<llvm::Constant*> members = {c.byte(slot.parameter)};

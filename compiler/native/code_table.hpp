@@ -19,6 +19,7 @@ struct EntryFunction {
   sk::native::Level level;
   bool isContracted;
   std::uint32_t lanes;
+  std::uint32_t rows;
 };
 
 struct CodeTable {

@@ -17,6 +17,7 @@
 #include "native/native.hpp"
 #include "native/optimize.hpp"
 #include "native/records.hpp"
+#include "native/row_plan.hpp"
 #include "native/target.hpp"
 #include "transforms/predicate.hpp"
 
@@ -59,6 +60,9 @@ class Compilation {
     if (options.debugInfo) debug_.emplace(code_, plain_, options.optimizes);
   }
 
+  /// Values in LLVM IR need names for readers alone.
+  void discardNames() { context_.setDiscardValueNames(true); }
+
   void add(const KernelRequest& request) {
     const Kernel& kernel = plain_.kernels[request.kernel];
     const SlotPlan slots = planSlots(plain_, kernel);
@@ -76,6 +80,7 @@ class Compilation {
       };
       addEntries(Real::Float);
       if (mayContract(request, kind)) addContracted(table, request, slots, kind);
+      if (kind == EntryKind::Run) addRows(table, request, slots);
       if (request.inDoubles) addEntries(Real::Double);
       if (request.inQuads) addEntries(Real::Quad);
     }
@@ -108,6 +113,7 @@ class Compilation {
     Real real;
     const CpuLevel& level;
     bool isContracted = false;
+    const RowPlan* rowPlan = nullptr;  ///< of a RunRows
   };
 
   /// What is seldom run, what computes in wider numbers than the kernel says, and what has no lanes, is compiled for one level.
@@ -116,9 +122,10 @@ class Compilation {
     return {target_.levels().front()};
   }
 
-  /// Identities and borders are constants, and what is seldom run gains nothing.
+  /// Identities and borders are constants, records are stored as they are, and what is seldom run gains nothing.
   bool mayContract(const KernelRequest& request, EntryKind kind) const {
-    const bool computes = kind == EntryKind::Run || kind == EntryKind::Fold || kind == EntryKind::Combine;
+    const bool computes = kind == EntryKind::Run || kind == EntryKind::RunRows || kind == EntryKind::Fold ||
+                          kind == EntryKind::Combine;
     return computes && !request.isCold && canContract(plain_, plain_.kernels[request.kernel]);
   }
   void addContracted(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind) {
@@ -128,26 +135,56 @@ class Compilation {
     }
   }
 
+  /// Entries that compute several rows at once, where this saves loads.
+  void addRows(CodeTable& table, const KernelRequest& request, const SlotPlan& slots) {
+    const Module& module = ofFloats_.predicated;
+    const Kernel& kernel = module.kernels[request.kernel];
+    if (request.isCold || !options_.optimizes || options_.lanes == 1) return;
+    const RowPlan plan(module, kernel);
+    if (!plan.pays(analysis::Uniformity(module, kernel))) return;
+    const bool contracts = mayContract(request, EntryKind::RunRows);
+    for (const CpuLevel& level : target_.levels()) {
+      if (blockFor(level, plan.carried()).rows == 1) continue;
+      addEntry(table, request, slots, {EntryKind::RunRows, Real::Float, level, false, &plan});
+      if (contracts && level.hasFusedMultiplyAdd)
+        addEntry(table, request, slots, {EntryKind::RunRows, Real::Float, level, true, &plan});
+    }
+  }
+
   void addEntry(CodeTable& table, const KernelRequest& request, const SlotPlan& slots,
                 const EntryForm& made) {
-    const auto& [kind, real, level, isContracted] = made;
+    const auto& [kind, real, level, isContracted, rowPlan] = made;
     const Kernel& kernel = plain_.kernels[request.kernel];
     const bool hasMaskRegisters =
         level.hasMaskRegisters && options_.optimizes;  // debuggers see no single bits
-    Form form{.lanes = 1, .real = real, .hasMaskRegisters = hasMaskRegisters, .isContracted = isContracted};
-    if (isInLanes(kind, real))
+    Form form{.lanes = 1,
+              .real = real,
+              .hasMaskRegisters = hasMaskRegisters,
+              .convertsHalves = level.convertsHalves,
+              .isContracted = isContracted};
+    const RowBlock block = rowPlan != nullptr ? blockFor(level, rowPlan->carried()) : RowBlock{1, 1};
+    if (rowPlan != nullptr) {
+      form.lanes = options_.lanes != 0 ? options_.lanes : block.lanes;
+    } else if (isInLanes(kind, real)) {
       form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
+    }
     const bool isPredicated = form.lanes > 1;
     const Version& version = versionFor(real);
     const Module& module = isPredicated ? version.predicated : version.plain;
     std::optional<analysis::Uniformity> uniformity;
     if (isPredicated) uniformity.emplace(module, module.kernels[request.kernel]);
-    const EntrySource source{
-        module, module.kernels[request.kernel], slots, uniformity ? &*uniformity : nullptr, form,
-        level,  debug_ ? &*debug_ : nullptr};
+    const EntrySource source{module,
+                             module.kernels[request.kernel],
+                             slots,
+                             uniformity ? &*uniformity : nullptr,
+                             rowPlan,
+                             block.rows,
+                             form,
+                             level,
+                             debug_ ? &*debug_ : nullptr};
     const std::string name = request.symbol + suffix(made);
-    table.entries.push_back(
-        {writeEntry(code_, source, kind, name), kind, real, level.level, isContracted, form.lanes});
+    table.entries.push_back({writeEntry(code_, source, kind, name), kind, real, level.level, isContracted,
+                             form.lanes, block.rows});
   }
 
   const Version& versionFor(Real real) {
@@ -162,7 +199,7 @@ class Compilation {
   }
 
   static std::string suffix(const EntryForm& made) {
-    static constexpr const char* kinds[] = {".run", ".fold", ".combine", ".identity", ".borders", ".apply"};
+    static constexpr const char* kinds[] = {".run", ".fold", ".combine", ".identity", ".borders", ".apply", ".rows"};
     static constexpr const char* reals[] = {"", ".double", ".quad"};
     static constexpr const char* levels[] = {"", ".v3", ".v4"};
     return std::string(kinds[static_cast<std::size_t>(made.kind)]) +
@@ -185,6 +222,7 @@ class Compilation {
 std::string compile(const Module& module, const std::vector<KernelRequest>& kernels,
                     const CompileLibrary& compileLibrary, const Options& options, Output output) {
   Compilation compilation(module, compileLibrary, options);
+  if (output != Output::Llvm) compilation.discardNames();
   for (const KernelRequest& request : kernels) compilation.add(request);
   return compilation.write(output);
 }

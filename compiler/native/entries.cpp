@@ -33,7 +33,8 @@ class EntryWriter {
 
   llvm::Function* write(EntryKind kind) {
     switch (kind) {
-      case EntryKind::Run: run(); break;
+      case EntryKind::Run:
+      case EntryKind::RunRows: run(kind == EntryKind::Run ? 1 : s_.rows); break;
       case EntryKind::Fold: fold(); break;
       case EntryKind::Combine: combine(); break;
       case EntryKind::Identity: values(ParamRole::Accumulator, [&] { return identities(); }); break;
@@ -129,29 +130,43 @@ class EntryWriter {
     return found;
   }
 
-  /// Calls the entry; its mask says which lanes have an element.
+  /// Adds the entry's mask, which says what lanes have an element.
+  void addMask(std::vector<Parts>& arguments, llvm::Value* element, llvm::Value* count) {
+    if (l_.count() == 1 || !entryMask(s_.module, s_.kernel)) return;
+    llvm::Value* const left = b_.CreateTrunc(b_.CreateSub(count, element), b_.getInt32Ty());
+    arguments.push_back({{b_.CreateICmpSLT(l_.laneNumbers(b_.getInt32Ty()), l_.spread(left))}});
+  }
   CallResult call(std::vector<Parts> arguments, llvm::Value* element, llvm::Value* count) {
-    if (l_.count() > 1 && entryMask(s_.module, s_.kernel)) {
-      llvm::Value* const left = b_.CreateTrunc(b_.CreateSub(count, element), b_.getInt32Ty());
-      arguments.push_back({{b_.CreateICmpSLT(l_.laneNumbers(b_.getInt32Ty()), l_.spread(left))}});
-    }
+    addMask(arguments, element, count);
     return inlineCall(context_, s_.kernel.entry, arguments);
   }
 
   // ---- kernels ----------------------------------------------------------------------------------
 
-  void run() {
+  void run(std::uint32_t rows) {
     begin(2, 0);
     streams_.begin(function_->getArg(0), function_->getArg(1), prologue_);
     if (isReordered(s_.module, s_.kernel)) streams_.numberRecords();
     llvm::Value* const count = streams_.chunkCount();
     loop(number(0), count, l_.count(), [&](llvm::Value* element) {
       streams_.moveTo(element);
-      std::vector<Parts> arguments;
-      for (std::uint32_t i = 0; i < s_.kernel.params.size(); ++i) arguments.push_back(argument(i));
-      const CallResult called = call(std::move(arguments), element, count);
+      std::vector<std::vector<Parts>> arguments(rows);
+      for (std::uint32_t row = 0; row < rows; ++row) {
+        streams_.selectRow(row);
+        for (std::uint32_t i = 0; i < s_.kernel.params.size(); ++i) arguments[row].push_back(argument(i));
+        addMask(arguments[row], element, count);
+      }
+      streams_.selectRow(0);
+      const std::vector<CallResult> called =
+          rows > 1 ? inlineRows(context_, *s_.rowPlan, arguments)
+                   : std::vector{inlineCall(context_, s_.kernel.entry, arguments.front())};
       const std::vector<std::uint32_t> outputs = paramsOf(ParamRole::Output);
-      for (std::size_t i = 0; i < outputs.size(); ++i) streams_.storeOutput(outputs[i], called.outputs[i]);
+      for (std::uint32_t row = 0; row < rows; ++row) {
+        streams_.selectRow(row);
+        for (std::size_t i = 0; i < outputs.size(); ++i)
+          streams_.storeOutput(outputs[i], called[row].outputs[i]);
+      }
+      streams_.selectRow(0);
     });
     end();
   }

@@ -12,6 +12,7 @@
 #include "analysis/uniformity.hpp"
 #include "ir/ir.hpp"
 #include "native/lanes.hpp"
+#include "native/row_plan.hpp"
 #include "native/streams.hpp"
 #include "native/target.hpp"
 
@@ -25,6 +26,8 @@ struct EntrySource {
   const ir::Kernel& kernel;
   const SlotPlan& slots;
   const analysis::Uniformity* uniformity;  ///< null with one lane
+  const RowPlan* rowPlan;  ///< null unless a RunRows is written
+  std::uint32_t rows;  ///< of that
   Form form;
   CpuLevel level;
   DebugInfo* debug;
@@ -34,8 +37,8 @@ struct EntrySource {
 llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, sk::native::EntryKind kind,
                            const std::string& name);
 
-/// What a kernel needs: Run, or Fold and, with identities, Identity; Combine where it folds accumulators into
-/// accumulators; Borders where a gather with slots has one; Apply where it scatters.
+/// What a kernel needs, apart from RunRows: Run, or Fold and, with identities, Identity; Combine where it folds accumulators
+/// into accumulators; Borders where a gather with slots has one; Apply where it scatters.
 std::vector<sk::native::EntryKind> entriesOf(const ir::Module& module, const ir::Kernel& kernel);
 
 }  // namespace skc::native

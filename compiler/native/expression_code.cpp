@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <bit>
 #include <cstddef>
+#include <utility>
 
 #include <llvm/IR/Constants.h>
 #include <llvm/IR/Intrinsics.h>
@@ -10,6 +11,7 @@
 #include "ir/walk.hpp"
 #include "native/arithmetic.hpp"
 #include "native/function_code.hpp"
+#include "native/halves.hpp"
 #include "sk/native/table.hpp"
 #include "support/overloaded.hpp"
 
@@ -18,14 +20,24 @@ namespace skc::native {
 using namespace ir;
 
 Parts FunctionCode::expression(const Expr& expr) {
+  if (shared_ && std::holds_alternative<GatherRead>(expr.node) && plan_->isShared(expr)) return shared(expr);
   return match(expr.node, [&](const auto& node) { return parts(expr, node); });
+}
+
+/// What all rows read is read once.
+Parts FunctionCode::shared(const Expr& expr) {
+  const auto known = shared_->find(&expr);
+  if (known != shared_->end()) return known->second;
+  const Parts value = parts(expr, std::get<GatherRead>(expr.node));
+  shared_->emplace(&expr, value);
+  return value;
 }
 
 std::vector<Parts> FunctionCode::expressions(const std::vector<ExprPtr>& list) {
   std::vector<Parts> all;
   for (const ExprPtr& expr : list) {
     const auto* var = std::get_if<VarRef>(&expr->node);
-    const bool isStream = var != nullptr && variables_[var->var].empty();
+    const bool isStream = var != nullptr && variables_[0][var->var].empty();
     all.push_back(isStream ? Parts() : expression(*expr));
   }
   return all;
@@ -78,12 +90,14 @@ Parts FunctionCode::either(llvm::Value* condition, const std::function<Parts()>&
   llvm::BasicBlock* const noBlock = newBlock("no");
   llvm::BasicBlock* const end = newBlock("either");
   b.CreateCondBr(condition, yesBlock, noBlock);
+  const auto outer = std::exchange(shared_, std::nullopt);  // what a branch reads is not there after it
   b.SetInsertPoint(yesBlock);
   Parts a = yes();
   llvm::BasicBlock* const yesEnd = b.GetInsertBlock();
   b.SetInsertPoint(noBlock);
   Parts c = no();
   llvm::BasicBlock* const noEnd = b.GetInsertBlock();
+  shared_ = outer;
   const auto isSame = [&](const Part& x, const Part& y) {
     return x.isConsecutive == y.isConsecutive && l.isVector(x.value) == l.isVector(y.value);
   };
@@ -143,21 +157,24 @@ Parts FunctionCode::parts(const Expr& expr, const Binary& n) {
     return n.op == BinaryOp::LogicalAnd ? either(lhs[0].value, asked, known)
                                         : either(lhs[0].value, known, asked);
   }
-  const Parts rhs = expression(*n.rhs);
+  return arithmetic(n.op, expr.type, n.lhs->type, lhs, n.rhs->type, expression(*n.rhs));
+}
+
+Parts FunctionCode::arithmetic(BinaryOp op, Type type, Type left, const Parts& lhs, Type right,
+                               const Parts& rhs) {
   const llvm::IRBuilderBase::FastMathFlagGuard guard(b);
   b.setFastMathFlags(flagsOfText());
-  const Type left = n.lhs->type, right = n.rhs->type;
-  if (n.op == BinaryOp::Mul && left.isMatrix() && !right.isScalar()) {
+  if (op == BinaryOp::Mul && left.isMatrix() && !right.isScalar()) {
     return matrixProduct(lhs, rhs, left.width, right.isVector());
   }
   Parts all;
   const std::size_t width = std::max(lhs.size(), rhs.size());
   for (std::size_t i = 0; i < width; ++i) {
-    all.push_back(binary(l, n.op, left.scalar, lhs[lhs.size() == 1 ? 0 : i], rhs[rhs.size() == 1 ? 0 : i]));
+    all.push_back(binary(l, op, left.scalar, lhs[lhs.size() == 1 ? 0 : i], rhs[rhs.size() == 1 ? 0 : i]));
   }
-  if (all.size() == 1 || !expr.type.isScalar()) return all;
+  if (all.size() == 1 || !type.isScalar()) return all;
   // matrices are equal or not as a whole
-  const BinaryOp join = n.op == BinaryOp::Equal ? BinaryOp::LogicalAnd : BinaryOp::LogicalOr;
+  const BinaryOp join = op == BinaryOp::Equal ? BinaryOp::LogicalAnd : BinaryOp::LogicalOr;
   Part whole = all[0];
   for (std::size_t i = 1; i < all.size(); ++i) whole = binary(l, join, Scalar::Bool, whole, all[i]);
   return {whole};

@@ -14,38 +14,61 @@ using namespace ir;
 
 CallResult inlineCall(const KernelContext& context, FunctionId function,
                       const std::vector<Parts>& arguments) {
-  return FunctionCode(context, function).write(arguments);
+  return FunctionCode(context, function).write({arguments}).front();
+}
+
+std::vector<CallResult> inlineRows(const KernelContext& context, const RowPlan& plan,
+                                   const std::vector<std::vector<Parts>>& arguments) {
+  return FunctionCode(context, context.kernel.entry, &plan).write(arguments);
 }
 
 Parts constantParts(const KernelContext& context, const Expr& expr) {
   return FunctionCode(context, context.kernel.entry).expression(expr);
 }
 
-FunctionCode::FunctionCode(const KernelContext& context, FunctionId function)
+FunctionCode::FunctionCode(const KernelContext& context, FunctionId function, const RowPlan* plan)
     : k(context),
       l(context.lanes),
       b(context.lanes.b),
       function_(context.module.functions[function]),
-      id_(function) {}
+      id_(function),
+      plan_(plan),
+      isInAllRows_(plan != nullptr) {}
 
-CallResult FunctionCode::write(const std::vector<Parts>& arguments) {
+std::vector<CallResult> FunctionCode::write(const std::vector<std::vector<Parts>>& arguments) {
   const DebugScope scope(k.debug, b, function_);
-  declareAll();
+  const std::size_t rows = arguments.size();
+  declareAll(rows);
   exit_ = newBlock("return");
-  for (VarId i = 0; i < function_.parameterCount; ++i) {
-    if (!variables_[i].empty()) store(variable(i), arguments[i]);
+  for (std::size_t row = 0; row < rows; ++row) {
+    selectRow(row);
+    for (VarId i = 0; i < function_.parameterCount; ++i) {
+      if (!variables_[0][i].empty()) store(variable(i), arguments[row][i]);
+    }
   }
+  selectRow(0);
   block(function_.body);
   branch(exit_);
   b.SetInsertPoint(exit_);
-  CallResult called;
-  Place result{function_.result, {}};
-  for (const LeafMemory& memory : result_) result.leaves.push_back({&memory, {l.integer(l.int32(), 0)}, 0});
-  called.result = load(result);
-  for (VarId i = 0; i < function_.parameterCount; ++i) {
-    if (function_.variables[i].role == VarRole::InOut) called.outputs.push_back(load(variable(i)));
+  std::vector<CallResult> called(rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    selectRow(row);
+    Place result{function_.result, {}};
+    for (const LeafMemory& memory : result_) result.leaves.push_back({&memory, {l.integer(l.int32(), 0)}, 0});
+    called[row].result = load(result);
+    for (VarId i = 0; i < function_.parameterCount; ++i) {
+      if (function_.variables[i].role == VarRole::InOut) called[row].outputs.push_back(load(variable(i)));
+    }
   }
+  selectRow(0);
   return called;
+}
+
+/// Functions that the entry calls are written for the row that calls them.
+void FunctionCode::selectRow(std::size_t row) {
+  if (plan_ == nullptr) return;
+  row_ = row;
+  k.streams.selectRow(row);
 }
 
 // ---- statements -----------------------------------------------------------------------------------
@@ -62,8 +85,28 @@ void FunctionCode::startUnreachable() { b.SetInsertPoint(newBlock("unreachable")
 void FunctionCode::block(const Block& statements) {
   for (const Stmt& stmt : statements) {
     if (k.debug != nullptr) k.debug->moveTo(b, stmt.loc);
+    write(stmt);
+  }
+}
+
+void FunctionCode::write(const Stmt& stmt) {
+  if (isInAllRows_ && !plan_->isJoint(stmt)) return writeInEachRow(stmt);
+  match(stmt.node, [&](const auto& node) { write(node); });
+}
+
+/// Control flow that differs from row to row is run through by one row after the other, and shares nothing.
+void FunctionCode::writeInEachRow(const Stmt& stmt) {
+  const bool branches = std::holds_alternative<If>(stmt.node) || std::holds_alternative<Loop>(stmt.node) ||
+                        std::holds_alternative<Switch>(stmt.node);
+  isInAllRows_ = false;
+  if (!branches) shared_.emplace();
+  for (std::size_t row = 0; row < variables_.size(); ++row) {
+    selectRow(row);
     match(stmt.node, [&](const auto& node) { write(node); });
   }
+  shared_.reset();
+  isInAllRows_ = true;
+  selectRow(0);
 }
 
 llvm::Value* FunctionCode::condition(const Expr& expr) { return expression(expr)[0].value; }
@@ -80,8 +123,8 @@ void FunctionCode::write(const Declare& n) {
 
 void FunctionCode::write(const Assign& n) {
   if (!n.op) return assign(*n.place, expression(*n.value));
-  const ExprPtr combined = ir::binary(*n.op, clone(*n.place), clone(*n.value), n.place->loc);
-  assign(*n.place, expression(*combined));
+  const Type type = n.place->type;
+  assign(*n.place, arithmetic(*n.op, type, type, expression(*n.place), n.value->type, expression(*n.value)));
 }
 
 void FunctionCode::write(const CallStmt& n) {

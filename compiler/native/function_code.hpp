@@ -5,6 +5,7 @@
 // which `predicate` sees to; with one lane, any function will do.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "native/intrinsics.hpp"
 #include "native/lanes.hpp"
 #include "native/leaves.hpp"
+#include "native/row_plan.hpp"
 #include "native/streams.hpp"
 
 namespace skc::native {
@@ -40,6 +42,11 @@ struct CallResult {
 /// for each parameter; those of streams are empty.
 CallResult inlineCall(const KernelContext& context, ir::FunctionId function,
                       const std::vector<Parts>& arguments);
+
+/// The same for the kernel's entry in several rows at once: arguments and results of each. The streams' row is afterwards
+/// the first.
+std::vector<CallResult> inlineRows(const KernelContext& context, const RowPlan& plan,
+                                   const std::vector<std::vector<Parts>>& arguments);
 
 /// The parts of an expression without variables: a constant, a border, an identity.
 Parts constantParts(const KernelContext& context, const ir::Expr& expr);
@@ -68,15 +75,18 @@ struct Place {
 
 class FunctionCode {
  public:
-  FunctionCode(const KernelContext& context, ir::FunctionId function);
+  /// `plan` where it is written for several rows.
+  FunctionCode(const KernelContext& context, ir::FunctionId function, const RowPlan* plan = nullptr);
 
-  CallResult write(const std::vector<Parts>& arguments);
+  /// For each row, from its arguments.
+  std::vector<CallResult> write(const std::vector<std::vector<Parts>>& arguments);
   Parts expression(const ir::Expr& expr);
 
  private:
   // ---- variables and places (places.cpp)
-  void declareAll();
+  void declareAll(std::size_t rows);
   LeafMemory memoryOf(const std::string& name, const Leaf& leaf, analysis::Shape shape) const;
+  const std::vector<LeafMemory>& memoryOf(ir::VarId var) const;
   std::optional<Place> placeOf(const ir::Expr& expr);
   Place variable(ir::VarId var) const;
   Part indexInside(const ir::Expr& index, std::uint32_t length);
@@ -90,6 +100,9 @@ class FunctionCode {
 
   // ---- statements (function_code.cpp)
   void block(const ir::Block& statements);
+  void write(const ir::Stmt& stmt);
+  void writeInEachRow(const ir::Stmt& stmt);
+  void selectRow(std::size_t row);
   void write(const ir::Declare& n);
   void write(const ir::Assign& n);
   void write(const ir::CallStmt& n);
@@ -111,6 +124,9 @@ class FunctionCode {
   // ---- expressions (expression_code.cpp)
   /// For products and sums that the text writes, unlike those within functions of the library and in conversions.
   llvm::FastMathFlags flagsOfText() const;
+  Parts shared(const ir::Expr& expr);
+  Parts arithmetic(ir::BinaryOp op, ir::Type type, ir::Type left, const Parts& lhs, ir::Type right,
+                   const Parts& rhs);
   Parts parts(const ir::Expr& expr, const ir::Literal& n);
   Parts parts(const ir::Expr& expr, const ir::VarRef& n);
   Parts parts(const ir::Expr& expr, const ir::ConstantRef& n);
@@ -142,7 +158,13 @@ class FunctionCode {
   llvm::IRBuilder<>& b;
   const ir::Function& function_;
   ir::FunctionId id_;
-  std::vector<std::vector<LeafMemory>> variables_;
+  const RowPlan* plan_;
+  std::size_t row_ = 0;  ///< that code is written for now
+  bool isInAllRows_;  ///< what is written now is executed by all rows, one after the other or together
+  /// What the first row has read for all of them, while a statement is written in each row.
+  std::optional<std::map<const ir::Expr*, Parts>> shared_;
+  std::vector<std::vector<std::vector<LeafMemory>>>
+      variables_;  ///< by row and variable; the first row has all
   std::vector<LeafMemory> result_;
   llvm::BasicBlock* exit_ = nullptr;
   /// Where a jump goes to: of a Switch, `next` is that of the loop around it.

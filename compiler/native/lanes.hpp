@@ -27,6 +27,7 @@ struct Form {
   std::uint32_t lanes = 1;
   sk::native::Real real = sk::native::Real::Float;
   bool hasMaskRegisters = false;  ///< vectors of bool cost nothing to keep (AVX-512)
+  bool convertsHalves = false;  ///< in hardware
   bool isContracted = false;  ///< products and sums of the text may be fused
 };
 

@@ -28,11 +28,14 @@ LeafMemory FunctionCode::memoryOf(const std::string& name, const Leaf& leaf, Sha
   return {allocas.CreateAlloca(type, nullptr, name), element, leaf.scalar, leaf.dimensions, shape};
 }
 
-void FunctionCode::declareAll() {
+void FunctionCode::declareAll(std::size_t rows) {
+  variables_.resize(rows);
   for (VarId var = 0; var < function_.variables.size(); ++var) {
     const Variable& variable = function_.variables[var];
-    std::vector<LeafMemory> memory;
-    if (variable.role != VarRole::Gather && variable.role != VarRole::Sink) {
+    for (std::size_t row = 0; row < rows; ++row) {
+      std::vector<LeafMemory>& memory = variables_[row].emplace_back();
+      const bool isStream = variable.role == VarRole::Gather || variable.role == VarRole::Sink;
+      if (isStream || (row > 0 && !plan_->isPerRow(var))) continue;
       const std::vector<Leaf> leaves = leavesOf(k.module, variable.type);
       for (std::size_t i = 0; i < leaves.size(); ++i) {
         const Shape shape = k.uniformity == nullptr ? Shape::Uniform : k.uniformity->of(id_, var)[i];
@@ -40,8 +43,7 @@ void FunctionCode::declareAll() {
       }
     }
     const bool isParameter = var < function_.parameterCount;
-    if (k.debug != nullptr) k.debug->declare(b, variable, isParameter ? var + 1 : 0, memory);
-    variables_.push_back(std::move(memory));
+    if (k.debug != nullptr) k.debug->declare(b, variable, isParameter ? var + 1 : 0, variables_[0][var]);
   }
   const std::vector<Leaf> leaves = leavesOf(k.module, function_.result);
   for (std::size_t i = 0; i < leaves.size(); ++i) {
@@ -50,9 +52,14 @@ void FunctionCode::declareAll() {
   }
 }
 
+const std::vector<LeafMemory>& FunctionCode::memoryOf(VarId var) const {
+  const bool isPerRow = plan_ != nullptr && plan_->isPerRow(var);
+  return variables_[isPerRow ? row_ : 0][var];
+}
+
 Place FunctionCode::variable(VarId var) const {
   Place place{function_.variables[var].type, {}};
-  for (const LeafMemory& memory : variables_[var])
+  for (const LeafMemory& memory : memoryOf(var))
     place.leaves.push_back({&memory, {l.integer(l.int32(), 0)}, 0});
   return place;
 }

@@ -57,8 +57,10 @@ llvm::Value* Streams::load(llvm::Value* base, std::size_t offset, llvm::Type* ty
 
 llvm::Value* Streams::frameField(std::size_t offset, llvm::Type* type) { return load(frame_, offset, type); }
 llvm::Value* Streams::chunkField(std::size_t offset) { return load(chunk_, offset, l.int64()); }
+/// The chunks of several rows differ in y alone.
 llvm::Value* Streams::first(std::size_t dimension) {
-  return chunkField(offsetof(Chunk, first) + dimension * sizeof(std::int64_t));
+  const std::size_t chunk = dimension == 1 ? row_ * sizeof(Chunk) : 0;
+  return chunkField(chunk + offsetof(Chunk, first) + dimension * sizeof(std::int64_t));
 }
 llvm::Value* Streams::tables() { return frameField(offsetof(Frame, tables), l.b.getPtrTy()); }
 
@@ -74,7 +76,7 @@ llvm::Value* Streams::component(std::uint32_t param, std::size_t component) {
   return load(all, component * sizeof(void*), l.b.getPtrTy());
 }
 llvm::Value* Streams::array(std::size_t number) {
-  llvm::Value* const all = load(chunk_, offsetof(Chunk, arrays), l.b.getPtrTy());
+  llvm::Value* const all = load(chunk_, row_ * sizeof(Chunk) + offsetof(Chunk, arrays), l.b.getPtrTy());
   return load(all, number * sizeof(void*), l.b.getPtrTy());
 }
 

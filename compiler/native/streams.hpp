@@ -27,6 +27,8 @@ class Streams {
   void begin(llvm::Value* frame, llvm::Value* chunk, llvm::BasicBlock* prologue);
   /// From here on, code is for the elements from number `element` of the chunk on.
   void moveTo(llvm::Value* element) { element_ = element; }
+  /// Where the function has chunks of several rows, one behind the other: from here on, code is for this one.
+  void selectRow(std::size_t row) { row_ = row; }
 
   /// Records tell from which elements they come.
   void numberRecords() { numbersRecords_ = true; }
@@ -114,6 +116,7 @@ class Streams {
   llvm::BasicBlock* prologue_ = nullptr;
   llvm::Value* element_ = nullptr;
   bool numbersRecords_ = false;
+  std::size_t row_ = 0;
   std::map<std::pair<llvm::Value*, std::size_t>, llvm::Value*> loads_;
   std::map<std::uint32_t, std::vector<ir::Scalar>> scalars_;
   std::map<std::uint32_t, llvm::Function*> laneGathers_;

@@ -22,8 +22,10 @@ struct CpuLevel {
       name;  ///< as --levels has it; also LLVM's name of the CPU. Empty: the target has no levels
   sk::native::Level level;
   std::uint32_t vectorBits;
+  std::uint32_t vectorRegisters;
   bool hasMaskRegisters;
   bool hasFusedMultiplyAdd;
+  bool convertsHalves;  ///< between float and half, whole vectors
 };
 
 class Target {

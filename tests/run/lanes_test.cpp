@@ -10,6 +10,8 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -331,6 +333,73 @@ TEST_CASE("gathers that follow the element's index are right side by side, with 
       CHECK(own.read() == owns);
     }
   }
+}
+
+/// Calls a kernel for all rows together and for each row alone; call(top, kernel's outputs ...) does both.
+template <class... Results, class Call>
+void checkRows(sk::Device& device, std::int64_t rows, std::int64_t columns, Call&& call) {
+  const auto compare = [&](auto together, auto alone) {
+    CHECK(bitsOf(together.read()) == bitsOf(alone.read()));
+  };
+  std::tuple<sk::Stream<Results>...> together{device.stream<Results>({rows, columns})...};
+  std::tuple<sk::Stream<Results>...> alone{device.stream<Results>({rows, columns})...};
+  std::apply([&](auto&... results) { call(0, results.domain({0, 0}, {rows, columns})...); }, together);
+  for (std::int64_t y = 0; y < rows; ++y) {
+    std::apply(
+        [&](auto&... results) { call(static_cast<int>(y), results.domain({y, 0}, {y + 1, columns})...); },
+        alone);
+  }
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (compare(std::move(std::get<I>(together)), std::move(std::get<I>(alone))), ...);
+  }(std::index_sequence_for<Results...>());
+}
+
+TEST_CASE("rows that are computed together have every bit of rows computed alone") {
+  sk::Device device = sk::Device::native();
+  constexpr int depth = 13;
+  for (const std::int64_t rows : {1, 2, 4, 7, 8, 9, 17, 24}) {
+    for (const std::int64_t columns : {1, 5, 16, 31, 64, 67, 130}) {
+      INFO(rows << " x " << columns);
+      const auto number = [](int k) { return static_cast<float>(scattered(k) % 1000) / 7; };
+      const auto fours = [&](int k) {
+        return sk::float4{number(k), number(k + 1), number(k + 7), -number(k + 3)};
+      };
+      const auto small = [](int k) { return scattered(k) % 17 - 3; };
+      const int left = static_cast<int>(rows) * depth, right = static_cast<int>(columns) * depth;
+      const auto a = streamOf(device, {rows, depth}, list(left, number));
+      const auto b = streamOf(device, {depth, columns}, list(right, number));
+      checkRows<float>(device, rows, columns, [&](int top, auto r) { lanes::product(top, a, b, r); });
+      const auto a4 = streamOf(device, {rows, depth}, list(left, fours));
+      const auto b4 = streamOf(device, {depth, columns}, list(right, fours));
+      auto zero = device.stream<sk::float4>({1, columns});
+      zero.write(std::vector<sk::float4>(static_cast<std::size_t>(columns)));
+      checkRows<sk::float4>(device, rows, columns,
+                            [&](int top, auto r) { lanes::blocks(top, a4, b4, zero, r); });
+      const auto ai = streamOf(device, {rows, depth}, list(left, small));
+      const auto bi = streamOf(device, {depth, columns}, list(right, small));
+      checkRows<int, sk::float2>(device, rows, columns,
+                                 [&](int top, auto r, auto s) { lanes::parting(top, ai, bi, 10, r, s); });
+    }
+  }
+}
+
+TEST_CASE("a product of matrices is what a loop gives") {
+  sk::Device device = sk::Device::native();
+  constexpr std::size_t rows = 19, depth = 21, columns = 83;
+  const std::vector<float> a =
+      list(rows * depth, [](int k) { return static_cast<float>(scattered(k) % 100) / 3; });
+  const std::vector<float> b =
+      list(depth * columns, [](int k) { return static_cast<float>(scattered(k) % 77) / 9; });
+  auto r = device.stream<float>({rows, columns});
+  lanes::product(0, streamOf(device, {rows, depth}, a), streamOf(device, {depth, columns}, b), r);
+  std::vector<float> expected(rows * columns);
+  for (std::size_t y = 0; y < rows; ++y) {
+    for (std::size_t k = 0; k < depth; ++k) {
+      for (std::size_t x = 0; x < columns; ++x)
+        expected[y * columns + x] += a[y * depth + k] * b[k * columns + x];
+    }
+  }
+  CHECK(bitsOf(r.read()) == bitsOf(expected));
 }
 
 }  // namespace

@@ -14,17 +14,38 @@ ChunkRunner::ChunkRunner(const SlotLayout& layout, const native::Entry& run, con
       function_(functionOf<native::RunFunction>(run)),
       lanes_(run.lanes),
       frame_(frame),
-      arrays_(layout, mostLaidOut, layout.isDirect() ? 0 : mostLaidOut),
+      rows_(run.rows),
       hook_(std::move(hook)) {
-  chunk_.arrays = arrays_.get();
-  chunk_.step = 1;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    arrays_[row].emplace(layout, mostLaidOut, layout.isDirect() ? 0 : mostLaidOut);
+    chunks_[row].arrays = arrays_[row]->get();
+    chunks_[row].step = 1;
+  }
 }
 
-void ChunkRunner::moveTo(const Extents& first) { std::ranges::copy(first, chunk_.first); }
+/// Rows that are not wanted compute the last one again, and nobody looks at what.
+void ChunkRunner::moveTo(const Extents& first, std::size_t rows) {
+  wanted_ = rows;
+  Extents at = first;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    arrays_[row]->moveToRow(at);
+    std::ranges::copy(at, chunks_[row].first);
+    if (row + 1 < wanted_) ++at[1];
+  }
+}
 
-void ChunkRunner::run(const Extents& first, std::int64_t count) {
-  arrays_.moveToRow(first);
-  moveTo(first);
+/// Where no row's gathers need copies.
+native::Range ChunkRunner::inside() const {
+  native::Range all{0, unlimited};
+  for (std::size_t row = 0; row < rows_; ++row) {
+    const native::Range one = arrays_[row]->inside();
+    all = {std::max(all.begin, one.begin), std::min(all.end, one.end)};
+  }
+  return all;
+}
+
+void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows) {
+  moveTo(first, rows);
   const std::int64_t begin = first[0];
   const std::int64_t end = begin + count;
   if (layout_.goesByElement()) {
@@ -37,7 +58,7 @@ void ChunkRunner::run(const Extents& first, std::int64_t count) {
     return;
   }
   // a few groups at both ends of a row look over its margins; the elements between them are read where they lie
-  const native::Range inside = arrays_.inside();
+  const native::Range inside = this->inside();
   const std::int64_t left =
       std::min(end, begin + roundUp(std::max<std::int64_t>(inside.begin - begin, 0), lanes_));
   const std::int64_t groups = (std::min(inside.end, end) - left) / lanes_;
@@ -58,11 +79,15 @@ void ChunkRunner::runPart(std::int64_t begin, std::int64_t end, std::int64_t lon
 }
 
 void ChunkRunner::call(std::int64_t x, std::int64_t count, std::int64_t room) {
-  arrays_.place(x, count, room);
-  chunk_.first[0] = x;
-  chunk_.count = count;
-  function_(frame_, &chunk_);
-  if (count < room) arrays_.storeOutputs(x, count);
+  for (std::size_t row = 0; row < rows_; ++row) {
+    arrays_[row]->place(x, count, room, 1, row < wanted_);
+    chunks_[row].first[0] = x;
+    chunks_[row].count = count;
+  }
+  function_(frame_, chunks_.data());
+  if (count < room) {
+    for (std::size_t row = 0; row < wanted_; ++row) arrays_[row]->storeOutputs(x, count);
+  }
   if (hook_.after) hook_.after();
 }
 

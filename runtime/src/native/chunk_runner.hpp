@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs a kernel's object code on neighbours in a row: divides them into chunks that the code can take, whole groups of its lanes
-// wherever possible.
+// Runs a kernel's object code on neighbours in a row, or in several rows at once: divides them into chunks that the code can
+// take, whole groups of its lanes wherever possible.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "native/call.hpp"
 #include "native/entries.hpp"
@@ -25,32 +27,38 @@ struct ChunkHook {
 /// For one thread.
 class ChunkRunner {
  public:
+  /// `run` is an entry of kind Run or RunRows.
   ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame,
               ChunkHook hook = {});
 
   /// `count` elements from `first` on.
-  void run(const native::Extents& first, std::int64_t count);
+  void run(const native::Extents& first, std::int64_t count) { run(first, count, 1); }
+  /// `count` elements in each of `rows` rows, at most as many as the entry computes together and, where they are fewer, no more than
+  /// native::mostLanes elements.
+  void run(const native::Extents& first, std::int64_t count, std::size_t rows);
 
   /// Likewise at most mostLaidOut of them, as one chunk whose arrays after(arrays) can look at.
   template <class After>
   void runChunk(const native::Extents& first, std::int64_t count, After&& after) {
-    arrays_.moveToRow(first);
-    moveTo(first);
+    moveTo(first, 1);
     call(first[0], count, roundUp(count, lanes_));
-    after(arrays_.get());
+    after(arrays_.front()->get());
   }
 
  private:
-  void moveTo(const native::Extents& first);
+  void moveTo(const native::Extents& first, std::size_t rows);
   void runPart(std::int64_t begin, std::int64_t end, std::int64_t longest);
+  native::Range inside() const;
   void call(std::int64_t x, std::int64_t count, std::int64_t room);
 
   const SlotLayout& layout_;
   native::RunFunction* function_;
   std::int64_t lanes_;
   const native::Frame* frame_;
-  SlotArrays arrays_;
-  native::Chunk chunk_{};
+  std::size_t rows_;  ///< that the entry computes together
+  std::size_t wanted_ = 1;  ///< of these
+  std::array<std::optional<SlotArrays>, native::mostRows> arrays_;  ///< of each row
+  std::array<native::Chunk, native::mostRows> chunks_;
   ChunkHook hook_;
 };
 

@@ -37,6 +37,7 @@ std::string_view nameOf(Level level) {
 std::string_view nameOf(EntryKind kind) {
   switch (kind) {
     case EntryKind::Run: return "computes it";
+    case EntryKind::RunRows: return "computes several rows";
     case EntryKind::Fold: return "folds elements";
     case EntryKind::Combine: return "combines partial results";
     case EntryKind::Identity: return "gives its identities";

@@ -41,7 +41,8 @@ native::Entry entry(native::EntryKind kind, Function* function, native::Real rea
           .real = real,
           .level = native::Level::Base,
           .isContracted = 0,
-          .lanes = testLanes};
+          .lanes = testLanes,
+          .rows = 1};
 }
 
 /// A kernel with its code. It must stay where it is.

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "native/call.hpp"
+#include "sk/native/code.hpp"
 #include "sk/native/parallel.hpp"
 
 namespace sk {
@@ -46,6 +47,39 @@ class RowPieces {
   native::Extents domain_;
   std::int64_t longest_;
   std::int64_t perRow_;
+};
+
+/// The rows of a domain in blocks of several, and these in pieces along x. Blocks below each other follow one another: what
+/// their rows read together stays in the cache.
+class RowBlocks {
+ public:
+  RowBlocks(const native::Extents& domain, std::int64_t rows)
+      : domain_(domain),
+        rows_(rows),
+        perColumn_((domain[1] + rows - 1) / rows),
+        perRow_((domain[0] + width - 1) / width) {}
+
+  std::int64_t count() const { return perColumn_ * perRow_ * domain_[2] * domain_[3]; }
+  std::int64_t elementsOfOne() const { return std::min(domain_[0], width) * rows_; }
+
+  /// visit(first, count, rows) for each of these blocks: `count` elements in each of `rows` rows.
+  template <class Visit>
+  void forEach(native::Range blocks, Visit&& visit) const {
+    for (std::int64_t block = blocks.begin; block < blocks.end; ++block) {
+      const std::int64_t y = block % perColumn_ * rows_;
+      const std::int64_t x = block / perColumn_ % perRow_ * width;
+      const std::int64_t plane = block / perColumn_ / perRow_;
+      const native::Extents first = {x, y, plane % domain_[2], plane / domain_[2]};
+      visit(first, std::min(domain_[0] - x, width), std::min(domain_[1] - y, rows_));
+    }
+  }
+
+ private:
+  static constexpr std::int64_t width = native::mostLanes;
+
+  native::Extents domain_;
+  std::int64_t rows_;
+  std::int64_t perColumn_, perRow_;
 };
 
 }  // namespace sk

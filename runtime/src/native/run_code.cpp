@@ -32,6 +32,7 @@ class CodeRun {
         call_(call),
         choice_(choice),
         entry_(entryOf(kernel, native::EntryKind::Run, choice)),
+        rowsEntry_(findRowsEntry(kernel, call, choice)),
         frame_(kernel, call, memory_.get()),
         layout_(kernel, call, frame_, choice, memory_.get()),
         pieces_(call.domain, kernel.code->isUneven != 0) {}
@@ -40,12 +41,21 @@ class CodeRun {
     if (pieces_.count() == 0) return;
     if (has(Role::VariableOutput) || has(Role::Scatter)) {
       record();
+    } else if (rowsEntry_ != nullptr) {
+      runBlocks();
     } else {
       inParallel(pieces_.count(), [&](Range range) { runPieces(range, frame_.get()); });
     }
   }
 
  private:
+  /// The entry that computes several rows at once, if the domain has half as many.
+  static const native::Entry* findRowsEntry(const Kernel& kernel, const native::Call& call,
+                                            const CodeChoice& choice) {
+    const native::Entry* const found = findEntry(*kernel.code, native::EntryKind::RunRows, choice);
+    return found != nullptr && 2 * call.domain[1] >= found->rows ? found : nullptr;
+  }
+
   bool has(Role role) const {
     return std::ranges::any_of(kernel_.parameters,
                                [&](const program::Parameter& p) { return p.role == role; });
@@ -54,6 +64,16 @@ class CodeRun {
   void runPieces(Range range, const native::Frame* frame, const ChunkHook& hook = {}) const {
     ChunkRunner runner(layout_, entry_, frame, hook);
     pieces_.forEachRun(range, [&](const Extents& first, std::int64_t count) { runner.run(first, count); });
+  }
+
+  void runBlocks() const {
+    const RowBlocks blocks(call_.domain, rowsEntry_->rows);
+    native::inParallel(blocks.count(), blocks.elementsOfOne() << 6, Deal::AsTheyCome, [&](Range range) {
+      ChunkRunner runner(layout_, *rowsEntry_, frame_.get());
+      blocks.forEach(range, [&](const Extents& first, std::int64_t count, std::int64_t rows) {
+        runner.run(first, count, static_cast<std::size_t>(rows));
+      });
+    });
   }
 
   bool isUneven() const { return kernel_.code->isUneven != 0; }
@@ -136,6 +156,7 @@ class CodeRun {
   const native::Call& call_;
   CodeChoice choice_;
   const native::Entry& entry_;
+  const native::Entry* rowsEntry_;
   CallMemory memory_;
   CodeFrame frame_;
   SlotLayout layout_;

@@ -148,12 +148,12 @@ void SlotArrays::moveToRow(const Extents& first) {
   }
 }
 
-void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step) {
+void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step, bool keeps) {
   const std::span<const Slot> slots = layout_.slots();
   for (std::size_t s = 0; s < slots.size(); ++s) {
     switch (slots[s].kind) {
       case SlotLayout::Kind::Input: placeInput(s, x, count, room, step); break;
-      case SlotLayout::Kind::Output: placeOutput(s, x, slots[s].isGiven && count == room); break;
+      case SlotLayout::Kind::Output: placeOutput(s, x, keeps && slots[s].isGiven && count == room); break;
       case SlotLayout::Kind::Gather: placeGather(s, x, count, room); break;
     }
   }

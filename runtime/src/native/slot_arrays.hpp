@@ -92,8 +92,9 @@ class SlotArrays {
   /// From here on, chunks are in the row of this element.
   void moveToRow(const native::Extents& first);
 
-  /// `count` elements from `x` on, `step` apart. The arrays may be read and written up to `room` elements.
-  void place(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step = 1);
+  /// `count` elements from `x` on, `step` apart. The arrays may be read and written up to `room` elements. Outputs are written where
+  /// they are only if `keeps` is true and there is no need for room.
+  void place(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step = 1, bool keeps = true);
   /// Outputs that were not written where they are go there.
   void storeOutputs(std::int64_t x, std::int64_t count);
 

@@ -10,6 +10,7 @@
 // strides have the fastest dimension first.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "sk/native/table.hpp"
@@ -19,6 +20,9 @@ namespace sk::native {
 /// Elements that a function computes together, at most. Every array of a Chunk and of a State may be read and written up to
 /// its count rounded up to Entry::lanes.
 inline constexpr std::int64_t mostLanes = 64;
+
+/// Rows that a function computes together, at most.
+inline constexpr std::size_t mostRows = 12;
 
 /// Records of what elements push to a variable output or store to a scatter output: the latest group of lanes last, and within a
 /// group in the order in which its code comes to them. The runtime brings them into the order of elements (Code::isReordered)
@@ -78,6 +82,8 @@ struct Slot {
 
 /// void(const Frame*, const Chunk*): computes a chunk.
 using RunFunction = void(const Frame*, const Chunk*);
+/// The same for Entry::rows chunks in consecutive rows, of the same elements along x and `count`.
+using RunRowsFunction = void(const Frame*, const Chunk* chunks);
 /// Folds a chunk into `columns` accumulators side by side. Element k + r * columns is folded into column k, in order of r.
 /// `state` has an array for each scalar of the accumulators. Where `starts` is 1, columns begin with the identity or, of a
 /// seeded reduction, with their first element; else with what `state` holds.
@@ -91,7 +97,7 @@ using ApplyFunction = void(const Frame*, const Sink* sink, std::int64_t paramete
 /// all components of one parameter after the other.
 using ValuesFunction = void(const Frame*, void* const* values);
 
-enum class EntryKind : std::uint8_t { Run, Fold, Combine, Identity, Borders, Apply };
+enum class EntryKind : std::uint8_t { Run, Fold, Combine, Identity, Borders, Apply, RunRows };
 enum class Real : std::uint8_t { Float, Double, Quad };  ///< what stands for the language's float
 /// Generations of a CPU, of which each runs what those before it run: x86-64, x86-64-v3, x86-64-v4. Other CPUs have one.
 enum class Level : std::uint8_t { Base, V3, V4 };
@@ -102,7 +108,8 @@ struct Entry {
   Real real;
   Level level;
   std::uint8_t isContracted;  ///< multiplications and additions may be fused
-  std::uint8_t lanes;  ///< elements computed together: a power of 2
+  std::uint8_t lanes;  ///< elements of a row computed together: a power of 2
+  std::uint8_t rows;  ///< that RunRows computes together; 1 for all others
 };
 
 /// All that was compiled for one kernel.

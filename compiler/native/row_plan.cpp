@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "native/row_plan.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "ir/build.hpp"
+#include "ir/walk.hpp"
+#include "native/leaves.hpp"
+#include "support/overloaded.hpp"
+
+namespace skc::native {
+
+using namespace ir;
+using analysis::Axis;
+using analysis::Shape;
+using analysis::Uniformity;
+
+namespace {
+
+bool isControl(const Stmt& stmt) {
+  return std::holds_alternative<If>(stmt.node) || std::holds_alternative<Loop>(stmt.node) ||
+         std::holds_alternative<Switch>(stmt.node) || std::holds_alternative<Scope>(stmt.node);
+}
+
+/// visit(variable) for each variable that the statement itself assigns.
+template <class Visit>
+void forEachAssigned(const Module& module, const Stmt& stmt, Visit&& visit) {
+  if (const auto* n = std::get_if<Declare>(&stmt.node)) visit(n->var);
+  if (const auto* n = std::get_if<Assign>(&stmt.node)) visit(rootOf(*n->place));
+  const auto* n = std::get_if<CallStmt>(&stmt.node);
+  if (n == nullptr) return;
+  if (n->result) visit(rootOf(*n->result));
+  const Function& callee = module.functions[n->callee];
+  for (std::size_t i = 0; i < n->args.size(); ++i) {
+    if (callee.variables[i].role == VarRole::InOut) visit(rootOf(*n->args[i]));
+  }
+}
+
+/// visit(loop) for each loop that all rows run through together, inner ones too.
+template <class Visit>
+void forEachJointLoop(const RowPlan& plan, const Block& body, Visit&& visit) {
+  for (const Stmt& stmt : body) {
+    if (!isControl(stmt) || !plan.isJoint(stmt)) continue;
+    if (std::holds_alternative<Loop>(stmt.node)) visit(stmt);
+    forEachBlock(stmt, [&](const Block& inner) { forEachJointLoop(plan, inner, visit); });
+  }
+}
+
+}  // namespace
+
+RowPlan::RowPlan(const Module& module, const Kernel& kernel)
+    : module_(module),
+      kernel_(kernel),
+      entry_(module.functions[kernel.entry]),
+      rows_(module, kernel, Axis::Y) {
+  for (VarId var = 0; var < entry_.variables.size(); ++var) {
+    const auto shapes = rows_.of(kernel.entry, var);
+    const bool isOutput = var < kernel.params.size() && kernel.params[var].role == ParamRole::Output;
+    if (isOutput || std::ranges::any_of(shapes, [](Shape shape) { return shape != Shape::Uniform; }))
+      perRow_.insert(var);
+  }
+  // the rows run one after the other through what diverges, and what one of them assigns there must not reach the next
+  for (std::size_t before = 0; before != perRow_.size();) {
+    before = perRow_.size();
+    addAssigned(entry_.body, false);
+  }
+}
+
+void RowPlan::addAssigned(const Block& body, bool isDivergent) {
+  for (const Stmt& stmt : body) {
+    if (isDivergent || !isJoint(stmt)) addAssignedBy(stmt);
+    forEachBlock(stmt, [&](const Block& inner) {
+      addAssigned(inner, isDivergent || (isControl(stmt) && !isJoint(stmt)));
+    });
+  }
+}
+
+void RowPlan::addAssignedBy(const Stmt& stmt) {
+  forEachAssigned(module_, stmt, [&](VarId var) { perRow_.insert(var); });
+}
+
+bool RowPlan::isJoint(const Stmt& stmt) const {
+  if (isControl(stmt)) return !rows_.diverges(kernel_.entry, stmt) && !rows_.skips(kernel_.entry, stmt);
+  bool isJoint = true;
+  forEachAssigned(module_, stmt, [&](VarId var) { isJoint = isJoint && !isPerRow(var); });
+  return isJoint;
+}
+
+bool RowPlan::isShared(const Expr& expr) const { return rows_.of(kernel_.entry, expr) == Shape::Uniform; }
+
+bool RowPlan::pays(const Uniformity& lanes) const {
+  const bool isElementwise =
+      !kernel_.reduction && std::ranges::none_of(kernel_.params, [](const KernelParam& p) {
+        return p.role == ParamRole::VariableOutput || p.role == ParamRole::Scatter;
+      });
+  if (!isElementwise || rows_.returnsEarly(kernel_.entry)) return false;
+  bool saves = false;
+  forEachJointLoop(*this, entry_.body, [&](const Stmt& loop) {
+    for (const Stmt& stmt : std::get<Loop>(loop.node).body) {
+      forEachOperand(stmt, [&](const ExprPtr& operand) {
+        walkExprs(*operand, [&](const Expr& expr) {
+          saves = saves || (std::holds_alternative<GatherRead>(expr.node) && isShared(expr) &&
+                            lanes.of(kernel_.entry, expr) != Shape::Uniform);
+        });
+      });
+    }
+  });
+  return saves;
+}
+
+std::uint32_t RowPlan::carried() const {
+  std::set<VarId> assigned, inner;
+  forEachJointLoop(*this, entry_.body, [&](const Stmt& loop) {
+    walkStmts(std::get<Loop>(loop.node).body, [&](const Stmt& stmt) {
+      if (const auto* n = std::get_if<Declare>(&stmt.node)) inner.insert(n->var);
+      forEachAssigned(module_, stmt, [&](VarId var) { assigned.insert(var); });
+    });
+  });
+  std::uint32_t scalars = 0;
+  for (const VarId var : assigned) {
+    if (isPerRow(var) && !inner.contains(var)) scalars += componentCount(module_, entry_.variables[var].type);
+  }
+  return scalars;
+}
+
+RowBlock blockFor(const CpuLevel& level, std::uint32_t carried) {
+  // what rows share takes as many registers as one of them carries, and what a row reads some more
+  const std::uint32_t vectors = carried <= 1 ? 2 : 1;
+  const std::uint32_t perRow = vectors * std::max(carried, 1U);
+  const std::uint32_t free = level.vectorRegisters - 3;
+  const std::uint32_t rows = free > 2 * perRow ? (free - perRow) / perRow : 1;
+  return {vectors * level.vectorBits / 32, std::min<std::uint32_t>(rows, sk::native::mostRows)};
+}
+
+}  // namespace skc::native
