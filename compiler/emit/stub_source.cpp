@@ -147,7 +147,7 @@ class SourceWriter {
   /// Those of a reduction: NAMEHalfReduction and NAMEWide.
   void forms(const sk::program::Reduction& made, const Kernel& declared, const std::string& name) {
     if (made.half != nullptr)
-      reductionForm(*made.half, *declared.forms.half, name + "Half", inFloats(Speed::Best));
+      reductionForm(*made.half, *declared.forms.half, name + "Half", inFloats(Speed::Any));
     if (made.wide == nullptr) return;
     reductionForm(made.wide->reduction, *declared.forms.wide, name + "Wide", {});
     kernel(made.wide->finish, *module_.kernels[*declared.forms.wide].reduction->finish, name + "WideFinish",

@@ -4,26 +4,36 @@
 #include <llvm/Analysis/CGSCCPassManager.h>
 #include <llvm/Analysis/LoopAnalysisManager.h>
 #include <llvm/Passes/PassBuilder.h>
+#include <llvm/Support/Error.h>
 
 namespace skc::native {
 
+namespace {
+
+/// What clang -O2 runs takes three times as long for the same code: calls are inlined when the code is written, loops are
+/// unrolled in the IR, and vectors are there from the start.
+constexpr char pipeline[] =
+    "function("
+    "sroa<modify-cfg>,early-cse<memssa>,simplifycfg,instcombine,"  // variables become registers
+    "loop-mssa(loop-rotate,licm),"
+    "gvn,instcombine,simplifycfg,adce)";
+
+}  // namespace
+
 void optimize(llvm::Module& module, llvm::TargetMachine& machine) {
-  llvm::PipelineTuningOptions tuning;
-  tuning.LoopVectorization = false;
-  tuning.SLPVectorization = false;
-  tuning.LoopInterleaving = false;
-  tuning.LoopUnrolling = false;  // unroll-loops has done what pays
   llvm::LoopAnalysisManager loops;
   llvm::FunctionAnalysisManager functions;
   llvm::CGSCCAnalysisManager components;
   llvm::ModuleAnalysisManager modules;
-  llvm::PassBuilder builder(&machine, tuning);
+  llvm::PassBuilder builder(&machine);
   builder.registerModuleAnalyses(modules);
   builder.registerCGSCCAnalyses(components);
   builder.registerFunctionAnalyses(functions);
   builder.registerLoopAnalyses(loops);
   builder.crossRegisterProxies(loops, functions, components, modules);
-  builder.buildPerModuleDefaultPipeline(llvm::OptimizationLevel::O2).run(module, modules);
+  llvm::ModulePassManager passes;
+  llvm::cantFail(builder.parsePassPipeline(passes, pipeline));
+  passes.run(module, modules);
 }
 
 }  // namespace skc::native
