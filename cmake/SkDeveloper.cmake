@@ -10,5 +10,6 @@ endif()
 find_program(SK_CCACHE ccache)
 mark_as_advanced(SK_CCACHE)
 if(SK_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${SK_CCACHE}")
+  # it keeps what is compiled with precompiled headers, too
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;${SK_CCACHE}")
 endif()

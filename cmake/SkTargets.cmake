@@ -23,21 +23,30 @@ function(sk_library target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endfunction()
 
-# sk_compile_together(TARGET [APART SOURCE...]): with SK_UNITY, compiles a dozen sources of a target as one, so that what
-# all of them include is read and instantiated once. APART names sources that stay alone because names in their
-# anonymous namespaces are also another source's. (Precompiled headers cost more than they save: g++ 12 writes 600 MB
-# for Clang's, and reading these takes longer than reading the headers that a source needs.)
+# sk_compile_together(TARGET [BATCH COUNT] [APART SOURCE...]): with SK_UNITY, compiles the sources of a target as one, or COUNT
+# of them at a time, so that what all of them include is read and instantiated once. APART names sources that stay alone
+# because names in their anonymous namespaces are also another source's. (Precompiled headers of the compiler cost more than they
+# save: g++ 12 writes 600 MB for Clang's, and reading these takes longer than reading the headers that a source needs.)
 function(sk_compile_together target)
   if(NOT SK_UNITY)
     return()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 together "" "" "APART")
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+  cmake_parse_arguments(PARSE_ARGV 1 together "" "BATCH" "APART")
+  if(NOT together_BATCH)
+    set(together_BATCH 0)
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${together_BATCH})
   if(together_APART)
     set_source_files_properties(${together_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
-  # Warnings are for sources one by one: a local name of one is a global name of another.
-  target_compile_options(${target} PRIVATE -w)
+  # A local name of one source may be a global name of another, and what g++ 12 inlines across sources it warns of wrongly. (The
+  # preset debug compiles sources one by one.)
+  target_compile_options(${target} PRIVATE -Wno-shadow -Wno-stringop-overflow)
+endfunction()
+
+# sk_test_headers(TARGET): a program of tests takes Catch2's header as it was compiled for sk_test_main, which it links.
+function(sk_test_headers target)
+  target_precompile_headers(${target} REUSE_FROM sk_test_main)
 endfunction()
 
 # sk_unit_tests(TARGET SOURCES... ): the *_test.cpp files of this folder as one program, linked
@@ -49,5 +58,6 @@ function(sk_unit_tests target)
   add_executable(${target}_test ${ARGN})
   sk_compile_options(${target}_test)
   target_link_libraries(${target}_test PRIVATE ${target} sk_test_main)
+  sk_test_headers(${target}_test)
   add_test(NAME ${target} COMMAND ${target}_test)
 endfunction()

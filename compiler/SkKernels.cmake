@@ -124,8 +124,9 @@ function(sk_add_kernel_file target file options)
     COMMENT "skc ${file}"
     VERBATIM COMMAND_EXPAND_LISTS)
   target_sources(${target} PRIVATE ${outputs})
-  # A unity build would read every stub into one source; each is large enough alone.
-  set_source_files_properties("${output}/${name}.cpp" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  # A unity build would read every stub into one source; each is large enough alone. It needs no precompiled headers.
+  set_source_files_properties("${output}/${name}.cpp" PROPERTIES
+                              SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
   if(object)
     sk_add_object("${target}" "${object}")
   endif()

@@ -230,8 +230,8 @@ Parts Streams::combined(std::uint32_t param, const Parts& old, const Parts& valu
     switch (kernel_.params[param].scatter) {
       case ScatterOp::Store: result.push_back(value[c]); break;
       case ScatterOp::Add: result.push_back(binary(l, BinaryOp::Add, scalar, old[c], value[c])); break;
-      case ScatterOp::Min: result.push_back(intrinsic(l, Intrinsic::Min, both, {})[0]); break;
-      case ScatterOp::Max: result.push_back(intrinsic(l, Intrinsic::Max, both, {})[0]); break;
+      case ScatterOp::Min: result.push_back(intrinsic(l, Intrinsic::Min, both)[0]); break;
+      case ScatterOp::Max: result.push_back(intrinsic(l, Intrinsic::Max, both)[0]); break;
     }
   }
   return result;
