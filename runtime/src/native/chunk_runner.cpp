@@ -36,8 +36,8 @@ void ChunkRunner::moveTo(const Extents& first, std::size_t rows) {
 
 /// Where no row's gathers need copies.
 native::Range ChunkRunner::inside() const {
-  native::Range all{0, unlimited};
-  for (std::size_t row = 0; row < rows_; ++row) {
+  native::Range all = arrays_[0]->inside();
+  for (std::size_t row = 1; row < rows_; ++row) {
     const native::Range one = arrays_[row]->inside();
     all = {std::max(all.begin, one.begin), std::min(all.end, one.end)};
   }
