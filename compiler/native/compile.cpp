@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include <llvm/IR/LLVMContext.h>
 #include <llvm/IR/LegacyPassManager.h>
 #include <llvm/IR/Module.h>
@@ -169,6 +171,8 @@ class Compilation {
       form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
     }
     const bool isPredicated = form.lanes > 1;
+    if (form.lanes >= 4 && real == Real::Float && options_.optimizes)
+      form.blockWidth = std::min(level.vectorBits / 32, form.lanes);
     const Version& version = versionFor(real);
     const Module& module = isPredicated ? version.predicated : version.plain;
     std::optional<analysis::Uniformity> uniformity;

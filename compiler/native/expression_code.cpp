@@ -21,6 +21,7 @@ using namespace ir;
 
 Parts FunctionCode::expression(const Expr& expr) {
   if (shared_ && std::holds_alternative<GatherRead>(expr.node) && plan_->isShared(expr)) return shared(expr);
+  if (const auto read = fromBlocks_.find(&expr); read != fromBlocks_.end()) return read->second;
   return match(expr.node, [&](const auto& node) { return parts(expr, node); });
 }
 

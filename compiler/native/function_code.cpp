@@ -153,11 +153,21 @@ void FunctionCode::write(const If& n) {
   b.SetInsertPoint(end);
 }
 
+/// The body and the step of a loop.
+void FunctionCode::iteration(const Loop& n, llvm::BasicBlock* end) {
+  llvm::BasicBlock* const step = newBlock("step");
+  targets_.push_back({end, step});
+  block(n.body);
+  targets_.pop_back();
+  branch(step);
+  b.SetInsertPoint(step);
+  block(n.step);
+}
+
 void FunctionCode::write(const Loop& n) {
   block(n.init);
   llvm::BasicBlock* const test = newBlock("loop");
   llvm::BasicBlock* const body = newBlock("body");
-  llvm::BasicBlock* const step = newBlock("step");
   llvm::BasicBlock* const end = newBlock("endloop");
   branch(n.kind == LoopKind::DoWhile ? body : test);
   b.SetInsertPoint(test);
@@ -167,14 +177,59 @@ void FunctionCode::write(const Loop& n) {
     branch(body);
   }
   b.SetInsertPoint(body);
-  targets_.push_back({end, step});
-  block(n.body);
-  targets_.pop_back();
-  branch(step);
-  b.SetInsertPoint(step);
-  block(n.step);
+  writeBlocks(n, test, end);
+  iteration(n, end);
   branch(test);
   b.SetInsertPoint(end);
+}
+
+/// Where gathers of the loop can be read in blocks, writes code that does so if the elements are inside, and goes on to `test`.
+/// The insertion point is afterwards where they are not.
+void FunctionCode::writeBlocks(const Loop& n, llvm::BasicBlock* test, llvm::BasicBlock* end) {
+  if (l.form().blockWidth == 0 || plan_ != nullptr) return;
+  const std::vector<BlockGather> gathers = blockGathers(k.module, k.kernel, *k.uniformity, id_, n);
+  if (gathers.empty()) return;
+  llvm::Value* const counter = expression(*std::get<Assign>(n.step.front().node).place)[0].value;
+  llvm::Value* areInside = b.CreateICmpSGE(counter, l.integer(l.int32(), 0));
+  std::vector<Parts> indices;
+  for (const BlockGather& gather : gathers) {
+    indices.push_back(expression(*gather.index));
+    areInside = b.CreateAnd(areInside, k.streams.isBlockInside(gather.stream(), indices.back()));
+  }
+  llvm::BasicBlock* const inside = newBlock("block");
+  llvm::BasicBlock* const outside = newBlock("one");
+  b.CreateCondBr(areInside, inside, outside);
+  b.SetInsertPoint(inside);
+  std::vector<Streams::Block> blocks;
+  for (std::size_t g = 0; g < gathers.size(); ++g)
+    blocks.push_back(k.streams.readBlock(gathers[g].stream(), indices[g], counter));
+  writeIterations(n, gathers, blocks, end);
+  branch(test);
+  b.SetInsertPoint(outside);
+}
+
+/// The iterations of a block, as long as the loop goes on.
+void FunctionCode::writeIterations(const Loop& n, const std::vector<BlockGather>& gathers,
+                                   const std::vector<Streams::Block>& blocks, llvm::BasicBlock* end) {
+  llvm::BasicBlock* const before = b.GetInsertBlock();
+  llvm::BasicBlock* const body = newBlock("body");
+  llvm::BasicBlock* const next = newBlock("next");
+  llvm::BasicBlock* const done = newBlock("endblock");
+  branch(body);
+  b.SetInsertPoint(body);
+  llvm::PHINode* const number = b.CreatePHI(l.int64(), 2);
+  number->addIncoming(l.integer(l.int64(), 0), before);
+  for (std::size_t g = 0; g < gathers.size(); ++g)
+    fromBlocks_[gathers[g].read] = k.streams.elementOf(blocks[g], number);
+  iteration(n, end);
+  fromBlocks_.clear();
+  llvm::Value* const following = b.CreateAdd(number, l.integer(l.int64(), 1));
+  b.CreateCondBr(b.CreateICmpULT(following, l.integer(l.int64(), Streams::blockLength)), next, done);
+  b.SetInsertPoint(next);
+  llvm::Value* const goesOn = n.cond ? condition(*n.cond) : b.getTrue();
+  number->addIncoming(following, b.GetInsertBlock());
+  b.CreateCondBr(goesOn, body, end);
+  b.SetInsertPoint(done);
 }
 
 void FunctionCode::write(const Switch& n) {

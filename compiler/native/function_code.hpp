@@ -12,6 +12,7 @@
 
 #include "analysis/uniformity.hpp"
 #include "ir/ir.hpp"
+#include "native/block_gathers.hpp"
 #include "native/intrinsics.hpp"
 #include "native/lanes.hpp"
 #include "native/leaves.hpp"
@@ -108,6 +109,10 @@ class FunctionCode {
   void write(const ir::CallStmt& n);
   void write(const ir::If& n);
   void write(const ir::Loop& n);
+  void iteration(const ir::Loop& n, llvm::BasicBlock* end);
+  void writeBlocks(const ir::Loop& n, llvm::BasicBlock* test, llvm::BasicBlock* end);
+  void writeIterations(const ir::Loop& n, const std::vector<BlockGather>& gathers,
+                       const std::vector<Streams::Block>& blocks, llvm::BasicBlock* end);
   void write(const ir::Switch& n);
   void write(const ir::Break& n);
   void write(const ir::Continue& n);
@@ -163,6 +168,8 @@ class FunctionCode {
   bool isInAllRows_;  ///< what is written now is executed by all rows, one after the other or together
   /// What the first row has read for all of them, while a statement is written in each row.
   std::optional<std::map<const ir::Expr*, Parts>> shared_;
+  /// What gathers give in the iteration of a block that is written now (block_gathers.hpp).
+  std::map<const ir::Expr*, Parts> fromBlocks_;
   std::vector<std::vector<std::vector<LeafMemory>>>
       variables_;  ///< by row and variable; the first row has all
   std::vector<LeafMemory> result_;

@@ -28,6 +28,8 @@ struct Form {
   sk::native::Real real = sk::native::Real::Float;
   bool hasMaskRegisters = false;  ///< vectors of bool cost nothing to keep (AVX-512)
   bool convertsHalves = false;  ///< in hardware
+  /// 32-bit scalars of a vector register, where loops read gathers in blocks (block_gathers.hpp); else 0.
+  std::uint32_t blockWidth = 0;
   bool isContracted = false;  ///< products and sums of the text may be fused
 };
 

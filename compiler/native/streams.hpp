@@ -44,6 +44,18 @@ class Streams {
   Parts extent(const ir::StreamRef& stream);
   /// Indices x first, one int for each dimension.
   Parts gather(std::uint32_t param, const Parts& index);
+  /// What gathers read in blocks: consecutive elements along x, each of a cache line's length. They need 4 lanes or more.
+  static constexpr std::uint32_t blockLength = 16;
+  /// Elements of a gather in all lanes: for each component, vectors of lanes in memory.
+  struct Block {
+    std::uint32_t param;
+    std::vector<llvm::Value*> components;
+  };
+  /// Whether a block can be read from the index on, and needs no boundary in any lane.
+  llvm::Value* isBlockInside(std::uint32_t param, const Parts& index);
+  /// `counter` is a uniform summand of the index.
+  Block readBlock(std::uint32_t param, const Parts& index, llvm::Value* counter);
+  Parts elementOf(const Block& block, llvm::Value* number);
   /// `constant`: the offset, if it is known.
   Parts neighbor(std::uint32_t param, const Parts& offset,
                  const std::optional<std::vector<std::int32_t>>& constant);
@@ -99,6 +111,9 @@ class Streams {
   Parts gatherByNumbers(std::uint32_t param, const Parts& index);
   Parts gatherByLanes(std::uint32_t param, const Parts& index);
   llvm::Function* laneGather(std::uint32_t param);
+  llvm::Value* laneOffsets(std::uint32_t param, const Parts& index, llvm::Value* counter);
+  void storeTransposed(llvm::Type* element, const std::vector<llvm::Value*>& addresses,
+                       llvm::Value* block) const;
   Parts orBorder(std::uint32_t param, llvm::Value* isOutside, const Parts& value);
   Parts choose(llvm::Value* condition, const std::function<Parts()>& yes, const std::function<Parts()>& no,
                const std::vector<ir::Scalar>& scalars);
