@@ -402,4 +402,109 @@ TEST_CASE("a product of matrices is what a loop gives") {
   CHECK(bitsOf(r.read()) == bitsOf(expected));
 }
 
+const std::vector<int> walkedSizes{1, 7, 8, 9, 15, 16, 17, 33, 100};
+
+TEST_CASE("loops that walk along rows give what loops for single elements give") {
+  sk::Device device = sk::Device::native();
+  const auto number = [](int k) { return static_cast<float>(scattered(k) % 1000) / 7 - 50; };
+  for (const int rows : walkedSizes) {
+    for (const int columns : walkedSizes) {
+      INFO(rows << " x " << columns);
+      const auto a = list(rows * columns, number);
+      const auto pairs = list(rows * columns, [&](int k) { return sk::float2{number(k), number(k + 5)}; });
+      const auto x = list(columns, [&](int k) { return number(k + 1000); });
+      auto y = device.stream<float>({rows});
+      auto y2 = device.stream<sk::float2>({rows});
+      lanes::walked(streamOf(device, {rows, columns}, a), streamOf(device, {columns}, x), y);
+      lanes::walkedFlat(streamOf(device, {rows * columns}, pairs), static_cast<unsigned>(columns),
+                        streamOf(device, {columns}, x), y2);
+      std::vector<float> expected;
+      std::vector<sk::float2> expected2;
+      for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) {
+        float sum = 0;
+        sk::float2 sums{0, 0};
+        for (std::size_t k = 0; k < x.size(); ++k) {
+          sum += a[row * x.size() + k] * x[k];
+          sums.x += pairs[row * x.size() + k].x * x[k];
+          sums.y += pairs[row * x.size() + k].y * x[k];
+        }
+        expected.push_back(sum);
+        expected2.push_back(sums);
+      }
+      CHECK(bitsOf(y.read()) == bitsOf(expected));
+      CHECK(bitsOf(y2.read()) == bitsOf(expected2));
+    }
+  }
+}
+
+TEST_CASE("loops that walk along rows and over their ends are right, with every boundary") {
+  sk::Device device = sk::Device::native();
+  const auto wrapped = [](int i, int n) { return (i % n + n) % n; };
+  for (const int rows : walkedSizes) {
+    for (const int columns : walkedSizes) {
+      const auto values = list(rows * columns, [](int k) { return scattered(k) % 1000; });
+      const auto a = streamOf(device, {rows, columns}, values);
+      const auto at = [&](int y, int x) { return values[static_cast<std::size_t>(y * columns + x)]; };
+      auto r = device.stream<sk::int4>({rows});
+      for (const int by : {0, 1, -3, 20}) {
+        INFO(rows << " x " << columns << ", by " << by);
+        const int n = columns + 25;
+        lanes::walkedOver(a, a, a, a, by, n, r);
+        std::vector<std::uint32_t> expected;
+        for (int row = 0; row < rows; ++row) {
+          std::uint32_t sums[4] = {};
+          for (int k = 0; k < n; ++k) {
+            const int y = row - by / 2, x = k - row;
+            const int mirrored = wrapped(by + k, 2 * columns);
+            const int read[4] = {
+                at(std::clamp(row - by, 0, rows - 1), std::clamp(k - by, 0, columns - 1)),
+                at(wrapped(row + by, rows), wrapped(k + row % 5 - by, columns)),
+                at(row, std::min(mirrored, 2 * columns - 1 - mirrored)),
+                y >= 0 && y < rows && x >= 0 && x < columns ? at(y, x) : -7};
+            for (int i = 0; i < 4; ++i) sums[i] = sums[i] * 3 + static_cast<std::uint32_t>(read[i]);
+          }
+          for (const std::uint32_t sum : sums) expected.push_back(sum);
+        }
+        CHECK(bitsOf(r.read()) == expected);
+      }
+    }
+  }
+}
+
+TEST_CASE("loops that walk along rows are left and continued where a loop for one element is") {
+  sk::Device device = sk::Device::native();
+  for (const int rows : walkedSizes) {
+    for (const int columns : walkedSizes) {
+      const auto a = list(rows * columns, [](int k) { return static_cast<float>(scattered(k) % 100) / 3; });
+      const auto b = list(rows * columns, [](int k) { return scattered(k + 7) % 1000; });
+      auto y = device.stream<float>({rows});
+      auto count = device.stream<int>({rows});
+      for (const float most : {0.0F, 100.0F, 1e9F}) {
+        for (const int last : {-1, 5, 16, 30}) {
+          INFO(rows << " x " << columns << ", most " << most << ", last " << last);
+          const sk::Shape shape{rows, columns};
+          lanes::walkedPartly(streamOf(device, shape, a), streamOf(device, shape, b), most, last, y, count);
+          std::vector<float> sums;
+          std::vector<int> counts;
+          for (int row = 0; row < rows; ++row) {
+            float sum = 0;
+            int counted = 0;
+            for (int k = 0; k < columns && k != last; ++k) {
+              const auto i = static_cast<std::size_t>(row * columns + k);
+              if (b[i] % 3 == 0) continue;
+              sum += a[i];
+              if (sum > most) break;
+              counted += b[i];
+            }
+            sums.push_back(sum);
+            counts.push_back(counted);
+          }
+          CHECK(bitsOf(y.read()) == bitsOf(sums));
+          CHECK(count.read() == counts);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
