@@ -49,11 +49,12 @@ class CodeRun {
   }
 
  private:
-  /// The entry that computes several rows at once, if the domain has half as many.
+  /// The entry that computes several rows at once, if the domain has more than one row, and half as many.
   static const native::Entry* findRowsEntry(const Kernel& kernel, const native::Call& call,
                                             const CodeChoice& choice) {
     const native::Entry* const found = findEntry(*kernel.code, native::EntryKind::RunRows, choice);
-    return found != nullptr && 2 * call.domain[1] >= found->rows ? found : nullptr;
+    const bool hasRows = found != nullptr && call.domain[1] > 1 && 2 * call.domain[1] >= found->rows;
+    return hasRows ? found : nullptr;
   }
 
   bool has(Role role) const {
