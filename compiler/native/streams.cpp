@@ -256,7 +256,7 @@ Streams::Inside Streams::inside(std::uint32_t param, std::size_t dimension, llvm
 }
 
 /// One element for all lanes.
-Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
+Parts Streams::gatherBounded(std::uint32_t param, const Parts& index) {
   llvm::Value* number = argumentField(param, offsetof(Argument, first), l.int64());
   llvm::Value* isOutside = nullptr;
   for (std::size_t d = 0; d < index.size(); ++d) {
@@ -304,6 +304,32 @@ Parts Streams::choose(llvm::Value* condition, const std::function<Parts()>& yes,
     result.push_back({phi});
   }
   return result;
+}
+
+/// The same. With one lane, a branch that the CPU predicts lets it load before it knows that the index is inside.
+Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
+  if (l.count() > 1) return gatherBounded(param, index);
+  llvm::Value* isInside = l.b.getTrue();
+  for (std::size_t d = 0; d < index.size(); ++d) {
+    llvm::Value* const i = l.b.CreateSExt(index[d].value, l.int64());
+    isInside = l.b.CreateAnd(
+        isInside, l.b.CreateICmpULT(i, argumentExtent(param, d, offsetof(Argument, extent))));
+  }
+  const auto inside = [&] {
+    llvm::Value* number = argumentField(param, offsetof(Argument, first), l.int64());
+    for (std::size_t d = 0; d < index.size(); ++d) {
+      llvm::Value* const i = l.b.CreateSExt(index[d].value, l.int64());
+      llvm::Value* const stride = argumentExtent(param, d, offsetof(Argument, stride));
+      number = l.b.CreateAdd(number, d == 0 ? i : l.b.CreateMul(i, stride));
+    }
+    Parts parts;
+    for (std::size_t c = 0; c < scalars(param).size(); ++c) {
+      const Scalar scalar = scalars(param)[c];
+      parts.push_back(l.loadOne(scalar, l.at(l.stored(scalar), component(param, c), number)));
+    }
+    return parts;
+  };
+  return choose(isInside, inside, [&] { return gatherBounded(param, index); }, scalars(param));
 }
 
 /// Neighbours along x, where all of them are inside.

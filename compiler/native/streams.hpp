@@ -105,6 +105,7 @@ class Streams {
     llvm::Value* isOutside;  ///< of Border; null else
   };
   Inside inside(std::uint32_t param, std::size_t dimension, llvm::Value* index);
+  Parts gatherBounded(std::uint32_t param, const Parts& index);
   Parts gatherOne(std::uint32_t param, const Parts& index);
   Parts gatherNeighbors(std::uint32_t param, const Parts& index);
   Parts gatherAnywhere(std::uint32_t param, const Parts& index);
