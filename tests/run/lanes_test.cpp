@@ -507,4 +507,27 @@ TEST_CASE("loops that walk along rows are left and continued where a loop for on
   }
 }
 
+TEST_CASE("rows of different lengths sum their own elements, with columns outside at the nearest") {
+  sk::Device device = sk::Device::native();
+  constexpr int size = 200;
+  const auto x = list(size, [](int k) { return static_cast<float>(scattered(k) % 100) / 3; });
+  std::vector<int> starts{0}, columns;
+  std::vector<float> values, expected;
+  for (int row = 0; row < size; ++row) {
+    float sum = 0;
+    for (int k = 0; k < scattered(row) % 13; ++k) {
+      columns.push_back(scattered(row * 16 + k) % (size + 20) - 10);
+      values.push_back(static_cast<float>(scattered(row + k * 7) % 100) / 7);
+      sum += values.back() * x[static_cast<std::size_t>(std::clamp(columns.back(), 0, size - 1))];
+    }
+    starts.push_back(static_cast<int>(columns.size()));
+    expected.push_back(sum);
+  }
+  const auto count = static_cast<std::int64_t>(columns.size());
+  auto y = device.stream<float>({size});
+  lanes::sparseRows(streamOf(device, {size + 1}, starts), streamOf(device, {count}, columns),
+                    streamOf(device, {count}, values), streamOf(device, {size}, x), y);
+  CHECK(bitsOf(y.read()) == bitsOf(expected));
+}
+
 }  // namespace
