@@ -99,8 +99,8 @@ class LoopGathers {
   /// True if lanes read neither the same element nor consecutive ones.
   bool isScattered(const Expr& index) const {
     const std::vector<Shape> shapes = uniformity_.leavesOf(function_, index);
-    const bool isRow = std::all_of(shapes.begin() + 1, shapes.end(),
-                                   [](Shape shape) { return shape == Shape::Uniform; });
+    const bool isRow =
+        std::all_of(shapes.begin() + 1, shapes.end(), [](Shape shape) { return shape == Shape::Uniform; });
     return shapes[0] == Shape::Varying || !isRow;
   }
 

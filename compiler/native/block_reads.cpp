@@ -20,8 +20,7 @@ namespace {
 
 /// A shuffle of two vectors that does the same in each segment of 4 entries. 0 to 3 are those of `a`, 4 to 7 those of `c`.
 llvm::Value* shuffleSegments(Lanes& l, llvm::Value* a, llvm::Value* c, const std::array<int, 4>& from) {
-  const auto width =
-      static_cast<int>(llvm::cast<llvm::FixedVectorType>(a->getType())->getNumElements());
+  const auto width = static_cast<int>(llvm::cast<llvm::FixedVectorType>(a->getType())->getNumElements());
   std::vector<int> mask;
   for (int segment = 0; segment < width; segment += 4) {
     for (const int i : from) mask.push_back(segment + (i < 4 ? i : width + i - 4));
@@ -61,8 +60,7 @@ llvm::Value* Streams::isBlockInside(std::uint32_t param, const Parts& index) {
   llvm::Value* isInside =
       l.b.CreateICmpNE(argumentField(param, offsetof(Argument, isSmall), l.int64()), l.integer(l.int64(), 0));
   const auto require = [&](llvm::Value* condition) {
-    isInside = l.b.CreateAnd(
-        isInside, l.isVector(condition) ? l.b.CreateAndReduce(condition) : condition);
+    isInside = l.b.CreateAnd(isInside, l.isVector(condition) ? l.b.CreateAndReduce(condition) : condition);
   };
   for (std::size_t d = 0; d < index.size(); ++d) {
     const bool isClamped = kernel_.params[param].boundary == Boundary::Clamp;

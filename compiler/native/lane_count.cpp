@@ -26,7 +26,8 @@ constexpr std::size_t fewOperations = 4;
 std::optional<VarId> counterOf(const Loop& loop) {
   if (loop.kind != LoopKind::For || loop.step.size() != 1) return std::nullopt;
   const auto* step = std::get_if<Assign>(&loop.step.front().node);
-  if (step == nullptr || !step->op || !std::holds_alternative<Literal>(step->value->node)) return std::nullopt;
+  if (step == nullptr || !step->op || !std::holds_alternative<Literal>(step->value->node))
+    return std::nullopt;
   const VarId counter = rootOf(*step->place);
   return assigns(loop.body, counter) ? std::nullopt : std::optional(counter);
 }
@@ -52,7 +53,8 @@ bool gathersAlone(const Uniformity& uniformity, FunctionId function, const Stmt&
   std::size_t gathers = 0, operations = 0;
   bool isSimple = true;
   walkStmts(loop->body, [&](const Stmt& inner) {
-    isSimple = isSimple && (std::holds_alternative<Declare>(inner.node) || std::holds_alternative<Assign>(inner.node));
+    isSimple = isSimple &&
+               (std::holds_alternative<Declare>(inner.node) || std::holds_alternative<Assign>(inner.node));
   });
   walkExprs(loop->body, [&](const Expr& expr) {
     if (const auto* n = std::get_if<GatherRead>(&expr.node)) {
@@ -61,9 +63,9 @@ bool gathersAlone(const Uniformity& uniformity, FunctionId function, const Stmt&
       isSimple = isSimple && !dependsOnEarlier(*n->index, *loop);
     }
     isSimple = isSimple && !std::holds_alternative<Call>(expr.node);
-    const bool isOperation = std::holds_alternative<Binary>(expr.node) || std::holds_alternative<Unary>(expr.node) ||
-                             std::holds_alternative<Select>(expr.node) ||
-                             std::holds_alternative<IntrinsicCall>(expr.node);
+    const bool isOperation =
+        std::holds_alternative<Binary>(expr.node) || std::holds_alternative<Unary>(expr.node) ||
+        std::holds_alternative<Select>(expr.node) || std::holds_alternative<IntrinsicCall>(expr.node);
     operations += isOperation ? 1 : 0;
   });
   return isSimple && gathers > 0 && operations <= fewOperations * gathers;

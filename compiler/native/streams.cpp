@@ -312,8 +312,8 @@ Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
   llvm::Value* isInside = l.b.getTrue();
   for (std::size_t d = 0; d < index.size(); ++d) {
     llvm::Value* const i = l.b.CreateSExt(index[d].value, l.int64());
-    isInside = l.b.CreateAnd(
-        isInside, l.b.CreateICmpULT(i, argumentExtent(param, d, offsetof(Argument, extent))));
+    isInside =
+        l.b.CreateAnd(isInside, l.b.CreateICmpULT(i, argumentExtent(param, d, offsetof(Argument, extent))));
   }
   const auto inside = [&] {
     llvm::Value* number = argumentField(param, offsetof(Argument, first), l.int64());

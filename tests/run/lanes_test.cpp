@@ -456,11 +456,10 @@ TEST_CASE("loops that walk along rows and over their ends are right, with every 
           for (int k = 0; k < n; ++k) {
             const int y = row - by / 2, x = k - row;
             const int mirrored = wrapped(by + k, 2 * columns);
-            const int read[4] = {
-                at(std::clamp(row - by, 0, rows - 1), std::clamp(k - by, 0, columns - 1)),
-                at(wrapped(row + by, rows), wrapped(k + row % 5 - by, columns)),
-                at(row, std::min(mirrored, 2 * columns - 1 - mirrored)),
-                y >= 0 && y < rows && x >= 0 && x < columns ? at(y, x) : -7};
+            const int read[4] = {at(std::clamp(row - by, 0, rows - 1), std::clamp(k - by, 0, columns - 1)),
+                                 at(wrapped(row + by, rows), wrapped(k + row % 5 - by, columns)),
+                                 at(row, std::min(mirrored, 2 * columns - 1 - mirrored)),
+                                 y >= 0 && y < rows && x >= 0 && x < columns ? at(y, x) : -7};
             for (int i = 0; i < 4; ++i) sums[i] = sums[i] * 3 + static_cast<std::uint32_t>(read[i]);
           }
           for (const std::uint32_t sum : sums) expected.push_back(sum);
