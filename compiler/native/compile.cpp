@@ -203,7 +203,8 @@ class Compilation {
   }
 
   static std::string suffix(const EntryForm& made) {
-    static constexpr const char* kinds[] = {".run", ".fold", ".combine", ".identity", ".borders", ".apply", ".rows"};
+    static constexpr const char* kinds[] = {".run",     ".fold",  ".combine", ".identity",
+                                            ".borders", ".apply", ".rows"};
     static constexpr const char* reals[] = {"", ".double", ".quad"};
     static constexpr const char* levels[] = {"", ".v3", ".v4"};
     return std::string(kinds[static_cast<std::size_t>(made.kind)]) +
