@@ -83,8 +83,11 @@ void compileTimes(const Settings& settings, bench::Report& report) {
   for (const auto& [name, bar] : {File{"saxpy", 120.0}, File{"stats", {}}, File{"gray_scott", {}},
                                   File{"edges", {}}, File{"cloth", 3000.0}}) {
     const std::filesystem::path file = settings.sources / name / (std::string(name) + ".sk");
-    report.add(
-        {fmt::format("skc {}.sk", name), "ms", bench::compileTime(settings.skc, file, folder, 9), bar, {}});
+    report.add({fmt::format("skc {}.sk", name),
+                "ms",
+                bench::compileTime(settings.skc, file, folder, std::min(settings.rounds, 9)),
+                bar,
+                {}});
   }
   report.add({"from a kernel and a sum to objects: skc, and C++",
               "ms",
