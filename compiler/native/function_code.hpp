@@ -164,7 +164,7 @@ class FunctionCode {
   const ir::Function& function_;
   ir::FunctionId id_;
   const RowPlan* plan_;
-  std::size_t row_ = 0;  ///< that code is written for now
+  std::size_t row_ = 0;  ///< whose code is being written
   bool isInAllRows_;  ///< what is written now is executed by all rows, one after the other or together
   /// What the first row has read for all of them, while a statement is written in each row.
   std::optional<std::map<const ir::Expr*, Parts>> shared_;

@@ -119,7 +119,7 @@ TEST_CASE("rows of a view are pushed one after the other") {
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-/// The address space may grow by so many bytes, while this lives.
+/// Limits how far the address space may grow, in bytes, as long as this object lives.
 class MemoryLimit {
  public:
   explicit MemoryLimit(std::size_t more) {

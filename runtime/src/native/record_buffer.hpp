@@ -40,7 +40,7 @@ class RecordBuffer {
   std::span<const std::size_t> bytes() const { return {bytes_.data(), sortedColumns_}; }
   std::byte* array(std::size_t column) const { return pointers_[column]; }
 
-  /// Makes room for so many records. Throws std::bad_alloc.
+  /// Makes room for `count` records in all. Throws std::bad_alloc.
   void reserve(std::int64_t count);
   /// Adds records whose arrays the caller writes; there is room for them.
   void addUnwritten(std::int64_t count) { sink_.count += count; }
@@ -73,7 +73,7 @@ class RecordBuffer {
 struct RecordOptions {
   RealType real;
   bool isReordered;  ///< records have elements
-  bool scatters;  ///< what is scattered, too, which is else stored at once
+  bool scatters;  ///< scatter outputs are recorded, too, and not stored to at once
 };
 
 /// The arguments of a call with one thread's buffers as sinks.
@@ -88,7 +88,7 @@ class RecordFrame {
     std::size_t parameter;
     std::unique_ptr<RecordBuffer> buffer;
   };
-  /// Of variable outputs, and of scatter outputs that are recorded, in the order of parameters.
+  /// The buffers of variable outputs, and those of scatter outputs that are recorded, each in the order of parameters.
   std::span<Output> pushed() { return pushed_; }
   std::span<Output> scattered() { return scattered_; }
 

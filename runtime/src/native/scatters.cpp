@@ -135,7 +135,8 @@ void Scatters::applyLogs() {
     }
   }
   const auto count = static_cast<std::int64_t>(work.size());
-  native::inParallel(count, records / count, native::Deal::AsTheyCome, [&](native::Range range) {
+  const std::int64_t cost = count == 0 ? 0 : records / count;  // none where all outputs are left out
+  native::inParallel(count, cost, native::Deal::AsTheyCome, [&](native::Range range) {
     for (std::int64_t i = range.begin; i < range.end; ++i) {
       const auto& [target, bucket] = work[static_cast<std::size_t>(i)];
       applyBucket(target, bucket);

@@ -48,8 +48,8 @@ struct Argument {
   std::int64_t stride[4];  ///< in elements; stride[0] of a gather or scatter output is 1
   std::int64_t multiply[4];  ///< an element input's index is the domain's, times this,
   std::int64_t divide[4];  ///< divided by this
-  /// Of a variable or scatter output; null where the stream is left out. Unless Code::isReordered, null asks a scatter output
-  /// to be stored to at once.
+  /// Takes the records of a variable or scatter output; null where the stream is left out. A scatter output without a sink is
+  /// stored to at once, which code that is reordered (Code::isReordered) cannot do.
   Sink* sink;
   std::int64_t
       countsElements;  ///< of an iterator: 1 where it goes by element number, 0 by index in each dimension
