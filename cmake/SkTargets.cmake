@@ -49,15 +49,17 @@ function(sk_test_headers target)
   target_precompile_headers(${target} REUSE_FROM sk_test_main)
 endfunction()
 
-# sk_unit_tests(TARGET SOURCES... ): the *_test.cpp files of this folder as one program, linked
-# with the folder's TARGET and Catch2, registered with CTest.
+# sk_unit_tests(TARGET SOURCES... [APART SOURCE...]): the *_test.cpp files of this folder as one program, linked
+# with the folder's TARGET and Catch2, registered with CTest. APART: as for sk_compile_together.
 function(sk_unit_tests target)
   if(NOT SK_BUILD_TESTS)
     return()
   endif()
-  add_executable(${target}_test ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 tests "" "" "APART")
+  add_executable(${target}_test ${tests_UNPARSED_ARGUMENTS} ${tests_APART})
   sk_compile_options(${target}_test)
   target_link_libraries(${target}_test PRIVATE ${target} sk_test_main)
   sk_test_headers(${target}_test)
+  sk_compile_together(${target}_test APART ${tests_APART})
   add_test(NAME ${target} COMMAND ${target}_test)
 endfunction()

@@ -5,6 +5,7 @@
 #include "ir/print.hpp"
 #include "ir/validate_rules.hpp"
 #include "ir/walk.hpp"
+#include "support/overloaded.hpp"
 
 namespace skc::ir {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
 // Visits every expression or statement below a node, const or not, so that transforms need not
-// repeat the IR's shape. What a node's operands and blocks are is said here, once.
+// repeat the IR's shape. What a node's operands and blocks are is said in one place, walk.cpp.
 #pragma once
 
 #include <type_traits>
 
 #include "ir/ir.hpp"
-#include "support/overloaded.hpp"
+#include "support/function_ref.hpp"
 
 namespace skc::ir {
 
@@ -15,112 +15,42 @@ namespace skc::ir {
 template <class Root, class Node>
 using Like = std::conditional_t<std::is_const_v<Root>, const Node, Node>;
 
-// clang-format off: one node a line
+/// A function of each `Node` below a `Root`.
+template <class Root, class Node>
+using Visit = std::type_identity_t<FunctionRef<void(Like<Root, Node>&)>>;
+
+/// Each of these is there for a `T` and for a `const T`.
+template <class Root, class T>
+concept MaybeConst = std::is_same_v<std::remove_const_t<Root>, T>;
 
 /// fn(slot) for every direct operand of an expression, in order; a slot is an ExprPtr.
-template <class E, class Fn>
-  requires std::is_same_v<std::remove_const_t<E>, Expr>
-void forEachOperand(E& expr, Fn&& fn) {
-  const auto each = [&](auto& list) {
-    for (auto& slot : list) fn(slot);
-  };
-  match(
-      expr.node, [](const Literal&) {}, [](const VarRef&) {}, [](const ConstantRef&) {},
-      [&](Like<E, Unary>& n) { fn(n.operand); },
-      [&](Like<E, Binary>& n) { fn(n.lhs), fn(n.rhs); },
-      [&](Like<E, Select>& n) { fn(n.cond), fn(n.yes), fn(n.no); },
-      [&](Like<E, Convert>& n) { fn(n.operand); },
-      [&](Like<E, Construct>& n) { each(n.args); },
-      [&](Like<E, Swizzle>& n) { fn(n.base); },
-      [&](Like<E, Member>& n) { fn(n.base); },
-      [&](Like<E, Index>& n) { fn(n.base), fn(n.index); },
-      [&](Like<E, Call>& n) { each(n.args); },
-      [&](Like<E, IntrinsicCall>& n) { each(n.args); },
-      [&](Like<E, GatherRead>& n) { fn(n.index); },
-      [&](Like<E, NeighborRead>& n) { fn(n.offset); },
-      [&](Like<E, Sample>& n) { fn(n.position); },
-      [](const IndexOf&) {}, [](const ExtentOf&) {});
-}
+template <MaybeConst<Expr> E>
+void forEachOperand(E& expr, Visit<E, ExprPtr> fn);
 
 /// fn(slot) for every expression that a statement itself holds (not those of its blocks); none is null.
-template <class S, class Fn>
-  requires std::is_same_v<std::remove_const_t<S>, Stmt>
-void forEachOperand(S& stmt, Fn&& fn) {
-  const auto optional = [&](auto& slot) {
-    if (slot) fn(slot);
-  };
-  match(
-      stmt.node, [&](Like<S, Declare>& n) { optional(n.init); },
-      [&](Like<S, Assign>& n) { fn(n.place), fn(n.value); },
-      [&](Like<S, CallStmt>& n) {
-        for (auto& arg : n.args) fn(arg);
-        optional(n.result);
-      },
-      [&](Like<S, If>& n) { fn(n.cond); },
-      [&](Like<S, Loop>& n) { optional(n.cond); },
-      [&](Like<S, Switch>& n) { fn(n.value); },
-      [](const Break&) {}, [](const Continue&) {},
-      [&](Like<S, Return>& n) { optional(n.value); },
-      [](const Scope&) {},
-      [&](Like<S, Push>& n) { fn(n.value), optional(n.mask); },
-      [&](Like<S, Scatter>& n) { fn(n.index), fn(n.value), optional(n.mask); });
-}
+template <MaybeConst<Stmt> S>
+void forEachOperand(S& stmt, Visit<S, ExprPtr> fn);
 
 /// fn(block) for every block of a statement, in order.
-template <class S, class Fn>
-void forEachBlock(S& stmt, Fn&& fn) {
-  match(
-      stmt.node, [](const Declare&) {}, [](const Assign&) {}, [](const CallStmt&) {},
-      [&](Like<S, If>& n) { fn(n.then), fn(n.otherwise); },
-      [&](Like<S, Loop>& n) { fn(n.init), fn(n.step), fn(n.body); },
-      [&](Like<S, Switch>& n) {
-        for (auto& one : n.cases) fn(one.body);
-      },
-      [](const Break&) {}, [](const Continue&) {}, [](const Return&) {},
-      [&](Like<S, Scope>& n) { fn(n.body); },
-      [](const Push&) {}, [](const Scatter&) {});
-}
-
-// clang-format on
+template <MaybeConst<Stmt> S>
+void forEachBlock(S& stmt, Visit<S, Block> fn);
 
 /// fn(stmt) for every statement of a block and its inner blocks, outer ones first.
-template <class B, class Fn>
-  requires std::is_same_v<std::remove_const_t<B>, Block>
-void walkStmts(B& block, Fn&& fn) {
-  for (auto& stmt : block) {
-    fn(stmt);
-    forEachBlock(stmt, [&](auto& inner) { walkStmts(inner, fn); });
-  }
-}
+template <MaybeConst<Block> B>
+void walkStmts(B& block, Visit<B, Stmt> fn);
 
 /// fn(expr) for an expression and all below it, outer ones first.
-template <class E, class Fn>
-  requires std::is_same_v<std::remove_const_t<E>, Expr>
-void walkExprs(E& expr, Fn&& fn) {
-  fn(expr);
-  forEachOperand(expr, [&](auto& slot) { walkExprs(static_cast<Like<E, Expr>&>(*slot), fn); });
-}
+template <MaybeConst<Expr> E>
+void walkExprs(E& expr, Visit<E, Expr> fn);
 
 /// The same for every expression in a block.
-template <class B, class Fn>
-  requires std::is_same_v<std::remove_const_t<B>, Block>
-void walkExprs(B& block, Fn&& fn) {
-  walkStmts(block, [&](auto& stmt) {
-    forEachOperand(stmt, [&](auto& slot) { walkExprs(static_cast<Like<B, Expr>&>(*slot), fn); });
-  });
-}
+template <MaybeConst<Block> B>
+void walkExprs(B& block, Visit<B, Expr> fn);
 
 /// fn(slot) for an expression and all below it, inner ones first; it may put another expression there.
-template <class Fn>
-void rewriteExprs(ExprPtr& slot, Fn&& fn) {
-  forEachOperand(*slot, [&](ExprPtr& operand) { rewriteExprs(operand, fn); });
-  fn(slot);
-}
+void rewriteExprs(ExprPtr& slot, FunctionRef<void(ExprPtr&)> fn);
 
 /// The same for every expression in a block.
-template <class Fn>
-void rewriteExprs(Block& block, Fn&& fn) {
-  walkStmts(block, [&](Stmt& stmt) { forEachOperand(stmt, [&](ExprPtr& slot) { rewriteExprs(slot, fn); }); });
-}
+void rewriteExprs(Block& block, FunctionRef<void(ExprPtr&)> fn);
 
 }  // namespace skc::ir

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // Dispatch over a std::variant with one lambda for each alternative and no default: a new
-// alternative is a compile error wherever it is not handled.
+// alternative is a compile error wherever it is not handled. (std::visit does the same; with as many alternatives as the IR's
+// nodes have, it takes several times as long to compile.)
 #pragma once
 
+#include <cstddef>
 #include <utility>
 #include <variant>
 
@@ -16,9 +18,19 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
+/// `cases` of the alternative that `variant` holds, which is `Index` or a later one.
+template <std::size_t Index, class Variant, class Cases>
+decltype(auto) matchFrom(Variant& variant, Cases& cases) {
+  if constexpr (Index + 1 < std::variant_size_v<std::remove_const_t<Variant>>) {
+    if (variant.index() != Index) return matchFrom<Index + 1>(variant, cases);
+  }
+  return cases(*std::get_if<Index>(&variant));
+}
+
 template <class Variant, class... F>
-decltype(auto) match(Variant&& variant, F&&... cases) {
-  return std::visit(Overloaded{std::forward<F>(cases)...}, std::forward<Variant>(variant));
+decltype(auto) match(Variant& variant, F&&... cases) {
+  Overloaded all{std::forward<F>(cases)...};
+  return matchFrom<0>(variant, all);
 }
 
 }  // namespace skc

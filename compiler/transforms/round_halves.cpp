@@ -12,6 +12,7 @@
 #include "ir/walk.hpp"
 #include "transforms/copy_functions.hpp"
 #include "transforms/made_kernel.hpp"
+#include "support/overloaded.hpp"
 
 namespace skc {
 namespace {

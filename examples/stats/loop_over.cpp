@@ -9,7 +9,7 @@
 namespace examples {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Mean and mean square of the deviations from `centre`, in size.
 struct Spread {
@@ -48,7 +48,7 @@ ColumnStatistics loopOver(std::span<const float> values) {
     ++s.count;
     sum += x;
   }
-  if (s.count == 0) return {0, s.missing, none, none, NAN, NAN, -1, 0.0};
+  if (s.count == 0) return {0, s.missing, unknown, unknown, NAN, NAN, -1, 0.0};
   const auto count = static_cast<double>(s.count);
   s.centre = sum / count;
   double off = 0.0, squares = 0.0;
@@ -58,7 +58,7 @@ ColumnStatistics loopOver(std::span<const float> values) {
     squares += (x - s.centre) * (x - s.centre);
   }
   s.mean = std::isfinite(s.centre) ? s.centre + off / count : s.centre;
-  s.variance = s.count < 2 ? none : (squares - off * off / count) / (count - 1.0);
+  s.variance = s.count < 2 ? unknown : (squares - off * off / count) / (count - 1.0);
   return s;
 }
 

@@ -75,3 +75,4 @@ TEST_CASE("an index outside an array takes the nearest element") {
           }) == "");
   });
 }
+#undef CHECK_CASE

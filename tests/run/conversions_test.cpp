@@ -104,3 +104,4 @@ TEST_CASE("vectors are converted by components") {
           "");
   });
 }
+#undef CHECK_CASE

@@ -18,3 +18,4 @@ TEST_CASE("effects in expressions happen when and as often as in C++") {
     EFFECTS_CASES(CHECK_CASE)
   });
 }
+#undef CHECK_CASE

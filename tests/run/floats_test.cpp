@@ -42,3 +42,4 @@ TEST_CASE("infinity, NaN and signed zeros") {
     }
   });
 }
+#undef CHECK_CASE

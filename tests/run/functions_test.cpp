@@ -19,3 +19,4 @@ TEST_CASE("helper functions, templates, constants and names are those of C++") {
     FUNCTION_CASES(CHECK_CASE)
   });
 }
+#undef CHECK_CASE

@@ -37,3 +37,4 @@ TEST_CASE("uint arithmetic is that of C++: it wraps") {
     UINT_CASES(CHECK_CASE)
   });
 }
+#undef CHECK_CASE

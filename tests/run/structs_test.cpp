@@ -18,3 +18,4 @@ TEST_CASE("structs and arrays are those of C++") {
     STRUCT_CASES(CHECK_CASE)
   });
 }
+#undef CHECK_CASE
