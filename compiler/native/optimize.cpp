@@ -6,6 +6,8 @@
 #include <llvm/Passes/PassBuilder.h>
 #include <llvm/Support/Error.h>
 
+#include "native/carried_values.hpp"
+
 namespace skc::native {
 
 namespace {
@@ -16,7 +18,7 @@ constexpr char pipeline[] =
     "function("
     "sroa<modify-cfg>,early-cse<memssa>,simplifycfg,instcombine<no-verify-fixpoint>,"  // variables become registers
     "loop-mssa(loop-rotate,licm),"
-    "gvn,instcombine<no-verify-fixpoint>,simplifycfg,adce)";
+    "gvn,carried-values,instcombine<no-verify-fixpoint>,simplifycfg,adce)";
 
 }  // namespace
 
@@ -31,6 +33,12 @@ void optimize(llvm::Module& module, llvm::TargetMachine& machine) {
   builder.registerFunctionAnalyses(functions);
   builder.registerLoopAnalyses(loops);
   builder.crossRegisterProxies(loops, functions, components, modules);
+  builder.registerPipelineParsingCallback([](llvm::StringRef name, llvm::FunctionPassManager& list,
+                                             llvm::ArrayRef<llvm::PassBuilder::PipelineElement>) {
+    const bool isKnown = name == "carried-values";
+    if (isKnown) list.addPass(CarriedValues());
+    return isKnown;
+  });
   llvm::ModulePassManager passes;
   llvm::cantFail(builder.parsePassPipeline(passes, pipeline));
   passes.run(module, modules);

@@ -21,7 +21,8 @@ class FunctionRef<Result(Args...)> {
   FunctionRef(F&& function)  // NOLINT(google-explicit-constructor): a lambda is passed as it is
       : function_{const_cast<void*>(static_cast<const void*>(std::addressof(function)))},
         call_{[](void* object, Args... args) -> Result {
-          return static_cast<Result>((*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...));
+          return static_cast<Result>(
+              (*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...));
         }} {}
 
   Result operator()(Args... args) const { return call_(function_, std::forward<Args>(args)...); }

@@ -41,6 +41,10 @@ vectorised vmulps 'kernel void escape(float2 c<>, int most, out int steps<>) {
     ++steps;
   }
 }'
+# The squares that an iteration ends with are those that the next one begins with.
+products=$("$skc" --emit=llvm --target-triple=x86_64-linux-gnu --levels=x86-64-v3 kernel.sk |
+  sed -n '/^define .*_escape\.run\.v3(/,/^}/p' | grep -c '= fmul <')
+((products == 4)) || { echo "broken: $products products in an iteration that needs 4"; exit 1; }
 vectorised vmulps 'kernel void multiply(float a[][], float b[][], out float c<>) {
   int2 p = indexof(c).xy;
   c = 0;

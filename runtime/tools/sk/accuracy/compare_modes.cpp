@@ -6,24 +6,12 @@
 #include <cmath>
 #include <optional>
 
+#include "quantile.hpp"
 #include "sk/error.hpp"
 
 namespace sk_tool {
 
 namespace {
-
-/// Of sorted values, the one below which the part `q` of them is, interpolated.
-double quantile(const std::vector<double>& sorted, double q) {
-  const double at = q * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (at - std::floor(at)) * (sorted[above] - sorted[below]);
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return quantile(values, 0.5);
-}
 
 double secondsOf(sk::Device& device, const std::function<void()>& work) {
   using Clock = std::chrono::steady_clock;

@@ -10,7 +10,7 @@ namespace {
 constexpr double gap = 9;  ///< from the middle of a point to its text
 constexpr double radius = 5;  ///< of a point, and some room
 constexpr double farGap = 20;  ///< to a text that a line joins
-constexpr int steps = 24;  ///< up and down, by half a line
+constexpr int halfLines = 24;  ///< up and down, by half a line
 
 struct Box {
   double left, bottom, right, top;
@@ -26,7 +26,7 @@ Box boxOf(const LabelPlace& place, double textWidth) {
 
 /// The best first: beside the point, then further and further above and below, to the left only where that is much nearer.
 std::vector<LabelPlace> candidatesFor(const LabelledPoint& point) {
-  constexpr int leftIsWorse = 4;  // than the right, in steps
+  constexpr int leftIsWorse = 4;  // than the right, in halfLines
   std::vector<LabelPlace> places{{point.x + gap, point.y}};
   const auto add = [&](int step, bool isLeft) {
     const double away = step * labelHeight / 2;
@@ -34,7 +34,7 @@ std::vector<LabelPlace> candidatesFor(const LabelledPoint& point) {
     places.push_back({x, point.y + away, true});
     places.push_back({x, point.y - away, true});
   };
-  for (int step = 1; step <= steps; ++step) {
+  for (int step = 1; step <= halfLines; ++step) {
     add(step, false);
     if (step > leftIsWorse) add(step - leftIsWorse, true);
   }

@@ -11,7 +11,7 @@ namespace sk_tool {
 
 namespace {
 
-std::string numberOf(double value) { return std::isinf(value) ? "none" : fmt::format("{:.2g}", value); }
+std::string boundText(double value) { return std::isinf(value) ? "none" : fmt::format("{:.2g}", value); }
 
 std::string timeOf(const Ratios& time) {
   return fmt::format("{:5.2f} [{:.2f} {:.2f}]", time.median, time.lower, time.upper);
@@ -23,10 +23,10 @@ std::size_t widthOf(const Metric& metric) { return std::max<std::size_t>(11, met
 std::string lineOf(const Row& row, bool hasBounds) {
   std::string line = fmt::format("  {:<17}{:<20}", row.mode, timeOf(row.time));
   for (const Metric& metric : row.grade.metrics)
-    line += fmt::format("{:>{}}", numberOf(metric.value), widthOf(metric));
+    line += fmt::format("{:>{}}", boundText(metric.value), widthOf(metric));
   if (hasBounds) {
     const char* verdict = !row.grade.bound ? "-" : row.grade.isWithinBound ? "yes" : "NO";
-    line += fmt::format("{:>11}  {:<3}", row.grade.bound ? numberOf(*row.grade.bound) : "-", verdict);
+    line += fmt::format("{:>11}  {:<3}", row.grade.bound ? boundText(*row.grade.bound) : "-", verdict);
   }
   if (row.isPareto) line += "  PARETO";
   line.erase(line.find_last_not_of(' ') + 1);

@@ -25,7 +25,7 @@ enum Function : unsigned {
 #include "info/functions.def"
 };
 
-struct Case {
+struct FunctionCase {
   const char* name;
   Function function;
   double low, high;
@@ -33,7 +33,7 @@ struct Case {
   double fastBound = 0;  ///< ulp that ARB_shader_precision grants the device; 0: anything
 };
 
-constexpr Case cases[] = {
+constexpr FunctionCase functionCases[] = {
     {.name = "exp", .function = f_exp, .low = -87, .high = 88, .fastBound = 3},
     {.name = "log", .function = f_log, .low = 1e-3, .high = 1e3, .fastBound = 3},
     {.name = "log near 1", .function = f_log, .low = 0.999, .high = 1.001, .fastBound = 3},
@@ -49,14 +49,14 @@ constexpr Case cases[] = {
 
 constexpr double accurateBound = 3;  ///< ulp, sk/call.hpp
 
-std::string aboutOf(const Case& function, std::size_t count) {
+std::string aboutOf(const FunctionCase& function, std::size_t count) {
   std::string about = fmt::format("{} numbers in [{:g}, {:g}]", count, function.low, function.high);
   if (function.low2 != function.high2)
     about += fmt::format(", to powers in [{:g}, {:g}]", function.low2, function.high2);
   return about;
 }
 
-Experiment measureCase(sk::Device& device, const Measurement& measurement, const Case& function) {
+Experiment measureFunction(sk::Device& device, const Measurement& measurement, const FunctionCase& function) {
   Numbers numbers(inputSeed);
   std::vector<float> x(measurement.size);
   std::vector<float> y(measurement.size);
@@ -112,7 +112,8 @@ Experiment measureCase(sk::Device& device, const Measurement& measurement, const
 
 std::vector<Experiment> measureTranscendentals(sk::Device& device, const Measurement& measurement) {
   std::vector<Experiment> experiments;
-  for (const Case& function : cases) experiments.push_back(measureCase(device, measurement, function));
+  for (const FunctionCase& function : functionCases)
+    experiments.push_back(measureFunction(device, measurement, function));
   return experiments;
 }
 

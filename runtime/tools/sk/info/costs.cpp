@@ -2,7 +2,6 @@
 //
 // What things cost, by the wall clock around finish(): GL's own timers are wrong by a factor of 100 on llvmpipe. The things
 // take turns, and medians are told, so that a busy machine disturbs all of them alike.
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -11,6 +10,7 @@
 #include "info/costs.sk.hpp"
 #include "info/error_statistics.hpp"
 #include "info/probes.hpp"
+#include "quantile.hpp"
 
 namespace sk_tool {
 
@@ -23,12 +23,6 @@ constexpr std::int64_t side = 1024;  ///< of the streams that are moved
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 struct Timed {

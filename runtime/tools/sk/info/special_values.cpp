@@ -103,9 +103,9 @@ std::string text(float value) {
 }
 
 /// The results of all operations with the operands of all facts.
-class Results {
+class SpecialResults {
  public:
-  explicit Results(sk::Device& device) {
+  explicit SpecialResults(sk::Device& device) {
     std::vector<float> as;
     std::vector<float> bs;
     for (const Fact& fact : facts) {
@@ -139,7 +139,7 @@ class Results {
 }  // namespace
 
 Json probeSpecialValues(sk::Device& device) {
-  const Results results(device);
+  const SpecialResults results(device);
   Json list = Json::array();
   for (std::size_t i = 0; i < std::size(facts); ++i) {
     list.push_back(

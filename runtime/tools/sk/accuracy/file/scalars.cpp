@@ -53,12 +53,12 @@ T nearest(double value) {
   }
 }
 
-struct Precision {
+struct FloatFormat {
   int digits;  ///< bits of the significand
   int smallest;  ///< exponent of the smallest normal number
 };
 
-Precision precisionOf(Scalar scalar) {
+FloatFormat formatOf(Scalar scalar) {
   if (scalar == Scalar::Double) return {53, -1022};
   if (scalar == Scalar::Half) return {11, -14};
   return {24, -126};
@@ -124,7 +124,7 @@ double roundedTo(Scalar scalar, double value) {
 
 double ulpOf(Scalar scalar, double value) {
   if (const double step = stepOf(scalar); step > 0) return step;
-  const Precision precision = precisionOf(scalar);
+  const FloatFormat precision = formatOf(scalar);
   int exponent = 0;
   std::frexp(value, &exponent);
   exponent = value == 0 ? precision.smallest : std::max(exponent - 1, precision.smallest);
@@ -133,7 +133,7 @@ double ulpOf(Scalar scalar, double value) {
 
 double smallestOf(Scalar scalar) {
   const double step = stepOf(scalar);
-  return step > 0 ? step : std::ldexp(1.0, precisionOf(scalar).smallest);
+  return step > 0 ? step : std::ldexp(1.0, formatOf(scalar).smallest);
 }
 
 std::string hexOf(Scalar scalar, double value) {
