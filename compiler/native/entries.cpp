@@ -10,6 +10,7 @@
 #include "native/function_code.hpp"
 #include "native/leaves.hpp"
 #include "native/records.hpp"
+#include "native/wide_masks.hpp"
 #include "transforms/predicate.hpp"
 
 namespace skc::native {
@@ -60,6 +61,7 @@ class EntryWriter {
       function_->setUWTableKind(llvm::UWTableKind::Default);  // Sink::grow may find no memory
     }
     setLevel(*function_, s_.level);
+    if (!s_.level.hasMaskRegisters) markWideMasks(*function_);
     prologue_ = llvm::BasicBlock::Create(b_.getContext(), "entry", function_);
     llvm::BasicBlock* const start = llvm::BasicBlock::Create(b_.getContext(), "start", function_);
     b_.SetInsertPoint(start);

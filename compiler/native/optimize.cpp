@@ -7,6 +7,7 @@
 #include <llvm/Support/Error.h>
 
 #include "native/carried_values.hpp"
+#include "native/wide_masks.hpp"
 
 namespace skc::native {
 
@@ -18,7 +19,7 @@ constexpr char pipeline[] =
     "function("
     "sroa<modify-cfg>,early-cse<memssa>,simplifycfg,instcombine<no-verify-fixpoint>,"  // variables become registers
     "loop-mssa(loop-rotate,licm),"
-    "gvn,carried-values,instcombine<no-verify-fixpoint>,simplifycfg,adce)";
+    "gvn,carried-values,instcombine<no-verify-fixpoint>,simplifycfg,adce,wide-masks)";
 
 }  // namespace
 
@@ -35,9 +36,9 @@ void optimize(llvm::Module& module, llvm::TargetMachine& machine) {
   builder.crossRegisterProxies(loops, functions, components, modules);
   builder.registerPipelineParsingCallback([](llvm::StringRef name, llvm::FunctionPassManager& list,
                                              llvm::ArrayRef<llvm::PassBuilder::PipelineElement>) {
-    const bool isKnown = name == "carried-values";
-    if (isKnown) list.addPass(CarriedValues());
-    return isKnown;
+    if (name == "carried-values") return list.addPass(CarriedValues()), true;
+    if (name == "wide-masks") return list.addPass(WideMasks()), true;
+    return false;
   });
   llvm::ModulePassManager passes;
   llvm::cantFail(builder.parsePassPipeline(passes, pipeline));

@@ -45,6 +45,9 @@ vectorised vmulps 'kernel void escape(float2 c<>, int most, out int steps<>) {
 products=$("$skc" --emit=llvm --target-triple=x86_64-linux-gnu --levels=x86-64-v3 kernel.sk |
   sed -n '/^define .*_escape\.run\.v3(/,/^}/p' | grep -c '= fmul <')
 ((products == 4)) || { echo "broken: $products products in an iteration that needs 4"; exit 1; }
+# Without registers for masks, those of loops stay the words that comparisons give.
+"$skc" --emit=asm --target-triple=x86_64-linux-gnu --levels=x86-64-v3 kernel.sk >kernel.s
+! sed -n '/_escape\.run\.v3:/,/retq/p' kernel.s | grep -q vpackss || { echo "broken: masks of a loop are packed to bytes"; exit 1; }
 vectorised vmulps 'kernel void multiply(float a[][], float b[][], out float c<>) {
   int2 p = indexof(c).xy;
   c = 0;

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+#include "native/wide_masks.hpp"
+
+#include <llvm/ADT/DenseMap.h>
+#include <llvm/ADT/STLExtras.h>
+#include <llvm/ADT/SetVector.h>
+#include <llvm/IR/Constants.h>
+#include <llvm/IR/IRBuilder.h>
+#include <llvm/IR/InstIterator.h>
+#include <llvm/IR/Instructions.h>
+#include <llvm/IR/PatternMatch.h>
+
+namespace skc::native {
+
+namespace {
+
+constexpr char attribute[] = "sk-wide-masks";
+
+llvm::FixedVectorType* maskType(const llvm::Value& value) {
+  auto* const type = llvm::dyn_cast<llvm::FixedVectorType>(value.getType());
+  return type != nullptr && type->getElementType()->isIntegerTy(1) ? type : nullptr;
+}
+
+/// What of masks is a mask, and is computed in words.
+bool isComputed(const llvm::Instruction& instruction) {
+  return llvm::isa<llvm::PHINode, llvm::FreezeInst, llvm::SelectInst>(instruction) ||
+         instruction.isBitwiseLogicOp();
+}
+
+bool isUsedElsewhere(const llvm::Instruction& mask) {
+  return llvm::any_of(mask.users(), [&](const llvm::User* user) {
+    return llvm::cast<llvm::Instruction>(user)->getParent() != mask.getParent();
+  });
+}
+
+class Widener {
+ public:
+  explicit Widener(llvm::Function& function) : b_(function.getContext()) {
+    unsigned narrowest = 64;
+    bool anyLivesOn = false;
+    for (llvm::Instruction& instruction : llvm::instructions(function)) {
+      if (maskType(instruction) == nullptr) continue;
+      if (isComputed(instruction)) {
+        computed_.insert(&instruction);
+      } else {
+        given_.push_back(&instruction);
+      }
+      anyLivesOn = anyLivesOn || llvm::isa<llvm::PHINode>(instruction) || isUsedElsewhere(instruction);
+      if (llvm::isa<llvm::CmpInst>(instruction)) {
+        narrowest = std::min(narrowest, instruction.getOperand(0)->getType()->getScalarSizeInBits());
+      }
+    }
+    word_ = b_.getIntNTy(narrowest == 64 ? 64 : 32);
+    if (!anyLivesOn) computed_.clear(), given_.clear();
+  }
+
+  bool widen() {
+    if (computed_.empty() && given_.empty()) return false;
+    for (llvm::Instruction* const mask : computed_) {
+      auto* const phi = llvm::dyn_cast<llvm::PHINode>(mask);
+      if (phi == nullptr) continue;
+      auto* const wide =
+          llvm::PHINode::Create(wordsOf(*phi), phi->getNumIncomingValues(), "", phi->getIterator());
+      wide->setDebugLoc(phi->getDebugLoc());
+      words_[phi] = wide;
+    }
+    for (llvm::Instruction* const mask : computed_) {
+      auto* const phi = llvm::dyn_cast<llvm::PHINode>(mask);
+      if (phi == nullptr) continue;
+      for (unsigned i = 0; i < phi->getNumIncomingValues(); ++i) {
+        llvm::cast<llvm::PHINode>(words_[phi])
+            ->addIncoming(words(phi->getIncomingValue(i)), phi->getIncomingBlock(i));
+      }
+    }
+    for (llvm::Instruction* const mask : computed_) replaceUses(*mask, /*everywhere=*/true);
+    for (llvm::Instruction* const mask : given_) replaceUses(*mask, /*everywhere=*/false);
+    for (llvm::Instruction* const mask : computed_) mask->dropAllReferences();
+    for (llvm::Instruction* const mask : computed_) mask->eraseFromParent();
+    return true;
+  }
+
+ private:
+  llvm::Type* wordsOf(const llvm::Value& mask) const {
+    return llvm::FixedVectorType::get(word_, maskType(mask)->getNumElements());
+  }
+
+  /// The mask in words: all ones or all zeros.
+  llvm::Value* words(llvm::Value* mask) {
+    if (auto* const constant = llvm::dyn_cast<llvm::Constant>(mask))
+      return b_.CreateSExt(constant, wordsOf(*mask));
+    const auto known = words_.find(mask);
+    if (known != words_.end()) return known->second;
+    llvm::Value* const made = make(mask);
+    words_[mask] = made;
+    return made;
+  }
+
+  llvm::Value* make(llvm::Value* mask) {
+    auto* const instruction = llvm::dyn_cast<llvm::Instruction>(mask);
+    if (instruction == nullptr) {
+      llvm::BasicBlock& entry = llvm::cast<llvm::Argument>(mask)->getParent()->getEntryBlock();
+      b_.SetInsertPoint(&entry, entry.getFirstInsertionPt());
+      return b_.CreateSExt(mask, wordsOf(*mask));
+    }
+    if (!computed_.contains(instruction)) {
+      b_.SetInsertPoint(*instruction->getInsertionPointAfterDef());
+      b_.SetCurrentDebugLocation(instruction->getDebugLoc());
+      return b_.CreateSExt(mask, wordsOf(*mask));
+    }
+    llvm::SmallVector<llvm::Value*, 3> operands;
+    for (llvm::Value* const operand : instruction->operands()) {
+      operands.push_back(maskType(*operand) != nullptr ? words(operand) : operand);
+    }
+    b_.SetInsertPoint(instruction);
+    if (auto* const logic = llvm::dyn_cast<llvm::BinaryOperator>(instruction)) {
+      return b_.CreateBinOp(logic->getOpcode(), operands[0], operands[1]);
+    }
+    if (llvm::isa<llvm::FreezeInst>(instruction)) return b_.CreateFreeze(operands[0]);
+    using namespace llvm::PatternMatch;
+    if (maskType(*instruction->getOperand(0)) == nullptr)
+      return b_.CreateSelect(operands[0], operands[1], operands[2]);
+    if (match(instruction->getOperand(2), m_Zero()))
+      return b_.CreateAnd(operands[0], b_.CreateFreeze(operands[1]));
+    if (match(instruction->getOperand(1), m_AllOnes()))
+      return b_.CreateOr(operands[0], b_.CreateFreeze(operands[2]));
+    return b_.CreateSelect(bits(operands[0]), operands[1], operands[2]);
+  }
+
+  llvm::Value* bits(llvm::Value* words) {
+    return b_.CreateICmpSLT(words, llvm::Constant::getNullValue(words->getType()));
+  }
+
+  /// What takes a mask and is none gets it from the words; of those that comparisons give, only in other blocks.
+  void replaceUses(llvm::Instruction& mask, bool everywhere) {
+    llvm::SmallSetVector<llvm::Instruction*, 8> users;
+    for (llvm::User* const user : mask.users()) {
+      auto* const taker = llvm::cast<llvm::Instruction>(user);
+      if (!computed_.contains(taker) && (everywhere || taker->getParent() != mask.getParent()))
+        users.insert(taker);
+    }
+    users.remove_if([&](llvm::Instruction* user) { return words_.contains(&mask) && words_[&mask] == user; });
+    for (llvm::Instruction* const user : users) {
+      llvm::Value* const wide = words(&mask);
+      b_.SetInsertPoint(user);
+      b_.SetCurrentDebugLocation(user->getDebugLoc());
+      if (asks(*user, wide) || counts(*user, wide)) continue;
+      user->replaceUsesOfWith(&mask, bits(wide));
+    }
+  }
+
+  /// Whether any bit is set.
+  bool asks(llvm::Instruction& user, llvm::Value* wide) {
+    using namespace llvm::PatternMatch;
+    if (!llvm::isa<llvm::BitCastInst>(user) || !user.getType()->isIntegerTy()) return false;
+    const auto isZeroTest = [](const llvm::User* asker) {
+      const auto* const test = llvm::dyn_cast<llvm::ICmpInst>(asker);
+      return test != nullptr && test->isEquality() && match(test->getOperand(1), m_Zero());
+    };
+    if (!llvm::all_of(user.users(), isZeroTest)) return false;
+    llvm::Value* const any = b_.CreateOrReduce(wide);
+    for (llvm::User* const asker : llvm::make_early_inc_range(user.users())) {
+      auto* const test = llvm::cast<llvm::ICmpInst>(asker);
+      b_.SetInsertPoint(test);
+      test->replaceAllUsesWith(b_.CreateICmp(test->getPredicate(), any, llvm::ConstantInt::get(word_, 0)));
+      test->eraseFromParent();
+    }
+    user.eraseFromParent();
+    return true;
+  }
+
+  /// A mask as numbers: 1 is what all ones are subtracted as.
+  bool counts(llvm::Instruction& user, llvm::Value* wide) {
+    if (user.getType() != wide->getType()) return false;
+    if (llvm::isa<llvm::SExtInst>(user)) {
+      user.replaceAllUsesWith(wide);
+      user.eraseFromParent();
+      return true;
+    }
+    if (!llvm::isa<llvm::ZExtInst>(user)) return false;
+    for (llvm::User* const taker : llvm::make_early_inc_range(user.users())) {
+      auto* const sum = llvm::dyn_cast<llvm::BinaryOperator>(taker);
+      if (sum == nullptr || sum->getOpcode() != llvm::Instruction::Add ||
+          sum->getOperand(0) == sum->getOperand(1))
+        continue;
+      llvm::Value* const other = sum->getOperand(sum->getOperand(0) == &user ? 1 : 0);
+      b_.SetInsertPoint(sum);
+      b_.SetCurrentDebugLocation(sum->getDebugLoc());
+      sum->replaceAllUsesWith(b_.CreateSub(other, wide));
+      sum->eraseFromParent();
+    }
+    if (!user.use_empty()) {
+      b_.SetInsertPoint(&user);
+      user.replaceAllUsesWith(b_.CreateAnd(wide, llvm::ConstantInt::get(wide->getType(), 1)));
+    }
+    user.eraseFromParent();
+    return true;
+  }
+
+  llvm::IRBuilder<> b_;
+  llvm::IntegerType* word_ = nullptr;
+  llvm::SmallSetVector<llvm::Instruction*, 16> computed_;
+  llvm::SmallVector<llvm::Instruction*, 16> given_;  ///< comparisons, and masks from elsewhere
+  llvm::DenseMap<llvm::Value*, llvm::Value*> words_;
+};
+
+}  // namespace
+
+llvm::PreservedAnalyses WideMasks::run(llvm::Function& function, llvm::FunctionAnalysisManager&) {
+  if (!function.hasFnAttribute(attribute) || !Widener(function).widen())
+    return llvm::PreservedAnalyses::all();
+  llvm::PreservedAnalyses kept;
+  kept.preserveSet<llvm::CFGAnalyses>();
+  return kept;
+}
+
+void markWideMasks(llvm::Function& function) { function.addFnAttr(attribute); }
+
+}  // namespace skc::native
