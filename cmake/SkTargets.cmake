@@ -49,6 +49,12 @@ function(sk_test_headers target)
   target_precompile_headers(${target} REUSE_FROM sk_test_main)
 endfunction()
 
+# sk_optimise(SOURCE...): these sources of tests compute for long, so that -O1 costs less than it saves. They are compiled alone.
+function(sk_optimise)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O1>"
+                              SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # sk_unit_tests(TARGET SOURCES... [APART SOURCE...]): the *_test.cpp files of this folder as one program, linked
 # with the folder's TARGET and Catch2, registered with CTest. APART: as for sk_compile_together.
 function(sk_unit_tests target)
