@@ -168,7 +168,7 @@ class Compilation {
     if (rowPlan != nullptr) {
       form.lanes = options_.lanes != 0 ? options_.lanes : block.lanes;
     } else if (isInLanes(kind, real)) {
-      form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, real, level);
+      form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, kind, real, level);
     }
     const bool isPredicated = form.lanes > 1;
     if (form.lanes >= 4 && real == Real::Float && options_.optimizes)

@@ -86,10 +86,25 @@ bool onlyGathers(const Module& module, const Kernel& kernel) {
   return some && all;
 }
 
+/// Vectors of accumulators, of `bytes` each, which are folded side by side: so memory is read in order, and no addition waits for the one
+/// before. The runtime has 256 bytes of columns for a scalar; half of these leave ends of rows short enough.
+std::uint32_t vectorsOfFold(const Module& module, const Kernel& kernel, std::size_t scalars,
+                            std::uint32_t bytes) {
+  constexpr std::uint32_t columnBytes = 128;
+  constexpr std::size_t registers = 16;
+  std::size_t accumulators = 0;
+  for (const KernelParam& param : kernel.params)
+    accumulators += param.role == ParamRole::Accumulator ? componentCount(module, param.type) : 0;
+  std::uint32_t vectors = 1;
+  while (2 * vectors * bytes * accumulators <= columnBytes && 2 * vectors * scalars <= registers)
+    vectors *= 2;
+  return vectors;
+}
+
 }  // namespace
 
-std::uint32_t laneCount(const Module& module, const Kernel& kernel, sk::native::Real real,
-                        const CpuLevel& level) {
+std::uint32_t laneCount(const Module& module, const Kernel& kernel, sk::native::EntryKind kind,
+                        sk::native::Real real, const CpuLevel& level) {
   if (onlyGathers(module, kernel)) return 1;
   const std::uint32_t bits = real == sk::native::Real::Float ? 32 : 64;
   const std::uint32_t one = level.vectorBits / bits;
@@ -101,7 +116,10 @@ std::uint32_t laneCount(const Module& module, const Kernel& kernel, sk::native::
   // a chain of dependent operations leaves units idle; a second vector fills them
   constexpr std::size_t few = 16;
   const bool waits = analysis::streamUses(module, kernel).loops;
-  return waits && scalars <= few ? 2 * one : one;
+  if (waits) return scalars <= few ? 2 * one : one;
+  const bool foldsInAnyOrder =
+      kind == sk::native::EntryKind::Fold && kernel.reduction && kernel.reduction->commutative;
+  return foldsInAnyOrder ? one * vectorsOfFold(module, kernel, scalars, bits / 8 * one) : one;
 }
 
 }  // namespace skc::native
