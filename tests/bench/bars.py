@@ -42,7 +42,7 @@ def judge(found):
     for figure in found.document.get("results", []):
         if "bar" in figure:
             unit = figure["unit"]
-            rows.append([figure["name"], f"at most {figure['bar']:g} {unit}", f"{figure['median']:.3g} {unit}",
+            rows.append([figure["name"], f"at most {figure['bar']:g} {unit}", f"{results.three_digits(figure['median'])} {unit}",
                          verdict(figure["passed"])])
     return rows
 

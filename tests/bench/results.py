@@ -77,10 +77,15 @@ def read(paths):
     return Results(document)
 
 
+def three_digits(number):
+    """3190, not 3.19e+03."""
+    return f"{float(f'{number:.3g}'):g}"
+
+
 def time_text(seconds):
     for factor, unit in ((1, "s"), (1e3, "ms"), (1e6, "us")):
         if seconds * factor >= 1 or unit == "us":
-            return f"{seconds * factor:.3g} {unit}"
+            return f"{three_digits(seconds * factor)} {unit}"
 
 
 def ratio_text(value):
@@ -129,7 +134,7 @@ def steps_table(found):
             best = min(mine, key=lambda name: found.seconds((program, log2), name))
             ratios = [found.ratios((program, log2), best, peer) for peer in contenders if peer not in found.ours()]
             rows.append([program.removesuffix(" step"), f"{2 ** (log2 // 2)} x {2 ** (log2 - log2 // 2)}"]
-                        + [f"{1 / s:.3g}" if s else "" for s in seconds]
+                        + [three_digits(1 / s) if s else "" for s in seconds]
                         + [f"{best}: " + ", ".join(ratio_text(r[1]) for r in ratios if r)])
     return ["steps of", "cells"] + [f"{name}, a second" for name in contenders] + ["our best over the peer's"], rows
 

@@ -37,7 +37,8 @@ std::string table(const nlohmann::json& results, const std::set<std::string>& wo
     if (!words.contains(firstWord(row.at("name")))) continue;
     const std::string unit = row.at("unit");
     const auto figure = [&](const nlohmann::json& value) {
-      return fmt::format("{:.3g} {}", value.get<double>(), unit);
+      const double rounded = std::stod(fmt::format("{:.3g}", value.get<double>()));
+      return fmt::format("{:g} {}", rounded, unit);  // 3190, not 3.19e+03
     };
     text += fmt::format("| {} | {} | {} |\n", row.at("name").get<std::string>(), figure(row.at("median")),
                         row.contains("bar") ? figure(row.at("bar")) : "");
