@@ -9,21 +9,13 @@
 #include "accuracy/compare_modes.hpp"
 #include "accuracy/element_errors.hpp"
 #include "accuracy/programs.hpp"
+#include "info/function_numbers.hpp"
 #include "info/functions.sk.hpp"
 #include "info/numbers.hpp"
 
 namespace sk_tool {
 
 namespace {
-
-/// As functions.sk numbers them.
-enum Function : unsigned {
-#define SK_FUNCTION(name) f_##name,
-#define SK_RANGE(name, spread, low, high)
-#define SK_FUNCTION2(name) f_##name,
-#define SK_RANGE2(name, spread, low, high, spread2, low2, high2)
-#include "info/functions.def"
-};
 
 struct FunctionCase {
   const char* name;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "info/error_statistics.hpp"
+#include "info/function_numbers.hpp"
 #include "info/functions.sk.hpp"
 #include "info/numbers.hpp"
 #include "info/probes.hpp"
@@ -17,7 +18,7 @@ namespace sk_tool {
 
 namespace {
 
-constexpr std::size_t count = 1 << 15;
+constexpr std::size_t samples = 1 << 15;
 
 enum class Spread { Linear, Logarithmic };
 
@@ -29,15 +30,6 @@ struct Range {
     return spread == Spread::Linear ? numbers.linear(low, high) : numbers.logarithmic(low, high);
   }
   std::string text() const { return fmt::format("[{:.6g}, {:.6g}]", low, high); }
-};
-
-/// As functions.sk numbers them.
-enum Function : unsigned {
-#define SK_FUNCTION(name) f_##name,
-#define SK_RANGE(name, spread, low, high)
-#define SK_FUNCTION2(name) f_##name,
-#define SK_RANGE2(name, spread, low, high, spread2, low2, high2)
-#include "info/functions.def"
 };
 
 namespace reference {
@@ -66,7 +58,7 @@ double atan2(double y, double x) { return std::atan2(y, x); }
 double mod(double x, double y) { return x - y * std::floor(x / y); }
 }  // namespace reference
 
-struct Row {
+struct FunctionRow {
   const char* name;
   Function function;
   double (*one)(double);  ///< null: it has two arguments
@@ -74,8 +66,8 @@ struct Row {
   Range x, y;
 };
 
-const std::vector<Row>& rows() {
-  static const std::vector<Row> table{
+const std::vector<FunctionRow>& functionRows() {
+  static const std::vector<FunctionRow> table{
 #define SK_FUNCTION(name)
 #define SK_RANGE(name, spread, low, high) \
   {#name, f_##name, reference::name, nullptr, {Spread::spread, low, high}, {}},
@@ -87,11 +79,11 @@ const std::vector<Row>& rows() {
   return table;
 }
 
-Json errorsOf(sk::Device& device, const Row& row) {
-  Numbers numbers(static_cast<unsigned>(&row - rows().data()));
-  std::vector<float> x(count);
-  std::vector<float> y(count, 1.0F);
-  for (std::size_t i = 0; i < count; ++i) {
+Json errorsOf(sk::Device& device, const FunctionRow& row) {
+  Numbers numbers(static_cast<unsigned>(&row - functionRows().data()));
+  std::vector<float> x(samples);
+  std::vector<float> y(samples, 1.0F);
+  for (std::size_t i = 0; i < samples; ++i) {
     x[i] = row.x.draw(numbers);
     if (row.two != nullptr) y[i] = row.y.draw(numbers);
   }
@@ -101,7 +93,7 @@ Json errorsOf(sk::Device& device, const Row& row) {
   probes::function.with({.intrinsics = sk::Intrinsics::Fast})(row.function, a, b, r);
   const std::vector<float> got = r.read();
   ErrorStatistics errors;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < samples; ++i) {
     errors.add(got[i], row.one != nullptr ? row.one(x[i]) : row.two(x[i], y[i]), x[i]);
   }
   Json json = {{"name", row.name}, {"range", row.x.text()}};
@@ -114,7 +106,7 @@ Json errorsOf(sk::Device& device, const Row& row) {
 
 Json probeFunctions(sk::Device& device) {
   Json list = Json::array();
-  for (const Row& row : rows()) list.push_back(errorsOf(device, row));
+  for (const FunctionRow& row : functionRows()) list.push_back(errorsOf(device, row));
   return list;
 }
 
