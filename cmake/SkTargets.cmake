@@ -23,19 +23,16 @@ function(sk_library target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endfunction()
 
-# sk_compile_together(TARGET [BATCH COUNT] [APART SOURCE...]): with SK_UNITY, compiles the sources of a target as one, or COUNT
-# of them at a time, so that what all of them include is read and instantiated once. APART names sources that stay alone
+# sk_compile_together(TARGET [APART SOURCE...]): with SK_UNITY, compiles the sources of a target as one, so that what all of
+# them include is read and instantiated once. APART names sources that stay alone
 # because names in their anonymous namespaces are also another source's. (Precompiled headers of the compiler cost more than they
 # save: g++ 12 writes 600 MB for Clang's, and reading these takes longer than reading the headers that a source needs.)
 function(sk_compile_together target)
   if(NOT SK_UNITY)
     return()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 together "" "BATCH" "APART")
-  if(NOT together_BATCH)
-    set(together_BATCH 0)
-  endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${together_BATCH})
+  cmake_parse_arguments(PARSE_ARGV 1 together "" "" "APART")
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
   if(together_APART)
     set_source_files_properties(${together_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()

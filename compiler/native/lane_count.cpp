@@ -86,12 +86,11 @@ bool onlyGathers(const Module& module, const Kernel& kernel) {
   return some && all;
 }
 
-/// Vectors of accumulators, of `bytes` each, which are folded side by side: so memory is read in order, and no addition waits for the one
-/// before. The runtime has 256 bytes of columns for a scalar; half of these leave ends of rows short enough.
+/// The number of vectors, of `bytes` each, in which accumulators are folded side by side. Several read memory in order and do not wait
+/// for each other's additions. The runtime has 256 bytes of columns for a scalar; half of these leave ends of rows short.
 std::uint32_t vectorsOfFold(const Module& module, const Kernel& kernel, std::size_t scalars,
-                            std::uint32_t bytes) {
+                            std::uint32_t bytes, std::uint32_t registers) {
   constexpr std::uint32_t columnBytes = 128;
-  constexpr std::size_t registers = 16;
   std::size_t accumulators = 0;
   for (const KernelParam& param : kernel.params)
     accumulators += param.role == ParamRole::Accumulator ? componentCount(module, param.type) : 0;
@@ -119,7 +118,8 @@ std::uint32_t laneCount(const Module& module, const Kernel& kernel, sk::native::
   if (waits) return scalars <= few ? 2 * one : one;
   const bool foldsInAnyOrder =
       kind == sk::native::EntryKind::Fold && kernel.reduction && kernel.reduction->commutative;
-  return foldsInAnyOrder ? one * vectorsOfFold(module, kernel, scalars, bits / 8 * one) : one;
+  return foldsInAnyOrder ? one * vectorsOfFold(module, kernel, scalars, bits / 8 * one, level.vectorRegisters)
+                         : one;
 }
 
 }  // namespace skc::native

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What times are told by.
+// Quantiles of measured values.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace sk_tool {
 
-/// Of sorted values, the one below which the part `q` of them is, interpolated.
+/// The quantile `q`, 0 to 1, of sorted values, of which there is at least one; interpolated linearly between neighbours.
 inline double quantile(const std::vector<double>& sorted, double q) {
   const double at = q * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);
@@ -18,7 +18,7 @@ inline double quantile(const std::vector<double>& sorted, double q) {
   return sorted[below] + (at - std::floor(at)) * (sorted[above] - sorted[below]);
 }
 
-/// Of at least one value.
+/// The median of values in any order, of which there is at least one.
 inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return quantile(values, 0.5);

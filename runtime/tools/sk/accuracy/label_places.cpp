@@ -26,7 +26,7 @@ Box boxOf(const LabelPlace& place, double textWidth) {
 
 /// The best first: beside the point, then further and further above and below, to the left only where that is much nearer.
 std::vector<LabelPlace> candidatesFor(const LabelledPoint& point) {
-  constexpr int leftIsWorse = 4;  // than the right, in halfLines
+  constexpr int leftIsWorse = 4;  // than the right, in half lines
   std::vector<LabelPlace> places{{point.x + gap, point.y}};
   const auto add = [&](int step, bool isLeft) {
     const double away = step * labelHeight / 2;

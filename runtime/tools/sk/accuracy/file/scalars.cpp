@@ -124,11 +124,11 @@ double roundedTo(Scalar scalar, double value) {
 
 double ulpOf(Scalar scalar, double value) {
   if (const double step = stepOf(scalar); step > 0) return step;
-  const FloatFormat precision = formatOf(scalar);
+  const FloatFormat format = formatOf(scalar);
   int exponent = 0;
   std::frexp(value, &exponent);
-  exponent = value == 0 ? precision.smallest : std::max(exponent - 1, precision.smallest);
-  return std::ldexp(1.0, exponent - precision.digits + 1);
+  exponent = value == 0 ? format.smallest : std::max(exponent - 1, format.smallest);
+  return std::ldexp(1.0, exponent - format.digits + 1);
 }
 
 double smallestOf(Scalar scalar) {
