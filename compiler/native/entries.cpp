@@ -269,12 +269,39 @@ class EntryWriter {
   }
 
   void fold() {
-    begin(3, 3);
+    begin(3, 4);
     streams_.begin(function_->getArg(0), function_->getArg(1), prologue_);
     const State state = stateIn(function_->getArg(2));
     llvm::Value* const columns = function_->getArg(3);
     llvm::Value* const rounds = function_->getArg(4);
-    llvm::Value* const starts = b_.CreateICmpNE(function_->getArg(5), number(0));
+    llvm::Value* const leaves = function_->getArg(5);
+    llvm::Value* const starts = b_.CreateICmpNE(function_->getArg(6), number(0));
+    loop(number(0), leaves, 1, [&](llvm::Value* leaf) {
+      const State ofLeaf = from(state, b_.CreateMul(reversed(leaf, leaves), columns));
+      foldLeaf(ofLeaf, b_.CreateMul(leaf, b_.CreateMul(rounds, columns)), columns, rounds, starts);
+    });
+    end();
+  }
+
+  /// The state from a column on.
+  State from(const State& state, llvm::Value* column) {
+    State later = state;
+    for (std::size_t c = 0; c < state.arrays.size(); ++c)
+      later.arrays[c] = l_.at(l_.stored(state.scalars[c]), state.arrays[c], column);
+    return later;
+  }
+
+  /// Of a number below `count`, a power of 2: that with its bits in the opposite order.
+  llvm::Value* reversed(llvm::Value* value, llvm::Value* count) {
+    llvm::Value* const all = b_.CreateUnaryIntrinsic(llvm::Intrinsic::bitreverse, value);
+    llvm::Value* const bits = b_.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, count, b_.getTrue());
+    // in two steps: a shift by all 64 bits has no value
+    return b_.CreateLShr(b_.CreateLShr(all, b_.CreateSub(number(63), bits)), number(1));
+  }
+
+  /// Folds the leaf whose first element in the chunk is `first`.
+  void foldLeaf(const State& state, llvm::Value* first, llvm::Value* columns, llvm::Value* rounds,
+                llvm::Value* starts) {
     llvm::Value* const firstRound =
         s_.kernel.reduction->seeded ? b_.CreateZExt(starts, b_.getInt64Ty()) : number(0);
     loop(number(0), columns, l_.count(), [&](llvm::Value* column) {
@@ -300,20 +327,18 @@ class EntryWriter {
       };
       b_.CreateCondBr(starts, start, resume);
       b_.SetInsertPoint(start);
-      keep(startOf(column));
+      keep(startOf(b_.CreateAdd(first, column)));
       b_.CreateBr(fold);
       b_.SetInsertPoint(resume);
       keep(loadState(state, column));
       b_.CreateBr(fold);
       b_.SetInsertPoint(fold);
       loop(firstRound, rounds, 1, [&](llvm::Value* round) {
-        llvm::Value* const element = b_.CreateAdd(b_.CreateMul(round, columns), column);
-        streams_.moveTo(element);
+        streams_.moveTo(b_.CreateAdd(first, b_.CreateAdd(b_.CreateMul(round, columns), column)));
         keep(folded(kept(), [&](std::uint32_t i) { return argument(i); }, column, columns));
       });
       storeState(state, column, kept());
     });
-    end();
   }
 
   void combine() {

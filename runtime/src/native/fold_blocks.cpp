@@ -20,6 +20,11 @@ using native::Deal;
 using native::Extents;
 using native::Range;
 
+/// The largest power of 2 that is not greater; 0 for 0.
+std::int64_t powerUpTo(std::int64_t number) {
+  return static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(number)));
+}
+
 ColumnCombiner combinerOf(const FoldProgram& program) {
   return {program.shape, program.combine.function, program.combine.lanes, program.combine.frame};
 }
@@ -36,9 +41,9 @@ class PieceFolder {
         runs_(program.shape, combiner_, 1),
         columnRuns_(program.shape, combiner_, side_),
         rest_(program.shape, side_),
-        group_(program.isCommutative ? 0 : groupOf(program.shape)),
+        group_(program.isCommutative ? mostLeaves * side_ : groupOf(program.shape)),
         leafColumns_(program.shape, group_),
-        orderedColumns_(program.shape, group_) {}
+        orderedColumns_(program.shape, program.isCommutative ? 0 : group_) {}
 
   /// Of the block that is there. It has one element at least. The result is one column.
   const StateColumns& fold(const Extents& block, std::int64_t piece) {
@@ -62,6 +67,13 @@ class PieceFolder {
 
   void foldColumns(std::int64_t x, std::int64_t count) {
     while (count >= side_) {
+      const std::int64_t leaves = wholeLeaves(count);
+      if (leaves > 1) {
+        foldWholeLeaves(x, leaves);
+        x += leaves * leafRounds * side_;
+        count -= leaves * leafRounds * side_;
+        continue;
+      }
       const std::int64_t rounds = std::min(count / side_, leafRounds);
       leaves_.fold(columnRuns_.next(), x, side_, rounds, Start::New);
       columnRuns_.add();
@@ -69,6 +81,19 @@ class PieceFolder {
       count -= rounds * side_;
     }
     if (count > 0) foldRest(x, count);
+  }
+
+  /// How many leaves of whole columns are folded by one call, a power of 2; 0 or 1 where that is not possible.
+  std::int64_t wholeLeaves(std::int64_t count) const {
+    if (!leaves_.foldsLeavesTogether(side_)) return 0;
+    return powerUpTo(std::min({mostLeaves, columnRuns_.mostTogether(), count / (leafRounds * side_)}));
+  }
+  /// The columns of leaves are combined as they would be one leaf after the other.
+  void foldWholeLeaves(std::int64_t x, std::int64_t leaves) {
+    leaves_.foldLeaves(leafColumns_, x, side_, leafRounds, leaves);
+    combiner_.gather(leafColumns_, leaves * side_, side_);
+    columnRuns_.next().assign(0, leafColumns_, 0, side_);
+    columnRuns_.add(leaves);
   }
 
   /// What is left of a row: an element for some of the columns. Those of several rows are a leaf.
@@ -119,9 +144,7 @@ class PieceFolder {
   std::int64_t leavesTogether(std::int64_t count) const {
     if (folded_ != 0 || !leaves_.foldsApart()) return 0;
     const std::int64_t most = std::min({group_, runs_.mostTogether(), count / leafRounds});
-    return most < program_.fold.lanes
-               ? 0
-               : static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(most)));
+    return most < program_.fold.lanes ? 0 : powerUpTo(most);
   }
 
   /// Folds leaves that lie one behind the other side by side. They are combined as they would be one by one: neighbours first,
@@ -157,7 +180,8 @@ class PieceFolder {
   std::int64_t restUsed_ = 0;
   std::int64_t folded_ =
       0;  ///< elements of the leaf so far, in order, or of what is left of rows, in each column
-  std::int64_t group_;  ///< leaves that are folded side by side, at most
+  static constexpr std::int64_t mostLeaves = 16;  ///< that one call folds, in any order
+  std::int64_t group_;  ///< columns of leaves that are folded together, at most
   StateColumns leafColumns_, orderedColumns_;
 };
 
@@ -228,11 +252,17 @@ void combinePieces(const FoldProgram& program, const BlockPieces& pieces,
                    const std::vector<std::byte>& states, const FoldResults& results) {
   ColumnCombiner combiner = combinerOf(program);
   StateRuns runs(program.shape, combiner, 1);
+  StateColumns columns(program.shape, groupOf(program.shape));
   const std::int64_t ofBlock = pieces.ofBlock();
-  for (std::int64_t piece = 0; piece < pieces.count(); ++piece) {
-    runs.next().unpack(0, states.data() + static_cast<std::size_t>(piece) * program.shape.bytes());
-    runs.add();
-    if ((piece + 1) % ofBlock == 0) results.store(pieces.blockAt(piece / ofBlock), runs.take(), 1);
+  std::int64_t together = 0;
+  for (std::int64_t piece = 0; piece < pieces.count(); piece += together) {
+    const std::int64_t left = ofBlock - piece % ofBlock;
+    together = powerUpTo(std::min({left, runs.mostTogether(), groupOf(program.shape)}));
+    columns.unpackReversed(states.data() + static_cast<std::size_t>(piece) * program.shape.bytes(), together);
+    combiner.gather(columns, together);
+    runs.next().assign(0, columns, 0, 1);
+    runs.add(together);
+    if (together == left) results.store(pieces.blockAt(piece / ofBlock), runs.take(), 1);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "native/fold_state.hpp"
 #include "native/object_code_test.hpp"
 
 namespace sk::test {
@@ -22,19 +23,23 @@ using native::Frame;
 using native::Operand;
 using program::Role;
 
-/// fold(column, element number) for all elements of a fold, whole groups of columns.
+/// fold(column, round, element number) for all elements of a fold, whole groups of columns.
 template <class Fold>
-void forAll(std::int64_t columns, std::int64_t rounds, Fold&& fold) {
-  for (std::int64_t round = 0; round < rounds; ++round) {
-    for (std::int64_t k = 0; k < inGroups(columns); ++k) fold(k, round, round * columns + k);
+void forAll(std::int64_t columns, std::int64_t rounds, std::int64_t leaves, Fold&& fold) {
+  for (std::int64_t leaf = 0; leaf < leaves; ++leaf) {
+    const std::int64_t first = bitsReversed(leaf, leaves) * columns;
+    for (std::int64_t round = 0; round < rounds; ++round) {
+      const std::int64_t element = (leaf * rounds + round) * columns;
+      for (std::int64_t k = 0; k < inGroups(columns); ++k) fold(first + k, round, element + k);
+    }
   }
 }
 
 void sumFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_t columns, std::int64_t rounds,
-             std::int64_t starts) {
+             std::int64_t leaves, std::int64_t starts) {
   auto* total = static_cast<float*>(state[0]);
   const auto* x = arrayOf<float>(chunk, 0);
-  forAll(columns, rounds, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
+  forAll(columns, rounds, leaves, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
     total[k] = (starts != 0 && round == 0 ? 0 : total[k]) + x[i];
   });
 }
@@ -45,10 +50,10 @@ void sumCombine(const Frame*, void* const* state, void* const* later, std::int64
 }
 
 void orderFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_t columns,
-               std::int64_t rounds, std::int64_t starts) {
+               std::int64_t rounds, std::int64_t leaves, std::int64_t starts) {
   auto* last = static_cast<float*>(state[0]);
   const auto* x = arrayOf<float>(chunk, 0);
-  forAll(columns, rounds, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
+  forAll(columns, rounds, leaves, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
     last[k] = starts != 0 && round == 0 ? x[i] : last[k] * 0.75F + x[i];
   });
 }
@@ -60,11 +65,11 @@ void orderCombine(const Frame*, void* const* state, void* const* later, std::int
 }
 
 void pairFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_t columns, std::int64_t rounds,
-              std::int64_t starts) {
+              std::int64_t leaves, std::int64_t starts) {
   auto* total = static_cast<float*>(state[0]);
   auto* last = static_cast<float*>(state[1]);
   const auto* x = arrayOf<float>(chunk, 0);
-  forAll(columns, rounds, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
+  forAll(columns, rounds, leaves, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
     const bool isNew = starts != 0 && round == 0;
     total[k] = (isNew ? 0 : total[k]) + x[i];
     last[k] = x[i] + 0.5F * (isNew ? 1 : last[k]);
@@ -232,11 +237,11 @@ TEST_CASE("identities are stored where there is no element, in arrays of their o
 
 /// Sums x times (1 + its index), modulo 2^32; and the neighbour to the right of each element.
 void placeFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_t columns,
-               std::int64_t rounds, std::int64_t starts) {
+               std::int64_t rounds, std::int64_t leaves, std::int64_t starts) {
   auto* total = static_cast<std::uint32_t*>(state[0]);
   const auto* x = arrayOf<float>(chunk, 0);
 
-  forAll(columns, rounds, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
+  forAll(columns, rounds, leaves, [&](std::int64_t k, std::int64_t round, std::int64_t i) {
     const std::int64_t index = chunk->first[0] + i * chunk->step + 1000 * chunk->first[1];
     auto term = static_cast<std::uint32_t>(static_cast<std::int64_t>(x[i]) * (1 + index));
     term += static_cast<std::uint32_t>(static_cast<std::int64_t>(arrayOf<float>(chunk, 1)[i + 1]));

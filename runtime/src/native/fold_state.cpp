@@ -62,13 +62,9 @@ void StateColumns::assignReversed(const StateColumns& other, std::int64_t count)
   const auto copy = [&]<std::size_t bytes>(std::size_t scalar, std::integral_constant<std::size_t, bytes>) {
     std::byte* const to = at(scalar, 0);
     const std::byte* const from = other.at(scalar, 0);
-    std::int64_t reversed = 0;
     for (std::int64_t i = 0; i < count; ++i) {
-      std::memcpy(to + reversed * static_cast<std::int64_t>(bytes),
+      std::memcpy(to + bitsReversed(i, count) * static_cast<std::int64_t>(bytes),
                   from + i * static_cast<std::int64_t>(bytes), bytes);
-      std::int64_t bit = count / 2;  // counts from the highest bit on
-      for (; (reversed & bit) != 0; bit /= 2) reversed -= bit;
-      reversed += bit;
     }
   };
   for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {
@@ -80,6 +76,10 @@ void StateColumns::assignReversed(const StateColumns& other, std::int64_t count)
       default: copy(scalar, std::integral_constant<std::size_t, mostScalarBytes>{}); break;
     }
   }
+}
+
+void StateColumns::unpackReversed(const std::byte* bytes, std::int64_t count) {
+  for (std::int64_t i = 0; i < count; ++i, bytes += shape_->bytes()) unpack(bitsReversed(i, count), bytes);
 }
 
 void StateColumns::pack(std::int64_t column, std::byte* bytes) const {
@@ -110,15 +110,24 @@ void ColumnCombiner::combine(StateColumns& state, const StateColumns& later, std
   if (count == 0) return;
   const std::int64_t beyond = roundUp(count, lanes_) - count;
   if (beyond > 0) kept_.assign(0, state, count, beyond);
-  for (std::size_t scalar = 0; scalar < shape_.scalars(); ++scalar) later_[scalar] = later.at(scalar, first);
-  function_(frame_, state.arrays(), later_.data(), count);
+  call(state, later, first, count);
   if (beyond > 0) state.assign(count, kept_, 0, beyond);
 }
 
-void ColumnCombiner::gather(StateColumns& state, std::int64_t count) {
-  while (count > 1) {
+void ColumnCombiner::call(StateColumns& state, const StateColumns& later, std::int64_t first,
+                          std::int64_t count) {
+  for (std::size_t scalar = 0; scalar < shape_.scalars(); ++scalar) later_[scalar] = later.at(scalar, first);
+  function_(frame_, state.arrays(), later_.data(), count);
+}
+
+void ColumnCombiner::gather(StateColumns& state, std::int64_t count, std::int64_t left) {
+  while (count > left) {
     const std::int64_t half = (count + 1) / 2;
-    combine(state, state, half, count - half);
+    if (count == 2 * half) {
+      call(state, state, half, half);  // nobody looks at the columns beyond these any more
+    } else {
+      combine(state, state, half, count - half);
+    }
     count = half;
   }
 }

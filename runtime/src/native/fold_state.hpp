@@ -18,6 +18,13 @@
 
 namespace sk {
 
+/// The number below `count`, a power of 2, that has the bits of `number` in the opposite order.
+inline std::int64_t bitsReversed(std::int64_t number, std::int64_t count) {
+  std::int64_t reversed = 0;
+  for (; count > 1; count /= 2, number /= 2) reversed = 2 * reversed + number % 2;
+  return reversed;
+}
+
 /// The scalars of all accumulators of a reduction.
 class StateShape {
  public:
@@ -57,6 +64,8 @@ class StateColumns {
   /// A column's scalars one behind the other: StateShape::bytes().
   void pack(std::int64_t column, std::byte* bytes) const;
   void unpack(std::int64_t column, const std::byte* bytes);
+  /// Unpacks `count` columns, a power of 2, that lie one behind the other to the numbers that have their bits in the opposite order.
+  void unpackReversed(const std::byte* bytes, std::int64_t count);
 
  private:
   const StateShape* shape_;
@@ -72,10 +81,14 @@ class ColumnCombiner {
 
   /// Folds `count` columns of `later` from `first` on, which come later, into the first columns of `state`, which may be the same.
   void combine(StateColumns& state, const StateColumns& later, std::int64_t first, std::int64_t count);
-  /// Folds `count` columns into the first of them: each half into the other.
-  void gather(StateColumns& state, std::int64_t count);
+  /// Folds `count` columns into the first `left` of them: each half into the other. `left` is 1, or `count` is a power of 2
+  /// times as many.
+  void gather(StateColumns& state, std::int64_t count, std::int64_t left = 1);
 
  private:
+  /// Columns beyond the last change, up to a whole group of lanes.
+  void call(StateColumns& state, const StateColumns& later, std::int64_t first, std::int64_t count);
+
   native::CombineFunction* function_;
   std::int64_t lanes_;
   const native::Frame* frame_;

@@ -38,22 +38,29 @@ void LeafFolder::fold(StateColumns& state, std::int64_t x, std::int64_t columns,
   // the ragged end of a row is laid out; what comes before it need not be
   const std::int64_t whole = columns & -program_.fold.lanes;
   if (rounds != 1 || whole == 0 || whole == columns) {
-    call(state.arrays(), x, columns, rounds, start, step);
+    call(state.arrays(), x, {columns, rounds, 1}, start, step);
     return;
   }
-  call(state.arrays(), x, whole, 1, start, step);
+  call(state.arrays(), x, {whole, 1, 1}, start, step);
   for (std::size_t scalar = 0; scalar < rest_.size(); ++scalar) rest_[scalar] = state.at(scalar, whole);
-  call(rest_.data(), x + whole * step, columns - whole, 1, start, step);
+  call(rest_.data(), x + whole * step, {columns - whole, 1, 1}, start, step);
 }
 
-void LeafFolder::call(void* const* state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
-                      Start start, std::int64_t step) {
-  const std::int64_t count = columns * rounds;
+void LeafFolder::foldLeaves(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
+                            std::int64_t leaves) {
+  call(state.arrays(), x, {columns, rounds, leaves}, Start::New, 1);
+}
+
+void LeafFolder::call(void* const* state, std::int64_t x, const Division& division, Start start,
+                      std::int64_t step) {
+  const auto [columns, rounds, leaves] = division;
+  const std::int64_t count = columns * rounds * leaves;
   arrays_.place(x, count, count - columns + roundUp(columns, program_.fold.lanes), step);
   chunk_.first[0] = x;
   chunk_.count = count;
   chunk_.step = step;
-  program_.fold.function(program_.fold.frame, &chunk_, state, columns, rounds, start == Start::New ? 1 : 0);
+  program_.fold.function(program_.fold.frame, &chunk_, state, columns, rounds, leaves,
+                         start == Start::New ? 1 : 0);
 }
 
 void LeafFolder::foldInto(StateColumns& state, std::int64_t first, std::int64_t x, std::int64_t count,
@@ -70,7 +77,8 @@ void LeafFolder::foldOneByOne(StateColumns& state, std::int64_t x, std::int64_t 
   for (std::int64_t k = 0; k < columns; ++k) {
     if (start == Start::Continued) one.assign(0, state, k, 1);
     for (std::int64_t round = 0; round < rounds; ++round) {
-      call(one.arrays(), x + (k + round * columns) * step, 1, 1, round == 0 ? start : Start::Continued, 1);
+      call(one.arrays(), x + (k + round * columns) * step, {1, 1, 1}, round == 0 ? start : Start::Continued,
+           1);
     }
     state.assign(k, one, 0, 1);
   }

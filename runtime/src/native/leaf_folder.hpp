@@ -25,6 +25,14 @@ class LeafFolder {
   /// Whether elements that are no neighbours are folded several together.
   bool foldsApart() const { return program_.fold.lanes > 1 && !goesOneByOne(); }
 
+  /// Whether leaves of so many columns, one behind the other, are folded by one call.
+  bool foldsLeavesTogether(std::int64_t columns) const {
+    return program_.layout.isDirect() && !goesOneByOne() && columns % program_.fold.lanes == 0;
+  }
+  /// Folds `leaves` of them from x on, a power of 2. Each starts; `state` has its columns where FoldFunction says.
+  void foldLeaves(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
+                  std::int64_t leaves);
+
   /// Folds the elements at x, x + step ... into the columns of `state`: `rounds` of them into each, every `columns`-th. Columns
   /// beyond the last change.
   void fold(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds, Start start,
@@ -34,8 +42,11 @@ class LeafFolder {
 
  private:
   bool goesOneByOne() const { return program_.layout.goesByElement() || program_.layout.hasGathers(); }
-  void call(void* const* state, std::int64_t x, std::int64_t columns, std::int64_t rounds, Start start,
-            std::int64_t step);
+  /// The numbers of a call of the object code.
+  struct Division {
+    std::int64_t columns, rounds, leaves;
+  };
+  void call(void* const* state, std::int64_t x, const Division& division, Start start, std::int64_t step);
   void foldOneByOne(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
                     Start start, std::int64_t step);
 

@@ -71,37 +71,57 @@ void sumAny(double* columns, std::int64_t count, std::int64_t rounds, const Fact
   }
 }
 
+/// The numbers of a fold that are not in its chunk.
+struct Division {
+  std::int64_t columns, rounds, leaves, starts;
+};
+
 template <bool isWide, class... Factors>
-void sum(const Frame* frame, void* const* state, std::int64_t columns, std::int64_t rounds,
-         std::int64_t starts, const Factors*... factors) {
+void sum(const Frame* frame, double* sums, const Division& division, const Factors*... factors) {
   const double start = static_cast<const SumFrame*>(frame)->start;
-  auto* const sums = static_cast<double*>(state[0]);
-  if constexpr (isWide) {
-    if (columns == side && starts != 0) {
-      sumLeaf(sums, start, rounds, factors...);
-      return;
+  const auto [columns, rounds, leaves, starts] = division;
+  for (std::int64_t leaf = 0; leaf < leaves; ++leaf) {
+    double* const own = sums + bitsReversed(leaf, leaves) * columns;
+    const std::int64_t first = leaf * rounds * columns;
+    if constexpr (isWide) {
+      if (columns == side && starts != 0) {
+        sumLeaf(own, start, rounds, factors + first...);
+        continue;
+      }
     }
+    if (starts != 0) std::fill_n(own, columns, start);
+    sumAny(own, columns, rounds, factors + first...);
   }
-  if (starts != 0) std::fill_n(sums, columns, start);
-  sumAny(sums, columns, rounds, factors...);
+}
+
+/// The floats of a factor.
+const float* factorOf(const Chunk* chunk, std::size_t number) {
+  return static_cast<const float*>(chunk->arrays[number]);
 }
 
 template <bool isWide>
 void sumOfOne(const Frame* frame, const Chunk* chunk, void* const* state, std::int64_t columns,
-              std::int64_t rounds, std::int64_t starts) {
-  sum<isWide>(frame, state, columns, rounds, starts, static_cast<const float*>(chunk->arrays[0]));
+              std::int64_t rounds, std::int64_t leaves, std::int64_t starts) {
+  sum<isWide>(frame, static_cast<double*>(state[0]), {columns, rounds, leaves, starts}, factorOf(chunk, 0));
 }
 template <bool isWide>
 void sumOfProducts(const Frame* frame, const Chunk* chunk, void* const* state, std::int64_t columns,
-                   std::int64_t rounds, std::int64_t starts) {
-  sum<isWide>(frame, state, columns, rounds, starts, static_cast<const float*>(chunk->arrays[0]),
-              static_cast<const float*>(chunk->arrays[1]));
+                   std::int64_t rounds, std::int64_t leaves, std::int64_t starts) {
+  sum<isWide>(frame, static_cast<double*>(state[0]), {columns, rounds, leaves, starts}, factorOf(chunk, 0),
+              factorOf(chunk, 1));
+}
+
+/// Whether the functions for vectors of 256 bits run here.
+bool hasWideVectors() {
+#if defined(__x86_64__) && defined(__GNUC__)
+  return levelOfCpu() >= Level::V3;
+#else
+  return false;
+#endif
 }
 
 native::FoldFunction* sumOf(std::size_t factors) {
-#if defined(__x86_64__) && defined(__GNUC__)
-  if (levelOfCpu() >= Level::V3) return factors == 1 ? &sumOfOne<true> : &sumOfProducts<true>;
-#endif
+  if (hasWideVectors()) return factors == 1 ? &sumOfOne<true> : &sumOfProducts<true>;
   return factors == 1 ? &sumOfOne<false> : &sumOfProducts<false>;
 }
 
@@ -109,6 +129,23 @@ void addColumns(const Frame*, void* const* state, void* const* later, std::int64
   auto* const sums = static_cast<double*>(state[0]);
   const auto* const others = static_cast<const double*>(later[0]);
   for (std::int64_t k = 0; k < columns; ++k) sums[k] += others[k];
+}
+/// Adds whole vectors, on CPUs that have those of 256 bits.
+SK_FOR_V3 void addVectors(const Frame*, void* const* state, void* const* later, std::int64_t columns) {
+  auto* const sums = static_cast<double*>(state[0]);
+  const auto* const others = static_cast<const double*>(later[0]);
+  for (std::int64_t k = 0; k < columns; k += doublesPerVector) {
+    Doubles sum, other;
+    std::memcpy(&sum, sums + k, sizeof sum);
+    std::memcpy(&other, others + k, sizeof other);
+    sum += other;
+    std::memcpy(sums + k, &sum, sizeof sum);
+  }
+}
+
+Bound<native::CombineFunction> combination() {
+  if (hasWideVectors()) return {&addVectors, doublesPerVector, nullptr};
+  return {&addColumns, 1, nullptr};
 }
 
 double startOf(const program::Reduction& reduction, const CodeFrame& frame, const CodeChoice& choice) {
@@ -139,7 +176,7 @@ void sumFloats(const program::Reduction& reduction, const native::ReduceCall& ca
   foldBlocks({.layout = layout,
               .shape = shape,
               .fold = {sumOf(reduction.term.factors.size()), 1, &sumFrame},
-              .combine = {&addColumns, 1, nullptr},
+              .combine = combination(),
               .isCommutative = true,
               .isUneven = false},
              call.fold.domain, call.block, results);

@@ -84,11 +84,14 @@ struct Slot {
 using RunFunction = void(const Frame*, const Chunk*);
 /// The same for Entry::rows chunks in consecutive rows, of the same elements along x and `count`.
 using RunRowsFunction = void(const Frame*, const Chunk* chunks);
-/// Folds a chunk into `columns` accumulators side by side. Element k + r * columns is folded into column k, in order of r.
-/// `state` has an array for each scalar of the accumulators. Where `starts` is 1, columns begin with the identity or, of a
-/// seeded reduction, with their first element; else with what `state` holds.
+/// Folds a chunk of `leaves` leaves, a power of 2, into `columns` accumulators each. Element k + (r + l * rounds) * columns is
+/// folded into column k of leaf l, in order of r. `state` has an array for each scalar of the accumulators, which holds the
+/// columns of leaf l from number columns * l' on: l' has the bits of l in the opposite order, so that each half of all columns
+/// is what comes before, or after, the other half, leaf by leaf. Where `starts` is 1, columns begin with the identity or, of
+/// a seeded reduction, with their first element; else with what `state` holds. Several leaves always start, and `columns` is
+/// then a multiple of Entry::lanes.
 using FoldFunction = void(const Frame*, const Chunk*, void* const* state, std::int64_t columns,
-                          std::int64_t rounds, std::int64_t starts);
+                          std::int64_t rounds, std::int64_t leaves, std::int64_t starts);
 /// Folds later results into earlier ones, column by column.
 using CombineFunction = void(const Frame*, void* const* state, void* const* later, std::int64_t columns);
 /// Carries out the records of a scatter output, in their order. `sink` has no `elements`.
@@ -114,7 +117,7 @@ struct Entry {
 
 /// All that was compiled for one kernel.
 struct Code {
-  static constexpr std::uint32_t currentVersion = 2;
+  static constexpr std::uint32_t currentVersion = 3;
   std::uint32_t version;
   std::uint32_t entryCount;
   const Entry* entries;
