@@ -87,10 +87,10 @@ bool onlyGathers(const Module& module, const Kernel& kernel) {
 }
 
 /// The number of vectors, of `bytes` each, in which accumulators are folded side by side. Several read memory in order and do not wait
-/// for each other's additions. The runtime has 256 bytes of columns for a scalar; half of these leave ends of rows short.
+/// for each other's additions. The runtime has 256 bytes of columns for a scalar: all of them, and a leaf is read from end to end.
 std::uint32_t vectorsOfFold(const Module& module, const Kernel& kernel, std::size_t scalars,
                             std::uint32_t bytes, std::uint32_t registers) {
-  constexpr std::uint32_t columnBytes = 128;
+  constexpr std::uint32_t columnBytes = 256;
   std::size_t accumulators = 0;
   for (const KernelParam& param : kernel.params)
     accumulators += param.role == ParamRole::Accumulator ? componentCount(module, param.type) : 0;
