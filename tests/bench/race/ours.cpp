@@ -34,7 +34,7 @@ OurDevices::OurDevices(const std::string& gl) {
   for (const Row& row : rows) {
     sk::Device* device = row.kind == Kind::Native ? native : gl_;
     if (device != nullptr) {
-      contenders_.push_back({row.name, device, row.options});
+      contenders_.push_back({row.name, device, row.options, row.kind == Kind::Native});
     } else {
       absent_.push_back(fmt::format("{}: {}", row.name, why));
     }

@@ -16,6 +16,7 @@ struct Ours {
   std::string name;
   sk::Device* device;
   sk::CallOptions options;
+  bool isNative;
 };
 
 class OurDevices {

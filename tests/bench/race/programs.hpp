@@ -43,6 +43,8 @@ struct Program {
   MakeOurs ours;
   const char* variantName = nullptr;  ///< another way that we do it, raced beside the first; none, as a rule
   MakeOurs variant = nullptr;
+  bool isContractionRaced =
+      false;  ///< native code that may fuse multiply-adds is raced as well: most compilers of peers fuse them
 };
 
 const std::vector<Program>& programs();

@@ -98,16 +98,25 @@ void Session::runProgram(const Program& program) {
 
 std::vector<Session::Entry> Session::entriesOf(const Program& program, bool withPeers) const {
   std::vector<Entry> entries;
-  const auto add = [&](const Ours& ours, const std::string& name, MakeOurs make) {
+  const auto addWith = [&](const Ours& ours, const std::string& name, MakeOurs make,
+                           const sk::CallOptions& options) {
     entries.push_back(
         {{program.name, name,
-          [&ours, make](const Problem& problem) { return make(*ours.device, ours.options, problem); }},
+          [&ours, make, options](const Problem& problem) { return make(*ours.device, options, problem); }},
          true});
+  };
+  const auto add = [&](const Ours& ours, const std::string& name, MakeOurs make) {
+    addWith(ours, name, make, ours.options);
   };
   for (const Ours& ours : devices_.contenders()) {
     add(ours, ours.name, program.ours);
     if (program.variant != nullptr)
       add(ours, fmt::format("{} {}", ours.name, program.variantName), program.variant);
+    if (program.isContractionRaced && ours.isNative) {
+      sk::CallOptions contracted = ours.options;
+      contracted.contraction = sk::Contraction::Fast;
+      addWith(ours, fmt::format("{} contracted", ours.name), program.ours, contracted);
+    }
   }
   if (!withPeers) return entries;
   for (const Contender& peer : peers_) {
