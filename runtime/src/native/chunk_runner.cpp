@@ -64,7 +64,11 @@ void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows
   const std::int64_t groups = (std::min(inside.end, end) - left) / lanes_;
   const std::int64_t right = left + std::max<std::int64_t>(groups, 0) * lanes_;
   runPart(begin, left, mostLaidOut);
-  runPart(left, right, longest);
+  if (layout_.isDirect() && wanted_ == rows_) {
+    runInside(left, right, longest);
+  } else {
+    runPart(left, right, longest);
+  }
   runPart(right, end, mostLaidOut);
 }
 
@@ -75,6 +79,19 @@ void ChunkRunner::runPart(std::int64_t begin, std::int64_t end, std::int64_t lon
     if (whole > 0) call(begin, whole, whole);
     if (whole < count) call(begin + whole, count - whole, lanes_);
     begin += count;
+  }
+}
+
+void ChunkRunner::runInside(std::int64_t begin, std::int64_t end, std::int64_t longest) {
+  for (std::int64_t x = begin, count = 0; x < end; x += count) {
+    count = std::min(end - x, longest);
+    for (std::size_t row = 0; row < rows_; ++row) {
+      arrays_[row]->placeInside(x);
+      chunks_[row].first[0] = x;
+      chunks_[row].count = count;
+    }
+    function_(frame_, chunks_.data());
+    if (hook_.after) hook_.after();
   }
 }
 

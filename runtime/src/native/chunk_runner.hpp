@@ -49,6 +49,8 @@ class ChunkRunner {
   void moveTo(const native::Extents& first, std::size_t rows);
   void runPart(std::int64_t begin, std::int64_t end, std::int64_t longest);
   native::Range inside() const;
+  /// Whole groups of lanes that lie as the domain does, with the neighbours that gathers read.
+  void runInside(std::int64_t begin, std::int64_t end, std::int64_t longest);
   void call(std::int64_t x, std::int64_t count, std::int64_t room);
 
   const SlotLayout& layout_;

@@ -113,6 +113,7 @@ void SlotLayout::readBorders(const program::Kernel& kernel, const CodeFrame& fra
 SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t mostAtEnds)
     : layout_(layout),
       rows_(layout.slots().size(), memory_.get()),
+      inRow_(layout.arrays().size(), memory_.get()),
       arrays_(layout.arrays().size(), memory_.get()),
       scratch_(memory_.get()) {
   scratch_.reserve(arrays_.size());
@@ -145,6 +146,10 @@ void SlotArrays::moveToRow(const Extents& first) {
       }
     }
     rows_[s] = row;
+    for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
+      const SlotLayout::Array& array = layout_.arrays()[a];
+      if (array.held != nullptr) inRow_[a] = {array.held + row.first * array.bytes.held, array.bytes.held};
+    }
   }
 }
 

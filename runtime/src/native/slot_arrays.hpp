@@ -95,6 +95,10 @@ class SlotArrays {
   /// `count` elements from `x` on, `step` apart. The arrays may be read and written up to `room` elements. Outputs are written where
   /// they are only if `keeps` is true and there is no need for room.
   void place(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step = 1, bool keeps = true);
+  /// The same for elements from `x` on that lie as the domain does, all with their neighbours and whole groups of lanes.
+  void placeInside(std::int64_t x) {
+    for (std::size_t a = 0; a < inRow_.size(); ++a) arrays_[a] = inRow_[a].first + x * inRow_[a].bytes;
+  }
   /// Outputs that were not written where they are go there.
   void storeOutputs(std::int64_t x, std::int64_t count);
 
@@ -117,9 +121,15 @@ class SlotArrays {
     std::int64_t first;  ///< number of the element at x = 0
     bool isOutside;  ///< of a gather with Boundary::Border
   };
+  /// Where the row's element at x = 0 is in an array, if the stream is given.
+  struct ArrayRow {
+    std::byte* first;
+    std::int64_t bytes;  ///< of an element
+  };
   const SlotLayout& layout_;
   CallMemory memory_;
   std::pmr::vector<Row> rows_;
+  std::pmr::vector<ArrayRow> inRow_;
   std::pmr::vector<void*> arrays_;
   std::pmr::vector<std::byte*> scratch_;
 };
