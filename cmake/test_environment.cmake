@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: MIT
+#
+# Read by ctest before it runs anything: the environment of tests that name no other, and of what they start. Variables that are
+# set outside stay.
+function(default variable value)
+  if(NOT DEFINED ENV{${variable}})
+    set(ENV{${variable}} "${value}")
+  endif()
+endfunction()
+
+# Tests run side by side, so that threads that wait for others of their program would take the time of other tests.
+default(OMP_WAIT_POLICY passive)
+# A software renderer compiles programs for longer than tests compute, so that Mesa's leaves out LLVM's optimisations. Tests that
+# are about what compilers make of floats have them all: they set this to nothing.
+default(GALLIVM_PERF nopt)
