@@ -18,17 +18,28 @@ namespace {
 namespace fs = std::filesystem;
 using docs::Block;
 
-/// Runs skc on every named .sk block.
-void makeHeaders(const fs::path& folder) {
-  docs::writeNamedFiles(folder);
-  const docs::Outcome outcome = docs::run("skc *.sk", folder);
+std::string compilerCommand() {
+  return SK_DOCS_COMPILER +
+         fmt::format(" -O0 -I '{0}/runtime/include' -I '{0}/runtime/src' -I '{0}/compiler' -I .", SK_DOCS_SOURCE);
+}
+
+/// Runs a command that must succeed.
+void make(const std::string& command, const fs::path& folder) {
+  const docs::Outcome outcome = docs::run(command, folder);
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
 }
 
-std::string compilerCommand() {
-  return SK_DOCS_COMPILER +
-         fmt::format(" -I '{0}/runtime/include' -I '{0}/runtime/src' -I '{0}/compiler' -I .", SK_DOCS_SOURCE);
+/// A folder with what skc makes of every named .sk block, FILE.sk.cpp compiled to FILE.sk.cpp.o; made once.
+const fs::path& kernelFolder() {
+  static const fs::path folder = [] {
+    const fs::path made = docs::workFolder("kernels");
+    docs::writeNamedFiles(made);
+    make("skc *.sk", made);
+    make(fmt::format("for file in *.sk.cpp; do {} -c $file -o $file.o || exit 1; done", compilerCommand()), made);
+    return made;
+  }();
+  return folder;
 }
 
 /// Takes `#include` lines out of a text, for the top of the file.
@@ -100,18 +111,15 @@ std::string throwingProgram(const docs::Document& document) {
          calls + "}\n";
 }
 
+/// Makes `program` of main.cpp and objects of kernels.
 void build(const fs::path& folder, const std::string& kernels) {
-  const docs::Outcome built = docs::run(
-      fmt::format("{} main.cpp {} {} -o program", compilerCommand(), kernels, SK_DOCS_LIBRARIES), folder);
-  INFO(built.output);
-  REQUIRE(built.status == 0);
+  make(fmt::format("{} main.cpp {} {} -o program", compilerCommand(), kernels, SK_DOCS_LIBRARIES), folder);
 }
 
 }  // namespace
 
 TEST_CASE("every C++ block compiles", "[cpp]") {
-  const fs::path folder = docs::workFolder("cpp");
-  makeHeaders(folder);
+  const fs::path& folder = kernelFolder();
   std::set<std::string> includes;
   std::string text;
   int number = 0;
@@ -130,15 +138,14 @@ TEST_CASE("every C++ block compiles", "[cpp]") {
 }
 
 TEST_CASE("the programs of the documentation run", "[cpp]") {
-  const fs::path folder = docs::workFolder("programs");
-  makeHeaders(folder);
+  const fs::path& folder = kernelFolder();
   int programs = 0;
   for (const Block* block : docs::blocksOf("c++")) {
     if (!block->has("run")) continue;
     ++programs;
     INFO(block->place());
     docs::writeFile(folder / "main.cpp", block->text);
-    build(folder, fmt::format("{0}.cpp {0}.o", block->value("kernels")));
+    build(folder, fmt::format("{0}.cpp.o {0}.o", block->value("kernels")));
     const docs::Outcome ran = docs::run("./program", folder);
     INFO(ran.output);
     CHECK(ran.status == 0);
@@ -148,15 +155,14 @@ TEST_CASE("the programs of the documentation run", "[cpp]") {
 }
 
 TEST_CASE("what is said to throw throws the message that is quoted above it", "[cpp]") {
-  const fs::path folder = docs::workFolder("throws");
-  makeHeaders(folder);
+  const fs::path& folder = kernelFolder();
   for (const docs::Document& document : docs::documents()) {
     if (std::none_of(document.blocks.begin(), document.blocks.end(),
                      [](const Block& block) { return block.has("throws"); })) {
       continue;
     }
     docs::writeFile(folder / "main.cpp", throwingProgram(document));
-    build(folder, "*.sk.cpp *.sk.o");
+    build(folder, "*.sk.cpp.o *.sk.o");
     const docs::Outcome ran = docs::run("./program", folder);
     INFO(ran.output);
     CHECK(ran.status == 0);
