@@ -13,3 +13,5 @@ default(OMP_WAIT_POLICY passive)
 # A software renderer compiles programs for longer than tests compute, so that Mesa's leaves out LLVM's optimisations. Tests that
 # are about what compilers make of floats have them all: they set this to nothing.
 default(GALLIVM_PERF nopt)
+# What is kept of such a driver, as the trial of its arithmetic, is not for the programs of whoever runs the tests.
+default(SK_CACHE "@PROJECT_BINARY_DIR@/tests/cache/unoptimised")
