@@ -128,14 +128,15 @@ class VariableOut {
   StreamRegion region_;
 };
 
-/// The callable objects of kernels and reduces: with(options) is the same with these.
+/// The callable objects of kernels and reduces: with(options) is the same with these, and what was chosen before stays where they
+/// say nothing.
 template <class Derived>
 struct WithOptions {
   CallOptions options = {};
 
   constexpr Derived with(const CallOptions& chosen) const {
     Derived made;
-    made.options = chosen;
+    made.options = options.with(chosen);
     return made;
   }
 };

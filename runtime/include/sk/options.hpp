@@ -78,6 +78,19 @@ struct CallOptions {
   Contraction contraction = Contraction::Default;
 
   bool operator==(const CallOptions&) const = default;
+
+  /// These, with what `later` chooses in their place: all of it that is not Default.
+  constexpr CallOptions with(const CallOptions& later) const {
+    const auto chosen = [](auto first, auto second) {
+      return second == decltype(second)::Default ? first : second;
+    };
+    return {.accumulate = chosen(accumulate, later.accumulate),
+            .precision = chosen(precision, later.precision),
+            .intrinsics = chosen(intrinsics, later.intrinsics),
+            .tables = chosen(tables, later.tables),
+            .target = chosen(target, later.target),
+            .contraction = chosen(contraction, later.contraction)};
+  }
 };
 
 }  // namespace sk

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "sk/options.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "sk/call.hpp"
+
+using namespace sk;
+
+namespace {
+
+struct Callable : WithOptions<Callable> {};
+
+}  // namespace
+
+TEST_CASE("choices add up, and the last one of a kind holds") {
+  constexpr Callable first = Callable{}.with({.accumulate = Accumulate::Exact, .target = Target::Native});
+  constexpr Callable both = first.with({.precision = Precision::Extended, .target = Target::Compute});
+  STATIC_REQUIRE(both.options == CallOptions{.accumulate = Accumulate::Exact,
+                                             .precision = Precision::Extended,
+                                             .target = Target::Compute});
+  STATIC_REQUIRE(both.with({}).options == both.options);
+  constexpr CallOptions all{Accumulate::Tree, Precision::Half,  Intrinsics::Fast,
+                            Tables::Off,      Target::Fragment, Contraction::Fast};
+  STATIC_REQUIRE(CallOptions{}.with(all) == all);
+  STATIC_REQUIRE(all.with({}) == all);
+}
