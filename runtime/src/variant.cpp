@@ -117,13 +117,20 @@ class KeyBits {
   explicit KeyBits(ProgramKey& key) : key_(key) {}
 
   void add(std::uint64_t value, unsigned bits) {
-    key_.words[used_ / 64] |= value << used_ % 64;
+    word(used_ / 64) |= value << used_ % 64;
     used_ += bits;
   }
 
  private:
+  std::uint64_t& word(std::size_t number) {
+    if (number < key_.words.size()) return key_.words[number];
+    number -= key_.words.size();
+    if (number == key_.more.size()) key_.more.push_back(0);
+    return key_.more[number];
+  }
+
   ProgramKey& key_;
-  unsigned used_ = 0;
+  std::size_t used_ = 0;
 };
 
 }  // namespace
@@ -136,6 +143,7 @@ std::size_t ProgramKeyHash::operator()(const ProgramKey& key) const {
     hash ^= hash >> 29;
   };
   for (std::size_t i = 0; i < key.words.size(); ++i) add(key.words[i], i);
+  for (std::size_t i = 0; i < key.more.size(); ++i) add(key.more[i], key.words.size() + i);
   for (std::size_t i = 0; i < key.specs.size(); ++i) add(key.specs[i], i);
   return hash * 0x9E3779B97F4A7C15u >> 32;
 }
@@ -215,7 +223,7 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
 // Each entry is 4 bits, so that none is divided between words.
 ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
                       const Placement& domain, const Task& task, bool filtersFloats) {
-  ProgramKey key{&kernel, {}, specsOf(kernel, operands)};
+  ProgramKey key{&kernel, {}, {}, specsOf(kernel, operands)};
   KeyBits bits(key);
   bits.add(static_cast<std::uint64_t>(domainOf(domain, task)) | std::uint64_t{domain.layered} << 2 |
                std::uint64_t{isDomainView(domain)} << 3,

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "assemble/assemble.hpp"
 #include "assemble/placement.hpp"
@@ -35,6 +36,7 @@ struct Operand {
 struct ProgramKey {
   const program::Kernel* kernel = nullptr;
   std::array<std::uint64_t, 8> words{};
+  std::vector<std::uint64_t> more{};  ///< where these are too few: kernels may have any number of streams
   assemble::SpecValues specs{};
 
   bool operator==(const ProgramKey&) const = default;
@@ -57,8 +59,7 @@ Operand regionOperand(const Argument& argument, const Shape& domain);
 Operand iteration(const program::Parameter& iterator, const void* ends, const Shape& domain);
 
 /// The variant of `kernel` for operands, one a parameter, over `domain`; `variant` and `key` hold the
-/// same choices. Planes that a kernel reads are few enough for the key (gl::maxTextureUnits).
-/// `filtersFloats`: what the device can.
+/// same choices. `filtersFloats`: what the device can.
 assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
                                 const assemble::Placement& domain, const assemble::Task& task = {},
                                 bool filtersFloats = false);

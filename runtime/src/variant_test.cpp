@@ -97,6 +97,29 @@ TEST_CASE("views, repeats and linearised streams are told apart, each with a key
   }
 }
 
+TEST_CASE("kernels of many streams have keys of their own for each way that these lie") {
+  // Operands that are packed take two entries a stream, and 200 of them more than the words inside a key.
+  constexpr std::size_t count = 200;
+  std::vector<program::Parameter> many(count, parameters[1]);
+  many.push_back(parameters[3]);
+  program::Kernel wide = makeKernel();
+  wide.parameters = many;
+  Placement packed = layoutOf({8, 16}, {64, 256}, true).whole;
+  std::vector<Operand> operands(count + 1, Operand{nullptr, packed, {}});
+  const auto keyOf = [&] { return variantKey(wide, operands, packed); };
+  const ProgramKey same = keyOf();
+  CHECK(keyOf() == same);
+  std::set<std::size_t> hashes{ProgramKeyHash{}(same)};
+  for (std::size_t changed : {std::size_t{0}, count / 2, count - 1}) {
+    std::vector<Operand> others = operands;
+    others[changed].placement = whole({8, 16});
+    const ProgramKey other = variantKey(wide, others, packed);
+    CHECK_FALSE(other == same);
+    CHECK(other.specs == same.specs);
+    CHECK(hashes.insert(ProgramKeyHash{}(other)).second);
+  }
+}
+
 TEST_CASE("a gather is near only where one step always brings its index back") {
   CHECK(choose(whole({8, 9}), whole({8, 9}), whole({8, 9})).variant.access[2].nearby);
   CHECK(choose(whole({3, 3}), whole({3, 3}), whole({3, 3})).variant.access[2].nearby);
