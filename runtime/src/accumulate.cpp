@@ -10,6 +10,7 @@
 
 #include "check_argument.hpp"
 #include "check_reduction.hpp"
+#include "checked_size.hpp"
 #include "device_state.hpp"
 #include "exact_reduction.hpp"
 #include "precision.hpp"
@@ -162,10 +163,8 @@ void reduceByFloats(const CheckedReduction& checked, const Reduction& reduction,
   }
 }
 
-}  // namespace
-
-void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
-            const CallOptions& call) {
+void reduceToValues(const Reduction& reduction, std::span<const Argument> arguments,
+                    std::span<void* const> results, const CallOptions& call) {
   const CheckedReduction checked = checkReduction(reduction, arguments);
   const TraceScope traced(checked.device.trace.get(), "call", reduction.fold.name);
   traced.add("domain", checked.domain);
@@ -203,7 +202,8 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
   }
 }
 
-void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& call) {
+void reduceToStreams(const Reduction& reduction, std::span<const Argument> arguments,
+                     const CallOptions& call) {
   const CheckedReduction checked = checkReductionToStreams(reduction, arguments);
   const TraceScope traced(checked.device.trace.get(), "call", reduction.fold.name);
   traced.add("domain", checked.domain);
@@ -249,6 +249,17 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, con
   finished.insert(finished.end(), results.begin(), results.end());
   run(second->finish, finished,
       {.precision = Precision::Single, .intrinsics = options.intrinsics, .tables = options.tables});
+}
+
+}  // namespace
+
+void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
+            const CallOptions& call) {
+  withHostMemory(reduction.fold.name, [&] { reduceToValues(reduction, arguments, results, call); });
+}
+
+void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& call) {
+  withHostMemory(reduction.fold.name, [&] { reduceToStreams(reduction, arguments, call); });
 }
 
 }  // namespace sk

@@ -14,6 +14,7 @@
 
 #include "assemble/assemble.hpp"
 #include "assemble/storage.hpp"
+#include "checked_size.hpp"
 #include "gl_device.hpp"
 #include "native/native_device.hpp"
 #include "probe.hpp"
@@ -207,9 +208,11 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
         "a stream of {} has no float or vector of floats to hold otherwise; make it without a Storage",
         element.name));
   }
-  detail::StreamOwner stream(state().createStream(element, shape, storage).release());
-  if (!name.empty()) stream->setName(name);
-  return stream;
+  return withHostMemory("a new stream", [&] {
+    detail::StreamOwner stream(state().createStream(element, shape, storage).release());
+    if (!name.empty()) stream->setName(name);
+    return stream;
+  });
 }
 
 const std::string& Device::name() const { return state().name(); }

@@ -7,6 +7,7 @@
 
 #include "check.hpp"
 #include "check_argument.hpp"
+#include "checked_size.hpp"
 #include "gl_device.hpp"
 #include "gl_stream.hpp"
 #include "iterator.hpp"
@@ -182,7 +183,9 @@ void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> argu
   }
 }
 
-void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
+namespace {
+
+void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
   if (options.accumulate != Accumulate::Default) {
     fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
   }
@@ -193,6 +196,12 @@ void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOp
     checkTables(kernel, chosen);
     device->run(kernel, arguments, chosen);
   }
+}
+
+}  // namespace
+
+void run(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
+  withHostMemory(kernel.name, [&] { checkAndRun(kernel, arguments, options); });
 }
 
 }  // namespace sk

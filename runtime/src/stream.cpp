@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "checked_size.hpp"
 #include "device_state.hpp"
 #include "sk/error.hpp"
 #include "stream_state.hpp"
@@ -38,10 +39,19 @@ class TransferScope {
   TraceScope traced_;
 };
 
+/// No form of a scalar takes more than four times its bytes in host memory: __float128 for a float.
+void checkBytes(const program::Element& type, const Shape& extents) {
+  if (!checkedProduct(extents.size(), 4 * std::int64_t{type.size})) {
+    throw Error(fmt::format("a stream of {} of shape {} is too large: its elements would take 2^61 bytes or more",
+                            type.name, toString(extents)));
+  }
+}
+
 }  // namespace
 
 StreamState::StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as)
     : device(&owner), element(&type), storage(as), shape(extents), next_(owner.firstStream_) {
+  checkBytes(type, extents);
   if (next_ != nullptr) {
     next_->previous_ = this;
   }
@@ -130,19 +140,19 @@ StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, cons
 void detail::write(const StreamRegion& region, const void* elements, std::size_t count) {
   if (StreamState* stream = checkTransfer(region, count, "write")) {
     const TransferScope traced(*stream, "write", region);
-    stream->write(region, static_cast<const std::byte*>(elements));
+    withHostMemory("write", [&] { stream->write(region, static_cast<const std::byte*>(elements)); });
   }
 }
 
 void detail::read(const StreamRegion& region, void* elements, std::size_t count) {
   if (StreamState* stream = checkTransfer(region, count, "read")) {
     const TransferScope traced(*stream, "read", region);
-    stream->read(region, static_cast<std::byte*>(elements));
+    withHostMemory("read", [&] { stream->read(region, static_cast<std::byte*>(elements)); });
   }
 }
 
 std::unique_ptr<TransferState> StreamState::readAsync(const StreamRegion& region) {
-  std::vector<std::byte> elements(static_cast<std::size_t>(region.shape.size()) * element->size);
+  auto elements = detail::hostVector<std::byte>(bytesOf(region.shape.size(), element->size));
   read(region, elements.data());
   return std::make_unique<ReadyTransfer>(std::move(elements));
 }
@@ -155,13 +165,13 @@ detail::TransferOwner detail::readAsync(const StreamRegion& region) {
     return TransferOwner(new ReadyTransfer({}));
   }
   const TransferScope traced(stream, "readAsync", region);
-  return TransferOwner(stream.readAsync(region).release());
+  return withHostMemory("readAsync", [&] { return TransferOwner(stream.readAsync(region).release()); });
 }
 
 void detail::writeAsync(const StreamRegion& region, const void* elements, std::size_t count) {
   if (StreamState* stream = checkTransfer(region, count, "writeAsync")) {
     const TransferScope traced(*stream, "writeAsync", region);
-    stream->writeAsync(region, static_cast<const std::byte*>(elements));
+    withHostMemory("writeAsync", [&] { stream->writeAsync(region, static_cast<const std::byte*>(elements)); });
   }
 }
 
@@ -179,7 +189,7 @@ TransferState& stateOf(const detail::TransferOwner& transfer) {
 bool detail::isReady(const TransferOwner& transfer) { return stateOf(transfer).isReady(); }
 void detail::wait(const TransferOwner& transfer) { stateOf(transfer).wait(); }
 void detail::take(TransferOwner transfer, void* elements) {
-  stateOf(transfer).take(static_cast<std::byte*>(elements));
+  withHostMemory("readAsync", [&] { stateOf(transfer).take(static_cast<std::byte*>(elements)); });
 }
 
 namespace {
@@ -208,16 +218,16 @@ void detail::writeReals(const StreamRegion& region, std::span<const double> valu
   }
   if (!values.empty()) {
     const TransferScope traced(stream, "writeReals", region);
-    stream.writeReals(region, values.data());
+    withHostMemory("writeReals", [&] { stream.writeReals(region, values.data()); });
   }
 }
 
 std::vector<double> detail::readReals(const StreamRegion& region) {
   StreamState& stream = liveStream(region, "readReals");
-  std::vector<double> values(realsIn(region, *stream.element, "readReals"));
+  std::vector<double> values = detail::hostVector<double>(realsIn(region, *stream.element, "readReals"));
   if (!values.empty()) {
     const TransferScope traced(stream, "readReals", region);
-    stream.readReals(region, values.data());
+    withHostMemory("readReals", [&] { stream.readReals(region, values.data()); });
   }
   return values;
 }

@@ -141,10 +141,11 @@ TEST_CASE("shapes that are none, or too large") {
   CHECK(errorOf([&] { device.stream<float>(std::numeric_limits<std::uint64_t>::max()); }) ==
         "an extent or position does not fit in 63 bits");
   CHECK(errorOf([&] { device.stream<float>(Shape()); }) == "a stream needs a shape of 1 to 4 dimensions");
-  const std::string error = errorOf([&] { device.stream<float>({huge}); });
-  CHECK(
-      error.find("a stream of shape {4611686018427387904} has 4611686018427387904 elements, but a texture of "
-                 "this device holds no more than ") == 0);
+  CHECK(errorOf([&] { device.stream<float>({huge}); }) ==
+        "a stream of float of shape {4611686018427387904} is too large: its elements would take 2^61 bytes or more");
+  const std::string error = errorOf([&] { device.stream<float>({1 << 20, 1 << 20}); });
+  CHECK(error.find("a stream of shape {1048576, 1048576} has 1099511627776 elements, but a texture of this device "
+                   "holds no more than ") == 0);
   Device small({.textureLimit = 64});
   const std::int64_t most = std::int64_t{64} * 64 * small.limits().textureLayers;
   CHECK(errorOf([&] { small.stream<float>(most + 1); }) ==

@@ -7,8 +7,13 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
+#include <string>
 #include <vector>
+
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 
@@ -44,7 +49,7 @@ TEST_CASE("the native device says what it is") {
   CHECK(device.isSoftware());
   CHECK(sk::Device("reference").name() == "reference (native, double)");
   auto stream = device.stream<float>({3});
-  CHECK_THROWS_WITH(stream.texture(), Catch::Contains("no textures") && Catch::Contains("read()"));
+  CHECK_THROWS_WITH(stream.texture(), Catch::Matchers::Contains("no textures") && Catch::Matchers::Contains("read()"));
 }
 
 TEST_CASE("native passes are counted, too") {
@@ -299,11 +304,62 @@ TEST_CASE("streams that are read while they are written are right step after ste
 TEST_CASE("reals are read of floats alone") {
   sk::Device device = sk::Device::native();
   auto ints = device.stream<std::int32_t>({2});
-  CHECK_THROWS_WITH(ints.readReals(), Catch::Contains("int") && Catch::Contains("read()"));
+  CHECK_THROWS_WITH(ints.readReals(), Catch::Matchers::Contains("int") && Catch::Matchers::Contains("read()"));
   CHECK(device.stream<sk::float2>({0}).readReals().empty());
   sk::Device& gl = run_tests::device("glsl330");
   CHECK(streamOf<sk::float2>(gl, {{1, 2}, {3, 4}}).readReals() == std::vector<double>{1, 2, 3, 4});
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+/// Leaves the process so much address space beside what it has, for as long as this lives.
+class LittleMemory {
+ public:
+  explicit LittleMemory(rlim_t more) {
+    getrlimit(RLIMIT_AS, &before_);
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit little = before_;
+    little.rlim_cur = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + more;
+    setrlimit(RLIMIT_AS, &little);
+  }
+  ~LittleMemory() { setrlimit(RLIMIT_AS, &before_); }
+  LittleMemory(const LittleMemory&) = delete;
+  LittleMemory& operator=(const LittleMemory&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+template <class Call>
+std::string errorWithLittleMemory(Call call) {
+  const LittleMemory little(rlim_t{16} << 20);
+  try {
+    call();
+  } catch (const sk::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST_CASE("a call that finds no memory throws sk::Error, and the next one may succeed") {
+  constexpr std::size_t count = std::size_t{1} << 24;   // 64 MiB of floats
+  sk::Device device = sk::Device::native();
+  auto x = device.stream<float>({count}), r = device.stream<float>({count});
+  x.write(std::vector<float>(count, 1.0f));
+  const auto inDoubles = cancel.with({.precision = sk::Precision::Double});
+  CHECK_THAT(errorWithLittleMemory([&] { inDoubles(x, r); }),
+             Catch::Matchers::Contains("cancel") && Catch::Matchers::Contains("134217728 bytes"));
+  CHECK_THAT(errorWithLittleMemory([&] { shift(x, 1.0f, x); }),
+             Catch::Matchers::Contains("shift") && Catch::Matchers::Contains("67108864 bytes"));
+  CHECK_THAT(errorWithLittleMemory([&] { x.read(); }), Catch::Matchers::Contains("16777216 element(s) of 4 byte(s)"));
+  CHECK_THAT(errorWithLittleMemory([&] { x.readReals(); }), Catch::Matchers::Contains("16777216 element(s) of 8 byte(s)"));
+  CHECK_THAT(errorWithLittleMemory([&] { device.stream<float>({count}); }), Catch::Matchers::Contains("67108864 bytes"));
+  CHECK(x.domain({0}, {3}).read() == std::vector<float>(3, 1.0f));
+  inDoubles(x, r);
+  shift(x, 1.0f, x);
+  CHECK(x.domain({0}, {3}).read() == std::vector<float>(3, 2.0f));
+}
+#endif
 
 }  // namespace
 }  // namespace run_tests

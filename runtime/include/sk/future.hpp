@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sk/host_vector.hpp"
 #include "sk/owner.hpp"
 
 namespace sk {
@@ -46,7 +47,7 @@ class Future {
   void wait() const { detail::wait(transfer_); }
   /// The elements, row-major; waits for them. The future is no longer valid then, also where this throws.
   std::vector<E> get() {
-    std::vector<E> elements(size_);
+    std::vector<E> elements = detail::hostVector<E>(size_);
     detail::take(std::move(transfer_), elements.data());
     return elements;
   }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sk/future.hpp"
+#include "sk/host_vector.hpp"
 #include "sk/owner.hpp"
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
@@ -125,7 +126,7 @@ class View {
 
   /// The elements of the region, row-major (bool: bytes of 0 and 1). Waits for the device.
   std::vector<HostElement<value_type>> read() const {
-    std::vector<HostElement<value_type>> elements(static_cast<std::size_t>(size()));
+    auto elements = detail::hostVector<HostElement<value_type>>(static_cast<std::size_t>(size()));
     detail::read(region_, elements.data(), elements.size());
     return elements;
   }

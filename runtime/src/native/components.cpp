@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "checked_size.hpp"
 #include "sk/narrow.hpp"
 #include "sk/native/parallel.hpp"
 #include "sk/native/quad_type.hpp"
@@ -102,7 +103,7 @@ Components::Components(const program::Element& element, RealType real, std::vect
 
 void Components::allocate(std::int64_t count) {
   for (const ComponentType& type : types_) {
-    arrays_.push_back(allocated(static_cast<std::size_t>(count) * type.storedBytes));
+    arrays_.push_back(allocated(bytesOf(count, type.storedBytes)));
     pointers_.push_back(arrays_.back().get());
   }
 }

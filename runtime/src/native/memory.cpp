@@ -3,11 +3,12 @@
 
 #include <cstddef>
 #include <cstdlib>
-#include <new>
 
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
+
+#include "checked_size.hpp"
 
 namespace sk {
 
@@ -24,9 +25,10 @@ std::size_t nextPlace() {
   return number++ * 21 * cacheLine % smallPage;
 }
 
-std::byte* aligned(std::size_t alignment, std::size_t bytes) {
+/// `asked`: what the caller was asked for, without what goes before it.
+std::byte* aligned(std::size_t alignment, std::size_t bytes, std::size_t asked) {
   void* memory = nullptr;
-  if (posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
+  if (posix_memalign(&memory, alignment, bytes) != 0) throw NoMemory(asked);
   return static_cast<std::byte*>(memory);
 }
 
@@ -35,12 +37,12 @@ std::byte* aligned(std::size_t alignment, std::size_t bytes) {
 void Freeing::operator()(std::byte* memory) const { std::free(memory - before); }
 
 Memory allocated(std::size_t bytes) {
-  if (bytes < cacheLine) return Memory(aligned(alignof(std::max_align_t), cacheLine));
-  if (bytes < largePage) return Memory(aligned(cacheLine, bytes));
+  if (bytes < cacheLine) return Memory(aligned(alignof(std::max_align_t), cacheLine, bytes));
+  if (bytes < largePage) return Memory(aligned(cacheLine, bytes, bytes));
   const std::size_t place = nextPlace();
   const std::size_t whole = bytes + place;
-  if (whole < bytes) throw std::bad_alloc();
-  std::byte* const memory = aligned(largePage, whole);
+  if (whole < bytes) throw NoMemory(bytes);
+  std::byte* const memory = aligned(largePage, whole, bytes);
 #if defined(__linux__)
   // The rest has small pages, and so has all of it where the system has no others.
   madvise(memory, whole / largePage * largePage, MADV_HUGEPAGE);

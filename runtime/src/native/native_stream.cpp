@@ -2,10 +2,10 @@
 #include "native/native_stream.hpp"
 
 #include <algorithm>
-#include <new>
 
 #include <fmt/format.h>
 
+#include "checked_size.hpp"
 #include "native/native_device.hpp"
 #include "sk/error.hpp"
 
@@ -50,9 +50,9 @@ NativeStream::NativeStream(NativeDevice& on, const program::Element& type, const
   try {
     const RealType least = storage >= Storage::Extended ? RealType::Double : RealType::Float;
     components = Components(type, std::max(least, on.real()), extents.size());
-  } catch (const std::bad_alloc&) {
-    throw Error(fmt::format("'{}' has no memory for a stream of {} of shape {}", on.name(), type.name,
-                            toString(extents)));
+  } catch (const NoMemory& error) {
+    throw Error(fmt::format("'{}' has no memory for a stream of {} of shape {}: an array of {} bytes", on.name(),
+                            type.name, toString(extents), error.bytes()));
   }
   countBytes();
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "checked_size.hpp"
 #include "native/rest_threads.hpp"
 
 #if defined(_OPENMP)
@@ -56,7 +57,8 @@ Range partOf(std::int64_t count, std::int64_t number, std::int64_t parts) {
 
 std::int64_t threadsFor(std::int64_t count, std::int64_t cost) {
   if (omp_in_parallel() != 0) return 1;
-  const std::int64_t worthIt = std::min(count, count * cost / worthAThread);
+  const std::optional<std::int64_t> work = checkedProduct(count, cost);
+  const std::int64_t worthIt = work ? std::min(count, *work / worthAThread) : count;
   return std::clamp<std::int64_t>(worthIt, 1, omp_get_max_threads());
 }
 

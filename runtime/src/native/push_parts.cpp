@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "checked_size.hpp"
 #include "sk/native/parallel.hpp"
 
 namespace sk {
@@ -32,8 +33,7 @@ native::Pushed PushParts::joined(std::size_t output) const {
     all.count += part.outputs[output]->count();
   }
   const std::span<const std::size_t> bytes = parts_[0].outputs[output]->bytes();
-  for (const std::size_t scalar : bytes)
-    all.arrays.push_back(allocated(static_cast<std::size_t>(all.count) * scalar));
+  for (const std::size_t scalar : bytes) all.arrays.push_back(allocated(bytesOf(all.count, scalar)));
   const auto count = static_cast<std::int64_t>(parts_.size());
   native::inParallel(count, all.count / count, native::Deal::Evenly, [&](native::Range range) {
     for (auto k = static_cast<std::size_t>(range.begin); k < static_cast<std::size_t>(range.end); ++k) {

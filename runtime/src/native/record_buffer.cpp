@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "checked_size.hpp"
 #include "native/scalars.hpp"
 
 namespace sk {
@@ -45,7 +46,7 @@ void RecordBuffer::reserve(std::int64_t count) {
   std::vector<Memory> larger;
   for (const std::size_t bytes : bytes_) {
     // whole groups of lanes are stored beyond the last record
-    larger.push_back(allocated(static_cast<std::size_t>(capacity + native::mostLanes) * bytes));
+    larger.push_back(allocated(bytesOf(capacity + native::mostLanes, bytes)));
   }
   for (std::size_t c = 0; c < bytes_.size(); ++c) {
     if (sink_.count > 0)

@@ -40,7 +40,7 @@ class RecordBuffer {
   std::span<const std::size_t> bytes() const { return {bytes_.data(), sortedColumns_}; }
   std::byte* array(std::size_t column) const { return pointers_[column]; }
 
-  /// Makes room for `count` records in all. Throws std::bad_alloc.
+  /// Makes room for `count` records in all. Throws NoMemory (checked_size.hpp).
   void reserve(std::int64_t count);
   /// Adds records whose arrays the caller writes; there is room for them.
   void addUnwritten(std::int64_t count) { sink_.count += count; }
