@@ -273,7 +273,7 @@ class SourceWriter {
                         const std::string& name) {
     if (!made.factors.empty()) return factors(made, name);
     if (made.kernel == nullptr || !options_.native) return "{}";
-    kernel(*made.kernel, *declared.kernel, name, inFloats(Speed::Any));
+    kernel(*made.kernel, *declared.kernel, name, inAnyReal(Speed::Any));  // references add doubles
     return fmt::format("{{{{}}, &{}Kernel}}", name);
   }
 

@@ -94,10 +94,10 @@ std::vector<Argument> resultsWithSums(const CompensatedReduction& second,
   return results;
 }
 
-/// Whether the call takes the exact form, which is one of floats: doubles are compensated where they stand for floats.
-bool isExact(const CheckedReduction& checked, const CallOptions& options) {
-  return options.accumulate == Accumulate::Exact && !checked.device.isReference() &&
-         checked.domain.size() != 0;
+/// Whether the call takes the exact form. Of no element, the plain form's identity is the result.
+bool isExact(const CheckedReduction& checked, const Reduction& reduction, const CallOptions& options) {
+  return options.accumulate == Accumulate::Exact && checked.domain.size() != 0 &&
+         checked.device.sumsExactly(reduction);
 }
 
 /// Whether the plain form in doubles serves for the compensated one: a kernel of floats sees no bits that a stream has beyond them.
@@ -174,7 +174,7 @@ void reduceToValues(const Reduction& reduction, std::span<const Argument> argume
     return;
   }
   const CompensatedReduction* second = compensated(reduction, arguments, checked, options);
-  if (isExact(checked, options)) {
+  if (isExact(checked, reduction, options)) {
     reduceExactly(reduction, arguments, checked, results, options);
     return;
   }
@@ -221,7 +221,7 @@ void reduceToStreams(const Reduction& reduction, std::span<const Argument> argum
     return;
   }
   const CompensatedReduction* second = compensated(reduction, arguments, checked, options);
-  if (isExact(checked, options)) {
+  if (isExact(checked, reduction, options)) {
     reduceExactly(reduction, arguments, checked, options);
     return;
   }

@@ -22,6 +22,18 @@
 
 namespace sk {
 
+/// Exact sums, one for each element of the results, which get them once all are known: a result may be an input.
+class RoundedSums {
+ public:
+  RoundedSums() = default;
+  virtual ~RoundedSums() = default;
+  RoundedSums(const RoundedSums&) = delete;
+  RoundedSums& operator=(const RoundedSums&) = delete;
+
+  /// Puts them in the scalar that is `offset` bytes from the start of each element of a region in host memory.
+  virtual void store(const StreamRegion& results, std::size_t offset) const = 0;
+};
+
 class DeviceState {
  public:
   virtual ~DeviceState() = default;
@@ -67,11 +79,13 @@ class DeviceState {
   /// `blocks`: how many there are in each dimension of the domain; one at least.
   virtual void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
                       const Shape& domain, const Shape& blocks, const CallOptions& options) = 0;
-  /// The rounded sums of all blocks, row-major, where the device adds them itself; else the sum is folded to digits.
-  virtual std::optional<std::vector<float>> sumExactly(const program::Reduction&, const program::ExactSum&,
-                                                       std::span<const Argument>, const Shape& /*domain*/,
-                                                       const Shape& /*blocks*/, const CallOptions&) {
-    return std::nullopt;
+  /// Whether it adds sums of floats without rounding. Else it compensates them, in a precision of its own.
+  virtual bool sumsExactly(const program::Reduction&) const { return true; }
+  /// The rounded sums of all blocks where the device adds them itself; else null, and the sum is folded to digits.
+  virtual std::unique_ptr<RoundedSums> sumExactly(const program::Reduction&, const program::ExactSum&,
+                                                  std::span<const Argument>, const Shape& /*domain*/,
+                                                  const Shape& /*blocks*/, const CallOptions&) {
+    return nullptr;
   }
 
   DeviceLimits limits;

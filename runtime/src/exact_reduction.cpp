@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "exact_reduction.hpp"
 
-#include <cstring>
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "device_state.hpp"
@@ -19,7 +18,7 @@ using program::Role;
 
 /// One sum: rounded by the device, or its digits, a stream for each accumulator of its fold.
 struct Sum {
-  std::optional<std::vector<float>> rounded;
+  std::unique_ptr<RoundedSums> rounded;
   std::vector<detail::StreamOwner> streams;
   std::vector<Argument> arguments;
 };
@@ -44,20 +43,6 @@ Sum fold(const ExactSum& sum, std::span<const Argument> plain, const Reduction& 
   all.insert(all.end(), made.arguments.begin(), made.arguments.end());
   checked.device.reduce(sum.reduction, all, checked.domain, checked.blocks, options);
   return made;
-}
-
-/// Puts rounded sums in their scalar of each result.
-void store(const ExactSum& sum, const StreamRegion& results, std::span<const float> rounded) {
-  StreamState& stream = *results.stream;
-  const std::size_t size = stream.element->size;
-  std::vector<std::byte> elements(rounded.size() * size);
-  stream.read(results, elements.data());
-  std::byte* scalar = elements.data() + sum.offset;
-  for (const float value : rounded) {
-    std::memcpy(scalar, &value, sizeof value);
-    scalar += size;
-  }
-  stream.write(results, elements.data());
 }
 
 /// Whether nothing is left for the plain form: every scalar of every accumulator is a sum.
@@ -89,7 +74,8 @@ void reduceExactly(const Reduction& reduction, std::span<const Argument> argumen
   }
   for (std::size_t k = 0; k < sums.size(); ++k) {
     if (sums[k].rounded) {
-      store(reduction.exact[k], arguments[reduction.exact[k].accumulator].region, *sums[k].rounded);
+      const ExactSum& sum = reduction.exact[k];
+      sums[k].rounded->store(arguments[sum.accumulator].region, sum.offset);
       continue;
     }
     const Argument result = {.region = arguments[reduction.exact[k].accumulator].region};

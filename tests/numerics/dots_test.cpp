@@ -79,6 +79,23 @@ TEST_CASE("any floats at all, whose products overflow and underflow") {  // R7, 
   });
 }
 
+TEST_CASE("dot products on the reference round no product of doubles") {
+  sk::Device device = sk::Device::reference();
+  for (const double wanted : {1e10, 1e24}) {
+    const Pairs pairs = illConditionedDot(4001, wanted, 7);
+    TrueSum sum;
+    addAll(sum, pairs.x, pairs.y);
+    CHECK(bits(exactDot(device, pairs.x, pairs.y)) == bits(sum.rounded()));
+  }
+  // (1 + a)(1 - a) - 1 = -a^2, of which a product of doubles keeps nothing
+  auto x = device.stream<float>({2}), y = device.stream<float>({2});
+  x.writeReals(std::vector<double>{1 + 0x1p-40, -1});
+  y.writeReals(std::vector<double>{1 - 0x1p-40, 1});
+  auto result = device.stream<float>({1});
+  dots::dot.with(exact)(x, y, result);
+  CHECK(result.readReals()[0] == -0x1p-80);
+}
+
 TEST_CASE("vectors' dot products, products by component, differences of products") {
   const Pairs a = illConditionedDot(3001, 1e16, 8);
   std::vector<sk::float3> x;

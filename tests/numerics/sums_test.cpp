@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <tuple>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -383,6 +384,56 @@ TEST_CASE("what sums no floats is refused") {
   sk::Device& device = run_tests::device("glsl330");
   CHECK_THROWS_WITH(sums::largest.with(exact)(streamOf<float>(device, {1, 2})),
                     Catch::Contains("largest") && Catch::Contains("no sum of floats"));
+}
+
+/// Terms of up to 2^50 that cancel but for a small one, in an order that no partial sum of doubles holds.
+std::vector<float> cancellingTerms(std::size_t pairs) {
+  std::mt19937 random(50);
+  std::uniform_real_distribution<float> mantissas(0.5F, 1.0F);
+  std::uniform_int_distribution<int> exponents(0, 50);
+  std::vector<float> terms{0.146521524F, 0x1p-60F};
+  for (std::size_t i = 1; i < pairs; ++i) {
+    const float term = std::ldexp(mantissas(random), exponents(random));
+    terms.push_back(term);
+    terms.push_back(-term);
+  }
+  std::shuffle(terms.begin(), terms.end(), random);
+  return terms;
+}
+
+TEST_CASE("exact sums are exact on the reference, too") {
+  const std::vector<float> terms = cancellingTerms(400'000);
+  TrueSum sum;
+  for (const float term : terms) sum.add(term);
+  sk::Device device = sk::Device::reference();
+  const auto x = streamOf(device, terms, {8, 100'000});
+  // what shows that the terms are hard enough: compensated sums of doubles lose bits of this one
+  CHECK(bits(sums::sum.with(compensated)(x)) != bits(sum.rounded()));
+  CHECK(bits(sums::sum.with(exact)(x)) == bits(sum.rounded()));
+  auto total = device.stream<float>({1, 1});
+  sums::sum.with(exact)(x, total);
+  CHECK(total.readReals()[0] == sum.value());
+  auto rows = device.stream<float>({8, 1});
+  sums::sum.with(exact)(x, rows);
+  TrueSum second;
+  for (std::size_t i = 100'000; i < 200'000; ++i) second.add(terms[i]);
+  CHECK(rows.readReals()[1] == second.value());
+  for (const std::size_t n : {1U, 33U, 4093U}) {
+    const std::vector<float> any = anyFloats(n, static_cast<unsigned>(n));
+    CHECK(bits(exactSum(device, any)) == bits(trueSum(any)));
+  }
+}
+
+TEST_CASE("exact sums on the reference leave what is beside them in its own precision") {
+  sk::Device device = sk::Device::reference();
+  auto x = device.stream<float>({2});
+  x.writeReals(std::vector<double>{1 + 0x1p-40, 0x1p-60});
+  CHECK(std::get<2>(sums::sumBeside.with(exact)(x, 1.0F)) == 2);
+  auto totals = device.stream<float>({1}), mosts = device.stream<float>({1});
+  auto counts = device.stream<int>({1});
+  sums::sumBeside.with(exact)(x, 1.0F, totals, mosts, counts);
+  CHECK(totals.readReals()[0] == -1 + 0x1p-40);
+  CHECK(mosts.readReals()[0] == 1 + 0x1p-40);
 }
 
 TEST_CASE("the reference of doubles takes what is closest") {

@@ -42,6 +42,13 @@ TEST_CASE("the reference in __float128 keeps what doubles lose") {
   CHECK(wide.read() == std::vector<double>{0.1F});
 }
 
+TEST_CASE("exact sums in __float128 lose nothing") {
+  sk::Device quads = sk::Device::reference(sk::Reference::Quad);
+  const auto exact = quad::sum.with({.accumulate = sk::Accumulate::Exact});
+  CHECK(exact(streamOf<float>(quads, {0x1p100F, 1, 0x1p-40F, -0x1p100F})) == 1 + 0x1p-40F);
+  CHECK(exact(streamOf<float>(quads, {0x1p100F, 0x1p-40F, -0x1p100F})) == 0x1p-40F);
+}
+
 TEST_CASE("streams hold __float128 between calls") {
   sk::Device device = sk::Device::reference(sk::Reference::Quad);
   auto x = streamOf<float>(device, {1});

@@ -169,6 +169,12 @@ void Components::writeReals(std::int64_t first, std::int64_t count, const double
   }
 }
 
+void Components::writeScalars(std::size_t component, std::int64_t first, std::int64_t count,
+                              const std::byte* values) {
+  const std::size_t bytes = types_[component].storedBytes;
+  move({values, bytes, bytes}, valuesFrom(component, first), count);
+}
+
 void Components::roundToHalf(std::int64_t count) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
     if (types_[c].scalar != Scalar::Float) continue;

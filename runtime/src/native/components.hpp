@@ -59,6 +59,8 @@ class Components {
   /// Of floats: one element after the other.
   void readReals(std::int64_t first, std::int64_t count, double* values) const;
   void writeReals(std::int64_t first, std::int64_t count, const double* values);
+  /// One scalar of `count` elements from `first` on: values as the arrays hold them.
+  void writeScalars(std::size_t component, std::int64_t first, std::int64_t count, const std::byte* values);
   /// Floats to the nearest halves.
   void roundToHalf(std::int64_t count);
 

@@ -19,6 +19,7 @@
 #include "native/run_code.hpp"
 #include "native/sum_exactly.hpp"
 #include "precision.hpp"
+#include "sk/native/quad_type.hpp"
 
 namespace sk {
 
@@ -242,6 +243,19 @@ class Operands {
   std::list<std::pair<NativeStream*, Components>> written_;
 };
 
+template <class Real>
+class NativeSums final : public RoundedSums {
+ public:
+  explicit NativeSums(std::vector<Real> sums) : sums_(std::move(sums)) {}
+
+  void store(const StreamRegion& results, std::size_t offset) const override {
+    nativeStream(results).writeScalars(results, offset, reinterpret_cast<const std::byte*>(sums_.data()));
+  }
+
+ private:
+  std::vector<Real> sums_;
+};
+
 CodeChoice codeChoice(RealType real, const CallOptions& options) {
   return {.real = real, .mayContract = options.contraction == Contraction::Fast};
 }
@@ -392,13 +406,19 @@ void NativeDevice::reduce(const program::Reduction& called, std::span<const Argu
   folding.fold.settle();
 }
 
-std::optional<std::vector<float>> NativeDevice::sumExactly(const program::Reduction& reduction,
-                                                           const program::ExactSum& sum,
-                                                           std::span<const Argument> arguments,
-                                                           const Shape& domain, const Shape& blocks,
-                                                           const CallOptions& options) {
-  const bool hasTerm = sum.term.kernel != nullptr || !sum.term.factors.empty();
-  if (reduction.fold.code == nullptr || !hasTerm) return std::nullopt;
+// Digits, to which sums are folded that have no term, are those of floats.
+bool NativeDevice::sumsExactly(const program::Reduction& reduction) const {
+  return !isReference() || std::ranges::all_of(reduction.exact, [&](const program::ExactSum& sum) {
+    const Kernel* const term = sum.term.kernel;
+    return hasTerm(sum) && (term == nullptr || (term->code != nullptr && hasCodeFor(*term->code, real_)));
+  });
+}
+
+std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const program::Reduction& reduction,
+                                                      const program::ExactSum& sum,
+                                                      std::span<const Argument> arguments, const Shape& domain,
+                                                      const Shape& blocks, const CallOptions& options) {
+  if (reduction.fold.code == nullptr || !hasTerm(sum)) return nullptr;
   const Kernel& kernel = kernelOfTerm(reduction, sum);
   std::vector<Argument> all;
   if (sum.term.kernel == nullptr) {
@@ -416,8 +436,16 @@ std::optional<std::vector<float>> NativeDevice::sumExactly(const program::Reduct
   for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
   const NativePass traced(*this, kernel, "fold", all, domain);
   const native::Call call = operands.call(block);
-  return sk::sumExactly(reduction, sum, call, block,
-                        {.real = real});  // the same bits on every device: never contracted
+  const CodeChoice choice{.real = real};  // the same bits on every device: never contracted
+  switch (real) {
+    case RealType::Float: break;
+    case RealType::Double:
+      return std::make_unique<NativeSums<double>>(sk::sumExactly<double>(reduction, sum, call, block, choice));
+    case RealType::Quad:
+      return std::make_unique<NativeSums<native::Quad>>(
+          sk::sumExactly<native::Quad>(reduction, sum, call, block, choice));
+  }
+  return std::make_unique<NativeSums<float>>(sk::sumExactly<float>(reduction, sum, call, block, choice));
 }
 
 }  // namespace sk

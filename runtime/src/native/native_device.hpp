@@ -45,10 +45,10 @@ class NativeDevice final : public DeviceState {
               std::span<void* const> results, const CallOptions& options) override;
   void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
               const Shape& blocks, const CallOptions& options) override;
-  std::optional<std::vector<float>> sumExactly(const program::Reduction& reduction,
-                                               const program::ExactSum& sum,
-                                               std::span<const Argument> arguments, const Shape& domain,
-                                               const Shape& blocks, const CallOptions& options) override;
+  bool sumsExactly(const program::Reduction& reduction) const override;
+  std::unique_ptr<RoundedSums> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
+                                          std::span<const Argument> arguments, const Shape& domain,
+                                          const Shape& blocks, const CallOptions& options) override;
 
  private:
   RealType realOf(const CallOptions& options) const;

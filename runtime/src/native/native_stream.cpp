@@ -103,6 +103,15 @@ void NativeStream::writeReals(const StreamRegion& region, const double* values) 
   keepStorage();
 }
 
+void NativeStream::writeScalars(const StreamRegion& region, std::size_t offset, const std::byte* values) {
+  const std::span<const ComponentType> types = components.types();
+  const auto component = static_cast<std::size_t>(std::ranges::find(types, offset, &ComponentType::offset) - types.begin());
+  const std::size_t bytes = types[component].storedBytes;
+  forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
+    components.writeScalars(component, first, count, values + static_cast<std::size_t>(number) * bytes);
+  });
+}
+
 // A reference is what storage is measured against, and rounds nothing.
 void NativeStream::keepStorage() {
   if (storage == Storage::Half && components.real() == RealType::Float) {

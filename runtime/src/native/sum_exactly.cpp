@@ -12,6 +12,7 @@
 #include "native/fold_pieces.hpp"
 #include "native/fold_state.hpp"
 #include "native/slot_arrays.hpp"
+#include "native/wide_accumulator.hpp"
 #include "sk/native/parallel.hpp"
 
 namespace sk {
@@ -24,9 +25,27 @@ using native::Range;
 using program::Kernel;
 using program::Role;
 
-const float* floatsAt(void* array) { return static_cast<const float*>(array); }
+/// What sums numbers of a type, and products of two of them.
+template <class Real>
+struct Summing {
+  static WideSum<Real> of(bool /*areProducts*/) { return {}; }
+};
+template <>
+struct Summing<float> {
+  static ExactAccumulator of(bool areProducts) {
+    return ExactAccumulator(areProducts ? ExactAccumulator::Of::Products : ExactAccumulator::Of::Floats);
+  }
+};
+template <class Real>
+using Accumulator = decltype(Summing<Real>::of(false));
+
+template <class Real>
+const Real* realsAt(void* array) {
+  return static_cast<const Real*>(array);
+}
 
 /// Adds terms that are inputs, or products of two.
+template <class Real>
 class FactorAdder {
  public:
   explicit FactorAdder(const SlotLayout& layout)
@@ -34,15 +53,15 @@ class FactorAdder {
         factors_(layout.slots().size()),
         arrays_(layout, mostLaidOut, 0) {}
 
-  void add(ExactAccumulator& sum, const Extents& first, std::int64_t count) {
+  void add(Accumulator<Real>& sum, const Extents& first, std::int64_t count) {
     arrays_.moveToRow(first);
     for (std::int64_t at = 0; at < count; at += longest_) {
       const std::int64_t now = std::min(longest_, count - at);
       arrays_.place(first[0] + at, now, now);
       if (factors_ == 1) {
-        sum.add(now, floatsAt(arrays_.get()[0]));
+        sum.add(now, realsAt<Real>(arrays_.get()[0]));
       } else {
-        sum.add(now, floatsAt(arrays_.get()[0]), floatsAt(arrays_.get()[1]));
+        sum.add(now, realsAt<Real>(arrays_.get()[0]), realsAt<Real>(arrays_.get()[1]));
       }
     }
   }
@@ -54,13 +73,14 @@ class FactorAdder {
 };
 
 /// Adds the terms that a kernel computes for each element.
+template <class Real>
 class TermAdder {
  public:
   TermAdder(const SlotLayout& layout, std::span<const std::size_t> outputs, bool areProducts,
             const native::Entry& run, const native::Frame* frame)
       : outputs_(outputs), areProducts_(areProducts), runner_(layout, run, frame) {}
 
-  void add(ExactAccumulator& sum, Extents first, std::int64_t count) {
+  void add(Accumulator<Real>& sum, Extents first, std::int64_t count) {
     for (std::int64_t now = 0; count > 0; first[0] += now, count -= now) {
       now = std::min(count, mostLaidOut);
       runner_.runChunk(first, now, [&](void* const* arrays) { addOutputs(sum, now, arrays); });
@@ -68,13 +88,13 @@ class TermAdder {
   }
 
  private:
-  void addOutputs(ExactAccumulator& sum, std::int64_t count, void* const* arrays) const {
+  void addOutputs(Accumulator<Real>& sum, std::int64_t count, void* const* arrays) const {
     const std::size_t perTerm = areProducts_ ? 2 : 1;
     for (std::size_t k = 0; k < outputs_.size(); k += perTerm) {
       if (areProducts_) {
-        sum.add(count, floatsAt(arrays[outputs_[k]]), floatsAt(arrays[outputs_[k + 1]]));
+        sum.add(count, realsAt<Real>(arrays[outputs_[k]]), realsAt<Real>(arrays[outputs_[k + 1]]));
       } else {
-        sum.add(count, floatsAt(arrays[outputs_[k]]));
+        sum.add(count, realsAt<Real>(arrays[outputs_[k]]));
       }
     }
   }
@@ -100,8 +120,9 @@ std::vector<std::size_t> outputArrays(const Kernel& kernel, const SlotLayout& la
 }
 
 /// The scalar's identity, which is one of the summands; of a seeded reduction there is none.
-std::optional<float> identityOf(const program::Reduction& reduction, const program::ExactSum& sum,
-                                const CodeChoice& choice) {
+template <class Real>
+std::optional<Real> identityOf(const program::Reduction& reduction, const program::ExactSum& sum,
+                               const CodeChoice& choice) {
   if (reduction.seeded) return std::nullopt;
   const std::span<const program::Parameter> parameters = reduction.fold.parameters;
   const StateShape shape(parameters, choice.real);
@@ -118,21 +139,21 @@ std::optional<float> identityOf(const program::Reduction& reduction, const progr
     if (type.offset == sum.offset) break;
     ++scalar;
   }
-  return *floatsAt(identities.arrays()[scalar]);
+  return *realsAt<Real>(identities.arrays()[scalar]);
 }
 
 /// The rounded sums of all blocks, each of which begins with `start`. make() makes what adds the terms of a row, for one thread.
-template <class Make>
-std::vector<float> sumBlocks(const BlockPieces& pieces, const ExactAccumulator& start, native::Deal deal,
-                             Make&& make) {
+template <class Real, class Make>
+std::vector<Real> sumBlocks(const BlockPieces& pieces, const Accumulator<Real>& start, native::Deal deal,
+                            Make&& make) {
   const std::int64_t ofBlock = pieces.ofBlock();
   const auto count = static_cast<std::size_t>(pieces.count());
-  std::vector<float> results(count / static_cast<std::size_t>(ofBlock));
-  std::vector<ExactAccumulator> parts(ofBlock == 1 ? 0 : count, start);
+  std::vector<Real> results(count / static_cast<std::size_t>(ofBlock));
+  std::vector<Accumulator<Real>> parts(ofBlock == 1 ? 0 : count, start);
   native::inParallel(pieces.count(), pieces.elementsOfOne(), deal, [&](Range range) {
     auto adder = make();
     for (std::int64_t piece = range.begin; piece < range.end; ++piece) {
-      ExactAccumulator sum = start;
+      Accumulator<Real> sum = start;
       const std::int64_t inBlock = piece % ofBlock;
       if (inBlock != 0) sum.clear();
       pieces.forEachRow(pieces.blockAt(piece / ofBlock), inBlock,
@@ -158,16 +179,17 @@ const Kernel& kernelOfTerm(const program::Reduction& reduction, const program::E
   return sum.term.kernel != nullptr ? *sum.term.kernel : reduction.fold;
 }
 
-std::vector<float> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
-                              const Call& call, const Extents& block, const CodeChoice& choice) {
+template <class Real>
+std::vector<Real> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
+                             const Call& call, const Extents& block, const CodeChoice& choice) {
   const BlockPieces pieces(call.domain, block);
-  ExactAccumulator start(sum.ofProducts ? ExactAccumulator::Of::Products : ExactAccumulator::Of::Floats);
-  if (const std::optional<float> identity = identityOf(reduction, sum, choice)) start.add(1, &*identity);
+  Accumulator<Real> start = Summing<Real>::of(sum.ofProducts);
+  if (const std::optional<Real> identity = identityOf<Real>(reduction, sum, choice)) start.add(1, &*identity);
   if (sum.term.kernel == nullptr) {
     const FactorKernel factors(reduction.fold, sum.term.factors, call);
     const CodeFrame frame(factors.kernel(), factors.call());
     const SlotLayout layout(factors.kernel(), factors.call(), frame, choice);
-    return sumBlocks(pieces, start, native::Deal::Evenly, [&] { return FactorAdder(layout); });
+    return sumBlocks<Real>(pieces, start, native::Deal::Evenly, [&] { return FactorAdder<Real>(layout); });
   }
   const Kernel& kernel = *sum.term.kernel;
   const native::Entry& run = entryOf(kernel, native::EntryKind::Run, choice);
@@ -175,8 +197,17 @@ std::vector<float> sumExactly(const program::Reduction& reduction, const program
   const SlotLayout layout(kernel, call, frame, choice);
   const std::vector<std::size_t> outputs = outputArrays(kernel, layout);
   const native::Deal deal = kernel.code->isUneven != 0 ? native::Deal::AsTheyCome : native::Deal::Evenly;
-  return sumBlocks(pieces, start, deal,
-                   [&] { return TermAdder(layout, outputs, sum.ofProducts, run, frame.get()); });
+  return sumBlocks<Real>(pieces, start, deal, [&] {
+    return TermAdder<Real>(layout, outputs, sum.ofProducts, run, frame.get());
+  });
 }
+
+template std::vector<float> sumExactly<float>(const program::Reduction&, const program::ExactSum&, const Call&,
+                                              const Extents&, const CodeChoice&);
+template std::vector<double> sumExactly<double>(const program::Reduction&, const program::ExactSum&,
+                                                const Call&, const Extents&, const CodeChoice&);
+template std::vector<native::Quad> sumExactly<native::Quad>(const program::Reduction&,
+                                                            const program::ExactSum&, const Call&,
+                                                            const Extents&, const CodeChoice&);
 
 }  // namespace sk

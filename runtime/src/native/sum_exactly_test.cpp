@@ -10,6 +10,7 @@
 
 #include "native/exact_accumulator.hpp"
 #include "native/object_code_test.hpp"
+#include "native/wide_accumulator.hpp"
 
 namespace sk::test {
 namespace {
@@ -71,6 +72,50 @@ TEST_CASE("a sum of products rounds none of them") {
     sum += Wide{static_cast<std::int64_t>(x[i])} * static_cast<std::int64_t>(y[i]);
   }
   CHECK(exactDot(x, y) == nearest(sum, 0));
+}
+
+template <class Real>
+Real wideSum(const std::vector<Real>& x) {
+  WideSum<Real> sum;
+  sum.add(static_cast<std::int64_t>(x.size()), x.data());
+  return sum.rounded();
+}
+
+TEST_CASE("sums of doubles and of wider numbers are rounded once, too") {
+  using native::Quad;
+  const double most = std::numeric_limits<double>::max();
+  const double least = std::numeric_limits<double>::denorm_min();
+  const double inf = std::numeric_limits<double>::infinity();
+  CHECK(wideSum<double>({}) == 0);
+  CHECK(std::signbit(wideSum<double>({-0.0, -0.0})));
+  CHECK_FALSE(std::signbit(wideSum<double>({-0.0, 0.0})));
+  CHECK(wideSum<double>({most, least, -most}) == least);
+  CHECK(wideSum<double>({-least, -most, most}) == -least);
+  CHECK(wideSum<double>({most, most}) == inf);
+  CHECK(wideSum<double>({-most, -most}) == -inf);
+  CHECK(wideSum<double>({most, -1}) == most);
+  CHECK(std::isnan(wideSum<double>({inf, 1, -inf})));
+  CHECK(wideSum<double>({1, 0x1p-53}) == 1);                      // a tie, to even
+  CHECK(wideSum<double>({1, 0x1p-53, 0x1p-1000}) == 1 + 0x1p-52);  // and above it
+  CHECK(wideSum<double>({1 + 0x1p-52, 0x1p-53}) == 1 + 0x1p-51);
+  CHECK(wideSum<double>({-1, -0x1p-53, -0x1p-1000}) == -1 - 0x1p-52);
+  CHECK(wideSum<double>({0x1.8p-1022, -0x1p-1022}) == 0x1p-1023);
+  std::vector<double> falling;
+  for (int i = 1000; i > -1000; i -= 3) falling.insert(falling.end(), {std::ldexp(3.0, i), -std::ldexp(1.0, i)});
+  WideSum<double> together, first, second;
+  const auto half = static_cast<std::int64_t>(falling.size() / 2);
+  together.add(2 * half, falling.data());
+  first.add(half, falling.data());
+  second.add(half, falling.data() + half);
+  second.add(first);
+  CHECK(second.rounded() == together.rounded());
+  const Quad one = 1;
+  CHECK(wideSum<Quad>({one, one / 3, -one}) == one / 3);
+  CHECK(wideSum<Quad>({one, Quad{0x1p-120}, -one}) == Quad{0x1p-120});
+  WideSum<Quad> products;
+  const Quad x[] = {one + Quad{0x1p-100}, -one}, y[] = {one - Quad{0x1p-100}, one};
+  products.add(2, x, y);
+  CHECK(products.rounded() == -Quad{0x1p-200});
 }
 
 TEST_CASE("no range is too wide for an exact sum") {
@@ -145,7 +190,7 @@ void checkRows(const Extents& domain, bool byKernel, std::int64_t multiply) {
   input.multiply[0] = multiply;
   input.stride[1] = domain[0] * multiply;
   for (int i = 0; i < 4; ++i) operands.addNone();
-  const std::vector<float> sums = sumExactly(reduction, sum, operands.call(domain), {domain[0], 1, 1, 1}, {});
+  const std::vector<float> sums = sumExactly<float>(reduction, sum, operands.call(domain), {domain[0], 1, 1, 1}, {});
   std::vector<float> expected;
   for (std::int64_t row = 0; row < domain[1]; ++row) {
     Wide total = 100;
