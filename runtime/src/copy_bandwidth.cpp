@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <thread>
@@ -47,16 +46,6 @@ double measure(Copy&& copy) {
     if (took < leastTime) times = static_cast<int>(std::min<Trace::Time>(times * leastTime / took + 1, 256));
   }
   return best;
-}
-
-/// Software has the bandwidth of the processor that it runs on.
-std::string processor() {
-  std::ifstream in("/proc/cpuinfo");
-  std::string name;
-  for (std::string line; name.empty() && std::getline(in, line);) {
-    if (line.starts_with("model name")) name = line.substr(std::min(line.find(": "), line.size()));
-  }
-  return fmt::format("{} threads{}", std::thread::hardware_concurrency(), name);
 }
 
 double measureDevice(GlDevice& device) {
@@ -120,12 +109,13 @@ double measureHost() {
 double copyBandwidth(GlDevice& device) {
   if (std::int64_t{device.limits.textureSize} < rows) return 0;  // textures made small, to try layers out
   const std::string key = driverKey(device.name(), device.driver(), device.profileName());
-  return measuredOnce("bandwidth", device.isSoftware() ? key + ", " + processor() : key,
-                      [&] { return measureDevice(device); });
+  // software has the bandwidth of the processor that it runs on
+  return device.cache.measuredOnce("bandwidth", device.isSoftware() ? key + ", " + processorKey() : key,
+                                   [&] { return measureDevice(device); });
 }
 
 double hostCopyBandwidth() {
-  return measuredOnce("bandwidth", driverKey("native", processor(), ""), measureHost);
+  return CacheFolder().measuredOnce("bandwidth", driverKey("native", processorKey(), ""), measureHost);
 }
 
 }  // namespace sk

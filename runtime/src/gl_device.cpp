@@ -10,7 +10,6 @@
 
 #include "assemble/sinks.hpp"
 #include "assemble/tables.hpp"
-#include "cache_folder.hpp"
 #include "check_argument.hpp"
 #include "copy_bandwidth.hpp"
 #include "gl/commands.hpp"
@@ -66,7 +65,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       framebuffers(bound),
       pool(bound, framebuffers),
       sinkPrograms(*this),
-      binaries(capabilities, driverKey(name(), driver(), profileName())),
+      binaries(cache, capabilities, driverKey(name(), driver(), profileName())),
       sharesContext_(choices.sharesContext) {
   if (target == Target::Compute && !capabilities.hasCompute) {
     throw Error(

@@ -14,6 +14,7 @@
 
 #include "assemble/assemble.hpp"
 #include "buffered_transfer.hpp"
+#include "cache_folder.hpp"
 #include "device_state.hpp"
 #include "framebuffer_cache.hpp"
 #include "gl/bound_state.hpp"
@@ -137,6 +138,7 @@ class GlDevice final : public DeviceState {
   gl::VertexArray vertexArray;
   std::vector<PendingRead*> pendingReads;  ///< those that must be told of the device's end
   gl::Labels labels;
+  const CacheFolder cache;
   ProgramBinaries binaries;
   std::unique_ptr<PassTrace> passes;  ///< null where there is no trace
   std::vector<std::byte> staging;  ///< texels on their way; transfer.cpp's

@@ -131,7 +131,7 @@ std::string_view nameOf(Barrier barrier) {
 
 /// What an earlier process has found out; none where that is unknown, or cannot be.
 std::optional<Barrier> kept(const GlDevice& device, std::string_view key) {
-  const std::optional<std::string> text = readCached("barrier", key);
+  const std::optional<std::string> text = device.cache.read("barrier", key);
   if (text == "precise\n" && device.capabilities.hasPrecise) return Barrier::Precise;
   return text == "xor\n" ? std::optional(Barrier::Xor) : std::nullopt;
 }
@@ -145,7 +145,7 @@ Arithmetic probeArithmetic(GlDevice& device) {
   if (!found) {
     found = firstThatHolds(device);
     // failures are not kept: they may be for want of memory
-    if (found) writeCached("barrier", key, std::string(nameOf(*found)) + '\n');
+    if (found) device.cache.write("barrier", key, std::string(nameOf(*found)) + '\n');
   }
   device.barrier = found.value_or(strongest);
   return {.exactSums = found.has_value(), .barrier = found.value_or(Barrier::None)};

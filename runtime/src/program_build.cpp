@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A file holds the number of the format, a hash of the binary, and the binary: some drivers believe what they are given.
+// A file holds the number of the format and the binary. Some drivers believe what they are given: the cache folder sees to it that
+// it is what was written.
 #include "program_build.hpp"
 
 #include <algorithm>
@@ -18,45 +19,34 @@ namespace sk {
 namespace {
 
 constexpr std::string_view name = "program";
-constexpr std::uintmax_t mostBytes = std::uintmax_t{64} << 20;
-/// So many programs are stored before the folder is looked through.
-constexpr int storedBetween = 64;
 
-struct Head {
-  std::uint32_t format;
-  std::uint32_t bytes;
-  std::uint64_t hash;
-};
-
-std::span<const std::byte> bytesOf(std::string_view text) { return std::as_bytes(std::span(text)); }
+std::span<const std::byte> binaryIn(std::string_view text) { return std::as_bytes(std::span(text)); }
 
 }  // namespace
 
-ProgramBinaries::ProgramBinaries(const gl::Capabilities& capabilities, std::string driver)
-    : driver_(std::move(driver)), formats_(capabilities.binaryFormats) {}
+ProgramBinaries::ProgramBinaries(const CacheFolder& cache, const gl::Capabilities& capabilities,
+                                 std::string driver)
+    : cache_(cache), driver_(std::move(driver)), formats_(capabilities.binaryFormats) {}
 
-bool ProgramBinaries::areKept() const { return !formats_.empty() && !cacheFolder().empty(); }
+bool ProgramBinaries::areKept() const { return !formats_.empty() && !cache_.path().empty(); }
 
 gl::Program ProgramBinaries::load(std::string_view sources) const {
-  const std::optional<std::string> text = readCached(name, driver_ + std::string(sources));
-  Head head{};
-  if (!text || text->size() < sizeof head) return {};
-  std::memcpy(&head, text->data(), sizeof head);
-  const std::string_view binary = std::string_view(*text).substr(sizeof head);
-  const bool isKnown = std::ranges::find(formats_, head.format) != formats_.end();
-  if (!isKnown || binary.size() != head.bytes || hashOf(binary) != head.hash) return {};
-  return gl::Program::load(head.format, bytesOf(binary));
+  const std::optional<std::string> text = cache_.read(name, driver_ + std::string(sources));
+  std::uint32_t format = 0;
+  if (!text || text->size() <= sizeof format) return {};
+  std::memcpy(&format, text->data(), sizeof format);
+  if (std::ranges::find(formats_, format) == formats_.end()) return {};
+  return gl::Program::load(format, binaryIn(std::string_view(*text).substr(sizeof format)));
 }
 
-void ProgramBinaries::store(std::string_view sources, const gl::Program& program) {
+void ProgramBinaries::store(std::string_view sources, const gl::Program& program) const {
   const gl::ProgramBinary binary = program.binary();
   if (binary.bytes.empty()) return;
-  const std::string_view bytes(reinterpret_cast<const char*>(binary.bytes.data()), binary.bytes.size());
-  const Head head{binary.format, static_cast<std::uint32_t>(bytes.size()), hashOf(bytes)};
-  std::string text(sizeof head, '\0');
-  std::memcpy(text.data(), &head, sizeof head);
-  writeCached(name, driver_ + std::string(sources), text.append(bytes));
-  if (stored_++ % storedBetween == 0) boundCached(name, mostBytes);
+  const std::uint32_t format = binary.format;
+  std::string text(sizeof format, '\0');
+  std::memcpy(text.data(), &format, sizeof format);
+  text.append(reinterpret_cast<const char*>(binary.bytes.data()), binary.bytes.size());
+  cache_.write(name, driver_ + std::string(sources), text);
 }
 
 ProgramBuild::ProgramBuild(GlDevice& device, gl::ProgramSources sources)

@@ -13,24 +13,25 @@
 
 namespace sk {
 
+class CacheFolder;
 class GlDevice;
 
 /// The binaries of one driver in the cache folder (cache_folder.hpp). What is broken, or what the driver refuses, is as
 /// good as not there.
 class ProgramBinaries {
  public:
-  /// `driver`: everything that binaries depend on beside the sources.
-  ProgramBinaries(const gl::Capabilities& capabilities, std::string driver);
+  /// `driver`: everything that binaries depend on beside the sources. The folder must outlive this.
+  ProgramBinaries(const CacheFolder& cache, const gl::Capabilities& capabilities, std::string driver);
 
   /// Whether the driver gives binaries, and there is a folder for them.
   bool areKept() const;
   gl::Program load(std::string_view sources) const;
-  void store(std::string_view sources, const gl::Program& program);
+  void store(std::string_view sources, const gl::Program& program) const;
 
  private:
+  const CacheFolder& cache_;
   std::string driver_;
   std::vector<GLenum> formats_;  ///< that the driver takes
-  int stored_ = 0;  ///< since it was seen to that they do not become too many
 };
 
 class ProgramBuild {

@@ -194,7 +194,7 @@ std::optional<double> computeOverFragment(GlDevice& device, KernelClass kernels)
   const std::string name = fmt::format("compute-over-fragment-{}", nameOf(kernels));
   const std::string key = driverKey(device.name(), device.driver(), device.profileName());
   try {
-    return measuredOnce(name, key, [&] { return Trial(device, kernels).computeOverFragment(); });
+    return device.cache.measuredOnce(name, key, [&] { return Trial(device, kernels).computeOverFragment(); });
   } catch (const Error&) {
     return std::nullopt;
   }

@@ -4,10 +4,10 @@
 // broken.
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iomanip>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -47,6 +47,13 @@ std::string contentsOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// As the runtime computes it (FNV-1a).
+std::uint64_t hashOf(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return hash;
+}
+
 /// A cache folder and a trace of this test's own.
 class Folder {
  public:
@@ -66,14 +73,22 @@ class Folder {
     }
     return found;
   }
-  /// Changes what is after the first line of each program's file.
-  void change(const std::function<void(std::string&)>& edit) const {
+  /// Changes what is after the key and the checksum of each program's file, with a checksum that is right or stays.
+  void change(bool isRight, const std::function<void(std::string&)>& edit) const {
     for (const fs::path& file : programs()) {
       const std::string text = contentsOf(file);
-      const std::size_t body = text.find('\n') + 1;
+      const std::size_t line = text.find('\n') + 1;
+      const std::size_t body = text.find('\n', line) + 1;
       std::string binary = text.substr(body);
       edit(binary);
-      std::ofstream(file, std::ios::binary) << text.substr(0, body) << binary;
+      std::ofstream out(file, std::ios::binary);
+      out << text.substr(0, line);
+      if (isRight) {
+        out << std::hex << std::setfill('0') << std::setw(16) << hashOf(binary) << ' ' << std::dec << binary.size() << '\n';
+      } else {
+        out << text.substr(line, body - line);
+      }
+      out << binary;
     }
   }
   /// How many programs a new device has found, as its trace says, when it has doubled a number.
@@ -110,14 +125,7 @@ class Folder {
   fs::path path_ = fs::temp_directory_path() / ("sk_programs_" + std::to_string(::getpid()));
 };
 
-/// As the runtime computes it (FNV-1a).
-std::uint64_t hashOf(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  return hash;
-}
-
-constexpr std::size_t headBytes = 16;
+constexpr std::size_t formatBytes = 4;
 
 }  // namespace
 
@@ -136,19 +144,18 @@ TEST_CASE("a broken binary, and one that the driver refuses, is made anew") {
   const Folder folder;
   folder.hits("");
   if (!folder.hasBinaries) return;
-  const auto breaks = [&](const std::function<void(std::string&)>& edit) {
-    folder.change(edit);
+  const auto breaks = [&](bool isRight, const std::function<void(std::string&)>& edit) {
+    folder.change(isRight, edit);
     CHECK(folder.hits("") == 0);
     CHECK(folder.hits("") == 1);
   };
-  breaks([](std::string& text) { text.back() = static_cast<char>(~text.back()); });
-  breaks([](std::string& text) { text.resize(text.size() / 2); });
-  breaks([](std::string& text) { text.clear(); });
-  breaks([](std::string& text) { text[0] = static_cast<char>(~text[0]); });  // another format
-  breaks([](std::string& text) {  // whole, but no program
-    const std::string nonsense(text.size() - headBytes, 'x');
-    const std::uint64_t hash = hashOf(nonsense);
-    std::memcpy(text.data() + 8, &hash, sizeof hash);
-    text = text.substr(0, headBytes) + nonsense;
+  breaks(false, [](std::string& text) { text.back() = static_cast<char>(~text.back()); });
+  breaks(false, [](std::string& text) { text.resize(text.size() / 2); });
+  breaks(false, [](std::string& text) { text.clear(); });
+  breaks(true, [](std::string& text) { text.clear(); });
+  breaks(true, [](std::string& text) { text.resize(formatBytes); });
+  breaks(true, [](std::string& text) { text[0] = static_cast<char>(~text[0]); });  // another format
+  breaks(true, [](std::string& text) {  // whole, but no program
+    text = text.substr(0, formatBytes) + std::string(text.size() - formatBytes, 'x');
   });
 }

@@ -2,9 +2,11 @@
 //
 // Promises: a device finds out by itself what keeps rounding errors from its compiler, and remembers it; where nothing
 // does, what is built on them is refused, and what is not works.
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <string>
 #include <vector>
 
@@ -65,11 +67,22 @@ class Cache {
     while (in.peek() != EOF) std::getline(in, line);
     return line;
   }
-  void replaceLastLine(const std::string& old, const std::string& text) const {
+  /// Another text for the same key, with the checksum that belongs to it (FNV-1a), else with the old one.
+  void replaceLastLine(const std::string& text, bool isRight) const {
     std::ifstream in(file());
-    std::string all(std::istreambuf_iterator<char>(in), {});
-    all.replace(all.rfind(old), old.size(), text);
-    std::ofstream(file()) << all;
+    std::string key, checksum;
+    std::getline(in, key);
+    std::getline(in, checksum);
+    std::uint64_t hash = 0xcbf29ce484222325;
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    std::ofstream out(file());
+    out << key << '\n';
+    if (isRight) {
+      out << std::hex << std::setfill('0') << std::setw(16) << hash << std::dec << ' ' << text.size() << '\n';
+    } else {
+      out << checksum << '\n';
+    }
+    out << text;
   }
 
  private:
@@ -163,10 +176,12 @@ TEST_CASE("what was found out is remembered, and rubbish is not believed") {
   };
   REQUIRE(found("essl300") == sk::Barrier::Xor);
   CHECK(cache.lastLine() == "xor");
-  for (const std::string rubbish : {"precise", "none", "xor xor", ""}) {  // the first is not in this language
-    cache.replaceLastLine("xor", rubbish);
-    CHECK(found("essl300") == sk::Barrier::Xor);
-    CHECK(cache.lastLine() == "xor");
+  for (const std::string rubbish : {"precise\n", "none\n", "xor xor\n", ""}) {  // the first is not in this language
+    for (const bool isRight : {true, false}) {
+      cache.replaceLastLine(rubbish, isRight);
+      CHECK(found("essl300") == sk::Barrier::Xor);
+      CHECK(cache.lastLine() == "xor");
+    }
   }
   std::ofstream(cache.file()) << std::string(1000, '\xff');
   CHECK(found("essl300") == sk::Barrier::Xor);
@@ -177,7 +192,9 @@ TEST_CASE("what is remembered is not tried again") {
   const Cache cache;
   const auto found = [] { return sk::Device({.profile = "glsl330"}).arithmetic().barrier; };
   if (found() == sk::Barrier::Precise) {
-    cache.replaceLastLine("precise", "xor");
+    cache.replaceLastLine("xor\n", false);
+    CHECK(found() == sk::Barrier::Precise);
+    cache.replaceLastLine("xor\n", true);
     CHECK(found() == sk::Barrier::Xor);
   }
 }

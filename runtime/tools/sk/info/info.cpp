@@ -35,7 +35,7 @@ struct InfoOptions {
 
 /// What was kept of the device, unless it cannot be read as a report.
 Json kept(const std::string& key) {
-  const std::optional<std::string> text = sk::readCached("info", key);
+  const std::optional<std::string> text = sk::CacheFolder().read("info", key);
   Json info = text ? Json::parse(*text, nullptr, false) : Json();
   try {
     if (info.is_object() && info.at("schema") == infoSchema && !report(info).empty()) return info;
@@ -53,7 +53,7 @@ Json infoOf(sk::Device& device, bool refresh) {
     info.update(describe(device));
     std::fprintf(stderr, "sk info: measuring %s ...\n", device.name().c_str());
     measure(device, info);
-    sk::writeCached("info", key, info.dump(2) + '\n');
+    sk::CacheFolder().write("info", key, info.dump(2) + '\n');
   }
   return info;
 }

@@ -121,12 +121,13 @@ std::string keyOf(const Compiled& compiled) {
 /// A compilation takes a second or more, so that its result is kept.
 void linkKept(const Compiled& compiled, const fs::path& library) {
   const std::string key = keyOf(compiled);
-  if (const std::optional<std::string> kept = sk::readCached("kernels", key)) {
+  const sk::CacheFolder cache;
+  if (const std::optional<std::string> kept = cache.read("kernels", key)) {
     std::ofstream(library, std::ios::binary) << *kept;
     return;
   }
   runCompiler(compiled, library);
-  sk::writeCached("kernels", key, textOf(library));
+  cache.write("kernels", key, textOf(library));
 }
 
 }  // namespace
