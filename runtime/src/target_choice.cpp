@@ -190,9 +190,15 @@ KernelClass classOf(const Kernel& kernel) {
                                                                             : KernelClass::Elements;
 }
 
+std::string trialKey(std::string_view driver, const DeviceLimits& limits, bool isSoftware) {
+  return fmt::format("{}, textures of {} x {}{}{}", driver, limits.textureSize, limits.textureLayers,
+                     isSoftware ? ", " : "", isSoftware ? processorKey() : "");
+}
+
 std::optional<double> computeOverFragment(GlDevice& device, KernelClass kernels) {
   const std::string name = fmt::format("compute-over-fragment-{}", nameOf(kernels));
-  const std::string key = driverKey(device.name(), device.driver(), device.profileName());
+  const std::string key = trialKey(driverKey(device.name(), device.driver(), device.profileName()),
+                                   device.limits, device.isSoftware());
   try {
     return device.cache.measuredOnce(name, key, [&] { return Trial(device, kernels).computeOverFragment(); });
   } catch (const Error&) {

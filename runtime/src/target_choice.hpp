@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "assemble/assemble.hpp"
+#include "sk/device.hpp"
 #include "sk/program.hpp"
 
 namespace sk {
@@ -29,6 +31,9 @@ std::string_view nameOf(KernelClass kernels);
 
 /// The class of a kernel that is no fold of a reduction.
 KernelClass classOf(const program::Kernel& kernel);
+
+/// What a trial's result depends on, in words: streams lie otherwise in smaller textures, and software is as fast as the processor.
+std::string trialKey(std::string_view driver, const DeviceLimits& limits, bool isSoftware);
 
 /// The time of compute programs over that of fragment programs for a kernel of the class; below 1, dispatches are faster.
 /// No scope of the device is open. None where the device could not be tried out: for want of memory, say.

@@ -62,7 +62,9 @@ void measure(sk::Device& device, Json& info) {
 }
 
 std::string keyOf(const sk::Device& device) {
-  const std::string driver = isNative(device) ? probeProcessor().dump() : device.driver();
+  std::string driver = device.driver();
+  if (device.isSoftware()) driver += probeProcessor().dump();
+  driver += std::to_string(device.limits().textureSize);
   return sk::driverKey(device.name(), driver, device.profile());
 }
 
