@@ -3,6 +3,7 @@
 // Devices on the application's own context: results are right whatever state it left, and the state is
 // as it left it.
 #include <map>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,10 @@ GLuint compile(GLenum stage, const char* text) {
   return shader;
 }
 
+bool hasClipControl(const Application& application) {
+  return !application.isEs() && epoxy_gl_version() >= 45;
+}
+
 /// Sets as much as can be set to what would spoil a pass.
 void makeHostileState(const Application& application) {
   const bool isEs = application.isEs();
@@ -140,6 +145,9 @@ void makeHostileState(const Application& application) {
     glClampColor(GL_CLAMP_READ_COLOR, GL_TRUE);
     glDisablei(GL_BLEND, 1);
   }
+  if (hasClipControl(application)) {
+    glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+  }
   if (application.isCompatibility()) {
     glEnable(GL_ALPHA_TEST);
     glAlphaFunc(GL_NEVER, 0.0f);
@@ -175,6 +183,9 @@ std::map<std::string, GLint> readState(const Application& application) {
   if (application.isCompatibility()) {
     STATE(GL_ALPHA_TEST);
   }
+  if (hasClipControl(application)) {
+    STATE(GL_CLIP_ORIGIN), STATE(GL_CLIP_DEPTH_MODE);
+  }
 #undef STATE
   GLint values[4] = {};
   for (const auto& [name, text] :
@@ -209,6 +220,12 @@ const TestKernel& mix3() {
   return kernel;
 }
 
+const TestKernel& put() {
+  static const TestKernel kernel("put", "void put(float x) { sk_put_r(sk_index().xy, x); }\n",
+                                 {input<float>("x"), scatter<float>("r", 2, 1)});
+  return kernel;
+}
+
 /// Everything that a device does, with results checked.
 void useAll(Device& device) {
   constexpr std::size_t count = 150;
@@ -226,6 +243,13 @@ void useAll(Device& device) {
   CHECK(h.read()[5] == Hit{6.0f, 9});
   CHECK(a.read()[9] == -27.5f);
   CHECK(sumOfFloats().value<float>(r) == -27.5f * count);
+  std::vector<float> rising(5 * 7);
+  std::iota(rising.begin(), rising.end(), 0.0f);
+  auto grid = device.stream<float>({5, 7});
+  auto copy = device.stream<float>({5, 7});
+  grid.write(rising);
+  put()(grid, copy);
+  CHECK(copy.read() == rising);
   CHECK(device.arithmetic().exactSums);
 }
 

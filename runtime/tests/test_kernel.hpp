@@ -45,6 +45,18 @@ program::Parameter gather(std::string_view name, int rank,
   made.boundary = boundary;
   return made;
 }
+/// A scatter output that each element puts `pushes` values to.
+template <class T>
+program::Parameter scatter(std::string_view name, int rank, std::int32_t pushes) {
+  program::Parameter made = parameter<T>(name, program::Role::Scatter);
+  made.rank = static_cast<std::uint8_t>(rank);
+  made.pushes = pushes;
+  return made;
+}
+template <class T>
+program::Parameter variableOutput(std::string_view name) {
+  return parameter<T>(name, program::Role::VariableOutput);
+}
 template <class T>
 program::Parameter accumulator(std::string_view name, std::string_view identity = {}) {
   program::Parameter made = parameter<T>(name, program::Role::Accumulator);

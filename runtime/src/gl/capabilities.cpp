@@ -97,6 +97,9 @@ Capabilities readCapabilities() {
   found.hasDoubles = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader_fp64");
   found.hasPrecise = found.api == Api::Gl && epoxy_has_gl_extension("GL_ARB_gpu_shader5");
   found.filtersFloats = found.api == Api::Gl || epoxy_has_gl_extension("GL_OES_texture_float_linear");
+  found.hasClipControl = found.api == Api::Gl
+                             ? found.version >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control")
+                             : epoxy_has_gl_extension("GL_EXT_clip_control");
   found.hasLabels =
       found.version >= (found.api == Api::Gl ? 43 : 32) || epoxy_has_gl_extension("GL_KHR_debug");
   found.isDebugged = epoxy_has_gl_extension("GL_EXT_debug_tool") ||

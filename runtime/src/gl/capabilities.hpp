@@ -24,6 +24,7 @@ struct Capabilities {
   bool hasPrecise = false;       ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
   bool filtersFloats = false;    ///< of 32 bits, linearly
   bool hasCompute = false;       ///< compute programs of GLSL 4.30, within the limits below
+  bool hasClipControl = false;   ///< where y is 0 may be chosen
   bool hasLabels = false;        ///< objects may have names for debuggers (KHR_debug)
   bool isDebugged = false;       ///< a debugger is there, or the context is one for debugging
   std::vector<GLenum> binaryFormats;  ///< of programs that the driver gives and takes; none where it does not

@@ -92,6 +92,12 @@ GLint integerOf(GLenum name) {
   return value;
 }
 
+/// Desktop and ES have functions of their own; the values are the same.
+void setClipControl(const Capabilities& c, GLint origin, GLint depth) {
+  const auto set = c.api == Api::Gl ? glClipControl : glClipControlEXT;
+  set(static_cast<GLenum>(origin), static_cast<GLenum>(depth));
+}
+
 void set(GLenum name, bool isOn) { isOn ? glEnable(name) : glDisable(name); }
 
 }  // namespace
@@ -112,6 +118,7 @@ void setPassState(const Capabilities& capabilities) {
   } else {
     glDisable(GL_SCISSOR_TEST);
   }
+  if (capabilities.hasClipControl) setClipControl(capabilities, GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   glDisable(GL_BLEND);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
@@ -168,6 +175,10 @@ void SavedState::saveViewport() {
   } else {
     glGetFloatv(GL_VIEWPORT, viewport_.data());
   }
+  if (capabilities_.hasClipControl) {
+    clipOrigin_ = integerOf(GL_CLIP_ORIGIN);
+    clipDepth_ = integerOf(GL_CLIP_DEPTH_MODE);
+  }
   if (capabilities_.api == Api::Gl) {
     glGetIntegerv(GL_POLYGON_MODE, polygonMode_.data());
     glGetFloatv(GL_POINT_SIZE, &pointSize_);
@@ -183,6 +194,7 @@ void SavedState::restoreViewport() const {
                static_cast<GLsizei>(viewport_[2]), static_cast<GLsizei>(viewport_[3]));
     set(GL_SCISSOR_TEST, isScissored_);
   }
+  if (capabilities_.hasClipControl) setClipControl(capabilities_, clipOrigin_, clipDepth_);
   if (capabilities_.api == Api::Gl) {
     glPointSize(pointSize_);
   }

@@ -47,6 +47,7 @@ class SavedState {
   std::array<std::array<GLboolean, 4>, maxDrawBuffers> colorMask_{};
   std::array<GLint, 2> polygonMode_{};
   GLint program_ = 0, vertexArray_ = 0, drawFramebuffer_ = 0, readFramebuffer_ = 0;
+  GLint clipOrigin_ = 0, clipDepth_ = 0;
   GLint activeUnit_ = 0, packBuffer_ = 0, unpackBuffer_ = 0, clampReadColor_ = 0;
   GLfloat pointSize_ = 1;
   bool isScissored_ = false;
