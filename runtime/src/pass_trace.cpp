@@ -113,6 +113,7 @@ void PassTrace::calibrate() {
 
 /// Passes may run into one another on the device, but the slices of a track may not.
 void PassTrace::collect() {
+  if (!usesTimestamps_) return;  // nor may the driver's clock be asked
   calibrate();
   while (!timed_.empty()) {
     Timed& pass = timed_.front();
@@ -130,7 +131,7 @@ void PassTrace::collect() {
 void PassTrace::complete() noexcept {
   gl::finish();
   try {
-    if (usesTimestamps_) collect();
+    collect();
   } catch (const std::bad_alloc&) {
     return;  // some passes less in the trace
   }
