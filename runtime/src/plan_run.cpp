@@ -80,13 +80,6 @@ class PlanRun {
       bundles_.push_back(copyBundle(device, bundle, call.operands));
     }
   }
-  // The pool and the driver may give the names of the bundles out again.
-  ~PlanRun() {
-    if (!bundles_.empty()) {
-      bundles_.clear();
-      device_.bound.forget();
-    }
-  }
   PlanRun(const PlanRun&) = delete;
   PlanRun& operator=(const PlanRun&) = delete;
 

@@ -3,6 +3,8 @@
 // The less frequent half of the tracked bindings.
 #include "gl/bound_state.hpp"
 
+#include <algorithm>
+
 namespace sk::gl {
 
 void BoundState::drawFramebuffer(GLuint name) {
@@ -31,6 +33,16 @@ void BoundState::forget() {
   textures_ = arrayTextures_ = samplers_ = unknownUnits();
   images_ = unknownUnits<maxImageUnits>();
   storage_ = unknown;
+}
+
+void BoundState::newTexture(GLuint name) {
+  for (auto* units : {&textures_, &arrayTextures_}) std::ranges::replace(*units, name, unknown);
+  std::ranges::replace(images_, name, unknown);
+}
+
+void BoundState::newFramebuffer(GLuint name) {
+  if (drawFramebuffer_ == name) drawFramebuffer_ = unknown;
+  if (readFramebuffer_ == name) readFramebuffer_ = unknown;
 }
 
 void BoundState::bindImage(int unit, GLuint name, GLenum format) {

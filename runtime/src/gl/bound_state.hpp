@@ -78,6 +78,9 @@ class BoundState {
 
   /// Nothing is known of what is bound.
   void forget();
+  /// A name is new: where the driver has given out one of an object that was deleted, that one is bound nowhere any more.
+  void newTexture(GLuint name);
+  void newFramebuffer(GLuint name);
 
   /// From here on this is the application's context: the texture and sampler of a unit are kept as the
   /// unit is first used, and of several viewports only the first is set.

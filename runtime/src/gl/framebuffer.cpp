@@ -23,6 +23,7 @@ void deleteFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
 
 Framebuffer::Framebuffer(BoundState& bound, std::span<const GLuint> textures, bool isLayered)
     : name_(newFramebuffer()) {
+  bound.newFramebuffer(name());
   bound.framebuffer(name());
   std::vector<GLenum> attachments;
   for (const GLuint texture : textures) {

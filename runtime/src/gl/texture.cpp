@@ -26,6 +26,7 @@ void setNearest(GLenum target) {
 
 Texture::Texture(BoundState& bound, const Format& format, const assemble::TextureShape& shape)
     : name_(newTexture()), format_(&format), shape_(shape) {
+  bound.newTexture(name());
   bound.textureToChange(name(), isLayered());
   const GLenum target = isLayered() ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
   const auto internalFormat = static_cast<GLint>(format.internalFormat);
