@@ -146,6 +146,7 @@ DeviceState* checkCall(const Kernel& kernel, std::span<const Argument> arguments
          "no input of the domain's own shape and no iterator with one says how many elements there are; "
          "give one");
   }
+  checkElements(kernel, device, domain);
   std::size_t written = 0;
   std::size_t read = 0;
   SinkPlanes sinks;

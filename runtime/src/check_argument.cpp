@@ -7,6 +7,7 @@
 
 #include "device_state.hpp"
 #include "iterator.hpp"
+#include "sk/limits.hpp"
 #include "stream_state.hpp"
 
 namespace sk {
@@ -158,6 +159,19 @@ void checkGiven(const Kernel& kernel, const Parameter& parameter, const Argument
   if (argument.isNone) {
     fail(kernel, "'{}' is sk::none, but the kernel needs it here, where {} holds; give a stream",
          parameter.name, parameter.neededIf.text);
+  }
+}
+
+void checkElements(const Kernel& kernel, const DeviceState& device, const Shape& domain) {
+  for (int d = 0; d < domain.rank() && domain.size() > 0; ++d) {
+    if (domain[d] > mostExtent) {
+      fail(kernel, "the domain of shape {} has an extent above {}, where indices end; divide it", toString(domain),
+           mostExtent);
+    }
+  }
+  if (domain.size() > device.limits.elements) {
+    fail(kernel, "the domain of shape {} has {} elements, but '{}' numbers {}; divide it", toString(domain),
+         domain.size(), device.name(), device.limits.elements);
   }
 }
 

@@ -50,6 +50,9 @@ void checkValue(const program::Kernel& kernel, const program::Parameter& paramet
 /// That a stream which the kernel needs is not sk::none.
 void checkGiven(const program::Kernel& kernel, const program::Parameter& parameter, const Argument& argument);
 
+/// That the device can number the elements of a domain (sk/limits.hpp), which may have more of them than any stream.
+void checkElements(const program::Kernel& kernel, const DeviceState& device, const Shape& domain);
+
 /// That the device has room for the kernel's uniforms. A driver may need more than the components that are counted
 /// here, and says so in its own words then.
 void checkUniforms(const program::Kernel& kernel, const DeviceState& device);

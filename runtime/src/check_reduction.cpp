@@ -51,6 +51,7 @@ class Arguments {
     }
     const StreamState& first = *arguments_[first_].region.stream;
     CheckedReduction checked{*first.device, domain};
+    checkElements(fold_, checked.device, domain);
     checked.device.checkProgram(reduction_);
     checkUniforms(fold_, checked.device);
     checkUnits(checked.device);

@@ -79,6 +79,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
   if (choices.textureLimit > 0 && choices.textureLimit < limits.textureSize) {
     limits.textureSize = choices.textureLimit;
   }
+  limits.elements = mostElements;
   limits.drawBuffers = capabilities.drawBuffers;
   limits.textureUnits = capabilities.textureUnits;
   limits.uniformComponents = capabilities.uniformComponents;

@@ -37,7 +37,7 @@ assemble::TextureShape textureOf(std::int64_t count, const assemble::TextureLimi
     throw Error(
         fmt::format("{} has {} elements, but a texture of this device holds no more than {} layers of "
                     "{} x {} texels, and a stream {} elements; {}",
-                    what, count, limits.layers, limits.size, limits.size, assemble::mostElements, advice));
+                    what, count, limits.layers, limits.size, limits.size, mostElements, advice));
   }
   return *texture;
 }
@@ -81,7 +81,7 @@ Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits, bool 
   if (shape.size() == 0) {
     return {};
   }
-  if (packed && shape.size() <= assemble::mostElements) {
+  if (packed && shape.size() <= mostElements) {
     return packedLayout(shape, limits);
   }
   Layout layout;

@@ -8,6 +8,7 @@
 #include "checked_size.hpp"
 #include "device_state.hpp"
 #include "sk/error.hpp"
+#include "sk/limits.hpp"
 #include "stream_state.hpp"
 
 namespace sk {
@@ -40,10 +41,17 @@ class TransferScope {
 };
 
 /// No form of a scalar takes more than four times its bytes in host memory: __float128 for a float.
-void checkBytes(const program::Element& type, const Shape& extents) {
+void checkSize(const program::Element& type, const Shape& extents) {
   if (!checkedProduct(extents.size(), 4 * std::int64_t{type.size})) {
     throw Error(fmt::format("a stream of {} of shape {} is too large: its elements would take 2^61 bytes or more",
                             type.name, toString(extents)));
+  }
+  for (int d = 0; d < extents.rank() && extents.size() > 0; ++d) {
+    if (extents[d] > mostExtent) {
+      throw Error(fmt::format("a stream of {} of shape {} has an extent above {}, where indices end; give it rows, or "
+                              "divide it",
+                              type.name, toString(extents), mostExtent));
+    }
   }
 }
 
@@ -51,7 +59,7 @@ void checkBytes(const program::Element& type, const Shape& extents) {
 
 StreamState::StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as)
     : device(&owner), element(&type), storage(as), shape(extents), next_(owner.firstStream_) {
-  checkBytes(type, extents);
+  checkSize(type, extents);
   if (next_ != nullptr) {
     next_->previous_ = this;
   }

@@ -152,9 +152,24 @@ TEST_CASE("shapes that are none, or too large") {
         "a stream of shape {" + std::to_string(most + 1) + "} has " + std::to_string(most + 1) +
             " elements, but a texture of this device holds no more than " +
             std::to_string(small.limits().textureLayers) +
-            " layers of 64 x 64 texels, and a stream 2147483647 elements; divide it into several streams");
+            " layers of 64 x 64 texels, and a stream 2147418112 elements; divide it into several streams");
+  CHECK(errorOf([&] { device.stream<float>({2, mostExtent + 1}); }) ==
+        "a stream of float of shape {2, 1073741824} has an extent above 1073741823, where indices end; give it rows, or "
+        "divide it");
+  CHECK(device.limits().elements == mostElements);
   auto none = device.stream<float>({0, huge});
   CHECK(none.read().empty());
+}
+
+TEST_CASE("a domain of more elements than have numbers") {
+  static const TestKernel multiply("multiply", "void multiply(float x, float y) { sk_put_r(0, x * y); }\n",
+                                   {input<float>("x"), input<float>("y"), scatter<float>("r", 1, 1)});
+  Device device;
+  auto x = device.stream<float>({1 << 16, 1});
+  auto y = device.stream<float>({1, 1 << 16});
+  auto r = device.stream<float>({1});
+  CHECK(errorOf([&] { multiply(x, y, r); }) == "multiply: the domain of shape {65536, 65536} has 4294967296 elements, but '" +
+                                                   device.name() + "' numbers 2147418112; divide it");
 }
 
 TEST_CASE("reductions that do not fit") {

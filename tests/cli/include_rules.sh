@@ -23,7 +23,7 @@ runtime/include/sk    sk
 runtime/src           sk assemble gl native
 runtime/tools         sk native
 runtime/tests         sk assemble gl native epoxy
-runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/scalar_bytes.hpp assemble
+runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_bytes.hpp assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
 examples              sk epoxy
 tests                 sk

@@ -70,6 +70,7 @@ struct DeviceLimits {
   std::int32_t drawBuffers = 0;  ///< planes that one pass may write
   std::int32_t textureUnits = 0;  ///< planes that one pass may read
   std::int32_t uniformComponents = 0;  ///< components of the uniform arguments of a kernel
+  std::int64_t elements = 0;  ///< of a stream or a domain (sk/limits.hpp)
 };
 
 /// What a trial with one class of kernels has found out (docs/runtime.md, Targets).

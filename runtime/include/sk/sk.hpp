@@ -8,6 +8,7 @@
 #include "sk/device.hpp"
 #include "sk/error.hpp"
 #include "sk/iter.hpp"
+#include "sk/limits.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
 #include "sk/table.hpp"

@@ -159,7 +159,7 @@ struct Variant {
 /// Of a function with a table, those of tables.hpp.
 /// Where the profile relays uniforms, the vertex program has most of them.
 ///
-/// Indices and extents are below 2^30. Gathers are not empty: the runtime refuses such a call.
+/// Extents are at most sk::mostExtent and numbers of elements sk::mostElements. Gathers are not empty: the runtime refuses such a call.
 /// Compute programs are of Work::Elements alone.
 std::string kernelProgram(const Profile& profile, const program::Kernel& kernel, const Variant& variant);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The GLSL functions that assembled programs share. Indices are integers only, no negative operand of / or %,
-// and no overflow for any index or offset, since indices are not negative and extents below 2^30.
+// and no overflow for any index or offset, since indices are not negative and extents at most sk::mostExtent.
 #include <array>
 #include <utility>
 

@@ -117,7 +117,7 @@ std::string essence(std::string_view text) {
 
 constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
 constexpr std::int64_t least = std::numeric_limits<std::int32_t>::min();
-constexpr int largestExtent = 1 << 30;
+constexpr int largestExtent = 1 << 30;   // one more than sk::mostExtent
 
 const std::vector<int> extents = {
     1, 2, 3, 5, 7, 64, 100, 8191, 8192, 16384, largestExtent - 1, largestExtent};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // sk_at_p, sk_near_p and sk_sample_p. An index that the body computes may be any int at all; the current index is
-// not negative and, like every extent, below 2^30.
+// not negative and, like every extent, at most sk::mostExtent.
 #include "assemble/gather.hpp"
 
 #include <algorithm>

@@ -10,6 +10,8 @@
 #include <optional>
 #include <vector>
 
+#include "sk/limits.hpp"
+
 namespace sk::assemble {
 
 /// x fastest, that is, a C++ shape reversed.
@@ -66,10 +68,7 @@ struct TextureShape {
   bool operator==(const TextureShape&) const = default;
 };
 
-/// The most elements that a stream may have: they are numbered by an int.
-inline constexpr std::int64_t mostElements = (std::int64_t{1} << 31) - 1;
-
-/// The texture of `count` linearised elements, 1 or more. Its width is the smallest power of two that is not below
+/// The texture of `count` linearised elements, 1 or more (at most sk::mostElements). Its width is the smallest power of two that is not below
 /// sqrt(count) but fits; where such a texture does not hold them, it has layers, of the largest size that leaves
 /// at most an eighth of the texels unused. None where those are too many.
 std::optional<TextureShape> linearTexture(std::int64_t count, const TextureLimits& limits);

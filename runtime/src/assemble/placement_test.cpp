@@ -49,7 +49,7 @@ TEST_CASE("the texture of a linearised stream is near-square and as wide as a po
   CHECK(widthOf(1 << 26, 10000) == 1 << 13);
   CHECK(linearTexture(1 << 26, {4096, 256}) == TextureShape{4096, 4096, 4});
   CHECK_FALSE(linearTexture(1 << 26, {4096, 3}));
-  CHECK_FALSE(linearTexture(mostElements + 1, {1 << 20, 256}));
+  CHECK_FALSE(linearTexture(sk::mostElements + 1, {1 << 20, 256}));
 }
 
 TEST_CASE("a whole linearised stream draws its elements once and not the end of the last row") {

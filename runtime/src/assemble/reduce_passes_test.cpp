@@ -114,3 +114,28 @@ TEST_CASE("values of components of 32 bits may end in a buffer") {
   CHECK(mayEndInBuffer(samples::sum));
   CHECK_FALSE(mayEndInBuffer(samples::weigh));  // its best has a bool
 }
+
+TEST_CASE("as many elements as there may be are folded to one") {
+  const TextureLimits textures{16384, 256};
+  const Placement all = linearPlacement(sk::mostElements, *linearTexture(sk::mostElements, textures));
+  for (const bool grouped : {false, true}) {
+    for (const std::int32_t fanIn : {2, 32}) {
+      const std::vector<ReducePass> passes =
+          planReduction(all, valuePlacement(), {.texture = textures, .fanIn = fanIn, .grouped = grouped},
+                        {.blocks = {1, 1, 1, 1}, .inAnyOrder = grouped, .inGroups = grouped});
+      std::int64_t left = sk::mostElements;
+      for (const ReducePass& pass : passes) {
+        std::int64_t results = 0;
+        for (const Rect& rect : pass.draws) {
+          REQUIRE((rect.x >= 0 && rect.y >= 0 && rect.width > 0 && rect.height > 0));
+          results += std::int64_t{rect.width} * rect.height;
+        }
+        CHECK(results < left);
+        CHECK(results * fanIn * (grouped ? groupSize : 1) >= left);
+        left = results;
+      }
+      CHECK(passes.back().toResult);
+      CHECK(left == 1);
+    }
+  }
+}

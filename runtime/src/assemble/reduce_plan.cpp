@@ -47,7 +47,8 @@ Axes collapse(const Placement& input, const Index4& division) {
   return axes;
 }
 
-std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a + b - 1) / b; }
+/// Of a positive number; no sum overflows.
+std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a - 1) / b + 1; }
 
 /// Tells a pass where it writes. `usesIndex`: its program asks for more than the number of a result.
 void addDomain(ReducePass& pass, const Placement& domain, bool usesIndex) {
@@ -162,7 +163,7 @@ class Planner {
     const auto [width, height] = left2_;
     const bool isEven = tail_ == 0 && width % run.width == 0 && height % run.height == 0;
     const bool isLine = run.width == 1 || run.height == 1;
-    return isEven && isLine && width * height >= limits_.knownRuns && run.width * run.height % unit == 0;
+    return isEven && isLine && std::int64_t{width} * height >= limits_.knownRuns && run.width * run.height % unit == 0;
   }
 
   /// A length near `most` of which `extent` is a multiple; `most` where there is none.

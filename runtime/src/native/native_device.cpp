@@ -39,7 +39,8 @@ NativeDevice::NativeDevice(RealType real)
             .textureLayers = 1,
             .drawBuffers = unlimited,
             .textureUnits = unlimited,
-            .uniformComponents = unlimited};
+            .uniformComponents = unlimited,
+            .elements = std::numeric_limits<std::int64_t>::max()};
   static_cast<void>(levelOfCpu());  // throws where SK_CPU names no level
 }
 

@@ -8,6 +8,7 @@
 #include "checked_size.hpp"
 #include "native/native_device.hpp"
 #include "sk/error.hpp"
+#include "sk/limits.hpp"
 
 namespace sk {
 
@@ -141,6 +142,10 @@ void NativeStream::fillBuffer(std::uint32_t, std::int64_t, int) {
 
 void NativeStream::become(native::Pushed pushed, RealType real) {
   const std::int64_t count = pushed.count;
+  if (count > mostExtent) {
+    throw Error(fmt::format("a kernel has pushed {} values to a stream, which holds {} in one dimension; divide the domain",
+                            count, mostExtent));
+  }
   Components given = pushed.arrays.empty() ? Components(*element, real, 0)
                                            : Components(*element, real, std::move(pushed.arrays));
   components = real == components.real() ? std::move(given) : given.clone(count, components.real());
