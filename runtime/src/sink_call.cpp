@@ -10,12 +10,14 @@
 
 #include "assemble/sinks.hpp"
 #include "check.hpp"
+#include "check_argument.hpp"
 #include "gl_device.hpp"
 #include "gl_stream.hpp"
 #include "output_targets.hpp"
 #include "pass.hpp"
 #include "scatter_points.hpp"
 #include "sink_list.hpp"
+#include "sk/limits.hpp"
 
 namespace sk {
 
@@ -131,6 +133,7 @@ class SinkCall {
         list->total.planes = tree->totalTexture();
       } else {
         length = tree->total();
+        if (length > mostPushes) failForPushes(sink);
       }
     }
     list->layout = listLayout(length, device_.textureLimits());
@@ -138,6 +141,11 @@ class SinkCall {
       drawList(*list, tree ? &*tree : nullptr);
     }
     return list;
+  }
+
+  [[noreturn]] void failForPushes(const Parameter& sink) const {
+    fail(kernel_, "it {} '{}' more than {} values in one call; divide the domain",
+         sink.role == Role::Scatter ? "scatters to" : "pushes to", sink.name, mostPushes);
   }
 
   /// Whether the list can be made without its length.

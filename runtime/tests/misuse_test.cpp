@@ -172,6 +172,27 @@ TEST_CASE("a domain of more elements than have numbers") {
                                                    device.name() + "' numbers 2147418112; divide it");
 }
 
+TEST_CASE("more pushes than there are numbers for") {
+  static const TestKernel many("many", "void many(float x) { sk_pushed_r = int(x); }\n",
+                               {input<float>("x"), variableOutput<float>("r")});
+  for (const std::string& profile : profileNames) {
+    Device device(DeviceOptions{.profile = profile});
+    auto x = device.stream<float>({4096});
+    auto r = device.stream<float>({1});
+    const std::string error = "many: it pushes to 'r' more than 536870910 values in one call; divide the domain";
+    x.write(std::vector<float>(4096, 1 << 20));  // 2^32 in all
+    CHECK(errorOf([&] { many(x, r); }) == error);
+    std::vector<float> one(4096);
+    one[77] = 0x1p30F;  // and in one element
+    x.write(one);
+    CHECK(errorOf([&] { many(x, r); }) == error);
+    one[77] = 0;
+    x.write(one);
+    many(x, r);
+    CHECK(r.size() == 0);
+  }
+}
+
 TEST_CASE("reductions that do not fit") {
   Device device;
   auto x = device.stream<float>({6, 8});

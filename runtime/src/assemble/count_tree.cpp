@@ -66,8 +66,8 @@ std::string treeProgram(const Profile& profile, const TreeTextures& textures) {
       "int sk_child(int sk_n)",
       {"if (sk_n >= sk_children) return 0;",
        ofCounts ? "int sk_y = sk_n / sk_below_width;" : "int sk_y = sk_n >> sk_tree_shift;",
-       ofCounts ? fmt::format("return texelFetch(sk_below, {}, 0).x;",
-                              place(program, {"ivec2(sk_n - sk_y * sk_below_width, sk_y)", shift}))
+       ofCounts ? fmt::format("return min(texelFetch(sk_below, {}, 0).x, {});",
+                              place(program, {"ivec2(sk_n - sk_y * sk_below_width, sk_y)", shift}), countLimit)
                 : fmt::format("return texelFetch(sk_below, {}, 0).w;",
                               place(program, {"ivec2(sk_n & ((1 << sk_tree_shift) - 1), sk_y + sk_below_row)",
                                               shift}))});

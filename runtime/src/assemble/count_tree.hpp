@@ -18,8 +18,8 @@
 
 namespace sk::assemble {
 
-/// Counts and sums above this are this: more than any texture holds, and four of them fit an int.
-inline constexpr std::int32_t countLimit = (1 << 29) - 1;
+/// Counts and sums above this are this, and mean that there are too many: four of them fit an int.
+inline constexpr std::int32_t countLimit = static_cast<std::int32_t>(mostPushes) + 1;
 
 /// The most levels that a tree has, over 2^31 elements; `sk_rows` of a list's program has one more.
 inline constexpr int mostTreeLevels = 16;
