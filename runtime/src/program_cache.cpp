@@ -53,19 +53,34 @@ KernelProgram::Read readOf(const gl::Program& program, std::size_t i, const prog
 ProgramCache::ProgramCache(GlDevice& device, const assemble::Profile& profile)
     : device_(device), profile_(profile) {}
 
+template <class Programs, class IsOfKernel>
+void ProgramCache::makeRoom(Programs& programs, IsOfKernel&& isOfKernel) {
+  std::ptrdiff_t count = 0;
+  auto oldest = programs.end();
+  for (auto program = programs.begin(); program != programs.end(); ++program) {
+    if (!isOfKernel(program->first)) continue;
+    ++count;
+    if (oldest == programs.end() || program->second.used < oldest->second.used) oldest = program;
+  }
+  if (count >= mostVariants) programs.erase(oldest);
+}
+
 KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                            const assemble::Placement& domain, const assemble::Task& task) {
   const ProgramKey key = variantKey(kernel, operands, domain, task, device_.capabilities.filtersFloats);
-  std::unique_ptr<KernelProgram>& kept = kernels_[key];
-  if (!kept) {
+  const auto found = kernels_.find(key);
+  if (found == kernels_.end()) {
     const TraceScope traced(device_.trace.get(), "program", kernel.name);
     const assemble::Variant variant =
         chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats);
     auto started = startedKernels_.extract(key);
-    kept = makeKernelProgram(kernel, variant,
-                             started.empty() ? begin(kernel, variant) : std::move(started.mapped()));
+    auto made = makeKernelProgram(kernel, variant,
+                                  started.empty() ? begin(kernel, variant) : std::move(started.mapped()));
+    makeRoom(kernels_, [&](const ProgramKey& other) { return other.kernel == &kernel; });
+    return *kernels_.insert_or_assign(key, Kept<KernelProgram>{std::move(made), ++clock_}).first->second.program;
   }
-  return *kept;
+  found->second.used = ++clock_;
+  return *found->second.program;
 }
 
 bool ProgramCache::startKernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
@@ -260,8 +275,8 @@ bool ProgramCache::startReduceProgram(const program::Reduction& reduction,
 ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
                                            const assemble::ReduceVariant& variant) {
   const ReduceKey key{&reduction, variant};
-  std::unique_ptr<ReduceProgram>& kept = reductions_[key];
-  if (!kept) {
+  const auto found = reductions_.find(key);
+  if (found == reductions_.end()) {
     const TraceScope traced(device_.trace.get(), "program", reduction.fold.name);
     auto made = std::make_unique<ReduceProgram>();
     const bool isPartial = assemble::isOfPartials(variant.walk);
@@ -272,9 +287,11 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     if (variant.walk != assemble::Walk::Nothing) {
       findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
     }
-    kept = std::move(made);
+    makeRoom(reductions_, [&](const ReduceKey& other) { return other.first == &reduction; });
+    return *reductions_.insert_or_assign(key, Kept<ReduceProgram>{std::move(made), ++clock_}).first->second.program;
   }
-  return *kept;
+  found->second.used = ++clock_;
+  return *found->second.program;
 }
 
 gl::IntUniform& ReduceProgram::uniform(const assemble::UniformValue& value) {
@@ -302,14 +319,10 @@ void ProgramCache::forget() noexcept {
     begun.forget();
   }
   for (auto& [key, kept] : kernels_) {
-    if (kept) {
-      kept->program.forget();
-    }
+    kept.program->program.forget();
   }
   for (auto& [key, kept] : reductions_) {
-    if (kept) {
-      kept->kernel.program.forget();
-    }
+    kept.program->kernel.program.forget();
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The programs of a device, assembled and compiled when a variant is first needed and kept in memory
-// until the device ends. Descriptors are known by their addresses: they must outlive the device.
+// until the device ends, or a kernel has had too many others since. Descriptors are known by their addresses: they must outlive the device.
 #pragma once
 
 #include <array>
@@ -92,7 +92,7 @@ class ProgramCache {
   ProgramCache(const ProgramCache&) = delete;
   ProgramCache& operator=(const ProgramCache&) = delete;
 
-  /// Both throw sk::Error where the driver refuses the program, with its words.
+  /// Both throw sk::Error where the driver refuses the program, with its words. It lives until many others have been asked for.
   KernelProgram& kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                const assemble::Placement& domain, const assemble::Task& task = {});
   ReduceProgram& reduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
@@ -125,10 +125,24 @@ class ProgramCache {
   void finish(KernelProgram& made, const program::Kernel& kernel, ProgramBuild&& begun);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);
 
+  /// A program, and when it was last asked for.
+  template <class Program>
+  struct Kept {
+    std::unique_ptr<Program> program;
+    std::int64_t used = 0;
+  };
+  /// Makes room for one more of a kernel's programs, of which the one that was not used for longest is deleted.
+  template <class Programs, class IsOfKernel>
+  void makeRoom(Programs& programs, IsOfKernel&& isOfKernel);
+
+  /// Variants of one kernel or reduction that stay. More than any one call asks for, since each value of a spec parameter makes one.
+  static constexpr std::ptrdiff_t mostVariants = 256;
+
   GlDevice& device_;
   const assemble::Profile profile_;
-  std::unordered_map<ProgramKey, std::unique_ptr<KernelProgram>, ProgramKeyHash> kernels_;
-  std::map<ReduceKey, std::unique_ptr<ReduceProgram>> reductions_;
+  std::unordered_map<ProgramKey, Kept<KernelProgram>, ProgramKeyHash> kernels_;
+  std::map<ReduceKey, Kept<ReduceProgram>> reductions_;
+  std::int64_t clock_ = 0;
   std::unordered_map<ProgramKey, ProgramBuild, ProgramKeyHash> startedKernels_;
   std::map<ReduceKey, ProgramBuild> startedReductions_;
 };
