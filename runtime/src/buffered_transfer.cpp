@@ -43,14 +43,9 @@ std::int32_t layerRows(const Surface& plane) {
 
 }  // namespace
 
-void TransferBuffer::forget() noexcept {
-  buffer.forget();
-  fence.forget();
-}
+BufferedRead::BufferedRead(GlDevice& device) : device_(device), held_(device.transferBuffers.take()) {}
 
-BufferedRead::BufferedRead(GlDevice& device) : device_(device), held_(device.takeTransferBuffer()) {}
-
-BufferedRead::~BufferedRead() { device_.giveTransferBuffer(std::move(held_)); }
+BufferedRead::~BufferedRead() { device_.transferBuffers.give(std::move(held_)); }
 
 std::size_t BufferedRead::add(const Element& element, std::span<Surface> planes, const Placement& region) {
   parts_.push_back({&element, region, blocks_.size()});
@@ -75,6 +70,7 @@ void BufferedRead::begin() {
   {
     const gl::BoundPixels bound(held_.buffer, gl::BoundPixels::Way::Read);
     if (!bound.allocate(bytes_)) failForMemory(device_, bytes_);
+    held_.bytes = bytes_;
     for (const Block& block : blocks_) readBlock(block);
   }
   held_.fence = gl::Fence::insert();
@@ -170,11 +166,12 @@ void writeBuffered(GlDevice& device, const Element& element, std::span<Surface> 
   const auto count = static_cast<std::size_t>(assemble::elements(region.extent));
   std::size_t bytes = 0;
   for (const Surface& plane : planes) bytes += aligned(count * plane.texture.format().texelBytes());
-  TransferBuffer held = device.takeTransferBuffer();
+  TransferBuffer held = device.transferBuffers.take();
   {
     const gl::BoundPixels bound(held.buffer, gl::BoundPixels::Way::Write);
     std::byte* const texels = bound.allocate(bytes) ? bound.map(bytes) : nullptr;
     if (texels == nullptr) failForMemory(device, bytes);
+    held.bytes = bytes;
     std::size_t offset = 0;
     for (std::size_t i = 0; i < planes.size(); ++i) {
       packTexels(element, element.fields[i], elements, count, texels + offset);
@@ -195,7 +192,7 @@ void writeBuffered(GlDevice& device, const Element& element, std::span<Surface> 
       offset += aligned(count * texelBytes);
     }
   }
-  device.giveTransferBuffer(std::move(held));
+  device.transferBuffers.give(std::move(held));
 }
 
 }  // namespace sk

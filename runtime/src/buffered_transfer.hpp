@@ -9,22 +9,13 @@
 #include <vector>
 
 #include "assemble/placement.hpp"
-#include "gl/fence.hpp"
-#include "gl/pixel_buffer.hpp"
 #include "sk/program.hpp"
 #include "surface.hpp"
+#include "transfer_buffers.hpp"
 
 namespace sk {
 
 class GlDevice;
-
-/// A buffer, and when the device is done with it; kept for the next transfer.
-struct TransferBuffer {
-  gl::PixelBuffer buffer;
-  gl::Fence fence;
-
-  void forget() noexcept;
-};
 
 /// First what is to be read is added, then all of it begun, then taken part by part.
 class BufferedRead {

@@ -109,7 +109,10 @@ GlDevice::~GlDevice() {
   } catch (const Error&) {
     forgetObjects();
   }
-  while (!pendingReads.empty() && current) pendingReads.back()->land();
+  if (current) {
+    const std::lock_guard lock(pendingReads->mutex);
+    while (!pendingReads->list.empty()) pendingReads->list.back()->land();
+  }
   if (passes && current) passes->complete();
   passes.reset();
   while (firstStream() != nullptr) {
@@ -126,14 +129,17 @@ GlDevice::~GlDevice() {
     tableTextures_.clear();
     samplers.clear();
     values.clear();
-    transferBuffers_.clear();
+    transferBuffers.clear();
     vertexArray = {};
   }
 }
 
 void GlDevice::forgetObjects() noexcept {
-  while (!pendingReads.empty()) pendingReads.back()->abandon();
-  for (TransferBuffer& buffer : transferBuffers_) buffer.forget();
+  {
+    const std::lock_guard lock(pendingReads->mutex);
+    while (!pendingReads->list.empty()) pendingReads->list.back()->abandon();
+  }
+  transferBuffers.forget();
   if (passes) passes->forget();
   for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
     auto& stream = static_cast<GlStream&>(*state);
@@ -384,27 +390,6 @@ void GlDevice::givePlanes(std::vector<Surface>& planes) noexcept {
   }
   planes.clear();
   countBytes();
-}
-
-TransferBuffer GlDevice::takeTransferBuffer() {
-  TransferBuffer taken;
-  if (transferBuffers_.empty()) {
-    taken.buffer = gl::PixelBuffer::create();
-  } else {
-    taken = std::move(transferBuffers_.back());
-    transferBuffers_.pop_back();
-    taken.fence = {};
-  }
-  return taken;
-}
-
-void GlDevice::giveTransferBuffer(TransferBuffer&& buffer) noexcept {
-  try {
-    transferBuffers_.reserve(transferBuffers_.size() + 1);
-    transferBuffers_.push_back(std::move(buffer));
-  } catch (const std::bad_alloc&) {
-    buffer.forget();  // it is deleted with its context
-  }
 }
 
 // An adopted context is current already, or cannot be made so.

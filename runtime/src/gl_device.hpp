@@ -30,12 +30,12 @@
 #include "sink_programs.hpp"
 #include "surface.hpp"
 #include "target_choice.hpp"
+#include "transfer_buffers.hpp"
 #include "variant.hpp"
 
 namespace sk {
 
 class PassTrace;
-class PendingRead;
 
 /// What a user may choose of a device that is found.
 struct DeviceChoices {
@@ -115,11 +115,6 @@ class GlDevice final : public DeviceState {
   /// The texture of a table, made at first. Binds a texture.
   GLuint textureOf(const FunctionTable& table);
 
-  /// A buffer that nobody uses. Its fence is none.
-  TransferBuffer takeTransferBuffer();
-  /// Touches no GL, so that futures may be destroyed anywhere.
-  void giveTransferBuffer(TransferBuffer&& buffer) noexcept;
-
   /// Throws sk::Error where the driver has reported an error since it was last asked.
   void throwPendingError();
 
@@ -136,7 +131,8 @@ class GlDevice final : public DeviceState {
   gl::Samplers samplers;
   gl::ValueBuffer values;
   gl::VertexArray vertexArray;
-  std::vector<PendingRead*> pendingReads;  ///< those that must be told of the device's end
+  const std::shared_ptr<PendingReads> pendingReads = std::make_shared<PendingReads>();
+  TransferBuffers transferBuffers;
   gl::Labels labels;
   const CacheFolder cache;
   ProgramBinaries binaries;
@@ -160,7 +156,6 @@ class GlDevice final : public DeviceState {
   const bool sharesContext_;
   std::map<ProgramChoice, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
-  std::vector<TransferBuffer> transferBuffers_;  ///< idle ones
   ProgramCache* programs_ = nullptr;  ///< one of them
   ProgramChoice chosen_;  ///< its key
   std::optional<Arithmetic> arithmetic_;
@@ -175,6 +170,7 @@ class DeviceScope {
       saved_.emplace(device.capabilities, device.bound);
     }
     device.pool.trim();
+    device.transferBuffers.trim();
     if (device.isSoftware()) native::restThreads();
   }
 

@@ -22,23 +22,30 @@ std::unique_ptr<assemble::HeldElement> heldOf(const StreamState& stream) {
 }  // namespace
 
 PendingRead::PendingRead(GlDevice& device, GlStream& stream, const StreamRegion& region)
-    : device_(&device),
+    : all_(device.pendingReads),
+      device_(&device),
       element_(*stream.element),
       held_(heldOf(stream)),
       count_(static_cast<std::size_t>(region.shape.size())) {
-  device.pendingReads.push_back(this);
+  {
+    const std::lock_guard lock(all_->mutex);
+    all_->list.push_back(this);
+  }
   try {
     const GlStream::Travelling what = stream.travelling(region);
     const program::Element& own = held_ ? held_->element : element_;  // the stream's may end before this does
     read_.emplace(device).add(what.element == &stream.held() ? own : *what.element, stream.planes, what.place);
     read_->begin();
   } catch (...) {
+    const std::lock_guard lock(all_->mutex);
     leave();
     throw;
   }
 }
 
+// On any thread: where the device ends at the same time, it is either told before or never knew.
 PendingRead::~PendingRead() {
+  const std::lock_guard lock(all_->mutex);
   if (device_ != nullptr) leave();
 }
 
@@ -97,9 +104,9 @@ void PendingRead::abandon() noexcept {
   leave();
 }
 
-// Touches no GL: a future may be destroyed where the context is not current.
+// Touches no GL: a future may be destroyed where the context is not current. The lock is held.
 void PendingRead::leave() noexcept {
-  std::erase(device_->pendingReads, this);
+  std::erase(all_->list, this);
   read_.reset();
   device_ = nullptr;
 }

@@ -27,7 +27,7 @@ class PendingRead final : public TransferState {
   void wait() override;
   void take(std::byte* elements) override;
 
-  /// The device ends: the elements come to host memory. Its context is current.
+  /// The device ends: the elements come to host memory. Its context is current. The lock of the list is held, here and below.
   void land() noexcept;
   /// The device ends, and its context is out of reach.
   void abandon() noexcept;
@@ -36,6 +36,7 @@ class PendingRead final : public TransferState {
   void copy(std::byte* elements);
   void leave() noexcept;
 
+  const std::shared_ptr<PendingReads> all_;
   GlDevice* device_;  ///< null once it has ended, or the elements are taken
   const program::Element& element_;
   std::unique_ptr<assemble::HeldElement> held_;  ///< where the planes hold another

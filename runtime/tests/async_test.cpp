@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
 // Reading and writing without waiting: what is asked for comes as it was then, whatever happens afterwards.
+#include <atomic>
 #include <chrono>
 #include <cstring>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <thread>
 #include <vector>
+
+#include <epoxy/gl.h>
 
 #include <catch2/catch.hpp>
 
@@ -114,6 +120,50 @@ TEST_CASE("views, structs and bools are read and written without waiting") {
     auto halves = device.stream<float>({4, 5}, Storage::Half);
     halves.writeAsync(std::vector<float>(20, 1.0001F));
     CHECK(halves.readAsync().get() == std::vector<float>(20, 1));
+  }
+}
+
+TEST_CASE("any thread may destroy futures while another one uses the device, and while it ends") {
+  constexpr std::size_t threads = 3, each = 500;
+  for (const std::string& profile : profileNames) {
+    auto device = std::make_unique<Device>(DeviceOptions{.profile = profile});
+    auto x = device->stream<float>({16});
+    const std::vector<float> values(16, 2.5F);
+    x.write(values);
+    std::vector<std::vector<Future<float>>> unwanted(threads);
+    for (std::size_t i = 0; i < threads * each; ++i) unwanted[i % threads].push_back(x.readAsync());
+    std::vector<std::jthread> others;
+    for (std::vector<Future<float>>& mine : unwanted) others.emplace_back([&mine] { mine.clear(); });
+    int wrong = 0;
+    for (int i = 0; i < 300; ++i) wrong += x.readAsync().get() == values ? 0 : 1;
+    CHECK(wrong == 0);
+    others.clear();
+    std::vector<Future<float>> last;
+    for (int i = 0; i < 100; ++i) last.push_back(x.readAsync());
+    const std::jthread other([&last] { last.clear(); });
+    device.reset();
+  }
+}
+
+TEST_CASE("buffers of futures that have ended do not stay") {
+  for (const std::string& profile : profileNames) {
+    Device device(DeviceOptions{.profile = profile});
+    auto x = device.stream<float>({512, 512});  // of 1 MiB
+    x.write(std::vector<float>(512 * 512, 1));
+    device.makeCurrent();
+    const auto buffers = [] {
+      int count = 0;
+      for (GLuint name = 1; name < 1000; ++name) count += glIsBuffer(name) == GL_TRUE ? 1 : 0;
+      return count;
+    };
+    {
+      std::vector<Future<float>> futures;
+      for (int i = 0; i < 100; ++i) futures.push_back(x.readAsync());
+      CHECK(buffers() >= 100);
+    }
+    for (int call = 0; call < 20; ++call) device.finish();
+    CHECK(buffers() <= 64);
+    CHECK(x.readAsync().get() == std::vector<float>(512 * 512, 1));
   }
 }
 
