@@ -63,6 +63,7 @@ class GlStream final : public StreamState {
  private:
   friend class GlDevice;
   GlDevice& owner() const;
+  bool writesThroughBuffer(const StreamRegion& region) const;
   /// Between all elements of a region, as they are held, and host memory.
   void uploadHeld(const StreamRegion& region, const std::byte* elements);
   void downloadHeld(const StreamRegion& region, std::byte* elements);
