@@ -3,6 +3,7 @@
 // Binding and drawing.
 #include "pass.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -41,9 +42,14 @@ void dispatchRects(GlDevice& device, KernelProgram& program, std::span<Surface* 
   const auto groups = [&](GLsizei texels, GLint group) {
     return program.isGrouped ? texels : (texels + group - 1) / group;
   };
+  constexpr GLsizei mostGroups = 65535;  // in each dimension, of any context
   for (const Rect& rect : rects) {
-    program.rect.set({rect.x, rect.y, rect.width, rect.height});
-    gl::dispatch(groups(rect.width, program.workGroup[0]), groups(rect.height, program.workGroup[1]));
+    const GLint rows = program.isGrouped ? mostGroups : mostGroups * program.workGroup[1];
+    for (std::int32_t done = 0; done < rect.height; done += rows) {
+      const std::int32_t height = std::min(rows, rect.height - done);
+      program.rect.set({rect.x, rect.y + done, rect.width, height});
+      gl::dispatch(groups(rect.width, program.workGroup[0]), groups(height, program.workGroup[1]));
+    }
   }
 }
 
