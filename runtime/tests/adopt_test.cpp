@@ -84,6 +84,12 @@ GLint integerOf(GLenum name) {
   return values[0];
 }
 
+GLfloat floatOf(GLenum name) {
+  GLfloat value = 0;
+  glGetFloatv(name, &value);
+  return value;
+}
+
 GLuint compile(GLenum stage, const char* text) {
   const GLuint shader = glCreateShader(stage);
   glShaderSource(shader, 1, &text, nullptr);
@@ -151,6 +157,10 @@ void makeHostileState(const Application& application) {
   if (application.isCompatibility()) {
     glEnable(GL_ALPHA_TEST);
     glAlphaFunc(GL_NEVER, 0.0f);
+    glClampColor(GL_CLAMP_FRAGMENT_COLOR, GL_TRUE);
+    glClampColor(GL_CLAMP_VERTEX_COLOR, GL_TRUE);
+    glPixelTransferf(GL_RED_SCALE, 2);
+    glPixelTransferf(GL_ALPHA_BIAS, 0.5f);
   }
   const char* header = isEs ? "#version 300 es\n" : "#version 330\n";
   const GLuint program = glCreateProgram();
@@ -167,7 +177,7 @@ void makeHostileState(const Application& application) {
 std::map<std::string, GLint> readState(const Application& application) {
   std::map<std::string, GLint> state;
 #define STATE(name) state[#name] = integerOf(name)
-  STATE(GL_BLEND), STATE(GL_DEPTH_TEST), STATE(GL_STENCIL_TEST), STATE(GL_SCISSOR_TEST), STATE(GL_CULL_FACE);
+  STATE(GL_DITHER), STATE(GL_BLEND), STATE(GL_DEPTH_TEST), STATE(GL_STENCIL_TEST), STATE(GL_SCISSOR_TEST), STATE(GL_CULL_FACE);
   STATE(GL_RASTERIZER_DISCARD), STATE(GL_SAMPLE_ALPHA_TO_COVERAGE), STATE(GL_SAMPLE_COVERAGE);
   STATE(GL_UNPACK_ALIGNMENT), STATE(GL_UNPACK_ROW_LENGTH), STATE(GL_UNPACK_SKIP_ROWS),
       STATE(GL_UNPACK_SKIP_PIXELS);
@@ -181,7 +191,8 @@ std::map<std::string, GLint> readState(const Application& application) {
     state["blend 1"] = glIsEnabledi(GL_BLEND, 1);
   }
   if (application.isCompatibility()) {
-    STATE(GL_ALPHA_TEST);
+    STATE(GL_ALPHA_TEST), STATE(GL_CLAMP_FRAGMENT_COLOR), STATE(GL_CLAMP_VERTEX_COLOR), STATE(GL_RED_SCALE);
+    state["alpha bias"] = static_cast<GLint>(100 * floatOf(GL_ALPHA_BIAS));
   }
   if (hasClipControl(application)) {
     STATE(GL_CLIP_ORIGIN), STATE(GL_CLIP_DEPTH_MODE);

@@ -33,6 +33,7 @@ constexpr std::array<Toggle, SavedState::toggleCount> toggles{{
     {GL_DEPTH_TEST, Needs::Nothing},
     {GL_STENCIL_TEST, Needs::Nothing},
     {GL_CULL_FACE, Needs::Nothing},
+    {GL_DITHER, Needs::Nothing},
     {GL_RASTERIZER_DISCARD, Needs::Nothing},
     {GL_SAMPLE_ALPHA_TO_COVERAGE, Needs::Nothing},
     {GL_SAMPLE_COVERAGE, Needs::Nothing},
@@ -76,6 +77,24 @@ constexpr std::array<PixelParameter, SavedState::pixelStoreCount> pixelParameter
     {GL_PACK_SKIP_IMAGES, 0, Needs::Gl},
     {GL_PACK_SWAP_BYTES, 0, Needs::Gl},
     {GL_PACK_LSB_FIRST, 0, Needs::Gl},
+}};
+
+struct PixelTransfer {
+  GLenum name;
+  GLfloat value;   ///< in a pass
+};
+
+/// What the fixed functions do to texels on their way, in compatibility contexts.
+constexpr std::array<PixelTransfer, SavedState::pixelTransferCount> pixelTransfers{{
+    {GL_MAP_COLOR, 0},
+    {GL_RED_SCALE, 1},
+    {GL_GREEN_SCALE, 1},
+    {GL_BLUE_SCALE, 1},
+    {GL_ALPHA_SCALE, 1},
+    {GL_RED_BIAS, 0},
+    {GL_GREEN_BIAS, 0},
+    {GL_BLUE_BIAS, 0},
+    {GL_ALPHA_BIAS, 0},
 }};
 
 /// Whether blending and colour masks are kept for each draw buffer.
@@ -127,6 +146,11 @@ void setPassState(const Capabilities& capabilities) {
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     glPointSize(1);
     glClampColor(GL_CLAMP_READ_COLOR, GL_FALSE);
+  }
+  if (capabilities.isCompatibility) {
+    glClampColor(GL_CLAMP_FRAGMENT_COLOR, GL_FALSE);
+    glClampColor(GL_CLAMP_VERTEX_COLOR, GL_FALSE);
+    for (const PixelTransfer& transfer : pixelTransfers) glPixelTransferf(transfer.name, transfer.value);
   }
 }
 
@@ -246,6 +270,13 @@ void SavedState::saveTransfer() {
   if (capabilities_.api == Api::Gl) {
     clampReadColor_ = integerOf(GL_CLAMP_READ_COLOR);
   }
+  if (capabilities_.isCompatibility) {
+    clampFragmentColor_ = integerOf(GL_CLAMP_FRAGMENT_COLOR);
+    clampVertexColor_ = integerOf(GL_CLAMP_VERTEX_COLOR);
+    for (std::size_t i = 0; i < pixelTransfers.size(); ++i) {
+      glGetFloatv(pixelTransfers[i].name, &pixelTransfer_[i]);
+    }
+  }
 }
 
 void SavedState::restoreTransfer() const {
@@ -258,6 +289,13 @@ void SavedState::restoreTransfer() const {
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, static_cast<GLuint>(unpackBuffer_));
   if (capabilities_.api == Api::Gl) {
     glClampColor(GL_CLAMP_READ_COLOR, static_cast<GLenum>(clampReadColor_));
+  }
+  if (capabilities_.isCompatibility) {
+    glClampColor(GL_CLAMP_FRAGMENT_COLOR, static_cast<GLenum>(clampFragmentColor_));
+    glClampColor(GL_CLAMP_VERTEX_COLOR, static_cast<GLenum>(clampVertexColor_));
+    for (std::size_t i = 0; i < pixelTransfers.size(); ++i) {
+      glPixelTransferf(pixelTransfers[i].name, pixelTransfer_[i]);
+    }
   }
 }
 

@@ -26,8 +26,9 @@ class SavedState {
   SavedState(const SavedState&) = delete;
   SavedState& operator=(const SavedState&) = delete;
 
-  static constexpr std::size_t toggleCount = 21;
+  static constexpr std::size_t toggleCount = 22;
   static constexpr std::size_t pixelStoreCount = 16;
+  static constexpr std::size_t pixelTransferCount = 9;
 
  private:
   void saveViewport();
@@ -48,6 +49,8 @@ class SavedState {
   std::array<GLint, 2> polygonMode_{};
   GLint program_ = 0, vertexArray_ = 0, drawFramebuffer_ = 0, readFramebuffer_ = 0;
   GLint clipOrigin_ = 0, clipDepth_ = 0;
+  std::array<GLfloat, pixelTransferCount> pixelTransfer_{};  ///< likewise
+  GLint clampFragmentColor_ = 0, clampVertexColor_ = 0;
   GLint activeUnit_ = 0, packBuffer_ = 0, unpackBuffer_ = 0, clampReadColor_ = 0;
   GLfloat pointSize_ = 1;
   bool isScissored_ = false;
