@@ -64,8 +64,12 @@ void GlStream::unpack() {
 GlDevice& GlStream::owner() const { return static_cast<GlDevice&>(*device); }
 
 void GlStream::become(std::vector<Surface>& elements, const Layout& list, Surface* total) {
+  Layout next = list;
+  const std::int32_t count = next.whole.extent[0];
+  if (total == nullptr) setSize(next, count);
+  // from here on nothing throws: the stream is the old one, or the new
   std::swap(planes, elements);
-  layout = list;
+  layout = std::move(next);
   if (total_) {
     owner().pool.give(std::move(total_));
     total_ = {};
@@ -73,7 +77,7 @@ void GlStream::become(std::vector<Surface>& elements, const Layout& list, Surfac
   if (total != nullptr) {
     total_ = std::move(*total);
   } else {
-    takeSize(layout.whole.extent[0]);
+    shape = Shape(count);
   }
 }
 
@@ -82,16 +86,19 @@ void GlStream::settle() {
     return;
   }
   const DeviceScope scope(owner());
-  takeSize(readTotal(owner(), total_));
+  const std::int32_t count = readTotal(owner(), total_);
+  Layout next = layout;
+  setSize(next, count);
+  layout = std::move(next);
+  shape = Shape(count);
   owner().pool.give(std::move(total_));
   total_ = {};
 }
 
-void GlStream::takeSize(std::int32_t count) {
-  shape = Shape(count);
-  layout.whole.extent = {count, 1, 1, 1};
-  layout.whole.stride = assemble::stridesOf(layout.whole.extent);
-  layout.draws = assemble::drawnTexels(layout.whole);
+void GlStream::setSize(Layout& list, std::int32_t count) {
+  list.whole.extent = {count, 1, 1, 1};
+  list.whole.stride = assemble::stridesOf(list.whole.extent);
+  list.draws = assemble::drawnTexels(list.whole);
 }
 
 // A region of whole texels travels as such, and others once the stream is no longer packed.

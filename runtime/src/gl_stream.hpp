@@ -68,7 +68,8 @@ class GlStream final : public StreamState {
   void uploadHeld(const StreamRegion& region, const std::byte* elements);
   void downloadHeld(const StreamRegion& region, std::byte* elements);
   std::vector<Surface> takePlanesFor(const Layout& planned);
-  void takeSize(std::int32_t count);
+  /// Makes a list's layout that of its first elements.
+  static void setSize(Layout& list, std::int32_t count);
 
   std::unique_ptr<assemble::HeldElement> held_;  ///< where the storage is not Single
   Surface total_;  ///< holds the number of elements until somebody asks

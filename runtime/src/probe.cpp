@@ -143,7 +143,12 @@ Arithmetic probeArithmetic(GlDevice& device) {
   const Barrier strongest = device.barrier;
   std::optional<Barrier> found = kept(device, key);
   if (!found) {
-    found = firstThatHolds(device);
+    try {
+      found = firstThatHolds(device);
+    } catch (...) {
+      device.barrier = strongest;  // it was changed for the trial
+      throw;
+    }
     // failures are not kept: they may be for want of memory
     if (found) device.cache.write("barrier", key, std::string(nameOf(*found)) + '\n');
   }
