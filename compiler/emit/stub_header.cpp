@@ -110,6 +110,7 @@ class HeaderWriter {
       }
     }
     text_ += "};\n";
+    for (const std::string& alias : type.aliases) text_ += fmt::format("using {} = {};\n", alias, type.name);
   }
 
   void allTraits(std::vector<std::uint32_t>& list) {

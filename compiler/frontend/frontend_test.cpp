@@ -126,3 +126,25 @@ TEST_CASE("dependencies are the main file and what it includes", "[frontend]") {
   REQUIRE(frontend.compile(main.path()));
   CHECK(frontend.dependencies() == std::vector<std::string>{main.path(), included.path()});
 }
+
+TEST_CASE("structs are called as typedefs and aliases call them", "[frontend]") {
+  const SourceFile file(
+      "typedef struct { float a; } A;\n"
+      "typedef struct { int b; } B;\n"
+      "typedef struct Pair_t { A a; B b; } Pair;\n"
+      "using Both = Pair;\n"
+      "struct Nested { struct { float x; } p; struct { float y; } q; };\n"
+      "namespace other { using Pair = Pair_t; }\n"
+      "kernel void f(Pair p<>, Nested n<>, out A a<>, out B b<>) { a = p.a; b = p.b; a.a += n.p.x + n.q.y; "
+      "}\n");
+  Frontend frontend({});
+  const std::optional<skc::ir::Module> module = frontend.compile(file.path());
+  REQUIRE(module);
+  std::vector<std::string> names;
+  for (const skc::ir::Struct& type : module->structs) {
+    names.push_back(type.name);
+    for (const std::string& alias : type.aliases) names.push_back(type.name + " is " + alias);
+  }
+  CHECK(names == std::vector<std::string>{"A", "B", "Pair_t", "Pair_t is Pair", "Pair_t is Both", "Anonymous",
+                                          "Anonymous2", "Nested"});
+}

@@ -108,6 +108,27 @@ std::optional<int> ModuleLowering::sinkRank(clang::QualType qualified, SourceLoc
   return std::nullopt;
 }
 
+/// Its own name; of `typedef struct { ... } A;`, A; of one without any, a name that no other has.
+std::string ModuleLowering::structName(const clang::CXXRecordDecl* record) const {
+  if (const std::string name = record->getNameAsString(); !name.empty()) return name;
+  if (const clang::TypedefNameDecl* name = record->getTypedefNameForAnonDecl())
+    return name->getNameAsString();
+  std::string name = "Anonymous";
+  const auto isTaken = [&](const ir::Struct& other) { return other.name == name; };
+  for (int i = 2; std::ranges::any_of(module_.structs, isTaken); ++i) name = fmt::format("Anonymous{}", i);
+  return name;
+}
+
+/// `typedef struct Pair_t { ... } Pair;` and `using Pair = Pair_t;` of a struct that kernels use.
+void ModuleLowering::addAlias(const clang::TypedefNameDecl* alias) {
+  const auto found = structs_.find(alias->getUnderlyingType()->getAsCXXRecordDecl());   // its definition
+  if (found == structs_.end() || isPrelude(alias)) return;
+  ir::Struct& known = module_.structs[found->second];
+  if (known.name == alias->getNameAsString() || known.scope != scopeOf(alias)) return;
+  if (llvm::isa<clang::ClassTemplateSpecializationDecl>(found->first)) return;
+  known.aliases.push_back(alias->getNameAsString());
+}
+
 ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, SourceLocation use) {
   const clang::CXXRecordDecl* record = declaration->getDefinition();
   if (!record) fail(Diag::IncompleteType, use, {declaration->getNameAsString()});
@@ -124,7 +145,7 @@ ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, Sou
   }
   if (record->field_empty()) fail(Diag::StructEmpty, use, {name});
   ir::Struct entry;
-  entry.name = name.empty() ? "Anonymous" : name;
+  entry.name = structName(record);
   entry.scope = scopeOf(record);
   entry.loc = loc(record->getLocation());
   for (const clang::FieldDecl* field : record->fields()) {

@@ -37,8 +37,17 @@ ir::Module ModuleLowering::run(const std::string& file) {
   module_.sources.push_back(file);
   sourceIndex_[file] = 0;
   declarations(context().getTranslationUnitDecl());
+  addAliases(context().getTranslationUnitDecl());
   if (!diagnostics_.hasErrors()) pairReductions();
   return std::move(module_);
+}
+
+/// When all structs that kernels use are known.
+void ModuleLowering::addAliases(const clang::DeclContext* scope) {
+  for (const clang::Decl* declaration : scope->decls()) {
+    if (const auto* inner = llvm::dyn_cast<clang::NamespaceDecl>(declaration)) addAliases(inner);
+    if (const auto* alias = llvm::dyn_cast<clang::TypedefNameDecl>(declaration)) addAlias(alias);
+  }
 }
 
 /// In the order of the file, so that the stub lists kernels as their author did.

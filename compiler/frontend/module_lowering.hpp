@@ -96,6 +96,9 @@ class ModuleLowering {
   ir::ExprPtr constantValue(const clang::VarDecl* declaration, bool inlined);
   ir::ExprPtr evaluated(const clang::VarDecl* declaration);
   ir::ExprPtr evaluated(const clang::APValue& value, ir::Type type, Loc loc) const;
+  std::string structName(const clang::CXXRecordDecl* record) const;
+  void addAlias(const clang::TypedefNameDecl* alias);
+  void addAliases(const clang::DeclContext* scope);
   ir::Type structType(const clang::CXXRecordDecl* declaration, clang::SourceLocation use);
   ir::Type arrayType(ir::Type element, std::uint64_t length, clang::SourceLocation use);
   void checkSize(ir::Type type, clang::SourceLocation use);

@@ -109,6 +109,7 @@ struct Struct {
   std::vector<StructField> fields;
   Loc loc;
   bool isMade = false;               ///< by a transform: C++ has none
+  std::vector<std::string> aliases = {};  ///< other names of it in its scope, by typedef or using
 };
 struct Array {
   Type element;
