@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "assemble/assemble.hpp"
+#include "assemble/nearest_word.hpp"
 #include "transforms/predicate.hpp"
 #include "transforms/transforms.hpp"
 
@@ -196,6 +197,20 @@ std::string checkTogether(Words& words) {
   return options.emit == Emit::Stubs ? checkStems(options.files) : "";
 }
 
+/// "; did you mean '--emit'?" for the first option that is none, or "".
+std::string suggestion(const CLI::App& app) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  for (const std::string& word : app.remaining()) {
+    if (!word.starts_with("--")) continue;
+    const std::string_view nearest = sk::assemble::nearestWord(word.substr(0, word.find('=')), known);
+    return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
+  }
+  return {};
+}
+
 }  // namespace
 
 CommandLine parseCommandLine(int argc, const char* const* argv) {
@@ -216,7 +231,7 @@ CommandLine parseCommandLine(int argc, const char* const* argv) {
     app.exit(success);
     return {std::nullopt, 0};
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "skc: {}\nsee 'skc --help'\n", error.what());
+    fmt::print(stderr, "skc: {}{}\nsee 'skc --help'\n", error.what(), suggestion(app));
     return {std::nullopt, 1};
   }
   if (const std::string mistake = checkTogether(words); !mistake.empty()) {

@@ -21,7 +21,7 @@ compiler/frontend     support ir frontend clang llvm
 compiler/driver       support ir analysis split transforms native/native.hpp native/library/link_library.hpp emit frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
 runtime/src           sk assemble gl native
-runtime/tools         sk native
+runtime/tools         assemble/nearest_word.hpp sk native
 runtime/tests         sk assemble gl native epoxy
 runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_bytes.hpp assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3

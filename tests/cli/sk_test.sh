@@ -27,6 +27,13 @@ run 0 --version
 run 1
 run 1 inform
 says 'inform'
+says "did you mean 'info'?"
+run 1 frob
+says "there is no command 'frob'"
+run 1 inof
+says "there is no command 'inof'; did you mean 'info'?"
+run 1 info --jsno
+says "did you mean '--json'?"
 run 1 info --nosuch
 says '--nosuch'
 run 1 info --device abacus

@@ -148,6 +148,7 @@ says "error: output 'r' is not written on every path"
 run 1
 says 'skc: '
 refuses '--nosuch' --nosuch heat.sk
+refuses "did you mean '--emit'?" --emti=glsl heat.sk
 refuses 'glsll' --emit=glsll heat.sk
 refuses 'glsl990' --emit=glsl --profile=glsl990 heat.sk
 refuses 'quantum' --target=quantum heat.sk
@@ -212,3 +213,15 @@ for ((i = 0; i < ${#declaration}; ++i)); do
   done
 done
 echo "skc's command line holds, with $slips slips in a declaration"
+
+# Structs that typedefs name.
+cat >pairs.sk <<'EOF'
+typedef struct { float a; } A;
+typedef struct { float b; } B;
+typedef struct Pair_t { float a, b; } Pair;
+kernel void part(Pair p<>, out A a<>, out B b<>) { a.a = p.a; b.b = p.b; }
+EOF
+run 0 --target=fragment pairs.sk
+for line in 'struct A {' 'struct B {' 'struct Pair_t {' 'using Pair = Pair_t;'; do
+  grep -qF "$line" pairs.sk.hpp || broken "the header lacks '$line'"
+done

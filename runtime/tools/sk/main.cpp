@@ -4,11 +4,44 @@
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include <fmt/format.h>
+
 #include "accuracy/accuracy.hpp"
+#include "assemble/nearest_word.hpp"
 #include "info/info.hpp"
+
+namespace {
+
+/// "; did you mean '--json'?" for the first word that is no command or option, or "".
+std::string suggestion(const CLI::App& app) {
+  std::vector<std::string> known;
+  const CLI::App* command = &app;
+  for (const CLI::App* inner : app.get_subcommands()) command = inner;   // that was called
+  for (const CLI::App* inner : command->get_subcommands({})) known.push_back(inner->get_name());
+  for (const CLI::Option* option : command->get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  for (const std::string& word : app.remaining(true)) {
+    const std::string_view nearest = sk::assemble::nearestWord(word.substr(0, word.find('=')), known);
+    return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
+  }
+  return {};
+}
+
+/// What is wrong with a command line.
+std::string mistake(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> rest = app.remaining();
+  const bool isCommand = app.get_subcommands().empty() && !rest.empty() && !rest.front().starts_with("-");
+  return (isCommand ? fmt::format("there is no command '{}'", rest.front()) : error.what()) + suggestion(app);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"sk: what StreamKernel can tell of this machine.", "sk"};
@@ -19,7 +52,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& stop) {  // --help and --version among them
-    return app.exit(stop) == 0 ? 0 : 1;
+    if (stop.get_exit_code() == 0) return app.exit(stop);
+    fmt::print(stderr, "sk: {}\nsee 'sk --help'\n", mistake(app, stop));
+    return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "sk: %s\n", error.what());
     return 1;
