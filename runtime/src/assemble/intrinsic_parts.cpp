@@ -285,32 +285,46 @@ float sk_max(float x, float y) { return sk_order(x) - 0x7f800001u >= sk_order(y)
     {{}, R"(
 float sk_saturate(float x) { return x > 0.0 ? (x < 1.0 ? x : 1.0) : 0.0; }
 )"},
-    {parts(Part::Scale, Part::Cut, Part::WithSign), R"(
-// What is left of x by y, exactly. Multiples of y * 2^k are taken away, for k from their distance on down to 0, by at
-// most 10 bits a time: their products with halves of y, and the differences, are then floats.
+    {parts(Part::Scale, Part::WithSign), R"(
+// v * 2^20 less a multiple of m, at most about m away from 0. The multiple is wrong by the rounding of a float, and integers that
+// wrap still give the difference.
+int sk_fmod_step(int v, int m, float c) { return (v << 20) - int(roundEven(float(v) * c)) * m; }
+// What is left of x by y, exactly, from the mantissas of both as integers. No loop: drivers put a copy of a function wherever it is
+// called, and llvmpipe's compiler takes twice as long for each loop more.
 float sk_fmod(float x, float y) {
-  float b = abs(y);
-  float r = abs(x);
-  int r_bits = floatBitsToInt(r);
-  int b_bits = floatBitsToInt(b);
-  if (b_bits == 0 || b_bits > 0x7f800000 || r_bits >= 0x7f800000) return uintBitsToFloat(0x7fc00000u);
-  if (r_bits < b_bits) return x;
-  int k = max((r_bits >> 23) - (b_bits >> 23) - 9, 0);
-  float unit = 1.0;
-  while (k >= 0) {
-    float s = sk_scale(b, k);
-    // products would be too small, and no device need divide by numbers above 2^126
-    float wanted = s < 1e-19 ? 18446744073709551616.0 : s > 1e30 ? 5.421010862427522e-20 : 1.0;
-    if (wanted != unit) r *= wanted / unit;
-    unit = wanted;
-    s *= unit;
-    float cut = sk_cut(s);
-    float q = roundEven(r / s);
-    sk_precise float upper = sk_keep(r - q * cut);
-    r = upper - q * (s - cut);
-    k = k == 0 ? -1 : max(k - 10, 0);
+  int x_bits = floatBitsToInt(x) & 0x7fffffff;
+  int y_bits = floatBitsToInt(y) & 0x7fffffff;
+  if (y_bits == 0 || y_bits > 0x7f800000 || x_bits >= 0x7f800000) return uintBitsToFloat(0x7fc00000u);
+  if (x_bits < y_bits) return x;
+  int m = y_bits < 0x800000 ? y_bits : (y_bits & 0x7fffff) | 0x800000;
+  int v = x_bits < 0x800000 ? x_bits : (x_bits & 0x7fffff) | 0x800000;
+  int e = max(y_bits >> 23, 1);
+  int k = max(x_bits >> 23, 1) - e;
+  float c = 1048576.0 / float(m);
+  int n = k / 20;
+  int first = k - n * 20;
+  v -= int(roundEven(float(v) * (c * 9.5367431640625e-7))) * m;
+  v = (v << first) - int(roundEven(float(v) * (c * intBitsToFloat((first + 107) << 23)))) * m;
+  if (n > 0) v = sk_fmod_step(v, m, c);
+  if (n > 1) v = sk_fmod_step(v, m, c);
+  if (n > 2) {
+    v = sk_fmod_step(v, m, c);
+    if (n > 3) v = sk_fmod_step(v, m, c);
+    if (n > 4) v = sk_fmod_step(v, m, c);
+    if (n > 5) v = sk_fmod_step(v, m, c);
+    if (n > 6) v = sk_fmod_step(v, m, c);
+    if (n > 7) v = sk_fmod_step(v, m, c);
+    if (n > 8) v = sk_fmod_step(v, m, c);
+    if (n > 9) v = sk_fmod_step(v, m, c);
+    if (n > 10) v = sk_fmod_step(v, m, c);
+    if (n > 11) v = sk_fmod_step(v, m, c);
+    if (n > 12) v = sk_fmod_step(v, m, c);
+    if (n > 13) v = sk_fmod_step(v, m, c);
   }
-  return sk_with_sign((r < 0.0 ? r + b * unit : r) / unit, x);
+  v += v < 0 ? m : 0;
+  v += v < 0 ? m : 0;
+  v -= v >= m ? m : 0;
+  return sk_with_sign(sk_scale(float(v), e - 150), x);
 }
 )"},
     {{}, R"(
