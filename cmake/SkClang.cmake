@@ -53,3 +53,7 @@ target_link_libraries(sk_clang INTERFACE "${clangLibrary}" "${llvmLibrary}")
 add_library(sk_llvm INTERFACE)
 target_include_directories(sk_llvm SYSTEM INTERFACE "${SK_LLVM_INCLUDE_DIR}")
 target_link_libraries(sk_llvm INTERFACE "${llvmLibrary}")
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  # LLVM's classes with an operator new of their own, inlined where assertions are compiled
+  target_compile_options(sk_llvm INTERFACE -Wno-mismatched-new-delete)
+endif()

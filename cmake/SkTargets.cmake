@@ -9,6 +9,9 @@ function(sk_compile_options target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wcast-align
                          $<$<BOOL:${SK_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(SK_CHECKS)
+    target_compile_options(${target} PRIVATE -UNDEBUG)   # build types other than Debug define it
+  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # g++ 12 sees overlapping copies in "a" + std::string() that are not there (GCC bug 105651)
     target_compile_options(${target} PRIVATE -Wno-restrict)

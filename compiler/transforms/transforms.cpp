@@ -89,15 +89,13 @@ constexpr Transform transforms[] = {
 };
 
 /// A violation is a bug of ours: says after which transform it appeared, and shows the module.
-void validateOrAbort([[maybe_unused]] const ir::Module& module, [[maybe_unused]] ir::Stage stage,
-                     [[maybe_unused]] std::string_view after) {
-#ifndef NDEBUG
+void validateOrAbort(const ir::Module& module, ir::Stage stage, std::string_view after) {
+  if (!validatesTransforms()) return;
   const std::string violation = ir::validate(module, stage);
   if (violation.empty()) return;
   std::fprintf(stderr, "skc: internal error: invalid IR after %s: %s\n\n%s", std::string(after).c_str(),
                violation.c_str(), ir::print(module).c_str());
   std::abort();
-#endif
 }
 
 }  // namespace
@@ -109,6 +107,14 @@ std::span<const std::string_view> transformNames() {
     return list;
   }();
   return names;
+}
+
+bool validatesTransforms() {
+#ifdef NDEBUG
+  return false;
+#else
+  return true;
+#endif
 }
 
 void runTransforms(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options) {

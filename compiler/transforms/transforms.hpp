@@ -26,7 +26,10 @@ struct TransformOptions {
 /// Names of the transforms in the order in which they run: what --print-after takes.
 std::span<const std::string_view> transformNames();
 
-/// Runs them all; stops after one that reports an error. Debug builds validate before and after each.
+/// Whether the module is validated before and after each: in builds with assertions, as those with tests are.
+bool validatesTransforms();
+
+/// Runs them all; stops after one that reports an error.
 void runTransforms(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options = {});
 
 }  // namespace skc

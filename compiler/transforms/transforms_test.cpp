@@ -3,6 +3,7 @@
 // Promises: the transforms run in the order that transformNames() gives, and stop at an error.
 #include "transforms/transforms.hpp"
 
+#include <cassert>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,13 @@ TEST_CASE("nothing runs after an error") {
   CHECK(log.hasErrors());
   CHECK(told == std::vector<std::string>{"specialize-gathers", "tabulate", "fold-constants", "unroll-loops",
                                          "find-neighbors", "guard-streams", "bound-pushes"});
+}
+
+TEST_CASE("builds with tests check assertions and validate the IR", "[transforms]") {
+  bool isChecked = false;
+  assert((isChecked = true));
+  CHECK(isChecked);
+  CHECK(validatesTransforms());
 }
 
 }  // namespace

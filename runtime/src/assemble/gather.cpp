@@ -286,19 +286,27 @@ class GatherText {
   /// few texels a clock, and each is wanted by as many invocations as there are neighbours.
   bool sharesTile() {
     return program_.sharesTexels() && rank_ == 2 && access_.addressing == Addressing::Plane &&
-           program_.takeShared(tileTexels() * 4 * sizeof(float));
+           mayFillTile() && program_.takeShared(tileTexels() * 4 * sizeof(float));
   }
   int tileWidth() const { return groupOfWideTexels.first + 2 * reachInX(); }
   int tileHeight() const { return groupOfWideTexels.second + 2 * reachInY(); }
   std::size_t tileTexels() const { return static_cast<std::size_t>(tileWidth() * tileHeight()); }
+
+  int texelsAround() const {
+    return static_cast<int>(tileTexels()) - groupOfWideTexels.first * groupOfWideTexels.second;
+  }
+  /// Whether fillTile can: one column on either side, and not more texels around than invocations.
+  bool mayFillTile() const {
+    return reachInX() == 1 && texelsAround() <= groupOfWideTexels.first * groupOfWideTexels.second;
+  }
 
   /// Each invocation fetches the texel of its own, and the first ones another of those around, before it waits for either. `at`
   /// is the function that fetches one.
   void fillTile(std::string_view at) {
     const auto [width, height] = groupOfWideTexels;
     const int inRows = tileWidth() * 2 * reachInY();  // of those around, above and below
-    const int around = static_cast<int>(tileTexels()) - width * height;
-    assert(reachInX() == 1 && around <= width * height);
+    const int around = texelsAround();
+    assert(mayFillTile());
     const std::string_view symbol = parameter_.symbol;
     const std::string isFirst = fmt::format("if (gl_LocalInvocationIndex < {}u) ", around);
     program_.variable(fmt::format("shared {}", packedType(parameter_)),
