@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
+#include <optional>
+#include <utility>
 
 #include <clang/AST/Decl.h>
+#include <clang/AST/DeclCXX.h>
 #include <clang/AST/DeclarationName.h>
 #include <clang/AST/Type.h>
 #include <clang/Basic/DiagnosticLex.h>
 #include <clang/Basic/DiagnosticParse.h>
 #include <clang/Basic/DiagnosticSema.h>
+#include <clang/Frontend/TextDiagnostic.h>
 #include <clang/Lex/Lexer.h>
 #include <fmt/format.h>
 
@@ -58,14 +62,28 @@ std::string_view intrinsicLike(llvm::StringRef name) {
   return {};
 }
 
-/// What stands in for a name that nobody declared.
-std::string adviceOnName(const clang::Diagnostic& diagnostic) {
+/// The word at the place of a message, replaced.
+std::vector<clang::FixItHint> replaced(const clang::Diagnostic& diagnostic, std::string_view word) {
+  if (word.empty() || diagnostic.getLocation().isMacroID()) return {};
+  return {clang::FixItHint::CreateReplacement(clang::SourceRange(diagnostic.getLocation()), word)};
+}
+
+/// What stands in for a name of another language, even where Clang knows one that looks alike.
+Advice adviceOnForeignName(const clang::Diagnostic& diagnostic) {
   const std::string name = nameIn(diagnostic, 0);
-  if (const std::string_view advice = insteadOf(name); !advice.empty())
-    return format(Diag::ForeignName, {name, advice});
+  const std::optional<Instead> instead = insteadOf(name);
+  if (!instead) return {};
+  return {format(Diag::ForeignName, {name, instead->advice}), replaced(diagnostic, instead->word)};
+}
+
+/// What stands in for a name that nobody declared.
+Advice adviceOnName(const clang::Diagnostic& diagnostic) {
+  if (Advice advice = adviceOnForeignName(diagnostic); !advice.text.empty()) return advice;
+  const std::string name = nameIn(diagnostic, 0);
   const std::string_view intrinsic = intrinsicLike(name);
-  return intrinsic.empty() ? std::string()
-                           : format(Diag::ForeignName, {name, fmt::format("did you mean '{}'?", intrinsic)});
+  if (intrinsic.empty()) return {};
+  return {format(Diag::ForeignName, {name, fmt::format("did you mean '{}'?", intrinsic)}),
+          replaced(diagnostic, intrinsic)};
 }
 
 /// A header of C++'s library, which has no suffix, or of C's.
@@ -75,9 +93,18 @@ bool isLibraryHeader(std::string_view file) {
   return file.find_first_of("./") == std::string_view::npos || std::ranges::find(ofC, file) != std::end(ofC);
 }
 
-std::string adviceOnHeader(const clang::Diagnostic& diagnostic) {
+/// `#version 330`.
+Advice adviceOnDirective(const clang::Diagnostic& diagnostic) {
+  clang::SmallString<32> buffer;
+  const llvm::StringRef name = clang::Lexer::getSpelling(diagnostic.getLocation(), buffer,
+                                                         diagnostic.getSourceManager(), clang::LangOptions());
+  const bool isOfGlsl = name == "version" || name == "extension";
+  return {isOfGlsl ? format(Diag::ForeignDirective, {name.str()}) : std::string()};
+}
+
+Advice adviceOnHeader(const clang::Diagnostic& diagnostic) {
   const std::string file = nameIn(diagnostic, 0);
-  return isLibraryHeader(file) ? format(Diag::LibraryHeader, {file}) : std::string();
+  return {isLibraryHeader(file) ? format(Diag::LibraryHeader, {file}) : std::string()};
 }
 
 /// A text that a message is about, in the order in which Clang marks them.
@@ -92,32 +119,112 @@ llvm::StringRef nameAt(llvm::StringRef text) {
   return text.take_while([](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });
 }
 
-/// An index of what has none: `x[0]` where x is an element.
-std::string adviceOnIndex(const clang::Diagnostic& diagnostic) {
+/// An index of what has none: `x[0]` where x is an element, `a[1][2]` where a is a gather of rank 1.
+Advice adviceOnIndex(const clang::Diagnostic& diagnostic) {
   const llvm::StringRef base = textOf(diagnostic), name = nameAt(base);
-  return name.empty() ? std::string() : format(Diag::IndexedValue, {base.str(), name.str()});
+  if (name.empty()) return {};
+  const std::size_t taken = base.count('[');
+  const bool isIndexed = taken > 0 && base.drop_front(name.size()).ltrim().starts_with("[");
+  if (!isIndexed || taken > 4) return {format(Diag::IndexedValue, {base.str(), name.str()})};
+  std::string brackets;
+  for (std::size_t i = 0; i <= taken; ++i) brackets += "[]";
+  return {format(Diag::IndexTooMany, {name.str(), fmt::format("{} ind{}", taken, taken == 1 ? "ex" : "ices"),
+                                      fmt::format("{}", taken + 1), brackets})};
 }
 
-std::string adviceOnCall(const clang::Diagnostic& diagnostic) {
+/// `x[f]` of an array that has a length, where f is a float.
+Advice adviceOnArrayIndex(const clang::Diagnostic& diagnostic) {
+  const llvm::StringRef index = textOf(diagnostic);
+  if (index.empty()) return {};
+  const clang::CharSourceRange range = diagnostic.getRange(0);
+  std::vector<clang::FixItHint> fixIts;
+  if (!range.getBegin().isMacroID() && !range.getEnd().isMacroID()) {
+    fixIts = {clang::FixItHint::CreateReplacement(range, fmt::format("int({})", index.str()))};
+  }
+  return {format(Diag::ArrayIndexType, {index.str()}), std::move(fixIts)};
+}
+
+bool isMask(clang::QualType type) {
+  const auto* vector = type.isNull() ? nullptr : llvm::dyn_cast<clang::ExtVectorType>(type.getTypePtr());
+  return vector != nullptr && vector->getElementType()->isIntegerType();
+}
+
+/// The class of a gather parameter.
+bool isGather(clang::QualType type) {
+  const clang::CXXRecordDecl* record = type.isNull() ? nullptr : type->getAsCXXRecordDecl();
+  return record != nullptr && record->getIdentifier() != nullptr && record->getName().starts_with("gather_");
+}
+
+bool namesGather(const clang::Diagnostic& diagnostic) {
+  for (unsigned i = 0; i < diagnostic.getNumArgs(); ++i) {
+    if (diagnostic.getArgKind(i) != DiagnosticsEngine::ak_qualtype) continue;
+    if (isGather(clang::QualType::getFromOpaquePtr(reinterpret_cast<void*>(diagnostic.getRawArg(i)))))
+      return true;
+  }
+  return false;
+}
+
+/// The character at the place of a message.
+char characterAt(const clang::Diagnostic& diagnostic) {
+  bool isInvalid = false;
+  const char* text = diagnostic.getSourceManager().getCharacterData(diagnostic.getLocation(), &isInvalid);
+  return isInvalid ? '\0' : *text;
+}
+
+/// `x ^ 2` of floats, and operators between a gather and something else.
+Advice adviceOnOperands(const clang::Diagnostic& diagnostic) {
+  if (namesGather(diagnostic)) return {format(Diag::GatherAsValue, {})};
+  return {characterAt(diagnostic) == '^' ? format(Diag::PowerOperator, {"^"}) : std::string()};
+}
+
+/// `x ** 2`: the second star stands before what is no pointer.
+Advice adviceOnIndirection(const clang::Diagnostic& diagnostic) {
+  bool isInvalid = false;
+  const clang::SourceLocation place = diagnostic.getLocation();
+  if (place.isMacroID()) return {};
+  const char* text = diagnostic.getSourceManager().getCharacterData(place.getLocWithOffset(-1), &isInvalid);
+  return {!isInvalid && *text == '*' ? format(Diag::PowerOperator, {"**"}) : std::string()};
+}
+
+/// `float2 r = a < b`: two types, one of which is a mask's.
+Advice adviceOnConversion(const clang::Diagnostic& diagnostic) {
+  if (namesGather(diagnostic)) return {format(Diag::GatherAsValue, {})};
+  clang::QualType mask, wanted;
+  for (unsigned i = 0; i < diagnostic.getNumArgs(); ++i) {
+    if (diagnostic.getArgKind(i) != DiagnosticsEngine::ak_qualtype) continue;
+    const auto type = clang::QualType::getFromOpaquePtr(reinterpret_cast<void*>(diagnostic.getRawArg(i)));
+    (isMask(type) ? mask : wanted) = type;
+  }
+  const auto* vector = wanted.isNull() ? nullptr : wanted->getAs<clang::ExtVectorType>();
+  if (mask.isNull() || vector == nullptr) return {};
+  if (vector->getElementType()->isChar32Type()) return {};  // a bool vector is made by bool4(a < b)
+  const unsigned ranges = diagnostic.getNumRanges();
+  const llvm::StringRef text = ranges == 0 ? llvm::StringRef() : textOf(diagnostic, ranges - 1);
+  const bool isShown = !text.empty() && !text.contains('?');
+  return {format(Diag::MaskAsNumbers,
+                 {wanted.getUnqualifiedType().getAsString(), isShown ? text.str() : "mask"})};
+}
+
+Advice adviceOnCall(const clang::Diagnostic& diagnostic) {
   const std::string name = nameIn(diagnostic, 0);
-  if (name == "neighbor") return format(Diag::GatherArguments, {name, "an offset in each"});
-  if (name == "sample") return format(Diag::GatherArguments, {name, "a position with a component for each"});
+  if (name == "neighbor") return {format(Diag::GatherArguments, {name, "an offset in each"})};
+  if (name == "sample")
+    return {format(Diag::GatherArguments, {name, "a position with a component for each"})};
   return {};
 }
 
 /// `a[0] = 1`: what Clang cannot assign to and has an index is an element of a gather, or a row of a matrix that is a parameter.
-std::string adviceOnAssignment(const clang::Diagnostic& diagnostic) {
+Advice adviceOnAssignment(const clang::Diagnostic& diagnostic) {
   const llvm::StringRef place = textOf(diagnostic), name = nameAt(place);
   const bool isIndexed = !name.empty() && place.drop_front(name.size()).ltrim().starts_with("[");
-  return isIndexed ? format(Diag::GatherAssigned, {place.str(), name.str()}) : std::string();
+  return {isIndexed ? format(Diag::GatherAssigned, {place.str(), name.str()}) : std::string()};
 }
 
 /// `a.size()`, of an element or a gather: members that containers have.
-std::string adviceOnMember(std::string_view member) {
+Advice adviceOnMember(std::string_view member) {
   constexpr std::string_view ofContainers[] = {"size", "length", "begin", "end", "empty", "data"};
-  return std::ranges::find(ofContainers, member) != std::end(ofContainers)
-             ? format(Diag::StreamMember, {member})
-             : std::string();
+  const bool isKnown = std::ranges::find(ofContainers, member) != std::end(ofContainers);
+  return {isKnown ? format(Diag::StreamMember, {member}) : std::string()};
 }
 
 bool isInGather(const clang::Diagnostic& diagnostic) {
@@ -126,38 +233,66 @@ bool isInGather(const clang::Diagnostic& diagnostic) {
   return type != nullptr && type->getName().starts_with("gather_");
 }
 
-/// Our words for a message of Clang's; "" where its own will do.
-std::string adviceOn(const clang::Diagnostic& diagnostic) {
+Advice adviceOn(const clang::Diagnostic& diagnostic) {
   switch (diagnostic.getID()) {
     case clang::diag::err_undeclared_var_use:
     case clang::diag::err_unknown_typename: return adviceOnName(diagnostic);
+    case clang::diag::err_undeclared_var_use_suggest:
+    case clang::diag::err_unknown_typename_suggest:
+    case clang::diag::err_no_template:
+    case clang::diag::err_no_template_suggest: return adviceOnForeignName(diagnostic);
+    case clang::diag::err_pp_invalid_directive: return adviceOnDirective(diagnostic);
+    case clang::diag::err_exceptions_disabled: return {format(Diag::Exceptions, {})};
+    case clang::diag::err_main_returns_nonint: return {format(Diag::MainFunction, {})};
+    case clang::diag::err_typecheck_invalid_operands: return adviceOnOperands(diagnostic);
+    case clang::diag::err_typecheck_indirection_requires_pointer: return adviceOnIndirection(diagnostic);
     case clang::diag::err_pp_file_not_found: return adviceOnHeader(diagnostic);
     case clang::diag::err_typecheck_subscript_value: return adviceOnIndex(diagnostic);
+    case clang::diag::err_typecheck_subscript_not_integer: return adviceOnArrayIndex(diagnostic);
+    case clang::diag::err_init_conversion_failed:
+    case clang::diag::err_typecheck_convert_incompatible: return adviceOnConversion(diagnostic);
     case clang::diag::err_ovl_no_viable_function_in_call: return adviceOnCall(diagnostic);
     case clang::diag::err_typecheck_expression_not_modifiable_lvalue: return adviceOnAssignment(diagnostic);
     case clang::diag::err_typecheck_member_reference_struct_union:
       return adviceOnMember(textOf(diagnostic, 1));
     case clang::diag::err_no_member:
-      return isInGather(diagnostic) ? adviceOnMember(nameIn(diagnostic, 0)) : std::string();
+      return isInGather(diagnostic) ? adviceOnMember(nameIn(diagnostic, 0)) : Advice();
     case clang::diag::err_ext_vector_component_name_illegal: return adviceOnMember(textOf(diagnostic));
-    case clang::diag::err_for_range_invalid: return format(Diag::RangeFor, {});
+    case clang::diag::err_for_range_invalid: return {format(Diag::RangeFor, {})};
     default: return {};
   }
 }
 
 }  // namespace
 
+DiagnosticPrinter::DiagnosticPrinter(llvm::raw_ostream& out, clang::DiagnosticOptions* options)
+    : TextDiagnosticPrinter(out, options), out_(out), options_(options) {}
+
+void DiagnosticPrinter::BeginSourceFile(const clang::LangOptions& language,
+                                        const clang::Preprocessor* preprocessor) {
+  language_ = language;
+  TextDiagnosticPrinter::BeginSourceFile(language, preprocessor);
+}
+
 void DiagnosticPrinter::HandleDiagnostic(DiagnosticsEngine::Level level,
                                          const clang::Diagnostic& diagnostic) {
   if (level != DiagnosticsEngine::Note) isDropping_ = isBoolOfVector(diagnostic);
   if (isDropping_) return;
   if (level == DiagnosticsEngine::Warning && isNarrowing(diagnostic)) level = DiagnosticsEngine::Error;
-  const std::string advice = level == DiagnosticsEngine::Note ? "" : adviceOn(diagnostic);
-  if (!advice.empty()) {
-    isDropping_ = true;  // the candidates that Clang has seen are no help either
-    return TextDiagnosticPrinter::HandleDiagnostic(level, clang::Diagnostic(diagnostic.getDiags(), advice));
-  }
-  TextDiagnosticPrinter::HandleDiagnostic(level, diagnostic);
+  const Advice advice = level == DiagnosticsEngine::Note ? Advice() : adviceOn(diagnostic);
+  if (advice.text.empty()) return TextDiagnosticPrinter::HandleDiagnostic(level, diagnostic);
+  isDropping_ = true;  // the candidates that Clang has seen are no help either
+  print(level, diagnostic, advice);
+}
+
+/// As Clang prints a message of its own.
+void DiagnosticPrinter::print(DiagnosticsEngine::Level level, const clang::Diagnostic& diagnostic,
+                              const Advice& advice) {
+  DiagnosticConsumer::HandleDiagnostic(level, diagnostic);  // which counts
+  clang::TextDiagnostic printer(out_, language_, options_.get());
+  printer.emitDiagnostic(clang::FullSourceLoc(diagnostic.getLocation(), diagnostic.getSourceManager()), level,
+                         advice.text, diagnostic.getRanges(), advice.fixIts);
+  out_.flush();
 }
 
 }  // namespace skc::frontend

@@ -215,6 +215,10 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
   if (!e->type.isArithmetic() || e->type.scalar == scalar) return e;
   if (scalar == ir::Scalar::Bool) return toBool(std::move(e));
   const Loc loc = e->loc;
+  if (ir::isReal(ir::carrierOf(scalar)) && maskedBool(*e)) {
+    module_.diagnostics().report(Diag::MaskConverted, loc,
+                                 {module_.spelling(ir::Type::of(scalar, e->type.width))});
+  }
   if ((e->type.isNarrow() && scalar == ir::Scalar::Double) || (e->type.isDouble() && ir::isNarrow(scalar))) {
     const ir::Scalar carrier = ir::carrierOf(e->type.isNarrow() ? e->type.scalar : scalar);
     return convert(convert(std::move(e), carrier), scalar);

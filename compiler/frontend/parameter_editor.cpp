@@ -143,6 +143,10 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
   if (!takeDeclarator(parameter, at, parts)) return;
   if (hasLateQualifier(parts)) return;
   if (!takeSuffix(parameter, at, parts)) return;
+  if (kind != FunctionKind::Helper && parts.type.back().is(tok::amp)) {
+    diagnostics_.report(Diag::KernelReference, locOf(parts.type.back()), {nameOf(parts.name)});
+    return;
+  }
   if (!resolveRole(parts, kind)) return;
   print(parts, kind, out);
 }

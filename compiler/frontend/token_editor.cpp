@@ -11,6 +11,7 @@
 #include "frontend/comma_indices.hpp"
 #include "frontend/constructor_editor.hpp"
 #include "frontend/parameter_editor.hpp"
+#include "frontend/prelude.hpp"
 #include "frontend/stream_editor.hpp"
 #include "frontend/table_editor.hpp"
 #include "frontend/token_cursor.hpp"
@@ -323,13 +324,42 @@ class Editor {
     } while (depth > 0 && !cursor_.at(tok::eof));
   }
 
-  /// In a body or a struct, `stream float a<n>` is no word for Clang.
+  /// In a body or a struct, `stream float a<n>` is no word for Clang, and neither is Brook's `indexof a`.
   void checkInner() {
+    checkCast();
+    checkOperator("indexof");
+    checkOperator("extentof");
     const bool starts = out_.back().isOneOf(tok::l_brace, tok::r_brace, tok::semi);
     const bool names = cursor_.peek(2).is(tok::identifier) && cursor_.peek(3).is(tok::less);
     if (starts && names && atDeclarationWord("stream")) {
       diagnostics_.report(Diag::StreamInside, locOf(cursor_.peek()), {nameOf(cursor_.peek(2))});
     }
+  }
+
+  /// OpenCL's `(float4)(1, 2, 3, 4)`, which C++ takes for a cast of the last.
+  void checkCast() {
+    const Token& type = cursor_.peek(1);
+    if (!cursor_.at(tok::l_paren) || type.isNot(tok::identifier)) return;
+    if (cursor_.peek(2).isNot(tok::r_paren) || cursor_.peek(3).isNot(tok::l_paren)) return;
+    if (!isVectorTypeName(nameOf(type))) return;
+    int depth = 0;
+    for (std::size_t i = 3; cursor_.peek(i).isNot(tok::eof); ++i) {
+      const Token& token = cursor_.peek(i);
+      if (token.isOneOf(tok::l_paren, tok::l_square, tok::l_brace)) ++depth;
+      if (token.isOneOf(tok::r_paren, tok::r_square, tok::r_brace) && --depth == 0) return;
+      if (token.isNot(tok::comma) || depth != 1) continue;
+      return diagnostics_.report(
+          Diag::VectorCast, locOf(type), {nameOf(type)},
+          {Mend::replace(locOf(cursor_.peek()), locOf(cursor_.peek(2)), nameOf(type))});
+    }
+  }
+
+  void checkOperator(llvm::StringRef word) {
+    const Token& operand = cursor_.peek(1);
+    if (!atWord(word) || operand.isNot(tok::identifier)) return;
+    diagnostics_.report(Diag::IndexOfWithout, locOf(cursor_.peek()), {word.str(), nameOf(operand)},
+                        {Mend::replace(locOf(cursor_.peek()), locOf(operand),
+                                       fmt::format("{}({})", word.str(), nameOf(operand)))});
   }
 
   void copyToken() { constructors_.copy(cursor_, out_); }
