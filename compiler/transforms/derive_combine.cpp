@@ -2,14 +2,15 @@
 #include "transforms/derive_combine.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 
 #include "ir/build.hpp"
 #include "ir/print.hpp"
 #include "ir/reach.hpp"
+#include "transforms/check_folds.hpp"
 #include "transforms/combine_part.hpp"
+#include "transforms/fold_identity.hpp"
 #include "transforms/fold_pattern.hpp"
 #include "transforms/made_kernel.hpp"
 
@@ -19,56 +20,6 @@ namespace {
 using namespace ir;
 
 // ---- identities -------------------------------------------------------------------------------
-
-/// A literal of a narrow type, given as its carrier's.
-ExprPtr narrowed(Scalar scalar, ExprPtr value) {
-  value->type = Type::of(scalar);
-  return value;
-}
-
-/// The smallest or largest value of a component type.
-ExprPtr extreme(Scalar scalar, bool largest) {
-  using Int = std::numeric_limits<std::int32_t>;
-  const float infinity = std::numeric_limits<float>::infinity();
-  const auto integer = [&](std::int32_t low, std::int32_t high) {
-    return narrowed(scalar, literal(largest ? high : low));
-  };
-  const auto real = [&](float low, float high) { return narrowed(scalar, literal(largest ? high : low)); };
-  switch (scalar) {
-    case Scalar::Bool: return literal(largest);
-    case Scalar::Int: return literal(largest ? Int::max() : Int::min());
-    case Scalar::Uint: return literal(largest ? 0xffffffffU : 0U);
-    case Scalar::Char: return integer(-128, 127);
-    case Scalar::Uchar: return integer(0, 255);
-    case Scalar::Short: return integer(-32768, 32767);
-    case Scalar::Ushort: return integer(0, 65535);
-    case Scalar::Unorm8:
-    case Scalar::Unorm16: return real(0, 1);
-    case Scalar::Snorm8:
-    case Scalar::Snorm16: return real(-1, 1);
-    case Scalar::Double: return literal(largest ? double{infinity} : -double{infinity});
-    case Scalar::Float:
-    case Scalar::Half: break;
-  }
-  return real(-infinity, infinity);
-}
-
-/// All bits of an integer.
-ExprPtr allBits(Scalar scalar) {
-  const bool isUnsigned = scalar == Scalar::Uchar || scalar == Scalar::Ushort;
-  return isUnsigned ? extreme(scalar, true) : literalOf(Type::of(scalar), -1);
-}
-
-/// The neutral element of an operator that foldOf lets through and isAssociative holds for.
-ExprPtr neutral(FoldOp op, Scalar scalar) {
-  if (const auto* intrinsic = std::get_if<Intrinsic>(&op))
-    return extreme(scalar, *intrinsic == Intrinsic::Min);
-  const Type type = Type::of(scalar);
-  const BinaryOp binary = std::get<BinaryOp>(op);
-  if (binary == BinaryOp::BitAnd) return allBits(scalar);
-  if (binary == BinaryOp::Mul || binary == BinaryOp::LogicalAnd) return literalOf(type, 1);
-  return literalOf(type, 0);
-}
 
 /// A value with this in every component.
 ExprPtr everywhere(Type type, const Expr& component) {
@@ -90,7 +41,7 @@ ExprPtr leafIdentity(const FoldPattern& pattern, const MemberPath& path, Type ty
   std::vector<ExprPtr> components(type.width);
   for (const FoldPart& part : pattern.parts) {
     if (part.accumulator != path.accumulator || part.members != path.members) continue;
-    const ExprPtr one = neutral(part.op, type.scalar);
+    const ExprPtr one = neutralOf(part.op, type.scalar);
     if (part.isWhole()) return everywhere(type, *one);
     for (unsigned i = 0; i < type.width; ++i) {
       if ((part.components >> i & 1U) != 0) components[i] = clone(*one);
@@ -178,6 +129,8 @@ class State {
     const std::optional<FoldPattern> pattern = recogniseFold(kernel, module_.functions[kernel.entry]);
     if (pattern && !kernel.reduction->combine && !checkAssociative(kernel, *pattern)) return;
     const bool isGiven = anyAccumulator(kernel, [](const KernelParam& param) { return !!param.identity; });
+    if (pattern && !kernel.reduction->combine && !checkIdentities(module_, kernel, *pattern, diagnostics_))
+      return;
     if (pattern) addIdentities(kernel, *pattern);
     const bool isDerived = pattern && !kernel.reduction->combine;
     if (kernel.reduction->combine) {
@@ -185,6 +138,7 @@ class State {
       needInputs(module_.kernels[*kernel.reduction->combine]);
     } else if (pattern ? pattern->isPlain : foldsAccumulators(kernel)) {
       if (!checkOwnCombination(kernel, id)) return;
+      if (!pattern && !checkByTrial(module_, kernel, diagnostics_)) return;
       combineByItself(kernel, id, !isGiven);
     } else if (pattern) {
       const KernelId made = makeCombination(module_, id, *pattern);
@@ -194,7 +148,7 @@ class State {
       return needCombine(kernel);
     }
     module_.kernels[id].reduction->commutative = isDerived;
-    checkIdentities(module_.kernels[id]);
+    needIdentities(module_.kernels[id]);
   }
 
  private:
@@ -257,7 +211,7 @@ class State {
     return true;
   }
 
-  void checkIdentities(const Kernel& kernel) {
+  void needIdentities(const Kernel& kernel) {
     if (kernel.reduction->seeded) return;
     std::string elements;
     for (const KernelParam& param : kernel.params) {

@@ -18,6 +18,7 @@
 #include "transforms/fold_constants.hpp"
 #include "transforms/forward_continues.hpp"
 #include "transforms/guard_streams.hpp"
+#include "transforms/inline_folds.hpp"
 #include "transforms/remove_unused.hpp"
 #include "transforms/round_halves.hpp"
 #include "transforms/specialize_gathers.hpp"
@@ -60,6 +61,7 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
 // Folding before guarding, too: a branch that is gone needs no stream.
 // Bounding the pushes after folding, which makes loops of a known number of rounds and takes out what
 // never runs.
+// Inlining before deriving, which then sees through helper functions.
 // Deriving before removing, because it makes functions that use structs.
 // Forms for other precisions after deriving, so that they combine likewise; and before compensating, which
 // is not for them.
@@ -76,6 +78,7 @@ constexpr Transform transforms[] = {
     {"find-neighbors", plain<findNeighbors>},
     {"guard-streams", plain<guardStreams>},
     {"bound-pushes", plain<boundPushes>},
+    {"inline-folds", plain<inlineFolds>},
     {"derive-combine", plain<deriveCombine>},
     {"widen-floats", ofPrecisions<widenFloats>},
     {"round-halves", ofPrecisions<roundHalves>},

@@ -36,7 +36,7 @@ TEST_CASE("every transform is told once, in order, with a valid module") {
                   CHECK(validate(now, Stage::Specialized).empty());
                 }});
   CHECK(told == std::vector<std::string>(transformNames().begin(), transformNames().end()));
-  CHECK(told.size() == 16);
+  CHECK(told.size() == 17);
 }
 
 TEST_CASE("nothing runs after an error") {
@@ -47,7 +47,7 @@ TEST_CASE("nothing runs after an error") {
                 {.after = [&](std::string_view name, const Module&) { told.emplace_back(name); }});
   CHECK(log.hasErrors());
   CHECK(told == std::vector<std::string>{"specialize-gathers", "tabulate", "fold-constants", "unroll-loops",
-                                         "find-neighbors", "guard-streams", "bound-pushes"});
+                                         "find-neighbors", "guard-streams", "bound-pushes", "inline-folds"});
 }
 
 TEST_CASE("builds with tests check assertions and validate the IR", "[transforms]") {

@@ -10,7 +10,9 @@
 #include "assemble/program_text.hpp"
 #include "assemble/reduce_plan.hpp"
 #include "buffered_transfer.hpp"
+#include "check_argument.hpp"
 #include "check_reduction.hpp"
+#include "checks.hpp"
 #include "element_packing.hpp"
 #include "gl_device.hpp"
 #include "gl_stream.hpp"
@@ -34,6 +36,12 @@ using program::Kernel;
 using program::Parameter;
 using program::Reduction;
 using program::Role;
+
+/// Folds are tried natively alone; nobody should think that this one was.
+void refuseFoldCheck(const Reduction& reduction) {
+  if (!checksFolds() || reduction.commutative) return;
+  fail(reduction.fold, "SK_CHECK=folds tries reduces natively; set SK_DEVICE=native, too");
+}
 
 /// fn(element, its planes) for each accumulator, given the planes of all of them.
 template <class Plane, class Fn>
@@ -376,6 +384,7 @@ void takeValues(GlDevice& device, const Kernel& fold, std::span<void* const> res
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
                       std::span<void* const> results, const CallOptions& options) {
   checkOptions(reduction.fold, options);
+  refuseFoldCheck(reduction);
   checkStorages(reduction.fold, arguments);
   const assemble::Stage stage = stageOf(reduction.fold, KernelClass::Reduces, options);
   const DeviceScope scope(*this);
@@ -402,6 +411,7 @@ void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> argu
 void GlDevice::reduce(const Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
                       const Shape& blocks, const CallOptions& options) {
   checkOptions(reduction.fold, options);
+  refuseFoldCheck(reduction);
   checkStorages(reduction.fold, arguments);
   const assemble::Stage stage = stageOf(reduction.fold, KernelClass::Reduces, options);
   const DeviceScope scope(*this);

@@ -217,14 +217,14 @@ TEST_CASE("zeros, and no element") {  // R10, R11
     CHECK(bits(exactSum(device, {-0.0F, 0.0F})) == 0);
     CHECK(bits(exactSum(device, {1.0F, -1.0F})) == 0);
     CHECK(bits(exactSum(device, {})) == 0);
-    CHECK(sums::sumFrom.with(exact)(streamOf<float>(device, {})) == 0.5F);
+    CHECK(sums::sumFrom.with(exact)(streamOf<float>(device, {})) == 0.0F);
   });
 }
 
-TEST_CASE("an identity is a summand, once") {
+TEST_CASE("an identity adds nothing") {
   onEveryProfile([](sk::Device& device) {
-    CHECK(sums::sumFrom.with(exact)(streamOf<float>(device, {0x1p30F, 1, -0x1p30F})) == 1.5F);
-    CHECK(sums::sumFrom.with(exact)(streamOf(device, std::vector<float>(1000, 0.25F))) == 250.5F);
+    CHECK(sums::sumFrom.with(exact)(streamOf<float>(device, {0x1p30F, 1, -0x1p30F})) == 1.0F);
+    CHECK(sums::sumFrom.with(exact)(streamOf(device, std::vector<float>(1000, 0.25F))) == 250.0F);
   });
 }
 

@@ -140,6 +140,26 @@ TEST_CASE("how partial results combine follows from the body, or from an overloa
   });
 }
 
+TEST_CASE("a fold means the same whether a helper function, a kernel or the reduce itself writes it") {
+  onEveryProfile([](sk::Device& device) {
+    for (const std::int64_t n : {1, 4, 1021}) {
+      const HostArray<float> a({n}, smallAt);
+      const auto stream = a.on(device);
+      float expected = 0, largest = 0;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
+        expected += smallAt(i) + 100;
+        largest = std::max(largest, smallAt(i) * smallAt(i));
+      }
+      CHECK(helped::plain(stream, 100) == expected);
+      CHECK(helped::byFunction(stream, 100) == expected);
+      CHECK(helped::bySteps(stream, 100) == expected);
+      CHECK(helped::byReference(stream, 100) == expected);
+      CHECK(helped::byKernel(stream, 100) == expected);
+      CHECK(helped::most(stream) == largest);
+    }
+  });
+}
+
 TEST_CASE("structs fold: the nearest, the first of the greatest") {
   onEveryLayout([](sk::Device& device) {
     for (const sk::Shape& shape : fewShapes) {

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "checks.hpp"
+#include "native/check_fold.hpp"
 #include "native/code_frame.hpp"
 #include "native/fold_program.hpp"
 #include "native/sum_floats.hpp"
@@ -33,13 +35,14 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
   const SlotLayout layout(reduction.fold, call.fold, frame, choice);
   const StateShape shape(reduction.fold.parameters, choice.real);
   const FoldResults results(reduction.fold.parameters, call.fold.operands, shape);
-  foldBlocks({.layout = layout,
-              .shape = shape,
-              .fold = bound<native::FoldFunction>(fold, frame),
-              .combine = bound<native::CombineFunction>(combine, combineFrame),
-              .isCommutative = reduction.commutative,
-              .isUneven = reduction.fold.code->isUneven != 0},
-             call.fold.domain, call.block, results);
+  const FoldProgram program{.layout = layout,
+                            .shape = shape,
+                            .fold = bound<native::FoldFunction>(fold, frame),
+                            .combine = bound<native::CombineFunction>(combine, combineFrame),
+                            .isCommutative = reduction.commutative,
+                            .isUneven = reduction.fold.code->isUneven != 0};
+  if (checksFolds() && !reduction.commutative) checkFold(reduction, program, call.fold, choice);
+  foldBlocks(program, call.fold.domain, call.block, results);
 }
 
 void storeIdentities(const program::Reduction& reduction, const native::Call& call,

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/check_folds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "ir/print.hpp"
+#include "ir/value_size.hpp"
+#include "ir/walk.hpp"
+#include "transforms/fold_identity.hpp"
+#include "transforms/static_place.hpp"
+#include "transforms/try_fold.hpp"
+#include "transforms/try_function.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+// ---- values that are never negative -------------------------------------------------------------
+
+bool isNonNegative(const Expr& expr);
+
+bool areNonNegative(const std::vector<ExprPtr>& all) {
+  return std::ranges::all_of(all, [](const ExprPtr& e) { return isNonNegative(*e); });
+}
+
+bool isSamePlace(const Expr& a, const Expr& b) {
+  const std::optional<StaticPlace> place = staticPlace(a);
+  return place && place == staticPlace(b);
+}
+
+bool isNonNegative(const IntrinsicCall& n) {
+  switch (n.intrinsic) {
+    case Intrinsic::Abs:
+    case Intrinsic::Fabs:
+    case Intrinsic::Length:
+    case Intrinsic::Distance:
+    case Intrinsic::Sqrt:
+    case Intrinsic::Exp:
+    case Intrinsic::Exp2:
+    case Intrinsic::Saturate: return true;
+    case Intrinsic::Dot: return isSamePlace(*n.args[0], *n.args[1]);
+    case Intrinsic::Max:
+    case Intrinsic::Fmax: return isNonNegative(*n.args[0]) || isNonNegative(*n.args[1]);
+    case Intrinsic::Min:
+    case Intrinsic::Fmin: return areNonNegative(n.args);
+    default: return false;
+  }
+}
+
+/// As far as the expression alone shows it.
+bool isNonNegative(const Expr& expr) {
+  if (expr.type.isArithmetic()) {
+    const Scalar s = expr.type.scalar;
+    if (s == Scalar::Uint || s == Scalar::Uchar || s == Scalar::Ushort || s == Scalar::Unorm8 ||
+        s == Scalar::Unorm16 || s == Scalar::Bool) {
+      return true;
+    }
+  }
+  if (std::holds_alternative<IndexOf>(expr.node) || std::holds_alternative<ExtentOf>(expr.node)) return true;
+  if (const auto* n = std::get_if<Convert>(&expr.node)) return isNonNegative(*n->operand);
+  if (const auto* n = std::get_if<Swizzle>(&expr.node)) return isNonNegative(*n->base);
+  if (const auto* n = std::get_if<Construct>(&expr.node)) return areNonNegative(n->args);
+  if (const auto* n = std::get_if<Select>(&expr.node)) return isNonNegative(*n->yes) && isNonNegative(*n->no);
+  if (const auto* n = std::get_if<IntrinsicCall>(&expr.node)) return isNonNegative(*n);
+  if (const auto* n = std::get_if<Binary>(&expr.node)) {
+    if (n->op == BinaryOp::Mul && isSamePlace(*n->lhs, *n->rhs)) return true;
+    const bool keeps = n->op == BinaryOp::Add || n->op == BinaryOp::Mul || n->op == BinaryOp::Div;
+    return keeps && isNonNegative(*n->lhs) && isNonNegative(*n->rhs);
+  }
+  if (const auto* n = std::get_if<Literal>(&expr.node)) return expr.type.isScalar() && n->bits >> 31U == 0;
+  return false;
+}
+
+/// Whether all that a reduce folds into a part by max is never negative.
+bool foldsNonNegatives(const Module& module, const Kernel& kernel, const FoldPart& part) {
+  bool holds = true;
+  walkStmts(module.functions[kernel.entry].body, [&](const Stmt& stmt) {
+    const std::optional<FoldPart> found = foldedBy(kernel, stmt);
+    if (!found || found->accumulator != part.accumulator || found->members != part.members) return;
+    const Expr* value = std::get<Assign>(stmt.node).value.get();
+    if (const auto* n = std::get_if<Convert>(&value->node)) value = n->operand.get();
+    const auto* max = std::get_if<IntrinsicCall>(&value->node);
+    const std::optional<StaticPlace> place = staticPlace(*std::get<Assign>(stmt.node).place);
+    if (max == nullptr) return void(holds = false);
+    for (const ExprPtr& arg : max->args) {
+      const Expr* folded = arg.get();
+      if (const auto* n = std::get_if<Convert>(&folded->node)) folded = n->operand.get();
+      holds = holds && (staticPlace(*folded) == place || isNonNegative(*folded));
+    }
+  });
+  return holds;
+}
+
+// ---- identities of known operators --------------------------------------------------------------
+
+std::string spellingOf(FoldOp op) {
+  if (const auto* n = std::get_if<Intrinsic>(&op)) return *n == Intrinsic::Min ? "min" : "max";
+  return std::string(spelling(std::get<BinaryOp>(op)));
+}
+
+std::string number(double value, Scalar scalar) {
+  if (scalar == Scalar::Bool) return value != 0 ? "true" : "false";
+  if (std::isinf(value)) return value < 0 ? "-infinity" : "infinity";
+  return isReal(carrierOf(scalar)) ? fmt::format("{:.7g}", value) : fmt::format("{:.0f}", value);
+}
+
+/// Where a component of an accumulator lies among its numbers.
+std::size_t offsetOf(const Module& module, Type type, const std::vector<std::uint32_t>& members) {
+  std::uint64_t offset = 0;
+  for (const std::uint32_t member : members) {
+    const Struct& entry = module.structs[type.index];
+    for (std::uint32_t i = 0; i < member; ++i) offset += numbersIn(module, entry.fields[i].type);
+    type = entry.fields[member].type;
+  }
+  return static_cast<std::size_t>(offset);
+}
+
+/// Beyond what people call infinite: `= 1e30`, `= 3.4e38`, `= 1 << 30`.
+bool isAsGoodAs(FoldOp op, double given, double neutral) {
+  if (given == neutral) return true;
+  if (!std::holds_alternative<Intrinsic>(op) || std::signbit(given) != std::signbit(neutral)) return false;
+  return std::fabs(given) >= std::min(std::fabs(neutral), std::isinf(neutral) ? 1e9 : 536870912.0);
+}
+
+struct Given {
+  const Module& module;
+  const Kernel& kernel;
+  Diagnostics& diagnostics;
+
+  /// The first component of a part whose identity is not the operator's.
+  bool check(const FoldPart& part, const Numbers& identity) const {
+    const Scalar scalar = part.type.scalar;
+    const std::optional<Numbers> neutral = tryConstant(module, *neutralOf(part.op, scalar));
+    if (!neutral) return true;
+    const KernelParam& param = kernel.params[part.accumulator];
+    const std::size_t from = offsetOf(module, param.type, part.members);
+    const std::size_t count = part.type.isMatrix() ? part.type.width * part.type.width : part.type.width;
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool isFolded = part.type.isMatrix() || (part.components >> i & 1U) != 0;
+      const double given = identity.at(from + i);
+      if (!isFolded || isAsGoodAs(part.op, given, neutral->at(0))) continue;
+      const bool isMax = part.op == FoldOp(Intrinsic::Max);
+      if (isMax && given == 0 && foldsNonNegatives(module, kernel, part)) continue;
+      return report(part, param, number(given, scalar), number(neutral->at(0), scalar));
+    }
+    return true;
+  }
+
+  bool report(const FoldPart& part, const KernelParam& param, const std::string& given,
+              const std::string& neutral) const {
+    const Diag diag = isIdempotent(part.op) ? Diag::ReduceBound : Diag::ReduceIdentity;
+    diagnostics.report(diag, param.loc, {param.name, given, spellingOf(part.op), neutral});
+    return diag != Diag::ReduceIdentity;
+  }
+};
+
+}  // namespace
+
+bool checkIdentities(const Module& module, const Kernel& kernel, const FoldPattern& pattern,
+                     Diagnostics& diagnostics) {
+  bool isRight = true;
+  for (const FoldPart& part : pattern.parts) {
+    const ExprPtr& identity = kernel.params[part.accumulator].identity;
+    const std::optional<Numbers> given = identity ? tryConstant(module, *identity) : std::nullopt;
+    if (given && !Given{module, kernel, diagnostics}.check(part, *given)) isRight = false;
+  }
+  return isRight;
+}
+
+bool checkByTrial(const Module& module, const Kernel& kernel, Diagnostics& diagnostics) {
+  const FoldTrial order = tryAssociativity(module, kernel);
+  if (order.fails()) {
+    diagnostics.report(Diag::ReduceOrder, kernel.loc, {kernel.name, order.example});
+    return false;
+  }
+  if (order.mayFail())
+    diagnostics.report(Diag::ReduceOrderDoubtful, kernel.loc, {kernel.name, order.example});
+  const auto accumulator = std::ranges::find(kernel.params, ParamRole::Accumulator, &KernelParam::role);
+  const bool isGiven =
+      std::ranges::any_of(kernel.params, [](const KernelParam& param) { return !!param.identity; });
+  if (!isGiven) {
+    if (!computesWithOthers(module, kernel)) return true;
+    diagnostics.report(Diag::ReduceBothReadings, accumulator->loc,
+                       {kernel.name, print(module, accumulator->type), accumulator->name});
+    return false;
+  }
+  const IdentityTrial start = tryIdentity(module, kernel);
+  if (!start.fails()) return true;
+  diagnostics.report(start.isIdempotent ? Diag::ReduceStartBound : Diag::ReduceStart, accumulator->loc,
+                     {kernel.name, start.example});
+  return start.isIdempotent;
+}
+
+}  // namespace skc

@@ -1,0 +1,519 @@
+// SPDX-License-Identifier: MIT
+#include "transforms/try_function.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <utility>
+
+#include "ir/value_size.hpp"
+#include "support/overloaded.hpp"
+
+namespace skc {
+namespace {
+
+using namespace ir;
+
+/// Thrown where a function cannot be tried; it does not leave this file.
+struct CannotTry {};
+
+double wrapped(Scalar scalar, std::int64_t value) {
+  const auto bits = static_cast<std::uint32_t>(value);
+  return carrierOf(scalar) == Scalar::Uint ? double{static_cast<double>(bits)}
+                                           : static_cast<double>(static_cast<std::int32_t>(bits));
+}
+
+double converted(Scalar from, Scalar to, double value) {
+  if (to == Scalar::Bool) return value != 0 ? 1 : 0;
+  const Scalar carrier = carrierOf(to);
+  if (isReal(carrier)) return value;
+  if (!isReal(carrierOf(from))) return wrapped(carrier, static_cast<std::int64_t>(value));
+  if (!(std::fabs(value) < 2147483648.0)) throw CannotTry{};
+  return wrapped(carrier, static_cast<std::int64_t>(value));
+}
+
+double comparison(BinaryOp op, double a, double b) {
+  switch (op) {
+    case BinaryOp::Less: return a < b;
+    case BinaryOp::LessEqual: return a <= b;
+    case BinaryOp::Greater: return a > b;
+    case BinaryOp::GreaterEqual: return a >= b;
+    case BinaryOp::Equal: return a == b;
+    case BinaryOp::NotEqual: return a != b;
+    case BinaryOp::LogicalAnd: return a != 0 && b != 0;
+    case BinaryOp::LogicalOr: return a != 0 || b != 0;
+    case BinaryOp::Add:
+    case BinaryOp::Sub:
+    case BinaryOp::Mul:
+    case BinaryOp::Div:
+    case BinaryOp::Rem:
+    case BinaryOp::BitAnd:
+    case BinaryOp::BitOr:
+    case BinaryOp::BitXor:
+    case BinaryOp::ShiftLeft:
+    case BinaryOp::ShiftRight: break;
+  }
+  throw CannotTry{};
+}
+
+double ofIntegers(BinaryOp op, Scalar scalar, double x, double y) {
+  const auto a = static_cast<std::int64_t>(x), b = static_cast<std::int64_t>(y);
+  const auto bits = [&](std::int64_t value) { return wrapped(scalar, value); };
+  switch (op) {
+    case BinaryOp::Add: return bits(a + b);
+    case BinaryOp::Sub: return bits(a - b);
+    case BinaryOp::Mul:
+      return bits(static_cast<std::int64_t>(static_cast<std::uint64_t>(a) * static_cast<std::uint64_t>(b)));
+    case BinaryOp::Div: return b == 0 ? x : bits(a / b);
+    case BinaryOp::Rem: return b == 0 ? 0 : bits(a % b);
+    case BinaryOp::BitAnd: return bits(a & b);
+    case BinaryOp::BitOr: return bits(a | b);
+    case BinaryOp::BitXor: return bits(a ^ b);
+    case BinaryOp::ShiftLeft:
+      return bits(static_cast<std::int64_t>(static_cast<std::uint64_t>(a) << (b & 31)));
+    case BinaryOp::ShiftRight: return bits(a >> (b & 31));
+    default: return comparison(op, x, y);
+  }
+}
+
+double ofReals(BinaryOp op, double a, double b) {
+  switch (op) {
+    case BinaryOp::Add: return a + b;
+    case BinaryOp::Sub: return a - b;
+    case BinaryOp::Mul: return a * b;
+    case BinaryOp::Div: return a / b;
+    default: return comparison(op, a, b);
+  }
+}
+
+/// Functions of one number.
+std::optional<double> ofOne(Intrinsic intrinsic, double x) {
+  switch (intrinsic) {
+    case Intrinsic::Sin: return std::sin(x);
+    case Intrinsic::Cos: return std::cos(x);
+    case Intrinsic::Tan: return std::tan(x);
+    case Intrinsic::Asin: return std::asin(x);
+    case Intrinsic::Acos: return std::acos(x);
+    case Intrinsic::Atan: return std::atan(x);
+    case Intrinsic::Sinh: return std::sinh(x);
+    case Intrinsic::Cosh: return std::cosh(x);
+    case Intrinsic::Tanh: return std::tanh(x);
+    case Intrinsic::Exp: return std::exp(x);
+    case Intrinsic::Log: return std::log(x);
+    case Intrinsic::Exp2: return std::exp2(x);
+    case Intrinsic::Log2: return std::log2(x);
+    case Intrinsic::Log10: return std::log10(x);
+    case Intrinsic::Sqrt: return std::sqrt(x);
+    case Intrinsic::InverseSqrt:
+    case Intrinsic::Rsqrt: return 1 / std::sqrt(x);
+    case Intrinsic::Abs:
+    case Intrinsic::Fabs: return std::fabs(x);
+    case Intrinsic::Sign: return x > 0 ? 1 : x < 0 ? -1 : 0;
+    case Intrinsic::Floor: return std::floor(x);
+    case Intrinsic::Ceil: return std::ceil(x);
+    case Intrinsic::Trunc: return std::trunc(x);
+    case Intrinsic::Round:
+    case Intrinsic::RoundEven: return std::nearbyint(x);
+    case Intrinsic::Fract:
+    case Intrinsic::Frac: return x - std::floor(x);
+    case Intrinsic::Saturate: return std::fmin(std::fmax(x, 0), 1);
+    default: return std::nullopt;
+  }
+}
+
+std::optional<double> ofSeveral(Intrinsic intrinsic, double x, double y, double z) {
+  switch (intrinsic) {
+    case Intrinsic::Min:
+    case Intrinsic::Fmin: return std::fmin(x, y);
+    case Intrinsic::Max:
+    case Intrinsic::Fmax: return std::fmax(x, y);
+    case Intrinsic::Clamp: return std::fmin(std::fmax(x, y), z);
+    case Intrinsic::Mix:
+    case Intrinsic::Lerp: return x + (y - x) * z;
+    case Intrinsic::Step: return y < x ? 0 : 1;
+    case Intrinsic::Pow: return std::pow(x, y);
+    case Intrinsic::AtanYX:
+    case Intrinsic::Atan2: return std::atan2(x, y);
+    case Intrinsic::Mod: return x - y * std::floor(x / y);
+    case Intrinsic::Fmod: return std::fmod(x, y);
+    case Intrinsic::Fma: return x * y + z;
+    default: return std::nullopt;
+  }
+}
+
+class Interpreter {
+ public:
+  explicit Interpreter(const Module& module) : module_(module) {}
+
+  std::vector<Numbers> call(FunctionId id, std::vector<Numbers> arguments) {
+    Numbers result;
+    return call(id, std::move(arguments), result);
+  }
+
+  Numbers constant(const Expr& expr) {
+    Frame frame{nullptr, {}, {}};
+    return of(frame, expr);
+  }
+
+ private:
+  enum class Flow : std::uint8_t { Next, Break, Continue, Return };
+  struct Frame {
+    const Function* function;
+    std::vector<Numbers> variables;
+    Numbers result;
+  };
+
+  void tick() {
+    constexpr int mostSteps = 20'000;
+    if (++steps_ > mostSteps) throw CannotTry{};
+  }
+
+  std::size_t size(Type type) const {
+    const std::uint64_t count = numbersIn(module_, type);
+    if (count > 256) throw CannotTry{};
+    return static_cast<std::size_t>(count);
+  }
+
+  std::vector<Numbers> call(FunctionId id, std::vector<Numbers> arguments, Numbers& result) {
+    if (++depth_ > 32) throw CannotTry{};
+    Frame frame{&module_.functions[id], std::move(arguments), {}};
+    for (std::size_t i = frame.variables.size(); i < frame.function->variables.size(); ++i) {
+      frame.variables.emplace_back(size(frame.function->variables[i].type), 0.0);
+    }
+    block(frame, frame.function->body);
+    --depth_;
+    result = std::move(frame.result);
+    frame.variables.resize(frame.function->parameterCount);
+    return std::move(frame.variables);
+  }
+
+  // ---- statements ---------------------------------------------------------------------------------
+
+  Flow block(Frame& frame, const Block& statements) {
+    for (const Stmt& stmt : statements) {
+      if (const Flow flow = statement(frame, stmt); flow != Flow::Next) return flow;
+    }
+    return Flow::Next;
+  }
+
+  Flow statement(Frame& frame, const Stmt& stmt) {
+    tick();
+    return match(
+        stmt.node,
+        [&](const Declare& n) {
+          const std::size_t count = size(frame.function->variables[n.var].type);
+          frame.variables[n.var] = n.init ? of(frame, *n.init) : Numbers(count, 0.0);
+          return Flow::Next;
+        },
+        [&](const Assign& n) {
+          Numbers value = of(frame, *n.value);
+          if (n.op) value = binary(*n.op, n.place->type, n.value->type, of(frame, *n.place), value);
+          store(frame, *n.place, value);
+          return Flow::Next;
+        },
+        [&](const CallStmt& n) { return callStatement(frame, n); },
+        [&](const If& n) { return block(frame, of(frame, *n.cond)[0] != 0 ? n.then : n.otherwise); },
+        [&](const Loop& n) { return loop(frame, n); }, [&](const Switch& n) { return choice(frame, n); },
+        [](const Break&) { return Flow::Break; }, [](const Continue&) { return Flow::Continue; },
+        [&](const Return& n) {
+          if (n.value) frame.result = of(frame, *n.value);
+          return Flow::Return;
+        },
+        [&](const Scope& n) { return block(frame, n.body); }, [](const Push&) -> Flow { throw CannotTry{}; },
+        [](const Scatter&) -> Flow { throw CannotTry{}; });
+  }
+
+  Flow callStatement(Frame& frame, const CallStmt& n) {
+    const Function& callee = module_.functions[n.callee];
+    std::vector<Numbers> arguments;
+    for (const ExprPtr& arg : n.args) arguments.push_back(of(frame, *arg));
+    Numbers result;
+    const std::vector<Numbers> ends = call(n.callee, std::move(arguments), result);
+    for (std::size_t i = 0; i < n.args.size(); ++i) {
+      if (callee.variables[i].role == VarRole::InOut) store(frame, *n.args[i], ends[i]);
+    }
+    if (n.result) store(frame, *n.result, result);
+    return Flow::Next;
+  }
+
+  Flow loop(Frame& frame, const Loop& n) {
+    block(frame, n.init);
+    const auto holds = [&] { return !n.cond || of(frame, *n.cond)[0] != 0; };
+    for (bool isFirst = true;; isFirst = false) {
+      tick();
+      const bool asks = n.kind != LoopKind::DoWhile || !isFirst;
+      if (asks && !holds()) return Flow::Next;
+      const Flow flow = block(frame, n.body);
+      if (flow == Flow::Break) return Flow::Next;
+      if (flow == Flow::Return) return flow;
+      block(frame, n.step);
+    }
+  }
+
+  Flow choice(Frame& frame, const Switch& n) {
+    const auto value = static_cast<std::int64_t>(of(frame, *n.value)[0]);
+    auto at = std::ranges::find_if(
+        n.cases, [&](const Case& c) { return std::ranges::find(c.values, value) != c.values.end(); });
+    if (at == n.cases.end()) at = std::ranges::find_if(n.cases, &Case::isDefault);
+    for (; at != n.cases.end(); ++at) {
+      const Flow flow = block(frame, at->body);
+      if (flow == Flow::Break) return Flow::Next;
+      if (flow != Flow::Next) return flow;
+    }
+    return Flow::Next;
+  }
+
+  // ---- places -------------------------------------------------------------------------------------
+
+  /// A variable, and which of its numbers a place consists of.
+  struct Slots {
+    VarId var;
+    std::vector<std::size_t> numbers;
+  };
+
+  static std::vector<std::size_t> some(const std::vector<std::size_t>& all, std::size_t from,
+                                       std::size_t count) {
+    return {all.begin() + static_cast<std::ptrdiff_t>(from),
+            all.begin() + static_cast<std::ptrdiff_t>(from + count)};
+  }
+
+  Slots slots(Frame& frame, const Expr& place) {
+    if (const auto* n = std::get_if<VarRef>(&place.node)) {
+      Slots all{n->var, {}};
+      for (std::size_t i = 0; i < frame.variables[n->var].size(); ++i) all.numbers.push_back(i);
+      return all;
+    }
+    if (const auto* n = std::get_if<Member>(&place.node)) {
+      Slots base = slots(frame, *n->base);
+      base.numbers = some(base.numbers, offset(n->base->type, n->field), size(place.type));
+      return base;
+    }
+    if (const auto* n = std::get_if<Index>(&place.node)) {
+      Slots base = slots(frame, *n->base);
+      const std::size_t count = size(place.type);
+      base.numbers = some(base.numbers, indexed(frame, *n, base.numbers.size()), count);
+      return base;
+    }
+    if (const auto* n = std::get_if<Swizzle>(&place.node)) {
+      Slots base = slots(frame, *n->base);
+      std::vector<std::size_t> chosen;
+      for (const std::uint8_t component : n->components) chosen.push_back(base.numbers[component]);
+      base.numbers = std::move(chosen);
+      return base;
+    }
+    throw CannotTry{};
+  }
+
+  std::size_t offset(Type type, std::uint32_t field) const {
+    std::size_t sum = 0;
+    for (std::uint32_t i = 0; i < field; ++i) sum += size(module_.structs[type.index].fields[i].type);
+    return sum;
+  }
+
+  /// Where the part begins that an index names; outside, the nearest one.
+  std::size_t indexed(Frame& frame, const Index& n, std::size_t total) {
+    const std::size_t count =
+        size(n.base->type.kind == Type::Kind::Array ? module_.arrays[n.base->type.index].element
+                                                    : n.base->type.indexed());
+    const auto last = static_cast<double>(total / count) - 1;
+    return static_cast<std::size_t>(std::clamp(of(frame, *n.index)[0], 0.0, last)) * count;
+  }
+
+  void store(Frame& frame, const Expr& place, const Numbers& value) {
+    const Slots at = slots(frame, place);
+    for (std::size_t i = 0; i < at.numbers.size(); ++i) {
+      frame.variables[at.var][at.numbers[i]] = value.size() == 1 ? value[0] : value.at(i);
+    }
+  }
+
+  // ---- expressions --------------------------------------------------------------------------------
+
+  Numbers of(Frame& frame, const Expr& expr) {
+    tick();
+    return match(
+        expr.node, [&](const Literal& n) { return Numbers{literal(expr.type.scalar, n)}; },
+        [&](const VarRef& n) { return frame.variables.at(n.var); },
+        [&](const ConstantRef& n) { return constant(*module_.constants[n.constant].value); },
+        [&](const Unary& n) { return unary(n, of(frame, *n.operand)); },
+        [&](const Binary& n) { return binaryOf(frame, n); },
+        [&](const Select& n) { return select(frame, n); },
+        [&](const Convert& n) {
+          Numbers value = of(frame, *n.operand);
+          for (double& v : value) v = converted(n.operand->type.scalar, expr.type.scalar, v);
+          return value;
+        },
+        [&](const Construct& n) { return construct(frame, n, expr.type); },
+        [&](const Swizzle& n) {
+          const Numbers base = of(frame, *n.base);
+          Numbers value;
+          for (const std::uint8_t component : n.components) value.push_back(base[component]);
+          return value;
+        },
+        [&](const Member& n) { return part(of(frame, *n.base), offset(n.base->type, n.field), expr.type); },
+        [&](const Index& n) {
+          const Numbers base = of(frame, *n.base);
+          return part(base, indexed(frame, n, base.size()), expr.type);
+        },
+        [&](const Call& n) {
+          std::vector<Numbers> arguments;
+          for (const ExprPtr& arg : n.args) arguments.push_back(of(frame, *arg));
+          Numbers result;
+          call(n.callee, std::move(arguments), result);
+          return result;
+        },
+        [&](const IntrinsicCall& n) { return intrinsic(frame, n, expr.type); },
+        [](const GatherRead&) -> Numbers { throw CannotTry{}; },
+        [](const NeighborRead&) -> Numbers { throw CannotTry{}; },
+        [](const Sample&) -> Numbers { throw CannotTry{}; },
+        [](const IndexOf&) -> Numbers { throw CannotTry{}; },
+        [](const ExtentOf&) -> Numbers { throw CannotTry{}; });
+  }
+
+  Numbers part(const Numbers& all, std::size_t from, Type type) const {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(from);
+    return {begin, begin + static_cast<std::ptrdiff_t>(size(type))};
+  }
+
+  static double literal(Scalar scalar, const Literal& n) {
+    switch (carrierOf(scalar)) {
+      case Scalar::Bool: return n.bits != 0;
+      case Scalar::Int: return static_cast<std::int32_t>(n.bits);
+      case Scalar::Uint: return n.bits;
+      case Scalar::Double: return std::bit_cast<double>((std::uint64_t{n.high} << 32U) | n.bits);
+      default: return std::bit_cast<float>(n.bits);
+    }
+  }
+
+  static Numbers unary(const Unary& n, Numbers value) {
+    const Scalar scalar = n.operand->type.scalar;
+    const bool isIntegral = !isReal(carrierOf(scalar));
+    for (double& v : value) {
+      if (n.op == UnaryOp::LogicalNot) {
+        v = v == 0;
+      } else if (n.op == UnaryOp::BitNot) {
+        v = wrapped(scalar, ~static_cast<std::int64_t>(v));
+      } else {
+        v = isIntegral ? wrapped(scalar, -static_cast<std::int64_t>(v)) : -v;
+      }
+    }
+    return value;
+  }
+
+  Numbers binaryOf(Frame& frame, const Binary& n) {
+    Numbers a = of(frame, *n.lhs);
+    if (n.op == BinaryOp::LogicalAnd && a.size() == 1 && a[0] == 0) return {0};
+    if (n.op == BinaryOp::LogicalOr && a.size() == 1 && a[0] != 0) return {1};
+    return binary(n.op, n.lhs->type, n.rhs->type, a, of(frame, *n.rhs));
+  }
+
+  static Numbers binary(BinaryOp op, Type left, Type right, const Numbers& a, const Numbers& b) {
+    if (op == BinaryOp::Mul && left.isMatrix() && !right.isScalar()) return product(left.width, a, b);
+    const Scalar scalar = left.scalar;
+    Numbers value(std::max(a.size(), b.size()));
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const double x = a.size() == 1 ? a[0] : a.at(i), y = b.size() == 1 ? b[0] : b.at(i);
+      value[i] = isReal(carrierOf(scalar)) ? ofReals(op, x, y) : ofIntegers(op, scalar, x, y);
+    }
+    return value;
+  }
+
+  /// Of a matrix of rows, and a matrix or a column.
+  static Numbers product(std::size_t width, const Numbers& a, const Numbers& b) {
+    const std::size_t columns = b.size() / width;
+    Numbers value(width * columns, 0.0);
+    for (std::size_t row = 0; row < width; ++row) {
+      for (std::size_t column = 0; column < columns; ++column) {
+        for (std::size_t k = 0; k < width; ++k)
+          value[row * columns + column] += a[row * width + k] * b[k * columns + column];
+      }
+    }
+    return value;
+  }
+
+  Numbers select(Frame& frame, const Select& n) {
+    const Numbers cond = of(frame, *n.cond);
+    if (cond.size() == 1) return of(frame, cond[0] != 0 ? *n.yes : *n.no);
+    const Numbers yes = of(frame, *n.yes);
+    Numbers value = of(frame, *n.no);
+    for (std::size_t i = 0; i < value.size(); ++i) value[i] = cond.at(i) != 0 ? yes.at(i) : value[i];
+    return value;
+  }
+
+  Numbers construct(Frame& frame, const Construct& n, Type type) {
+    Numbers value;
+    for (const ExprPtr& arg : n.args) {
+      const Numbers numbers = of(frame, *arg);
+      value.insert(value.end(), numbers.begin(), numbers.end());
+    }
+    if (value.size() == 1) value.resize(size(type), value[0]);
+    if (value.size() != size(type)) throw CannotTry{};
+    return value;
+  }
+
+  Numbers intrinsic(Frame& frame, const IntrinsicCall& n, Type type) {
+    std::vector<Numbers> args;
+    for (const ExprPtr& arg : n.args) args.push_back(of(frame, *arg));
+    const auto dot = [](const Numbers& a, const Numbers& b) {
+      double sum = 0;
+      for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+      return sum;
+    };
+    if (n.intrinsic == Intrinsic::Dot) return {dot(args[0], args[1])};
+    if (n.intrinsic == Intrinsic::Length) return {std::sqrt(dot(args[0], args[0]))};
+    if (n.intrinsic == Intrinsic::Normalize) {
+      const double length = std::sqrt(dot(args[0], args[0]));
+      for (double& v : args[0]) v = length == 0 ? 0 : v / length;
+      return args[0];
+    }
+    if (n.intrinsic == Intrinsic::Cross) {
+      const Numbers &a = args[0], &b = args[1];
+      return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    }
+    if (n.intrinsic == Intrinsic::Any)
+      return {std::ranges::any_of(args[0], [](double v) { return v != 0; }) ? 1.0 : 0.0};
+    if (n.intrinsic == Intrinsic::All)
+      return {std::ranges::all_of(args[0], [](double v) { return v != 0; }) ? 1.0 : 0.0};
+    Numbers value(size(type));
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const auto at = [&](std::size_t arg) {
+        if (arg >= args.size()) return 0.0;
+        return args[arg].size() == 1 ? args[arg][0] : args[arg].at(i);
+      };
+      const std::optional<double> v =
+          args.size() == 1 ? ofOne(n.intrinsic, at(0)) : ofSeveral(n.intrinsic, at(0), at(1), at(2));
+      if (!v) throw CannotTry{};
+      value[i] = *v;
+    }
+    return value;
+  }
+
+  const Module& module_;
+  int steps_ = 0, depth_ = 0;
+};
+
+}  // namespace
+
+std::optional<std::vector<Numbers>> tryFunction(const Module& module, FunctionId id,
+                                                std::vector<Numbers> arguments) {
+  try {
+    return Interpreter(module).call(id, std::move(arguments));
+  } catch (const CannotTry&) {
+    return std::nullopt;
+  } catch (const std::out_of_range&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<Numbers> tryConstant(const Module& module, const Expr& expr) {
+  try {
+    return Interpreter(module).constant(expr);
+  } catch (const CannotTry&) {
+    return std::nullopt;
+  } catch (const std::out_of_range&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace skc

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+//
+// SK_CHECK=folds, which tests/run/CMakeLists.txt sets: reduces that are wrong throw, natively, and the others do not.
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "fold_checks.sk.hpp"
+#include "sk/sk.hpp"
+
+namespace {
+
+sk::Stream<float> streamOf(sk::Device& device, const std::vector<float>& values) {
+  auto stream = device.stream<float>({static_cast<std::int64_t>(values.size())});
+  stream.write(values);
+  return stream;
+}
+
+template <class Call>
+std::string messageOf(const Call& call) {
+  try {
+    call();
+  } catch (const sk::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const std::vector<float> some = {1, 2, 3.5F, -4, 5, 6.25F, 7, -8, 9, 10, 11, 12.5F};
+
+}  // namespace
+
+TEST_CASE("a fold that is not associative throws, with its values") {
+  sk::Device device = sk::Device::native();
+  const auto x = streamOf(device, some);
+  const auto half = streamOf(device, {0.5F}), one = streamOf(device, {1});
+  const std::string message = messageOf([&] { fold_checks::average(x, half); });
+  INFO(message);
+  CHECK(message.find(
+            "fold_checks::average: partial results combine in an order that depends on the device") == 0);
+  CHECK(message.find("SK_CHECK=folds") != std::string::npos);
+  CHECK(fold_checks::average(x, one) == 55.25F);
+}
+
+TEST_CASE("an identity that is not neutral throws") {
+  sk::Device device = sk::Device::native();
+  auto x = device.stream<sk::float2x2>({5});
+  x.write(std::vector<sk::float2x2>(5, sk::float2x2{{{1, 2}, {0, 1}}}));
+  const auto two = streamOf(device, {2}), one = streamOf(device, {1});
+  const std::string message = messageOf([&] { fold_checks::product(x, two); });
+  INFO(message);
+  CHECK(message.find("fold_checks::product: what it starts from is not neutral: {1, 0, 0, 1} and then") == 0);
+  CHECK(messageOf([&] { fold_checks::product(x, one); }).empty());
+}
+
+TEST_CASE("an overload that forgets a part throws") {
+  sk::Device device = sk::Device::native();
+  const auto x = streamOf(device, some);
+  const std::string message = messageOf([&] { fold_checks::mean(x); });
+  INFO(message);
+  CHECK(message.find("elements folded one after the other give") != std::string::npos);
+}
+
+TEST_CASE("a right fold gives what it gives unchecked") {
+  sk::Device device = sk::Device::native();
+  auto p = device.stream<sk::float2>({2, 3});
+  p.write(std::vector<sk::float2>{{0, 0}, {1, 5}, {2, 2}, {3, 1}, {9, 9}, {4, 4}});
+  auto to = device.stream<sk::float2>({1});
+  to.write(std::vector<sk::float2>{{3, 2}});
+  CHECK(fold_checks::nearest(p, to) == sk::float2{2, 2});
+}
