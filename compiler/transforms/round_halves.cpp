@@ -10,9 +10,9 @@
 #include "ir/quantize.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
+#include "support/overloaded.hpp"
 #include "transforms/copy_functions.hpp"
 #include "transforms/made_kernel.hpp"
-#include "support/overloaded.hpp"
 
 namespace skc {
 namespace {

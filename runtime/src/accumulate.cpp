@@ -43,7 +43,7 @@ const CompensatedReduction* compensated(const Reduction& reduction, std::span<co
   }
   if (!checked.device.arithmetic().exactSums) {
     if (options.accumulate == Accumulate::Compensated) {
-      fail(reduction.fold,
+      fail(Error::Kind::Device, reduction.fold,
            "its sums cannot be compensated on '{}', whose compiler simplifies their rounding errors away; "
            "call it without Accumulate::Compensated, or on another device (SK_DEVICE=native)",
            checked.device.name());

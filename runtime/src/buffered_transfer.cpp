@@ -34,7 +34,8 @@ std::size_t texelsOf(const Rect& rect) {
 void* atOffset(std::size_t offset) { return static_cast<std::byte*>(nullptr) + offset; }
 
 [[noreturn]] void failForMemory(const GlDevice& device, std::size_t bytes) {
-  throw Error(fmt::format("'{}' has no memory for a transfer of {} KiB", device.name(), bytes >> 10));
+  throw Error(fmt::format("'{}' has no memory for a transfer of {} KiB", device.name(), bytes >> 10),
+              Error::Kind::Memory);
 }
 
 std::int32_t layerRows(const Surface& plane) {

@@ -57,7 +57,7 @@ bool isPrivate(const struct stat& status) {
 }
 
 std::optional<struct stat> statusOf(const Descriptor& file) {
-  struct stat status {};
+  struct stat status{};
   if (!file || ::fstat(file.get(), &status) != 0) return std::nullopt;
   return status;
 }
@@ -132,10 +132,11 @@ std::optional<std::string> contentsOf(int folder, const std::string& name, std::
 
 /// Notes that a file is in use, once an hour.
 void touch(int folder, const std::string& name) {
-  struct stat status {};
+  struct stat status{};
   if (::fstatat(folder, name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) return;
   constexpr time_t hour = 3600;
-  if (::time(nullptr) - status.st_mtime > hour) ::utimensat(folder, name.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);
+  if (::time(nullptr) - status.st_mtime > hour)
+    ::utimensat(folder, name.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);
 }
 
 /// No other draft has this name, of whatever process, thread, machine or container.
@@ -169,8 +170,9 @@ std::vector<File> filesIn(Descriptor folder) {
   if (!list) return files;
   const int number = folder.release();  // which the list closes
   while (const dirent* entry = ::readdir(list.get())) {
-    struct stat status {};
-    if (!isOurs(entry->d_name) || ::fstatat(number, entry->d_name, &status, AT_SYMLINK_NOFOLLOW) != 0) continue;
+    struct stat status{};
+    if (!isOurs(entry->d_name) || ::fstatat(number, entry->d_name, &status, AT_SYMLINK_NOFOLLOW) != 0)
+      continue;
     if (S_ISDIR(status.st_mode)) continue;
     files.push_back({entry->d_name, status.st_mtim, static_cast<std::uintmax_t>(status.st_size)});
   }
@@ -223,7 +225,8 @@ std::optional<std::string> CacheFolder::read(std::string_view name, std::string_
     std::optional<std::string> whole = folder ? contentsOf(folder.get(), file, mostBytes_) : std::nullopt;
     if (!whole) return std::nullopt;
     const std::size_t firstLine = whole->find('\n');
-    const std::size_t secondLine = firstLine == std::string::npos ? firstLine : whole->find('\n', firstLine + 1);
+    const std::size_t secondLine =
+        firstLine == std::string::npos ? firstLine : whole->find('\n', firstLine + 1);
     if (secondLine == std::string::npos) return std::nullopt;
     const std::string_view text = std::string_view(*whole).substr(secondLine + 1);
     if (!whole->starts_with(headOf(key, text))) return std::nullopt;

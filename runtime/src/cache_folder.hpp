@@ -38,14 +38,16 @@ class CacheFolder {
   void write(std::string_view name, std::string_view key, std::string_view text) const noexcept;
 
   /// What is kept as a number above 0, else what `measure` finds, which is kept if it is one.
-  double measuredOnce(std::string_view name, std::string_view key, const std::function<double()>& measure) const;
+  double measuredOnce(std::string_view name, std::string_view key,
+                      const std::function<double()>& measure) const;
 
  private:
   static constexpr std::uintmax_t defaultBytes = std::uintmax_t{64} << 20;
 
   std::filesystem::path path_;
   std::uintmax_t mostBytes_ = defaultBytes;
-  mutable std::atomic<std::uintmax_t> unchecked_ = defaultBytes;  ///< bytes written since all files were counted
+  mutable std::atomic<std::uintmax_t> unchecked_ =
+      defaultBytes;  ///< bytes written since all files were counted
 };
 
 /// FNV-1a: for the names of files, and to tell whether a file is what it was.

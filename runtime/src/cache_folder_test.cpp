@@ -213,7 +213,8 @@ TEST_CASE("files are deleted when they are too many, the longest unused first") 
   CHECK(roomy.read("program", "3").has_value());  // which is used thereby
   CHECK(filesIn(folder.path) == 12);
   const CacheFolder tight(folder.path, 10'000);
-  tight.write("barrier", "a driver", "precise\n");  // seven files of 1025 bytes are three quarters of that, with this one
+  tight.write("barrier", "a driver",
+              "precise\n");  // seven files of 1025 bytes are three quarters of that, with this one
   CHECK(filesIn(folder.path) == 9);
   CHECK(tight.read("program", "3").has_value());
   CHECK(tight.read("program", "2").has_value());

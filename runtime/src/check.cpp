@@ -24,27 +24,29 @@ using program::Role;
 void checkOutputShape(const Kernel& kernel, const Parameter& first, const Shape& domain,
                       const Parameter& output, const Shape& shape) {
   if (shape != domain) {
-    fail(kernel, "the outputs '{}' and '{}' have shapes {} and {}; give them the same shape", first.name,
-         output.name, toString(domain), toString(shape));
+    fail(Error::Kind::Shape, kernel,
+         "the outputs '{}' and '{}' have shapes {} and {}; give them the same shape", first.name, output.name,
+         toString(domain), toString(shape));
   }
 }
 
 /// The stream of a variable output is taken whole, and has one dimension afterwards.
 void checkVariableOutput(const Kernel& kernel, const Parameter& output, const StreamState& stream) {
   if (stream.shape.rank() != 1) {
-    fail(kernel, "'{}' is a variable output, but its stream has shape {}; give it one of one dimension",
-         output.name, toString(stream.shape));
+    fail(Error::Kind::Shape, kernel,
+         "'{}' is a variable output, but its stream has shape {}; give it one of one dimension", output.name,
+         toString(stream.shape));
   }
 }
 
 void checkScatter(const Kernel& kernel, const Parameter& output, const Shape& shape,
                   const DeviceState& device) {
   if (shape.rank() != output.rank) {
-    fail(kernel, "'{}' is declared with {} dimension(s), but its stream has shape {}", output.name,
-         output.rank, toString(shape));
+    fail(Error::Kind::Shape, kernel, "'{}' is declared with {} dimension(s), but its stream has shape {}",
+         output.name, output.rank, toString(shape));
   }
   if (output.scatter != program::ScatterOp::Store && !device.combinesScattered()) {
-    fail(kernel,
+    fail(Error::Kind::Device, kernel,
          "'{}' combines what is scattered to it, but '{}' cannot blend 32-bit floats (GL_EXT_float_blend); "
          "push indices and values to variable outputs, and combine them in a kernel",
          output.name, device.name());
@@ -74,13 +76,13 @@ void checkDisjoint(const Kernel& kernel, std::span<const Argument> arguments,
 
 void checkPlanes(const Kernel& kernel, const DeviceState& device, std::size_t written, std::size_t read) {
   if (written > static_cast<std::size_t>(device.limits.drawBuffers)) {
-    fail(kernel,
+    fail(Error::Kind::Device, kernel,
          "the outputs have {} planes (one a scalar, vector, or member of a struct), but this device writes "
          "{} in one kernel; divide the kernel",
          written, device.limits.drawBuffers);
   }
   if (read > static_cast<std::size_t>(device.limits.textureUnits)) {
-    fail(kernel,
+    fail(Error::Kind::Device, kernel,
          "the inputs have {} planes (one a scalar, vector, or member of a struct), but this device reads "
          "{} in one kernel; divide the kernel",
          read, device.limits.textureUnits);
@@ -142,7 +144,7 @@ DeviceState* checkCall(const Kernel& kernel, std::span<const Argument> arguments
   DeviceState& device = *firstStream.device;
   const Shape domain = domainOf(kernel, arguments, specs);
   if (domain.rank() == 0) {
-    fail(kernel,
+    fail(Error::Kind::Shape, kernel,
          "no input of the domain's own shape and no iterator with one says how many elements there are; "
          "give one");
   }

@@ -49,17 +49,20 @@ bool fitsDomain(const Shape& shape, Fit fit, const Shape& domain) {
 
 StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const StreamRegion& region) {
   if (region.stream == nullptr) {
-    fail(kernel, "'{}' is a stream that was moved from", parameter.name);
+    fail(
+        Error::Kind::Lost, kernel,
+        "'{}' holds no stream: it was default-constructed or moved from; make one by device.stream<T>(shape)",
+        parameter.name);
   }
   if (region.stream->device == nullptr) {
-    fail(kernel,
+    fail(Error::Kind::Lost, kernel,
          "'{}' is a stream whose device has been destroyed; keep the device for as long as its streams "
          "are used",
          parameter.name);
   }
   if (!isSameElement(*region.stream->element, *parameter.element)) {
-    fail(kernel, "'{}' is declared as {}, but its stream holds {}", parameter.name, parameter.element->name,
-         region.stream->element->name);
+    fail(Error::Kind::Type, kernel, "'{}' is declared as {}, but its stream holds {}", parameter.name,
+         parameter.element->name, region.stream->element->name);
   }
   StreamState& stream = *region.stream;
   if (parameter.role == Role::VariableOutput) {
@@ -67,7 +70,7 @@ StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const
   }
   stream.settle();
   if (!isInside(region)) {
-    fail(kernel,
+    fail(Error::Kind::Shape, kernel,
          "'{}' is a view of shape {} that is no longer inside its stream, to which a kernel has pushed {} "
          "element(s); make the view after that call",
          parameter.name, toString(region.shape), stream.shape.size());
@@ -78,7 +81,7 @@ StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const
 void checkSameDevice(const Kernel& kernel, const Parameter& a, const StreamState& first, const Parameter& b,
                      const StreamState& second) {
   if (first.device != second.device) {
-    fail(kernel,
+    fail(Error::Kind::Device, kernel,
          "'{}' and '{}' are streams of two devices ('{}' and '{}'); copy one of them through host memory",
          a.name, b.name, first.device->name(), second.device->name());
   }
@@ -92,18 +95,19 @@ void checkInputShape(const Kernel& kernel, const Parameter& input, const Argumen
   }
   if (argument.fit != Fit::Same) {
     const bool isStretched = argument.fit == Fit::Stretched;
-    fail(kernel, "'{}' has shape {}, and the domain {}; {}", input.name, toString(shape), toString(domain),
+    fail(Error::Kind::Shape, kernel, "'{}' has shape {}, and the domain {}; {}", input.name, toString(shape),
+         toString(domain),
          isStretched ? "to stretch it, each of its extents must divide the domain's"
                      : "to stride through it, each of its extents must be a multiple of the domain's");
   }
   if (first.role != Role::Output) {
     fail(
-        kernel,
+        Error::Kind::Shape, kernel,
         "'{}' has shape {}, but the inputs together have {}; give them the same shape, or extent 1 where one "
         "repeats",
         input.name, toString(shape), toString(domain));
   }
-  fail(kernel,
+  fail(Error::Kind::Shape, kernel,
        "'{}' has shape {}, but the output '{}' has {}; give them the same shape, or extent 1 where "
        "'{}' repeats",
        input.name, toString(shape), first.name, toString(domain), input.name);
@@ -112,11 +116,12 @@ void checkInputShape(const Kernel& kernel, const Parameter& input, const Argumen
 void checkGatherShape(const Kernel& kernel, const Parameter& gather, const Shape& shape,
                       const Shape& domain) {
   if (shape.rank() != gather.rank) {
-    fail(kernel, "'{}' is declared with {} dimension(s), but its stream has shape {}", gather.name,
-         gather.rank, toString(shape));
+    fail(Error::Kind::Shape, kernel, "'{}' is declared with {} dimension(s), but its stream has shape {}",
+         gather.name, gather.rank, toString(shape));
   }
   if (shape.size() == 0 && domain.size() != 0) {
-    fail(kernel, "'{}' has shape {}: there is no element to read", gather.name, toString(shape));
+    fail(Error::Kind::Shape, kernel, "'{}' has shape {}: there is no element to read", gather.name,
+         toString(shape));
   }
 }
 
@@ -146,7 +151,7 @@ void checkValue(const Kernel& kernel, const Parameter& parameter, const Argument
   }
   const Shape& shape = argument.region.shape;
   if (shape.rank() != 0 && shape != domain) {
-    fail(kernel,
+    fail(Error::Kind::Shape, kernel,
          "the iterator '{}' has shape {}, but the domain is {}; make it with the same shape, or with none",
          parameter.name, toString(shape), toString(domain));
   }
@@ -165,13 +170,14 @@ void checkGiven(const Kernel& kernel, const Parameter& parameter, const Argument
 void checkElements(const Kernel& kernel, const DeviceState& device, const Shape& domain) {
   for (int d = 0; d < domain.rank() && domain.size() > 0; ++d) {
     if (domain[d] > mostExtent) {
-      fail(kernel, "the domain of shape {} has an extent above {}, where indices end; divide it", toString(domain),
+      fail(Error::Kind::Shape, kernel,
+           "the domain of shape {} has an extent above {}, where indices end; divide it", toString(domain),
            mostExtent);
     }
   }
   if (domain.size() > device.limits.elements) {
-    fail(kernel, "the domain of shape {} has {} elements, but '{}' numbers {}; divide it", toString(domain),
-         domain.size(), device.name(), device.limits.elements);
+    fail(Error::Kind::Shape, kernel, "the domain of shape {} has {} elements, but '{}' numbers {}; divide it",
+         toString(domain), domain.size(), device.name(), device.limits.elements);
   }
 }
 
@@ -185,7 +191,7 @@ void checkUniforms(const Kernel& kernel, const DeviceState& device) {
     }
   }
   if (components > static_cast<std::size_t>(device.limits.uniformComponents)) {
-    fail(kernel,
+    fail(Error::Kind::Device, kernel,
          "its uniforms have {} components, but this device has room for {}; read large arrays as gathers",
          components, device.limits.uniformComponents);
   }

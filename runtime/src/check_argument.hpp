@@ -18,9 +18,14 @@ namespace sk {
 class DeviceState;
 
 template <class... Values>
+[[noreturn]] void fail(Error::Kind kind, const program::Kernel& kernel, fmt::format_string<Values...> format,
+                       Values&&... values) {
+  throw Error(fmt::format("{}: {}", kernel.name, fmt::format(format, std::forward<Values>(values)...)), kind);
+}
+template <class... Values>
 [[noreturn]] void fail(const program::Kernel& kernel, fmt::format_string<Values...> format,
                        Values&&... values) {
-  throw Error(fmt::format("{}: {}", kernel.name, fmt::format(format, std::forward<Values>(values)...)));
+  fail(Error::Kind::Misuse, kernel, format, std::forward<Values>(values)...);
 }
 
 /// A stream that lives, of the type that the parameter declares.

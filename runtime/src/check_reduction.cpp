@@ -41,7 +41,8 @@ class Arguments {
     }
     const Shape domain = domainOf(fold_, arguments_, specs_);
     if (domain.rank() == 0) {
-      fail(fold_, "no input and no iterator with a shape says how many elements there are; give one");
+      fail(Error::Kind::Shape, fold_,
+           "no input and no iterator with a shape says how many elements there are; give one");
     }
     if (first_ == SIZE_MAX) {
       fail(fold_, "no stream is given that says what device to fold on; give one");
@@ -94,13 +95,13 @@ class Arguments {
   void checkUnits(const DeviceState& device) const {
     const auto most = static_cast<std::size_t>(device.limits.textureUnits);
     if (const std::size_t planes = planesRead(fold_, specs_); planes > most) {
-      fail(fold_,
+      fail(Error::Kind::Device, fold_,
            "the inputs and gathers have {} planes (one a scalar, vector, or member of a struct), but this "
            "device reads {} in one pass; put scalars together in vectors, or divide the reduce",
            planes, most);
     }
     if (const std::size_t planes = planesRead(reduction_.combine, specs_); planes > most) {
-      fail(fold_,
+      fail(Error::Kind::Device, fold_,
            "to combine partial results, {} planes are read (one a scalar, vector, or member of a struct of "
            "the accumulators), but this device reads {} in one pass; put scalars together in vectors, or "
            "divide the reduce",
@@ -122,7 +123,8 @@ class Arguments {
         first = &result;
         shape = region.shape;
       } else if (region.shape != shape) {
-        fail(fold_, "the outputs '{}' and '{}' have shapes {} and {}; give them the same shape", first->name,
+        fail(Error::Kind::Shape, fold_,
+             "the outputs '{}' and '{}' have shapes {} and {}; give them the same shape", first->name,
              result.name, toString(shape), toString(region.shape));
       }
       checkDisjoint(i);
@@ -148,12 +150,13 @@ class Arguments {
       return grids.front();
     }
     if (grids.empty()) {
-      fail(fold_,
+      fail(Error::Kind::Shape, fold_,
            "{} {}, and the output '{}' has {}; give the output as many dimensions, or fewer, each extent a "
            "divisor of the input's",
            inputs(), toString(domain), result.name, toString(shape));
     }
-    fail(fold_, "{} {}, and the output '{}' has {}, which could mean {} or {}; write the one that you mean",
+    fail(Error::Kind::Shape, fold_,
+         "{} {}, and the output '{}' has {}, which could mean {} or {}; write the one that you mean",
          inputs(), toString(domain), result.name, toString(shape), toString(grids[0]), toString(grids[1]));
   }
 
@@ -169,8 +172,8 @@ class Arguments {
   void checkIdentities(const Shape& domain) const {
     for (const Parameter& parameter : fold_.parameters) {
       if (parameter.role == Role::Accumulator && parameter.identity.empty()) {
-        fail(fold_, "{} {}: there is no element to fold, and '{}' declares no identity", inputs(),
-             toString(domain), parameter.name);
+        fail(Error::Kind::Shape, fold_, "{} {}: there is no element to fold, and '{}' declares no identity",
+             inputs(), toString(domain), parameter.name);
       }
     }
   }

@@ -46,14 +46,18 @@ TEST_CASE("streams of more bytes than there are addresses are refused") {
   Device native = Device::native();
   Device reference = Device::reference();
   for (Device* device : {&native, &reference}) {
-    for (const Shape& shape : {Shape(std::int64_t{1} << 62), Shape(std::int64_t{1} << 61, 2), Shape(largest)}) {
-      CHECK_THAT(errorOf([&] { device->stream<float>(shape); }), Contains("too large") && Contains(toString(shape)));
-      CHECK_THAT(errorOf([&] { device->stream<std::int8_t>(shape); }), Contains("too large") || Contains("an extent above"));
+    for (const Shape& shape :
+         {Shape(std::int64_t{1} << 62), Shape(std::int64_t{1} << 61, 2), Shape(largest)}) {
+      CHECK_THAT(errorOf([&] { device->stream<float>(shape); }),
+                 Contains("too large") && Contains(toString(shape)));
+      CHECK_THAT(errorOf([&] { device->stream<std::int8_t>(shape); }),
+                 Contains("too large") || Contains("an extent above"));
     }
     // not so large that a size would overflow, and more than any machine has
     CHECK_THAT(errorOf([&] { device->stream<float>({1 << 28, 1 << 28}); }),
                Contains("no memory") && Contains(" bytes"));
-    CHECK_THAT(errorOf([&] { device->stream<float>({mostExtent + 1}); }), Contains("an extent above 1073741823"));
+    CHECK_THAT(errorOf([&] { device->stream<float>({mostExtent + 1}); }),
+               Contains("an extent above 1073741823"));
   }
 }
 

@@ -33,7 +33,8 @@ Choice choiceOf(std::span<const std::string_view> names, const std::string& file
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) {
     throw Error(fmt::format("{}:{}: {} is one of \"{}\"", file, node.source().begin.line, key,
-                            fmt::join(names, "\", \"")));
+                            fmt::join(names, "\", \"")),
+                Error::Kind::File);
   }
   return static_cast<Choice>(found - names.begin() + 1);
 }
@@ -54,10 +55,12 @@ CallOptions optionsOf(const std::string& file, const toml::table& table) {
     } else if (key == "contraction") {
       options.contraction = choiceOf<Contraction>(contractions, file, "contraction", node);
     } else {
-      throw Error(fmt::format(
-          "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables, target "
-          "and contraction",
-          file, key.source().begin.line, key.str()));
+      throw Error(
+          fmt::format(
+              "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables, target "
+              "and contraction",
+              file, key.source().begin.line, key.str()),
+          Error::Kind::File);
     }
   }
   return options;
@@ -68,7 +71,8 @@ float numberOf(const std::string& file, const toml::key& key, const toml::node& 
   const std::optional<double> value = node.value<double>();
   if (!value || !std::isfinite(static_cast<float>(*value))) {
     throw Error(
-        fmt::format("{}:{}: {} is a number of float's range", file, node.source().begin.line, key.str()));
+        fmt::format("{}:{}: {} is a number of float's range", file, node.source().begin.line, key.str()),
+        Error::Kind::File);
   }
   return static_cast<float>(*value);
 }
@@ -84,12 +88,14 @@ Configuration::RangeChoice rangeOf(const std::string& file, const toml::key& nam
       const std::int64_t count = node.value_exact<std::int64_t>().value_or(0);
       if (count < 1 || count > mostIntervals) {
         throw Error(fmt::format("{}:{}: intervals is a whole number from 1 to {}", file,
-                                node.source().begin.line, mostIntervals));
+                                node.source().begin.line, mostIntervals),
+                    Error::Kind::File);
       }
       choice.intervals = static_cast<std::int32_t>(count);
     } else {
       throw Error(fmt::format("{}:{}: a table has no '{}'; it has low, high and intervals", file,
-                              key.source().begin.line, key.str()));
+                              key.source().begin.line, key.str()),
+                  Error::Kind::File);
     }
   }
   return choice;
@@ -100,13 +106,15 @@ Storage storageOf(const std::string& file, const toml::key& name, const toml::ta
   for (const auto& [key, node] : table) {
     if (key != "storage") {
       throw Error(fmt::format("{}:{}: a stream has no '{}'; it has storage", file, key.source().begin.line,
-                              key.str()));
+                              key.str()),
+                  Error::Kind::File);
     }
     storage = choiceOf<Storage>(storages, file, "storage", node);
   }
   if (storage == Storage::Default) {
     throw Error(fmt::format("{}:{}: expected storage = \"half\" or the like for stream '{}'", file,
-                            name.source().begin.line, name.str()));
+                            name.source().begin.line, name.str()),
+                Error::Kind::File);
   }
   return storage;
 }
@@ -117,7 +125,8 @@ toml::table parsed(const std::string& file) {
   } catch (const toml::parse_error& error) {
     const auto line = error.source().begin.line;
     throw Error(line == 0 ? fmt::format("{} (option or SK_CONFIG): {}", file, error.description())
-                          : fmt::format("{}:{}: {}", file, line, error.description()));
+                          : fmt::format("{}:{}: {}", file, line, error.description()),
+                Error::Kind::File);
   }
 }
 
@@ -139,15 +148,16 @@ Configuration::Configuration(const std::string& file) {
     const toml::table* named = node.as_table();
     const bool isKnown = key == "kernels" || key == "tables" || key == "streams";
     if (!isKnown || named == nullptr) {
-      throw Error(
-          fmt::format("{}:{}: expected tables like [kernels.\"heat::diffuse\"], [kernels.\"*\"], "
-                      "[tables.\"heat::response\"] or [streams.\"heat::u\"]",
-                      file, key.source().begin.line));
+      throw Error(fmt::format("{}:{}: expected tables like [kernels.\"heat::diffuse\"], [kernels.\"*\"], "
+                              "[tables.\"heat::response\"] or [streams.\"heat::u\"]",
+                              file, key.source().begin.line),
+                  Error::Kind::File);
     }
     for (const auto& [name, choices] : *named) {
       if (!choices.is_table()) {
         throw Error(fmt::format("{}:{}: expected a table, [{}.\"{}\"]", file, name.source().begin.line,
-                                key.str(), name.str()));
+                                key.str(), name.str()),
+                    Error::Kind::File);
       }
       if (key == "kernels") {
         kernels_[std::string(name.str())] = optionsOf(file, *choices.as_table());
@@ -177,7 +187,8 @@ TableRange Configuration::rangeOf(const program::Table& table) const {
   if (!(range.low < range.high)) {
     throw Error(
         fmt::format("{}: the table of '{}' begins at {} and ends at {}; say low and high so that low is less",
-                    choice.place, table.function, range.low, range.high));
+                    choice.place, table.function, range.low, range.high),
+        Error::Kind::File);
   }
   return range;
 }

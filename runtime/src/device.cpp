@@ -44,7 +44,8 @@ std::optional<gl::Api> apiOf(const std::string& profile) {
     known += fmt::format("{}{}", known.empty() ? "" : ", ", row.name);
   }
   throw Error(
-      fmt::format("there is no profile '{}'; choose one of {} (option or SK_PROFILE)", profile, known));
+      fmt::format("there is no profile '{}'; choose one of {} (option or SK_PROFILE)", profile, known),
+      Error::Kind::Device);
 }
 
 /// What programs of a profile run as; where none is named, what is faster.
@@ -192,7 +193,7 @@ Device Device::reference(Reference kind) {
 
 DeviceState& Device::state() const {
   if (!state_) {
-    throw Error("the device was moved from");
+    throw Error("the device was moved from", Error::Kind::Lost);
   }
   return *state_;
 }
@@ -204,9 +205,11 @@ detail::StreamOwner Device::createStream(const program::Element& element, const 
     storage = holdsFloats ? state().configuration.storageOf(name) : Storage::Single;
   }
   if (storage != Storage::Single && !holdsFloats) {
-    throw Error(fmt::format(
-        "a stream of {} has no float or vector of floats to hold otherwise; make it without a Storage",
-        element.name));
+    throw Error(
+        fmt::format(
+            "a stream of {} has no float or vector of floats to hold otherwise; make it without a Storage",
+            element.name),
+        Error::Kind::Type);
   }
   return withHostMemory("a new stream", [&] {
     detail::StreamOwner stream(state().createStream(element, shape, storage).release());

@@ -31,7 +31,8 @@ gl::Framebuffer& FramebufferCache::framebufferOf(std::span<const GLuint> texture
   gl::Framebuffer made(bound_, textures, isLayered);
   if (!gl::Framebuffer::isComplete()) {
     bound_.framebuffer(0);
-    throw Error("the driver cannot draw to these textures at once; write fewer outputs in one kernel");
+    throw Error("the driver cannot draw to these textures at once; write fewer outputs in one kernel",
+                Error::Kind::Device);
   }
   return framebuffers_.emplace(key, std::move(made)).first->second;
 }

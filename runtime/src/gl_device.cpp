@@ -46,9 +46,10 @@ assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capab
 /// The one that is asked for, else the strongest that the language has.
 Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& choices) {
   if (choices.barrier == Barrier::Precise && !capabilities.hasPrecise) {
-    throw Error(fmt::format("'{}' has no `precise` in its {}; choose xor or none (option or SK_BARRIER)",
-                            capabilities.renderer,
-                            capabilities.api == gl::Api::Gl ? "GLSL 3.30" : "ESSL 3.00"));
+    throw Error(
+        fmt::format("'{}' has no `precise` in its {}; choose xor or none (option or SK_BARRIER)",
+                    capabilities.renderer, capabilities.api == gl::Api::Gl ? "GLSL 3.30" : "ESSL 3.00"),
+        Error::Kind::Device);
   }
   return choices.barrier.value_or(capabilities.hasPrecise ? Barrier::Precise : Barrier::Xor);
 }
@@ -71,7 +72,8 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     throw Error(
         fmt::format("'{}' runs no compute programs, which take OpenGL 4.3; leave profile glsl430 (option or "
                     "SK_PROFILE) out",
-                    capabilities.renderer));
+                    capabilities.renderer),
+        Error::Kind::Device);
   }
   choose({}, assemble::Stage::Fragment);
   limits.textureSize = capabilities.textureSize;
@@ -242,7 +244,8 @@ GLuint GlDevice::textureOf(const FunctionTable& table) {
     texture = gl::Texture(bound, gl::formatOf(program::Scalar::Float, width), {assemble::tableWidth, rows});
     if (texture.name() == 0) {
       throw Error(fmt::format("'{}' has no memory for the table of '{}': {} KiB", capabilities.renderer,
-                              table.report.function, texels.size() * sizeof(float) >> 10));
+                              table.report.function, texels.size() * sizeof(float) >> 10),
+                  Error::Kind::Memory);
     }
     texture.write(bound, {0, 0, assemble::tableWidth, rows}, 0, texels.data());
   }
@@ -273,7 +276,7 @@ const Arithmetic& GlDevice::arithmetic() {
 
 void GlDevice::needExactSums(const program::Kernel& kernel) {
   if (!arithmetic().exactSums) {
-    fail(kernel,
+    fail(Error::Kind::Device, kernel,
          "it computes with pairs of floats, and the compiler of '{}' simplifies their rounding errors away; "
          "use float, or a device that has doubles (SK_DEVICE=native)",
          name());
@@ -295,22 +298,24 @@ void GlDevice::checkProgram(const program::Reduction& reduction) {
 
 void GlDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
   if (asked == Target::Native) {
-    fail(kernel, "its streams are on '{}'; native code runs on streams of sk::Device::native()", name());
+    fail(Error::Kind::Device, kernel,
+         "its streams are on '{}'; native code runs on streams of sk::Device::native()", name());
   }
   constexpr std::string_view compileForBoth = "compile its .sk file with skc --target=fragment,compute";
   const bool mustDispatch = asked == Target::Compute || !kernel.drawn;
   const std::string_view wayOut = kernel.drawn ? "call it without Target::Compute" : compileForBoth;
   if (mustDispatch && !capabilities.hasCompute) {
-    fail(kernel, "'{}' runs no compute programs, which take OpenGL 4.3; {}", name(), wayOut);
+    fail(Error::Kind::Device, kernel, "'{}' runs no compute programs, which take OpenGL 4.3; {}", name(),
+         wayOut);
   }
   if (mustDispatch && hasSinks(kernel)) {
-    fail(kernel, "variable and scatter outputs are drawn; {}", wayOut);
+    fail(Error::Kind::Device, kernel, "variable and scatter outputs are drawn; {}", wayOut);
   }
   if (mustDispatch && !kernel.dispatched) {
-    fail(kernel, "it has no compute programs; {}", compileForBoth);
+    fail(Error::Kind::Compile, kernel, "it has no compute programs; {}", compileForBoth);
   }
   if (asked == Target::Fragment && !kernel.drawn) {
-    fail(kernel, "it has no fragment programs; {}", compileForBoth);
+    fail(Error::Kind::Compile, kernel, "it has no fragment programs; {}", compileForBoth);
   }
 }
 
@@ -320,7 +325,8 @@ void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& op
     needExactSums(kernel);
   }
   if (options.precision == Precision::Double && profile.doubles != assemble::Doubles::Native) {
-    fail(kernel, "'{}' has no doubles of its own; call it in Precision::Extended", name());
+    fail(Error::Kind::Device, kernel, "'{}' has no doubles of its own; call it in Precision::Extended",
+         name());
   }
 }
 
@@ -354,7 +360,7 @@ void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argu
   if (!isOther) return;
   if (written > static_cast<std::size_t>(limits.drawBuffers) ||
       read > static_cast<std::size_t>(limits.textureUnits)) {
-    fail(kernel,
+    fail(Error::Kind::Device, kernel,
          "its streams hold {} planes to write and {} to read, but this device has room for {} and {}; make "
          "those of vectors with Storage::Single",
          written, read, limits.drawBuffers, limits.textureUnits);
@@ -375,7 +381,8 @@ std::vector<Surface> GlDevice::takePlanes(const program::Element& element,
           fmt::format("'{}' has no memory for {}: {} texture(s) of {} x {}{} texels, one of them of {} MiB",
                       capabilities.renderer, whatFor, element.fields.size(), shape.width, shape.height,
                       shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
-                      (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20));
+                      (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20),
+          Error::Kind::Memory);
     }
     labels.texture(plane.texture.name(), whatFor);
     planes.push_back(std::move(plane));
@@ -404,7 +411,8 @@ void GlDevice::throwPendingError() {
   const bool isOurs = !isGuest() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
   if (error != GL_NO_ERROR && isOurs) {
     throw Error(fmt::format("the driver of '{}' reports {}; what the device's streams hold is undefined",
-                            capabilities.renderer, gl::errorName(error)));
+                            capabilities.renderer, gl::errorName(error)),
+                error == GL_OUT_OF_MEMORY ? Error::Kind::Memory : Error::Kind::Lost);
   }
 }
 

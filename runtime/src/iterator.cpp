@@ -42,7 +42,8 @@ void checkIterator(const program::Kernel& kernel, const program::Parameter& para
     throw Error(
         fmt::format("{}: the iterator '{}' has {} components, but the domain {} has {} dimensions; give it "
                     "one for each, or a scalar to count the elements",
-                    kernel.name, parameter.name, field.width, toString(domain), domain.rank()));
+                    kernel.name, parameter.name, field.width, toString(domain), domain.rank()),
+        Error::Kind::Shape);
   }
   if (field.scalar == Scalar::Float) {
     return;
@@ -52,10 +53,12 @@ void checkIterator(const program::Kernel& kernel, const program::Parameter& para
     const std::int64_t end = integerOf(field.scalar, componentOf(ends, field.width, 1, c));
     const std::int64_t steps = stepsOf(parameter, domain, c);
     if ((end - begin) % steps != 0) {
-      throw Error(fmt::format(
-          "{}: the iterator '{}' goes from {} to {} in {} steps, which are not whole; choose ends "
-          "whose difference {} divides, or iterate over float",
-          kernel.name, parameter.name, begin, end, steps, steps));
+      throw Error(
+          fmt::format(
+              "{}: the iterator '{}' goes from {} to {} in {} steps, which are not whole; choose ends "
+              "whose difference {} divides, or iterate over float",
+              kernel.name, parameter.name, begin, end, steps, steps),
+          Error::Kind::Shape);
     }
   }
 }

@@ -37,7 +37,8 @@ assemble::TextureShape textureOf(std::int64_t count, const assemble::TextureLimi
     throw Error(
         fmt::format("{} has {} elements, but a texture of this device holds no more than {} layers of "
                     "{} x {} texels, and a stream {} elements; {}",
-                    what, count, limits.layers, limits.size, limits.size, mostElements, advice));
+                    what, count, limits.layers, limits.size, limits.size, mostElements, advice),
+        Error::Kind::Shape);
   }
   return *texture;
 }
@@ -76,7 +77,7 @@ assemble::Index4 xFirst(const Shape& shape) {
 
 Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits, bool packed) {
   if (shape.rank() == 0) {
-    throw Error("a stream needs a shape of 1 to 4 dimensions");
+    throw Error("a stream needs a shape of 1 to 4 dimensions", Error::Kind::Shape);
   }
   if (shape.size() == 0) {
     return {};

@@ -34,7 +34,8 @@ PendingRead::PendingRead(GlDevice& device, GlStream& stream, const StreamRegion&
   try {
     const GlStream::Travelling what = stream.travelling(region);
     const program::Element& own = held_ ? held_->element : element_;  // the stream's may end before this does
-    read_.emplace(device).add(what.element == &stream.held() ? own : *what.element, stream.planes, what.place);
+    read_.emplace(device).add(what.element == &stream.held() ? own : *what.element, stream.planes,
+                              what.place);
     read_->begin();
   } catch (...) {
     const std::lock_guard lock(all_->mutex);
@@ -63,7 +64,7 @@ void PendingRead::wait() {
 }
 
 void PendingRead::take(std::byte* elements) {
-  if (!failure_.empty()) throw Error(failure_);
+  if (!failure_.empty()) throw Error(failure_, Error::Kind::Lost);
   if (device_ == nullptr) {
     std::memcpy(elements, landed_.data(), landed_.size());
     return;

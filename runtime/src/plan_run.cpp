@@ -57,7 +57,8 @@ gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const O
   gl::Texture made(device.bound, gl::formatOf(bundle.scalar, bundle.width), shape);
   if (made.name() == 0) {
     throw Error(fmt::format("'{}' has no room for inputs that share a texture: {} layers of {} x {} texels",
-                            device.capabilities.renderer, shape.layers, shape.width, shape.height));
+                            device.capabilities.renderer, shape.layers, shape.width, shape.height),
+                Error::Kind::Memory);
   }
   const assemble::Rect texels{0, 0, shape.width, shape.height * shape.layers};
   const PassScope traced(device, {"copy", "to layers", "blit"}, texels, made.format().texelBytes());

@@ -20,7 +20,7 @@ using program::Role;
 using program::WideReduction;
 
 [[noreturn]] void failWithoutForm(const Kernel& kernel, std::string_view form, std::string_view why) {
-  fail(kernel, "it has no form in {}: {}; call it in Precision::Single", form, why);
+  fail(Error::Kind::Compile, kernel, "it has no form in {}: {}; call it in Precision::Single", form, why);
 }
 
 const WideReduction* wideForm(const Reduction& reduction) {
@@ -36,7 +36,7 @@ void checkPlanes(const Reduction& plain, const Reduction& wide, const DeviceLimi
     if (parameter.role == Role::Accumulator) planes += parameter.element->fields.size();
   }
   if (planes > static_cast<std::size_t>(limits.textureUnits)) {
-    fail(plain.fold,
+    fail(Error::Kind::Device, plain.fold,
          "its accumulators take {} textures as doubles, but the device has units for {}; call it in "
          "Precision::Single",
          planes, limits.textureUnits);

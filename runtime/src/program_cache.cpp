@@ -77,7 +77,8 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::s
     auto made = makeKernelProgram(kernel, variant,
                                   started.empty() ? begin(kernel, variant) : std::move(started.mapped()));
     makeRoom(kernels_, [&](const ProgramKey& other) { return other.kernel == &kernel; });
-    return *kernels_.insert_or_assign(key, Kept<KernelProgram>{std::move(made), ++clock_}).first->second.program;
+    return *kernels_.insert_or_assign(key, Kept<KernelProgram>{std::move(made), ++clock_})
+                .first->second.program;
   }
   found->second.used = ++clock_;
   return *found->second.program;
@@ -157,7 +158,8 @@ void ProgramCache::findTables(KernelProgram& made, const program::Kernel& kernel
         fmt::format("{}: its streams and the tables of its functions take {} texture units, but this device "
                     "has {}; call it "
                     "with Tables::Off",
-                    kernel.name, units, device_.limits.textureUnits));
+                    kernel.name, units, device_.limits.textureUnits),
+        Error::Kind::Device);
   }
   for (const program::TableUse& use : kernel.tables) {
     const FunctionTable& table = device_.tables.of(*use.table, device_.configuration);
@@ -247,9 +249,10 @@ void ProgramCache::finish(KernelProgram& made, const program::Kernel& kernel, Pr
   if (!made.program) {
     log.clear();
     gl::Program::build({begun.sources().vertex, withTellingLines(begun.sources().main)}, log);
-    throw Error(fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
-                            device_.capabilities.renderer, profile_.name,
-                            withSourceNames(log, kernel.sources)));
+    throw Error(
+        fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
+                    device_.capabilities.renderer, profile_.name, withSourceNames(log, kernel.sources)),
+        Error::Kind::Compile);
   }
   device_.labels.program(made.program.name(), kernel.name);
   made.stage = profile_.stage;
@@ -288,7 +291,8 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
       findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
     }
     makeRoom(reductions_, [&](const ReduceKey& other) { return other.first == &reduction; });
-    return *reductions_.insert_or_assign(key, Kept<ReduceProgram>{std::move(made), ++clock_}).first->second.program;
+    return *reductions_.insert_or_assign(key, Kept<ReduceProgram>{std::move(made), ++clock_})
+                .first->second.program;
   }
   found->second.used = ++clock_;
   return *found->second.program;

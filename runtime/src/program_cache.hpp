@@ -41,13 +41,13 @@ struct KernelProgram {
     std::size_t parameter;
     PlacementUniforms uniforms;
     gl::IntUniform ratio;
-    GLuint sampler = 0;         ///< for its only plane; 0: the texture's own settings
+    GLuint sampler = 0;  ///< for its only plane; 0: the texture's own settings
   };
 
   struct Table {
     GLuint texture;
     gl::FieldUniform range;
-    std::array<float, 3> values;   ///< of the uniform
+    std::array<float, 3> values;  ///< of the uniform
   };
 
   /// Where a list's program finds the tree over the counts (assemble/count_tree.hpp).
@@ -60,26 +60,26 @@ struct KernelProgram {
 
   gl::Program program;
   assemble::Stage stage = assemble::Stage::Fragment;
-  gl::IntUniform rect;          ///< of a compute program: the texels that a dispatch writes
+  gl::IntUniform rect;  ///< of a compute program: the texels that a dispatch writes
   std::array<GLint, 3> workGroup{1, 1, 1};
-  bool isGrouped = false;       ///< a work group computes a texel
-  bool isPacked = false;        ///< a texel holds as many elements as it has lanes
+  bool isGrouped = false;  ///< a work group computes a texel
+  bool isPacked = false;  ///< a texel holds as many elements as it has lanes
   PlacementUniforms domain;
-  gl::IntUniform domainRow;     ///< of a layered domain: the first row of the layer that is drawn
-  PlacementUniforms target;     ///< of the scatter output whose list it makes
-  Tree tree;                    ///< its textures lie on the units from `units` on
-  int units = 0;                ///< what `reads` take
+  gl::IntUniform domainRow;  ///< of a layered domain: the first row of the layer that is drawn
+  PlacementUniforms target;  ///< of the scatter output whose list it makes
+  Tree tree;  ///< its textures lie on the units from `units` on
+  int units = 0;  ///< what `reads` take
   std::vector<Value> values;
   std::vector<Double> doubles;
-  std::vector<Value> steps;     ///< of iterators
-  std::vector<Read> reads;      ///< their planes lie on consecutive texture units, from 0, in this order
-  std::vector<std::size_t> bundles;   ///< of the plan, on the units after these
-  std::vector<Table> tables;          ///< of functions, on the units after those
+  std::vector<Value> steps;  ///< of iterators
+  std::vector<Read> reads;  ///< their planes lie on consecutive texture units, from 0, in this order
+  std::vector<std::size_t> bundles;  ///< of the plan, on the units after these
+  std::vector<Table> tables;  ///< of functions, on the units after those
 };
 
 /// One variant of a reduction's passes.
 struct ReduceProgram {
-  KernelProgram kernel;         ///< with the parameters of the kernel that it calls
+  KernelProgram kernel;  ///< with the parameters of the kernel that it calls
   std::vector<std::pair<std::string, gl::IntUniform>> uniforms;
 
   gl::IntUniform& uniform(const assemble::UniformValue& value);

@@ -27,9 +27,11 @@ std::string toString(const Shape& shape) { return inBraces(shape); }
 std::string toString(const Index& index) { return inBraces(index); }
 
 void Shape::throwInvalid(const char* why) const {
-  throw Error(fmt::format("shape {} is not one: {}", toString(*this), why));
+  throw Error(fmt::format("shape {} is not one: {}", toString(*this), why), Error::Kind::Shape);
 }
 
-void detail::throwExtentTooLarge() { throw Error("an extent or position does not fit in 63 bits"); }
+void detail::throwExtentTooLarge() {
+  throw Error("an extent or position does not fit in 63 bits", Error::Kind::Shape);
+}
 
 }  // namespace sk

@@ -144,7 +144,7 @@ class SinkCall {
   }
 
   [[noreturn]] void failForPushes(const Parameter& sink) const {
-    fail(kernel_, "it {} '{}' more than {} values in one call; divide the domain",
+    fail(Error::Kind::Shape, kernel_, "it {} '{}' more than {} values in one call; divide the domain",
          sink.role == Role::Scatter ? "scatters to" : "pushes to", sink.name, mostPushes);
   }
 

@@ -31,7 +31,8 @@ std::unique_ptr<StepProgram> SinkPrograms::build(const std::string& vertexSource
   gl::Program program = ProgramBuild(device_, {vertexSource, fragmentSource}).finish(device_, log);
   if (!program) {
     throw Error(fmt::format("the driver of '{}' refuses the program of {}:\n{}",
-                            device_.capabilities.renderer, what, log));
+                            device_.capabilities.renderer, what, log),
+                Error::Kind::Compile);
   }
   device_.bound.program(program.name());
   return std::make_unique<StepProgram>(std::move(program));

@@ -21,7 +21,8 @@ StreamState* checkTransfer(const StreamRegion& region, std::size_t count, const 
   const std::int64_t size = region.shape.size();
   if (static_cast<std::size_t>(size) != count) {
     throw Error(fmt::format("{}: {} element(s) in host memory, but shape {} has {}; give exactly as many",
-                            what, count, toString(region.shape), size));
+                            what, count, toString(region.shape), size),
+                Error::Kind::Shape);
   }
   return size == 0 ? nullptr : &stream;
 }
@@ -43,14 +44,19 @@ class TransferScope {
 /// No form of a scalar takes more than four times its bytes in host memory: __float128 for a float.
 void checkSize(const program::Element& type, const Shape& extents) {
   if (!checkedProduct(extents.size(), 4 * std::int64_t{type.size})) {
-    throw Error(fmt::format("a stream of {} of shape {} is too large: its elements would take 2^61 bytes or more",
-                            type.name, toString(extents)));
+    throw Error(
+        fmt::format("a stream of {} of shape {} is too large: its elements would take 2^61 bytes or more",
+                    type.name, toString(extents)),
+        Error::Kind::Memory);
   }
   for (int d = 0; d < extents.rank() && extents.size() > 0; ++d) {
     if (extents[d] > mostExtent) {
-      throw Error(fmt::format("a stream of {} of shape {} has an extent above {}, where indices end; give it rows, or "
-                              "divide it",
-                              type.name, toString(extents), mostExtent));
+      throw Error(
+          fmt::format(
+              "a stream of {} of shape {} has an extent above {}, where indices end; give it rows, or "
+              "divide it",
+              type.name, toString(extents), mostExtent),
+          Error::Kind::Shape);
     }
   }
 }
@@ -92,20 +98,26 @@ bool isInside(const StreamRegion& region) {
 
 StreamState& liveStream(const StreamRegion& region, std::string_view context) {
   if (region.stream == nullptr) {
-    throw Error(fmt::format("{}: the stream was moved from", context));
+    throw Error(fmt::format("{}: there is no stream: it was default-constructed or moved from; make one by "
+                            "device.stream<T>(shape)",
+                            context),
+                Error::Kind::Lost);
   }
   if (region.stream->device == nullptr) {
     throw Error(
         fmt::format("{}: the device of this stream of shape {} has been destroyed; keep the device for as "
                     "long as its streams are used",
-                    context, toString(region.stream->shape)));
+                    context, toString(region.stream->shape)),
+        Error::Kind::Lost);
   }
   region.stream->settle();
   if (region.shape.rank() > 0 && !isInside(region)) {
-    throw Error(fmt::format(
-        "{}: a view from {} of shape {} is no longer inside its stream, to which a kernel has pushed {} "
-        "element(s); make the view after the call",
-        context, toString(region.begin), toString(region.shape), region.stream->shape.size()));
+    throw Error(
+        fmt::format(
+            "{}: a view from {} of shape {} is no longer inside its stream, to which a kernel has pushed {} "
+            "element(s); make the view after the call",
+            context, toString(region.begin), toString(region.shape), region.stream->shape.size()),
+        Error::Kind::Shape);
   }
   return *region.stream;
 }
@@ -124,7 +136,10 @@ StreamRegion detail::wholeRegion(StreamState* state) {
 
 StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, const Index& end) {
   if (region.stream == nullptr) {
-    throw Error("domain: the stream was moved from");
+    throw Error(
+        "domain: there is no stream: it was default-constructed or moved from; make one by "
+        "device.stream<T>(shape)",
+        Error::Kind::Lost);
   }
   const int rank = region.shape.rank();
   bool isInside = begin.rank() == rank && end.rank() == rank;
@@ -132,10 +147,12 @@ StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, cons
     isInside = begin[d] >= 0 && begin[d] <= end[d] && end[d] <= region.shape[d];
   }
   if (!isInside) {
-    throw Error(fmt::format(
-        "domain: {} (inclusive) to {} (exclusive) is no box inside shape {}; give each a position "
-        "in every dimension, rows first",
-        toString(begin), toString(end), toString(region.shape)));
+    throw Error(
+        fmt::format(
+            "domain: {} (inclusive) to {} (exclusive) is no box inside shape {}; give each a position "
+            "in every dimension, rows first",
+            toString(begin), toString(end), toString(region.shape)),
+        Error::Kind::Shape);
   }
   StreamRegion part = region;
   for (int d = 0; d < rank; ++d) {
@@ -179,7 +196,8 @@ detail::TransferOwner detail::readAsync(const StreamRegion& region) {
 void detail::writeAsync(const StreamRegion& region, const void* elements, std::size_t count) {
   if (StreamState* stream = checkTransfer(region, count, "writeAsync")) {
     const TransferScope traced(*stream, "writeAsync", region);
-    withHostMemory("writeAsync", [&] { stream->writeAsync(region, static_cast<const std::byte*>(elements)); });
+    withHostMemory("writeAsync",
+                   [&] { stream->writeAsync(region, static_cast<const std::byte*>(elements)); });
   }
 }
 
@@ -187,7 +205,8 @@ namespace {
 
 TransferState& stateOf(const detail::TransferOwner& transfer) {
   if (!transfer) {
-    throw Error("the future has no elements: it was made of nothing, moved from, or asked for them before");
+    throw Error("the future has no elements: it was made of nothing, moved from, or asked for them before",
+                Error::Kind::Lost);
   }
   return *transfer;
 }
@@ -208,7 +227,8 @@ std::size_t realsIn(const StreamRegion& region, const program::Element& element,
   for (const program::Field& field : element.fields) {
     if (field.scalar != program::Scalar::Float) {
       throw Error(
-          fmt::format("{}: {} is not made of floats alone; use read() and write()", what, element.name));
+          fmt::format("{}: {} is not made of floats alone; use read() and write()", what, element.name),
+          Error::Kind::Type);
     }
     components += field.width;
   }
@@ -222,7 +242,8 @@ void detail::writeReals(const StreamRegion& region, std::span<const double> valu
   const std::size_t components = realsIn(region, *stream.element, "writeReals");
   if (values.size() != components) {
     throw Error(fmt::format("writeReals: {} numbers are given for a stream of shape {} that has {}",
-                            values.size(), toString(region.shape), components));
+                            values.size(), toString(region.shape), components),
+                Error::Kind::Shape);
   }
   if (!values.empty()) {
     const TransferScope traced(stream, "writeReals", region);

@@ -82,7 +82,7 @@ void Trace::countBytes(std::int64_t used, std::int64_t kept) noexcept {
 void Trace::throwFailure() {
   if (!file_.failure().empty() && !isTold_) {
     isTold_ = true;
-    throw Error(file_.failure());
+    throw Error(file_.failure(), Error::Kind::File);
   }
 }
 

@@ -99,7 +99,8 @@ TraceFile::TraceFile(const std::string& name)
   throw Error(
       fmt::format("SK_TRACE: '{}' cannot be written: {}; name a file in a folder where you may write, "
                   "or unset SK_TRACE",
-                  name_, why));
+                  name_, why),
+      Error::Kind::File);
 }
 
 TraceFile::~TraceFile() { ::close(file_); }

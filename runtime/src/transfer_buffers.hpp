@@ -36,7 +36,8 @@ class TransferBuffers {
 
   /// Deletes those that have lain unused for a while, where they take much. Once a call, with the context current.
   void trim() {
-    clock_.store(clock_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);  // no other thread changes it
+    clock_.store(clock_.load(std::memory_order_relaxed) + 1,
+                 std::memory_order_relaxed);  // no other thread changes it
     if (hasMany_.load(std::memory_order_relaxed)) deleteUnused();
   }
   void clear();

@@ -86,7 +86,9 @@ TEST_CASE("streams of two devices, moved streams, streams after their device") {
                                                     second.name() + "' and '" + first.name() +
                                                     "'); copy one of them through host memory");
   auto moved = std::move(u);
-  CHECK(errorOf([&] { diffuse()(k, u, v); }) == "heat::diffuse: 'u' is a stream that was moved from");
+  CHECK(errorOf([&] { diffuse()(k, u, v); }) ==
+        "heat::diffuse: 'u' holds no stream: it was default-constructed or moved from; make one by "
+        "device.stream<T>(shape)");
   auto orphan = [] {
     Device gone;
     auto stream = gone.stream<float>({2, 2});
@@ -142,10 +144,12 @@ TEST_CASE("shapes that are none, or too large") {
         "an extent or position does not fit in 63 bits");
   CHECK(errorOf([&] { device.stream<float>(Shape()); }) == "a stream needs a shape of 1 to 4 dimensions");
   CHECK(errorOf([&] { device.stream<float>({huge}); }) ==
-        "a stream of float of shape {4611686018427387904} is too large: its elements would take 2^61 bytes or more");
+        "a stream of float of shape {4611686018427387904} is too large: its elements would take 2^61 bytes "
+        "or more");
   const std::string error = errorOf([&] { device.stream<float>({1 << 20, 1 << 20}); });
-  CHECK(error.find("a stream of shape {1048576, 1048576} has 1099511627776 elements, but a texture of this device "
-                   "holds no more than ") == 0);
+  CHECK(error.find(
+            "a stream of shape {1048576, 1048576} has 1099511627776 elements, but a texture of this device "
+            "holds no more than ") == 0);
   Device small({.textureLimit = 64});
   const std::int64_t most = std::int64_t{64} * 64 * small.limits().textureLayers;
   CHECK(errorOf([&] { small.stream<float>(most + 1); }) ==
@@ -154,7 +158,8 @@ TEST_CASE("shapes that are none, or too large") {
             std::to_string(small.limits().textureLayers) +
             " layers of 64 x 64 texels, and a stream 2147418112 elements; divide it into several streams");
   CHECK(errorOf([&] { device.stream<float>({2, mostExtent + 1}); }) ==
-        "a stream of float of shape {2, 1073741824} has an extent above 1073741823, where indices end; give it rows, or "
+        "a stream of float of shape {2, 1073741824} has an extent above 1073741823, where indices end; give "
+        "it rows, or "
         "divide it");
   CHECK(device.limits().elements == mostElements);
   auto none = device.stream<float>({0, huge});
@@ -168,8 +173,9 @@ TEST_CASE("a domain of more elements than have numbers") {
   auto x = device.stream<float>({1 << 16, 1});
   auto y = device.stream<float>({1, 1 << 16});
   auto r = device.stream<float>({1});
-  CHECK(errorOf([&] { multiply(x, y, r); }) == "multiply: the domain of shape {65536, 65536} has 4294967296 elements, but '" +
-                                                   device.name() + "' numbers 2147418112; divide it");
+  CHECK(errorOf([&] { multiply(x, y, r); }) ==
+        "multiply: the domain of shape {65536, 65536} has 4294967296 elements, but '" + device.name() +
+            "' numbers 2147418112; divide it");
 }
 
 TEST_CASE("more pushes than there are numbers for") {
@@ -179,7 +185,8 @@ TEST_CASE("more pushes than there are numbers for") {
     Device device(DeviceOptions{.profile = profile});
     auto x = device.stream<float>({4096});
     auto r = device.stream<float>({1});
-    const std::string error = "many: it pushes to 'r' more than 536870910 values in one call; divide the domain";
+    const std::string error =
+        "many: it pushes to 'r' more than 536870910 values in one call; divide the domain";
     x.write(std::vector<float>(4096, 1 << 20));  // 2^32 in all
     CHECK(errorOf([&] { many(x, r); }) == error);
     std::vector<float> one(4096);

@@ -84,7 +84,8 @@ class Folder {
       std::ofstream out(file, std::ios::binary);
       out << text.substr(0, line);
       if (isRight) {
-        out << std::hex << std::setfill('0') << std::setw(16) << hashOf(binary) << ' ' << std::dec << binary.size() << '\n';
+        out << std::hex << std::setfill('0') << std::setw(16) << hashOf(binary) << ' ' << std::dec
+            << binary.size() << '\n';
       } else {
         out << text.substr(line, body - line);
       }

@@ -305,8 +305,9 @@ TEST_CASE("elements beside a view never run its kernel") {
 }
 
 TEST_CASE("of a kernel's variants, those that were not used for longest are deleted") {
-  static const TestKernel special("special", "void special(int n, float x, out float r) { r = x + float(n); }\n",
-                                  {parameter<int>("n", program::Role::Spec), input<float>("x"), output<float>("r")});
+  static const TestKernel special(
+      "special", "void special(int n, float x, out float r) { r = x + float(n); }\n",
+      {parameter<int>("n", program::Role::Spec), input<float>("x"), output<float>("r")});
   for (const std::string& profile : profileNames) {
     Device device(DeviceOptions{.profile = profile});
     auto x = device.stream<float>({4}), r = device.stream<float>({4});

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <numeric>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -19,6 +21,11 @@ using namespace sk;
 using namespace sk::test;
 
 namespace {
+
+using namespace std::string_literals;
+
+constexpr const char* noStream =
+    "there is no stream: it was default-constructed or moved from; make one by device.stream<T>(shape)";
 
 Device makeDevice(const std::string& profile, int textureLimit = 0) {
   return Device({.profile = profile, .textureLimit = textureLimit});
@@ -227,6 +234,44 @@ TEST_CASE("a stream tells where its elements are") {
   CHECK(empty.size() == 0);
 }
 
+TEST_CASE("a stream may be default-constructed, and be set later") {
+  struct Simulation {
+    Stream<float> field;
+  };
+  Simulation simulation;
+  CHECK_FALSE(simulation.field);
+  CHECK(simulation.field.size() == 0);
+  CHECK(errorOf([&] { simulation.field.write(std::vector<float>{1}); }) == "write: "s + noStream);
+  CHECK(errorOf([&] { (void)simulation.field.readAsync(); }) == "readAsync: "s + noStream);
+  Device device;
+  simulation.field = device.stream<float>(2);
+  CHECK(simulation.field);
+  simulation.field.write(std::vector<float>{1, 2});
+  CHECK(simulation.field.read() == std::vector<float>{1, 2});
+}
+
+TEST_CASE("errors say of which kind they are") {
+  Device device;
+  auto stream = device.stream<float>(3);
+  const auto kindOf = [](auto&& action) {
+    try {
+      action();
+    } catch (const Error& error) {
+      return error.kind();
+    }
+    throw std::logic_error("nothing was thrown");
+  };
+  using Kind = Error::Kind;
+  CHECK(kindOf([] { Device("gpu:x"); }) == Kind::Device);
+  CHECK(kindOf([&] { stream.write(std::vector<float>(4)); }) == Kind::Shape);
+  CHECK(kindOf([&] { device.stream<float>({std::int64_t{1} << 40, std::int64_t{1} << 40}); }) == Kind::Shape);
+  CHECK(kindOf([&] { device.stream<std::int32_t>(3).readReals(); }) == Kind::Type);
+  CHECK(kindOf([&] { (void)Stream<float>().read(); }) == Kind::Lost);
+  CHECK(kindOf([] { Device({.configuration = "no/such/file.toml"}); }) == Kind::File);
+  CHECK(kindOf([&] { (void)device.passCount(); }) == Kind::Misuse);
+  CHECK(Error("of an application").kind() == Kind::Misuse);
+}
+
 TEST_CASE("streams and devices move") {
   Device first;
   auto a = first.stream<float>(3);
@@ -239,8 +284,8 @@ TEST_CASE("streams and devices move") {
   b = std::move(c);
   CHECK(b.read() == std::vector<float>{4, 5});
   CHECK(errorOf([&] { first.stream<float>(1); }) == "the device was moved from");
-  CHECK(errorOf([&] { (void)a.read(); }) == "read: the stream was moved from");
-  CHECK(errorOf([&] { a.domain(0, 0); }) == "domain: the stream was moved from");
-  CHECK(errorOf([&] { (void)a.texture(); }) == "texture: the stream was moved from");
+  CHECK(errorOf([&] { (void)a.read(); }) == "read: "s + noStream);
+  CHECK(errorOf([&] { a.domain(0, 0); }) == "domain: "s + noStream);
+  CHECK(errorOf([&] { (void)a.texture(); }) == "texture: "s + noStream);
   CHECK(a.size() == 0);
 }

@@ -169,12 +169,17 @@ class View {
 };
 
 /// Elements of type T on a device, in the shape that they were made with. Move-only. Its elements are
-/// undefined until they are written. A stream may outlive its device: it can then be destroyed and
-/// assigned to, and everything else throws sk::Error.
+/// undefined until they are written. A stream may outlive its device, be default-constructed or be moved from: it can then be
+/// destroyed and assigned to, and everything else throws sk::Error.
 template <ElementType T>
 class Stream {
  public:
   using value_type = T;
+
+  /// No stream yet: Device::stream makes one to assign to it.
+  Stream() = default;
+  /// Whether there is a stream: false where it was default-constructed or moved from.
+  explicit operator bool() const noexcept { return state_.get() != nullptr; }
 
   /// Copies `elements`, row-major, to the stream. Throws sk::Error unless there are exactly size().
   void write(std::span<const T> elements) { all().write(elements); }

@@ -94,7 +94,7 @@ void Context::makeCurrent() const {
   const bool hadNone = eglGetCurrentContext() == EGL_NO_CONTEXT;
   if (!becomeCurrent()) {
     const EGLint error = eglGetError();
-    throw Error(whyNotCurrent(error, hadNone && current().has_value()));
+    throw Error(whyNotCurrent(error, hadNone && current().has_value()), Error::Kind::Lost);
   }
 }
 

@@ -50,15 +50,19 @@ class Search {
     const std::string what = wanted_.kind == WantedDevice::Kind::Best
                                  ? "no device was found"
                                  : fmt::format("no device '{}' was found", request_.device);
-    throw Error(fmt::format(
-        "{}; tried without a window:{}\n"
-        "  what can be done: install a driver (for software rendering on Debian: apt-get install libegl1 "
-        "libgl1 "
-        "libgles2 libgl1-mesa-dri); let the user read and write /dev/dri/renderD*; choose another device by "
-        "SK_DEVICE (gpu, gpu:N, software, native, or a part of a renderer's name); see what EGL itself says "
-        "by "
-        "EGL_LOG_LEVEL=debug; or adopt the context of a window (sk::Device::adopt)",
-        what, attempts_));
+    throw Error(
+        fmt::format(
+            "{}; tried without a window:{}\n"
+            "  what can be done: install a driver (for software rendering on Debian: apt-get install libegl1 "
+            "libgl1 "
+            "libgles2 libgl1-mesa-dri); let the user read and write /dev/dri/renderD*; choose another device "
+            "by "
+            "SK_DEVICE (gpu, gpu:N, software, native, or a part of a renderer's name); see what EGL itself "
+            "says "
+            "by "
+            "EGL_LOG_LEVEL=debug; or adopt the context of a window (sk::Device::adopt)",
+            what, attempts_),
+        Error::Kind::Device);
   }
 
  private:
@@ -170,17 +174,19 @@ std::optional<OpenedContext> findGpu() {
 OpenedContext adoptContext(std::optional<Api> api) {
   std::optional<Context> context = Context::current();
   if (!context) {
-    throw Error("there is no context to adopt; make one current on this thread by EGL or GLX first");
+    throw Error("there is no context to adopt; make one current on this thread by EGL or GLX first",
+                Error::Kind::Device);
   }
   OpenedContext opened{std::move(*context), readCapabilities()};
   const Api found = opened.capabilities.api;
   if (api.value_or(found) != found) {
-    throw Error(fmt::format("the context to adopt is one of {}, which profile {} does not run on",
-                            found == Api::Gl ? "OpenGL" : "OpenGL ES",
-                            found == Api::Gl ? "essl300" : "glsl330"));
+    throw Error(
+        fmt::format("the context to adopt is one of {}, which profile {} does not run on",
+                    found == Api::Gl ? "OpenGL" : "OpenGL ES", found == Api::Gl ? "essl300" : "glsl330"),
+        Error::Kind::Device);
   }
   if (const std::string why = whyUnfitSaved(opened.capabilities); !why.empty()) {
-    throw Error("the current context cannot be adopted: " + why);
+    throw Error("the current context cannot be adopted: " + why, Error::Kind::Device);
   }
   return opened;
 }

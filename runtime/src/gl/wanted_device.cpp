@@ -27,7 +27,8 @@ int parseNumber(const std::string& text) {
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data() + prefix, end, number);
   if (error != std::errc{} || rest != end || number < 0) {
-    throw Error(fmt::format("'{}' names no device; after 'gpu:' comes a number, from 0", text));
+    throw Error(fmt::format("'{}' names no device; after 'gpu:' comes a number, from 0", text),
+                Error::Kind::Device);
   }
   return number;
 }

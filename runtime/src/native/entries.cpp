@@ -57,9 +57,10 @@ std::string_view nameOf(RealType real) {
     if (serves(entry, kind, real) && (lowest == nullptr || entry.level < lowest->level)) lowest = &entry;
   }
   if (lowest == nullptr) {
-    fail(kernel, "its native code has no function that {} in {}", nameOf(kind), nameOf(real));
+    fail(Error::Kind::Compile, kernel, "its native code has no function that {} in {}", nameOf(kind),
+         nameOf(real));
   }
-  fail(kernel,
+  fail(Error::Kind::Compile, kernel,
        "its native code was compiled for {} and later CPUs alone, which this one is not (or SK_CPU says so); "
        "compile its .sk file with skc --levels=x86-64,...",
        nameOf(lowest->level));
@@ -82,7 +83,8 @@ Level levelNamed(std::string_view name) {
     if (name == nameOf(level)) return level;
   }
   throw Error(
-      fmt::format("there is no level '{}' of the CPU; choose x86-64, x86-64-v3 or x86-64-v4 (SK_CPU)", name));
+      fmt::format("there is no level '{}' of the CPU; choose x86-64, x86-64-v3 or x86-64-v4 (SK_CPU)", name),
+      Error::Kind::Device);
 }
 
 Level levelOfCpu() {
@@ -112,7 +114,7 @@ bool hasCodeFor(const Code& code, RealType real) {
 
 const Entry& entryOf(const program::Kernel& kernel, EntryKind kind, const CodeChoice& choice, Level level) {
   if (kernel.code->version != Code::currentVersion) {
-    fail(kernel,
+    fail(Error::Kind::Compile, kernel,
          "its native code is of version {}, but this runtime runs version {}; compile its .sk file with the "
          "skc that belongs to the runtime",
          kernel.code->version, Code::currentVersion);

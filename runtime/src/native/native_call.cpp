@@ -416,8 +416,9 @@ bool NativeDevice::sumsExactly(const program::Reduction& reduction) const {
 
 std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const program::Reduction& reduction,
                                                       const program::ExactSum& sum,
-                                                      std::span<const Argument> arguments, const Shape& domain,
-                                                      const Shape& blocks, const CallOptions& options) {
+                                                      std::span<const Argument> arguments,
+                                                      const Shape& domain, const Shape& blocks,
+                                                      const CallOptions& options) {
   if (reduction.fold.code == nullptr || !hasTerm(sum)) return nullptr;
   const Kernel& kernel = kernelOfTerm(reduction, sum);
   std::vector<Argument> all;
@@ -440,7 +441,8 @@ std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const program::Reduction& 
   switch (real) {
     case RealType::Float: break;
     case RealType::Double:
-      return std::make_unique<NativeSums<double>>(sk::sumExactly<double>(reduction, sum, call, block, choice));
+      return std::make_unique<NativeSums<double>>(
+          sk::sumExactly<double>(reduction, sum, call, block, choice));
     case RealType::Quad:
       return std::make_unique<NativeSums<native::Quad>>(
           sk::sumExactly<native::Quad>(reduction, sum, call, block, choice));

@@ -13,13 +13,14 @@ namespace sk {
 namespace {
 
 [[noreturn]] void failWithoutCode(const program::Kernel& kernel) {
-  fail(kernel,
+  fail(Error::Kind::Compile, kernel,
        "it has no native code; compile its .sk file with skc --target=fragment,native, or run it on a device "
        "with GL (SK_DEVICE=gl)");
 }
 
 [[noreturn]] void failWithoutQuad(const program::Kernel& kernel) {
-  fail(kernel, "it has no native code in __float128; compile its .sk file with skc --quad");
+  fail(Error::Kind::Compile, kernel,
+       "it has no native code in __float128; compile its .sk file with skc --quad");
 }
 
 void checkCode(const program::Kernel& kernel, RealType real) {
@@ -45,8 +46,10 @@ NativeDevice::NativeDevice(RealType real)
 }
 
 void NativeDevice::makeCurrent() {
-  throw Error(fmt::format(
-      "'{}' has no GL context to make current; draw in that of a device with GL (SK_DEVICE=gl)", name_));
+  throw Error(
+      fmt::format("'{}' has no GL context to make current; draw in that of a device with GL (SK_DEVICE=gl)",
+                  name_),
+      Error::Kind::Device);
 }
 
 NativeDevice::~NativeDevice() {
@@ -63,7 +66,7 @@ void NativeDevice::checkProgram(const program::Reduction& reduction) { checkCode
 
 void NativeDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
   if (asked == Target::Fragment || asked == Target::Compute) {
-    fail(kernel,
+    fail(Error::Kind::Device, kernel,
          "its streams are on '{}', which runs native code; {} programs run on streams of a device with GL "
          "(SK_DEVICE=gl)",
          name_, asked == Target::Fragment ? "fragment" : "compute");

@@ -52,8 +52,9 @@ NativeStream::NativeStream(NativeDevice& on, const program::Element& type, const
     const RealType least = storage >= Storage::Extended ? RealType::Double : RealType::Float;
     components = Components(type, std::max(least, on.real()), extents.size());
   } catch (const NoMemory& error) {
-    throw Error(fmt::format("'{}' has no memory for a stream of {} of shape {}: an array of {} bytes", on.name(),
-                            type.name, toString(extents), error.bytes()));
+    throw Error(fmt::format("'{}' has no memory for a stream of {} of shape {}: an array of {} bytes",
+                            on.name(), type.name, toString(extents), error.bytes()),
+                Error::Kind::Memory);
   }
   countBytes();
 }
@@ -106,7 +107,8 @@ void NativeStream::writeReals(const StreamRegion& region, const double* values) 
 
 void NativeStream::writeScalars(const StreamRegion& region, std::size_t offset, const std::byte* values) {
   const std::span<const ComponentType> types = components.types();
-  const auto component = static_cast<std::size_t>(std::ranges::find(types, offset, &ComponentType::offset) - types.begin());
+  const auto component =
+      static_cast<std::size_t>(std::ranges::find(types, offset, &ComponentType::offset) - types.begin());
   const std::size_t bytes = types[component].storedBytes;
   forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
     components.writeScalars(component, first, count, values + static_cast<std::size_t>(number) * bytes);
@@ -131,20 +133,25 @@ Components& NativeStream::spare() {
 StreamTexture NativeStream::texture(int) {
   throw Error(
       fmt::format("texture: '{}' has no textures; read() the stream, or use a device with GL (SK_DEVICE=gl)",
-                  owner().name()));
+                  owner().name()),
+      Error::Kind::Device);
 }
 
 void NativeStream::fillBuffer(std::uint32_t, std::int64_t, int) {
-  throw Error(fmt::format(
-      "fillBuffer: '{}' has no GL; read() the stream and upload it, or use a device with GL (SK_DEVICE=gl)",
-      owner().name()));
+  throw Error(fmt::format("fillBuffer: '{}' has no GL; read() the stream and upload it, or use a device with "
+                          "GL (SK_DEVICE=gl)",
+                          owner().name()),
+              Error::Kind::Device);
 }
 
 void NativeStream::become(native::Pushed pushed, RealType real) {
   const std::int64_t count = pushed.count;
   if (count > mostExtent) {
-    throw Error(fmt::format("a kernel has pushed {} values to a stream, which holds {} in one dimension; divide the domain",
-                            count, mostExtent));
+    throw Error(
+        fmt::format(
+            "a kernel has pushed {} values to a stream, which holds {} in one dimension; divide the domain",
+            count, mostExtent),
+        Error::Kind::Shape);
   }
   Components given = pushed.arrays.empty() ? Components(*element, real, 0)
                                            : Components(*element, real, std::move(pushed.arrays));

@@ -197,13 +197,12 @@ std::vector<Real> sumExactly(const program::Reduction& reduction, const program:
   const SlotLayout layout(kernel, call, frame, choice);
   const std::vector<std::size_t> outputs = outputArrays(kernel, layout);
   const native::Deal deal = kernel.code->isUneven != 0 ? native::Deal::AsTheyCome : native::Deal::Evenly;
-  return sumBlocks<Real>(pieces, start, deal, [&] {
-    return TermAdder<Real>(layout, outputs, sum.ofProducts, run, frame.get());
-  });
+  return sumBlocks<Real>(pieces, start, deal,
+                         [&] { return TermAdder<Real>(layout, outputs, sum.ofProducts, run, frame.get()); });
 }
 
-template std::vector<float> sumExactly<float>(const program::Reduction&, const program::ExactSum&, const Call&,
-                                              const Extents&, const CodeChoice&);
+template std::vector<float> sumExactly<float>(const program::Reduction&, const program::ExactSum&,
+                                              const Call&, const Extents&, const CodeChoice&);
 template std::vector<double> sumExactly<double>(const program::Reduction&, const program::ExactSum&,
                                                 const Call&, const Extents&, const CodeChoice&);
 template std::vector<native::Quad> sumExactly<native::Quad>(const program::Reduction&,

@@ -25,6 +25,7 @@ const program::Kernel& kernelOfTerm(const program::Reduction& reduction, const p
 /// out; the reduction's identity is added once to each. Real: that of `choice`, float, double or native::Quad.
 template <class Real>
 std::vector<Real> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
-                             const native::Call& call, const native::Extents& block, const CodeChoice& choice);
+                             const native::Call& call, const native::Extents& block,
+                             const CodeChoice& choice);
 
 }  // namespace sk

@@ -101,7 +101,8 @@ TEST_CASE("sums of doubles and of wider numbers are rounded once, too") {
   CHECK(wideSum<double>({-1, -0x1p-53, -0x1p-1000}) == -1 - 0x1p-52);
   CHECK(wideSum<double>({0x1.8p-1022, -0x1p-1022}) == 0x1p-1023);
   std::vector<double> falling;
-  for (int i = 1000; i > -1000; i -= 3) falling.insert(falling.end(), {std::ldexp(3.0, i), -std::ldexp(1.0, i)});
+  for (int i = 1000; i > -1000; i -= 3)
+    falling.insert(falling.end(), {std::ldexp(3.0, i), -std::ldexp(1.0, i)});
   WideSum<double> together, first, second;
   const auto half = static_cast<std::int64_t>(falling.size() / 2);
   together.add(2 * half, falling.data());
@@ -190,7 +191,8 @@ void checkRows(const Extents& domain, bool byKernel, std::int64_t multiply) {
   input.multiply[0] = multiply;
   input.stride[1] = domain[0] * multiply;
   for (int i = 0; i < 4; ++i) operands.addNone();
-  const std::vector<float> sums = sumExactly<float>(reduction, sum, operands.call(domain), {domain[0], 1, 1, 1}, {});
+  const std::vector<float> sums =
+      sumExactly<float>(reduction, sum, operands.call(domain), {domain[0], 1, 1, 1}, {});
   std::vector<float> expected;
   for (std::int64_t row = 0; row < domain[1]; ++row) {
     Wide total = 100;

@@ -35,7 +35,8 @@ struct QuadFormat {
   static constexpr Bits infinity = Bits128{0x7fff} << mantissaBits;
 };
 template <class Format>
-constexpr typename Format::Bits nan = Format::infinity | typename Format::Bits{1} << (Format::mantissaBits - 1);
+constexpr typename Format::Bits nan =
+    Format::infinity | typename Format::Bits{1} << (Format::mantissaBits - 1);
 template <class Format>
 constexpr typename Format::Bits signBit = typename Format::Bits{1} << (8 * sizeof(typename Format::Bits) - 1);
 
@@ -139,9 +140,10 @@ typename Format::Bits WideAccumulator::nearest() const {
   auto top = static_cast<int>(digits.size()) - 1;
   while (top >= 0 && digits[static_cast<std::size_t>(top)] == 0) --top;
   if (top < 0) return 0;
-  const auto digit = [&](int number) {   // as the accumulator counts them
+  const auto digit = [&](int number) {  // as the accumulator counts them
     const int k = number - sum.first_;
-    return k < 0 || k > top ? std::uint64_t{0} : static_cast<std::uint64_t>(digits[static_cast<std::size_t>(k)]);
+    return k < 0 || k > top ? std::uint64_t{0}
+                            : static_cast<std::uint64_t>(digits[static_cast<std::size_t>(k)]);
   };
   const auto bit = [&](int number) {
     return number >= 0 && (digit(number / wordBits) >> number % wordBits & 1) != 0;
