@@ -212,7 +212,7 @@ void runSum() {
   if (folds.empty() || folds.size() != combines.size()) fail("sum", "there is no code");
   std::vector<float> first;
   for (std::size_t level = 0; level < folds.size(); ++level) {
-    reinterpret_cast<FoldFunction*>(folds[level]->function)(&frame, &chunk, state, columns, rounds, 1);
+    reinterpret_cast<FoldFunction*>(folds[level]->function)(&frame, &chunk, state, columns, rounds, 1, 1);
     for (std::int64_t i = 0; i < columns; ++i) later[i] = sums[columns - 1 - i];
     reinterpret_cast<CombineFunction*>(combines[level]->function)(&frame, state, laterState, columns);
     const std::vector<float> values(sums.data(), sums.data() + columns);
