@@ -87,13 +87,14 @@ bool onlyGathers(const Module& module, const Kernel& kernel) {
 }
 
 /// The number of vectors, of `bytes` each, in which accumulators are folded side by side. Several read memory in order and do not wait
-/// for each other's additions. The runtime has 256 bytes of columns for a scalar: all of them, and a leaf is read from end to end.
+/// for each other's additions. The runtime has 256 bytes of columns for a scalar. With all of them a leaf is read from end to end;
+/// half are enough where there are several scalars, whose code would take long to compile.
 std::uint32_t vectorsOfFold(const Module& module, const Kernel& kernel, std::size_t scalars,
                             std::uint32_t bytes, std::uint32_t registers) {
-  constexpr std::uint32_t columnBytes = 256;
   std::size_t accumulators = 0;
   for (const KernelParam& param : kernel.params)
     accumulators += param.role == ParamRole::Accumulator ? componentCount(module, param.type) : 0;
+  const std::uint32_t columnBytes = accumulators == 1 ? 256 : 128;
   std::uint32_t vectors = 1;
   while (2 * vectors * bytes * accumulators <= columnBytes && 2 * vectors * scalars <= registers)
     vectors *= 2;

@@ -26,7 +26,8 @@ struct TransformOptions {
 /// Names of the transforms in the order in which they run: what --print-after takes.
 std::span<const std::string_view> transformNames();
 
-/// Whether the module is validated before and after each: in builds with assertions, as those with tests are.
+/// Whether the module is validated before and after each: in builds with assertions, as those with tests are, unless SKC_VALIDATE
+/// is "off".
 bool validatesTransforms();
 
 /// Runs them all; stops after one that reports an error.
