@@ -291,7 +291,7 @@ class EntryWriter {
     return later;
   }
 
-  /// Of a number below `count`, a power of 2: that with its bits in the opposite order.
+  /// Reverses the bits of a number below `count`, a power of 2.
   llvm::Value* reversed(llvm::Value* value, llvm::Value* count) {
     llvm::Value* const all = b_.CreateUnaryIntrinsic(llvm::Intrinsic::bitreverse, value);
     llvm::Value* const bits = b_.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, count, b_.getTrue());

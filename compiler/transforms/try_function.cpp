@@ -419,7 +419,7 @@ class Interpreter {
     return value;
   }
 
-  /// Of a matrix of rows, and a matrix or a column.
+  /// Multiplies a matrix, stored by rows, by a matrix or a column vector.
   static Numbers product(std::size_t width, const Numbers& a, const Numbers& b) {
     const std::size_t columns = b.size() / width;
     Numbers value(width * columns, 0.0);

@@ -13,7 +13,7 @@
 
 namespace sk {
 
-/// Nothing where it does not fit in 63 bits. Neither is negative.
+/// The product of two numbers that are not negative; nullopt where it does not fit in 63 bits.
 constexpr std::optional<std::int64_t> checkedProduct(std::int64_t a, std::int64_t b) {
   if (b != 0 && a > std::numeric_limits<std::int64_t>::max() / b) return std::nullopt;
   return a * b;

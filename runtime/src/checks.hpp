@@ -5,7 +5,8 @@
 
 namespace sk {
 
-/// Whether SK_CHECK is `folds`: reduces are tried on elements of each call (native/check_fold.hpp).
+/// Whether SK_CHECK is `folds`: reduces are tried on elements of each call (native/check_fold.hpp). Throws sk::Error for any
+/// other value.
 bool checksFolds();
 
 }  // namespace sk

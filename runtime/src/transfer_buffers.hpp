@@ -62,8 +62,8 @@ class TransferBuffers {
   std::atomic<bool> hasMany_ = false;  ///< so that no call takes the lock where there are few
 };
 
-/// The futures of a device that must be told of its end. They share it with the device, since either may end first. The lock
-/// is held while one is made or ends, and while the device ends.
+/// The futures that a device notifies before it ends. Device and futures share this list, since either may end first. Hold the
+/// lock to add or remove a future, and while the device ends.
 struct PendingReads {
   std::mutex mutex;
   std::vector<PendingRead*> list;

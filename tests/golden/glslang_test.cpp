@@ -28,7 +28,7 @@ std::vector<fs::path> kernelFiles() {
   return files;
 }
 
-/// Of all of the files, by one run of skc.
+/// Prints the programs of all files by one run of skc.
 std::vector<std::string> programsOf(const std::vector<fs::path>& files, const std::string& profile) {
   std::string command = "'" SK_SKC "' --emit=glsl --profile=" + profile;
   for (const fs::path& file : files) command += " '" + file.string() + "'";

@@ -47,7 +47,7 @@ Axes collapse(const Placement& input, const Index4& division) {
   return axes;
 }
 
-/// Of a positive number; no sum overflows.
+/// Divides a positive number and rounds up, without a sum that could overflow.
 std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a - 1) / b + 1; }
 
 /// Tells a pass where it writes. `usesIndex`: its program asks for more than the number of a result.

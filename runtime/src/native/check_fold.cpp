@@ -89,8 +89,7 @@ class FoldCheck {
     if (!areEqual(left, right, used)) {
       fail(reduction_.fold,
            "partial results combine in an order that depends on the device, and {}, {} and {} give {} where "
-           "the first two are "
-           "combined first, and {} where the last two are (SK_CHECK=folds)",
+           "the first two are combined first, and {} where the last two are (SK_CHECK=folds)",
            words(a), words(b), words(c), words(left), words(right));
     }
   }
@@ -114,8 +113,7 @@ class FoldCheck {
     if (areEqual(together, apart, {&a, &b, &together, &apart})) return;
     fail(reduction_.fold,
          "{} elements folded one after the other give {}, but folded as {} and {} elements, whose results {} "
-         "and {} are combined, "
-         "they give {} (SK_CHECK=folds)",
+         "and {} are combined, they give {} (SK_CHECK=folds)",
          both.size(), words(together), first.size(), second.size(), words(a), words(b), words(apart));
   }
 

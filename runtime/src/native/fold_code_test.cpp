@@ -26,8 +26,9 @@ using program::Role;
 /// fold(column, round, element number) for all elements of a fold, whole groups of columns.
 template <class Fold>
 void forAll(std::int64_t columns, std::int64_t rounds, std::int64_t leaves, Fold&& fold) {
-  for (std::int64_t leaf = 0; leaf < leaves; ++leaf) {
-    const std::int64_t first = bitsReversed(leaf, leaves) * columns;
+  std::int64_t reversed = 0;
+  for (std::int64_t leaf = 0; leaf < leaves; ++leaf, reversed = nextReversed(reversed, leaves)) {
+    const std::int64_t first = reversed * columns;
     for (std::int64_t round = 0; round < rounds; ++round) {
       const std::int64_t element = (leaf * rounds + round) * columns;
       for (std::int64_t k = 0; k < inGroups(columns); ++k) fold(first + k, round, element + k);

@@ -62,8 +62,9 @@ void StateColumns::assignReversed(const StateColumns& other, std::int64_t count)
   const auto copy = [&]<std::size_t bytes>(std::size_t scalar, std::integral_constant<std::size_t, bytes>) {
     std::byte* const to = at(scalar, 0);
     const std::byte* const from = other.at(scalar, 0);
-    for (std::int64_t i = 0; i < count; ++i) {
-      std::memcpy(to + bitsReversed(i, count) * static_cast<std::int64_t>(bytes),
+    std::int64_t reversed = 0;
+    for (std::int64_t i = 0; i < count; ++i, reversed = nextReversed(reversed, count)) {
+      std::memcpy(to + reversed * static_cast<std::int64_t>(bytes),
                   from + i * static_cast<std::int64_t>(bytes), bytes);
     }
   };
@@ -79,7 +80,11 @@ void StateColumns::assignReversed(const StateColumns& other, std::int64_t count)
 }
 
 void StateColumns::unpackReversed(const std::byte* bytes, std::int64_t count) {
-  for (std::int64_t i = 0; i < count; ++i, bytes += shape_->bytes()) unpack(bitsReversed(i, count), bytes);
+  std::int64_t reversed = 0;
+  for (std::int64_t i = 0; i < count; ++i, bytes += shape_->bytes()) {
+    unpack(reversed, bytes);
+    reversed = nextReversed(reversed, count);
+  }
 }
 
 void StateColumns::pack(std::int64_t column, std::byte* bytes) const {

@@ -18,11 +18,11 @@
 
 namespace sk {
 
-/// The number below `count`, a power of 2, that has the bits of `number` in the opposite order.
-inline std::int64_t bitsReversed(std::int64_t number, std::int64_t count) {
-  std::int64_t reversed = 0;
-  for (; count > 1; count /= 2, number /= 2) reversed = 2 * reversed + number % 2;
-  return reversed;
+/// Counts in bit-reversed order, from 0: the successor of `reversed` among the numbers below `count`, a power of 2.
+inline std::int64_t nextReversed(std::int64_t reversed, std::int64_t count) {
+  std::int64_t bit = count / 2;
+  for (; (reversed & bit) != 0; bit /= 2) reversed -= bit;
+  return reversed + bit;
 }
 
 /// The scalars of all accumulators of a reduction.
@@ -58,13 +58,13 @@ class StateColumns {
   }
   /// Takes `count` columns from `first` on from those of another one from `from` on.
   void assign(std::int64_t first, const StateColumns& other, std::int64_t from, std::int64_t count);
-  /// Takes `count` columns, a power of 2, to the numbers that have their bits in the opposite order.
+  /// Copies `count` columns, a power of 2, in bit-reversed order.
   void assignReversed(const StateColumns& other, std::int64_t count);
 
   /// A column's scalars one behind the other: StateShape::bytes().
   void pack(std::int64_t column, std::byte* bytes) const;
   void unpack(std::int64_t column, const std::byte* bytes);
-  /// Unpacks `count` columns, a power of 2, that lie one behind the other to the numbers that have their bits in the opposite order.
+  /// Unpacks `count` consecutive columns, a power of 2, in bit-reversed order.
   void unpackReversed(const std::byte* bytes, std::int64_t count);
 
  private:

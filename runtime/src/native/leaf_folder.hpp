@@ -25,7 +25,7 @@ class LeafFolder {
   /// Whether elements that are no neighbours are folded several together.
   bool foldsApart() const { return program_.fold.lanes > 1 && !goesOneByOne(); }
 
-  /// Whether leaves of so many columns, one behind the other, are folded by one call.
+  /// Whether one call can fold several consecutive leaves of `columns` columns.
   bool foldsLeavesTogether(std::int64_t columns) const {
     return program_.layout.isDirect() && !goesOneByOne() && columns % program_.fold.lanes == 0;
   }

@@ -80,8 +80,9 @@ template <bool isWide, class... Factors>
 void sum(const Frame* frame, double* sums, const Division& division, const Factors*... factors) {
   const double start = static_cast<const SumFrame*>(frame)->start;
   const auto [columns, rounds, leaves, starts] = division;
-  for (std::int64_t leaf = 0; leaf < leaves; ++leaf) {
-    double* const own = sums + bitsReversed(leaf, leaves) * columns;
+  std::int64_t reversed = 0;
+  for (std::int64_t leaf = 0; leaf < leaves; ++leaf, reversed = nextReversed(reversed, leaves)) {
+    double* const own = sums + reversed * columns;
     const std::int64_t first = leaf * rounds * columns;
     if constexpr (isWide) {
       if (columns == side && starts != 0) {

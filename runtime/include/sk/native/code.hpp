@@ -86,8 +86,8 @@ using RunFunction = void(const Frame*, const Chunk*);
 using RunRowsFunction = void(const Frame*, const Chunk* chunks);
 /// Folds a chunk of `leaves` leaves, a power of 2, into `columns` accumulators each. Element k + (r + l * rounds) * columns is
 /// folded into column k of leaf l, in order of r. `state` has an array for each scalar of the accumulators, which holds the
-/// columns of leaf l from number columns * l' on: l' has the bits of l in the opposite order, so that each half of all columns
-/// is what comes before, or after, the other half, leaf by leaf. Where `starts` is 1, columns begin with the identity or, of
+/// columns of leaf l from number columns * l' on, l' being l with its bits reversed: the second half of all columns then
+/// follows the first half leaf by leaf. Where `starts` is 1, columns begin with the identity or, of
 /// a seeded reduction, with their first element; else with what `state` holds. Several leaves always start, and `columns` is
 /// then a multiple of Entry::lanes.
 using FoldFunction = void(const Frame*, const Chunk*, void* const* state, std::int64_t columns,
