@@ -107,7 +107,8 @@ void DivergenceWalk::visit(const Stmt& stmt, const CallStmt& n) {
   const std::vector<Variable>& parameters = whole_.module_.functions[n.callee].variables;
   for (std::size_t i = 0; i < n.args.size(); ++i) {
     const VarRole role = parameters[i].role;
-    if (role != VarRole::Gather && role != VarRole::Sink) add(callee.variables[i], shapes(*n.args[i]));
+    if (role != VarRole::Gather && role != VarRole::AppendOutput)
+      add(callee.variables[i], shapes(*n.args[i]));
   }
   called(n.callee);
   for (std::size_t i = 0; i < n.args.size(); ++i) {

@@ -11,13 +11,13 @@
 
 #include <fmt/format.h>
 
+#include "assemble/append/append_passes.hpp"
+#include "assemble/append/histo_pyramid.hpp"
+#include "assemble/append/point_program.hpp"
 #include "assemble/assemble.hpp"
-#include "assemble/count_tree.hpp"
-#include "assemble/plans.hpp"
-#include "assemble/point_program.hpp"
-#include "assemble/reduce_plan.hpp"
-#include "assemble/reduce_program.hpp"
-#include "assemble/sinks.hpp"
+#include "assemble/program/plans.hpp"
+#include "assemble/reduce/reduce_plan.hpp"
+#include "assemble/reduce/reduce_program.hpp"
 #include "support/text.hpp"
 
 namespace skc::driver {
@@ -69,22 +69,22 @@ sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel, bool packe
   return variant;
 }
 
-/// The steps that bring the list of a scatter output to its place (runtime/src/scatter_points.cpp).
-std::vector<sk::assemble::PointStep> pointSteps(const sk::program::Parameter& sink) {
+/// The steps that bring the list of a scatter output to its place (runtime/src/gl_device/append/scatter_points.cpp).
+std::vector<sk::assemble::PointStep> pointSteps(const sk::program::Parameter& appendOutput) {
   using sk::assemble::PointStep;
-  const bool isFloat = sink.element->fields.front().scalar == sk::program::Scalar::Float;
-  if (isFloat || sink.scatter == sk::program::ScatterOp::Store) return {PointStep::Store};
-  if (sink.scatter == sk::program::ScatterOp::Add) {
+  const bool isFloat = appendOutput.element->fields.front().scalar == sk::program::Scalar::Float;
+  if (isFloat || appendOutput.scatter == sk::program::ScatterOp::Store) return {PointStep::Store};
+  if (appendOutput.scatter == sk::program::ScatterOp::Add) {
     return {PointStep::SplitLimbs, PointStep::AddLimbs, PointStep::JoinLimbs};
   }
   return {PointStep::SplitUpper, PointStep::Upper, PointStep::SplitLower, PointStep::Lower,
           PointStep::JoinHalves};
 }
 
-/// Every program of a kernel with sinks: what counts, the sums of counts, each list, and its points.
-std::string sinksListing(const Profile& profile, const sk::program::Kernel& kernel) {
+/// Every program of a kernel with append outputs: what counts, the sums of counts, each list, and its points.
+std::string appendListing(const Profile& profile, const sk::program::Kernel& kernel) {
   if (profile.stage == sk::assemble::Stage::Compute) {
-    return sinksListing(*sk::assemble::findProfile("glsl330"), kernel) +
+    return appendListing(*sk::assemble::findProfile("glsl330"), kernel) +
            fmt::format("\n// {} has variable or scatter outputs, and is drawn\n", kernel.name);
   }
   sk::assemble::Variant variant = plainVariant(kernel);
@@ -92,7 +92,7 @@ std::string sinksListing(const Profile& profile, const sk::program::Kernel& kern
   variant.task.work = sk::assemble::Work::Counts;
   const auto isDrawn = [](const sk::program::Parameter& parameter) {
     return parameter.role == sk::program::Role::Output ||
-           (sk::assemble::isSink(parameter) && sk::assemble::isCounted(parameter));
+           (sk::assemble::isAppendOutput(parameter) && sk::assemble::isCounted(parameter));
   };
   if (std::any_of(kernel.parameters.begin(), kernel.parameters.end(), isDrawn)) {
     programs.push_back(sk::assemble::kernelProgram(profile, kernel, variant));
@@ -107,19 +107,19 @@ std::string sinksListing(const Profile& profile, const sk::program::Kernel& kern
     }
   }
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
-    const sk::program::Parameter& sink = kernel.parameters[i];
-    if (!sk::assemble::isSink(sink) || sink.pushes == 0) continue;
-    if (sk::assemble::isCounted(sink) && !hasTree) {
+    const sk::program::Parameter& appendOutput = kernel.parameters[i];
+    if (!sk::assemble::isAppendOutput(appendOutput) || appendOutput.pushes == 0) continue;
+    if (sk::assemble::isCounted(appendOutput) && !hasTree) {
       hasTree = true;
       for (const bool ofCounts : {true, false}) {
         programs.push_back(sk::assemble::treeProgram(profile, {.ofCounts = ofCounts}));
       }
     }
-    variant.task.sink = static_cast<std::uint8_t>(i);
+    variant.task.appendOutput = static_cast<std::uint8_t>(i);
     programs.push_back(sk::assemble::kernelProgram(profile, kernel, variant));
-    if (sink.role == sk::program::Role::VariableOutput) continue;
-    for (const sk::assemble::PointStep step : pointSteps(sink)) {
-      programs.push_back(sk::assemble::pointProgram(profile, sink, step, {}));
+    if (appendOutput.role == sk::program::Role::VariableOutput) continue;
+    for (const sk::assemble::PointStep step : pointSteps(appendOutput)) {
+      programs.push_back(sk::assemble::pointProgram(profile, appendOutput, step, {}));
     }
   }
   return skc::join(programs, "\n");
@@ -168,7 +168,7 @@ bool readsScalars(const sk::program::Kernel& fold) {
 
 /// Every program that folds a 1024 x 1024 stream to a value, once; of one form.
 std::string formListing(const Profile& profile, const sk::program::Reduction& reduction) {
-  sk::assemble::Placement input;
+  sk::assemble::RegionLayout input;
   input.extent = {1024, 1024, 1, 1};
   const bool byIndex = sk::assemble::asksForPlace(reduction.fold);
   input.packed = !byIndex && readsScalars(reduction.fold);
@@ -184,7 +184,7 @@ std::string formListing(const Profile& profile, const sk::program::Reduction& re
   std::string text;
   std::set<sk::assemble::ReduceVariant> seen;
   for (sk::assemble::ReducePass& pass :
-       sk::assemble::planReduction(input, sk::assemble::valuePlacement(), limits, division)) {
+       sk::assemble::planReduction(input, sk::assemble::valueLayout(), limits, division)) {
     addPlainAccess(reduction, pass.variant);
     for (const sk::assemble::ReduceVariant& variant : drawnVariants(profile, reduction, pass.variant)) {
       if (!seen.insert(variant).second) continue;
@@ -219,8 +219,9 @@ std::string kernelListing(const Profile& profile, const sk::program::Kernel& ker
 }
 
 std::string wholeListing(const Profile& profile, const sk::program::Kernel& kernel) {
-  const bool hasSinks = std::any_of(kernel.parameters.begin(), kernel.parameters.end(), sk::assemble::isSink);
-  return hasSinks ? sinksListing(profile, kernel) : kernelListing(profile, kernel);
+  const bool hasAppendOutputs =
+      std::any_of(kernel.parameters.begin(), kernel.parameters.end(), sk::assemble::isAppendOutput);
+  return hasAppendOutputs ? appendListing(profile, kernel) : kernelListing(profile, kernel);
 }
 
 std::string withoutForm(const emit::Unit& unit, std::string_view precision, std::string_view why) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "emit/program.hpp"
+#include "program/descriptors.hpp"
 
 namespace skc::driver {
 

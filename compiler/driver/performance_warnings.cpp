@@ -8,10 +8,10 @@
 
 #include "analysis/stream_uses.hpp"
 #include "assemble/assemble.hpp"
-#include "emit/program.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
+#include "program/descriptors.hpp"
 
 namespace skc::driver {
 namespace {
@@ -35,7 +35,7 @@ class Advisor {
     reads_.assign(kernel.params.size(), false);
     for (const FunctionId id : functionsOf(module_, kernel)) block(module_.functions[id].body);
     if (!kernel.reduction) outputs(program);
-    sinks();
+    appendOutputs();
     if (kernel.reduction && !kernel.reduction->commutative) report(Diag::SlowFold, kernel.loc, {kernel.name});
   }
 
@@ -135,7 +135,7 @@ class Advisor {
     }
   }
 
-  void sinks() {
+  void appendOutputs() {
     for (const KernelParam& param : kernel_->params) {
       if (param.role == ParamRole::VariableOutput || param.role == ParamRole::Scatter)
         report(Diag::SlowOrder, param.loc, {param.name});

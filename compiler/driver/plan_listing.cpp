@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "assemble/assemble.hpp"
-#include "assemble/reduce_plan.hpp"
+#include "assemble/reduce/reduce_plan.hpp"
 #include "ir/print.hpp"
 #include "split/cost.hpp"
 #include "split/demand.hpp"
@@ -119,10 +119,10 @@ class PlanPrinter {
 
   /// How a stream of 1024 x 1024 elements is folded to a value.
   void printReduce() {
-    sk::assemble::Placement input;
+    sk::assemble::RegionLayout input;
     input.extent = {1024, 1024, 1, 1};
     const auto passes =
-        sk::assemble::planReduction(input, sk::assemble::valuePlacement(), {.texture = {16384, 256}});
+        sk::assemble::planReduction(input, sk::assemble::valueLayout(), {.texture = {16384, 256}});
     text_ += counted(passes.size(), "pass") + " for 1024 x 1024 elements to a value\n";
     std::int64_t left = sk::assemble::elements(input.extent);
     for (std::size_t i = 0; i < passes.size(); ++i) {

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "frontend/token_cursor.hpp"
+#include "frontend/tokens/token_cursor.hpp"
 #include "ir/ir.hpp"
 #include "support/diagnostics.hpp"
 

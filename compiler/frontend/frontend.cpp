@@ -21,10 +21,10 @@
 #include "frontend/clang_diagnostics.hpp"
 #include "frontend/clang_loc.hpp"
 #include "frontend/diagnostic_printer.hpp"
-#include "frontend/float_literals.hpp"
-#include "frontend/lower_module.hpp"
+#include "frontend/lower/lower_module.hpp"
 #include "frontend/prelude.hpp"
-#include "frontend/token_editor.hpp"
+#include "frontend/tokens/float_literals.hpp"
+#include "frontend/tokens/token_editor.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
 // LLVM's headers poison what their allocators have not handed out; libclang-cpp, built without the

@@ -311,7 +311,7 @@ std::string vectorConstructorName(std::string_view name) { return fmt::format("_
 
 std::string gatherTemplateName(int rank) { return fmt::format("gather_{}d", rank); }
 
-std::string sinkTemplateName(int rank) {
+std::string appendTemplateName(int rank) {
   return rank == 0 ? "variable_output" : fmt::format("scatter_{}d", rank);
 }
 

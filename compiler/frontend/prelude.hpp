@@ -31,6 +31,6 @@ std::string vectorConstructorName(std::string_view name);
 std::string gatherTemplateName(int rank);
 
 /// The class template of a scatter output of this rank, 1 to 4, or, for 0, of a variable output.
-std::string sinkTemplateName(int rank);
+std::string appendTemplateName(int rank);
 
 }  // namespace skc::frontend

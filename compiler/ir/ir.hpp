@@ -21,11 +21,11 @@
 //   * One loop node keeps the shape that its author wrote. `continue` goes to `step`, then `cond`.
 //   * A function's parameters are its first `parameterCount` variables. `In` is a copy;
 //     `InOut` copies in and out, and no variable is bound to two InOut parameters of one call.
-//     `Gather`, `Element` and `Sink` parameters stand for streams: they may only be used by the stream
-//     expressions (GatherRead, NeighborRead, Sample, IndexOf, ExtentOf) and, a Sink, by the stream
+//     `Gather`, `Element` and `AppendOutput` parameters stand for streams: they may only be used by the stream
+//     expressions (GatherRead, NeighborRead, Sample, IndexOf, ExtentOf) and, an AppendOutput, by the stream
 //     statements (Push, Scatter), or handed to another function; an Element may be read by VarRef too.
 //   * Each kernel has an entry function, with one variable per kernel parameter, in order. After
-//     `specialize-gathers`, no function but an entry has Gather or Sink parameters, and every StreamRef
+//     `specialize-gathers`, no function but an entry has Gather or AppendOutput parameters, and every StreamRef
 //     names a kernel parameter; the functions that a kernel reaches are then its own, and
 //     what is in those that no kernel reaches any more does not count.
 //   * A reduce has inputs and accumulators. Partial results are combined by a reduce whose inputs have the
@@ -95,7 +95,7 @@ struct Index { ExprPtr base, index; };
 struct Call { FunctionId callee; std::vector<ExprPtr> args; };   ///< no InOut parameters, not void
 struct IntrinsicCall { Intrinsic intrinsic; std::vector<ExprPtr> args; };
 
-/// A stream: a variable of this function (Gather, Element or Sink role), or, after specialize-gathers,
+/// A stream: a variable of this function (Gather, Element or AppendOutput role), or, after specialize-gathers,
 /// a parameter of the kernel. Domain (IndexOf and ExtentOf only) is the kernel's domain itself: what
 /// an output, a gather's current index, or an Element without a stream behind it stands for.
 struct StreamRef {
@@ -165,12 +165,12 @@ struct Stmt {
 
 // ---- declarations -----------------------------------------------------------------------------
 
-enum class VarRole : std::uint8_t { Local, In, InOut, Element, Gather, Sink };
+enum class VarRole : std::uint8_t { Local, In, InOut, Element, Gather, AppendOutput };
 struct Variable {
   std::string name;
-  Type type;  ///< Gather, Sink: the element's type
+  Type type;  ///< Gather, AppendOutput: the element's type
   VarRole role = VarRole::Local;
-  std::uint8_t rank = 0;  ///< Gather, Sink of a scatter output: 1 to 4
+  std::uint8_t rank = 0;  ///< Gather, AppendOutput of a scatter output: 1 to 4
   bool isConst = false;
   Loc loc;
 };
@@ -375,7 +375,7 @@ struct Kernel {
   FunctionId entry;  ///< void; variables 0..n-1 are the parameters:
       ///< Uniform, Iterator and Spec In, Input Element,
       ///< Output and Accumulator InOut, Gather Gather,
-      ///< VariableOutput and Scatter Sink
+      ///< VariableOutput and Scatter AppendOutput
   std::vector<KernelParam> params;
   std::optional<Reduction> reduction;  ///< set for `reduce`
   bool isMade = false;  ///< made by a transform, for another one: C++ cannot call it

@@ -58,10 +58,10 @@ class KernelMaker {
     return var;
   }
   VarId variableOutput(std::string name, Type type) {
-    return param(std::move(name), ParamRole::VariableOutput, type, VarRole::Sink);
+    return param(std::move(name), ParamRole::VariableOutput, type, VarRole::AppendOutput);
   }
   VarId scatterOutput(std::string name, Type type, int rank) {
-    const VarId var = param(std::move(name), ParamRole::Scatter, type, VarRole::Sink);
+    const VarId var = param(std::move(name), ParamRole::Scatter, type, VarRole::AppendOutput);
     function_.variables[var].rank = kernel_.params[var].rank = static_cast<std::uint8_t>(rank);
     return var;
   }

@@ -57,8 +57,8 @@ class FunctionChecker {
     require(isParameter == (var.role != VarRole::Local),
             "parameters are the first variables, locals the others");
     const bool isGather = var.role == VarRole::Gather;
-    const bool isSink = var.role == VarRole::Sink;
-    require(var.rank <= 4 && (isGather ? var.rank >= 1 : isSink || var.rank == 0),
+    const bool isAppendOutput = var.role == VarRole::AppendOutput;
+    require(var.rank <= 4 && (isGather ? var.rank >= 1 : isAppendOutput || var.rank == 0),
             "gathers have rank 1 to 4, variable outputs and all but streams none");
   }
 
@@ -146,7 +146,7 @@ class FunctionChecker {
   void rule(const Scope& n) { block(n.body); }
   void rule(const Push& n) const {
     checkExpr(context_, *n.value);
-    checkSink(context_, n.stream, n.value->type, 0);
+    checkAppendOutput(context_, n.stream, n.value->type, 0);
     mask(n.mask);
   }
   void rule(const Scatter& n) const {
@@ -154,7 +154,7 @@ class FunctionChecker {
     checkExpr(context_, *n.value);
     require(n.index->type.isArithmetic() && n.index->type.scalar == Scalar::Int,
             "a scatter's index is no int");
-    checkSink(context_, n.stream, n.value->type, n.index->type.width);
+    checkAppendOutput(context_, n.stream, n.value->type, n.index->type.width);
     const bool isNumber = n.value->type.isFloat() || n.value->type.isInteger();
     require(n.op == ScatterOp::Store || isNumber, "something that is no number is combined");
     mask(n.mask);
@@ -188,7 +188,7 @@ VarRole roleInEntry(ParamRole role) {
     case ParamRole::Input: return VarRole::Element;
     case ParamRole::Gather: return VarRole::Gather;
     case ParamRole::VariableOutput:
-    case ParamRole::Scatter: return VarRole::Sink;
+    case ParamRole::Scatter: return VarRole::AppendOutput;
     case ParamRole::Output:
     case ParamRole::Accumulator: break;
   }
@@ -327,7 +327,7 @@ std::vector<const Kernel*> owners(const Module& module) {
       const Function& function = module.functions[id];
       for (std::size_t i = 0; id != kernel.entry && i < function.parameterCount; ++i) {
         const VarRole role = function.variables[i].role;
-        require(role != VarRole::Gather && role != VarRole::Element && role != VarRole::Sink,
+        require(role != VarRole::Gather && role != VarRole::Element && role != VarRole::AppendOutput,
                 fmt::format("function @{} still takes a stream", id));
       }
     }

@@ -55,20 +55,21 @@ class ExprChecker {
     match(expr.node, [&](const auto& node) { rule(expr.type, node); });
   }
 
-  /// A stream statement writes a sink of this element type; rank 0 is a variable output.
-  void sink(StreamRef stream, Type value, std::uint8_t rank) const {
+  /// A stream statement writes an append output of this element type; rank 0 is a variable output.
+  void appendOutput(StreamRef stream, Type value, std::uint8_t rank) const {
     checkStream(stream);
     const bool isVariable = stream.space == StreamRef::Space::Variable;
     const Type element =
         isVariable ? context_.function->variables[stream.id].type : context_.kernel->params[stream.id].type;
     const std::uint8_t declared =
         isVariable ? context_.function->variables[stream.id].rank : context_.kernel->params[stream.id].rank;
-    const bool isSink = isVariable ? context_.function->variables[stream.id].role == VarRole::Sink
-                                   : context_.kernel->params[stream.id].role == ParamRole::VariableOutput ||
-                                         context_.kernel->params[stream.id].role == ParamRole::Scatter;
-    require(isSink, "a stream that is no sink is written to");
-    require(declared == rank, "a sink is written with another rank than its own");
-    require(element == value, "a value of another type is written to a sink");
+    const bool isAppendOutput = isVariable
+                                    ? context_.function->variables[stream.id].role == VarRole::AppendOutput
+                                    : context_.kernel->params[stream.id].role == ParamRole::VariableOutput ||
+                                          context_.kernel->params[stream.id].role == ParamRole::Scatter;
+    require(isAppendOutput, "a stream that is no append output is written to");
+    require(declared == rank, "an append output is written with another rank than its own");
+    require(element == value, "a value of another type is written to an append output");
   }
 
  private:
@@ -80,7 +81,7 @@ class ExprChecker {
     require(context_.function != nullptr, "a constant expression names a variable");
     require(n.var < context_.function->variables.size(), "a variable is not in the function's table");
     const Variable& var = context_.function->variables[n.var];
-    require(var.role != VarRole::Gather && var.role != VarRole::Sink,
+    require(var.role != VarRole::Gather && var.role != VarRole::AppendOutput,
             fmt::format("{} '{}' is used as a value", spelling(var.role), var.name));
     require((*context_.visible)[n.var], fmt::format("'{}' is not visible here", var.name));
     require(var.type == type, fmt::format("'{}' has another type than its variable", var.name));
@@ -233,8 +234,8 @@ class ExprChecker {
               "a stream is named as a kernel's parameter too early");
       require(stream.id < context_.function->variables.size(), "a stream is not in the function's table");
       const VarRole role = context_.function->variables[stream.id].role;
-      require(role == VarRole::Gather || role == VarRole::Element || role == VarRole::Sink,
-              "a stream is no gather, element or sink");
+      require(role == VarRole::Gather || role == VarRole::Element || role == VarRole::AppendOutput,
+              "a stream is no gather, element or append output");
       return;
     }
     require(stream.space == StreamRef::Space::KernelParameter, "a stream is no parameter of a kernel");
@@ -330,8 +331,8 @@ void checkBinary(BinaryOp op, Type lhs, Type rhs, Type result) {
 
 void checkExpr(const ExprContext& context, const Expr& expr) { ExprChecker(context).check(expr); }
 
-void checkSink(const ExprContext& context, StreamRef stream, Type value, std::uint8_t rank) {
-  ExprChecker(context).sink(stream, value, rank);
+void checkAppendOutput(const ExprContext& context, StreamRef stream, Type value, std::uint8_t rank) {
+  ExprChecker(context).appendOutput(stream, value, rank);
 }
 
 VarId checkPlace(const ExprContext& context, const Expr& expr) {
@@ -365,7 +366,7 @@ void checkArguments(const ExprContext& context, FunctionId callee, const std::ve
   for (std::size_t i = 0; i < args.size(); ++i) {
     const Variable& parameter = function.variables[i];
     require(args[i]->type == parameter.type, fmt::format("{}argument {} has another type", where, i));
-    if (parameter.role == VarRole::Gather || parameter.role == VarRole::Sink) {
+    if (parameter.role == VarRole::Gather || parameter.role == VarRole::AppendOutput) {
       require(isStreamArgument(context, *args[i], parameter),
               fmt::format("{}argument {} is no {}", where, i, spelling(parameter.role)));
       require(parameter.role == VarRole::Gather || allowInOut, where + "an expression writes a stream");

@@ -30,7 +30,7 @@ struct ExprContext {
 void checkType(const Module& module, Type type);
 void checkExpr(const ExprContext& context, const Expr& expr);
 /// What Push (rank 0) and Scatter write to, and the type of what they write.
-void checkSink(const ExprContext& context, StreamRef stream, Type value, std::uint8_t rank);
+void checkAppendOutput(const ExprContext& context, StreamRef stream, Type value, std::uint8_t rank);
 /// An expression that may be assigned to; returns the variable at its root.
 VarId checkPlace(const ExprContext& context, const Expr& expr);
 /// Arguments against the callee's parameters; InOut ones only where `allowInOut`.

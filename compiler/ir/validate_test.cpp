@@ -105,7 +105,8 @@ TEST_CASE("gathers are read by index only") {
                   assign(k.ref(r), gatherRead(floatType, KernelMaker::stream(u), literal(1U))));
   CHECK_VIOLATION("too early", assign(k.ref(r), gatherRead(floatType, {StreamRef::Space::KernelParameter, u},
                                                            literal(1))));
-  CHECK_VIOLATION("no gather, element or sink", declare(i, swizzle(indexOf(KernelMaker::stream(a)), "x")));
+  CHECK_VIOLATION("no gather, element or append output",
+                  declare(i, swizzle(indexOf(KernelMaker::stream(a)), "x")));
   CHECK_VALID(declare(i, swizzle(indexOf({StreamRef::Space::Domain, 0}), "x")));
 }
 

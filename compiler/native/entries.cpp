@@ -58,7 +58,7 @@ class EntryWriter {
     if (paramsOf(ParamRole::VariableOutput).empty() && paramsOf(ParamRole::Scatter).empty()) {
       function_->setDoesNotThrow();
     } else {
-      function_->setUWTableKind(llvm::UWTableKind::Default);  // Sink::grow may find no memory
+      function_->setUWTableKind(llvm::UWTableKind::Default);  // AppendBuffer::grow may find no memory
     }
     setLevel(*function_, s_.level);
     if (!s_.level.hasMaskRegisters) markWideMasks(*function_);

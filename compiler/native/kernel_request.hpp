@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the native back end is asked for, kernel by kernel. The stub says it (emit/stub.hpp), compile() does it (native.hpp).
+// What the native back end is asked for, kernel by kernel. The stub says it (program/stub.hpp), compile() does it (native.hpp).
 #pragma once
 
 #include <string>

@@ -34,7 +34,7 @@ void FunctionCode::declareAll(std::size_t rows) {
     const Variable& variable = function_.variables[var];
     for (std::size_t row = 0; row < rows; ++row) {
       std::vector<LeafMemory>& memory = variables_[row].emplace_back();
-      const bool isStream = variable.role == VarRole::Gather || variable.role == VarRole::Sink;
+      const bool isStream = variable.role == VarRole::Gather || variable.role == VarRole::AppendOutput;
       if (isStream || (row > 0 && !plan_->isPerRow(var))) continue;
       const std::vector<Leaf> leaves = leavesOf(k.module, variable.type);
       for (std::size_t i = 0; i < leaves.size(); ++i) {

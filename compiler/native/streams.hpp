@@ -66,7 +66,7 @@ class Streams {
   /// Likewise that they store, or combine, them where their indices are inside; or does so, where records are not asked for.
   void scatter(std::uint32_t param, const Parts& index, const Parts& value, llvm::Value* mask);
   /// Carries out the records of a scatter output, in their order.
-  void apply(std::uint32_t param, llvm::Value* sink);
+  void apply(std::uint32_t param, llvm::Value* appendBuffer);
 
   /// What the gather has outside, of a Boundary::Border.
   Parts border(std::uint32_t param);
@@ -86,7 +86,7 @@ class Streams {
   struct Column;
   void record(std::uint32_t param, llvm::Value* mask, std::vector<Column> columns);
   llvm::Value* loadField(llvm::Value* record, std::size_t offset, llvm::Type* type);
-  void makeRoom(llvm::Value* sink);
+  void makeRoom(llvm::Value* appendBuffer);
   void applyLanes(std::uint32_t param, llvm::Value* number, const Parts& stored, llvm::Value* mask);
   std::vector<llvm::Value*> componentsNow(std::uint32_t param);
   void applySomeLanes(std::uint32_t param, llvm::Value* number, const Parts& stored, llvm::Value* bits,

@@ -14,7 +14,7 @@ namespace {
 using namespace ir;
 
 /// Pushes and scatters take passes of their own (runtime), to which plans do not extend.
-bool hasSinks(const Kernel& kernel) {
+bool hasAppendOutputs(const Kernel& kernel) {
   return std::ranges::any_of(kernel.params, [](const KernelParam& param) {
     return param.role == ParamRole::VariableOutput || param.role == ParamRole::Scatter;
   });
@@ -68,7 +68,7 @@ void splitKernels(Module& module, std::span<const Limits> limits) {
   const std::size_t count = module.kernels.size();   // passes are added behind
   for (KernelId id = 0; id < count; ++id) {
     const Kernel& kernel = module.kernels[id];
-    if (kernel.reduction || kernel.isNativeOnly || hasSinks(kernel)) continue;
+    if (kernel.reduction || kernel.isNativeOnly || hasAppendOutputs(kernel)) continue;
     const Limits demand = demandOf(module, module.kernels[id]);
     for (const Limits& limit : generousFirst) {
       const std::vector<Plan>& plans = module.kernels[id].plans;

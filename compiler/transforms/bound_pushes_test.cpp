@@ -14,9 +14,9 @@ namespace {
 
 using namespace ir;
 
-constexpr StreamRef sink = {StreamRef::Space::KernelParameter, 1};
+constexpr StreamRef appendOutput = {StreamRef::Space::KernelParameter, 1};
 
-Stmt pushOne() { return push(sink, literal(1.0F)); }
+Stmt pushOne() { return push(appendOutput, literal(1.0F)); }
 
 /// The bound of a kernel with this body, in which variable 2 is an int.
 std::int32_t boundOf(Block body) {
@@ -74,8 +74,8 @@ TEST_CASE("a scatter output takes one kind of operation") {
     KernelMaker k(module, "f");
     k.input("x", floatType);
     k.scatterOutput("r", floatType, 1);
-    k.finish(block(scatter(sink, ScatterOp::Add, literal(0), literal(1.0F)),
-                   scatter(sink, second, literal(1), literal(1.0F))));
+    k.finish(block(scatter(appendOutput, ScatterOp::Add, literal(0), literal(1.0F)),
+                   scatter(appendOutput, second, literal(1), literal(1.0F))));
     DiagnosticLog log;
     boundPushes(module, log);
     CHECK(log.hasErrors() == (second == ScatterOp::Store));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Refuses kernels with more parameters and planes than their descriptors and the runtime's keys can number
-// (sk/program.hpp, runtime/src/variant.hpp), and warns of uniforms that some device has no room for. Kernels that exceed what a device can do in a pass are
+// (sk/program.hpp, runtime/src/gl_device/program/variant.hpp), and warns of uniforms that some device has no room for. Kernels that exceed what a device can do in a pass are
 // split-kernels' business.
 #pragma once
 

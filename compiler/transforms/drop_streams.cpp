@@ -11,7 +11,9 @@ namespace skc {
 
 using namespace ir;
 
-bool isDropped(const Variable& var) { return var.role == VarRole::Gather || var.role == VarRole::Sink; }
+bool isDropped(const Variable& var) {
+  return var.role == VarRole::Gather || var.role == VarRole::AppendOutput;
+}
 
 void dropStreams(Function& function) {
   constexpr VarId dropped = std::numeric_limits<VarId>::max();

@@ -84,7 +84,7 @@ LaneEvaluator::Lanes LaneEvaluator::unassigned(FunctionId id, VarId var) const {
 void LaneEvaluator::check(const Frame& frame, VarId var) const {
   const VarRole role = frame.function.variables[var].role;
   const Type type = frame.function.variables[var].type;
-  if (shapes_ == nullptr || role == VarRole::Sink || !type.isArithmetic()) return;
+  if (shapes_ == nullptr || role == VarRole::AppendOutput || !type.isArithmetic()) return;
   const auto leaves = shapes_->of(frame.id, var);
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     for (std::size_t lane = 0; lane < count_ && leaves[i] != analysis::Shape::Varying; ++lane) {

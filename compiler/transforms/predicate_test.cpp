@@ -29,7 +29,7 @@ struct Outcome {
   bool operator==(const Outcome&) const = default;
 };
 
-/// A kernel of u, x, r and a sink, with a mask where it takes one; the elements from number `first` on.
+/// A kernel of u, x, r and an append output, with a mask where it takes one; the elements from number `first` on.
 Outcome run(const Module& module, std::int32_t u, const std::vector<std::int32_t>& x, std::size_t first,
             std::size_t count, bool inFull, const analysis::Uniformity* shapes) {
   LaneEvaluator evaluator(module, count, inFull, shapes);

@@ -31,7 +31,9 @@ class BodyMaker {
     readable_.push_back(var);
     if (isMutable) mutable_.push_back(var);
   }
-  void pushesTo(VarId sink) { sink_ = StreamRef{StreamRef::Space::KernelParameter, sink}; }
+  void pushesTo(VarId appendOutput) {
+    appendOutput_ = StreamRef{StreamRef::Space::KernelParameter, appendOutput};
+  }
 
   Block body() {
     Block statements = block(3);
@@ -155,7 +157,7 @@ class BodyMaker {
     return type == intType ? ref(var) : ir::index(module_, ref(var), small());
   }
   void change(Block& out) {
-    if (sink_ && oneIn(4)) return out.push_back(push(*sink_, value(1)));
+    if (appendOutput_ && oneIn(4)) return out.push_back(push(*appendOutput_, value(1)));
     if (oneIn(2)) return out.push_back(assign(place(), BinaryOp::Add, value(2)));
     out.push_back(assign(place(), value(2)));
   }
@@ -226,7 +228,7 @@ class BodyMaker {
   std::mt19937& random_;
   std::vector<FunctionId> pure_, changing_;
   std::vector<VarId> readable_, mutable_;
-  std::optional<StreamRef> sink_;
+  std::optional<StreamRef> appendOutput_;
   int loops_ = 0, switches_ = 0;
 };
 

@@ -19,7 +19,7 @@ using namespace ir;
 constexpr StreamRef domain = {StreamRef::Space::Domain, 0};
 
 bool isStream(const Variable& var) {
-  return var.role == VarRole::Gather || var.role == VarRole::Element || var.role == VarRole::Sink;
+  return var.role == VarRole::Gather || var.role == VarRole::Element || var.role == VarRole::AppendOutput;
 }
 
 /// fn(StreamRef&) where the expression uses a stream.
@@ -94,7 +94,7 @@ class State {
   }
 
   /// A copy of a function with its streams bound; an entry keeps its parameters, others lose gathers and
-  /// sinks.
+  /// append outputs.
   FunctionId make(FunctionId source, const Binding& binding, bool isEntry) {
     Function function = clone(module_.functions[source]);
     walkExprs(function.body, [&](Expr& expr) {
@@ -115,7 +115,7 @@ class State {
     return static_cast<FunctionId>(made_.size() - 1);
   }
 
-  /// The instance that a call means; takes the gathers and sinks out of its arguments.
+  /// The instance that a call means; takes the gathers and append outputs out of its arguments.
   FunctionId bindCall(const Function& caller, const Binding& binding, FunctionId callee,
                       std::vector<ExprPtr>& args) {
     const Function& function = module_.functions[callee];

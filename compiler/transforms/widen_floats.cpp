@@ -28,7 +28,9 @@ bool isStreamOfValues(ParamRole role) {
          role == ParamRole::Accumulator;
 }
 
-bool isSink(ParamRole role) { return role == ParamRole::VariableOutput || role == ParamRole::Scatter; }
+bool isAppendOutput(ParamRole role) {
+  return role == ParamRole::VariableOutput || role == ParamRole::Scatter;
+}
 
 /// Those of a float's bits: they get a float, or give one.
 bool isOfBits(Intrinsic intrinsic) {
@@ -183,7 +185,7 @@ class Widener {
       kept.push_back(i);
       Function& entry = module_.functions[id];
       const Variable plain = entry.variables[i];
-      if (isSink(kernel.params[i].role) || !types_.holdsFloat(plain.type)) continue;
+      if (isAppendOutput(kernel.params[i].role) || !types_.holdsFloat(plain.type)) continue;
       const Type wide = types_.of(plain.type);
       const VarId local = addVariable(entry, plain.name + "_wide", wide, VarRole::Local, plain.loc);
       kept.push_back(local);
@@ -200,17 +202,17 @@ class Widener {
     const Function& made = module_.functions[id];
     walkStmts(body, [&](Stmt& stmt) {
       forEachOperand(stmt, [&](ExprPtr& slot) { rewrite(slot, {&made, &wideOf}); });
-      // sinks hold what they held
+      // append outputs hold what they held
       if (auto* n = std::get_if<Push>(&stmt.node))
-        n->value = toSink(made, n->stream, std::move(n->value), kernel);
+        n->value = toAppendOutput(made, n->stream, std::move(n->value), kernel);
       if (auto* n = std::get_if<Scatter>(&stmt.node))
-        n->value = toSink(made, n->stream, std::move(n->value), kernel);
+        n->value = toAppendOutput(made, n->stream, std::move(n->value), kernel);
     });
     body.insert(body.begin(), std::make_move_iterator(start.begin()), std::make_move_iterator(start.end()));
     module_.functions[id].body = std::move(body);
   }
 
-  ExprPtr toSink(const Function& function, StreamRef stream, ExprPtr value, const Kernel& kernel) {
+  ExprPtr toAppendOutput(const Function& function, StreamRef stream, ExprPtr value, const Kernel& kernel) {
     const Type type = stream.space == StreamRef::Space::Variable ? function.variables[stream.id].type
                                                                  : kernel.params[stream.id].type;
     return types_.narrowed(std::move(value), type);

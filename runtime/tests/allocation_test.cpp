@@ -95,7 +95,7 @@ long pagesSoFar() {
 }
 
 /// Calls with another uniform each, for which llvmpipe takes memory from the heap; once it has had as much, no page of it
-/// may be new (keep_heap.hpp). Without that there are four thousand in each thousand calls.
+/// may be new (gl_device/memory/keep_heap.hpp). Without that there are four thousand in each thousand calls.
 bool checkPages(Device& device) {
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
   static const TestKernel scale("scale", "void scale(float a, float x, out float r) { r = a * x; }\n",

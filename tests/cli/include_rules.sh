@@ -7,7 +7,8 @@
 set -euo pipefail
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../..}"
 
-# Folder: what it may include of the guarded headers below. The longest folder that fits counts.
+# Folder: which folders and files it may include, of those that begin with a guarded name. The innermost folder with a
+# rule counts.
 rules='
 compiler/support      support
 compiler/ir           support ir
@@ -16,23 +17,38 @@ compiler/split        support ir split
 compiler/transforms   support ir analysis transforms split
 compiler/native       support ir analysis transforms native llvm sk/native/code.hpp sk/native/table.hpp
 compiler/native/library support ir transforms native
-compiler/emit         support ir analysis native/kernel_request.hpp emit assemble sk/program.hpp sk/scalar_bytes.hpp
+compiler/glsl         support ir analysis glsl sk/program.hpp
+compiler/program      support ir analysis native/kernel_request.hpp glsl program assemble sk/program.hpp sk/scalar_bytes.hpp
 compiler/frontend     support ir frontend clang llvm
-compiler/driver       support ir analysis split transforms native/native.hpp native/library/link_library.hpp emit frontend driver assemble sk/program.hpp
+compiler/driver       support ir analysis split transforms native/native.hpp native/library/link_library.hpp glsl program frontend driver assemble sk/program.hpp
 runtime/include/sk    sk
-runtime/src           sk assemble gl native
-runtime/tools         assemble/nearest_word.hpp sk native
-runtime/tests         sk assemble gl native epoxy
-runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_bytes.hpp assemble
+runtime/src/support   sk support
+runtime/src/trace     sk trace
+runtime/src/device    sk trace device call/resolved_call.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp
+runtime/src/call      sk support device call assemble
+runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp
+runtime/src/native    sk support trace device call native assemble probe/copy_bandwidth.hpp
+runtime/src/probe     sk support trace device gl gl_device probe assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
+runtime/src/gl_device sk support trace device call probe gl gl_device assemble native/rest_threads.hpp
+runtime/src/gl_device/memory sk gl gl_device/memory assemble
+runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_bytes.hpp assemble
+runtime/src/assemble/glsl     sk/program.hpp sk/arithmetic.hpp sk/limits.hpp ASSEMBLE assemble/glsl
+runtime/src/assemble/elements sk/program.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements
+runtime/src/assemble/append   sk/program.hpp ASSEMBLE assemble/glsl assemble/elements assemble/append
+runtime/src/assemble/reduce   sk/program.hpp sk/limits.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/reduce assemble/program/sample_kernels.hpp
+runtime/tools         sk support/cache_folder.hpp native probe/probe.hpp assemble/nearest_word.hpp
+runtime/tests         sk support trace device call gl gl_device native assemble epoxy
 examples              sk epoxy
 tests                 sk
 tests/bench           sk epoxy
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
-tests/fuzz            sk ir emit driver
+tests/fuzz            sk ir program driver
 '
-guarded='support|ir|analysis|split|transforms|native|emit|frontend|driver|sk|assemble|gl|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+# What all rooms of the assembler share.
+rules=${rules//ASSEMBLE/assemble/assemble.hpp assemble/condition.hpp assemble/region_layout.hpp assemble/relayed_values.hpp}
+guarded='support|ir|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|api|probe|gl|gl_device|assemble|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)
@@ -50,6 +66,11 @@ includes() {
           for (j = 2; j <= n; ++j) may[words[1], words[j]] = 1
           if (n) folders[words[1]] = 1
         }
+      }
+      function isAllowed(folder, name) {
+        do if ((folder, name) in may) return 1
+        while (sub("/[^/]*$", "", name))
+        return 0
       }
       function folderOf(file, folder) {
         for (folder = file; sub("/[^/]*$", "", folder);) if (folder in folders) return folder
@@ -70,9 +91,9 @@ includes() {
         top = name
         if (!sub("/.*$", "", top)) next
         folder = folderOf(FILENAME)
-        # examples/support and the like: a folder of their own that bears a guarded name.
-        if (folder ~ /^(examples|tests)$/ && top == "support") next
-        if (top ~ guarded && !((folder, top) in may) && !((folder, name) in may))
+        # examples/support and the like: folders of their own that bear a guarded name.
+        if (folder ~ /^(examples|tests)$/ && top ~ /^(support|trace)$/) next
+        if (top ~ guarded && !isAllowed(folder, name))
           printf "%s:%d: %s may not include %s\n", FILENAME, FNR, folder, name
       }'
 }

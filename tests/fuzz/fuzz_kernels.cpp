@@ -18,10 +18,10 @@
 #include "command.hpp"
 #include "driver/big_stack.hpp"
 #include "driver/compile.hpp"
-#include "emit/program.hpp"
 #include "glsl.hpp"
 #include "isolation.hpp"
 #include "kernels/device_run.hpp"
+#include "program/descriptors.hpp"
 
 namespace {
 

@@ -25,7 +25,7 @@
 //
 // Doubles are of types sk_double, sk_double2, sk_double3 and sk_double4, whose components are members x, y, z
 // and w. A body computes with them by functions of one sk_double, which the assembler defines for native doubles or
-// for pairs of floats: assemble/doubles.hpp lists them.
+// for pairs of floats: assemble/glsl/doubles.hpp lists them.
 //
 // Every name that the assembler declares begins with `sk_`; names of the user never do.
 #pragma once
@@ -173,8 +173,8 @@ constexpr const Element& heldBy(const Parameter& parameter) {
 }
 
 /// A function that devices get wrong, or each in its own way. Bodies call it by its name in small letters
-/// with `sk_` in front, and the assembler defines it (assemble/intrinsics.hpp).
-/// Those up to Pow are functions of doubles, too (assemble/double_intrinsics.hpp).
+/// with `sk_` in front, and the assembler defines it (assemble/glsl/intrinsics.hpp).
+/// Those up to Pow are functions of doubles, too (assemble/glsl/double_intrinsics.hpp).
 // clang-format off
 enum class Intrinsic : std::uint8_t {
   Sin, Cos, Tan, Asin, Acos, Atan, Atan2, Sinh, Cosh, Tanh, Asinh, Acosh, Atanh,
@@ -193,7 +193,7 @@ struct Plan;
 struct Kernel;
 
 /// A function of one float that a table of its values may stand for. Bodies call it `sk_table_NAME(x)`, which the
-/// assembler defines as either (assemble/tables.hpp).
+/// assembler defines as either (assemble/glsl/tables.hpp).
 struct Table {
   std::string_view function;  ///< qualified, for messages
   TableRange range;

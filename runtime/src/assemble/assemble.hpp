@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "assemble/condition.hpp"
-#include "assemble/placement.hpp"
+#include "assemble/region_layout.hpp"
 #include "assemble/relayed_values.hpp"
 #include "sk/arithmetic.hpp"
 #include "sk/program.hpp"
@@ -58,14 +58,14 @@ const Profile* findProfile(std::string_view name);
 std::span<const Profile> profiles();
 
 /// How the texels of the output lie, hence how sk_index() follows from a program's texel. What has to be
-/// drawn is drawnTexels() of placement.hpp.
+/// drawn is drawnTexels() of region layout.hpp.
 enum class Domain : std::uint8_t {
   Plane,  ///< texel = origin + index.xy: a whole 2-D stream or a rectangle of one
   Linear,  ///< a whole linearised stream: element number = y << shift | x
   LinearBox,  ///< a box of a linearised stream: texels outside the box are left out
-  Entry,  ///< of a sink's list, linearised: the element is the one that it comes from (sinks.hpp)
+  Entry,  ///< of an append output's list, linearised: the element is the one that it comes from (append outputs.hpp)
 };
-Domain domainOf(const Placement& output);
+Domain domainOf(const RegionLayout& output);
 
 /// How an element of a stream is found in its texture.
 enum class Addressing : std::uint8_t {
@@ -93,7 +93,7 @@ struct StreamAccess {
 /// it is (Addressing::Plane) is read; a gather of floats, if the device filters these.
 bool mayFilter(const program::Parameter& gather);
 
-/// Whether elements of this type can lie four to a texel (Placement::packed): one scalar of four bytes at most.
+/// Whether elements of this type can lie four to a texel (RegionLayout::packed): one scalar of four bytes at most.
 bool mayPack(const program::Element& held);
 
 /// Whether a kernel may write packed texels, the four elements of one after the other, as far as it is its own affair.
@@ -104,17 +104,17 @@ bool mayWritePacked(const program::Kernel& kernel);
 /// Characters of the longest body that is worth it.
 constexpr std::size_t longestPackedBody = 4096;
 
-/// What a program of a kernel computes (sinks.hpp).
+/// What a program of a kernel computes (append outputs.hpp).
 enum class Work : std::uint8_t {
-  Elements,  ///< its outputs; it has no sinks
-  Counts,  ///< its outputs, and how often each element pushes to each counted sink
-  List,  ///< the list of one sink, and nothing else
+  Elements,  ///< its outputs; it has no append outputs
+  Counts,  ///< its outputs, and how often each element pushes to each counted append output
+  List,  ///< the list of one append output, and nothing else
 };
 
 struct Task {
   Work work = Work::Elements;
-  std::uint8_t sink = 0;  ///< List: the parameter
-  bool treeLayered = false;  ///< List: the tree of a counted sink is
+  std::uint8_t appendOutput = 0;  ///< List: the parameter
+  bool treeLayered = false;  ///< List: the tree of a counted append output is
   auto operator<=>(const Task&) const = default;
 };
 
@@ -136,7 +136,7 @@ struct Variant {
 };
 
 /// Names of the uniforms that a program declares, where it needs them; P is the parameter's
-/// symbol, and the values are those of a Placement (placement.hpp):
+/// symbol, and the values are those of a RegionLayout (region layout.hpp):
 ///   sk_arg_P                       value of uniform parameter P
 ///   sk_begin_P sk_step_P           first value and step of iterator P, of its type
 ///   sk_tex_P | sk_tex0_P sk_tex1_P ...   samplers, one a plane (a single plane has no number)
@@ -152,8 +152,8 @@ struct Variant {
 /// A compute program has `sk_rect`, an ivec4: the first texel that is written, and how many in each dimension. One whose
 /// work groups each compute a texel is dispatched with as many groups.
 /// Outputs are `layout(location = n) out`, or images of binding n, one a plane, numbered in order of parameters and
-/// fields; those of Work::Counts have one more for each counted sink, and those of Work::List are the planes of the sink, for a
-/// scatter output after one for its texel. A list of a counted sink reads a tree (count_tree.hpp):
+/// fields; those of Work::Counts have one more for each counted append output, and those of Work::List are the planes of the append output, for a
+/// scatter output after one for its texel. A list of a counted append output reads a tree (count_tree.hpp):
 ///   sk_odd sk_even sk_tree_shift   its textures (samplers) and log2 of their width
 ///   sk_levels, sk_rows[l]          the number of levels, and the first row of level l in its texture
 /// Of a function with a table, those of tables.hpp.

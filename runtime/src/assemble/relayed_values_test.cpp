@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "assemble/assemble.hpp"
-#include "assemble/sample_kernels.hpp"
+#include "assemble/program/sample_kernels.hpp"
 
 using namespace sk::assemble;
 using namespace sk::program;

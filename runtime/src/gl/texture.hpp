@@ -3,7 +3,7 @@
 // A texture of one of our formats, without filtering, without mipmaps: a 2-D one, or an array of layers.
 #pragma once
 
-#include "assemble/placement.hpp"
+#include "assemble/region_layout.hpp"
 #include "gl/format.hpp"
 #include "gl/object_name.hpp"
 

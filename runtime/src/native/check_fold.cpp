@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "check_argument.hpp"
+#include "call/check_argument.hpp"
 #include "native/leaf_folder.hpp"
 
 namespace sk {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cstring>
 
-#include "checked_size.hpp"
 #include "sk/narrow.hpp"
 #include "sk/native/parallel.hpp"
 #include "sk/native/quad_type.hpp"
 #include "sk/scalar_bytes.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 

@@ -36,7 +36,7 @@ struct Values {
   std::size_t bytes;
 };
 
-/// Arrays of `count` elements, uninitialised. Throws NoMemory (checked_size.hpp).
+/// Arrays of `count` elements, uninitialised. Throws NoMemory (support/checked_size.hpp).
 class Components {
  public:
   Components() = default;

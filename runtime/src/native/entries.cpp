@@ -7,7 +7,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "check_argument.hpp"
+#include "call/check_argument.hpp"
 #include "sk/error.hpp"
 
 namespace sk {

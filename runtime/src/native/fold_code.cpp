@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "checks.hpp"
+#include "call/fold_check_setting.hpp"
 #include "native/check_fold.hpp"
 #include "native/code_frame.hpp"
 #include "native/fold_program.hpp"

@@ -8,7 +8,7 @@
 #include <sys/mman.h>
 #endif
 
-#include "checked_size.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 

@@ -18,7 +18,7 @@ struct Freeing {
 };
 using Memory = std::unique_ptr<std::byte[], Freeing>;
 
-/// Uninitialised. Throws NoMemory (checked_size.hpp).
+/// Uninitialised. Throws NoMemory (support/checked_size.hpp).
 Memory allocated(std::size_t bytes);
 
 }  // namespace sk

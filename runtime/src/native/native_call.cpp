@@ -7,10 +7,11 @@
 #include <list>
 
 #include "assemble/condition.hpp"
-#include "check.hpp"
-#include "check_argument.hpp"
-#include "iterator.hpp"
-#include "native/collapse.hpp"
+#include "call/check_argument.hpp"
+#include "call/iterator.hpp"
+#include "call/precision.hpp"
+#include "call/resolved_call.hpp"
+#include "native/coalesce.hpp"
 #include "native/entries.hpp"
 #include "native/fold_code.hpp"
 #include "native/native_device.hpp"
@@ -18,7 +19,6 @@
 #include "native/native_trace.hpp"
 #include "native/run_code.hpp"
 #include "native/sum_exactly.hpp"
-#include "precision.hpp"
 #include "sk/native/quad_type.hpp"
 
 namespace sk {
@@ -89,7 +89,7 @@ class Operands {
   }
   native::Call call(Extents& block) {
     native::Call made = callAsItIs();
-    collapse(kernel_, list_, made.domain, block);
+    coalesce(kernel_, list_, made.domain, block);
     return made;
   }
   native::Call callAsItIs() const { return {list_, fastestFirst(domain_), tables_}; }
@@ -324,16 +324,14 @@ std::vector<native::Table> NativeDevice::tablesOf(const Kernel& kernel, RealType
   return list;
 }
 
-void NativeDevice::run(const Kernel& called, std::span<const Argument> arguments,
-                       const CallOptions& options) {
-  checkTarget(called, options.target);
-  const Kernel& kernel = takesHalf(options) ? formOf(called, options) : called;
-  const Shape domain = domainOf(kernel, arguments, specsOf(kernel, arguments));
-  const RealType real = realOf(options);
-  Operands operands(real, kernel, arguments, domain, tablesOf(kernel, real, options));
+void NativeDevice::run(const ResolvedCall& call) {
+  checkTarget(call.kernel, call.options.target);
+  const Kernel& kernel = takesHalf(call.options) ? formOf(call.kernel, call.options) : call.kernel;
+  const RealType real = realOf(call.options);
+  Operands operands(real, kernel, call.arguments, call.domain, tablesOf(kernel, real, call.options));
   {
-    const NativePass traced(*this, kernel, {}, arguments, domain);
-    runCode(kernel, operands.call(), codeChoice(real, options));
+    const NativePass traced(*this, kernel, {}, call.arguments, call.domain);
+    runCode(kernel, operands.call(), codeChoice(real, call.options));
   }
   operands.settle();
 }

@@ -3,10 +3,10 @@
 
 #include <limits>
 
-#include "check_argument.hpp"
-#include "copy_bandwidth.hpp"
+#include "call/check_argument.hpp"
 #include "native/entries.hpp"
 #include "native/native_stream.hpp"
+#include "probe/copy_bandwidth.hpp"
 
 namespace sk {
 

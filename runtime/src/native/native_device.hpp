@@ -4,7 +4,7 @@
 // doubles for floats, or __float128, it is the reference that other devices are measured against.
 #pragma once
 
-#include "device_state.hpp"
+#include "device/device_state.hpp"
 #include "native/components.hpp"
 
 namespace sk {
@@ -39,8 +39,7 @@ class NativeDevice final : public DeviceState {
   void finish() override {}
   void release() override {}
   void makeCurrent() override;
-  void run(const program::Kernel& kernel, std::span<const Argument> arguments,
-           const CallOptions& options) override;
+  void run(const ResolvedCall& call) override;
   void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
               std::span<void* const> results, const CallOptions& options) override;
   void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "checked_size.hpp"
 #include "native/native_device.hpp"
 #include "sk/error.hpp"
 #include "sk/limits.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 

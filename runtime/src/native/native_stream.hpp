@@ -5,9 +5,9 @@
 
 #include <utility>
 
+#include "device/stream_state.hpp"
 #include "native/call.hpp"
 #include "native/components.hpp"
-#include "stream_state.hpp"
 
 namespace sk {
 

@@ -6,9 +6,9 @@
 
 #include <span>
 
-#include "device_state.hpp"
+#include "device/device_state.hpp"
 #include "sk/call.hpp"
-#include "trace.hpp"
+#include "trace/trace.hpp"
 
 namespace sk {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <exception>
 
-#include "checked_size.hpp"
 #include "native/rest_threads.hpp"
+#include "support/checked_size.hpp"
 
 #if defined(_OPENMP)
 #include <omp.h>

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "checked_size.hpp"
 #include "sk/native/parallel.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "checked_size.hpp"
 #include "native/scalars.hpp"
+#include "support/checked_size.hpp"
 
 namespace sk {
 
@@ -36,38 +36,41 @@ RecordBuffer::RecordBuffer(const RecordShape& shape)
   if (hasElement_) bytes_.push_back(sizeof(std::uint32_t));
   arrays_.resize(bytes_.size());
   pointers_.resize(bytes_.size());
-  const auto grow = [](native::Sink* sink) { static_cast<Sink*>(sink)->buffer->reserve(sink->count + 1); };
-  sink_ = {{pointers_.data(), nullptr, nullptr, 0, 0, grow}, this};
+  const auto grow = [](native::AppendBuffer* appendBuffer) {
+    static_cast<AppendBuffer*>(appendBuffer)->buffer->reserve(appendBuffer->count + 1);
+  };
+  appendBuffer_ = {{pointers_.data(), nullptr, nullptr, 0, 0, grow}, this};
 }
 
 void RecordBuffer::reserve(std::int64_t count) {
-  if (count <= sink_.capacity) return;
-  const std::int64_t capacity = std::max({firstCapacity, sink_.capacity * 2, count});
+  if (count <= appendBuffer_.capacity) return;
+  const std::int64_t capacity = std::max({firstCapacity, appendBuffer_.capacity * 2, count});
   std::vector<Memory> larger;
   for (const std::size_t bytes : bytes_) {
     // whole groups of lanes are stored beyond the last record
     larger.push_back(allocated(bytesOf(capacity + native::mostLanes, bytes)));
   }
   for (std::size_t c = 0; c < bytes_.size(); ++c) {
-    if (sink_.count > 0)
-      std::memcpy(larger[c].get(), arrays_[c].get(), static_cast<std::size_t>(sink_.count) * bytes_[c]);
+    if (appendBuffer_.count > 0)
+      std::memcpy(larger[c].get(), arrays_[c].get(),
+                  static_cast<std::size_t>(appendBuffer_.count) * bytes_[c]);
   }
   arrays_ = std::move(larger);
-  sink_.capacity = capacity;
+  appendBuffer_.capacity = capacity;
   setPointers();
 }
 
 void RecordBuffer::setPointers() {
   for (std::size_t c = 0; c < arrays_.size(); ++c) pointers_[c] = arrays_[c].get();
-  if (hasTarget_) sink_.targets = reinterpret_cast<std::int64_t*>(pointers_[sortedColumns_ - 1]);
-  if (hasElement_) sink_.elements = reinterpret_cast<std::uint32_t*>(pointers_.back());
+  if (hasTarget_) appendBuffer_.targets = reinterpret_cast<std::int64_t*>(pointers_[sortedColumns_ - 1]);
+  if (hasElement_) appendBuffer_.elements = reinterpret_cast<std::uint32_t*>(pointers_.back());
 }
 
 /// A counting sort, whose keys are the numbers of at most a chunk's elements.
 void RecordBuffer::sort() {
   const std::int64_t first = sorted_;
-  sorted_ = sink_.count;
-  const std::span<const std::uint32_t> elements(sink_.elements + first,
+  sorted_ = appendBuffer_.count;
+  const std::span<const std::uint32_t> elements(appendBuffer_.elements + first,
                                                 static_cast<std::size_t>(hasElement_ ? sorted_ - first : 0));
   if (std::ranges::is_sorted(elements)) return;
   starts_.assign(*std::ranges::max_element(elements) + std::size_t{2}, 0);
@@ -103,7 +106,7 @@ RecordFrame::RecordFrame(const program::Kernel& kernel, const CodeFrame& frame, 
         parameter.role == program::Role::Scatter && options.scatters && arguments_[i].components != nullptr;
     if (!isPushed && !isScattered) continue;
     auto buffer = std::make_unique<RecordBuffer>(RecordShape(parameter, options.real, options.isReordered));
-    arguments_[i].sink = buffer->sink();
+    arguments_[i].appendBuffer = buffer->appendBuffer();
     (isPushed ? pushed_ : scattered_).push_back({i, std::move(buffer)});
   }
 }

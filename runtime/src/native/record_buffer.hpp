@@ -33,31 +33,31 @@ class RecordBuffer {
   RecordBuffer(const RecordBuffer&) = delete;
   RecordBuffer& operator=(const RecordBuffer&) = delete;
 
-  native::Sink* sink() { return &sink_; }
-  const native::Sink& records() const { return sink_; }
-  std::int64_t count() const { return sink_.count; }
+  native::AppendBuffer* appendBuffer() { return &appendBuffer_; }
+  const native::AppendBuffer& records() const { return appendBuffer_; }
+  std::int64_t count() const { return appendBuffer_.count; }
   /// The bytes of each array, and where it is: the components, then the targets.
   std::span<const std::size_t> bytes() const { return {bytes_.data(), sortedColumns_}; }
   std::byte* array(std::size_t column) const { return pointers_[column]; }
 
-  /// Makes room for `count` records in all. Throws NoMemory (checked_size.hpp).
+  /// Makes room for `count` records in all. Throws NoMemory (support/checked_size.hpp).
   void reserve(std::int64_t count);
   /// Adds records whose arrays the caller writes; there is room for them.
-  void addUnwritten(std::int64_t count) { sink_.count += count; }
-  void clear() { sink_.count = sorted_ = 0; }
+  void addUnwritten(std::int64_t count) { appendBuffer_.count += count; }
+  void clear() { appendBuffer_.count = sorted_ = 0; }
 
   /// Brings the records since the last call, which are of one chunk, into the order of its elements. Those of one element stay
   /// in their order. Does nothing where records have no element.
   void sort();
 
  private:
-  struct Sink : native::Sink {
+  struct AppendBuffer : native::AppendBuffer {
     RecordBuffer* buffer;
   };
   void setPointers();
   void permute(std::size_t column, std::int64_t first, std::span<const std::size_t> positions);
 
-  Sink sink_;
+  AppendBuffer appendBuffer_;
   std::vector<std::size_t> bytes_;
   std::size_t sortedColumns_;  ///< all but the elements
   bool hasTarget_;
@@ -76,7 +76,7 @@ struct RecordOptions {
   bool scatters;  ///< scatter outputs are recorded, too, and not stored to at once
 };
 
-/// The arguments of a call with one thread's buffers as sinks.
+/// The arguments of a call with one thread's buffers as append buffers.
 class RecordFrame {
  public:
   RecordFrame(const program::Kernel& kernel, const CodeFrame& frame, const RecordOptions& options);

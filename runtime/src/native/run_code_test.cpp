@@ -303,11 +303,11 @@ TEST_CASE("a gather that is left out is zeros") {
 
 /// Pushes odd numbers, and those that 5 divides, twice where both hold.
 void pushSome(const Frame* frame, const Chunk* chunk) {
-  native::Sink* sink = frame->arguments[1].sink;
+  native::AppendBuffer* appendBuffer = frame->arguments[1].appendBuffer;
   const auto* x = arrayOf<float>(chunk, 0);
   const auto push = [&](float value) {
-    if (sink->count >= sink->capacity) sink->grow(sink);
-    reinterpret_cast<float*>(sink->arrays[0])[sink->count++] = value;
+    if (appendBuffer->count >= appendBuffer->capacity) appendBuffer->grow(appendBuffer);
+    reinterpret_cast<float*>(appendBuffer->arrays[0])[appendBuffer->count++] = value;
   };
   for (std::int64_t i = 0; i < chunk->count; ++i) {
     if (static_cast<int>(x[i]) % 2 == 1) push(x[i]);
@@ -317,7 +317,7 @@ void pushSome(const Frame* frame, const Chunk* chunk) {
 
 /// Likewise, group by group: first all odd numbers of a group, then those that 5 divides.
 void pushInGroups(const Frame* frame, const Chunk* chunk) {
-  native::Sink* sink = frame->arguments[1].sink;
+  native::AppendBuffer* appendBuffer = frame->arguments[1].appendBuffer;
   const auto* x = arrayOf<float>(chunk, 0);
   for (std::int64_t group = 0; group < chunk->count; group += testLanes) {
     const std::int64_t end = std::min<std::int64_t>(group + testLanes, chunk->count);
@@ -325,9 +325,9 @@ void pushInGroups(const Frame* frame, const Chunk* chunk) {
       for (std::int64_t i = group; i < end; ++i) {
         const int value = static_cast<int>(x[i]);
         if (isSecond ? value % 5 != 0 : value % 2 != 1) continue;
-        if (sink->count >= sink->capacity) sink->grow(sink);
-        sink->elements[sink->count] = static_cast<std::uint32_t>(i);
-        reinterpret_cast<float*>(sink->arrays[0])[sink->count++] = x[i];
+        if (appendBuffer->count >= appendBuffer->capacity) appendBuffer->grow(appendBuffer);
+        appendBuffer->elements[appendBuffer->count] = static_cast<std::uint32_t>(i);
+        reinterpret_cast<float*>(appendBuffer->arrays[0])[appendBuffer->count++] = x[i];
       }
     }
   }
@@ -377,19 +377,20 @@ TEST_CASE("pushes of lanes are brought into the order of elements") {
 
 /// Multiplies what is there by 3 and adds the value, modulo 2^32: the order matters.
 void recordStores(const Frame* frame, const Chunk* chunk) {
-  native::Sink* sink = frame->arguments[1].sink;
+  native::AppendBuffer* appendBuffer = frame->arguments[1].appendBuffer;
   const auto* x = arrayOf<std::int32_t>(chunk, 0);
   for (std::int64_t i = 0; i < chunk->count; ++i) {
-    if (sink->count >= sink->capacity) sink->grow(sink);
-    sink->targets[sink->count] = frame->arguments[1].first + x[i] % frame->arguments[1].extent[0];
-    reinterpret_cast<std::int32_t*>(sink->arrays[0])[sink->count++] = x[i];
+    if (appendBuffer->count >= appendBuffer->capacity) appendBuffer->grow(appendBuffer);
+    appendBuffer->targets[appendBuffer->count] =
+        frame->arguments[1].first + x[i] % frame->arguments[1].extent[0];
+    reinterpret_cast<std::int32_t*>(appendBuffer->arrays[0])[appendBuffer->count++] = x[i];
   }
 }
-void multiplyAndAdd(const Frame* frame, const native::Sink* sink, std::int64_t parameter) {
+void multiplyAndAdd(const Frame* frame, const native::AppendBuffer* appendBuffer, std::int64_t parameter) {
   auto* r = static_cast<std::uint32_t*>(frame->arguments[parameter].components[0]);
-  for (std::int64_t i = 0; i < sink->count; ++i) {
-    std::uint32_t& to = r[sink->targets[i]];
-    to = to * 3 + reinterpret_cast<const std::uint32_t*>(sink->arrays[0])[i];
+  for (std::int64_t i = 0; i < appendBuffer->count; ++i) {
+    std::uint32_t& to = r[appendBuffer->targets[i]];
+    to = to * 3 + reinterpret_cast<const std::uint32_t*>(appendBuffer->arrays[0])[i];
   }
 }
 

@@ -58,7 +58,7 @@ Scatters::Scatters(const program::Kernel& kernel, const CodeFrame& frame, const 
 
 void Scatters::apply(RecordFrame& records) const {
   for (RecordFrame::Output& output : records.scattered()) {
-    function_(frame_.get(), output.buffer->sink(), static_cast<std::int64_t>(output.parameter));
+    function_(frame_.get(), output.buffer->appendBuffer(), static_cast<std::int64_t>(output.parameter));
     output.buffer->clear();
   }
 }
@@ -149,7 +149,7 @@ void Scatters::applyLogs() {
 void Scatters::applyBucket(std::size_t target, std::size_t bucket) const {
   for (const auto& log : logs_) {
     RecordBuffer& records = *log->buckets[target][bucket];
-    function_(frame_.get(), records.sink(), static_cast<std::int64_t>(targets_[target].parameter));
+    function_(frame_.get(), records.appendBuffer(), static_cast<std::int64_t>(targets_[target].parameter));
     records.clear();
   }
 }

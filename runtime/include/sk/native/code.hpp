@@ -27,7 +27,7 @@ inline constexpr std::size_t mostRows = 12;
 /// Records of what elements push to a variable output or store to a scatter output: the latest group of lanes last, and within a
 /// group in the order in which its code comes to them. The runtime brings them into the order of elements (Code::isReordered)
 /// and, where they were stored, carries them out (ApplyFunction).
-struct Sink {
+struct AppendBuffer {
   std::byte* const* arrays;  ///< one for each component
   std::int64_t* targets;  ///< of a scatter output: numbers of the elements to store to, all of which exist
   std::uint32_t*
@@ -35,7 +35,7 @@ struct Sink {
   std::int64_t count;  ///< records so far
   std::int64_t capacity;  ///< records that the arrays have room for, with mostLanes more behind them
   /// Called where count >= capacity: makes room for more, and may move the arrays. What it throws goes through the code.
-  void (*grow)(Sink* sink);
+  void (*grow)(AppendBuffer* appendBuffer);
 };
 
 /// An argument of a call, one for each parameter. A uniform argument is a stream of one element; an iterator has two
@@ -48,9 +48,9 @@ struct Argument {
   std::int64_t stride[4];  ///< in elements; stride[0] of a gather or scatter output is 1
   std::int64_t multiply[4];  ///< an element input's index is the domain's, times this,
   std::int64_t divide[4];  ///< divided by this
-  /// Takes the records of a variable or scatter output; null where the stream is left out. A scatter output without a sink is
+  /// Takes the records of a variable or scatter output; null where the stream is left out. A scatter output without an append buffer is
   /// stored to at once, which code that is reordered (Code::isReordered) cannot do.
-  Sink* sink;
+  AppendBuffer* appendBuffer;
   std::int64_t
       countsElements;  ///< of an iterator: 1 where it goes by element number, 0 by index in each dimension
   std::int64_t isSmall;  ///< 1 where the numbers of all elements fit 32 bits
@@ -94,8 +94,8 @@ using FoldFunction = void(const Frame*, const Chunk*, void* const* state, std::i
                           std::int64_t rounds, std::int64_t leaves, std::int64_t starts);
 /// Folds later results into earlier ones, column by column.
 using CombineFunction = void(const Frame*, void* const* state, void* const* later, std::int64_t columns);
-/// Carries out the records of a scatter output, in their order. `sink` has no `elements`.
-using ApplyFunction = void(const Frame*, const Sink* sink, std::int64_t parameter);
+/// Carries out the records of a scatter output, in their order. `append buffer` has no `elements`.
+using ApplyFunction = void(const Frame*, const AppendBuffer* appendBuffer, std::int64_t parameter);
 /// Writes one element of each array: the identities of a reduction, or what a gather with Boundary::Border has outside,
 /// all components of one parameter after the other.
 using ValuesFunction = void(const Frame*, void* const* values);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // A table that stands for a function of one float (sk/table.hpp), and how it is looked up: the arithmetic of the GLSL
-// that the runtime's assembler writes (assemble/tables.hpp).
+// that the runtime's assembler writes (assemble/glsl/tables.hpp).
 #pragma once
 
 #include <algorithm>

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "cache_folder.hpp"
 #include "info/probes.hpp"
+#include "support/cache_folder.hpp"
 
 namespace sk_tool {
 

@@ -9,7 +9,7 @@
 #include "info/numbers.hpp"
 #include "info/probes.hpp"
 #include "info/raw_kernel.hpp"
-#include "probe.hpp"
+#include "probe/probe.hpp"
 #include "sk/error.hpp"
 
 namespace sk_tool {

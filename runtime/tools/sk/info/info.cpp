@@ -13,10 +13,10 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "cache_folder.hpp"
 #include "info/device_info.hpp"
 #include "info/report.hpp"
 #include "sk/error.hpp"
+#include "support/cache_folder.hpp"
 
 namespace sk_tool {
 

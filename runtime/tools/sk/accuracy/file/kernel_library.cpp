@@ -15,7 +15,7 @@
 
 #include "accuracy/child_process.hpp"
 #include "accuracy/temporary_folder.hpp"
-#include "cache_folder.hpp"
+#include "support/cache_folder.hpp"
 
 namespace sk_tool {
 

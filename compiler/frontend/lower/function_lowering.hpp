@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+//
+// Lowers one function's body. C++ expressions have effects, the IR's have none: an expression's
+// effects become statements in front of the one that it stands in, and operands that C++ evaluates
+// earlier are kept in temporaries only where a later operand's effect could change them.
+//
+//   v = u[i++] * 2;     ->     int t = i; i += 1; v = u[t] * 2;
+//   if (a && f(b))      ->     if (a && f(b))              where f has no effects (it takes values)
+//   while (next(i))     ->     while (true) { bool t; t = next(i); if (!t) break; ... }
+#pragma once
+
+#include <optional>
+#include <unordered_map>
+
+#include <clang/AST/StmtVisitor.h>
+
+#include "frontend/lower/module_lowering.hpp"
+#include "frontend/tokens/float_literals.hpp"
+
+namespace skc::frontend {
+
+/// Counts one level for as long as it lives.
+class Level {
+ public:
+  explicit Level(int& depth) : depth_(depth) { ++depth_; }
+  ~Level() { --depth_; }
+  Level(const Level&) = delete;
+  Level& operator=(const Level&) = delete;
+
+ private:
+  int& depth_;
+};
+
+/// Deeper nesting than any person writes, and than drivers' own compilers take without harm.
+inline constexpr int deepestNesting = 1000;
+
+class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::ExprPtr> {
+ public:
+  explicit FunctionLowering(ModuleLowering& module) : module_(module) {}
+
+  ir::Function function(const clang::FunctionDecl* declaration);
+  /// Whether a function gives its own object: a member function of the type `S&`, which can only end with
+  /// `return *this;`. It is void in the IR, and the value of a call is the object's.
+  static bool givesItself(const clang::FunctionDecl* declaration);
+  /// An initialiser outside any function; null where it has effects.
+  ir::ExprPtr constantInitializer(const clang::Expr* init);
+
+  // ---- expressions: one function for each kind that kernels know; the rest is an error ---------
+  ir::ExprPtr VisitParenExpr(const clang::ParenExpr* e);
+  ir::ExprPtr VisitConstantExpr(const clang::ConstantExpr* e);
+  ir::ExprPtr VisitExprWithCleanups(const clang::ExprWithCleanups* e);
+  ir::ExprPtr VisitMaterializeTemporaryExpr(const clang::MaterializeTemporaryExpr* e);
+  ir::ExprPtr VisitSubstNonTypeTemplateParmExpr(const clang::SubstNonTypeTemplateParmExpr* e);
+  ir::ExprPtr VisitCXXRewrittenBinaryOperator(const clang::CXXRewrittenBinaryOperator* e);
+  ir::ExprPtr VisitCXXDefaultArgExpr(const clang::CXXDefaultArgExpr* e);
+  ir::ExprPtr VisitCXXDefaultInitExpr(const clang::CXXDefaultInitExpr* e);
+  ir::ExprPtr VisitIntegerLiteral(const clang::IntegerLiteral* e);
+  ir::ExprPtr VisitFloatingLiteral(const clang::FloatingLiteral* e);
+  ir::ExprPtr VisitCXXBoolLiteralExpr(const clang::CXXBoolLiteralExpr* e);
+  ir::ExprPtr VisitDeclRefExpr(const clang::DeclRefExpr* e);
+  ir::ExprPtr VisitCXXThisExpr(const clang::CXXThisExpr* e);
+  ir::ExprPtr VisitCastExpr(const clang::CastExpr* e);
+  ir::ExprPtr VisitUnaryOperator(const clang::UnaryOperator* e);
+  ir::ExprPtr VisitBinaryOperator(const clang::BinaryOperator* e);
+  ir::ExprPtr VisitCompoundAssignOperator(const clang::CompoundAssignOperator* e);
+  ir::ExprPtr VisitConditionalOperator(const clang::ConditionalOperator* e);
+  ir::ExprPtr VisitExtVectorElementExpr(const clang::ExtVectorElementExpr* e);
+  ir::ExprPtr VisitMemberExpr(const clang::MemberExpr* e);
+  ir::ExprPtr VisitArraySubscriptExpr(const clang::ArraySubscriptExpr* e);
+  ir::ExprPtr VisitInitListExpr(const clang::InitListExpr* e);
+  ir::ExprPtr VisitCXXParenListInitExpr(const clang::CXXParenListInitExpr* e);
+  ir::ExprPtr VisitImplicitValueInitExpr(const clang::ImplicitValueInitExpr* e);
+  ir::ExprPtr VisitCXXScalarValueInitExpr(const clang::CXXScalarValueInitExpr* e);
+  ir::ExprPtr VisitCXXConstructExpr(const clang::CXXConstructExpr* e);
+  ir::ExprPtr VisitCallExpr(const clang::CallExpr* e);
+  ir::ExprPtr VisitCXXOperatorCallExpr(const clang::CXXOperatorCallExpr* e);
+  ir::ExprPtr VisitExpr(const clang::Expr* e);
+  ir::ExprPtr VisitStmt(const clang::Stmt* s);
+
+ private:
+  using Exprs = std::vector<ir::ExprPtr>;
+
+  // ---- statements (lower_stmt.cpp) --------------------------------------------------------------
+  void parameters(const clang::FunctionDecl* declaration);
+  void body(const clang::Stmt* statement, ir::Block& into);
+  void statement(const clang::Stmt* statement);
+  bool checkedStatement(const clang::Stmt* statement);   ///< whether it was lowered
+  void declaration(const clang::DeclStmt* statement);
+  void variable(const clang::VarDecl* declaration);
+  void ifStatement(const clang::IfStmt* statement);
+  void forStatement(const clang::ForStmt* statement);
+  void whileStatement(const clang::WhileStmt* statement);
+  void doStatement(const clang::DoStmt* statement);
+  void switchStatement(const clang::SwitchStmt* statement);
+  void returnStatement(const clang::ReturnStmt* statement);
+  void loop(ir::LoopKind kind, ir::Block init, const clang::Expr* cond, const clang::Expr* step,
+            const clang::Stmt* body, clang::SourceLocation where);
+  void testInBody(ir::Loop& loop, ir::Block effects, Loc loc);
+
+  // ---- effects (lower_expr.cpp) -----------------------------------------------------------------
+  ir::ExprPtr value(const clang::Expr* e);
+  void discarded(const clang::Expr* e);
+  ir::ExprPtr valueInto(const clang::Expr* e, ir::Block& block, bool asDouble = false);
+  Exprs valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions, bool asDoubles = false);
+  void spill(ir::ExprPtr& e);
+  void keepInPlace(ir::ExprPtr& e);
+  ir::ExprPtr place(const clang::Expr* e);
+  struct Sides {
+    ir::ExprPtr target, right;
+  };
+  Sides sidesOf(const clang::BinaryOperator* e);
+  ir::ExprPtr assign(const clang::BinaryOperator* e, bool wantValue);
+  ir::ExprPtr compoundAssign(const clang::CompoundAssignOperator* e, bool wantValue);
+  ir::ExprPtr increment(const clang::UnaryOperator* e, bool wantValue);
+  ir::ExprPtr condition(const clang::Expr* e) { return toBool(value(e)); }
+  void checkDepth(clang::SourceLocation where);
+  void emit(Loc loc, ir::Stmt::Node node);
+  ir::VarId temporary(ir::Type type, Loc loc);
+
+  // ---- values (lower_expr.cpp) ------------------------------------------------------------------
+  ir::ExprPtr make(ir::Type type, clang::SourceLocation where, ir::Expr::Node node);
+  ir::ExprPtr literal(ir::Type type, std::uint32_t bits, clang::SourceLocation where);
+  /// A formula of nothing but literals (lower_literal.cpp), which takes its precision from its place.
+  bool isLiterals(const clang::Expr* e) const;
+  ir::ExprPtr literalsAsDouble(const clang::Expr* e);
+  ir::ExprPtr doubleValue(const clang::Expr* e);
+  ir::ExprPtr doubleLiteral(const clang::FloatingLiteral* e);
+  llvm::APFloat literalValue(const clang::FloatingLiteral* e, const llvm::fltSemantics& semantics,
+                             std::string_view type);
+  LiteralParts partsOf(const clang::FloatingLiteral* e) const;
+  ir::ExprPtr integerConstant(const clang::Expr* e, ir::Type type);
+  ir::ExprPtr zero(ir::Type type, clang::SourceLocation where);
+  ir::ExprPtr convert(ir::ExprPtr e, ir::Scalar scalar);
+  ir::ExprPtr splat(ir::ExprPtr e, int width);
+  ir::ExprPtr mask(ir::ExprPtr boolVector);
+  ir::ExprPtr toBool(ir::ExprPtr e);
+  ir::ExprPtr vectorBitCast(const clang::CastExpr* e);
+  ir::ExprPtr logical(const clang::BinaryOperator* e);
+  ir::ExprPtr binary(ir::BinaryOp op, ir::ExprPtr lhs, ir::ExprPtr rhs, clang::SourceLocation where);
+  ir::ExprPtr select(ir::ExprPtr cond, ir::ExprPtr yes, ir::ExprPtr no, clang::SourceLocation where);
+  ir::ExprPtr aggregate(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits, const clang::Expr* filler,
+                        clang::SourceLocation where);
+  ir::ExprPtr indexed(const clang::Expr* array, const clang::Expr* index, clang::SourceLocation where);
+  ir::ExprPtr classValue(ir::Type type, llvm::ArrayRef<const clang::Expr*> args, clang::SourceLocation where);
+  ir::ExprPtr matrix(ir::Type type, Exprs parts, clang::SourceLocation where);
+  ir::ExprPtr defaultStruct(const clang::CXXRecordDecl* record, clang::SourceLocation where);
+
+  // ---- calls (lower_call.cpp) -------------------------------------------------------------------
+  ir::ExprPtr userCall(const clang::CallExpr* e, const clang::FunctionDecl* callee);
+  ir::ExprPtr intrinsicCall(const clang::CallExpr* e, const clang::FunctionDecl* callee);
+  ir::ExprPtr tableIntrinsic(const clang::CallExpr* e, llvm::StringRef name);
+  ir::ExprPtr intrinsic(ir::Intrinsic intrinsic, ir::Type result, clang::SourceLocation where, Exprs args);
+  ir::ExprPtr vectorConstructor(const clang::CallExpr* e, ir::Type type);
+  ir::ExprPtr outParameterIntrinsic(const clang::CallExpr* e, llvm::StringRef name);
+  ir::ExprPtr neighbor(const clang::CallExpr* e);
+  ir::ExprPtr sample(const clang::CallExpr* e);
+  std::string elementBeside(const clang::ValueDecl* parameter);
+  ir::ExprPtr indexOrExtent(const clang::CallExpr* e, bool isIndex);
+  ir::ExprPtr gatherRead(const clang::CXXOperatorCallExpr* e);
+  ir::ExprPtr classOperator(const clang::CXXOperatorCallExpr* e);
+  ir::ExprPtr classAssignment(ir::BinaryOp op, const clang::CXXOperatorCallExpr* e);
+  /// What `a[i][j]` names, and the indices as they are written.
+  struct Subscripts {
+    const clang::Expr* object;
+    std::vector<const clang::Expr*> written;
+    clang::SourceLocation where;
+  };
+  static Subscripts subscriptsOf(const clang::CXXOperatorCallExpr* e);
+  ir::ExprPtr indexFrom(const Subscripts& subscripts, ir::VarId stream);
+  ir::ExprPtr argument(const clang::Expr* e, const ir::Variable& parameter);
+  void abandonIfUnknown(const clang::Stmt* s) const;
+  std::optional<ir::VarId> streamVariable(const clang::Expr* e) const;
+  ir::VarId gatherVariable(const clang::Expr* e);
+
+  // ---- append outputs (lower_sink.cpp) -------------------------------------------------------------------
+  ir::VarId appendVariable(const clang::Expr* e);
+  ir::ExprPtr push(const clang::CallExpr* e);
+  /// Whether the expression writes an element of a scatter output; if so, it is lowered.
+  bool scatters(const clang::Expr* e);
+  struct ScatterPlace {
+    Subscripts subscripts;
+    ir::VarId stream;
+  };
+  std::optional<ScatterPlace> scatterPlace(const clang::Expr* e) const;
+  void scatterStore(const ScatterPlace& place, const clang::Expr* left, const clang::Expr* right);
+  void scatterCompound(const ScatterPlace& place, const clang::CompoundAssignOperator* e);
+  void scatter(const ScatterPlace& place, ir::ScatterOp op, ir::ExprPtr value);
+  ir::ExprPtr combinedValue(const ScatterPlace& place, ir::ExprPtr value, clang::SourceLocation where);
+
+  ModuleLowering& module_;
+  ir::Function function_;
+  std::unordered_map<const clang::Decl*, ir::VarId> variables_;
+  std::optional<ir::VarId> this_;
+  bool givesItself_ = false;
+  ir::Block* out_ = nullptr;  ///< where statements go at the moment
+  int depth_ = 0;  ///< of expressions and statements around the present one
+};
+
+}  // namespace skc::frontend

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+//
+// Statements that write streams: push(r, v), and what may be done to an element of a scatter output, which
+// is nothing that would read it but to combine it with a value.
+//
+//   r[i] = v;   r[i] += v;   r[i] -= v;   ++r[i];   r[i] = min(r[i], v);   r[i] = max(v, r[i]);
+#include <llvm/ADT/FoldingSet.h>
+
+#include <clang/AST/ASTContext.h>
+#include <clang/AST/ExprCXX.h>
+
+#include "frontend/lower/function_lowering.hpp"
+#include "ir/build.hpp"
+
+namespace skc::frontend {
+
+using clang::SourceLocation;
+using ir::ExprPtr;
+
+ir::VarId FunctionLowering::appendVariable(const clang::Expr* e) {
+  const auto stream = streamVariable(e);
+  if (!stream || function_.variables[*stream].role != ir::VarRole::AppendOutput) {
+    module_.fail(Diag::NotAnAppendOutput, e->getBeginLoc());
+  }
+  return *stream;
+}
+
+ExprPtr FunctionLowering::push(const clang::CallExpr* e) {
+  const Loc loc = module_.loc(e->getBeginLoc());
+  const ir::VarId stream = appendVariable(e->getArg(0));
+  ExprPtr pushed = value(e->getArg(1));
+  emit(loc, ir::Push{{ir::StreamRef::Space::Variable, stream}, std::move(pushed)});
+  return ir::literal(false, loc);   // nobody can use it: push is void
+}
+
+// ---- scatter outputs ----------------------------------------------------------------------------
+
+std::optional<FunctionLowering::ScatterPlace> FunctionLowering::scatterPlace(const clang::Expr* e) const {
+  const auto* call = llvm::dyn_cast<clang::CXXOperatorCallExpr>(e->IgnoreParenImpCasts());
+  if (!call || call->getOperator() != clang::OO_Subscript) return std::nullopt;
+  Subscripts subscripts = subscriptsOf(call);
+  const auto stream = streamVariable(subscripts.object);
+  if (!stream || function_.variables[*stream].role != ir::VarRole::AppendOutput) return std::nullopt;
+  return ScatterPlace{std::move(subscripts), *stream};
+}
+
+bool FunctionLowering::scatters(const clang::Expr* e) {
+  const auto at = [&](const clang::Expr* left) { return scatterPlace(left); };
+  if (const auto* compound = llvm::dyn_cast<clang::CompoundAssignOperator>(e)) {
+    const auto place = at(compound->getLHS());
+    if (place) scatterCompound(*place, compound);
+    return place.has_value();
+  }
+  if (const auto* operation = llvm::dyn_cast<clang::BinaryOperator>(e);
+      operation && operation->getOpcode() == clang::BO_Assign) {
+    const auto place = at(operation->getLHS());
+    if (place) scatterStore(*place, operation->getLHS(), operation->getRHS());
+    return place.has_value();
+  }
+  if (const auto* call = llvm::dyn_cast<clang::CXXOperatorCallExpr>(e);
+      call && call->getOperator() == clang::OO_Equal) {   // of a struct
+    const auto place = at(call->getArg(0));
+    if (place) scatterStore(*place, call->getArg(0), call->getArg(1));
+    return place.has_value();
+  }
+  if (const auto* operation = llvm::dyn_cast<clang::UnaryOperator>(e);
+      operation && operation->isIncrementDecrementOp()) {
+    const auto place = at(operation->getSubExpr());
+    if (!place) return false;
+    const ir::Type type = function_.variables[place->stream].type;
+    const Loc loc = module_.loc(operation->getOperatorLoc());
+    ExprPtr one = ir::literalOf(type, operation->isIncrementOp() ? 1 : -1, loc);
+    scatter(*place, ir::ScatterOp::Add, combinedValue(*place, std::move(one), operation->getOperatorLoc()));
+    return true;
+  }
+  return false;
+}
+
+namespace {
+
+std::optional<ir::ScatterOp> extremeOf(llvm::StringRef name) {
+  if (name == "min" || name == "fmin") return ir::ScatterOp::Min;
+  if (name == "max" || name == "fmax") return ir::ScatterOp::Max;
+  return std::nullopt;
+}
+
+}  // namespace
+
+/// `r[i] = v`, or `r[i] = min(r[i], v)`: then both places must be the same expression.
+void FunctionLowering::scatterStore(const ScatterPlace& place, const clang::Expr* left,
+                                    const clang::Expr* right) {
+  const auto isSame = [&](const clang::Expr* e) {
+    llvm::FoldingSetNodeID a, b;
+    left->IgnoreParens()->Profile(a, module_.context(), true);
+    e->IgnoreParenImpCasts()->Profile(b, module_.context(), true);
+    return a == b && !left->HasSideEffects(module_.context(), /*IncludePossibleEffects=*/false);
+  };
+  const auto* call = llvm::dyn_cast<clang::CallExpr>(right->IgnoreParenImpCasts());
+  const clang::FunctionDecl* callee = call ? call->getDirectCallee() : nullptr;
+  if (callee && module_.isPrelude(callee) && callee->getIdentifier() && call->getNumArgs() == 2) {
+    const auto op = extremeOf(callee->getName());
+    const bool isFirst = op && isSame(call->getArg(0));
+    if (isFirst || (op && isSame(call->getArg(1)))) {
+      const clang::Expr* other = call->getArg(isFirst ? 1 : 0);
+      return scatter(place, *op, combinedValue(place, value(other), call->getBeginLoc()));
+    }
+  }
+  scatter(place, ir::ScatterOp::Store, value(right));
+}
+
+void FunctionLowering::scatterCompound(const ScatterPlace& place, const clang::CompoundAssignOperator* e) {
+  const SourceLocation where = e->getOperatorLoc();
+  const bool isSum = e->getOpcode() == clang::BO_AddAssign;
+  const ir::Type computed = module_.type(e->getComputationResultType(), where);
+  const ir::Variable& appendOutput = function_.variables[place.stream];
+  if ((!isSum && e->getOpcode() != clang::BO_SubAssign) || !computed.isArithmetic() ||
+      computed.scalar != appendOutput.type.scalar) {
+    module_.fail(Diag::ScatterOperation, where, {appendOutput.name, module_.spelling(appendOutput.type)});
+  }
+  ExprPtr added = combinedValue(place, value(e->getRHS()), where);
+  if (!isSum) added = ir::unary(ir::UnaryOp::Negate, std::move(added), module_.loc(where));
+  scatter(place, ir::ScatterOp::Add, std::move(added));
+}
+
+/// A value that combines with elements: a number of their component type, one for all components or one each.
+ExprPtr FunctionLowering::combinedValue(const ScatterPlace& place, ExprPtr value, SourceLocation where) {
+  const ir::Variable& appendOutput = function_.variables[place.stream];
+  const ir::Type type = appendOutput.type;
+  if (type.isDouble()) module_.fail(Diag::DoubleScatter, where, {appendOutput.name});
+  const bool isNumber = type.isFloat() || type.isInteger();
+  if (!isNumber || !value->type.isArithmetic() || value->type.scalar != type.scalar ||
+      (value->type.width != 1 && value->type.width != type.width)) {
+    module_.fail(Diag::ScatterOperation, where, {appendOutput.name, module_.spelling(type)});
+  }
+  return splat(std::move(value), type.width);
+}
+
+/// The value is evaluated before the index, as in any assignment.
+void FunctionLowering::scatter(const ScatterPlace& place, ir::ScatterOp op, ExprPtr value) {
+  ir::Block effects;
+  ir::Block* outer = std::exchange(out_, &effects);
+  ExprPtr index;
+  try {
+    index = indexFrom(place.subscripts, place.stream);
+  } catch (const Abandoned&) {
+    out_ = outer;
+    throw;
+  }
+  out_ = outer;
+  if (!effects.empty()) {
+    spill(value);
+    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+  }
+  emit(module_.loc(place.subscripts.where),
+       ir::Scatter{{ir::StreamRef::Space::Variable, place.stream}, op, std::move(index), std::move(value)});
+}
+
+}  // namespace skc::frontend

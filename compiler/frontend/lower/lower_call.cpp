@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: MIT
+//
+// Calls: of intrinsics (chosen from the table by their arguments' types), of gathers, of the user's
+// functions and kernels.
+#include <algorithm>
+#include <cassert>
+
+#include <clang/AST/DeclCXX.h>
+#include <clang/AST/ExprCXX.h>
+
+#include "frontend/lower/function_lowering.hpp"
+#include "frontend/prelude.hpp"
+#include "ir/build.hpp"
+
+namespace skc::frontend {
+
+using clang::SourceLocation;
+using ir::ExprPtr;
+using ir::Scalar;
+
+ExprPtr FunctionLowering::VisitCallExpr(const clang::CallExpr* e) {
+  const clang::FunctionDecl* callee = e->getDirectCallee();
+  if (!callee) module_.fail(Diag::Pointer, e->getBeginLoc(), {e->getCallee()->getType().getAsString()});
+  if (const auto* conversion = llvm::dyn_cast<clang::CXXMemberCallExpr>(e);
+      conversion && llvm::isa<clang::CXXConversionDecl>(callee) && module_.isPrelude(callee)) {
+    ExprPtr object = value(conversion->getImplicitObjectArgument());
+    return convert(std::move(object), module_.type(e->getType(), e->getBeginLoc()).scalar);
+  }
+  return module_.isPrelude(callee) ? intrinsicCall(e, callee) : userCall(e, callee);
+}
+
+/// a[i] of a gather, or an operator of a struct: assignment copies, others are the user's functions.
+ExprPtr FunctionLowering::VisitCXXOperatorCallExpr(const clang::CXXOperatorCallExpr* e) {
+  const clang::FunctionDecl* callee = e->getDirectCallee();
+  if (!callee) return VisitExpr(e);
+  const bool isCopy = e->getOperator() == clang::OO_Equal && callee->isTrivial();
+  if (module_.isPrelude(callee) && !isCopy) return classOperator(e);
+  if (isCopy) {
+    ExprPtr right = value(e->getArg(1));
+    ExprPtr target = place(e->getArg(0));
+    ExprPtr result = ir::clone(*target);
+    emit(module_.loc(e->getBeginLoc()), ir::Assign{std::move(target), std::nullopt, std::move(right)});
+    return result;
+  }
+  return userCall(e, callee);
+}
+
+/// An operator that the prelude declares: of gathers, of matrices, and assignments to normalized values.
+ExprPtr FunctionLowering::classOperator(const clang::CXXOperatorCallExpr* e) {
+  const SourceLocation where = e->getOperatorLoc();
+  const auto infix = [&](ir::BinaryOp op) {
+    Exprs operands = valuesInOrder({e->getArg(0), e->getArg(1)});
+    return ir::binary(op, std::move(operands[0]), std::move(operands[1]), module_.loc(where));
+  };
+  switch (e->getOperator()) {
+    case clang::OO_Subscript: {
+      ir::Type element;
+      if (module_.gatherRank(e->getArg(0)->getType(), where, element) != 0) return gatherRead(e);
+      return indexed(e->getArg(0), e->getArg(1), e->getBeginLoc());
+    }
+    case clang::OO_Minus: {
+      if (e->getNumArgs() == 2) return infix(ir::BinaryOp::Sub);
+      return ir::unary(ir::UnaryOp::Negate, value(e->getArg(0)), module_.loc(where));
+    }
+    case clang::OO_Plus: return infix(ir::BinaryOp::Add);
+    case clang::OO_Star: return infix(ir::BinaryOp::Mul);
+    case clang::OO_Slash: return infix(ir::BinaryOp::Div);
+    case clang::OO_EqualEqual: return infix(ir::BinaryOp::Equal);
+    case clang::OO_PlusEqual: return classAssignment(ir::BinaryOp::Add, e);
+    case clang::OO_MinusEqual: return classAssignment(ir::BinaryOp::Sub, e);
+    case clang::OO_StarEqual: return classAssignment(ir::BinaryOp::Mul, e);
+    case clang::OO_SlashEqual: return classAssignment(ir::BinaryOp::Div, e);
+    default: return VisitExpr(e);   // the prelude declares no other
+  }
+}
+
+/// `u += x` of a normalized value, `m *= n` of a matrix: computed, then assigned.
+ExprPtr FunctionLowering::classAssignment(ir::BinaryOp op, const clang::CXXOperatorCallExpr* e) {
+  const Loc loc = module_.loc(e->getBeginLoc());
+  ExprPtr right = value(e->getArg(1));
+  ir::Block effects;
+  ir::Block* outer = std::exchange(out_, &effects);
+  ExprPtr target = place(e->getArg(0));
+  out_ = outer;
+  if (!effects.empty()) {
+    spill(right);
+    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+  }
+  const ir::Type type = target->type;
+  ExprPtr left = convert(ir::clone(*target), ir::carrierOf(type.scalar));
+  ExprPtr result = ir::binary(op, std::move(left), std::move(right), loc);
+  emit(loc, ir::Assign{std::move(target), std::nullopt, convert(std::move(result), type.scalar)});
+  return ir::literal(false, loc);   // it returns nothing
+}
+
+// ---- intrinsics -----------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
+  const llvm::StringRef name = callee->getName();
+  if (name.starts_with("__sk_make_"))
+    return vectorConstructor(e, module_.type(e->getType(), e->getBeginLoc()));
+  if (name == "indexof") return indexOrExtent(e, true);
+  if (name == "extentof") return indexOrExtent(e, false);
+  if (name == "neighbor") return neighbor(e);
+  if (name == "sample") return sample(e);
+  if (name == "push") return push(e);
+  if (name == "sincos" || name == "modf" || name == "frexp") return outParameterIntrinsic(e, name);
+  if (name == "select") {
+    const ir::Type type = module_.type(e->getType(), e->getBeginLoc());
+    Exprs args = valuesInOrder({e->getArg(0), e->getArg(1), e->getArg(2)}, type.isDouble());
+    ExprPtr cond = toBool(std::move(args[0]));
+    for (std::size_t i = 1; i < 3; ++i) {
+      if (type.isArithmetic()) args[i] = splat(convert(std::move(args[i]), type.scalar), type.width);
+    }
+    if (cond->type.isVector() && (!type.isVector() || cond->type.width != type.width)) {
+      module_.fail(Diag::NoIntrinsic, e->getBeginLoc(),
+                   {"select", module_.spelling(cond->type) + ", " + module_.spelling(type)});
+    }
+    return select(std::move(cond), std::move(args[1]), std::move(args[2]), e->getBeginLoc());
+  }
+  return tableIntrinsic(e, name);
+}
+
+/// float4(v.xy, 0, 1): components that add up, or one scalar for all.
+ExprPtr FunctionLowering::vectorConstructor(const clang::CallExpr* e, ir::Type type) {
+  const SourceLocation where = e->getBeginLoc();
+  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), type.isDouble());
+  if (type.isMatrix()) return matrix(type, std::move(args), where);
+  int width = 0;
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    if (!args[i]->type.isArithmetic()) {
+      module_.fail(Diag::VectorComponent, e->getArg(static_cast<unsigned>(i))->getBeginLoc(),
+                   {module_.spelling(type), module_.spelling(args[i]->type)});
+    }
+    width += args[i]->type.width;
+    args[i] = convert(std::move(args[i]), type.scalar);
+  }
+  if (args.size() == 1 && args[0]->type == type) return std::move(args[0]);
+  const bool isSplat = args.size() == 1 && width == 1;
+  if (width != type.width && !isSplat) {
+    module_.fail(Diag::VectorWidth, where,
+                 {module_.spelling(type), std::to_string(type.width), std::to_string(width)});
+  }
+  return make(type, where, ir::Construct{std::move(args)});
+}
+
+namespace {
+
+constexpr int impossible = 1000;
+
+/// What it costs to hand `from` to a parameter `to`; conversions lose nothing but ulps, as in C++.
+int conversionCost(ir::Type from, ir::Type to) {
+  from = from.carrier();
+  if (from == to) return 0;
+  if (!from.isArithmetic() || !to.isArithmetic()) return impossible;
+  int cost = 0;
+  if (from.width != to.width) {
+    if (from.width != 1) return impossible;
+    cost += 20;
+  }
+  if (from.scalar == to.scalar) return cost;
+  if (from.scalar == Scalar::Double) return impossible;
+  if (to.scalar == Scalar::Double) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
+  if (to.scalar == Scalar::Float) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
+  if (to.scalar == Scalar::Bool)
+    return from.scalar == Scalar::Int && from.isVector() ? cost : impossible;  // a mask
+  if (from.scalar == Scalar::Float) return impossible;
+  if (to.scalar == Scalar::Uint) return cost + 2;
+  return cost + (from.scalar == Scalar::Bool ? 1 : 3);
+}
+
+struct Match {
+  ir::Intrinsic intrinsic;
+  ir::IntrinsicOverload overload;
+};
+
+/// The cheapest overload with the result that Clang's prelude declares.
+std::optional<Match> bestMatch(llvm::StringRef name, ir::Type result, const std::vector<ExprPtr>& args) {
+  std::optional<Match> best;
+  int bestCost = impossible;
+  for (const ir::IntrinsicRow& row : ir::intrinsicRows()) {
+    if (row.spelling != std::string_view(name)) continue;
+    for (ir::IntrinsicOverload& overload : ir::overloads(row.id)) {
+      if (overload.result != result || overload.arguments.size() != args.size()) continue;
+      int cost = 0;
+      for (std::size_t i = 0; i < args.size() && cost < impossible; ++i) {
+        cost += conversionCost(args[i]->type, overload.arguments[i]);
+      }
+      if (cost < bestCost) {
+        bestCost = cost;
+        best = Match{row.id, std::move(overload)};
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+namespace {
+
+bool isOfDoubles(const clang::Expr* e) {
+  const clang::QualType type = e->getType().getCanonicalType();
+  const auto* vector = type->getAs<clang::ExtVectorType>();
+  return (vector ? vector->getElementType() : type)->isSpecificBuiltinType(clang::BuiltinType::Double);
+}
+
+}  // namespace
+
+ExprPtr FunctionLowering::tableIntrinsic(const clang::CallExpr* e, llvm::StringRef name) {
+  const bool areDoubles = std::any_of(e->arg_begin(), e->arg_end(), isOfDoubles);
+  Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), areDoubles);
+  std::optional<Match> match = bestMatch(name, module_.type(e->getType(), e->getBeginLoc()), args);
+  if (!match) {
+    std::string types;
+    for (const ExprPtr& arg : args) types += (types.empty() ? "" : ", ") + module_.spelling(arg->type);
+    module_.fail(areDoubles ? Diag::DoubleIntrinsic : Diag::NoIntrinsic, e->getBeginLoc(),
+                 {std::string_view(name), types});
+  }
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    const ir::Type wanted = match->overload.arguments[i];
+    args[i] = splat(convert(std::move(args[i]), wanted.scalar), wanted.width);
+  }
+  return intrinsic(match->intrinsic, match->overload.result, e->getBeginLoc(), std::move(args));
+}
+
+ExprPtr FunctionLowering::intrinsic(ir::Intrinsic which, ir::Type result, SourceLocation where, Exprs args) {
+  return make(result, where, ir::IntrinsicCall{which, std::move(args)});
+}
+
+/// sincos(x, s, c), modf(x, whole), frexp(x, e): assignments of values without effects.
+ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::StringRef name) {
+  const SourceLocation where = e->getBeginLoc();
+  const Loc loc = module_.loc(where);
+  ExprPtr x = value(e->getArg(0));
+  if (!x->type.isFloat() && !x->type.isDouble())
+    module_.fail(Diag::NoIntrinsic, where, {std::string_view(name), module_.spelling(x->type)});
+  // the argument is read twice, and an out argument may be the very same variable
+  const ir::VarId kept = temporary(x->type, loc);
+  const ir::Type type = x->type;
+  emit(loc, ir::Declare{kept, std::move(x)});
+  const auto apply = [&](ir::Intrinsic which, ir::Type result) {
+    return intrinsic(which, result, where, ir::exprs(ir::varRef(function_, kept, loc)));
+  };
+  const auto store = [&](unsigned argument, ExprPtr stored) {
+    emit(loc, ir::Assign{place(e->getArg(argument)), std::nullopt, std::move(stored)});
+  };
+  if (name == "sincos") {
+    store(1, apply(ir::Intrinsic::Sin, type));
+    store(2, apply(ir::Intrinsic::Cos, type));
+    return ir::literal(false, loc);
+  }
+  if (name == "modf") {
+    store(1, apply(ir::Intrinsic::Trunc, type));
+    return apply(ir::Intrinsic::ModfFraction, type);
+  }
+  store(1, apply(ir::Intrinsic::FrexpExponent, type.withScalar(Scalar::Int)));
+  return apply(ir::Intrinsic::FrexpMantissa, type);
+}
+
+// ---- streams --------------------------------------------------------------------------------------
+
+namespace {
+
+/// Looks through the copies that C++ makes of a gather handed over by value.
+const clang::Expr* withoutCopies(const clang::Expr* e) {
+  while (true) {
+    e = e->IgnoreParenImpCasts();
+    if (const auto* construct = llvm::dyn_cast<clang::CXXConstructExpr>(e);
+        construct && construct->getNumArgs() == 1) {
+      e = construct->getArg(0);
+    } else if (const auto* temporary = llvm::dyn_cast<clang::MaterializeTemporaryExpr>(e)) {
+      e = temporary->getSubExpr();
+    } else {
+      return e;
+    }
+  }
+}
+
+}  // namespace
+
+/// The Gather, Element or output variable that `e` names, if it is no more than that name.
+std::optional<ir::VarId> FunctionLowering::streamVariable(const clang::Expr* e) const {
+  const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(withoutCopies(e));
+  if (!reference) return std::nullopt;
+  const auto found = variables_.find(reference->getDecl());
+  if (found == variables_.end()) return std::nullopt;
+  const ir::VarRole role = function_.variables[found->second].role;
+  const bool isStream =
+      role == ir::VarRole::Gather || role == ir::VarRole::Element || role == ir::VarRole::AppendOutput;
+  return isStream ? std::optional(found->second) : std::nullopt;
+}
+
+ir::VarId FunctionLowering::gatherVariable(const clang::Expr* e) {
+  const auto stream = streamVariable(e);
+  if (!stream || function_.variables[*stream].role != ir::VarRole::Gather) {
+    module_.fail(Diag::NotAGather, e->getBeginLoc());
+  }
+  return *stream;
+}
+
+/// A parameter that has a current element, of the kernel that `parameter` is one of; or what to declare.
+std::string FunctionLowering::elementBeside(const clang::ValueDecl* parameter) {
+  const auto* kernel = llvm::dyn_cast<clang::FunctionDecl>(parameter->getDeclContext());
+  if (kernel != nullptr) {
+    for (const clang::ParmVarDecl* other : kernel->parameters()) {
+      const ParamSyntax* syntax = module_.syntax().param(other->getLocation());
+      const bool isElement = syntax != nullptr &&
+                             (syntax->role == ir::ParamRole::Output || syntax->role == ir::ParamRole::Input ||
+                              syntax->role == ir::ParamRole::Iterator);
+      if (isElement) return "'" + other->getName().str() + "'";
+    }
+  }
+  return "an output 'out T r<>' or an input 'T x<>'";
+}
+
+/// indexof(p) and extentof(p): of a stream parameter; an output's and an iterator's are those of the domain.
+ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) {
+  const clang::Expr* argument = withoutCopies(e->getArg(0));
+  const SourceLocation where = argument->getBeginLoc();
+  const std::string_view name = isIndex ? "indexof" : "extentof";
+  const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(argument);
+  const ParamSyntax* syntax =
+      reference ? module_.syntax().param(reference->getDecl()->getLocation()) : nullptr;
+  const bool isValue =
+      !syntax || syntax->role == ir::ParamRole::Uniform || syntax->role == ir::ParamRole::Spec;
+  if (isValue) module_.fail(Diag::NotAStream, where, {name});
+  const auto found = variables_.find(reference->getDecl());
+  if (found == variables_.end()) throw Abandoned{};
+  const std::string& parameter = function_.variables[found->second].name;
+  if (isIndex && syntax->role == ir::ParamRole::Gather)
+    module_.fail(Diag::IndexOfGather, where, {parameter, elementBeside(reference->getDecl())});
+  const bool isAppendOutput = function_.variables[found->second].role == ir::VarRole::AppendOutput;
+  if (isIndex && isAppendOutput)
+    module_.fail(Diag::IndexOfAppendOutput, where, {parameter, elementBeside(reference->getDecl())});
+  if (syntax->role == ir::ParamRole::VariableOutput)
+    module_.fail(Diag::ExtentOfAppendOutput, where, {parameter});
+  ir::StreamRef stream{ir::StreamRef::Space::Variable, found->second};
+  if (syntax->role == ir::ParamRole::Output || syntax->role == ir::ParamRole::Iterator) {
+    stream = {ir::StreamRef::Space::Domain, 0};
+  } else if (syntax->role == ir::ParamRole::Accumulator) {
+    module_.fail(Diag::NotAStream, where, {name});
+  }
+  const ir::Type type = ir::Type::of(Scalar::Int, 4);
+  if (isIndex) return make(type, where, ir::IndexOf{stream});
+  return make(type, where, ir::ExtentOf{stream});
+}
+
+/// neighbor(a, dx), neighbor(a, dx, dy) ..., neighbor(a, int2) ...
+ExprPtr FunctionLowering::neighbor(const clang::CallExpr* e) {
+  const SourceLocation where = e->getBeginLoc();
+  const ir::VarId stream = gatherVariable(e->getArg(0));
+  const ir::Variable gather = function_.variables[stream];
+  Exprs offsets = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin() + 1, e->arg_end()));
+  ExprPtr offset;
+  if (offsets.size() == 1) {
+    offset = std::move(offsets[0]);
+  } else {
+    offset = make(ir::Type::of(Scalar::Int, gather.rank), where, ir::Construct{std::move(offsets)});
+  }
+  return make(gather.type, where,
+              ir::NeighborRead{{ir::StreamRef::Space::Variable, stream}, std::move(offset)});
+}
+
+/// sample(a, position): of floats, however they are kept.
+ExprPtr FunctionLowering::sample(const clang::CallExpr* e) {
+  const SourceLocation where = e->getBeginLoc();
+  const ir::VarId stream = gatherVariable(e->getArg(0));
+  const ir::Variable gather = function_.variables[stream];
+  const ir::Type type = gather.type.carrier();
+  if (!type.isFloat()) module_.fail(Diag::SampleType, where, {gather.name, module_.spelling(gather.type)});
+  return make(type, where, ir::Sample{{ir::StreamRef::Space::Variable, stream}, value(e->getArg(1))});
+}
+
+/// a[i], a[i][j], a[int2], a[float2]
+ExprPtr FunctionLowering::gatherRead(const clang::CXXOperatorCallExpr* e) {
+  const Subscripts subscripts = subscriptsOf(e);
+  if (const auto stream = streamVariable(subscripts.object);
+      stream && function_.variables[*stream].role == ir::VarRole::AppendOutput) {
+    module_.fail(Diag::AppendRead, e->getBeginLoc(), {function_.variables[*stream].name});
+  }
+  const ir::VarId stream = gatherVariable(subscripts.object);
+  const ir::Type type = function_.variables[stream].type;
+  return make(type, e->getBeginLoc(),
+              ir::GatherRead{{ir::StreamRef::Space::Variable, stream}, indexFrom(subscripts, stream)});
+}
+
+FunctionLowering::Subscripts FunctionLowering::subscriptsOf(const clang::CXXOperatorCallExpr* e) {
+  Subscripts result{nullptr, {e->getArg(1)}, e->getBeginLoc()};
+  const clang::Expr* object = e->getArg(0)->IgnoreParenImpCasts();
+  if (const auto* temporary = llvm::dyn_cast<clang::MaterializeTemporaryExpr>(object)) {
+    object = temporary->getSubExpr()->IgnoreParenImpCasts();
+  }
+  while (const auto* outer = llvm::dyn_cast<clang::CXXOperatorCallExpr>(object)) {
+    result.written.insert(result.written.begin(), outer->getArg(1));
+    object = outer->getArg(0)->IgnoreParenImpCasts();
+  }
+  result.object = object;
+  return result;
+}
+
+/// An int index with x, the fastest, first. Floats name the nearest element.
+ExprPtr FunctionLowering::indexFrom(const Subscripts& subscripts, ir::VarId stream) {
+  const ir::Variable variable = function_.variables[stream];
+  for (const clang::Expr* index : subscripts.written) {
+    const auto* comma = llvm::dyn_cast<clang::BinaryOperator>(index->IgnoreParenImpCasts());
+    if (comma && comma->getOpcode() == clang::BO_Comma)
+      module_.fail(Diag::CommaIndex, comma->getOperatorLoc(), {variable.name});
+  }
+  Exprs values = valuesInOrder(subscripts.written);
+  for (ExprPtr& index : values) {
+    const Loc loc = index->loc;
+    if (index->type.isFloat()) {
+      const ir::Type type = index->type.withScalar(Scalar::Int);
+      index = ir::makeExpr(type, ir::IntrinsicCall{ir::Intrinsic::Nearest, ir::exprs(std::move(index))}, loc);
+    }
+    index = convert(std::move(index), Scalar::Int);
+  }
+  ExprPtr index;
+  if (values.size() == 1) {
+    index = std::move(values[0]);
+  } else {
+    std::reverse(values.begin(), values.end());
+    index =
+        make(ir::Type::of(Scalar::Int, variable.rank), subscripts.where, ir::Construct{std::move(values)});
+  }
+  assert(index->type.width == variable.rank);  // the prelude declares nothing else
+  return index;
+}
+
+}  // namespace skc::frontend

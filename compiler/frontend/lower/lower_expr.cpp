@@ -1,0 +1,565 @@
+// SPDX-License-Identifier: MIT
+//
+// Effects of expressions: assignments, increments, temporaries, order of evaluation; and the
+// operators. Leaves, casts and initialisers are in lower_value.cpp, calls in lower_call.cpp.
+#include <algorithm>
+#include <cassert>
+
+#include <clang/AST/ExprCXX.h>
+
+#include "frontend/lower/function_lowering.hpp"
+#include "ir/build.hpp"
+
+namespace skc::frontend {
+
+using clang::SourceLocation;
+using ir::ExprPtr;
+
+namespace {
+
+std::optional<ir::BinaryOp> binaryOpOf(clang::BinaryOperatorKind kind) {
+  switch (kind) {
+    case clang::BO_Add:
+    case clang::BO_AddAssign: return ir::BinaryOp::Add;
+    case clang::BO_Sub:
+    case clang::BO_SubAssign: return ir::BinaryOp::Sub;
+    case clang::BO_Mul:
+    case clang::BO_MulAssign: return ir::BinaryOp::Mul;
+    case clang::BO_Div:
+    case clang::BO_DivAssign: return ir::BinaryOp::Div;
+    case clang::BO_Rem:
+    case clang::BO_RemAssign: return ir::BinaryOp::Rem;
+    case clang::BO_And:
+    case clang::BO_AndAssign: return ir::BinaryOp::BitAnd;
+    case clang::BO_Or:
+    case clang::BO_OrAssign: return ir::BinaryOp::BitOr;
+    case clang::BO_Xor:
+    case clang::BO_XorAssign: return ir::BinaryOp::BitXor;
+    case clang::BO_Shl:
+    case clang::BO_ShlAssign: return ir::BinaryOp::ShiftLeft;
+    case clang::BO_Shr:
+    case clang::BO_ShrAssign: return ir::BinaryOp::ShiftRight;
+    case clang::BO_LT: return ir::BinaryOp::Less;
+    case clang::BO_LE: return ir::BinaryOp::LessEqual;
+    case clang::BO_GT: return ir::BinaryOp::Greater;
+    case clang::BO_GE: return ir::BinaryOp::GreaterEqual;
+    case clang::BO_EQ: return ir::BinaryOp::Equal;
+    case clang::BO_NE: return ir::BinaryOp::NotEqual;
+    case clang::BO_LAnd: return ir::BinaryOp::LogicalAnd;
+    case clang::BO_LOr: return ir::BinaryOp::LogicalOr;
+    default: return std::nullopt;
+  }
+}
+
+bool isArithmeticOp(ir::BinaryOp op) { return op <= ir::BinaryOp::Rem; }
+
+/// What an operator of two bool vectors is; nullopt where it would take them for numbers.
+std::optional<ir::BinaryOp> ofBools(ir::BinaryOp op) {
+  if (op == ir::BinaryOp::BitAnd) return ir::BinaryOp::LogicalAnd;
+  if (op == ir::BinaryOp::BitOr) return ir::BinaryOp::LogicalOr;
+  if (op == ir::BinaryOp::BitXor) return ir::BinaryOp::NotEqual;
+  if (op == ir::BinaryOp::Equal || op == ir::BinaryOp::NotEqual) return op;
+  return std::nullopt;
+}
+
+/// float4(2.0) in `v * float4(2.0)` where the author wrote `v * 2.0`.
+ExprPtr withoutSplat(ExprPtr e) {
+  auto* construct = std::get_if<ir::Construct>(&e->node);
+  if (!construct || !e->type.isVector() || construct->args.size() != 1 ||
+      !construct->args[0]->type.isScalar())
+    return e;
+  return std::move(construct->args[0]);
+}
+
+bool isStable(const ExprPtr& e, const ir::Function& function) {
+  if (std::holds_alternative<ir::Literal>(e->node) || std::holds_alternative<ir::ConstantRef>(e->node))
+    return true;
+  const auto* reference = std::get_if<ir::VarRef>(&e->node);
+  return reference && function.variables[reference->var].isConst;
+}
+
+/// The way from a place's variable to it: members and literal indices; -1 stands for any index.
+std::vector<std::int64_t> pathOf(const ir::Expr& place) {
+  std::vector<std::int64_t> path;
+  const ir::Expr* e = &place;
+  while (!std::holds_alternative<ir::VarRef>(e->node)) {
+    if (const auto* member = std::get_if<ir::Member>(&e->node)) {
+      path.insert(path.begin(), member->field);
+      e = member->base.get();
+    } else if (const auto* index = std::get_if<ir::Index>(&e->node)) {
+      const auto* literal = std::get_if<ir::Literal>(&index->index->node);
+      path.insert(path.begin(), literal ? std::int64_t{literal->bits} : -1);
+      e = index->base.get();
+    } else {
+      path.clear();   // components of a vector: as good as the whole
+      e = std::get<ir::Swizzle>(e->node).base.get();
+    }
+  }
+  return path;
+}
+
+/// Whether two places have no component in common, for certain.
+bool areDisjoint(const ir::Expr& a, const ir::Expr& b) {
+  if (ir::rootOf(a) != ir::rootOf(b)) return true;
+  const std::vector<std::int64_t> first = pathOf(a), second = pathOf(b);
+  for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
+    if (first[i] < 0 || second[i] < 0) return false;
+    if (first[i] != second[i]) return true;
+  }
+  return false;
+}
+
+bool isPlace(const ir::Expr& e) {
+  if (std::holds_alternative<ir::VarRef>(e.node)) return true;
+  if (const auto* swizzle = std::get_if<ir::Swizzle>(&e.node)) return isPlace(*swizzle->base);
+  if (const auto* member = std::get_if<ir::Member>(&e.node)) return isPlace(*member->base);
+  if (const auto* index = std::get_if<ir::Index>(&e.node)) return isPlace(*index->base);
+  return false;
+}
+
+}  // namespace
+
+// ---- effects ------------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::value(const clang::Expr* e) {
+  const Level level(depth_);
+  checkDepth(e->getExprLoc());
+  return Visit(e);
+}
+
+void FunctionLowering::checkDepth(SourceLocation where) {
+  if (depth_ > deepestNesting) module_.fail(Diag::NestedTooDeep, where, {std::to_string(deepestNesting)});
+}
+
+/// An expression whose value nobody uses: only its effects remain.
+void FunctionLowering::discarded(const clang::Expr* e) {
+  e = e->IgnoreParens();
+  if (scatters(e)) return;
+  if (const auto* cleanups = llvm::dyn_cast<clang::ExprWithCleanups>(e))
+    return discarded(cleanups->getSubExpr());
+  if (const auto* cast = llvm::dyn_cast<clang::CastExpr>(e); cast && cast->getType()->isVoidType()) {
+    return discarded(cast->getSubExpr());
+  }
+  if (const auto* compound = llvm::dyn_cast<clang::CompoundAssignOperator>(e)) {
+    compoundAssign(compound, false);
+    return;
+  }
+  if (const auto* operation = llvm::dyn_cast<clang::BinaryOperator>(e)) {
+    if (operation->getOpcode() == clang::BO_Assign) {
+      assign(operation, false);
+      return;
+    }
+    if (operation->getOpcode() == clang::BO_Comma) {
+      discarded(operation->getLHS());
+      return discarded(operation->getRHS());
+    }
+  }
+  if (const auto* operation = llvm::dyn_cast<clang::UnaryOperator>(e);
+      operation && operation->isIncrementDecrementOp()) {
+    increment(operation, false);
+    return;
+  }
+  if (const auto* choice = llvm::dyn_cast<clang::ConditionalOperator>(e);
+      choice && choice->getType()->isVoidType()) {
+    ir::If result;
+    result.cond = condition(choice->getCond());
+    ir::Block* outer = std::exchange(out_, &result.then);
+    discarded(choice->getTrueExpr());
+    out_ = &result.otherwise;
+    discarded(choice->getFalseExpr());
+    out_ = outer;
+    return emit(module_.loc(e->getBeginLoc()), std::move(result));
+  }
+  value(e);
+}
+
+ExprPtr FunctionLowering::valueInto(const clang::Expr* e, ir::Block& block, bool asDouble) {
+  ir::Block* outer = std::exchange(out_, &block);
+  ExprPtr result;
+  try {
+    result = asDouble && isLiterals(e) ? literalsAsDouble(e) : value(e);
+  } catch (const Abandoned&) {
+    out_ = outer;
+    throw;
+  }
+  out_ = outer;
+  return result;
+}
+
+/// `asDoubles`: literals are doubles, since they meet some.
+FunctionLowering::Exprs FunctionLowering::valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions,
+                                                        bool asDoubles) {
+  Exprs values;
+  for (const clang::Expr* e : expressions) {
+    ir::Block effects;
+    ExprPtr result = valueInto(e, effects, asDoubles);
+    if (!effects.empty()) {
+      for (ExprPtr& earlier : values) spill(earlier);
+      for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+    }
+    values.push_back(std::move(result));
+  }
+  return values;
+}
+
+/// Keeps the present value of `e` in a temporary.
+void FunctionLowering::spill(ExprPtr& e) {
+  if (isStable(e, function_)) return;
+  const Loc loc = e->loc;
+  const ir::VarId kept = temporary(e->type, loc);
+  emit(loc, ir::Declare{kept, std::move(e)});
+  e = ir::varRef(function_, kept, loc);
+}
+
+/// Keeps the element that a place names, not its value: only the indices on the way get temporaries.
+void FunctionLowering::keepInPlace(ExprPtr& e) {
+  if (!isPlace(*e)) return spill(e);
+  if (auto* index = std::get_if<ir::Index>(&e->node)) {
+    keepInPlace(index->base);
+    spill(index->index);
+  } else if (auto* member = std::get_if<ir::Member>(&e->node)) {
+    keepInPlace(member->base);
+  } else if (auto* swizzle = std::get_if<ir::Swizzle>(&e->node)) {
+    keepInPlace(swizzle->base);
+  }
+}
+
+ir::VarId FunctionLowering::temporary(ir::Type type, Loc loc) {
+  ir::Variable variable;
+  variable.name = "t";
+  variable.type = type;
+  variable.loc = loc;
+  function_.variables.push_back(std::move(variable));
+  return static_cast<ir::VarId>(function_.variables.size() - 1);
+}
+
+/// The place that `e` names. Clang has checked that it may be written.
+ExprPtr FunctionLowering::place(const clang::Expr* e) {
+  ExprPtr result = value(e);
+  if (const auto* read =
+          std::get_if<ir::GatherRead>(&result->node)) {  // of structs, which C++ lets one assign to
+    const std::string& gather = function_.variables[read->stream.id].name;
+    module_.fail(Diag::GatherAssigned, e->getBeginLoc(), {gather + "[...]", gather});
+  }
+  if (!isPlace(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
+  return result;
+}
+
+/// The sides of an assignment. C++17 evaluates the right one first.
+FunctionLowering::Sides FunctionLowering::sidesOf(const clang::BinaryOperator* e) {
+  ExprPtr right = value(e->getRHS());
+  ir::Block effects;
+  ir::Block* outer = std::exchange(out_, &effects);
+  ExprPtr target = place(e->getLHS());
+  out_ = outer;
+  if (!effects.empty()) {
+    spill(right);
+    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+  }
+  return {std::move(target), std::move(right)};
+}
+
+ExprPtr FunctionLowering::assign(const clang::BinaryOperator* e, bool wantValue) {
+  auto [target, right] = sidesOf(e);
+  ExprPtr result = wantValue ? ir::clone(*target) : nullptr;
+  emit(module_.loc(e->getBeginLoc()), ir::Assign{std::move(target), std::nullopt, std::move(right)});
+  return result;
+}
+
+ExprPtr FunctionLowering::compoundAssign(const clang::CompoundAssignOperator* e, bool wantValue) {
+  const ir::BinaryOp op = *binaryOpOf(e->getOpcode());
+  auto [target, right] = sidesOf(e);
+  const ir::Type computed = module_.type(e->getComputationResultType(), e->getOperatorLoc());
+  ExprPtr result = wantValue ? ir::clone(*target) : nullptr;
+  const Loc loc = module_.loc(e->getBeginLoc());
+  const bool isSignedRemainder =
+      op == ir::BinaryOp::Rem && computed.scalar == ir::Scalar::Int;   // a function in GLSL
+  const bool isNumber = computed.isArithmetic() && !computed.isBool() && !computed.isNarrow();
+  if (isNumber && computed.scalar == target->type.scalar && !isSignedRemainder) {
+    if (isArithmeticOp(op)) right = withoutSplat(std::move(right));
+    emit(loc, ir::Assign{std::move(target), op, std::move(right)});
+    return result;
+  }
+  // `i += 0.5f` computes in float and converts back, and a narrow type computes in its carrier
+  const ir::Scalar scalar = target->type.scalar;
+  ExprPtr wide =
+      binary(op, convert(ir::clone(*target), computed.scalar), std::move(right), e->getOperatorLoc());
+  emit(loc, ir::Assign{std::move(target), std::nullopt, convert(std::move(wide), scalar)});
+  return result;
+}
+
+ExprPtr FunctionLowering::increment(const clang::UnaryOperator* e, bool wantValue) {
+  ExprPtr target = place(e->getSubExpr());
+  const Loc loc = module_.loc(e->getBeginLoc());
+  if (target->type.isBool()) module_.fail(Diag::Statement, e->getBeginLoc(), {"++ of a bool"});
+  ExprPtr result;
+  if (wantValue && e->isPostfix()) {
+    result = ir::clone(*target);
+    spill(result);
+  }
+  const ir::BinaryOp op = e->isIncrementOp() ? ir::BinaryOp::Add : ir::BinaryOp::Sub;
+  const ir::Type type = target->type;
+  ExprPtr one = ir::literalOf(type.carrier().component(), 1, loc);
+  if (wantValue && e->isPrefix()) result = ir::clone(*target);
+  if (type.isNarrow()) {
+    ExprPtr wide = binary(op, ir::clone(*target), std::move(one), e->getOperatorLoc());
+    emit(loc, ir::Assign{std::move(target), std::nullopt, convert(std::move(wide), type.scalar)});
+  } else {
+    emit(loc, ir::Assign{std::move(target), op, std::move(one)});
+  }
+  return result;
+}
+
+// ---- operators ----------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
+  const SourceLocation where = e->getOperatorLoc();
+  switch (e->getOpcode()) {
+    case clang::UO_PreInc:
+    case clang::UO_PreDec:
+    case clang::UO_PostInc:
+    case clang::UO_PostDec: return increment(e, true);
+    case clang::UO_Plus: return value(e->getSubExpr());
+    case clang::UO_Minus: {
+      ExprPtr operand = value(e->getSubExpr());
+      const ir::Type written = operand->type;
+      operand = convert(std::move(operand), ir::carrierOf(written.scalar));
+      if (const auto* constant = std::get_if<ir::Literal>(&operand->node);
+          constant && !operand->type.isBool()) {
+        // -1 is a literal to its reader: change the sign bit of a float, wrap an integer
+        if (operand->type.isDouble()) {
+          return make(operand->type, where, ir::Literal{constant->bits, constant->high ^ 0x80000000u});
+        }
+        const std::uint32_t bits =
+            operand->type.carrier().isFloat() ? constant->bits ^ 0x80000000u : 0u - constant->bits;
+        return literal(operand->type, bits, where);
+      }
+      const ir::Type type = operand->type;
+      if (type.isBool()) module_.fail(Diag::Statement, where, {"arithmetic of bool vectors"});
+      return convert(make(type, where, ir::Unary{ir::UnaryOp::Negate, std::move(operand)}), written.scalar);
+    }
+    case clang::UO_Not: {
+      ExprPtr operand = value(e->getSubExpr());
+      const ir::Type written = operand->type;
+      operand = convert(std::move(operand), ir::carrierOf(written.scalar));
+      const ir::Type type = operand->type;
+      const ir::UnaryOp op = type.isBool() ? ir::UnaryOp::LogicalNot : ir::UnaryOp::BitNot;
+      return convert(make(type, where, ir::Unary{op, std::move(operand)}), written.scalar);
+    }
+    case clang::UO_LNot: {
+      ExprPtr operand = toBool(value(e->getSubExpr()));
+      const ir::Type type = operand->type;
+      ExprPtr result = make(type, where, ir::Unary{ir::UnaryOp::LogicalNot, std::move(operand)});
+      const ir::Type wanted = module_.type(e->getType(), where);
+      return type.isVector() && !wanted.isBool() ? convert(mask(std::move(result)), wanted.scalar)
+                                                 : std::move(result);
+    }
+    case clang::UO_Deref:
+      if (const auto* self = llvm::dyn_cast<clang::CXXThisExpr>(e->getSubExpr()->IgnoreParenImpCasts())) {
+        return VisitCXXThisExpr(self);
+      }
+      value(e->getSubExpr());   // says what is wrong with it, if it is more than a pointer
+      module_.fail(Diag::Pointer, where, {e->getSubExpr()->getType().getAsString()});
+    case clang::UO_AddrOf: module_.fail(Diag::Pointer, where, {e->getType().getAsString()});
+    case clang::UO_Extension: return value(e->getSubExpr());
+    case clang::UO_Real:
+    case clang::UO_Imag:
+    case clang::UO_Coawait: break;
+  }
+  return VisitExpr(e);
+}
+
+ExprPtr FunctionLowering::VisitBinaryOperator(const clang::BinaryOperator* e) {
+  if (e->getOpcode() == clang::BO_Assign) return assign(e, true);
+  if (e->getOpcode() == clang::BO_Comma) {
+    discarded(e->getLHS());
+    return value(e->getRHS());
+  }
+  if (e->isLogicalOp()) return logical(e);
+  const auto op = binaryOpOf(e->getOpcode());
+  if (!op) return VisitExpr(e);
+  Exprs operands = valuesInOrder({e->getLHS(), e->getRHS()});
+  ExprPtr result = binary(*op, std::move(operands[0]), std::move(operands[1]), e->getOperatorLoc());
+  // vectors of a narrow type stay what they are after each operation
+  return convert(std::move(result), module_.type(e->getType(), e->getOperatorLoc()).scalar);
+}
+
+ExprPtr FunctionLowering::VisitCompoundAssignOperator(const clang::CompoundAssignOperator* e) {
+  return compoundAssign(e, true);
+}
+
+ExprPtr FunctionLowering::binary(ir::BinaryOp op, ExprPtr lhs, ExprPtr rhs, SourceLocation where) {
+  assert(lhs->type.isArithmetic() && rhs->type.isArithmetic());   // Clang finds no operator otherwise
+  lhs = convert(std::move(lhs), ir::carrierOf(lhs->type.scalar));
+  rhs = convert(std::move(rhs), ir::carrierOf(rhs->type.scalar));
+  if (isArithmeticOp(op) && lhs->type.isVector()) {
+    // keep `2 * v` as it was written; two splats stay vectors
+    ExprPtr bare = withoutSplat(std::move(rhs));
+    if (bare->type.isVector()) lhs = withoutSplat(std::move(lhs));
+    rhs = std::move(bare);
+  }
+  const bool compares = ir::isComparison(op) && lhs->type.isVector();
+  if (lhs->type.isVector() && lhs->type.isBool()) {
+    const auto logical = ofBools(op);
+    if (!logical) module_.fail(Diag::Statement, where, {"arithmetic of bool vectors"});
+    op = *logical;
+  }
+  ExprPtr result = ir::binary(op, std::move(lhs), std::move(rhs), module_.loc(where));
+  return compares ? mask(std::move(result)) : std::move(result);
+}
+
+/// && and ||: the right side's effects happen only where its value is needed.
+ExprPtr FunctionLowering::logical(const clang::BinaryOperator* e) {
+  const SourceLocation where = e->getOperatorLoc();
+  const bool isAnd = e->getOpcode() == clang::BO_LAnd;
+  const ir::BinaryOp op = isAnd ? ir::BinaryOp::LogicalAnd : ir::BinaryOp::LogicalOr;
+  if (e->getType()->isVectorType()) {
+    Exprs operands = valuesInOrder({e->getLHS(), e->getRHS()});
+    ExprPtr both =
+        ir::binary(op, toBool(std::move(operands[0])), toBool(std::move(operands[1])), module_.loc(where));
+    return convert(mask(std::move(both)), module_.type(e->getType(), where).scalar);
+  }
+  ExprPtr lhs = condition(e->getLHS());
+  ir::Block effects;
+  ExprPtr rhs = toBool(valueInto(e->getRHS(), effects));
+  if (effects.empty()) return ir::binary(op, std::move(lhs), std::move(rhs), module_.loc(where));
+  const Loc loc = module_.loc(where);
+  const ir::VarId result = temporary(ir::Type::of(ir::Scalar::Bool), loc);
+  emit(loc, ir::Declare{result, std::move(lhs)});
+  effects.push_back(ir::assign(ir::varRef(function_, result, loc), std::move(rhs), loc));
+  ExprPtr cond = ir::varRef(function_, result, loc);
+  if (!isAnd) cond = ir::unary(ir::UnaryOp::LogicalNot, std::move(cond), loc);
+  emit(loc, ir::If{std::move(cond), std::move(effects), {}});
+  return ir::varRef(function_, result, loc);
+}
+
+ExprPtr FunctionLowering::VisitConditionalOperator(const clang::ConditionalOperator* e) {
+  const SourceLocation where = e->getQuestionLoc();
+  ExprPtr cond = condition(e->getCond());
+  if (cond->type.isVector()) {
+    Exprs sides = valuesInOrder({e->getTrueExpr(), e->getFalseExpr()});
+    return select(std::move(cond), std::move(sides[0]), std::move(sides[1]), where);
+  }
+  ir::Block yesEffects, noEffects;
+  ExprPtr yes = valueInto(e->getTrueExpr(), yesEffects);
+  ExprPtr no = valueInto(e->getFalseExpr(), noEffects);
+  if (yesEffects.empty() && noEffects.empty())
+    return select(std::move(cond), std::move(yes), std::move(no), where);
+  const Loc loc = module_.loc(where);
+  const ir::VarId result = temporary(yes->type, loc);
+  emit(loc, ir::Declare{result, nullptr});
+  yesEffects.push_back(ir::assign(ir::varRef(function_, result, loc), std::move(yes), loc));
+  noEffects.push_back(ir::assign(ir::varRef(function_, result, loc), std::move(no), loc));
+  emit(loc, ir::If{std::move(cond), std::move(yesEffects), std::move(noEffects)});
+  return ir::varRef(function_, result, loc);
+}
+
+ExprPtr FunctionLowering::select(ExprPtr cond, ExprPtr yes, ExprPtr no, SourceLocation where) {
+  const ir::Type type = yes->type;
+  return make(type, where, ir::Select{std::move(cond), std::move(yes), std::move(no)});
+}
+
+ExprPtr FunctionLowering::argument(const clang::Expr* e, const ir::Variable& parameter) {
+  switch (parameter.role) {
+    case ir::VarRole::AppendOutput:
+    case ir::VarRole::Gather: {
+      const ir::VarId stream = parameter.role == ir::VarRole::Gather ? gatherVariable(e) : appendVariable(e);
+      return ir::makeExpr(function_.variables[stream].type, ir::VarRef{stream},
+                          module_.loc(e->getBeginLoc()));
+    }
+    case ir::VarRole::InOut: {
+      return place(e);   // Clang binds references only to their own type
+    }
+    case ir::VarRole::Element:
+      // another type's is a value: it is converted
+      if (const auto stream = streamVariable(e);
+          stream && function_.variables[*stream].type == parameter.type) {
+        return ir::makeExpr(function_.variables[*stream].type, ir::VarRef{*stream},
+                            module_.loc(e->getBeginLoc()));
+      }
+      return value(e);
+    case ir::VarRole::In:
+    case ir::VarRole::Local: break;
+  }
+  return value(e);
+}
+
+/// A variable whose declaration was an error already: one message is enough.
+void FunctionLowering::abandonIfUnknown(const clang::Stmt* s) const {
+  const auto* expression = llvm::dyn_cast_or_null<clang::Expr>(s);
+  if (!expression) return;
+  expression = expression->IgnoreParenImpCasts();
+  if (const auto* member = llvm::dyn_cast<clang::MemberExpr>(expression))
+    return abandonIfUnknown(member->getBase());
+  const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(expression);
+  const auto* variable = reference ? llvm::dyn_cast<clang::VarDecl>(reference->getDecl()) : nullptr;
+  if (!variable || !variable->isLocalVarDeclOrParm() || variables_.contains(variable)) return;
+  if (variable->isStaticLocal() && variable->getType().isConstQualified()) return;
+  throw Abandoned{};
+}
+
+/// Calls with reference parameters, or that may push and scatter, are statements; others are values.
+ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
+  for (const clang::Stmt* part : e->children()) abandonIfUnknown(part);
+  const SourceLocation where = e->getBeginLoc();
+  const ir::FunctionId id = module_.function(callee, where);
+  const ir::Function& target = module_.functionAt(id);
+  std::vector<const clang::Expr*> sources;
+  if (const auto* method = llvm::dyn_cast<clang::CXXMemberCallExpr>(e)) {
+    sources.push_back(method->getImplicitObjectArgument());
+  }
+  sources.insert(sources.end(), e->arg_begin(), e->arg_end());
+
+  Exprs arguments;
+  std::vector<std::size_t> written;
+  bool hasEffects = target.result.isVoid();
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const ir::Variable& parameter = target.variables[i];
+    ir::Block effects;
+    ir::Block* outer = std::exchange(out_, &effects);
+    ExprPtr lowered;
+    try {
+      lowered = argument(sources[i], parameter);
+    } catch (const Abandoned&) {
+      out_ = outer;
+      throw;
+    }
+    out_ = outer;
+    if (!effects.empty()) {
+      for (std::size_t k = 0; k < i; ++k) {
+        const ir::VarRole role = target.variables[k].role;
+        if (role == ir::VarRole::In || (role == ir::VarRole::Element && !streamVariable(sources[k])))
+          spill(arguments[k]);
+      }
+      for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+    }
+    if (parameter.role == ir::VarRole::AppendOutput) hasEffects = true;
+    if (parameter.role == ir::VarRole::InOut) {
+      hasEffects = true;
+      for (const std::size_t other : written) {
+        if (areDisjoint(*arguments[other], *lowered)) continue;
+        module_.fail(Diag::AliasedArguments, sources[i]->getBeginLoc(),
+                     {function_.variables[ir::rootOf(*lowered)].name});
+      }
+      written.push_back(i);
+    }
+    arguments.push_back(std::move(lowered));
+  }
+  if (!hasEffects) return make(target.result, where, ir::Call{id, std::move(arguments)});
+  const Loc loc = module_.loc(where);
+  if (givesItself(callee)) {
+    ExprPtr object = ir::clone(*arguments[0]);
+    emit(loc, ir::CallStmt{id, std::move(arguments), nullptr});
+    return object;
+  }
+  if (target.result.isVoid()) {
+    emit(loc, ir::CallStmt{id, std::move(arguments), nullptr});
+    return ir::literal(false, loc);   // nobody looks at the value of a void call
+  }
+  const ir::VarId result = temporary(target.result, loc);
+  emit(loc, ir::Declare{result, nullptr});
+  emit(loc, ir::CallStmt{id, std::move(arguments), ir::varRef(function_, result, loc)});
+  return ir::varRef(function_, result, loc);
+}
+
+}  // namespace skc::frontend

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+//
+// Floating-point literals. To Clang, `0.1` is a float (float_literals.hpp), so that `x * 0.1` is float for a
+// float x. A formula of nothing but such literals takes its precision from its place: where it becomes a
+// double, or meets one, it never was float, and is read anew from its text.
+//
+//   double d = 0.1;              the nearest double
+//   d *= 1.0 / 3.0;              divided in double
+//   double e = 0.1f;             a float: its author said so
+//   float f = 0.1;               rounded once, from the text
+#include <algorithm>
+
+#include <clang/AST/ASTContext.h>
+#include <clang/AST/ExprCXX.h>
+#include <clang/Basic/SourceManager.h>
+#include <clang/Lex/Lexer.h>
+#include <llvm/ADT/APFloat.h>
+
+#include "frontend/clang_loc.hpp"
+#include "frontend/lower/function_lowering.hpp"
+#include "ir/build.hpp"
+
+namespace skc::frontend {
+
+using ir::ExprPtr;
+
+namespace {
+
+/// Looks through what changes nothing, and through the cast that makes a float of an integer or of `0.1L`.
+const clang::Expr* bare(const clang::Expr* e) {
+  while (true) {
+    e = e->IgnoreParens();
+    const auto* cast = llvm::dyn_cast<clang::ImplicitCastExpr>(e);
+    const bool isOfLiteral = cast && (cast->getCastKind() == clang::CK_FloatingCast ||
+                                      cast->getCastKind() == clang::CK_IntegralToFloating);
+    if (const auto* constant = llvm::dyn_cast<clang::ConstantExpr>(e)) {
+      e = constant->getSubExpr();
+    } else if (isOfLiteral) {
+      e = cast->getSubExpr();
+    } else {
+      return e;
+    }
+  }
+}
+
+bool isArithmetic(clang::BinaryOperatorKind kind) {
+  return kind == clang::BO_Add || kind == clang::BO_Sub || kind == clang::BO_Mul || kind == clang::BO_Div;
+}
+
+bool isSign(clang::UnaryOperatorKind kind) { return kind == clang::UO_Plus || kind == clang::UO_Minus; }
+
+}  // namespace
+
+/// As it stands in the source.
+LiteralParts FunctionLowering::partsOf(const clang::FloatingLiteral* e) const {
+  llvm::SmallString<32> buffer;
+  const clang::SourceLocation spelled = module_.sources().getSpellingLoc(e->getLocation());
+  return literalParts(
+      clang::Lexer::getSpelling(spelled, buffer, module_.sources(), module_.context().getLangOpts()).str());
+}
+
+/// From the text where it can be read: through another type, a literal could be rounded twice.
+llvm::APFloat FunctionLowering::literalValue(const clang::FloatingLiteral* e,
+                                             const llvm::fltSemantics& semantics, std::string_view type) {
+  const std::string digits = partsOf(e).digits;
+  llvm::APFloat direct(semantics);
+  auto status = direct.convertFromString(digits, llvm::APFloat::rmNearestTiesToEven);
+  if (!status) {
+    llvm::consumeError(status.takeError());
+    llvm::APFloat rounded = e->getValue();
+    bool inexact = false;
+    rounded.convert(semantics, llvm::APFloat::rmNearestTiesToEven, &inexact);
+    return rounded;
+  }
+  if (*status & (llvm::APFloat::opOverflow | llvm::APFloat::opUnderflow)) {
+    module_.diagnostics().report(Diag::LiteralRange, locOf(e->getLocation()),
+                                 {digits, type,
+                                  direct.isInfinity() ? "infinity"
+                                  : direct.isZero()   ? "0"
+                                                      : "a denormal"});
+  }
+  return direct;
+}
+
+ExprPtr FunctionLowering::VisitFloatingLiteral(const clang::FloatingLiteral* e) {
+  const llvm::APFloat value = literalValue(e, llvm::APFloat::IEEEsingle(), "float");
+  return literal(ir::Type::of(ir::Scalar::Float),
+                 static_cast<std::uint32_t>(value.bitcastToAPInt().getZExtValue()), e->getLocation());
+}
+
+ExprPtr FunctionLowering::doubleLiteral(const clang::FloatingLiteral* e) {
+  const llvm::APFloat value = literalValue(e, llvm::APFloat::IEEEdouble(), "double");
+  return ir::literal(value.convertToDouble(), module_.loc(e->getLocation()));
+}
+
+bool FunctionLowering::isLiterals(const clang::Expr* e) const {
+  e = bare(e);
+  if (const auto* literal = llvm::dyn_cast<clang::FloatingLiteral>(e)) {
+    const std::string_view suffix = partsOf(literal).suffix;
+    return suffix != "f" && suffix != "F";
+  }
+  if (llvm::isa<clang::IntegerLiteral>(e)) return true;
+  if (const auto* sign = llvm::dyn_cast<clang::UnaryOperator>(e))
+    return isSign(sign->getOpcode()) && isLiterals(sign->getSubExpr());
+  if (const auto* operation = llvm::dyn_cast<clang::BinaryOperator>(e)) {
+    return operation->getType()->isFloatingType() && isArithmetic(operation->getOpcode()) &&
+           isLiterals(operation->getLHS()) && isLiterals(operation->getRHS());
+  }
+  const auto* choice = llvm::dyn_cast<clang::ConditionalOperator>(e);
+  return choice && choice->getType()->isFloatingType() && isLiterals(choice->getTrueExpr()) &&
+         isLiterals(choice->getFalseExpr());
+}
+
+/// Of a formula that isLiterals() holds for.
+ExprPtr FunctionLowering::literalsAsDouble(const clang::Expr* e) {
+  const Level level(depth_);
+  checkDepth(e->getExprLoc());
+  e = bare(e);
+  if (const auto* literal = llvm::dyn_cast<clang::FloatingLiteral>(e)) return doubleLiteral(literal);
+  if (const auto* sign = llvm::dyn_cast<clang::UnaryOperator>(e)) {
+    ExprPtr operand = literalsAsDouble(sign->getSubExpr());
+    if (sign->getOpcode() == clang::UO_Plus) return operand;
+    if (auto* literal = std::get_if<ir::Literal>(&operand->node)) {
+      literal->high ^= 0x80000000u;
+      return operand;
+    }
+    return ir::unary(ir::UnaryOp::Negate, std::move(operand), module_.loc(sign->getOperatorLoc()));
+  }
+  if (const auto* operation = llvm::dyn_cast<clang::BinaryOperator>(e)) {
+    const clang::BinaryOperatorKind kind = operation->getOpcode();
+    const ir::BinaryOp op = kind == clang::BO_Add   ? ir::BinaryOp::Add
+                            : kind == clang::BO_Sub ? ir::BinaryOp::Sub
+                            : kind == clang::BO_Mul ? ir::BinaryOp::Mul
+                                                    : ir::BinaryOp::Div;
+    ExprPtr lhs = literalsAsDouble(operation->getLHS());
+    return ir::binary(op, std::move(lhs), literalsAsDouble(operation->getRHS()),
+                      module_.loc(operation->getOperatorLoc()));
+  }
+  if (const auto* choice = llvm::dyn_cast<clang::ConditionalOperator>(e)) {
+    ExprPtr cond = condition(choice->getCond());
+    ExprPtr yes = literalsAsDouble(choice->getTrueExpr());
+    return select(std::move(cond), std::move(yes), literalsAsDouble(choice->getFalseExpr()),
+                  choice->getQuestionLoc());
+  }
+  return convert(value(e), ir::Scalar::Double);   // an integer
+}
+
+/// What becomes a double.
+ExprPtr FunctionLowering::doubleValue(const clang::Expr* e) {
+  return isLiterals(e) ? literalsAsDouble(e) : convert(value(e), ir::Scalar::Double);
+}
+
+}  // namespace skc::frontend

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+//
+// `stream` declarations: the types of their elements, and what their extents are. An extent that is one
+// name is a constant where the name is declared as one before, else an argument of the struct that holds
+// the streams.
+#include <clang/AST/APValue.h>
+#include <clang/AST/ASTContext.h>
+#include <clang/AST/DeclCXX.h>
+#include <clang/Basic/SourceManager.h>
+#include <clang/Sema/Lookup.h>
+#include <clang/Sema/Sema.h>
+
+#include "frontend/lower/module_lowering.hpp"
+
+namespace skc::frontend {
+
+using clang::SourceLocation;
+
+namespace {
+
+/// The value of an integer constant.
+std::optional<std::int64_t> valueOf(const clang::ValueDecl* declaration) {
+  llvm::APSInt value;
+  if (const auto* enumerator = llvm::dyn_cast<clang::EnumConstantDecl>(declaration)) {
+    value = enumerator->getInitVal();
+  } else {
+    const auto* variable = llvm::cast<clang::VarDecl>(declaration);
+    if (!variable->getType()->isIntegralOrEnumerationType() || !variable->getType().isConstQualified() ||
+        !variable->getAnyInitializer(variable)) {
+      return std::nullopt;
+    }
+    const clang::APValue* known = variable->evaluateValue();
+    if (!known || !known->isInt()) return std::nullopt;
+    value = known->getInt();
+  }
+  return value.isRepresentableByInt64() ? std::optional(value.getExtValue()) : std::nullopt;
+}
+
+}  // namespace
+
+void ModuleLowering::stream(const clang::VarDecl* declaration, const StreamSyntax& syntax) {
+  const SourceLocation where = declaration->getLocation();
+  ir::DeclaredStream entry;
+  entry.name = declaration->getNameAsString();
+  if (declaration->getPreviousDecl()) fail(Diag::StreamTwice, where, {entry.name});
+  entry.scope = scopeOf(declaration);
+  entry.type = type(declaration->getType(), where);
+  checkElement(entry.type, entry.name, where);
+  entry.loc = loc(where);
+  for (const ExtentSyntax& extent : syntax.extents) {
+    entry.extents.push_back(streamExtent(extent, declaration));
+  }
+  module_.streams.push_back(std::move(entry));
+}
+
+ir::DeclaredExtent ModuleLowering::streamExtent(const ExtentSyntax& syntax, const clang::VarDecl* stream) {
+  const clang::ValueDecl* constant =
+      syntax.name ? visibleValue(stream, syntax.name) : generatedGlobals_.at(syntax.constant);
+  if (!constant) return {syntax.name->getName().str(), 0};
+  const bool isStream = syntax_.stream(constant->getLocation()) != nullptr;
+  if (syntax.name && !isStream &&
+      sources().isBeforeInTranslationUnit(syntax.place, constant->getLocation())) {
+    fail(Diag::StreamExtentLater, syntax.place, {std::string_view(syntax.name->getName())});
+  }
+  const std::string name = stream->getNameAsString();
+  const std::optional<std::int64_t> value = valueOf(constant);
+  if (!value) fail(Diag::StreamExtentKind, syntax.place, {name});
+  if (*value < 1) fail(Diag::StreamExtentRange, syntax.place, {name, std::to_string(*value)});
+  return {{}, *value};
+}
+
+/// The variable or enumerator that a name means where a stream is declared; null where it means none.
+const clang::ValueDecl* ModuleLowering::visibleValue(const clang::VarDecl* stream,
+                                                     const clang::IdentifierInfo* name) {
+  // Sema looks through using directives, and wants a context that it might complete
+  for (auto* scope = const_cast<clang::DeclContext*>(stream->getDeclContext()); scope;
+       scope = scope->getParent()) {
+    clang::LookupResult found(sema_, clang::DeclarationName(name), stream->getLocation(),
+                              clang::Sema::LookupOrdinaryName);
+    found.suppressDiagnostics();
+    if (!sema_.LookupQualifiedName(found, scope)) continue;
+    const clang::NamedDecl* first = (*found.begin())->getUnderlyingDecl();
+    const bool isValue = llvm::isa<clang::VarDecl>(first) || llvm::isa<clang::EnumConstantDecl>(first);
+    return isValue ? llvm::cast<clang::ValueDecl>(first) : nullptr;
+  }
+  return nullptr;
+}
+
+}  // namespace skc::frontend

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+//
+// Clang's types as the IR has them, and what kernels have no type for.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <clang/AST/ASTContext.h>
+#include <clang/AST/DeclCXX.h>
+#include <clang/AST/DeclTemplate.h>
+
+#include "frontend/lower/module_lowering.hpp"
+#include "frontend/prelude.hpp"
+#include "ir/print.hpp"
+#include "ir/value_size.hpp"
+
+namespace skc::frontend {
+
+using clang::SourceLocation;
+
+namespace {
+
+std::optional<ir::Scalar> scalarOf(const clang::BuiltinType* builtin) {
+  switch (builtin->getKind()) {
+    case clang::BuiltinType::Bool:
+    case clang::BuiltinType::Char32: return ir::Scalar::Bool;  // components of bool vectors
+    case clang::BuiltinType::Char_S:
+    case clang::BuiltinType::SChar: return ir::Scalar::Char;
+    case clang::BuiltinType::UChar: return ir::Scalar::Uchar;
+    case clang::BuiltinType::Short: return ir::Scalar::Short;
+    case clang::BuiltinType::UShort: return ir::Scalar::Ushort;
+    case clang::BuiltinType::Half: return ir::Scalar::Half;
+    case clang::BuiltinType::Int: return ir::Scalar::Int;
+    case clang::BuiltinType::UInt: return ir::Scalar::Uint;
+    case clang::BuiltinType::Float: return ir::Scalar::Float;
+    case clang::BuiltinType::Double: return ir::Scalar::Double;
+    default: return std::nullopt;
+  }
+}
+
+}  // namespace
+
+ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
+  const clang::QualType canonical = qualified.getCanonicalType().getUnqualifiedType();
+  if (canonical->isVoidType()) return ir::Type::voidType();
+  if (canonical->isPointerType() || canonical->isMemberPointerType() || canonical->isNullPtrType() ||
+      canonical->isFunctionType()) {
+    fail(Diag::Pointer, use, {qualified.getUnqualifiedType().getAsString()});
+  }
+  if (canonical->isReferenceType()) fail(Diag::ReferenceType, use, {qualified.getAsString()});
+  if (const auto* enumeration = canonical->getAs<clang::EnumType>()) {
+    return type(enumeration->getDecl()->getIntegerType(), use);
+  }
+  if (const auto* builtin = canonical->getAs<clang::BuiltinType>()) {
+    if (const auto scalar = scalarOf(builtin)) return ir::Type::of(*scalar);
+    fail(Diag::ScalarType, use, {qualified.getUnqualifiedType().getAsString()});
+  }
+  if (const auto* vector = canonical->getAs<clang::ExtVectorType>()) {
+    const auto* element = vector->getElementType()->getAs<clang::BuiltinType>();
+    const bool isMask = element && element->getKind() == clang::BuiltinType::Long;  // compared doubles
+    const auto scalar = isMask ? ir::Scalar::Int : element ? scalarOf(element) : std::nullopt;
+    const unsigned width = vector->getNumElements();
+    if (scalar && width >= 2 && width <= 4) return ir::Type::of(*scalar, static_cast<int>(width));
+    fail(Diag::ScalarType, use, {qualified.getAsString()});
+  }
+  if (const auto* array = context().getAsConstantArrayType(canonical)) {
+    return arrayType(type(array->getElementType(), use), array->getSize().getZExtValue(), use);
+  }
+  if (const clang::CXXRecordDecl* record = canonical->getAsCXXRecordDecl()) {
+    if (isPrelude(record)) {
+      if (const auto known = classType(record->getName())) return *known;
+    }
+    return structType(record, use);
+  }
+  fail(Diag::ScalarType, use, {qualified.getAsString()});
+}
+
+namespace {
+
+/// An instance of one of the prelude's class templates.
+const clang::ClassTemplateSpecializationDecl* instanceOf(clang::QualType qualified) {
+  const clang::CXXRecordDecl* record = qualified.getNonReferenceType()->getAsCXXRecordDecl();
+  return llvm::dyn_cast_or_null<clang::ClassTemplateSpecializationDecl>(record);
+}
+
+}  // namespace
+
+int ModuleLowering::gatherRank(clang::QualType qualified, SourceLocation use, ir::Type& element) {
+  const auto* instance = instanceOf(qualified);
+  if (!instance || !isPrelude(instance)) return 0;
+  for (int rank = 1; rank <= 4; ++rank) {
+    if (instance->getName() != gatherTemplateName(rank)) continue;
+    element = type(instance->getTemplateArgs()[0].getAsType(), use);
+    return rank;
+  }
+  return 0;
+}
+
+std::optional<int> ModuleLowering::appendRank(clang::QualType qualified, SourceLocation use,
+                                              ir::Type& element) {
+  const auto* instance = instanceOf(qualified);
+  if (!instance || !isPrelude(instance)) return std::nullopt;
+  for (int rank = 0; rank <= 4; ++rank) {
+    if (instance->getName() != appendTemplateName(rank)) continue;
+    element = type(instance->getTemplateArgs()[0].getAsType(), use);
+    return rank;
+  }
+  return std::nullopt;
+}
+
+/// Its own name; of `typedef struct { ... } A;`, A; of one without any, a name that no other has.
+std::string ModuleLowering::structName(const clang::CXXRecordDecl* record) const {
+  if (const std::string name = record->getNameAsString(); !name.empty()) return name;
+  if (const clang::TypedefNameDecl* name = record->getTypedefNameForAnonDecl())
+    return name->getNameAsString();
+  std::string name = "Anonymous";
+  const auto isTaken = [&](const ir::Struct& other) { return other.name == name; };
+  for (int i = 2; std::ranges::any_of(module_.structs, isTaken); ++i) name = fmt::format("Anonymous{}", i);
+  return name;
+}
+
+/// `typedef struct Pair_t { ... } Pair;` and `using Pair = Pair_t;` of a struct that kernels use.
+void ModuleLowering::addAlias(const clang::TypedefNameDecl* alias) {
+  const auto found = structs_.find(alias->getUnderlyingType()->getAsCXXRecordDecl());   // its definition
+  if (found == structs_.end() || isPrelude(alias)) return;
+  ir::Struct& known = module_.structs[found->second];
+  if (known.name == alias->getNameAsString() || known.scope != scopeOf(alias)) return;
+  if (llvm::isa<clang::ClassTemplateSpecializationDecl>(found->first)) return;
+  known.aliases.push_back(alias->getNameAsString());
+}
+
+ir::Type ModuleLowering::structType(const clang::CXXRecordDecl* declaration, SourceLocation use) {
+  const clang::CXXRecordDecl* record = declaration->getDefinition();
+  if (!record) fail(Diag::IncompleteType, use, {declaration->getNameAsString()});
+  const auto found = structs_.find(record);
+  if (found != structs_.end()) return ir::Type::structType(found->second);
+  if (record->isLambda()) fail(Diag::Lambda, use);
+  if (isPrelude(record)) fail(Diag::GatherAsValue, use);
+  const std::string name = record->getNameAsString();
+  if (record->isUnion()) fail(Diag::Union, use, {name});
+  if (record->isPolymorphic()) fail(Diag::VirtualFunction, use, {name});
+  if (record->getNumBases() != 0 || !record->hasTrivialCopyConstructor() ||
+      record->hasUserDeclaredConstructor() || record->hasNonTrivialDestructor()) {
+    fail(Diag::StructNotPlain, use, {name});
+  }
+  if (record->field_empty()) fail(Diag::StructEmpty, use, {name});
+  ir::Struct entry;
+  entry.name = structName(record);
+  entry.scope = scopeOf(record);
+  entry.loc = loc(record->getLocation());
+  for (const clang::FieldDecl* field : record->fields()) {
+    if (field->isBitField() || field->getName().empty())
+      fail(Diag::StructNotPlain, field->getLocation(), {name});
+    entry.fields.push_back({field->getNameAsString(), type(field->getType(), field->getLocation())});
+  }
+  const auto index = static_cast<std::uint32_t>(module_.structs.size());
+  module_.structs.push_back(std::move(entry));
+  structs_[record] = index;
+  checkSize(ir::Type::structType(index), record->getLocation());
+  return ir::Type::structType(index);
+}
+
+ir::Type ModuleLowering::arrayType(ir::Type element, std::uint64_t length, SourceLocation use) {
+  constexpr std::uint64_t longest = 4096;
+  if (length == 0 || length > longest)
+    fail(Diag::ArrayLength, use, {std::to_string(length), std::to_string(longest)});
+  if (element.kind == ir::Type::Kind::Array) fail(Diag::ArrayOfArrays, use);
+  const ir::Array entry{element, static_cast<std::uint32_t>(length)};
+  const auto found = std::find(module_.arrays.begin(), module_.arrays.end(), entry);
+  const auto index = static_cast<std::uint32_t>(found - module_.arrays.begin());
+  if (found == module_.arrays.end()) module_.arrays.push_back(entry);
+  checkSize(ir::Type::arrayType(index), use);
+  return ir::Type::arrayType(index);
+}
+
+void ModuleLowering::checkSize(ir::Type type, SourceLocation use) {
+  constexpr std::uint64_t largest = 16384;
+  const std::uint64_t size = ir::numbersIn(module_, type);
+  if (size > largest) {
+    fail(Diag::ValueTooLarge, use, {ir::print(module_, type), std::to_string(size), std::to_string(largest)});
+  }
+}
+
+std::string ModuleLowering::spelling(ir::Type type) const {
+  switch (type.kind) {
+    case ir::Type::Kind::Void:
+    case ir::Type::Kind::Scalar:
+    case ir::Type::Kind::Vector:
+    case ir::Type::Kind::Matrix: return ir::print(module_, type);
+    case ir::Type::Kind::Struct: return module_.structs[type.index].name;
+    case ir::Type::Kind::Array: {
+      const ir::Array& array = module_.arrays[type.index];
+      return fmt::format("{}[{}]", spelling(array.element), array.length);
+    }
+  }
+  return {};
+}
+
+}  // namespace skc::frontend

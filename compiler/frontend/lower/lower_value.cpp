@@ -1,0 +1,483 @@
+// SPDX-License-Identifier: MIT
+//
+// Leaves, casts, members and initialisers: expressions without effects of their own.
+#include <algorithm>
+#include <bit>
+
+#include <clang/AST/ASTContext.h>
+#include <clang/AST/DeclCXX.h>
+#include <clang/AST/ExprCXX.h>
+
+#include "frontend/clang_loc.hpp"
+#include "frontend/lower/function_lowering.hpp"
+#include "frontend/prelude.hpp"
+#include "ir/build.hpp"
+#include "ir/quantize.hpp"
+
+namespace skc::frontend {
+
+using clang::SourceLocation;
+using ir::ExprPtr;
+
+ExprPtr FunctionLowering::make(ir::Type type, SourceLocation where, ir::Expr::Node node) {
+  return ir::makeExpr(type, std::move(node), module_.loc(where));
+}
+
+ExprPtr FunctionLowering::literal(ir::Type type, std::uint32_t bits, SourceLocation where) {
+  return make(type, where, ir::Literal{bits});
+}
+
+// ---- what stands for its operand ------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitParenExpr(const clang::ParenExpr* e) { return value(e->getSubExpr()); }
+ExprPtr FunctionLowering::VisitConstantExpr(const clang::ConstantExpr* e) { return value(e->getSubExpr()); }
+ExprPtr FunctionLowering::VisitExprWithCleanups(const clang::ExprWithCleanups* e) {
+  return value(e->getSubExpr());
+}
+ExprPtr FunctionLowering::VisitMaterializeTemporaryExpr(const clang::MaterializeTemporaryExpr* e) {
+  return value(e->getSubExpr());
+}
+ExprPtr FunctionLowering::VisitSubstNonTypeTemplateParmExpr(const clang::SubstNonTypeTemplateParmExpr* e) {
+  return value(e->getReplacement());
+}
+/// `a != b` where only == is declared.
+ExprPtr FunctionLowering::VisitCXXRewrittenBinaryOperator(const clang::CXXRewrittenBinaryOperator* e) {
+  return value(e->getSemanticForm());
+}
+ExprPtr FunctionLowering::VisitCXXDefaultArgExpr(const clang::CXXDefaultArgExpr* e) {
+  return value(e->getExpr());
+}
+ExprPtr FunctionLowering::VisitCXXDefaultInitExpr(const clang::CXXDefaultInitExpr* e) {
+  return value(e->getExpr());
+}
+
+// ---- leaves ---------------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitIntegerLiteral(const clang::IntegerLiteral* e) {
+  const ir::Type type = module_.type(e->getType(), e->getLocation());
+  return literal(type, static_cast<std::uint32_t>(e->getValue().getZExtValue()), e->getLocation());
+}
+
+ExprPtr FunctionLowering::VisitCXXBoolLiteralExpr(const clang::CXXBoolLiteralExpr* e) {
+  return literal(ir::Type::of(ir::Scalar::Bool), e->getValue() ? 1 : 0, e->getLocation());
+}
+
+ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
+  const clang::ValueDecl* declared = e->getDecl();
+  const SourceLocation where = e->getLocation();
+  if (const auto found = variables_.find(declared); found != variables_.end()) {
+    const ir::Variable& variable = function_.variables[found->second];
+    if (variable.role == ir::VarRole::Gather) module_.fail(Diag::GatherAsValue, where);
+    if (variable.role == ir::VarRole::AppendOutput) module_.fail(Diag::AppendRead, where, {variable.name});
+    return make(variable.type, where, ir::VarRef{found->second});
+  }
+  if (const auto* enumerator = llvm::dyn_cast<clang::EnumConstantDecl>(declared)) {
+    const ir::Type type = module_.type(e->getType(), where);
+    return literal(type, static_cast<std::uint32_t>(enumerator->getInitVal().getExtValue()), where);
+  }
+  if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declared)) {
+    const bool isOutside = function_.name.empty();   // the value of a border or identity
+    if (isOutside && llvm::isa<clang::ParmVarDecl>(variable)) module_.fail(Diag::NotConstant, where);
+    abandonIfUnknown(e);
+    return module_.constant(variable, where);
+  }
+  if (llvm::isa<clang::FunctionDecl>(declared))
+    module_.fail(Diag::Pointer, where, {declared->getType().getAsString()});
+  return VisitExpr(e);
+}
+
+ExprPtr FunctionLowering::VisitCXXThisExpr(const clang::CXXThisExpr* e) {
+  return make(function_.variables[*this_].type, e->getLocation(), ir::VarRef{*this_});
+}
+
+namespace {
+
+bool isKernelInteger(clang::QualType type) {
+  if (type->isEnumeralType()) return true;
+  const auto* builtin = type->getAs<clang::BuiltinType>();
+  if (!builtin) return false;
+  switch (builtin->getKind()) {
+    case clang::BuiltinType::Bool:
+    case clang::BuiltinType::Char32:
+    case clang::BuiltinType::Char_S:
+    case clang::BuiltinType::SChar:
+    case clang::BuiltinType::UChar:
+    case clang::BuiltinType::Short:
+    case clang::BuiltinType::UShort:
+    case clang::BuiltinType::Int:
+    case clang::BuiltinType::UInt: return true;
+    default: return false;
+  }
+}
+
+}  // namespace
+
+/// An integer constant whose own type kernels may not have, such as sizeof or 'a'; null if `e` is none, or needs
+/// more than 32 bits.
+ExprPtr FunctionLowering::integerConstant(const clang::Expr* e, ir::Type type) {
+  clang::Expr::EvalResult result;
+  if (e->isValueDependent() || !e->EvaluateAsInt(result, module_.context())) return nullptr;
+  const llvm::APSInt& number = result.Val.getInt();
+  const bool fits = number.isNegative() ? number.isSignedIntN(32) : number.isIntN(32);
+  if (!fits) return nullptr;
+  return literal(type, static_cast<std::uint32_t>(number.getExtValue()), e->getBeginLoc());
+}
+
+// ---- casts ----------------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
+  const clang::Expr* operand = e->getSubExpr();
+  const SourceLocation where = e->getBeginLoc();
+  switch (e->getCastKind()) {
+    case clang::CK_NoOp:
+    case clang::CK_LValueToRValue:
+    case clang::CK_UserDefinedConversion:
+    case clang::CK_ConstructorConversion: return value(operand);
+    case clang::CK_FloatingCast: {
+      const ir::Scalar to = module_.type(e->getType(), where).scalar;
+      return to == ir::Scalar::Double ? doubleValue(operand) : convert(value(operand), to);
+    }
+    case clang::CK_IntegralCast:
+      if (!isKernelInteger(operand->getType())) {
+        if (ExprPtr constant = integerConstant(e, module_.type(e->getType(), where))) return constant;
+      }
+      return convert(value(operand), module_.type(e->getType(), where).scalar);
+    case clang::CK_IntegralToFloating:
+      if (!isKernelInteger(operand->getType())) {
+        if (ExprPtr constant = integerConstant(operand, ir::Type::of(ir::Scalar::Int))) {
+          return convert(std::move(constant), module_.type(e->getType(), where).scalar);
+        }
+      }
+      return convert(value(operand), module_.type(e->getType(), where).scalar);
+    case clang::CK_FloatingToIntegral:
+    case clang::CK_IntegralToBoolean:
+    case clang::CK_FloatingToBoolean:
+    case clang::CK_BooleanToSignedIntegral:
+      return convert(value(operand), module_.type(e->getType(), where).scalar);
+    case clang::CK_VectorSplat: return splat(value(operand), module_.type(e->getType(), where).width);
+    case clang::CK_BitCast: return vectorBitCast(e);
+    case clang::CK_ToVoid: {
+      discarded(operand);
+      return ir::literal(false, module_.loc(where));
+    }
+    default: break;
+  }
+  if (e->getType()->isPointerType() || operand->getType()->isPointerType()) {
+    module_.fail(Diag::Pointer, where, {e->getType().getAsString()});
+  }
+  return VisitExpr(e);
+}
+
+/// Between integer vectors of one width: int and uint keep their bits, masks and bools their truth.
+ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
+  const ir::Type from = module_.type(e->getSubExpr()->getType(), e->getBeginLoc());
+  const ir::Type to = module_.type(e->getType(), e->getBeginLoc());
+  const bool isImplicit = llvm::isa<clang::ImplicitCastExpr>(e);
+  const bool mixesSigns =
+      isImplicit && !from.isBool() && !to.isBool();  // int4 / uint4 would follow the left side
+  const bool areIntegers =
+      !from.carrier().isFloat() && !to.carrier().isFloat() && !from.isDouble() && !to.isDouble();
+  if (!from.isVector() || !to.isVector() || from.width != to.width || !areIntegers || mixesSigns) {
+    module_.fail(isImplicit ? Diag::MixedVectors : Diag::BitCast, e->getBeginLoc(), {module_.spelling(to)});
+  }
+  ExprPtr operand = value(e->getSubExpr());
+  if (from.isBool() && !to.isBool()) return convert(mask(std::move(operand)), to.scalar);
+  return convert(std::move(operand), to.scalar);
+}
+
+namespace {
+
+/// -int4(b), as comparisons of vectors give it: 0 or -1 in each component, possibly of a narrow type.
+ExprPtr* maskedBool(ir::Expr& e) {
+  if (auto* kept = std::get_if<ir::Convert>(&e.node); kept && e.type.isNarrow())
+    return maskedBool(*kept->operand);
+  auto* negate = std::get_if<ir::Unary>(&e.node);
+  if (!negate || negate->op != ir::UnaryOp::Negate) return nullptr;
+  auto* conversion = std::get_if<ir::Convert>(&negate->operand->node);
+  return conversion && conversion->operand->type.isBool() && e.type.isVector() ? &conversion->operand
+                                                                               : nullptr;
+}
+
+}  // namespace
+
+namespace {
+
+/// A literal of 32 bits as a double, which holds it exactly.
+ExprPtr widened(ir::Scalar from, std::uint32_t bits, Loc loc) {
+  if (from == ir::Scalar::Float) return ir::literal(double{std::bit_cast<float>(bits)}, loc);
+  if (from == ir::Scalar::Int) return ir::literal(static_cast<double>(static_cast<std::int32_t>(bits)), loc);
+  return ir::literal(static_cast<double>(bits), loc);
+}
+
+}  // namespace
+
+ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
+  if (!e->type.isArithmetic() || e->type.scalar == scalar) return e;
+  if (scalar == ir::Scalar::Bool) return toBool(std::move(e));
+  const Loc loc = e->loc;
+  if (ir::isReal(ir::carrierOf(scalar)) && maskedBool(*e)) {
+    module_.diagnostics().report(Diag::MaskConverted, loc,
+                                 {module_.spelling(ir::Type::of(scalar, e->type.width))});
+  }
+  if ((e->type.isNarrow() && scalar == ir::Scalar::Double) || (e->type.isDouble() && ir::isNarrow(scalar))) {
+    const ir::Scalar carrier = ir::carrierOf(e->type.isNarrow() ? e->type.scalar : scalar);
+    return convert(convert(std::move(e), carrier), scalar);
+  }
+  if (auto* construct = std::get_if<ir::Construct>(&e->node);
+      construct && e->type.isVector() && construct->args.size() == 1 && construct->args[0]->type.isScalar()) {
+    return splat(convert(std::move(construct->args[0]), scalar), e->type.width);  // `2.0` beside a vector
+  }
+  if (auto* constant = std::get_if<ir::Literal>(&e->node)) {
+    const ir::Scalar carrier = ir::carrierOf(scalar);
+    if (scalar == ir::Scalar::Double) return widened(e->type.scalar, constant->bits, loc);
+    if (e->type.isNarrow()) {  // the bits are those of the carrier already
+      e->type = e->type.carrier();
+      return convert(std::move(e), scalar);
+    }
+    if (ir::isNarrow(scalar) && e->type.scalar != carrier) {
+      return convert(convert(std::move(e), carrier), scalar);
+    }
+    if (ir::isNarrow(scalar)) {
+      constant->bits = ir::quantize(scalar, constant->bits);
+      e->type = ir::Type::of(scalar);
+      return e;
+    }
+    // `v = 1` reads better as 1.0 than as float(1); every int is rounded as the device would
+    if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Float) {
+      return ir::literal(static_cast<float>(static_cast<std::int32_t>(constant->bits)), loc);
+    }
+    if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Uint)
+      return ir::literal(constant->bits, loc);
+    if (e->type.scalar == ir::Scalar::Uint && scalar == ir::Scalar::Float) {
+      return ir::literal(static_cast<float>(constant->bits), loc);
+    }
+  }
+  return ir::convert(scalar, std::move(e), loc);
+}
+
+ExprPtr FunctionLowering::splat(ExprPtr e, int width) {
+  if (e->type.width == width) return e;
+  const Loc loc = e->loc;
+  const ir::Type type = ir::Type::of(e->type.scalar, width);
+  return ir::construct(type, ir::exprs(std::move(e)), loc);
+}
+
+ExprPtr FunctionLowering::mask(ExprPtr boolVector) {
+  const Loc loc = boolVector->loc;
+  return ir::unary(ir::UnaryOp::Negate, ir::convert(ir::Scalar::Int, std::move(boolVector), loc), loc);
+}
+
+ExprPtr FunctionLowering::toBool(ExprPtr e) {
+  if (e->type.isBool()) return e;
+  if (ExprPtr* inner = maskedBool(*e)) return std::move(*inner);
+  const Loc loc = e->loc;
+  if (!e->type.isArithmetic()) throw Abandoned{};
+  return ir::convert(ir::Scalar::Bool, std::move(e), loc);
+}
+
+// ---- parts ----------------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitExtVectorElementExpr(const clang::ExtVectorElementExpr* e) {
+  llvm::SmallVector<std::uint32_t, 4> indices;
+  e->getEncodedElementAccess(indices);
+  ExprPtr base = value(e->getBase());
+  ir::Swizzle swizzle;
+  for (const std::uint32_t index : indices) swizzle.components.push_back(static_cast<std::uint8_t>(index));
+  if (swizzle.components.size() > 4) module_.fail(Diag::SwizzleTooLong, e->getAccessorLoc());
+  const ir::Type type = ir::Type::of(base->type.scalar, static_cast<int>(swizzle.components.size()));
+  swizzle.base = std::move(base);
+  return make(type, e->getAccessorLoc(), std::move(swizzle));
+}
+
+ExprPtr FunctionLowering::VisitMemberExpr(const clang::MemberExpr* e) {
+  const auto* field = llvm::dyn_cast<clang::FieldDecl>(e->getMemberDecl());
+  if (!field) {
+    if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(e->getMemberDecl())) {
+      return module_.constant(variable, e->getMemberLoc());
+    }
+    return VisitExpr(e);
+  }
+  if (e->isArrow() && !llvm::isa<clang::CXXThisExpr>(e->getBase()->IgnoreParenImpCasts())) {
+    module_.fail(Diag::Pointer, e->getOperatorLoc(), {e->getBase()->getType().getAsString()});
+  }
+  ExprPtr base = value(e->getBase());
+  const ir::Type type = module_.structAt(base->type.index).fields[field->getFieldIndex()].type;
+  return make(type, e->getMemberLoc(), ir::Member{std::move(base), field->getFieldIndex()});
+}
+
+ExprPtr FunctionLowering::VisitArraySubscriptExpr(const clang::ArraySubscriptExpr* e) {
+  const clang::Expr* array = e->getBase();
+  if (const auto* decay = llvm::dyn_cast<clang::ImplicitCastExpr>(array);
+      decay && decay->getCastKind() == clang::CK_ArrayToPointerDecay) {
+    array = decay->getSubExpr();
+  }
+  return indexed(array, e->getIdx(), e->getBeginLoc());
+}
+
+/// array[index], of an array, a vector or a matrix.
+ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* index, SourceLocation where) {
+  Exprs parts;
+  parts.push_back(value(array));
+  ir::Block effects;
+  parts.push_back(valueInto(index, effects));
+  if (!effects.empty()) {
+    // the element is read or written after the index's effects: the array itself is not copied
+    keepInPlace(parts[0]);
+    for (ir::Stmt& s : effects) out_->push_back(std::move(s));
+  }
+  const ir::Type outer = parts[0]->type;
+  if (outer.kind != ir::Type::Kind::Array && !outer.isVector() && !outer.isMatrix()) {
+    module_.fail(Diag::Pointer, where, {array->getType().getAsString()});
+  }
+  const bool isArray = outer.kind == ir::Type::Kind::Array;
+  const ir::Type type = isArray ? module_.arrayAt(outer.index).element : outer.indexed();
+  const ir::Scalar carrier = ir::carrierOf(parts[1]->type.scalar);
+  parts[1] = convert(std::move(parts[1]), carrier == ir::Scalar::Bool ? ir::Scalar::Int : carrier);
+  return make(type, where, ir::Index{std::move(parts[0]), std::move(parts[1])});
+}
+
+// ---- initialisers ---------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitInitListExpr(const clang::InitListExpr* e) {
+  const clang::InitListExpr* list = e->isSemanticForm() || !e->getSemanticForm() ? e : e->getSemanticForm();
+  if (list->isTransparent()) return value(list->getInit(0));
+  const ir::Type type = module_.type(list->getType(), list->getBeginLoc());
+  if (type.isScalar()) {
+    return list->getNumInits() == 0 ? zero(type, list->getBeginLoc()) : value(list->getInit(0));
+  }
+  return aggregate(type, list->inits(), list->getArrayFiller(), list->getBeginLoc());
+}
+
+ExprPtr FunctionLowering::VisitCXXParenListInitExpr(const clang::CXXParenListInitExpr* e) {
+  std::vector<const clang::Expr*> inits(e->getInitExprs().begin(), e->getInitExprs().end());
+  return aggregate(module_.type(e->getType(), e->getBeginLoc()), inits, nullptr, e->getBeginLoc());
+}
+
+/// A struct, array or vector from its parts; what no initialiser names is zero (or the filler).
+ExprPtr FunctionLowering::aggregate(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits,
+                                    const clang::Expr*, SourceLocation where) {
+  Exprs args = valuesInOrder(inits);
+  if (type.isVector()) {
+    int width = 0;
+    for (ExprPtr& arg : args) {
+      arg = convert(std::move(arg), type.scalar);
+      width += arg->type.width;
+    }
+    for (; width < type.width; ++width) args.push_back(zero(type.component(), where));
+  } else if (type.isMatrix()) {
+    for (std::size_t i = args.size(); i < type.width; ++i) args.push_back(zero(type.indexed(), where));
+  } else if (type.kind == ir::Type::Kind::Struct) {
+    const std::vector<ir::StructField> fields = module_.structAt(type.index).fields;
+    for (std::size_t i = args.size(); i < fields.size(); ++i) args.push_back(zero(fields[i].type, where));
+  } else {
+    const ir::Array array = module_.arrayAt(type.index);
+    for (std::size_t i = args.size(); i < array.length; ++i) args.push_back(zero(array.element, where));
+  }
+  return make(type, where, ir::Construct{std::move(args)});
+}
+
+ExprPtr FunctionLowering::zero(ir::Type type, SourceLocation where) {
+  if (type.isScalar()) return literal(type, 0, where);
+  if (type.isVector()) return splat(literal(type.component(), 0, where), type.width);
+  return aggregate(type, {}, nullptr, where);
+}
+
+ExprPtr FunctionLowering::VisitImplicitValueInitExpr(const clang::ImplicitValueInitExpr* e) {
+  return zero(module_.type(e->getType(), e->getBeginLoc()), e->getBeginLoc());
+}
+
+ExprPtr FunctionLowering::VisitCXXScalarValueInitExpr(const clang::CXXScalarValueInitExpr* e) {
+  return zero(module_.type(e->getType(), e->getBeginLoc()), e->getBeginLoc());
+}
+
+ExprPtr FunctionLowering::VisitCXXConstructExpr(const clang::CXXConstructExpr* e) {
+  const clang::CXXConstructorDecl* constructor = e->getConstructor();
+  if (constructor->isCopyOrMoveConstructor() && e->getNumArgs() == 1) return value(e->getArg(0));
+  if (module_.isPrelude(constructor)) {
+    const std::vector<const clang::Expr*> args(e->getArgs(), e->getArgs() + e->getNumArgs());
+    return classValue(module_.type(e->getType(), e->getBeginLoc()), args, e->getBeginLoc());
+  }
+  if (constructor->isDefaultConstructor() && !constructor->isUserProvided()) {
+    return defaultStruct(constructor->getParent(), e->getBeginLoc());
+  }
+  module_.fail(Diag::Constructor, e->getBeginLoc(), {constructor->getParent()->getNameAsString()});
+}
+
+/// A class of the prelude from its constructor's arguments: unorm8(x), the rows or the elements of a
+/// matrix, the elements of a row, or nothing.
+ExprPtr FunctionLowering::classValue(ir::Type type, llvm::ArrayRef<const clang::Expr*> args,
+                                     SourceLocation where) {
+  if (args.empty()) return zero(type, where);
+  if (type.isMatrix()) return matrix(type, valuesInOrder(args), where);
+  if (args.size() > 1) return make(type, where, ir::Construct{valuesInOrder(args)});
+  return convert(value(args[0]), type.scalar);
+}
+
+/// From its rows, from all its elements row by row, or with one number along the diagonal.
+ExprPtr FunctionLowering::matrix(ir::Type type, Exprs parts, SourceLocation where) {
+  const std::size_t size = type.width;
+  const bool areScalars =
+      std::all_of(parts.begin(), parts.end(), [](const ExprPtr& part) { return part->type.isScalar(); });
+  const bool areRows = std::all_of(parts.begin(), parts.end(), [&](const ExprPtr& part) {
+    return part->type.isVector() && part->type.width == size;
+  });
+  if (parts.size() == 1 && parts[0]->type == type) return std::move(parts[0]);
+  for (ExprPtr& part : parts) part = convert(std::move(part), ir::Scalar::Float);
+  if (areRows && parts.size() == size) return make(type, where, ir::Construct{std::move(parts)});
+  const bool isDiagonal = areScalars && parts.size() == 1;
+  if (!isDiagonal && !(areScalars && parts.size() == size * size)) {
+    module_.fail(Diag::MatrixParts, where,
+                 {module_.spelling(type), std::to_string(size), std::to_string(size * size)});
+  }
+  if (isDiagonal) spill(parts[0]);
+  Exprs rows;
+  for (std::size_t row = 0; row < size; ++row) {
+    Exprs elements;
+    for (std::size_t column = 0; column < size; ++column) {
+      if (!isDiagonal) {
+        elements.push_back(std::move(parts[row * size + column]));
+      } else {
+        elements.push_back(row == column ? ir::clone(*parts[0]) : zero(type.component(), where));
+      }
+    }
+    rows.push_back(make(type.indexed(), where, ir::Construct{std::move(elements)}));
+  }
+  return make(type, where, ir::Construct{std::move(rows)});
+}
+
+/// `Hit h;` where Hit's members have initialisers, and `Hit()`: the rest is zero.
+ExprPtr FunctionLowering::defaultStruct(const clang::CXXRecordDecl* record, SourceLocation where) {
+  const ir::Type type = module_.type(module_.context().getRecordType(record), where);
+  Exprs args;
+  for (const clang::FieldDecl* field : record->fields()) {
+    if (const clang::Expr* init = field->getInClassInitializer()) {
+      args.push_back(value(init));
+    } else {
+      args.push_back(zero(module_.type(field->getType(), where), where));
+    }
+  }
+  return make(type, where, ir::Construct{std::move(args)});
+}
+
+// ---- everything else ------------------------------------------------------------------------------
+
+ExprPtr FunctionLowering::VisitExpr(const clang::Expr* e) {
+  const SourceLocation where = e->getBeginLoc();
+  switch (e->getStmtClass()) {
+    case clang::Stmt::LambdaExprClass: module_.fail(Diag::Lambda, where);
+    case clang::Stmt::CXXNewExprClass:
+    case clang::Stmt::CXXDeleteExprClass: module_.fail(Diag::DynamicAllocation, where);
+    case clang::Stmt::StringLiteralClass: module_.fail(Diag::Expression, where, {"a string"});
+    default: break;
+  }
+  if (e->getType()->isIntegralOrEnumerationType()) {
+    if (ExprPtr constant = integerConstant(e, module_.type(e->getType(), where))) return constant;
+  }
+  module_.fail(Diag::Expression, where, {"this kind of expression"});
+}
+
+ExprPtr FunctionLowering::VisitStmt(const clang::Stmt* s) {
+  module_.fail(Diag::Statement, s->getBeginLoc(), {"this kind of statement"});
+}
+
+}  // namespace skc::frontend

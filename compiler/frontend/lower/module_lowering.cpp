@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/lower/module_lowering.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <clang/AST/APValue.h>
+#include <clang/AST/ASTContext.h>
+#include <clang/AST/DeclCXX.h>
+#include <clang/AST/DeclTemplate.h>
+#include <clang/Basic/SourceManager.h>
+#include <clang/Sema/Sema.h>
+#include <llvm/ADT/SmallBitVector.h>
+#include <llvm/ADT/StringExtras.h>
+
+#include "frontend/clang_loc.hpp"
+#include "frontend/lower/function_lowering.hpp"
+#include "frontend/lower/lower_module.hpp"
+#include "frontend/prelude.hpp"
+#include "ir/build.hpp"
+#include "ir/print.hpp"
+#include "ir/reach.hpp"
+#include "ir/walk.hpp"
+
+namespace skc::frontend {
+
+using clang::SourceLocation;
+
+ir::Module lowerModule(clang::Sema& sema, const DeclarationSyntax& syntax, const std::string& file,
+                       Diagnostics& diagnostics) {
+  return ModuleLowering(sema, syntax, diagnostics).run(file);
+}
+
+ir::Module ModuleLowering::run(const std::string& file) {
+  module_.file = file;
+  module_.sources.push_back(file);
+  sourceIndex_[file] = 0;
+  declarations(context().getTranslationUnitDecl());
+  addAliases(context().getTranslationUnitDecl());
+  if (!diagnostics_.hasErrors()) pairReductions();
+  return std::move(module_);
+}
+
+/// When all structs that kernels use are known.
+void ModuleLowering::addAliases(const clang::DeclContext* scope) {
+  for (const clang::Decl* declaration : scope->decls()) {
+    if (const auto* inner = llvm::dyn_cast<clang::NamespaceDecl>(declaration)) addAliases(inner);
+    if (const auto* alias = llvm::dyn_cast<clang::TypedefNameDecl>(declaration)) addAlias(alias);
+  }
+}
+
+/// In the order of the file, so that the stub lists kernels as their author did.
+void ModuleLowering::declarations(const clang::DeclContext* scope) {
+  for (const clang::Decl* declaration : scope->decls()) {
+    if (declaration->isImplicit() || isPrelude(declaration)) continue;
+    try {
+      if (const auto* inner = llvm::dyn_cast<clang::NamespaceDecl>(declaration)) {
+        declarations(inner);
+      } else if (const auto* linkage = llvm::dyn_cast<clang::LinkageSpecDecl>(declaration)) {
+        declarations(linkage);
+      } else if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declaration)) {
+        if (isGenerated(variable)) {
+          generatedGlobals_[variable->getName().str()] = variable;
+        } else if (const StreamSyntax* declared = syntax_.stream(variable->getLocation())) {
+          stream(variable, *declared);
+        } else {
+          constant(variable, variable->getLocation());
+        }
+      } else if (const auto* pattern = llvm::dyn_cast<clang::FunctionTemplateDecl>(declaration)) {
+        kernelTemplate(pattern);
+      } else if (const auto* function = llvm::dyn_cast<clang::FunctionDecl>(declaration)) {
+        if (!function->isThisDeclarationADefinition() || function->isDependentContext()) continue;
+        if (const KernelSyntax* kernelSyntax = syntax_.kernel(function->getLocation())) {
+          kernel(function, *kernelSyntax);
+        } else {
+          this->function(function, function->getLocation());
+        }
+      }
+    } catch (const Abandoned&) {
+      // reported; the other declarations may hold errors of their own
+    }
+  }
+}
+
+// ---- kernels ------------------------------------------------------------------------------------
+
+void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const KernelSyntax& syntax) {
+  const SourceLocation where = declaration->getLocation();
+  if (!declaration->getReturnType()->isVoidType()) {
+    fail(Diag::KernelResult, where, {syntax.isReduce ? "reduce" : "kernel", declaration->getNameAsString()});
+  }
+  generated_.clear();
+  if (const auto* body = llvm::dyn_cast_or_null<clang::CompoundStmt>(declaration->getBody())) {
+    for (const clang::Stmt* stmt : body->body()) {
+      const auto* declared = llvm::dyn_cast<clang::DeclStmt>(stmt);
+      const auto* variable = declared && declared->isSingleDecl()
+                                 ? llvm::dyn_cast<clang::VarDecl>(declared->getSingleDecl())
+                                 : nullptr;
+      if (variable && isGenerated(variable)) generated_[variable->getName().str()] = variable;
+    }
+  }
+  ir::Kernel kernel;
+  kernel.name = declaration->getNameAsString();
+  kernel.scope = scopeOf(declaration);
+  kernel.signature = syntax.signature;
+  kernel.choices = syntax.choices;
+  if (declaration->getPrimaryTemplate()) nameInstance(declaration, kernel);
+  kernel.loc = loc(where);
+  kernel.entry = function(declaration, where);
+  for (unsigned i = 0; i < declaration->getNumParams(); ++i) {
+    kernel.params.push_back(kernelParam(declaration->getParamDecl(i), functionAt(kernel.entry).variables[i]));
+  }
+  if (syntax.isReduce) kernel.reduction.emplace();
+  checkKernelShape(kernel, where);
+  module_.kernels.push_back(std::move(kernel));
+}
+
+/// The instances that `template kernel void f<...>(...);` asks for are kernels.
+void ModuleLowering::kernelTemplate(const clang::FunctionTemplateDecl* declaration) {
+  if (!declaration->isThisDeclarationADefinition()) return;
+  const KernelSyntax* kernelSyntax = syntax_.kernel(declaration->getLocation());
+  bool isUsed = false;
+  for (const clang::FunctionDecl* instance : declaration->specializations()) {
+    isUsed = true;
+    if (instance->getTemplateSpecializationKind() != clang::TSK_ExplicitInstantiationDefinition) continue;
+    const SourceLocation point = instance->getPointOfInstantiation();
+    if (kernelSyntax) {
+      kernel(instance, *kernelSyntax);
+    } else if (syntax_.isInstantiation(point)) {
+      fail(Diag::NotAKernelTemplate, point, {declaration->getNameAsString()});
+    }
+  }
+  if (kernelSyntax && !isUsed && sources().isInMainFile(declaration->getLocation())) {
+    diagnostics_.report(Diag::KernelTemplateUnused, locOf(declaration->getLocation()),
+                        {declaration->getNameAsString(), kernelSyntax->isReduce ? "reduce" : "kernel"});
+  }
+}
+
+/// Where C++ cannot tell an instance from the others by its arguments, the template's arguments become
+/// part of its name: blur<3> is blur_3.
+void ModuleLowering::nameInstance(const clang::FunctionDecl* instance, ir::Kernel& kernel) {
+  const SourceLocation where = instance->getLocation();
+  const clang::FunctionTemplateDecl* pattern = instance->getPrimaryTemplate();
+  const clang::TemplateParameterList* parameters = pattern->getTemplateParameters();
+  const clang::TemplateArgumentList* arguments = instance->getTemplateSpecializationArgs();
+  llvm::SmallBitVector deduced;
+  sema_.MarkDeducedTemplateParameters(pattern, deduced);
+  std::string said;
+  for (unsigned i = 0; i < arguments->size(); ++i) {
+    const std::string argument = spelling(arguments->get(i), where);
+    said +=
+        fmt::format("{}{} = {}", i == 0 ? "" : ", ", parameters->getParam(i)->getNameAsString(), argument);
+    if (deduced[i]) continue;
+    kernel.name += '_' + argument;
+    std::replace(kernel.name.begin(), kernel.name.end(), '-', 'm');
+  }
+  kernel.signature += fmt::format("  [{}]", said);
+}
+
+/// "float", "3", "-1", "true".
+std::string ModuleLowering::spelling(const clang::TemplateArgument& argument, SourceLocation use) {
+  if (argument.getKind() == clang::TemplateArgument::Type) return spelling(type(argument.getAsType(), use));
+  if (argument.getKind() != clang::TemplateArgument::Integral) fail(Diag::TemplateArgumentKind, use);
+  if (argument.getIntegralType()->isBooleanType())
+    return argument.getAsIntegral().isZero() ? "false" : "true";
+  return llvm::toString(argument.getAsIntegral(), 10);
+}
+
+ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaration,
+                                            const ir::Variable& variable) {
+  const ParamSyntax* syntax = syntax_.param(declaration->getLocation());
+  ir::KernelParam param;
+  param.name = declaration->getNameAsString();
+  param.role = syntax ? syntax->role : ir::ParamRole::Uniform;
+  param.type = variable.type;
+  param.loc = loc(declaration->getLocation());
+  if (param.role != ir::ParamRole::Uniform) {
+    checkElement(param.type, param.name, declaration->getLocation());
+  }
+  if (param.role == ir::ParamRole::Iterator && (!param.type.isNumber() || param.type.isDouble())) {
+    fail(Diag::IteratorType, declaration->getLocation(), {param.name, spelling(param.type)});
+  }
+  if (param.role == ir::ParamRole::Spec &&
+      (!param.type.isScalar() || param.type.isNarrow() || param.type.isDouble())) {
+    fail(Diag::SpecType, declaration->getLocation(), {param.name, spelling(param.type)});
+  }
+  if (syntax) {
+    param.rank = syntax->rank;
+    param.boundary = syntax->boundary;
+    param.filter = syntax->filter;
+    if (!syntax->border.empty()) param.border = generatedConstant(syntax->border);
+    if (!syntax->identity.empty()) param.identity = generatedConstant(syntax->identity);
+  }
+  return param;
+}
+
+/// An element of a stream holds no arrays.
+void ModuleLowering::checkElement(ir::Type type, std::string_view name, SourceLocation where) {
+  if (type.kind != ir::Type::Kind::Struct) return;
+  for (const ir::StructField& field : module_.structs[type.index].fields) {
+    if (field.type.kind == ir::Type::Kind::Array) fail(Diag::ArrayInElement, where, {name, field.name});
+  }
+}
+
+void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation where) {
+  const auto count = [&](ir::ParamRole role) {
+    return std::count_if(kernel.params.begin(), kernel.params.end(),
+                         [&](const ir::KernelParam& param) { return param.role == role; });
+  };
+  constexpr int mostSpecs =
+      8;   // their values are part of a program's key (runtime/src/gl_device/program/variant.hpp)
+  if (count(ir::ParamRole::Spec) > mostSpecs)
+    fail(Diag::SpecCount, where, {kernel.name, std::to_string(mostSpecs)});
+  if (!kernel.reduction) {
+    const bool hasAppendOutputs = count(ir::ParamRole::VariableOutput) + count(ir::ParamRole::Scatter) > 0;
+    if (count(ir::ParamRole::Output) > 0) return;
+    if (!hasAppendOutputs) fail(Diag::KernelWithoutOutput, where, {kernel.name});
+    if (count(ir::ParamRole::Input) + count(ir::ParamRole::Iterator) == 0)
+      fail(Diag::KernelWithoutDomain, where, {kernel.name});
+    return;
+  }
+  if (count(ir::ParamRole::Input) == 0 || count(ir::ParamRole::Accumulator) == 0) {
+    fail(Diag::ReduceParameters, where, {kernel.name});
+  }
+}
+
+namespace {
+
+std::vector<ir::Type> typesOf(const ir::Kernel& kernel, ir::ParamRole role) {
+  std::vector<ir::Type> types;
+  for (const ir::KernelParam& param : kernel.params) {
+    if (param.role == role) types.push_back(param.type);
+  }
+  return types;
+}
+
+/// For each parameter of `combine` that is no element and no accumulator, the same one of `kernel`; nothing
+/// where there is none of that name and kind.
+std::optional<std::vector<std::uint32_t>> operandsOf(const ir::Kernel& combine, const ir::Kernel& kernel) {
+  std::vector<std::uint32_t> operands;
+  for (const ir::KernelParam& param : combine.params) {
+    operands.push_back(0);
+    if (param.role == ir::ParamRole::Input || param.role == ir::ParamRole::Accumulator) continue;
+    const auto found =
+        std::find_if(kernel.params.begin(), kernel.params.end(), [&](const ir::KernelParam& other) {
+          return other.name == param.name && other.role == param.role && other.type == param.type &&
+                 other.rank == param.rank;
+        });
+    if (found == kernel.params.end()) return std::nullopt;
+    operands.back() = static_cast<std::uint32_t>(found - kernel.params.begin());
+  }
+  return operands;
+}
+
+}  // namespace
+
+/// Where the accumulators' types differ from the elements', an overload that folds accumulators says how
+/// partial results combine. It may take uniforms and gathers of the reduce, too.
+void ModuleLowering::pairReductions() {
+  for (ir::Kernel& kernel : module_.kernels) {
+    if (!kernel.reduction) continue;
+    const std::vector<ir::Type> accumulators = typesOf(kernel, ir::ParamRole::Accumulator);
+    if (typesOf(kernel, ir::ParamRole::Input) == accumulators) continue;
+    for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
+      const ir::Kernel& other = module_.kernels[id];
+      if (!other.reduction || other.name != kernel.name || other.scope != kernel.scope) continue;
+      if (typesOf(other, ir::ParamRole::Input) != accumulators ||
+          typesOf(other, ir::ParamRole::Accumulator) != accumulators) {
+        continue;
+      }
+      std::optional<std::vector<std::uint32_t>> operands = operandsOf(other, kernel);
+      if (operands) kernel.reduction = ir::Reduction{id, std::move(*operands), false};
+    }
+  }
+}
+
+ir::ExprPtr ModuleLowering::generatedConstant(const std::string& name) {
+  const auto found = generated_.find(name);
+  if (found == generated_.end()) throw Abandoned{};
+  return constantValue(found->second, /*inlined=*/true);
+}
+
+// ---- constants ----------------------------------------------------------------------------------
+
+ir::ExprPtr ModuleLowering::constant(const clang::VarDecl* declaration, SourceLocation use) {
+  const clang::VarDecl* definition = declaration->getCanonicalDecl();
+  if (failedConstants_.contains(definition)) {
+    if (constantsInProgress_.contains(declaration)) fail(Diag::NotConstant, use);  // its value names itself
+    throw Abandoned{};  // told already
+  }
+  if (syntax_.stream(definition->getLocation())) {
+    fail(Diag::StreamInBody, use, {definition->getNameAsString()});
+  }
+  if (!definition->getType().isConstQualified()) {
+    failedConstants_.insert(definition);
+    fail(Diag::MutableGlobal, use, {definition->getNameAsString()});
+  }
+  auto found = constants_.find(definition);
+  if (found == constants_.end()) {
+    failedConstants_.insert(definition);  // until it has succeeded
+    ir::ExprPtr value = constantValue(declaration, inlineConstants_);
+    failedConstants_.erase(definition);
+    ir::Constant entry{definition->getNameAsString(), value->type, std::move(value),
+                       loc(definition->getLocation())};
+    found = constants_.emplace(definition, static_cast<ir::ConstantId>(module_.constants.size())).first;
+    module_.constants.push_back(std::move(entry));
+  }
+  const ir::Constant& entry = module_.constants[found->second];
+  if (inlineConstants_) return ir::clone(*entry.value);
+  auto reference = std::make_unique<ir::Expr>();
+  reference->type = entry.type;
+  reference->loc = loc(use);
+  reference->node = ir::ConstantRef{found->second};
+  return reference;
+}
+
+/// `inlined`: the value names no other constant, since it will stand outside the kernel's body.
+ir::ExprPtr ModuleLowering::constantValue(const clang::VarDecl* declaration, bool inlined) {
+  const clang::Expr* init = declaration->getAnyInitializer();
+  constantsInProgress_.insert(declaration);
+  if (!init) fail(Diag::ConstantWithoutValue, declaration->getLocation(), {declaration->getNameAsString()});
+  const bool before = std::exchange(inlineConstants_, inlined);
+  FunctionLowering lowering(*this);
+  ir::ExprPtr value;
+  try {
+    value = lowering.constantInitializer(init);
+  } catch (const Abandoned&) {
+    inlineConstants_ = before;
+    throw;
+  }
+  inlineConstants_ = before;
+  constantsInProgress_.erase(declaration);
+  if (!value) value = evaluated(declaration);
+  if (!value) fail(Diag::NotConstant, init->getBeginLoc());
+  return value;
+}
+
+/// What Clang can compute where GLSL could not, such as a call of a constexpr function.
+ir::ExprPtr ModuleLowering::evaluated(const clang::VarDecl* declaration) {
+  const clang::Expr* init = declaration->getAnyInitializer(declaration);
+  const clang::APValue* value = declaration->evaluateValue();
+  if (!value) return nullptr;
+  const ir::Type wanted = type(declaration->getType(), init->getBeginLoc());
+  // Clang has made floats of the literals in the functions that it calls
+  if (ir::holdsDouble(module_, wanted)) {
+    fail(Diag::DoubleConstant, init->getBeginLoc(), {declaration->getNameAsString()});
+  }
+  return evaluated(*value, wanted, loc(init->getBeginLoc()));
+}
+
+/// Null where the value is of none of the kinds that kernels know.
+ir::ExprPtr ModuleLowering::evaluated(const clang::APValue& value, ir::Type type, Loc loc) const {
+  if (value.isFloat()) {
+    llvm::APFloat rounded = value.getFloat();
+    bool inexact = false;
+    rounded.convert(llvm::APFloat::IEEEsingle(), llvm::APFloat::rmNearestTiesToEven, &inexact);
+    return ir::makeExpr(
+        type, ir::Literal{static_cast<std::uint32_t>(rounded.bitcastToAPInt().getZExtValue())}, loc);
+  }
+  if (value.isInt()) {
+    const auto bits = static_cast<std::uint32_t>(value.getInt().getExtValue());
+    return ir::makeExpr(type, ir::Literal{type.isBool() ? bits != 0 : bits}, loc);
+  }
+  std::vector<ir::ExprPtr> parts;
+  if (value.isVector()) {
+    const ir::Type component = ir::Type::of(type.scalar);
+    for (unsigned i = 0; i < value.getVectorLength(); ++i) {
+      parts.push_back(evaluated(value.getVectorElt(i), component, loc));
+    }
+  } else if (value.isArray()) {
+    const ir::Type element = module_.arrays[type.index].element;
+    for (unsigned i = 0; i < value.getArraySize(); ++i) {
+      const bool isGiven = i < value.getArrayInitializedElts();
+      parts.push_back(
+          evaluated(isGiven ? value.getArrayInitializedElt(i) : value.getArrayFiller(), element, loc));
+    }
+  } else if (value.isStruct()) {
+    const std::vector<ir::StructField>& fields = module_.structs[type.index].fields;
+    for (unsigned i = 0; i < value.getStructNumFields(); ++i) {
+      parts.push_back(evaluated(value.getStructField(i), fields[i].type, loc));
+    }
+  }
+  const bool isWhole = !parts.empty() && std::ranges::all_of(parts, [](const auto& part) { return !!part; });
+  return isWhole ? ir::construct(type, std::move(parts), loc) : nullptr;
+}
+
+// ---- functions ----------------------------------------------------------------------------------
+
+ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, SourceLocation use) {
+  const clang::FunctionDecl* definition = declaration->getDefinition();
+  if (!definition) fail(Diag::FunctionWithoutBody, use, {declaration->getNameAsString()});
+  const auto found = functions_.find(definition);
+  if (found != functions_.end()) {
+    switch (found->second.progress) {
+      case Progress::Lowering: fail(Diag::Recursion, use, {declaration->getNameAsString()});
+      case Progress::Failed: throw Abandoned{};
+      case Progress::Done: return found->second.id;
+    }
+  }
+  if (const auto* method = llvm::dyn_cast<clang::CXXMethodDecl>(definition)) {
+    if (llvm::isa<clang::CXXConstructorDecl>(method) || llvm::isa<clang::CXXDestructorDecl>(method)) {
+      fail(Diag::Constructor, use, {method->getParent()->getNameAsString()});
+    }
+    if (method->isVirtual()) fail(Diag::VirtualFunction, use, {method->getNameAsString()});
+  }
+  functions_[definition] = {0, Progress::Lowering};
+  try {
+    FunctionLowering lowering(*this);
+    ir::Function lowered = lowering.function(definition);
+    if (const TableSyntax* declared = syntax_.table(definition->getLocation())) {
+      lowered.table = table(definition, *declared);
+    }
+    // callees were added meanwhile: the table is in an order in which everything is defined before use
+    const auto id = static_cast<ir::FunctionId>(module_.functions.size());
+    module_.functions.push_back(std::move(lowered));
+    functions_[definition] = {id, Progress::Done};
+    return id;
+  } catch (const Abandoned&) {
+    functions_[definition].progress = Progress::Failed;
+    throw;
+  }
+}
+
+// ---- places -------------------------------------------------------------------------------------
+
+clang::ASTContext& ModuleLowering::context() const { return sema_.getASTContext(); }
+clang::SourceManager& ModuleLowering::sources() const { return sema_.getSourceManager(); }
+
+bool ModuleLowering::isGenerated(const clang::VarDecl* declaration) {
+  return declaration->getName().starts_with("__sk_constant");
+}
+
+bool ModuleLowering::isPrelude(const clang::Decl* declaration) const {
+  return sources().isInSystemHeader(declaration->getLocation());
+}
+
+std::vector<std::string> ModuleLowering::scopeOf(const clang::Decl* declaration) const {
+  std::vector<std::string> scope;
+  for (const clang::DeclContext* outer = declaration->getDeclContext(); outer; outer = outer->getParent()) {
+    const auto* space = llvm::dyn_cast<clang::NamespaceDecl>(outer);
+    if (space && !space->isAnonymousNamespace()) scope.push_back(space->getNameAsString());
+  }
+  std::reverse(scope.begin(), scope.end());
+  return scope;
+}
+
+Loc ModuleLowering::loc(SourceLocation location) {
+  Loc result = locOf(location);
+  const clang::PresumedLoc presumed = sources().getPresumedLoc(sources().getExpansionLoc(location));
+  if (presumed.isInvalid()) return result;
+  result.line = presumed.getLine();
+  const auto [entry, isNew] =
+      sourceIndex_.emplace(presumed.getFilename(), static_cast<std::uint32_t>(module_.sources.size()));
+  if (isNew) module_.sources.push_back(entry->first);
+  result.file = entry->second;
+  return result;
+}
+
+void ModuleLowering::fail(Diag diag, SourceLocation where,
+                          std::initializer_list<std::string_view> arguments) {
+  diagnostics_.report(diag, locOf(where), arguments);
+  throw Abandoned{};
+}
+
+}  // namespace skc::frontend

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+//
+// The state of one translation unit's lowering: types, constants and functions, each lowered when
+// first named and remembered. Function bodies are FunctionLowering's.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+
+#include <clang/AST/Decl.h>
+#include <clang/AST/Type.h>
+#include <clang/Basic/SourceLocation.h>
+
+#include "frontend/tokens/syntax.hpp"
+#include "ir/ir.hpp"
+#include "support/diagnostics.hpp"
+
+namespace clang {
+class ASTContext;
+class CXXRecordDecl;
+class FunctionDecl;
+class FunctionTemplateDecl;
+class TemplateArgument;
+class Sema;
+class SourceManager;
+}  // namespace clang
+
+namespace skc::frontend {
+
+/// Thrown after an error was reported: the enclosing statement (or declaration) is abandoned, the
+/// next one is still looked at. It never leaves lowerModule.
+struct Abandoned {};
+
+class ModuleLowering {
+ public:
+  ModuleLowering(clang::Sema& sema, const DeclarationSyntax& syntax, Diagnostics& diagnostics)
+      : sema_(sema), syntax_(syntax), diagnostics_(diagnostics) {}
+
+  ir::Module run(const std::string& file);
+
+  /// The IR's type for a value of Clang's. Reports and throws for types that kernels do not have.
+  ir::Type type(clang::QualType type, clang::SourceLocation use);
+  /// Rank of a gather's class, 0 for any other type; `element` gets its element type.
+  int gatherRank(clang::QualType type, clang::SourceLocation use, ir::Type& element);
+  /// The same for the class of a scatter output, or 0 for that of a variable output.
+  std::optional<int> appendRank(clang::QualType type, clang::SourceLocation use, ir::Type& element);
+
+  /// Lowers `declaration` (its definition) unless that was done. Reports recursion at `use`.
+  ir::FunctionId function(const clang::FunctionDecl* declaration, clang::SourceLocation use);
+  const ir::Function& functionAt(ir::FunctionId id) const { return module_.functions[id]; }
+
+  /// A reference to a namespace-scope constant, lowered at its first use.
+  ir::ExprPtr constant(const clang::VarDecl* declaration, clang::SourceLocation use);
+  const ir::Struct& structAt(std::uint32_t index) const { return module_.structs[index]; }
+  const ir::Array& arrayAt(std::uint32_t index) const { return module_.arrays[index]; }
+
+  bool isPrelude(const clang::Decl* declaration) const;
+  /// Whether it holds the value of a border or identity (parameter_editor.hpp).
+  static bool isGenerated(const clang::VarDecl* declaration);
+  /// Name of a type as the user writes it, for messages.
+  std::string spelling(ir::Type type) const;
+
+  const DeclarationSyntax& syntax() const { return syntax_; }
+  clang::ASTContext& context() const;
+  clang::SourceManager& sources() const;
+  Diagnostics& diagnostics() { return diagnostics_; }
+
+  Loc loc(clang::SourceLocation location);
+  [[noreturn]] void fail(Diag diag, clang::SourceLocation where,
+                         std::initializer_list<std::string_view> arguments = {});
+
+ private:
+  enum class Progress : std::uint8_t { Lowering, Done, Failed };
+  struct FunctionEntry {
+    ir::FunctionId id;
+    Progress progress;
+  };
+
+  void declarations(const clang::DeclContext* scope);
+  void kernel(const clang::FunctionDecl* declaration, const KernelSyntax& syntax);
+  void kernelTemplate(const clang::FunctionTemplateDecl* declaration);
+  void nameInstance(const clang::FunctionDecl* instance, ir::Kernel& kernel);
+  std::string spelling(const clang::TemplateArgument& argument, clang::SourceLocation use);
+  ir::KernelParam kernelParam(const clang::ParmVarDecl* declaration, const ir::Variable& variable);
+  void checkElement(ir::Type type, std::string_view name, clang::SourceLocation where);
+  void checkKernelShape(const ir::Kernel& kernel, clang::SourceLocation where);
+  void pairReductions();
+  void stream(const clang::VarDecl* declaration, const StreamSyntax& syntax);
+  ir::TableId table(const clang::FunctionDecl* declaration, const TableSyntax& syntax);
+  std::uint32_t generatedNumber(const std::string& name);
+  ir::DeclaredExtent streamExtent(const ExtentSyntax& syntax, const clang::VarDecl* stream);
+  const clang::ValueDecl* visibleValue(const clang::VarDecl* stream, const clang::IdentifierInfo* name);
+  ir::ExprPtr generatedConstant(const std::string& name);
+  ir::ExprPtr constantValue(const clang::VarDecl* declaration, bool inlined);
+  ir::ExprPtr evaluated(const clang::VarDecl* declaration);
+  ir::ExprPtr evaluated(const clang::APValue& value, ir::Type type, Loc loc) const;
+  std::string structName(const clang::CXXRecordDecl* record) const;
+  void addAlias(const clang::TypedefNameDecl* alias);
+  void addAliases(const clang::DeclContext* scope);
+  ir::Type structType(const clang::CXXRecordDecl* declaration, clang::SourceLocation use);
+  ir::Type arrayType(ir::Type element, std::uint64_t length, clang::SourceLocation use);
+  void checkSize(ir::Type type, clang::SourceLocation use);
+  std::vector<std::string> scopeOf(const clang::Decl* declaration) const;
+
+  clang::Sema& sema_;
+  const DeclarationSyntax& syntax_;
+  Diagnostics& diagnostics_;
+  ir::Module module_;
+  std::unordered_map<const clang::Decl*, std::uint32_t> structs_;
+  std::unordered_map<const clang::Decl*, ir::ConstantId> constants_;
+  std::unordered_map<const clang::Decl*, FunctionEntry> functions_;
+  std::unordered_map<std::string, std::uint32_t> sourceIndex_;
+  std::unordered_map<std::string, const clang::VarDecl*> generated_, generatedGlobals_;
+  std::unordered_set<const clang::Decl*> failedConstants_, constantsInProgress_;
+  bool inlineConstants_ = false;
+};
+
+}  // namespace skc::frontend

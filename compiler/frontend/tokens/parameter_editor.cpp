@@ -1,0 +1,499 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/tokens/parameter_editor.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <clang/Lex/Preprocessor.h>
+
+#include "frontend/clang_loc.hpp"
+#include "frontend/prelude.hpp"
+#include "frontend/tokens/token_cursor.hpp"
+
+namespace skc::frontend {
+
+using clang::Token;
+namespace tok = clang::tok;
+
+/// What one parameter's tokens said.
+struct ParameterEditor::Parts {
+  Token qualifier;                 ///< `out`, `reduce`, `iter` ..., or unset
+  bool hasQualifier = false;
+  Tokens type;
+  Token name;
+  bool isElement = false;          ///< `<>`
+  int rank = 0;                    ///< pairs of empty brackets
+  Token open, close;               ///< the first and the last bracket of either kind
+  Tokens length;                   ///< `[9]`, brackets included, of a uniform array
+  int lengths = 0;                 ///< of an array of arrays, which is none, more than one
+  Tokens value;                    ///< after `=`
+  Token attribute;                 ///< the last word in [[...]]
+  bool hasAttribute = false;
+  bool hasBoundary = false;
+  Tokens border;                   ///< between the parentheses of border(...)
+  Tokens rest;                     ///< what follows the name of an ordinary parameter
+  ParamSyntax syntax;
+};
+
+namespace {
+
+/// Splits the tokens between the parentheses at commas outside any bracket.
+std::vector<std::vector<Token>> splitAtCommas(const std::vector<Token>& declared) {
+  std::vector<std::vector<Token>> parts(1);
+  int depth = 0;
+  bool isValue = false;   // behind `=`, `<` compares
+  for (std::size_t i = 1; i + 1 < declared.size(); ++i) {
+    const Token& token = declared[i];
+    if (token.isOneOf(tok::l_paren, tok::l_square, tok::l_brace)) ++depth;
+    if (token.isOneOf(tok::r_paren, tok::r_square, tok::r_brace)) --depth;
+    if (token.is(tok::equal)) isValue = true;
+    if (const std::size_t end = token.is(tok::less) && !isValue ? endOfList(declared, i) : 0; end != 0) {
+      parts.back().insert(parts.back().end(), declared.begin() + static_cast<std::ptrdiff_t>(i),
+                          declared.begin() + static_cast<std::ptrdiff_t>(end) + 1);
+      i = end;
+      continue;
+    }
+    if (token.is(tok::comma) && depth == 0) {
+      isValue = false;
+      parts.emplace_back();
+    } else {
+      parts.back().push_back(token);
+    }
+  }
+  if (parts.size() == 1 && parts.front().empty()) parts.clear();
+  return parts;
+}
+
+bool isKind(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind kind) {
+  return at < tokens.size() && tokens[at].is(kind);
+}
+
+/// `({0, 1})` without its parentheses, which no list of initialisers may have; any other as it is.
+std::vector<Token> borderValue(const std::vector<Token>& parenthesized) {
+  if (parenthesized[1].isNot(tok::l_brace)) return parenthesized;
+  return {parenthesized.begin() + 1, parenthesized.end() - 1};
+}
+
+/// Takes out what stands from `at` to the bracket that should have been there.
+std::vector<Mend> removal(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind close) {
+  for (std::size_t i = at; i < tokens.size(); ++i) {
+    if (tokens[i].is(close)) return {Mend::remove(locOf(tokens[at]), locOf(tokens[i - 1]))};
+  }
+  return {};
+}
+
+bool isNamedWord(const Token& token, std::initializer_list<llvm::StringRef> words) {
+  for (llvm::StringRef word : words) {
+    if (isWord(token, word)) return true;
+  }
+  return false;
+}
+
+bool isQualifier(const Token& token) {
+  return isNamedWord(token, {"out", "inout", "reduce", "iter", "vout", "spec", "kernel"});
+}
+
+std::string repeated(std::string_view text, int times) {
+  std::string result;
+  for (int i = 0; i < times; ++i) result += text;
+  return result;
+}
+
+}  // namespace
+
+std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind kind) {
+  inputs_.clear();
+  indexed_.clear();
+  Tokens out{declared.front()};
+  const std::vector<Tokens> parameters = splitAtCommas(declared);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Token& following =
+        i + 1 < parameters.size() && !parameters[i + 1].empty() ? parameters[i + 1].front() : declared.back();
+    if (parameters[i].empty()) {
+      diagnostics_.report(Diag::EmptyParameter, locOf(following));
+      continue;
+    }
+    if (out.size() > 1) out.push_back(maker_.make(tok::comma, parameters[i].front().getLocation()));
+    editParameter(parameters[i], kind, out);
+  }
+  out.push_back(declared.back());
+  return out;
+}
+
+void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, Tokens& out) {
+  Parts parts;
+  std::size_t at = 0;
+  if (kind == FunctionKind::Helper) {
+    // An ordinary parameter goes to Clang as it is, default arguments, templates and all.
+    bool ours = isNamedWord(parameter.front(), {"out", "inout"}) && parameter.size() > 2;
+    for (std::size_t i = 0; i + 1 < parameter.size(); ++i) {
+      if (parameter[i].is(tok::l_square)) ours = true;
+      if (parameter[i].is(tok::less) && parameter[i + 1].isOneOf(tok::greater, tok::greaterequal))
+        ours = true;
+    }
+    if (!ours) {
+      out.insert(out.end(), parameter.begin(), parameter.end());
+      return;
+    }
+  }
+  if (!takeAttributes(parameter, at, parts)) return;
+  takeQualifier(parameter, at, parts);
+  if (!takeDeclarator(parameter, at, parts)) return;
+  if (hasLateQualifier(parts)) return;
+  if (!takeSuffix(parameter, at, parts)) return;
+  if (kind != FunctionKind::Helper && parts.type.back().is(tok::amp)) {
+    diagnostics_.report(Diag::KernelReference, locOf(parts.type.back()), {nameOf(parts.name)});
+    return;
+  }
+  if (!resolveRole(parts, kind)) return;
+  print(parts, kind, out);
+}
+
+/// [[clamp]] [[wrap]] [[mirror]] [[border(v)]] [[filter]] [[wrap, filter]]
+bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  while (isKind(parameter, at, tok::l_square) && isKind(parameter, at + 1, tok::l_square)) {
+    ++at;
+    do {
+      if (!takeAttribute(parameter, ++at, parts)) return false;
+    } while (isKind(parameter, at, tok::comma));
+    if (!isKind(parameter, at, tok::r_square) || !isKind(parameter, at + 1, tok::r_square)) {
+      diagnostics_.report(Diag::AttributeEnd,
+                          locOf(at < parameter.size() ? parameter[at] : parameter.back()));
+      return false;
+    }
+    at += 2;
+  }
+  return true;
+}
+
+/// One name between the brackets.
+bool ParameterEditor::takeAttribute(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  if (at >= parameter.size()) {
+    diagnostics_.report(Diag::ParameterAttribute, locOf(parameter.back()), {""});
+    return false;
+  }
+  const Token& name = parameter[at++];
+  parts.attribute = name;
+  parts.hasAttribute = true;
+  if (isWord(name, "filter")) {
+    parts.syntax.filter = true;
+    return true;
+  }
+  if (isWord(name, "clamp")) {
+    parts.syntax.boundary = ir::Boundary::Clamp;
+  } else if (isWord(name, "wrap")) {
+    parts.syntax.boundary = ir::Boundary::Wrap;
+  } else if (isWord(name, "mirror")) {
+    parts.syntax.boundary = ir::Boundary::Mirror;
+  } else if (isWord(name, "border")) {
+    parts.syntax.boundary = ir::Boundary::Border;
+  } else {
+    diagnostics_.report(Diag::ParameterAttribute, locOf(name), {preprocessor_.getSpelling(name)});
+    return false;
+  }
+  if (std::exchange(parts.hasBoundary, true)) {
+    diagnostics_.report(Diag::BoundaryTwice, locOf(name), {nameOf(name)});
+    return false;
+  }
+  return parts.syntax.boundary != ir::Boundary::Border || takeBorder(parameter, at, parts);
+}
+
+bool ParameterEditor::takeBorder(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  int depth = 0;
+  if (isKind(parameter, at, tok::l_paren)) {
+    do {
+      if (parameter[at].is(tok::l_paren)) ++depth;
+      if (parameter[at].is(tok::r_paren)) --depth;
+      parts.border.push_back(parameter[at++]);
+    } while (depth > 0 && at < parameter.size());
+  }
+  if (depth != 0 || parts.border.size() < 3) {
+    diagnostics_.report(Diag::BorderValue, locOf(parts.attribute));
+    return false;
+  }
+  return true;
+}
+
+/// A qualifier is one only before a type and a name: `out x<>` declares a stream of the type `out`.
+void ParameterEditor::takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  const auto isWordOrScope = [&](std::size_t i) {
+    return i < parameter.size() && (parameter[i].getIdentifierInfo() || parameter[i].is(tok::coloncolon));
+  };
+  if (!isWordOrScope(at + 1) || !isWordOrScope(at + 2)) return;
+  if (isQualifier(parameter[at])) {
+    parts.qualifier = parameter[at++];
+    parts.hasQualifier = true;
+  }
+}
+
+/// Type tokens and the name: the name is the last identifier before `<>`, `[`, `=` or the end.
+bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  const std::size_t begin = at;
+  std::size_t end = parameter.size();
+  for (std::size_t i = begin; i < parameter.size(); ++i) {
+    const bool stream =
+        parameter[i].is(tok::less) &&
+        (i + 1 == parameter.size() || parameter[i + 1].isOneOf(tok::greater, tok::greaterequal) ||
+         (i > begin + 1 && parameter[i - 1].is(tok::identifier)));
+    if (stream || parameter[i].isOneOf(tok::l_square, tok::equal)) {
+      end = i;
+      break;
+    }
+  }
+  if (end < begin + 2 || parameter[end - 1].isNot(tok::identifier)) {
+    const Token& place = begin < parameter.size() ? parameter[begin] : parameter.back();
+    diagnostics_.report(Diag::ParameterShape, locOf(place));
+    return false;
+  }
+  parts.type.assign(parameter.begin() + static_cast<std::ptrdiff_t>(begin),
+                    parameter.begin() + static_cast<std::ptrdiff_t>(end) - 1);
+  parts.name = parameter[end - 1];
+  at = end;
+  return true;
+}
+
+/// `float out r<>`, whose type is not called `float out`.
+bool ParameterEditor::hasLateQualifier(const Parts& parts) {
+  const Token& last = parts.type.back();
+  if (parts.hasQualifier || parts.type.size() < 2 || !isQualifier(last)) return false;
+  const Token& before = parts.type[parts.type.size() - 2];
+  if (before.isOneOf(tok::coloncolon, tok::kw_const, tok::kw_struct)) return false;
+  std::string reordered = nameOf(last);
+  for (auto token = parts.type.begin(); token + 1 != parts.type.end(); ++token)
+    reordered += " " + preprocessor_.getSpelling(*token);
+  diagnostics_.report(Diag::QualifierOrder, locOf(last), {nameOf(last), nameOf(parts.name)},
+                      {Mend::replace(locOf(parts.type.front()), locOf(last), std::move(reordered))});
+  return true;
+}
+
+bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts) {
+  const std::string name = nameOf(parts.name);
+  bool equal = false;
+  if (isKind(parameter, at, tok::less)) {
+    parts.open = parameter[at++];
+    if (!isKind(parameter, at, tok::greater) && !isKind(parameter, at, tok::greaterequal)) {
+      const Token& place = at < parameter.size() ? parameter[at] : parameter.back();
+      const std::vector<Mend> mends = removal(parameter, at, tok::greater);
+      diagnostics_.report(Diag::StreamBrackets, locOf(place), {name}, mends);
+      return false;
+    }
+    parts.close = parameter[at];
+    equal = parameter[at++].is(tok::greaterequal);   // `total<>= 0` lexes as < >= 0
+    parts.isElement = true;
+  }
+  while (isKind(parameter, at, tok::l_square)) {
+    const Token& bracket = parameter[at++];
+    if (!isKind(parameter, at, tok::r_square)) {
+      const bool closed = std::any_of(parameter.begin() + static_cast<std::ptrdiff_t>(at), parameter.end(),
+                                      [](const Token& token) { return token.is(tok::r_square); });
+      if (!closed || parts.rank > 0) {
+        diagnostics_.report(Diag::GatherBrackets, locOf(bracket), {name},
+                            removal(parameter, at, tok::r_square));
+        return false;
+      }
+      ++parts.lengths;
+      parts.length.push_back(bracket);
+      for (int depth = 1; depth > 0 && at < parameter.size(); ++at) {
+        if (parameter[at].is(tok::l_square)) ++depth;
+        if (parameter[at].is(tok::r_square)) --depth;
+        parts.length.push_back(parameter[at]);
+      }
+      continue;
+    }
+    parts.close = parameter[at++];
+    if (parts.rank++ == 0) parts.open = bracket;
+  }
+  if (!equal && isKind(parameter, at, tok::equal)) {
+    equal = true;
+    ++at;
+  }
+  if (equal) {
+    parts.value.assign(parameter.begin() + static_cast<std::ptrdiff_t>(at), parameter.end());
+    at = parameter.size();
+    if (parts.value.empty()) {
+      diagnostics_.report(Diag::IdentityValue, locOf(parameter.back()), {name});
+      return false;
+    }
+  }
+  if (at < parameter.size()) {
+    diagnostics_.report(Diag::ParameterExtra, locOf(parameter[at]),
+                        {preprocessor_.getSpelling(parameter[at]), name});
+    return false;
+  }
+  return true;
+}
+
+/// `<>` behind the name of a parameter without brackets.
+std::vector<Mend> ParameterEditor::addedBrackets(const Parts& parts) {
+  if (parts.rank > 0 || parts.isElement || !parts.length.empty()) return {};
+  return {Mend::insertAfter(locOf(parts.name), "<>")};
+}
+
+/// Without the `<>` of a parameter that has no other brackets.
+std::vector<Mend> ParameterEditor::removedBrackets(const Parts& parts) {
+  if (!parts.isElement || parts.rank > 0) return {};
+  return {Mend::remove(locOf(parts.open), locOf(parts.close))};
+}
+
+/// `reduce` in place of `out`, of a parameter that is an accumulator but for that.
+std::vector<Mend> ParameterEditor::asAccumulator(const Parts& parts) {
+  if (!parts.isElement || parts.rank > 0) return {};
+  return {Mend::replace(locOf(parts.qualifier), "reduce")};
+}
+
+/// The table of DESIGN's parameters: qualifier, `<>` and brackets decide together.
+bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
+  const std::string name = nameOf(parts.name);
+  const Loc place = locOf(parts.name);
+  const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments,
+                        const std::vector<Mend>& mends = {}) {
+    diagnostics_.report(diag, place, arguments, mends);
+    return false;
+  };
+  const std::string qualifier = parts.hasQualifier ? nameOf(parts.qualifier) : "";
+  if (qualifier == "kernel") {
+    diagnostics_.report(Diag::QualifierUnknown, locOf(parts.qualifier), {qualifier});
+    return false;
+  }
+  if (parts.lengths > 1) {
+    const std::string brackets = repeated("[]", parts.lengths);
+    return fail(Diag::ArrayOfLengths, {name, std::to_string(parts.lengths), brackets});
+  }
+  if (!parts.length.empty() &&
+      (parts.isElement || parts.rank > 0 || parts.hasAttribute || !qualifier.empty())) {
+    return fail(Diag::ArrayParameter, {name});
+  }
+  if (parts.isElement && parts.rank > 0) return fail(Diag::StreamAndGather, {name});
+  const bool isAppendOutput = qualifier == "vout" || (qualifier == "out" && parts.rank > 0);
+  if (isAppendOutput) return resolveAppendOutput(parts, kind);
+  if (parts.rank > 4) return fail(Diag::StreamRank, {name, std::to_string(parts.rank)});
+  if (parts.hasAttribute && (parts.rank == 0 || !qualifier.empty())) {
+    diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.attribute), {nameOf(parts.attribute), name});
+    return false;
+  }
+  if (!parts.value.empty() && qualifier != "reduce") return fail(Diag::DefaultArgument, {name});
+  if (qualifier == "iter" || qualifier == "spec") {
+    if (kind == FunctionKind::Helper) {
+      diagnostics_.report(Diag::QualifierOutsideKernel, locOf(parts.qualifier), {qualifier, name});
+      return false;
+    }
+    const bool isIterator = qualifier == "iter";
+    if (parts.rank > 0 || parts.isElement != isIterator) {
+      return fail(isIterator ? Diag::IteratorBrackets : Diag::SpecBrackets, {name},
+                  isIterator ? addedBrackets(parts) : removedBrackets(parts));
+    }
+    parts.syntax.role = isIterator ? ir::ParamRole::Iterator : ir::ParamRole::Spec;
+    return true;
+  }
+  if (kind == FunctionKind::Helper) {
+    if (parts.isElement) return fail(Diag::StreamInHelper, {name}, removedBrackets(parts));
+    if (parts.rank > 0 && !qualifier.empty()) return fail(Diag::OutputBrackets, {name});
+    if (qualifier == "reduce") return fail(Diag::AccumulatorOutsideReduce, {name});
+    parts.syntax.role = parts.rank > 0      ? ir::ParamRole::Gather
+                        : qualifier.empty() ? ir::ParamRole::Uniform
+                                            : ir::ParamRole::Output;
+  } else if (qualifier == "out" || qualifier == "inout") {
+    if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name}, asAccumulator(parts));
+    if (qualifier == "inout") return fail(Diag::InoutStream, {name});
+    if (!parts.isElement) return fail(Diag::OutputBrackets, {name}, addedBrackets(parts));
+    parts.syntax.role = ir::ParamRole::Output;
+  } else if (qualifier == "reduce") {
+    if (!parts.isElement) return fail(Diag::AccumulatorBrackets, {name}, addedBrackets(parts));
+    if (kind == FunctionKind::Kernel) return fail(Diag::AccumulatorOutsideReduce, {name});
+    parts.syntax.role = ir::ParamRole::Accumulator;
+  } else {
+    parts.syntax.role = parts.isElement  ? ir::ParamRole::Input
+                        : parts.rank > 0 ? ir::ParamRole::Gather
+                                         : ir::ParamRole::Uniform;
+  }
+  parts.syntax.rank = static_cast<std::uint8_t>(parts.rank);
+  return true;
+}
+
+/// `vout T r<>` and `out T r[]`, of kernels and of the functions that they hand theirs to.
+bool ParameterEditor::resolveAppendOutput(Parts& parts, FunctionKind kind) {
+  const std::string name = nameOf(parts.name);
+  const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments,
+                        const std::vector<Mend>& mends = {}) {
+    diagnostics_.report(diag, locOf(parts.name), arguments, mends);
+    return false;
+  };
+  const bool isVariable = nameOf(parts.qualifier) == "vout";
+  if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name});
+  if (isVariable && (!parts.isElement || parts.rank > 0)) {
+    return fail(Diag::VariableOutputBrackets, {name}, addedBrackets(parts));
+  }
+  if (parts.isElement && !isVariable) return fail(Diag::StreamAndGather, {name});
+  if (parts.rank > 4) return fail(Diag::StreamRank, {name, std::to_string(parts.rank)});
+  if (parts.hasAttribute) {
+    diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.attribute), {nameOf(parts.attribute), name});
+    return false;
+  }
+  if (!parts.value.empty()) return fail(Diag::DefaultArgument, {name});
+  parts.syntax.role = isVariable ? ir::ParamRole::VariableOutput : ir::ParamRole::Scatter;
+  parts.syntax.rank = static_cast<std::uint8_t>(parts.rank);
+  return true;
+}
+
+void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) {
+  const clang::SourceLocation place = parts.name.getLocation();
+  ParamSyntax syntax = parts.syntax;
+  if (!parts.border.empty()) syntax.border = generateConstant(parts.type, borderValue(parts.border), place);
+  if (!parts.value.empty()) syntax.identity = generateConstant(parts.type, parts.value, place);
+  if (syntax.rank > 0) indexed_.push_back({parts.name, syntax.rank});
+  const clang::SourceLocation start = parts.type.front().getLocation();
+  switch (syntax.role) {
+    case ir::ParamRole::Gather:
+      // Three places of their own: Clang finds its way back to a template's name by its location
+      out.push_back(maker_.word(gatherTemplateName(syntax.rank), place));
+      out.push_back(maker_.make(tok::less, parts.open.getLocation()));
+      out.insert(out.end(), parts.type.begin(), parts.type.end());
+      out.push_back(maker_.make(tok::greater, parts.close.getLocation()));
+      break;
+    case ir::ParamRole::VariableOutput:
+    case ir::ParamRole::Scatter:
+      out.push_back(maker_.word(appendTemplateName(syntax.rank), place));
+      out.push_back(maker_.make(tok::less, parts.open.getLocation()));
+      out.insert(out.end(), parts.type.begin(), parts.type.end());
+      out.push_back(maker_.make(tok::greater, parts.close.getLocation()));
+      break;
+    case ir::ParamRole::Output:
+    case ir::ParamRole::Accumulator:
+      out.insert(out.end(), parts.type.begin(), parts.type.end());
+      out.push_back(maker_.make(tok::amp, place));
+      break;
+    case ir::ParamRole::Input: inputs_.push_back({parts.type.front(), parts.name}); [[fallthrough]];
+    case ir::ParamRole::Uniform:
+    case ir::ParamRole::Iterator:
+    case ir::ParamRole::Spec:
+      if (parts.type.front().isNot(tok::kw_const)) out.push_back(maker_.word("const", start));
+      out.insert(out.end(), parts.type.begin(), parts.type.end());
+      break;
+  }
+  if (parts.length.empty()) {
+    out.push_back(parts.name);
+  } else {   // a reference, since C++ passes no arrays
+    out.push_back(maker_.make(tok::l_paren, place));
+    out.push_back(maker_.make(tok::amp, place));
+    out.push_back(parts.name);
+    out.push_back(maker_.make(tok::r_paren, place));
+    out.insert(out.end(), parts.length.begin(), parts.length.end());
+  }
+  const bool isByIndex = syntax.role == ir::ParamRole::Gather || syntax.role == ir::ParamRole::Scatter ||
+                         syntax.role == ir::ParamRole::VariableOutput;
+  if (kind != FunctionKind::Helper || isByIndex) {
+    syntax_.add(place, std::move(syntax));
+  }
+}
+
+/// Of a kernel, at the beginning of its body; of a helper, in front of it.
+std::string ParameterEditor::generateConstant(const Tokens& type, const Tokens& value,
+                                              clang::SourceLocation place) {
+  std::string name = fmt::format("__sk_constant{}", constants_++);
+  maker_.constant(name, type, value, place, before_);
+  return name;
+}
+
+}  // namespace skc::frontend

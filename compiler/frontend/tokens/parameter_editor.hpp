@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+//
+// Edits one parameter list: finds each parameter's role, takes Brook's spellings out of its tokens
+// and records what they said. Expressions of [[border(v)]] and of a reduce's identity move into
+// generated constants, where Clang checks them like any other.
+#pragma once
+
+#include <vector>
+
+#include <clang/Lex/Token.h>
+
+#include "frontend/tokens/comma_indices.hpp"
+#include "frontend/tokens/syntax.hpp"
+#include "frontend/tokens/token_maker.hpp"
+#include "support/diagnostics.hpp"
+
+namespace clang {
+class Preprocessor;
+}
+
+namespace skc::frontend {
+
+enum class FunctionKind : std::uint8_t { Kernel, Reduce, Helper };
+
+class ParameterEditor {
+ public:
+  /// Generated constants are appended to `before`, numbered by `constants`.
+  ParameterEditor(clang::Preprocessor& preprocessor, Diagnostics& diagnostics, DeclarationSyntax& syntax,
+                  int& constants, std::vector<clang::Token>& before)
+      : preprocessor_(preprocessor),
+        maker_(preprocessor),
+        diagnostics_(diagnostics),
+        syntax_(syntax),
+        constants_(constants),
+        before_(before) {}
+
+  /// `T x<>` without a qualifier.
+  struct Input {
+    clang::Token first, name;
+  };
+  /// Those of the list that was edited last.
+  const std::vector<Input>& inputs() const { return inputs_; }
+  const std::vector<IndexedParameter>& indexed() const { return indexed_; }
+
+  /// `declared` and the result include the parentheses.
+  std::vector<clang::Token> edit(const std::vector<clang::Token>& declared, FunctionKind kind);
+
+ private:
+  using Tokens = std::vector<clang::Token>;
+  struct Parts;
+
+  void editParameter(const Tokens& parameter, FunctionKind kind, Tokens& out);
+  bool takeAttributes(const Tokens& parameter, std::size_t& at, Parts& parts);
+  bool takeAttribute(const Tokens& parameter, std::size_t& at, Parts& parts);
+  bool takeBorder(const Tokens& parameter, std::size_t& at, Parts& parts);
+  void takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts);
+  bool takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts);
+  bool hasLateQualifier(const Parts& parts);
+  bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
+  static std::vector<Mend> addedBrackets(const Parts& parts);
+  static std::vector<Mend> removedBrackets(const Parts& parts);
+  static std::vector<Mend> asAccumulator(const Parts& parts);
+  bool resolveRole(Parts& parts, FunctionKind kind);
+  bool resolveAppendOutput(Parts& parts, FunctionKind kind);
+  std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place);
+  void print(const Parts& parts, FunctionKind kind, Tokens& out);
+
+  clang::Preprocessor& preprocessor_;
+  TokenMaker maker_;
+  Diagnostics& diagnostics_;
+  DeclarationSyntax& syntax_;
+  int& constants_;
+  std::vector<clang::Token>& before_;
+  std::vector<Input> inputs_;
+  std::vector<IndexedParameter> indexed_;
+};
+
+}  // namespace skc::frontend

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/tokens/stream_editor.hpp"
+
+#include <fmt/format.h>
+
+#include "frontend/clang_loc.hpp"
+
+namespace skc::frontend {
+
+using clang::Token;
+namespace tok = clang::tok;
+
+void StreamEditor::edit(TokenCursor& cursor, Tokens& out) {
+  cursor.take();   // `stream`
+  Tokens type;
+  while (cursor.peek(1).isNot(tok::less) && !cursor.atEndOfDeclaration()) type.push_back(cursor.take());
+  Tokens edited;
+  bool isRight = !type.empty() || fail(Diag::StreamDeclaration, cursor.peek());
+  for (bool isLast = false; isRight && !isLast;) {
+    isRight = takeDeclarator(cursor, type, edited);
+    isLast = !isRight || cursor.at(tok::semi);
+    if (!isLast) cursor.take();   // the comma
+  }
+  if (isRight) out.insert(out.end(), edited.begin(), edited.end());
+  while (!cursor.atEndOfDeclaration()) cursor.take();
+  if (cursor.at(tok::semi)) cursor.take();
+}
+
+/// `name<extents>` before a comma or a semicolon.
+bool StreamEditor::takeDeclarator(TokenCursor& cursor, const Tokens& type, Tokens& out) {
+  if (!cursor.at(tok::identifier) || cursor.peek(1).isNot(tok::less)) {
+    return fail(Diag::StreamDeclaration, cursor.peek());
+  }
+  const Token name = cursor.take();
+  cursor.take();
+  std::vector<Tokens> extents;
+  if (!takeExtents(cursor, extents)) return false;
+  if (cursor.peek().isOneOf(tok::equal, tok::l_brace, tok::l_paren)) {
+    return fail(Diag::StreamValue, cursor.peek(), {nameOf(name)});
+  }
+  if (!cursor.at(tok::comma) && !cursor.at(tok::semi)) return fail(Diag::StreamDeclaration, cursor.peek());
+  if (extents.empty() || extents.size() > 4) {
+    return fail(Diag::StreamRank, name, {nameOf(name), std::to_string(extents.size())});
+  }
+  StreamSyntax stream;
+  for (const Tokens& written : extents) stream.extents.push_back(extent(written, out));
+  syntax_.add(name.getLocation(), std::move(stream));
+  out.push_back(maker_.word("extern", name.getLocation()));
+  out.insert(out.end(), type.begin(), type.end());
+  out.push_back(name);
+  out.push_back(maker_.make(tok::semi, name.getLocation()));
+  return true;
+}
+
+/// Up to the `>`, which it takes, too.
+bool StreamEditor::takeExtents(TokenCursor& cursor, std::vector<Tokens>& extents) {
+  int depth = 0;
+  bool isBegun = false;
+  while (true) {
+    const Token& token = cursor.peek();
+    if (token.isOneOf(tok::eof, tok::semi, tok::l_brace, tok::r_brace)) break;
+    if (depth == 0 && token.isOneOf(tok::comma, tok::greater)) {
+      const bool isEmpty = extents.empty() && !isBegun && token.is(tok::greater);
+      if (!isEmpty && !isBegun) break;   // nothing between two commas
+      isBegun = false;
+      if (cursor.take().is(tok::greater)) return true;
+      if (cursor.at(tok::greater)) break;
+      continue;
+    }
+    if (token.isOneOf(tok::l_paren, tok::l_square)) ++depth;
+    if (token.isOneOf(tok::r_paren, tok::r_square)) --depth;
+    if (!isBegun) extents.emplace_back();
+    isBegun = true;
+    extents.back().push_back(cursor.take());
+  }
+  return fail(Diag::StreamExtents, cursor.peek());
+}
+
+ExtentSyntax StreamEditor::extent(const Tokens& written, Tokens& out) {
+  const clang::SourceLocation place = written.front().getLocation();
+  if (written.size() == 1 && written.front().is(tok::identifier)) {
+    return {place, written.front().getIdentifierInfo(), {}};
+  }
+  ExtentSyntax extent{place, nullptr, fmt::format("__sk_constant{}", constants_++)};
+  maker_.constant(extent.constant, {maker_.word("auto", place)}, written, place, out);
+  return extent;
+}
+
+bool StreamEditor::fail(Diag diag, const Token& place, std::initializer_list<std::string_view> arguments) {
+  diagnostics_.report(diag, locOf(place), arguments);
+  return false;
+}
+
+}  // namespace skc::frontend

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+//
+// Edits a declaration of streams. What Clang gets of
+//
+//   stream float u<height, 2 * n>, v<n>;
+//
+// is the type of each stream, and the values of extents that are more than a name, which it checks:
+//
+//   static const auto __sk_constant3 __attribute__((unused)) = 2 * n; extern float u; extern float v;
+#pragma once
+
+#include <vector>
+
+#include <clang/Lex/Token.h>
+
+#include "frontend/tokens/syntax.hpp"
+#include "frontend/tokens/token_cursor.hpp"
+#include "frontend/tokens/token_maker.hpp"
+#include "support/diagnostics.hpp"
+
+namespace skc::frontend {
+
+class StreamEditor {
+ public:
+  /// Generated constants are numbered by `constants`.
+  StreamEditor(TokenMaker maker, Diagnostics& diagnostics, DeclarationSyntax& syntax, int& constants)
+      : maker_(maker), diagnostics_(diagnostics), syntax_(syntax), constants_(constants) {}
+
+  /// Takes the declaration, from `stream` to its `;`, and appends what stands for it. A declaration with
+  /// a mistake is reported, and nothing stands for it.
+  void edit(TokenCursor& cursor, std::vector<clang::Token>& out);
+
+ private:
+  using Tokens = std::vector<clang::Token>;
+
+  bool takeDeclarator(TokenCursor& cursor, const Tokens& type, Tokens& out);
+  bool takeExtents(TokenCursor& cursor, std::vector<Tokens>& extents);
+  ExtentSyntax extent(const Tokens& written, Tokens& out);
+  bool fail(Diag diag, const clang::Token& place, std::initializer_list<std::string_view> arguments = {});
+
+  TokenMaker maker_;
+  Diagnostics& diagnostics_;
+  DeclarationSyntax& syntax_;
+  int& constants_;
+};
+
+}  // namespace skc::frontend

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: MIT
+#include "frontend/tokens/token_editor.hpp"
+
+#include <fmt/format.h>
+
+#include <clang/Basic/SourceManager.h>
+#include <clang/Lex/Preprocessor.h>
+
+#include "frontend/choices.hpp"
+#include "frontend/clang_loc.hpp"
+#include "frontend/prelude.hpp"
+#include "frontend/tokens/comma_indices.hpp"
+#include "frontend/tokens/constructor_editor.hpp"
+#include "frontend/tokens/parameter_editor.hpp"
+#include "frontend/tokens/stream_editor.hpp"
+#include "frontend/tokens/table_editor.hpp"
+#include "frontend/tokens/token_cursor.hpp"
+
+namespace skc::frontend {
+namespace {
+
+using clang::Token;
+namespace tok = clang::tok;
+
+/// Walks the declarations of the file; one function for each kind that needs a change.
+class Editor {
+ public:
+  Editor(const std::vector<Token>& tokens, clang::Preprocessor& preprocessor, Diagnostics& diagnostics)
+      : preprocessor_(preprocessor),
+        diagnostics_(diagnostics),
+        cursor_(tokens),
+        constructors_(TokenMaker(preprocessor)) {}
+
+  EditedTokens run() {
+    copyPrelude();
+    while (!cursor_.at(tok::eof)) editDeclaration();
+    out_.push_back(cursor_.take());
+    return {std::move(out_), std::move(syntax_)};
+  }
+
+ private:
+  void copyPrelude() {
+    const clang::SourceManager& sources = preprocessor_.getSourceManager();
+    while (!cursor_.at(tok::eof) && sources.isInSystemHeader(cursor_.peek().getLocation())) {
+      out_.push_back(cursor_.take());
+    }
+  }
+
+  bool atWord(llvm::StringRef word) const { return isWord(cursor_.peek(), word); }
+
+  /// `kernel` is a word like any other unless a declaration starts with it: `kernel void f`.
+  bool atDeclarationWord(llvm::StringRef word) const { return atWord(word) && startsType(cursor_.peek(1)); }
+  static bool startsType(const Token& token) {
+    return token.is(tok::identifier) || token.is(tok::coloncolon) || token.getIdentifierInfo() != nullptr;
+  }
+
+  void editDeclaration() {
+    if (const std::size_t behind = endOfChoices(cursor_); behind != 0) return editChoices(behind);
+    if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) return editKernel();
+    if (atDeclarationWord("stream")) return editStream();
+    if (atWord("iter") && listedName() > 1) return refuseIterator();
+    if (cursor_.at(tok::kw_namespace)) return copyUntilBodyOrEnd();
+    if (cursor_.at(tok::kw_template)) return editTemplate();
+    if (const std::size_t name = brookStream(); name != 0) return refuseStream(name);
+    copyDeclaration();
+  }
+
+  /// `namespace a {` opens a scope whose declarations follow like any other; its `}` is copied as an
+  /// empty declaration.
+  void copyUntilBodyOrEnd() {
+    while (!cursor_.at(tok::eof)) {
+      const bool last = cursor_.at(tok::l_brace) || cursor_.at(tok::semi);
+      copyToken();
+      if (last) return;
+    }
+  }
+
+  /// `template <...>` of the declaration that follows, or `template kernel void f<float>(...);`.
+  void editTemplate() {
+    copyToken();
+    if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) editInstantiation();
+    if (cursor_.at(tok::less)) {
+      int depth = 0;
+      do {
+        if (cursor_.at(tok::less)) ++depth;
+        if (cursor_.at(tok::greater)) --depth;
+        copyToken();
+      } while (depth > 0 && !cursor_.at(tok::eof));
+    }
+    if (atDeclarationWord("stream")) diagnostics_.report(Diag::StreamTemplate, locOf(cursor_.peek()));
+  }
+
+  /// Clang instantiates; that it is the template of a kernel, the lowering sees to.
+  void editInstantiation() {
+    const Token start = cursor_.take();
+    std::vector<Token> head;
+    while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());
+    const std::vector<Token> declared =
+        cursor_.at(tok::l_paren) ? cursor_.takeParenthesized() : std::vector<Token>();
+    if (head.size() < 2 || declared.empty() || !cursor_.at(tok::semi)) {
+      diagnostics_.report(Diag::KernelInstantiation, locOf(cursor_.at(tok::l_brace) ? cursor_.peek() : start),
+                          {nameOf(start)});
+      return copyDeclaration();
+    }
+    for (const Token& token : head) syntax_.addInstantiation(token.getLocation());
+    std::vector<Token> constants;   // said by the template, not here
+    ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, constants);
+    const std::vector<Token> edited =
+        parameters.edit(declared, isWord(start, "reduce") ? FunctionKind::Reduce : FunctionKind::Kernel);
+    out_.insert(out_.end(), head.begin(), head.end());
+    out_.insert(out_.end(), edited.begin(), edited.end());
+    copyToken();
+  }
+
+  /// The place of a function's name in what stands before its parameters, `void f` or, of a
+  /// specialisation, `void f<float>`; 0 where there is none.
+  static std::size_t nameAt(const std::vector<Token>& head) {
+    if (head.empty()) return 0;
+    std::size_t at = head.size() - 1;
+    if (head[at].isNot(tok::greater)) return at;
+    for (int depth = 0; at > 0; --at) {
+      if (head[at].is(tok::greater)) ++depth;
+      if (head[at].is(tok::less) && --depth == 0) return at - 1;
+    }
+    return 0;
+  }
+
+  void editStream() {
+    StreamEditor(TokenMaker(preprocessor_), diagnostics_, syntax_, constants_).edit(cursor_, out_);
+  }
+
+  /// Brook's `iter float x<100> = iter(0, 1);`
+  void refuseIterator() {
+    diagnostics_.report(Diag::IteratorDeclaration, locOf(cursor_.peek()));
+    skipDeclaration();
+  }
+
+  /// The place of the first `<` in `T name<`, less one; 0 where the declaration has none there.
+  std::size_t listedName() const {
+    std::size_t at = 0;
+    while (startsType(cursor_.peek(at)) && cursor_.peek(at + 1).isNot(tok::less)) ++at;
+    return cursor_.peek(at).is(tok::identifier) ? at : 0;
+  }
+
+  /// The place of `a` in Brook's `float a<100>;`, where C++ would have arguments of a template but a name
+  /// behind them; 0 where something else is declared.
+  std::size_t brookStream() const {
+    const std::size_t at = listedName();
+    if (at == 0) return 0;
+    for (std::size_t i = at + 2; !cursor_.peek(i).isOneOf(tok::eof, tok::semi, tok::l_brace, tok::less);
+         ++i) {
+      if (cursor_.peek(i).is(tok::greater))
+        return cursor_.peek(i + 1).isOneOf(tok::semi, tok::comma) ? at : 0;
+    }
+    return 0;
+  }
+
+  void refuseStream(std::size_t name) {
+    diagnostics_.report(Diag::StreamKeyword, locOf(cursor_.peek(name)), {nameOf(cursor_.peek(name))},
+                        {Mend::insertBefore(locOf(cursor_.peek()), "stream ")});
+    skipDeclaration();
+  }
+
+  void skipDeclaration() {
+    while (!cursor_.atEndOfDeclaration()) cursor_.take();
+    if (cursor_.at(tok::semi)) cursor_.take();
+  }
+
+  /// `[[table(lo, hi, n, linear)]] float f(float x) { ... }`
+  void editTable(std::size_t behind) {
+    const Token attribute = cursor_.peek(2);
+    const bool isTemplate = !out_.empty() && out_.back().is(tok::greater);
+    const std::optional<TableSyntax> table =
+        takeTable(cursor_, behind, TokenMaker(preprocessor_), diagnostics_, constants_, out_);
+    const bool isKernel = atDeclarationWord("kernel") || atDeclarationWord("reduce");
+    const std::optional<Token> name = isKernel || isTemplate ? std::nullopt : copyNamed();
+    if (!name) {
+      diagnostics_.report(Diag::TablePlace, locOf(attribute));
+    } else if (table) {
+      syntax_.add(name->getLocation(), *table);
+    }
+  }
+
+  /// `[[precision(extended)]] kernel void f...`; what stands before other declarations is C++'s.
+  void editChoices(std::size_t behind) {
+    if (namesTable(cursor_)) return editTable(behind);
+    const Token& declared = cursor_.peek(behind);
+    if (isWord(declared, "kernel") || isWord(declared, "reduce")) {
+      const ir::Choices choices = takeChoices(cursor_, behind, diagnostics_);
+      return atDeclarationWord("kernel") || atDeclarationWord("reduce") ? editKernel(choices)
+                                                                        : copyDeclaration();
+    }
+    if (namesChoice(cursor_))
+      diagnostics_.report(Diag::ChoicePlace, locOf(cursor_.peek(2)), {nameOf(cursor_.peek(2))});
+    copyDeclaration();
+  }
+
+  void editKernel(const ir::Choices& choices = {}) {
+    const Token start = cursor_.take();
+    KernelSyntax kernel;
+    kernel.choices = choices;
+    kernel.isReduce = isWord(start, "reduce");
+    std::vector<Token> head;       // result type and name
+    while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());
+    const std::size_t at = nameAt(head);
+    if (at == 0 || head[at].isNot(tok::identifier) || !cursor_.at(tok::l_paren)) {
+      const Token& place = head.empty() || cursor_.at(tok::l_paren) ? start : cursor_.peek();
+      diagnostics_.report(Diag::KernelHead, locOf(place), {kernel.isReduce ? "reduce" : "kernel"});
+      return copyDeclaration();
+    }
+    std::vector<Token> constants;
+    ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, constants);
+    const std::vector<Token> declared = cursor_.takeParenthesized();
+    if (declared.empty()) {
+      diagnostics_.report(Diag::UnclosedParameters, locOf(head[at]), {nameOf(head[at])});
+      return;
+    }
+    const std::vector<Token> edited =
+        parameters.edit(declared, kernel.isReduce ? FunctionKind::Reduce : FunctionKind::Kernel);
+    kernel.signature = signature(start, head, declared);
+    syntax_.add(head[at].getLocation(), std::move(kernel));
+    out_.insert(out_.end(), head.begin(), head.end());
+    out_.insert(out_.end(), edited.begin(), edited.end());
+    if (cursor_.at(tok::l_brace)) {
+      for (const ParameterEditor::Input& input : parameters.inputs()) refuseIfOnlyAssigned(input);
+      refuseCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
+      return copyBody(constants);
+    }
+    if (cursor_.at(tok::semi)) return copyToken();
+    diagnostics_.report(Diag::KernelBody, locOf(cursor_.peek()), {nameOf(head[at])});
+    copyDeclaration();
+  }
+
+  /// An input that the body, which follows, names only to assign to it, was meant to be an output.
+  void refuseIfOnlyAssigned(const ParameterEditor::Input& input) {
+    bool isNamed = false;
+    int depth = 0;
+    for (std::size_t i = 0; cursor_.peek(i).isNot(tok::eof); ++i) {
+      const Token& token = cursor_.peek(i);
+      if (token.is(tok::l_brace)) ++depth;
+      if (token.is(tok::r_brace) && --depth == 0) break;
+      const bool isMember = i > 0 && cursor_.peek(i - 1).isOneOf(tok::period, tok::coloncolon);
+      if (isMember || token.isNot(tok::identifier) ||
+          token.getIdentifierInfo() != input.name.getIdentifierInfo()) {
+        continue;
+      }
+      if (!isAssignedAt(i)) return;
+      isNamed = true;
+    }
+    if (!isNamed) return;
+    diagnostics_.report(Diag::InputAssigned, locOf(input.name), {nameOf(input.name)},
+                        {Mend::insertBefore(locOf(input.first), "out ")});
+  }
+
+  /// `x = ` or `x.y = ` at the beginning of a statement.
+  bool isAssignedAt(std::size_t at) const {
+    const Token& before = cursor_.peek(at - 1);
+    if (!before.isOneOf(tok::l_brace, tok::r_brace, tok::semi, tok::r_paren, tok::kw_else)) return false;
+    while (cursor_.peek(at + 1).is(tok::period)) at += 2;
+    return cursor_.peek(at + 1).is(tok::equal);
+  }
+
+  void copyDeclaration() { copyNamed(); }
+
+  /// Any other declaration: copied, but for the parameter list of a function, whose name it gives.
+  std::optional<Token> copyNamed() {
+    bool initializer = false;
+    bool record = false;
+    std::optional<Token> function;
+    while (!cursor_.at(tok::eof)) {
+      const Token& token = cursor_.peek();
+      if (token.isOneOf(tok::semi, tok::r_brace)) {
+        copyToken();
+        return function;
+      }
+      initializer = initializer || token.is(tok::equal) || isValueAhead();
+      if (token.isOneOf(tok::kw_struct, tok::kw_class, tok::kw_union, tok::kw_enum)) record = true;
+      if (token.is(tok::l_brace)) {
+        copyBraces();
+        if (!initializer && (function || !record)) return function;
+        continue;
+      }
+      if (token.is(tok::l_paren) && !initializer && !function && !out_.empty() &&
+          out_.back().is(tok::identifier)) {
+        function = out_.back();
+        const std::vector<Token> declared = cursor_.takeParenthesized();
+        if (declared.empty()) {
+          diagnostics_.report(Diag::UnclosedParameters, locOf(*function), {nameOf(*function)});
+          return function;
+        }
+        ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, out_);
+        const std::vector<Token> edited = parameters.edit(declared, FunctionKind::Helper);
+        out_.insert(out_.end(), edited.begin(), edited.end());
+        if (cursor_.at(tok::l_brace))
+          refuseCommaIndices(cursor_.peekBraced(), parameters.indexed(), diagnostics_);
+        continue;
+      }
+      copyToken();
+    }
+    return function;
+  }
+
+  /// Behind `const float2 a`, whose parentheses the constructors made a value.
+  bool isValueAhead() const { return out_.size() > 1 && out_[out_.size() - 2].is(tok::equal); }
+
+  /// The constants that the parameters gave stand first in the body, where a template's own types are known.
+  void copyBody(const std::vector<Token>& constants) {
+    copyToken();
+    out_.insert(out_.end(), constants.begin(), constants.end());
+    for (int depth = 1; depth > 0 && !cursor_.at(tok::eof); copyToken()) {
+      checkInner();
+      if (cursor_.at(tok::l_brace)) ++depth;
+      if (cursor_.at(tok::r_brace)) --depth;
+    }
+  }
+
+  void copyBraces() {
+    int depth = 0;
+    do {
+      checkInner();
+      if (cursor_.at(tok::l_brace)) ++depth;
+      if (cursor_.at(tok::r_brace)) --depth;
+      copyToken();
+    } while (depth > 0 && !cursor_.at(tok::eof));
+  }
+
+  /// In a body or a struct, `stream float a<n>` is no word for Clang, and neither is Brook's `indexof a`.
+  void checkInner() {
+    checkCast();
+    checkOperator("indexof");
+    checkOperator("extentof");
+    const bool starts = out_.back().isOneOf(tok::l_brace, tok::r_brace, tok::semi);
+    const bool names = cursor_.peek(2).is(tok::identifier) && cursor_.peek(3).is(tok::less);
+    if (starts && names && atDeclarationWord("stream")) {
+      diagnostics_.report(Diag::StreamInside, locOf(cursor_.peek()), {nameOf(cursor_.peek(2))});
+    }
+  }
+
+  /// OpenCL's `(float4)(1, 2, 3, 4)`, which C++ takes for a cast of the last.
+  void checkCast() {
+    const Token& type = cursor_.peek(1);
+    if (!cursor_.at(tok::l_paren) || type.isNot(tok::identifier)) return;
+    if (cursor_.peek(2).isNot(tok::r_paren) || cursor_.peek(3).isNot(tok::l_paren)) return;
+    if (!isVectorTypeName(nameOf(type))) return;
+    int depth = 0;
+    for (std::size_t i = 3; cursor_.peek(i).isNot(tok::eof); ++i) {
+      const Token& token = cursor_.peek(i);
+      if (token.isOneOf(tok::l_paren, tok::l_square, tok::l_brace)) ++depth;
+      if (token.isOneOf(tok::r_paren, tok::r_square, tok::r_brace) && --depth == 0) return;
+      if (token.isNot(tok::comma) || depth != 1) continue;
+      return diagnostics_.report(
+          Diag::VectorCast, locOf(type), {nameOf(type)},
+          {Mend::replace(locOf(cursor_.peek()), locOf(cursor_.peek(2)), nameOf(type))});
+    }
+  }
+
+  void checkOperator(llvm::StringRef word) {
+    const Token& operand = cursor_.peek(1);
+    if (!atWord(word) || operand.isNot(tok::identifier)) return;
+    diagnostics_.report(Diag::IndexOfWithout, locOf(cursor_.peek()), {word.str(), nameOf(operand)},
+                        {Mend::replace(locOf(cursor_.peek()), locOf(operand),
+                                       fmt::format("{}({})", word.str(), nameOf(operand)))});
+  }
+
+  void copyToken() { constructors_.copy(cursor_, out_); }
+
+  std::string signature(const Token& start, const std::vector<Token>& head,
+                        const std::vector<Token>& declared) {
+    std::string text = preprocessor_.getSpelling(start);
+    for (const std::vector<Token>* part : {&head, &declared}) {
+      for (const Token& token : *part) {
+        if (token.hasLeadingSpace() || token.isAtStartOfLine()) text += ' ';
+        text += preprocessor_.getSpelling(token);
+      }
+    }
+    return text;
+  }
+
+  clang::Preprocessor& preprocessor_;
+  Diagnostics& diagnostics_;
+  TokenCursor cursor_;
+  ConstructorEditor constructors_;
+  std::vector<Token> out_;
+  DeclarationSyntax syntax_;
+  int constants_ = 0;
+};
+
+/// `a<b<c<d`: Clang tries each `<` as a bracket and as an operator, so that each doubles the time.
+void refuseDeepAngles(const std::vector<Token>& tokens, Diagnostics& diagnostics) {
+  constexpr int deepest = 12;
+  int depth = 0;
+  for (std::size_t i = 1; i < tokens.size(); ++i) {
+    if (tokens[i].is(tok::less) && tokens[i - 1].is(tok::identifier)) {
+      if (++depth <= deepest) continue;
+      return diagnostics.report(Diag::NestedTooDeep, locOf(tokens[i]), {std::to_string(deepest)});
+    }
+    if (tokens[i].isNot(tok::identifier)) depth = 0;
+  }
+}
+
+}  // namespace
+
+EditedTokens editTokens(const std::vector<Token>& tokens, clang::Preprocessor& preprocessor,
+                        Diagnostics& diagnostics) {
+  refuseDeepAngles(tokens, diagnostics);
+  return Editor(tokens, preprocessor, diagnostics).run();
+}
+
+}  // namespace skc::frontend

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: MIT
+#include "glsl/expressions.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "analysis/stream_uses.hpp"
+#include "glsl/doubles.hpp"
+#include "glsl/float_intrinsics.hpp"
+#include "glsl/partial_operations.hpp"
+#include "ir/print.hpp"
+#include "support/overloaded.hpp"
+#include "support/text.hpp"
+
+namespace skc::emit {
+namespace {
+
+using namespace ir;
+
+struct Parts {
+  std::string text;
+  Precedence precedence = Precedence::Primary;
+};
+
+Parts signedText(std::string text) {
+  const bool isNegative = text.front() == '-';
+  return {std::move(text), isNegative ? Precedence::Unary : Precedence::Primary};
+}
+
+/// True for large numbers that say more in hexadecimal: 0x7f800000, 0x00ffffff.
+bool isBitPattern(std::uint32_t bits) {
+  const std::uint32_t low = bits & 0xffffU;
+  return bits > 0xffffU && (low == 0 || low == 0xffffU);
+}
+
+Parts literalText(Type type, std::uint32_t bits) {
+  const Scalar scalar = carrierOf(type.scalar);
+  if (scalar == Scalar::Bool) return {bits != 0 ? "true" : "false"};
+  if (scalar == Scalar::Int) {
+    const auto value = static_cast<std::int32_t>(bits);
+    // GLSL has no negative literals, and 2147483648 is no int
+    if (value == std::numeric_limits<std::int32_t>::min()) return {"-2147483647 - 1", Precedence::Additive};
+    if (isBitPattern(bits) && value > 0) return {fmt::format("0x{:08x}", bits)};
+    return signedText(std::to_string(value));
+  }
+  if (scalar == Scalar::Uint) {
+    return {isBitPattern(bits) ? fmt::format("0x{:08x}u", bits) : fmt::format("{}u", bits)};
+  }
+  const float value = std::bit_cast<float>(bits);
+  if (!std::isfinite(value)) return {fmt::format("uintBitsToFloat(0x{:08x}u)", bits)};
+  return signedText(shortestFloat(value));
+}
+
+/// The built-in that compares vectors; empty for other operators.
+std::string_view comparison(BinaryOp op) {
+  switch (op) {
+    case BinaryOp::Less: return "lessThan";
+    case BinaryOp::LessEqual: return "lessThanEqual";
+    case BinaryOp::Greater: return "greaterThan";
+    case BinaryOp::GreaterEqual: return "greaterThanEqual";
+    case BinaryOp::Equal: return "equal";
+    case BinaryOp::NotEqual: return "notEqual";
+    case BinaryOp::Add:
+    case BinaryOp::Sub:
+    case BinaryOp::Mul:
+    case BinaryOp::Div:
+    case BinaryOp::Rem:
+    case BinaryOp::BitAnd:
+    case BinaryOp::BitOr:
+    case BinaryOp::BitXor:
+    case BinaryOp::ShiftLeft:
+    case BinaryOp::ShiftRight:
+    case BinaryOp::LogicalAnd:
+    case BinaryOp::LogicalOr: break;
+  }
+  return {};
+}
+
+bool isNonNegative(const Expr& expr) {
+  const auto* n = std::get_if<Literal>(&expr.node);
+  return n != nullptr && static_cast<std::int32_t>(n->bits) >= 0;
+}
+
+/// The component of a vector that an index names, if that is known.
+std::optional<std::uint32_t> knownComponent(const Index& n) {
+  const auto* literal = std::get_if<Literal>(&n.index->node);
+  return literal != nullptr && literal->bits < n.base->type.width ? std::optional(literal->bits)
+                                                                  : std::nullopt;
+}
+
+/// True if GLSL can assign to the text of a place. Components of a vector of doubles are members of a
+/// struct: one of them that is known is a place, several or a computed one are not.
+bool isGlslPlace(const Expr& place) {
+  if (const auto* n = std::get_if<Swizzle>(&place.node)) {
+    return (!place.type.isDouble() || place.type.isScalar()) && isGlslPlace(*n->base);
+  }
+  if (const auto* n = std::get_if<Index>(&place.node)) {
+    return (!n->base->type.isDouble() || knownComponent(*n)) && isGlslPlace(*n->base);
+  }
+  if (const auto* n = std::get_if<Member>(&place.node)) return isGlslPlace(*n->base);
+  return true;
+}
+
+class GlslExpr {
+ public:
+  GlslExpr(const GlslContext& context, std::optional<FunctionId> function)
+      : context_(context), function_(function) {}
+
+  std::string text(const Expr& expr, Precedence around = Precedence::Lowest) const {
+    const Parts whole = parts(expr);
+    return whole.precedence < around ? "(" + whole.text + ")" : whole.text;
+  }
+
+  /// Where a place is none in GLSL, what it is a part of becomes that with the part replaced.
+  std::string assigned(const Expr& place, const std::string& value) const {
+    if (isGlslPlace(place)) return text(place) + " = " + value;
+    if (const auto* n = std::get_if<Swizzle>(&place.node)) {
+      return assigned(*n->base,
+                      doubleWith(context_.polyfills, n->base->type, n->components, text(*n->base), value));
+    }
+    const auto& n = std::get<Index>(place.node);
+    return assigned(*n.base, doubleWithComponent(context_.polyfills, n.base->type, text(*n.base),
+                                                 intText(*n.index), value));
+  }
+
+  /// "place += value", where GLSL has that for these operands.
+  std::string combined(BinaryOp op, const Expr& place, const Expr& value) const {
+    const bool isCall = place.type.isDouble() || takesQuotient(op, place, value);
+    if (!isCall && !mayShiftTooFar(context_.module, op, value)) {
+      return fmt::format("{} {}= {}", text(place), spelling(op), text(value));
+    }
+    return assigned(place, binary(place.type, op, place, value).text);
+  }
+
+ private:
+  Parts parts(const Expr& expr) const {
+    return match(expr.node, [&](const auto& node) { return print(expr.type, node); });
+  }
+
+  Parts print(Type type, const Literal& n) const {
+    return type.isDouble() ? Parts{doubleLiteral(n)} : literalText(type, n.bits);
+  }
+  Parts print(Type, const VarRef& n) const { return {context_.names.variable(*function_, n.var)}; }
+  Parts print(Type, const ConstantRef& n) const { return {context_.names.constant(n.constant)}; }
+  Parts print(Type type, const Unary& n) const {
+    if (type.isDouble()) return {doubleNegated(context_.polyfills, type, text(*n.operand))};
+    if (n.op == UnaryOp::LogicalNot && type.isVector()) return {"not(" + text(*n.operand) + ")"};
+    return {std::string(spelling(n.op)) + text(*n.operand, Precedence::Primary), Precedence::Unary};
+  }
+  Parts print(Type type, const Binary& n) const { return binary(type, n.op, *n.lhs, *n.rhs); }
+  Parts print(Type type, const Select& n) const {
+    if (n.cond->type.isVector()) {
+      if (type.carrier().isFloat())
+        return {fmt::format("mix({}, {}, {})", text(*n.no), text(*n.yes), text(*n.cond))};
+      return {fmt::format("{}({}, {}, {})", context_.polyfills.select(type), text(*n.cond), text(*n.yes),
+                          text(*n.no))};
+    }
+    return {fmt::format("{} ? {} : {}", text(*n.cond, Precedence::LogicalOr),
+                        text(*n.yes, Precedence::LogicalOr), text(*n.no, Precedence::Conditional)),
+            Precedence::Conditional};
+  }
+  Parts print(Type type, const Convert& n) const {
+    if (type.isDouble() || n.operand->type.isDouble()) {
+      return {doubleConverted(context_.polyfills, n.operand->type, type, text(*n.operand))};
+    }
+    const bool isCarried = carrierOf(n.operand->type.scalar) == carrierOf(type.scalar);
+    if (isCarried && !type.isNarrow()) return parts(*n.operand);
+    const std::string value = text(*n.operand);
+    const std::string conversion = mayNotHold(context_.module, type, *n.operand)
+                                       ? context_.polyfills.truncated(type)
+                                       : context_.types.glsl(type);
+    const std::string carried = isCarried ? value : conversion + "(" + value + ")";
+    return {type.isNarrow() ? context_.polyfills.quantize(type) + "(" + carried + ")" : carried};
+  }
+  Parts print(Type type, const Construct& n) const {
+    if (type.isDouble()) return {doubleVector(context_.polyfills, type, typesOf(n.args), texts(n.args))};
+    return {context_.types.glsl(type) + list(n.args)};
+  }
+  Parts print(Type type, const Swizzle& n) const {
+    if (type.isDouble() && type.isVector()) {
+      return {doubleSwizzle(context_.polyfills, n.base->type, n.components, text(*n.base))};
+    }
+    std::string components;
+    for (std::uint8_t component : n.components) components += "xyzw"[component];
+    return {text(*n.base, Precedence::Primary) + "." + components};
+  }
+  Parts print(Type, const Member& n) const {
+    return {text(*n.base, Precedence::Primary) + "." + context_.types.fieldName(n.base->type.index, n.field)};
+  }
+  Parts print(Type, const Index& n) const {
+    if (n.base->type.isDouble()) return doubleIndex(n);
+    return {text(*n.base, Precedence::Primary) + "[" + indexText(n) + "]"};
+  }
+  Parts print(Type, const Call& n) const {
+    const std::string_view prefix = context_.module.functions[n.callee].table ? "sk_table_" : "";
+    return {fmt::format("{}{}{}", prefix, context_.names.function(n.callee), list(n.args))};
+  }
+  Parts print(Type, const IntrinsicCall& n) const {
+    const IntrinsicRow& entry = row(n.intrinsic);
+    const Type argument = n.args[0]->type;
+    if (argument.isDouble()) {
+      return {doubleIntrinsic(context_.polyfills, n.intrinsic, typesOf(n.args), texts(n.args))};
+    }
+    if (const auto defined = definedIntrinsic(n)) return definedCall(*defined, n.args);
+    context_.polyfills.intrinsic(n.intrinsic, argument);
+    const bool usesVectorColumn = argument.isVector() && !entry.glslVector.empty();
+    const std::string_view pattern = usesVectorColumn ? entry.glslVector : entry.glsl;
+    if (pattern.find('$') == std::string_view::npos) return {std::string(pattern) + list(n.args)};
+    if (pattern == "$0") return parts(*n.args[0]);
+    return fromPattern(withTypes(pattern, argument), n.args);
+  }
+  Parts print(Type, const GatherRead& n) const {
+    return {call("sk_at", n.stream) + "(" + text(*n.index) + ")"};
+  }
+  Parts print(Type, const NeighborRead& n) const {
+    return {call("sk_near", n.stream) + "(" + text(*n.offset) + ")"};
+  }
+  Parts print(Type, const Sample& n) const {
+    return {call("sk_sample", n.stream) + "(" + text(*n.position) + ")"};
+  }
+  Parts print(Type, const IndexOf& n) const {
+    const bool isInput = n.stream.space == StreamRef::Space::KernelParameter &&
+                         context_.kernel.params[n.stream.id].role == ParamRole::Input;
+    return {(isInput ? call("sk_index", n.stream) : "sk_index") + "()"};
+  }
+  Parts print(Type, const ExtentOf& n) const { return {call("sk_extent", n.stream) + "()"}; }
+
+  Parts binary(Type type, BinaryOp op, const Expr& lhs, const Expr& rhs) const {
+    if (lhs.type.isDouble()) {
+      return {doubleBinary(context_.polyfills, op, lhs.type, rhs.type, text(lhs), text(rhs))};
+    }
+    const bool isVector = lhs.type.isVector();
+    if (isVector && !comparison(op).empty()) return {fmt::format("{}{}", comparison(op), pair(lhs, rhs))};
+    if (isVector && (op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr)) {
+      return {context_.polyfills.logical(op, type.width) + pair(lhs, rhs)};
+    }
+    if (takesQuotient(op, lhs, rhs)) {
+      return {context_.polyfills.quotient(op, lhs.type, rhs.type) + pair(lhs, rhs)};
+    }
+    const bool isMatrixProduct = op == BinaryOp::Mul && lhs.type.isMatrix() && !rhs.type.isScalar();
+    // GLSL's columns hold our rows: its matrices are the transposes of ours, and so are its products
+    const Expr& left = isMatrixProduct ? rhs : lhs;
+    const Expr& right = isMatrixProduct ? lhs : rhs;
+    const Precedence precedence = precedenceOf(op);
+    const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
+    const std::string second =
+        mayShiftTooFar(context_.module, op, rhs) ? "(" + shiftCount(rhs) + ")" : operand(op, right, tighter);
+    return {fmt::format("{} {} {}", operand(op, left, precedence), spelling(op), second), precedence};
+  }
+
+  /// Whether a quotient or remainder is a call. C++'s % of ints is no operator of GLSL's for negative ones.
+  bool takesQuotient(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
+    const bool isSigned = op == BinaryOp::Rem && lhs.type.scalar == Scalar::Int;
+    return mayDivideBadly(context_.module, op, lhs, rhs) ||
+           (isSigned && !(isNonNegative(lhs) && isNonNegative(rhs)));
+  }
+
+  /// The count modulo 32.
+  std::string shiftCount(const Expr& count) const {
+    const bool isUint = carrierOf(count.type.scalar) == Scalar::Uint;
+    return operand(BinaryOp::BitAnd, count, Precedence::BitAnd) + (isUint ? " & 31u" : " & 31");
+  }
+
+  /// A function of the assembler's, which takes arguments of one width.
+  Parts definedCall(sk::program::Intrinsic intrinsic, const std::vector<ExprPtr>& args) const {
+    std::uint8_t width = 1;
+    for (const ExprPtr& arg : args) width = std::max(width, arg->type.width);
+    std::vector<std::string> list;
+    for (const ExprPtr& arg : args) {
+      const bool isNarrower = arg->type.width < width;
+      list.push_back(isNarrower ? fmt::format("vec{}({})", width, text(*arg)) : text(*arg));
+    }
+    return {fmt::format("{}({})", context_.polyfills.defined(intrinsic, width), join(list, ", "))};
+  }
+
+  /// "sk_at_u"; the domain has the shape of the first output, where there is one.
+  std::string call(std::string_view function, StreamRef stream) const {
+    const bool isDomain = stream.space == StreamRef::Space::Domain;
+    const std::uint32_t param = isDomain ? analysis::domainParam(context_.kernel) : stream.id;
+    if (param == context_.kernel.params.size()) return std::string(function);
+    return fmt::format("{}_{}", function, context_.names.symbol(param));
+  }
+
+  /// An index outside an array takes the nearest element. That must be so in the text even where the index
+  /// cannot be outside: Mesa (22.3, llvmpipe) looks an array's index up only when it loads or stores, from the
+  /// register that it gave to a loop's variable, and by then may have counted that on: `a[i] = a[i + 1]` stores
+  /// to a[i + 1]. A computed index has a register of its own.
+  std::string indexText(const Index& n) const {
+    const std::string index = text(*n.index);
+    const Type base = n.base->type;
+    const bool isArray = base.kind == Type::Kind::Array;
+    const std::uint32_t last = (isArray ? context_.module.arrays[base.index].length : base.width) - 1;
+    const bool isUint = n.index->type.scalar == Scalar::Uint;
+    if (const auto* literal = std::get_if<Literal>(&n.index->node)) {  // one outside is an error in GLSL
+      if (literal->bits <= last) return index;
+      const bool isBelow = !isUint && static_cast<std::int32_t>(literal->bits) < 0;
+      return fmt::format("{}{}", isBelow ? 0 : last, isUint ? "u" : "");
+    }
+    if (isUint) return fmt::format("min({}, {}u)", index, last);
+    return fmt::format("clamp({}, 0, {})", index, last);
+  }
+
+  /// A component of a vector of doubles, which is no array.
+  Parts doubleIndex(const Index& n) const {
+    if (const auto component = knownComponent(n)) {
+      return {text(*n.base, Precedence::Primary) + "." + "xyzw"[*component]};
+    }
+    return {doubleComponent(context_.polyfills, n.base->type, text(*n.base), intText(*n.index))};
+  }
+
+  std::string intText(const Expr& index) const {
+    return index.type.scalar == Scalar::Int ? text(index) : "int(" + text(index) + ")";
+  }
+
+  std::string operand(BinaryOp outer, const Expr& expr, Precedence around) const {
+    const auto* inner = std::get_if<Binary>(&expr.node);
+    const bool clearer =
+        inner != nullptr && !inner->lhs->type.isVector() && bracketsForClarity(outer, inner->op);
+    return text(expr, clearer ? Precedence::Unary : around);
+  }
+
+  std::string pair(const Expr& a, const Expr& b) const { return "(" + text(a) + ", " + text(b) + ")"; }
+
+  std::vector<std::string> texts(const std::vector<ExprPtr>& items) const {
+    std::vector<std::string> list;
+    for (const ExprPtr& item : items) list.push_back(text(*item));
+    return list;
+  }
+  static std::vector<Type> typesOf(const std::vector<ExprPtr>& items) {
+    std::vector<Type> types;
+    for (const ExprPtr& item : items) types.push_back(item->type);
+    return types;
+  }
+  std::string list(const std::vector<ExprPtr>& items) const { return "(" + join(texts(items), ", ") + ")"; }
+
+  /// "($0 * $1 + $2)" with the arguments put in; the outer brackets go where they are not needed.
+  Parts fromPattern(std::string_view pattern, const std::vector<ExprPtr>& args) const {
+    const bool isBracketed = pattern.front() == '(' && pattern.back() == ')';
+    if (isBracketed) pattern = pattern.substr(1, pattern.size() - 2);
+    std::string result;
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+      if (pattern[i] != '$') {
+        result += pattern[i];
+        continue;
+      }
+      const char before = i == 0 ? ' ' : pattern[i - 1];
+      const char after = i + 2 < pattern.size() ? pattern[i + 2] : ' ';
+      const bool isArgument = before == '(' || after == ')' || after == ',';
+      const Expr& arg = *args[static_cast<std::size_t>(pattern[++i] - '0')];
+      result += text(arg, isArgument ? Precedence::Lowest : Precedence::Unary);
+    }
+    return {result, isBracketed ? Precedence::Conditional : Precedence::Primary};
+  }
+
+  const GlslContext& context_;
+  std::optional<FunctionId> function_;
+};
+
+}  // namespace
+
+std::string glslExpr(const GlslContext& context, std::optional<FunctionId> function, const Expr& expr,
+                     Precedence around) {
+  return GlslExpr(context, function).text(expr, around);
+}
+
+std::string glslAssignment(const GlslContext& context, FunctionId function, const Expr& place,
+                           std::optional<BinaryOp> op, const Expr& value) {
+  const GlslExpr printer(context, function);
+  return op ? printer.combined(*op, place, value) : printer.assigned(place, printer.text(value));
+}
+
+std::string glslAssignment(const GlslContext& context, FunctionId function, const Expr& place,
+                           const std::string& value) {
+  return GlslExpr(context, function).assigned(place, value);
+}
+
+}  // namespace skc::emit

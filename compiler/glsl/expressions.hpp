@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+//
+// Expressions of the IR as GLSL that 3.30 and ESSL 3.00 both accept, with as few brackets as a
+// person would write.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "glsl/kernel_names.hpp"
+#include "glsl/polyfills.hpp"
+#include "glsl/type_names.hpp"
+#include "ir/ir.hpp"
+#include "ir/precedence.hpp"
+
+namespace skc::emit {
+
+/// What the text of an expression depends on, and the polyfills that it asks for.
+struct GlslContext {
+  const ir::Module& module;
+  const TypeNames& types;
+  const KernelNames& names;
+  const ir::Kernel& kernel;
+  Polyfills& polyfills;
+};
+
+/// `function` is the function that the expression stands in; unset for a constant expression.
+std::string glslExpr(const GlslContext& context, std::optional<ir::FunctionId> function, const ir::Expr& expr,
+                     ir::Precedence around = ir::Precedence::Lowest);
+
+/// "place = value", "place += value".
+std::string glslAssignment(const GlslContext& context, ir::FunctionId function, const ir::Expr& place,
+                           std::optional<ir::BinaryOp> op, const ir::Expr& value);
+/// The same for a value that is text.
+std::string glslAssignment(const GlslContext& context, ir::FunctionId function, const ir::Expr& place,
+                           const std::string& value);
+
+}  // namespace skc::emit

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+//
+// The names in one kernel's GLSL body. Those of the .sk file stay wherever GLSL allows them; this is
+// the only place that changes one.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "glsl/type_names.hpp"
+#include "ir/ir.hpp"
+
+namespace skc::emit {
+
+class KernelNames {
+ public:
+  KernelNames(const ir::Module& module, const ir::Kernel& kernel, const TypeNames& types);
+
+  const std::string& function(ir::FunctionId id) const { return functions_.at(id).name; }
+  /// Where a constant is used: its name, or a call where it has to be a function (glsl_constants.hpp).
+  const std::string& constant(ir::ConstantId id) const { return constants_[id]; }
+  const std::string& variable(ir::FunctionId id, ir::VarId var) const {
+    return functions_.at(id).variables[var];
+  }
+  /// program::Parameter::symbol; the name of the entry's variable, too.
+  const std::string& symbol(std::uint32_t param) const { return variable(entry_, param); }
+
+ private:
+  struct FunctionNames {
+    std::string name;
+    std::vector<std::string> variables;
+  };
+
+  ir::FunctionId entry_;
+  std::map<ir::FunctionId, FunctionNames> functions_;
+  std::vector<std::string> constants_;
+};
+
+}  // namespace skc::emit

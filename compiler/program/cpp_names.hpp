@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// Names in the generated C++. Those of the .sk file are C++ already, since Clang has read them; what
+// is left to mind are names that C++ headers put into the global namespace, and our own additions.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ir/ir.hpp"
+#include "program/descriptors.hpp"
+
+namespace skc::emit {
+
+/// The kernels that one callable object stands for: overloads of one name in one namespace.
+struct Callable {
+  std::vector<std::string> scope;
+  std::string object;              ///< "diffuse"
+  std::string type;                ///< "DiffuseKernel"
+  std::vector<std::size_t> units;  ///< into Program::units()
+};
+
+/// In the order of their first kernels.
+std::vector<Callable> callables(const ir::Module& module, const Program& program);
+
+/// A distinct beginning for the names of each unit's descriptors: "diffuse", "grayScott", "sum_2".
+std::vector<std::string> descriptorNames(const ir::Module& module, const Program& program);
+
+/// Likewise for each table of the module: "sk_response".
+std::vector<std::string> tableNames(const ir::Module& module);
+
+/// "gray_scott" gives "GrayScott": words begin after whatever is no letter or digit.
+std::string pascalCase(std::string_view name);
+
+/// "float", "sk::float2", "geometry::Hit"; just "Hit" as seen from namespace geometry.
+std::string cppType(const ir::Module& module, ir::Type type, const std::vector<std::string>& scope = {});
+
+/// True for functions of the C library that its C++ headers declare in the global namespace.
+bool isGlobalCName(std::string_view name);
+
+}  // namespace skc::emit

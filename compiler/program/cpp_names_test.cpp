@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: callables keep the kernel's name where C++ allows it, and overloads share one object.
+#include "program/cpp_names.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "ir/kernel_maker.hpp"
+
+namespace skc::emit {
+namespace {
+
+using namespace ir;
+
+TEST_CASE("names of the C library are known, with their float and long forms") {
+  for (const char* name :
+       {"abs", "exp", "expf", "powl", "index", "y0", "yn", "write", "acos", "trunc", "bsearch"}) {
+    INFO(name);
+    CHECK(isGlobalCName(name));
+  }
+  CHECK_FALSE(isGlobalCName("diffuse"));
+  CHECK_FALSE(isGlobalCName("f"));
+}
+
+void addKernel(Module& module, std::string name, Type type, std::vector<std::string> scope = {}) {
+  KernelMaker k(module, std::move(name));
+  k.kernel().scope = std::move(scope);
+  k.output("r", type);
+  k.finish({});
+}
+
+TEST_CASE("file names become names of types") {
+  CHECK(pascalCase("gray_scott") == "GrayScott");
+  CHECK(pascalCase("my-file.v2") == "MyFileV2");
+  CHECK(pascalCase("2d heat") == "K2dHeat");
+  CHECK(pascalCase("") == "K");
+}
+
+TEST_CASE("objects and their types") {
+  Module module = testModule();
+  module.structs.push_back({"GrayScottKernel", {}, {{"a", floatType}}, {}});
+  addKernel(module, "gray_scott", floatType);
+  addKernel(module, "exp", floatType);
+  addKernel(module, "exp", floatType, {"my"});
+  addKernel(module, "gray_scott", intType);
+  const Program program(module);
+  const std::vector<Callable> list = callables(module, program);
+  REQUIRE(list.size() == 3);
+  CHECK(list[0].object == "gray_scott");
+  CHECK(list[0].type == "GrayScottKernel_2");
+  CHECK(list[0].units == std::vector<std::size_t>{0, 3});
+  CHECK(list[1].object == "exp_");
+  CHECK(list[2].object == "exp");
+  CHECK(descriptorNames(module, program) ==
+        std::vector<std::string>{"grayScott", "exp", "exp_2", "grayScott_2"});
+}
+
+TEST_CASE("types as C++ writes them") {
+  Module module = testModule();
+  module.structs.push_back({"Hit", {"geometry", "rays"}, {{"t", floatType}}, {}});
+  CHECK(cppType(module, floatType) == "float");
+  CHECK(cppType(module, Type::of(Scalar::Uint)) == "unsigned");
+  CHECK(cppType(module, Type::of(Scalar::Uint, 3)) == "sk::uint3");
+  CHECK(cppType(module, Type::structType(0)) == "geometry::rays::Hit");
+}
+
+}  // namespace
+}  // namespace skc::emit

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+//
+// The callables' functions in FILE.sk.cpp, which hand their arguments to the runtime.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "ir/print.hpp"
+#include "program/stub_parts.hpp"
+#include "support/text.hpp"
+
+namespace skc::emit {
+namespace {
+
+using namespace ir;
+
+class FunctionWriter {
+ public:
+  FunctionWriter(const Module& module, const Program& program)
+      : module_(module), program_(program), names_(descriptorNames(module, program)) {}
+
+  std::string text(const std::vector<Callable>& callables) {
+    for (const Callable& callable : callables) {
+      for (std::size_t unit : callable.units) {
+        for (Form form : formsOf(kernelOf(unit))) function(callable, unit, form);
+      }
+    }
+    return std::move(text_);
+  }
+
+ private:
+  void function(const Callable& callable, std::size_t unit, Form form) {
+    const Kernel& kernel = kernelOf(unit);
+    const std::string head = fmt::format("{} {}{}::operator()(", resultType(module_, kernel, form, {}),
+                                         qualifier(callable.scope), callable.type);
+    text_ += "\n" + wrapLine(head + parameterList(module_, kernel, form, {}) + " {", 100, head.size()) + "\n";
+    switch (form) {
+      case Form::Run: run(kernel, unit); break;
+      case Form::ReduceToValue: reduceToValue(kernel, unit); break;
+      case Form::ReduceToStream:
+        text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {}, this->options);\n", names_[unit],
+                             arguments(kernel, form));
+    }
+    text_ += "}\n";
+  }
+
+  void run(const Kernel& kernel, std::size_t unit) {
+    text_ += fmt::format("  sk::run(sk::program::{}Kernel, {}, this->options);\n", names_[unit],
+                         arguments(kernel, Form::Run));
+  }
+
+  /// Writes the array of arguments, and gives its name.
+  std::string arguments(const Kernel& kernel, Form form) {
+    std::vector<std::string> items;
+    for (const KernelParam& param : kernel.params) {
+      const bool isReturned = param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
+      items.push_back(isReturned ? "{}" : argument(param));
+    }
+    const std::string list = localName(kernel, "arguments");
+    const std::string head = fmt::format("  const sk::Argument {}[] = {{", list);
+    text_ += wrapLine(head + join(items, ", ") + "};", 100, head.size()) + "\n";
+    return list;
+  }
+
+  static std::string argument(const KernelParam& param) {
+    if (param.role == ParamRole::Iterator) return fmt::format("sk::argumentOf({})", param.name);
+    if (param.type.kind == Type::Kind::Array) return fmt::format("{{.value = {}.data()}}", param.name);
+    if (param.role == ParamRole::Uniform || param.role == ParamRole::Spec) {
+      return fmt::format("{{.value = &{}}}", param.name);
+    }
+    return param.name + ".argument()";
+  }
+
+  void reduceToValue(const Kernel& kernel, std::size_t unit) {
+    const auto count =
+        std::count_if(kernel.params.begin(), kernel.params.end(),
+                      [](const KernelParam& param) { return param.role == ParamRole::Accumulator; });
+    const std::string value = localName(kernel, "value");
+    std::vector<std::string> places;
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      places.push_back(count == 1 ? "&" + value : fmt::format("&std::get<{}>({})", i, value));
+    }
+    text_ += fmt::format("  {} {};\n", resultType(module_, kernel, Form::ReduceToValue, {}), value);
+    const std::string list = arguments(kernel, Form::ReduceToValue);
+    const std::string results = localName(kernel, "results");
+    const std::string head = fmt::format("  void* const {}[] = {{", results);
+    text_ += wrapLine(head + join(places, ", ") + "};", 100, head.size()) + "\n";
+    text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {}, {}, this->options);\n  return {};\n",
+                         names_[unit], list, results, value);
+  }
+
+  /// A local beside the parameters.
+  static std::string localName(const Kernel& kernel, std::string name) {
+    const auto isTaken = [&] {
+      return std::any_of(kernel.params.begin(), kernel.params.end(),
+                         [&](const KernelParam& param) { return param.name == name; });
+    };
+    while (isTaken()) name += '_';
+    return name;
+  }
+
+  const Kernel& kernelOf(std::size_t unit) const { return module_.kernels[program_.units()[unit].id]; }
+
+  const Module& module_;
+  const Program& program_;
+  std::vector<std::string> names_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string stubFunctions(const Module& module, const Program& program,
+                          const std::vector<Callable>& callables) {
+  return FunctionWriter(module, program).text(callables);
+}
+
+}  // namespace skc::emit

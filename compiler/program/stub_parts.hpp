@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// Private to emitStub: the two files, and what both of them print alike.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "program/cpp_names.hpp"
+#include "program/native_symbols.hpp"
+#include "program/stream_structs.hpp"
+#include "program/stub.hpp"
+
+namespace skc::emit {
+
+/// What a stub declares beside the structs that kernels take.
+struct StubParts {
+  std::vector<Callable> callables;
+  std::vector<StreamStruct> streams;
+  std::string_view fileName;
+  StubOptions options;
+};
+
+std::string stubHeader(const ir::Module& module, const Program& program, const StubParts& parts);
+/// Adds the native code that the descriptors refer to.
+std::string stubSource(const ir::Module& module, const Program& program, const StubParts& parts,
+                       NativeSymbols& symbols);
+
+/// The functions of the callable objects, for the source.
+std::string stubFunctions(const ir::Module& module, const Program& program,
+                          const std::vector<Callable>& callables);
+
+/// Names of the enumerators of sk::program::Scalar, in their order.
+inline constexpr std::string_view scalarNames[] = {"Bool",   "Int",    "Uint",    "Float",  "Double",
+                                                   "Half",   "Char",   "Uchar",   "Short",  "Ushort",
+                                                   "Unorm8", "Snorm8", "Unorm16", "Snorm16"};
+
+/// A function of a callable: a kernel has one, a reduce one that returns a value and one that fills a
+/// stream.
+enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream };
+std::vector<Form> formsOf(const ir::Kernel& kernel);
+
+/// How the types of a function are written inside namespace `scope`.
+std::string resultType(const ir::Module& module, const ir::Kernel& kernel, Form form,
+                       const std::vector<std::string>& scope);
+/// What follows the opening bracket: "float k, const sk::In<float>& u, const sk::Out<float>& v) const".
+std::string parameterList(const ir::Module& module, const ir::Kernel& kernel, Form form,
+                          const std::vector<std::string>& scope);
+
+}  // namespace skc::emit

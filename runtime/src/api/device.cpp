@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+//
+// Devices: what the user and the environment ask for, and the public face of DeviceState.
+#include "sk/device.hpp"
+
+#include <array>
+#include <charconv>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "assemble/assemble.hpp"
+#include "assemble/elements/storage.hpp"
+#include "device/stream_state.hpp"
+#include "gl_device/gl_device.hpp"
+#include "native/native_device.hpp"
+#include "probe/probe.hpp"
+#include "sk/error.hpp"
+#include "sk/linked_file.hpp"
+#include "support/checked_size.hpp"
+
+namespace sk {
+
+namespace {
+
+/// What the option says, else what the environment says.
+std::string chosen(const std::string& option, const char* variable) {
+  const char* value = std::getenv(variable);
+  return !option.empty() || value == nullptr ? option : value;
+}
+
+std::optional<gl::Api> apiOf(const std::string& profile) {
+  if (profile.empty()) {
+    return std::nullopt;
+  }
+  if (const assemble::Profile* found = assemble::findProfile(profile)) {
+    return found->es ? gl::Api::Es : gl::Api::Gl;
+  }
+  std::string known;
+  for (const assemble::Profile& row : assemble::profiles()) {
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", row.name);
+  }
+  throw Error(
+      fmt::format("there is no profile '{}'; choose one of {} (option or SK_PROFILE)", profile, known),
+      Error::Kind::Device);
+}
+
+/// What programs of a profile run as; where none is named, what is faster.
+Target targetOf(const std::string& profile) {
+  const assemble::Profile* found = assemble::findProfile(profile);
+  if (found == nullptr) return Target::Default;
+  return found->stage == assemble::Stage::Compute ? Target::Compute : Target::Fragment;
+}
+
+/// Whether the device is to keep to what its profile guarantees.
+bool wantsGuaranteed(const std::string& limits) {
+  if (!limits.empty() && limits != "device" && limits != "guaranteed") {
+    throw Error(
+        fmt::format("there are no limits '{}'; choose device or guaranteed (option or SK_LIMITS)", limits));
+  }
+  return limits == "guaranteed";
+}
+
+/// The option, else what the environment says. Too few texels would not hold the results of a device's own passes.
+std::int32_t textureLimitOf(std::int32_t option) {
+  constexpr int least = 4;
+  const std::string text = option != 0 ? std::to_string(option) : chosen({}, "SK_TEXTURE_LIMIT");
+  std::int32_t limit = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), limit);
+  const bool isNumber = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+  if (!text.empty() && (!isNumber || limit < least)) {
+    throw Error(
+        fmt::format("the texture limit '{}' is no number of texels from {} on (option or SK_TEXTURE_LIMIT)",
+                    text, least));
+  }
+  return limit;
+}
+
+/// What doubles are to be. Where limits are what the profile guarantees, it guarantees no double either.
+bool wantsPairs(const std::string& doubles, bool guaranteedLimits) {
+  if (!doubles.empty() && doubles != "native" && doubles != "pairs") {
+    throw Error(
+        fmt::format("there are no doubles '{}'; choose native or pairs (option or SK_DOUBLES)", doubles));
+  }
+  return doubles.empty() ? guaranteedLimits : doubles == "pairs";
+}
+
+/// The barrier that is asked for, if any.
+std::optional<Barrier> barrierOf(const std::string& name) {
+  if (name.empty()) {
+    return std::nullopt;
+  }
+  for (const auto& [barrier, known] : barrierNames) {
+    if (name == known) {
+      return barrier;
+    }
+  }
+  throw Error(
+      fmt::format("there is no barrier '{}'; choose precise, xor or none (option or SK_BARRIER)", name));
+}
+
+DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles,
+                        const std::string& barrier, const std::string& profile, bool sharesContext) {
+  const bool guaranteedLimits = wantsGuaranteed(limits);
+  return {textureLimitOf(textureLimit), guaranteedLimits,  wantsPairs(doubles, guaranteedLimits),
+          barrierOf(barrier),           targetOf(profile), sharesContext};
+}
+
+/// A device with the choices of a file and with a trace, if they are named.
+detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const std::string& file) {
+  const std::string name = chosen(file, "SK_CONFIG");
+  if (!name.empty()) state->configuration = Configuration(name);
+  const std::string trace = chosen({}, "SK_TRACE");
+  if (!trace.empty()) state->startTrace(trace);
+  return detail::DeviceOwner(state.release());
+}
+
+constexpr std::array<std::pair<std::string_view, RealType>, 3> nativeDevices = {
+    {{"native", RealType::Float}, {"reference", RealType::Double}, {"reference:quad", RealType::Quad}}};
+
+/// The options, with what the environment says where they say nothing.
+DeviceOptions withEnvironment(DeviceOptions options) {
+  options.device = chosen(options.device, "SK_DEVICE");
+  options.profile = chosen(options.profile, "SK_PROFILE");
+  options.textureLimit = textureLimitOf(options.textureLimit);
+  options.limits = chosen(options.limits, "SK_LIMITS");
+  options.doubles = chosen(options.doubles, "SK_DOUBLES");
+  options.barrier = chosen(options.barrier, "SK_BARRIER");
+  return options;
+}
+
+/// Whether no device is named and nothing is asked for that devices with GL alone have.
+bool mayBeAny(const DeviceOptions& options) {
+  return options.device.empty() && options.profile.empty() && options.textureLimit == 0 &&
+         options.limits.empty() && options.doubles.empty() && options.barrier.empty() &&
+         !options.sharesContext;
+}
+
+std::unique_ptr<DeviceState> openGl(const DeviceOptions& options, gl::OpenedContext context) {
+  const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles,
+                                          options.barrier, options.profile, options.sharesContext);
+  return std::make_unique<GlDevice>(std::move(context), choices);
+}
+
+/// The fastest device that has code of every .sk file: a GPU, else native code, else a software renderer.
+std::unique_ptr<DeviceState> openBest(const DeviceOptions& options) {
+  const program::LinkedFile::Code code = program::LinkedFile::ofAll();
+  if (!code.native) return openGl(options, gl::openContext({}));
+  std::optional<gl::OpenedContext> gpu = code.glsl ? gl::findGpu() : std::nullopt;
+  if (gpu) return openGl(options, std::move(*gpu));
+  return std::make_unique<NativeDevice>(RealType::Float);
+}
+
+std::unique_ptr<DeviceState> openState(const DeviceOptions& options) {
+  for (const auto& [name, real] : nativeDevices) {
+    if (options.device == name) return std::make_unique<NativeDevice>(real);
+  }
+  if (mayBeAny(options)) return openBest(options);
+  return openGl(options, gl::openContext({options.device, apiOf(options.profile)}));
+}
+
+detail::DeviceOwner open(const DeviceOptions& options) {
+  return configured(openState(withEnvironment(options)), options.configuration);
+}
+
+}  // namespace
+
+void detail::DeviceDeleter::operator()(DeviceState* state) const noexcept { delete state; }
+
+Device::Device() : Device(DeviceOptions{}) {}
+Device::Device(std::string_view device) : Device(DeviceOptions{.device = std::string(device)}) {}
+Device::Device(const DeviceOptions& options) : state_(open(options)) {}
+Device::Device(detail::DeviceOwner state) : state_(std::move(state)) {}
+Device::~Device() = default;
+Device::Device(Device&& other) noexcept = default;
+Device& Device::operator=(Device&& other) noexcept = default;
+
+Device Device::adopt(const DeviceOptions& options) {
+  const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles,
+                                          options.barrier, options.profile, true);
+  return Device(configured(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices),
+                           options.configuration));
+}
+
+Device Device::native() { return Device(configured(std::make_unique<NativeDevice>(RealType::Float), {})); }
+Device Device::reference(Reference kind) {
+  const RealType real = kind == Reference::Double ? RealType::Double : RealType::Quad;
+  return Device(configured(std::make_unique<NativeDevice>(real), {}));
+}
+
+DeviceState& Device::state() const {
+  if (!state_) {
+    throw Error("the device was moved from", Error::Kind::Lost);
+  }
+  return *state_;
+}
+
+detail::StreamOwner Device::createStream(const program::Element& element, const Shape& shape, Storage storage,
+                                         std::string_view name) {
+  const bool holdsFloats = assemble::holdsFloats(element);
+  if (storage == Storage::Default) {
+    storage = holdsFloats ? state().configuration.storageOf(name) : Storage::Single;
+  }
+  if (storage != Storage::Single && !holdsFloats) {
+    throw Error(
+        fmt::format(
+            "a stream of {} has no float or vector of floats to hold otherwise; make it without a Storage",
+            element.name),
+        Error::Kind::Type);
+  }
+  return withHostMemory("a new stream", [&] {
+    detail::StreamOwner stream(state().createStream(element, shape, storage).release());
+    if (!name.empty()) stream->setName(name);
+    return stream;
+  });
+}
+
+const std::string& Device::name() const { return state().name(); }
+const std::string& Device::driver() const { return state().driver(); }
+const std::string& Device::shadingLanguage() const { return state().shadingLanguage(); }
+std::string_view Device::profile() const { return state().profileName(); }
+const DeviceLimits& Device::limits() const { return state().limits; }
+bool Device::isSoftware() const { return state().isSoftware(); }
+const Arithmetic& Device::arithmetic() { return state().arithmetic(); }
+std::vector<TargetTrial> Device::trialTargets() { return state().trialTargets(); }
+std::vector<TableReport> Device::tables() const { return state().tables.reports(); }
+void Device::finish() {
+  const TraceScope traced(state().trace.get(), "wait", "finish");
+  state().finish();
+}
+void Device::release() { state().release(); }
+void Device::makeCurrent() { state().makeCurrent(); }
+
+void Device::countPasses(bool on) {
+  state().passCount = on ? std::optional<PassCount>(PassCount{}) : std::nullopt;
+}
+PassCount Device::passCount() const {
+  if (!state().passCount) throw Error("nobody counts the device's passes; call countPasses(true) first");
+  return *state().passCount;
+}
+
+}  // namespace sk

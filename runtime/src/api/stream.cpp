@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+//
+// What streams and views do: life, regions, reading, writing.
+#include "sk/stream.hpp"
+
+#include <fmt/format.h>
+
+#include "device/device_state.hpp"
+#include "device/stream_state.hpp"
+#include "sk/error.hpp"
+#include "sk/limits.hpp"
+#include "support/checked_size.hpp"
+
+namespace sk {
+
+namespace {
+
+/// Checks a transfer of `count` elements; the stream, or null where there is nothing to transfer.
+StreamState* checkTransfer(const StreamRegion& region, std::size_t count, const char* what) {
+  StreamState& stream = liveStream(region, what);
+  const std::int64_t size = region.shape.size();
+  if (static_cast<std::size_t>(size) != count) {
+    throw Error(fmt::format("{}: {} element(s) in host memory, but shape {} has {}; give exactly as many",
+                            what, count, toString(region.shape), size),
+                Error::Kind::Shape);
+  }
+  return size == 0 ? nullptr : &stream;
+}
+
+/// A transfer of the elements of a region in the trace of its device.
+class TransferScope {
+ public:
+  TransferScope(const StreamState& stream, std::string_view what, const StreamRegion& region)
+      : traced_(stream.device->trace.get(), "transfer", what) {
+    traced_.add("stream", stream.name);
+    traced_.add("shape", region.shape);
+    traced_.add("bytes", region.shape.size() * static_cast<std::int64_t>(stream.element->size));
+  }
+
+ private:
+  TraceScope traced_;
+};
+
+/// No form of a scalar takes more than four times its bytes in host memory: __float128 for a float.
+void checkSize(const program::Element& type, const Shape& extents) {
+  if (!checkedProduct(extents.size(), 4 * std::int64_t{type.size})) {
+    throw Error(
+        fmt::format("a stream of {} of shape {} is too large: its elements would take 2^61 bytes or more",
+                    type.name, toString(extents)),
+        Error::Kind::Memory);
+  }
+  for (int d = 0; d < extents.rank() && extents.size() > 0; ++d) {
+    if (extents[d] > mostExtent) {
+      throw Error(
+          fmt::format(
+              "a stream of {} of shape {} has an extent above {}, where indices end; give it rows, or "
+              "divide it",
+              type.name, toString(extents), mostExtent),
+          Error::Kind::Shape);
+    }
+  }
+}
+
+}  // namespace
+
+StreamState::StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as)
+    : device(&owner), element(&type), storage(as), shape(extents), next_(owner.firstStream_) {
+  checkSize(type, extents);
+  if (next_ != nullptr) {
+    next_->previous_ = this;
+  }
+  owner.firstStream_ = this;
+}
+
+StreamState::~StreamState() {
+  if (device != nullptr) {
+    leave();
+  }
+}
+
+void StreamState::leave() noexcept {
+  (previous_ == nullptr ? device->firstStream_ : previous_->next_) = next_;
+  if (next_ != nullptr) {
+    next_->previous_ = previous_;
+  }
+  previous_ = next_ = nullptr;
+  device = nullptr;
+}
+
+bool isInside(const StreamRegion& region) {
+  const Shape& shape = region.stream->shape;
+  bool inside = region.shape.rank() == shape.rank();
+  for (int d = 0; inside && d < shape.rank(); ++d) {
+    inside = region.begin[d] + region.shape[d] <= shape[d];
+  }
+  return inside;
+}
+
+StreamState& liveStream(const StreamRegion& region, std::string_view context) {
+  if (region.stream == nullptr) {
+    throw Error(fmt::format("{}: there is no stream: it was default-constructed or moved from; make one by "
+                            "device.stream<T>(shape)",
+                            context),
+                Error::Kind::Lost);
+  }
+  if (region.stream->device == nullptr) {
+    throw Error(
+        fmt::format("{}: the device of this stream of shape {} has been destroyed; keep the device for as "
+                    "long as its streams are used",
+                    context, toString(region.stream->shape)),
+        Error::Kind::Lost);
+  }
+  region.stream->settle();
+  if (region.shape.rank() > 0 && !isInside(region)) {
+    throw Error(
+        fmt::format(
+            "{}: a view from {} of shape {} is no longer inside its stream, to which a kernel has pushed {} "
+            "element(s); make the view after the call",
+            context, toString(region.begin), toString(region.shape), region.stream->shape.size()),
+        Error::Kind::Shape);
+  }
+  return *region.stream;
+}
+
+void detail::StreamDeleter::operator()(StreamState* state) const noexcept { delete state; }
+
+StreamRegion detail::wholeRegion(StreamState* state) {
+  if (state == nullptr) {
+    return {};
+  }
+  if (state->device != nullptr) {
+    state->settle();
+  }
+  return {state, Index::origin(state->shape.rank()), state->shape};
+}
+
+StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, const Index& end) {
+  if (region.stream == nullptr) {
+    throw Error(
+        "domain: there is no stream: it was default-constructed or moved from; make one by "
+        "device.stream<T>(shape)",
+        Error::Kind::Lost);
+  }
+  const int rank = region.shape.rank();
+  bool isInside = begin.rank() == rank && end.rank() == rank;
+  for (int d = 0; isInside && d < rank; ++d) {
+    isInside = begin[d] >= 0 && begin[d] <= end[d] && end[d] <= region.shape[d];
+  }
+  if (!isInside) {
+    throw Error(
+        fmt::format(
+            "domain: {} (inclusive) to {} (exclusive) is no box inside shape {}; give each a position "
+            "in every dimension, rows first",
+            toString(begin), toString(end), toString(region.shape)),
+        Error::Kind::Shape);
+  }
+  StreamRegion part = region;
+  for (int d = 0; d < rank; ++d) {
+    part.begin[d] += begin[d];
+    part.shape = part.shape.with(d, end[d] - begin[d]);
+  }
+  return part;
+}
+
+void detail::write(const StreamRegion& region, const void* elements, std::size_t count) {
+  if (StreamState* stream = checkTransfer(region, count, "write")) {
+    const TransferScope traced(*stream, "write", region);
+    withHostMemory("write", [&] { stream->write(region, static_cast<const std::byte*>(elements)); });
+  }
+}
+
+void detail::read(const StreamRegion& region, void* elements, std::size_t count) {
+  if (StreamState* stream = checkTransfer(region, count, "read")) {
+    const TransferScope traced(*stream, "read", region);
+    withHostMemory("read", [&] { stream->read(region, static_cast<std::byte*>(elements)); });
+  }
+}
+
+std::unique_ptr<TransferState> StreamState::readAsync(const StreamRegion& region) {
+  auto elements = detail::hostVector<std::byte>(bytesOf(region.shape.size(), element->size));
+  read(region, elements.data());
+  return std::make_unique<ReadyTransfer>(std::move(elements));
+}
+
+void detail::TransferDeleter::operator()(TransferState* state) const noexcept { delete state; }
+
+detail::TransferOwner detail::readAsync(const StreamRegion& region) {
+  StreamState& stream = liveStream(region, "readAsync");
+  if (region.shape.size() == 0) {
+    return TransferOwner(new ReadyTransfer({}));
+  }
+  const TransferScope traced(stream, "readAsync", region);
+  return withHostMemory("readAsync", [&] { return TransferOwner(stream.readAsync(region).release()); });
+}
+
+void detail::writeAsync(const StreamRegion& region, const void* elements, std::size_t count) {
+  if (StreamState* stream = checkTransfer(region, count, "writeAsync")) {
+    const TransferScope traced(*stream, "writeAsync", region);
+    withHostMemory("writeAsync",
+                   [&] { stream->writeAsync(region, static_cast<const std::byte*>(elements)); });
+  }
+}
+
+namespace {
+
+TransferState& stateOf(const detail::TransferOwner& transfer) {
+  if (!transfer) {
+    throw Error("the future has no elements: it was made of nothing, moved from, or asked for them before",
+                Error::Kind::Lost);
+  }
+  return *transfer;
+}
+
+}  // namespace
+
+bool detail::isReady(const TransferOwner& transfer) { return stateOf(transfer).isReady(); }
+void detail::wait(const TransferOwner& transfer) { stateOf(transfer).wait(); }
+void detail::take(TransferOwner transfer, void* elements) {
+  withHostMemory("readAsync", [&] { stateOf(transfer).take(static_cast<std::byte*>(elements)); });
+}
+
+namespace {
+
+/// Floats in the elements of a region, which have nothing else.
+std::size_t realsIn(const StreamRegion& region, const program::Element& element, std::string_view what) {
+  std::size_t components = 0;
+  for (const program::Field& field : element.fields) {
+    if (field.scalar != program::Scalar::Float) {
+      throw Error(
+          fmt::format("{}: {} is not made of floats alone; use read() and write()", what, element.name),
+          Error::Kind::Type);
+    }
+    components += field.width;
+  }
+  return static_cast<std::size_t>(region.shape.size()) * components;
+}
+
+}  // namespace
+
+void detail::writeReals(const StreamRegion& region, std::span<const double> values) {
+  StreamState& stream = liveStream(region, "writeReals");
+  const std::size_t components = realsIn(region, *stream.element, "writeReals");
+  if (values.size() != components) {
+    throw Error(fmt::format("writeReals: {} numbers are given for a stream of shape {} that has {}",
+                            values.size(), toString(region.shape), components),
+                Error::Kind::Shape);
+  }
+  if (!values.empty()) {
+    const TransferScope traced(stream, "writeReals", region);
+    withHostMemory("writeReals", [&] { stream.writeReals(region, values.data()); });
+  }
+}
+
+std::vector<double> detail::readReals(const StreamRegion& region) {
+  StreamState& stream = liveStream(region, "readReals");
+  std::vector<double> values = detail::hostVector<double>(realsIn(region, *stream.element, "readReals"));
+  if (!values.empty()) {
+    const TransferScope traced(stream, "readReals", region);
+    withHostMemory("readReals", [&] { stream.readReals(region, values.data()); });
+  }
+  return values;
+}
+
+namespace {
+
+void checkPlane(const StreamState& stream, int plane, std::string_view what) {
+  const auto count = static_cast<int>(stream.element->fields.size());
+  if (plane < 0 || plane >= count) {
+    throw Error(
+        fmt::format("{}: there is no plane {}; {} has {}, from 0", what, plane, stream.element->name, count));
+  }
+}
+
+}  // namespace
+
+StreamTexture detail::textureOf(StreamState* state, int plane) {
+  StreamState& stream = liveStream({state, {}, {}}, "texture");
+  checkPlane(stream, plane, "texture");
+  return stream.texture(plane);
+}
+
+void detail::fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t byteOffset, int plane) {
+  StreamState& stream = liveStream({state, {}, {}}, "fillBuffer");
+  checkPlane(stream, plane, "fillBuffer");
+  if (byteOffset < 0 || byteOffset % 4 != 0) {
+    throw Error(fmt::format("fillBuffer: the offset {} is no multiple of 4 from 0 on", byteOffset));
+  }
+  if (stream.shape.size() == 0) return;
+  const TraceScope traced(stream.device->trace.get(), "transfer", "fillBuffer");
+  traced.add("stream", stream.name);
+  stream.fillBuffer(buffer, byteOffset, plane);
+}
+
+}  // namespace sk

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "assemble/append/append_passes.hpp"
+
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "assemble/append/histo_pyramid.hpp"
+#include "assemble/elements/planes.hpp"
+
+namespace sk::assemble {
+namespace {
+
+using program::Parameter;
+using program::Role;
+
+/// Up to so many pushes an element, slots are cheaper than counting.
+constexpr int mostSlots = 4;
+
+std::string_view indexType(const Parameter& scatter) {
+  static constexpr std::array<std::string_view, 5> types = {"", "int", "ivec2", "ivec3", "ivec4"};
+  return types[scatter.rank];
+}
+
+/// What the body calls: "void sk_push_r(float sk_v)" or "void sk_put_r(ivec2 sk_i, float sk_v)".
+std::string signatureOf(const Parameter& appendOutput) {
+  if (appendOutput.role == Role::VariableOutput) {
+    return fmt::format("void sk_push_{}({} sk_v)", appendOutput.symbol, appendOutput.element->glsl);
+  }
+  return fmt::format("void sk_put_{}({} sk_i, {} sk_v)", appendOutput.symbol, indexType(appendOutput),
+                     appendOutput.element->glsl);
+}
+
+std::string named(std::string_view kind, const Parameter& appendOutput) {
+  return fmt::format("sk_{}_{}", kind, appendOutput.symbol);
+}
+
+/// The texel of index `sk_i` of a scatter output. Streams of more than two dimensions never lie as they are.
+std::string targetTexel(ProgramText& program, const Parameter& appendOutput, const StreamAccess& access) {
+  static constexpr std::array<std::string_view, 5> swizzles = {"", ".x", ".xy", ".xyz", ""};
+  const auto origin = [&](int rank) {
+    return access.view ? fmt::format(" + {}{}", program.uniform("ivec4", named("origin", appendOutput)),
+                                     swizzles[rank])
+                       : "";
+  };
+  if (access.addressing == Addressing::Plane) {
+    return appendOutput.rank == 1 ? fmt::format("ivec2(sk_i{}, 0)", origin(1))
+                                  : fmt::format("sk_i{}{}", appendOutput.rank == 2 ? "" : ".xy", origin(2));
+  }
+  program.require(Function::Texel);
+  const std::string shift = program.uniform("int", named("shift", appendOutput));
+  const std::string index = "sk_i" + origin(appendOutput.rank);
+  if (appendOutput.rank == 1) return fmt::format("sk_texel({}, {})", index, shift);
+  const std::string stride = program.uniform("ivec4", named("stride", appendOutput));
+  std::string number = fmt::format("({}).x", index);
+  for (int c = 1; c < appendOutput.rank; ++c)
+    number += fmt::format(" + ({0}).{1} * {2}.{1}", index, "xyzw"[c], stride);
+  return fmt::format("sk_texel({}, {})", number, shift);
+}
+
+/// Negative indices are large unsigned ones.
+std::string isInside(ProgramText& program, const Parameter& appendOutput) {
+  const std::string shape = program.uniform("ivec4", named("shape", appendOutput));
+  if (appendOutput.rank == 1) return fmt::format("uint(sk_i) < uint({}.x)", shape);
+  static constexpr std::array<std::string_view, 5> swizzles = {"", "", ".xy", ".xyz", ""};
+  return fmt::format("all(lessThan(uvec{0}(sk_i), uvec{0}({1}{2})))", appendOutput.rank, shape,
+                     swizzles[appendOutput.rank]);
+}
+
+}  // namespace
+
+bool isAppendOutput(const Parameter& parameter) {
+  return parameter.role == Role::VariableOutput || parameter.role == Role::Scatter;
+}
+
+bool isCounted(const Parameter& appendOutput) {
+  return appendOutput.role == Role::VariableOutput || appendOutput.pushes < 0 ||
+         appendOutput.pushes > mostSlots;
+}
+
+int slotsOf(const Parameter& appendOutput) { return appendOutput.pushes; }
+
+void defineCounting(ProgramText& program, const Parameter& appendOutput) {
+  if (!isCounted(appendOutput)) return defineIgnored(program, appendOutput);
+  program.variable("int", named("pushed", appendOutput));
+  program.prologue(named("pushed", appendOutput) + " = 0;");
+  program.function(signatureOf(appendOutput), {fmt::format("++{};", named("pushed", appendOutput))});
+}
+
+void storeCount(ProgramText& program, const Parameter& appendOutput) {
+  if (isCounted(appendOutput)) {
+    program.output("int", named("count", appendOutput));
+    program.statement(fmt::format("{} = {};", named("count", appendOutput), named("pushed", appendOutput)));
+  }
+}
+
+void defineIgnored(ProgramText& program, const Parameter& appendOutput) {
+  program.function(signatureOf(appendOutput), {});
+}
+
+void findEntry(ProgramText& program, DomainText& domain, const Parameter& appendOutput, bool treeLayered) {
+  program.variable("int", "sk_wanted");
+  program.prologue(fmt::format("int sk_entry = {};", domain.texelNumber()));
+  if (!isCounted(appendOutput)) {
+    const bool isOnly = slotsOf(appendOutput) == 1;
+    program.prologue(isOnly ? "int sk_element = sk_entry;"
+                            : fmt::format("int sk_element = sk_entry / {};", slotsOf(appendOutput)));
+    program.prologue(isOnly ? "sk_wanted = 0;"
+                            : fmt::format("sk_wanted = sk_entry - sk_element * {};", slotsOf(appendOutput)));
+    return;
+  }
+  program.uniform(samplerType("isampler2D", treeLayered), "sk_odd");
+  program.uniform(samplerType("isampler2D", treeLayered), "sk_even");
+  program.uniform("int", "sk_tree_shift");
+  program.uniform("int", fmt::format("sk_rows[{}]", mostPyramidLevels + 1));
+  program.uniform("int", "sk_levels");
+  const std::string node = place(program, {"sk_t", treeLayered ? "sk_tree_shift" : ""});
+  program.function(
+      "ivec4 sk_node(int sk_l, int sk_n)",
+      {"ivec2 sk_t = ivec2(sk_n & ((1 << sk_tree_shift) - 1), (sk_n >> sk_tree_shift) + sk_rows[sk_l]);",
+       fmt::format("return (sk_l & 1) == 1 ? texelFetch(sk_odd, {0}, 0) : texelFetch(sk_even, {0}, 0);",
+                   node)});
+  for (const std::string_view line :
+       {"sk_wanted = sk_entry;", "int sk_element = 0;", "for (int sk_l = sk_levels; sk_l > 0; --sk_l) {",
+        "  ivec4 sk_p = sk_node(sk_l, sk_element);", "  if (sk_wanted >= sk_p.w) return;",
+        "  bvec3 sk_past = greaterThanEqual(ivec3(sk_wanted), sk_p.xyz);",
+        "  sk_wanted -= sk_past.z ? sk_p.z : sk_past.y ? sk_p.y : sk_past.x ? sk_p.x : 0;",
+        "  sk_element = 4 * sk_element + int(sk_past.x) + int(sk_past.y) + int(sk_past.z);", "}"}) {
+    program.prologue(line);
+  }
+}
+
+void defineListed(ProgramText& program, const Parameter& appendOutput, const StreamAccess& access) {
+  const std::string kept = named("kept", appendOutput);
+  const std::string pushed = named("pushed", appendOutput);
+  program.variable("int", pushed);
+  program.variable(appendOutput.element->glsl, kept);
+  program.prologue(pushed + " = 0;");
+  if (appendOutput.role == Role::VariableOutput) {
+    declareOutputs(program, appendOutput);
+    program.function(signatureOf(appendOutput),
+                     {fmt::format("if ({}++ == sk_wanted) {} = sk_v;", pushed, kept)});
+    return;
+  }
+  const std::string target = named("target", appendOutput);
+  program.output("ivec2", target);
+  declareOutputs(program, appendOutput);
+  program.prologue(target + " = ivec2(-1);");
+  const std::string texel = targetTexel(program, appendOutput, access);
+  program.function(signatureOf(appendOutput),
+                   {fmt::format("if ({}++ != sk_wanted) return;", pushed), kept + " = sk_v;",
+                    fmt::format("if ({}) {} = {};", isInside(program, appendOutput), target, texel)});
+}
+
+void storeListed(ProgramText& program, const Parameter& appendOutput) {
+  store(program, appendOutput, named("kept", appendOutput));
+}
+
+}  // namespace sk::assemble

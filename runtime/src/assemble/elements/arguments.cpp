@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+//
+// Arguments of the entry function.
+#include "assemble/elements/arguments.hpp"
+
+#include <array>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "assemble/condition.hpp"
+
+namespace sk::assemble {
+
+using program::Parameter;
+
+std::string parameterUniform(ProgramText& program, std::string_view type, std::string_view kind,
+                             const Parameter& parameter) {
+  return program.uniform(type, fmt::format("sk_{}_{}", kind, parameter.symbol));
+}
+
+void defineGetter(ProgramText& program, std::string_view kind, const Parameter& parameter,
+                  std::string_view value) {
+  program.function(fmt::format("ivec4 sk_{}_{}()", kind, parameter.symbol),
+                   {fmt::format("return {};", value)});
+}
+
+void defineExtent(ProgramText& program, const Parameter& parameter) {
+  if (!parameter.usesExtent) return;
+  defineGetter(program, "extent", parameter, parameterUniform(program, "ivec4", "shape", parameter));
+}
+
+void defineInputIndex(ProgramText& program, const Parameter& input, const StreamAccess& access,
+                      const std::string& index) {
+  const auto uniform = [&](std::string_view kind) { return parameterUniform(program, "ivec4", kind, input); };
+  std::string own = index;
+  switch (access.fit) {
+    case program::Fit::Same:
+      if (access.addressing == Addressing::Aligned) break;
+      own = fmt::format("min({}, {} - 1)", index, uniform("shape"));
+      break;
+    case program::Fit::Stretched: own = fmt::format("{} / {}", index, uniform("ratio")); break;
+    case program::Fit::Strided: own = fmt::format("{} * {}", index, uniform("ratio")); break;
+  }
+  defineGetter(program, "index", input, own);
+}
+
+Texel inputTexel(ProgramText& program, const Parameter& input, const StreamAccess& access) {
+  const std::string index = fmt::format("sk_index_{}()", input.symbol);
+  const std::string origin =
+      access.view ? " + " + parameterUniform(program, "ivec4", "origin", input) : std::string();
+  if (access.addressing == Addressing::Plane) {
+    return {access.view ? fmt::format("{}.xy{}.xy", index, origin) : index + ".xy", "", access.packed};
+  }
+  program.require(Function::Ravel);
+  program.require(Function::Texel);
+  const std::string stride = parameterUniform(program, "ivec4", "stride", input);
+  const std::string shift = parameterUniform(program, "int", "shift", input);
+  return {fmt::format("sk_texel(sk_ravel({}{}, {}), {}{})", index, origin, stride, shift,
+                      access.packed ? " + 2" : ""),
+          access.addressing == Addressing::Layered ? shift : "", access.packed};
+}
+
+std::string iteratorValue(ProgramText& program, const Parameter& iterator, const StreamAccess& access,
+                          std::string index) {
+  static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
+  const std::string_view type = iterator.element->glsl;
+  if (access.addressing == Addressing::Linear) {
+    program.require(Function::Ravel);
+    index = fmt::format("sk_ravel({}, {})", index, parameterUniform(program, "ivec4", "stride", iterator));
+  } else {
+    index += swizzles[iterator.element->fields.front().width - 1u];
+  }
+  return fmt::format("{} + {}({}) * {}", parameterUniform(program, type, "begin", iterator), type, index,
+                     parameterUniform(program, type, "step", iterator));
+}
+
+std::string specConstant(ProgramText& program, const Parameter& parameter, std::uint32_t bits) {
+  const std::string name = fmt::format("sk_spec_{}", parameter.symbol);
+  const program::Scalar scalar = parameter.element->fields.front().scalar;
+  program.variable(fmt::format("const {}", parameter.element->glsl),
+                   fmt::format("{} = {}", name, glslLiteral(scalar, bits)));
+  return name;
+}
+
+void defineAbsent(ProgramText& program, const Parameter& parameter) {
+  const std::string_view type = parameter.element->glsl;
+  const std::string none = absentElement(parameter);
+  if (parameter.role == program::Role::Gather) {
+    const std::string vector = parameter.rank == 1 ? "int" : fmt::format("ivec{}", parameter.rank);
+    const std::vector<std::string> nothing = {fmt::format("{} {};", type, none),
+                                              fmt::format("return {};", none)};
+    if (parameter.usesAt) {
+      program.function(fmt::format("{} sk_at_{}({} sk_i)", type, parameter.symbol, vector), nothing);
+    }
+    if (parameter.usesNear) {
+      program.function(fmt::format("{} sk_near_{}({} sk_d)", type, parameter.symbol, vector), nothing);
+    }
+    if (parameter.usesSample) {
+      const std::string floats = parameter.rank == 1 ? "float" : fmt::format("vec{}", parameter.rank);
+      program.function(fmt::format("{} sk_sample_{}({} sk_x)", type, parameter.symbol, floats), nothing);
+    }
+  } else {
+    program.statement(fmt::format("{} {};", type, none));
+  }
+  if (parameter.role == program::Role::Output) return;   // it has the domain's index and shape
+  if (parameter.usesIndex) defineGetter(program, "index", parameter, "ivec4(0)");
+  if (parameter.usesExtent) defineGetter(program, "extent", parameter, "ivec4(0)");
+}
+
+std::string absentElement(const Parameter& parameter) { return fmt::format("sk_none_{}", parameter.symbol); }
+
+}  // namespace sk::assemble

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+//
+// Index and number from the texel that is computed. In a plane the index is a swizzle away, so it is a function;
+// in a linearised stream it takes divisions, so main() computes it once.
+#include "assemble/elements/domain.hpp"
+
+#include <fmt/format.h>
+
+namespace sk::assemble {
+
+DomainText::DomainText(ProgramText& program, const DomainLayout& layout, std::string_view function)
+    : program_(program), layout_(layout), function_(function) {
+  if (layout_.domain == Domain::LinearBox) defineIndex();
+}
+
+std::string DomainText::lane() {
+  usesLane_ = true;
+  program_.variable("int", "sk_lane");
+  return "sk_lane";
+}
+
+/// The index of the element that is computed, given that of the first one in its texel.
+std::string DomainText::plus(std::string index, int components) {
+  if (!layout_.packed) return index;
+  if (components == 1) return fmt::format("({} + {})", index, lane());
+  return fmt::format("({} + ivec{}({}{}))", index, components, lane(), components == 2 ? ", 0" : ", 0, 0, 0");
+}
+
+std::string DomainText::index() {
+  defineIndex();
+  return fmt::format("{}()", function_);
+}
+
+std::string DomainText::position(int components) {
+  const bool aligned = layout_.domain == Domain::Plane && !layout_.view;
+  if (aligned && components == 1) {
+    return plus(fmt::format("{}{}", layout_.packed ? "4 * " : "", program_.column()), 1);
+  }
+  if (aligned && components == 2) return plus(fmt::format("{}{}", program_.texel(), inElements()), 2);
+  static constexpr std::string_view xyzw = "xyzw";
+  const std::string whole = index();
+  return components == 4 ? whole
+                         : fmt::format("{}.{}", whole, xyzw.substr(0, static_cast<std::size_t>(components)));
+}
+
+std::string DomainText::number() {
+  switch (layout_.domain) {
+    case Domain::Plane: {
+      const std::string width = program_.uniform("ivec4", "sk_domain_shape") + ".x";
+      return fmt::format("{0}.y * {1} + {0}.x", index(), width);
+    }
+    case Domain::Linear:
+      return layout_.packed ? fmt::format("{} | {}", firstElement(), lane()) : texelNumber();
+    case Domain::LinearBox:
+      program_.require(Function::Ravel);
+      return fmt::format("sk_ravel({}, {})", index(), program_.uniform("ivec4", "sk_domain_step"));
+    case Domain::Entry: return "sk_element";
+  }
+  return {};
+}
+
+void DomainText::leaveOutside() {
+  if (!isDrawn()) return;  // nothing runs there
+  const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
+  switch (layout_.domain) {
+    case Domain::Plane: {
+      const std::string origin =
+          layout_.view ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
+      program_.prologue(fmt::format("if (any(greaterThanEqual(uvec2({}{}{}), uvec2({}.xy)))) return;",
+                                    program_.texel(), inElements(), origin, shape));
+      return;
+    }
+    case Domain::Linear: {
+      const std::string stride = program_.uniform("ivec4", "sk_domain_stride");
+      program_.prologue(fmt::format("if (({}) >= {}.w * {}.w) return;", firstElement(), stride, shape));
+      return;
+    }
+    case Domain::LinearBox: return;  // these are discarded
+    case Domain::Entry: {
+      const std::string stride = program_.uniform("ivec4", "sk_domain_stride");
+      program_.prologue(fmt::format("if (sk_element >= {}.w * {}.w) return;", stride, shape));
+      return;
+    }
+  }
+}
+
+Texel DomainText::texel() {
+  const std::string texel(program_.texel());
+  if (!layout_.layered) return {texel};
+  const std::string shift = program_.uniform("int", "sk_domain_shift");
+  if (!isDrawn()) return {texel, shift};
+  return {fmt::format("{} + ivec2(0, {})", texel, program_.uniform("int", "sk_domain_row")), shift};
+}
+
+std::string DomainText::texelNumber() {
+  const std::string row =
+      layout_.layered && isDrawn()
+          ? fmt::format("({} + {})", program_.uniform("int", "sk_domain_row"), program_.row())
+          : std::string(program_.row());
+  return fmt::format("{} << {} | {}", row, program_.uniform("int", "sk_domain_shift"), program_.column());
+}
+
+/// The number of the first element in the texel.
+std::string DomainText::firstElement() {
+  return layout_.packed ? fmt::format("({}) << 2", texelNumber()) : texelNumber();
+}
+
+void DomainText::defineIndex() {
+  const std::string signature = fmt::format("ivec4 {}()", function_);
+  if (program_.isDefined(signature)) return;
+  if (layout_.domain == Domain::Plane) {
+    const std::string origin =
+        layout_.view ? " - " + program_.uniform("ivec4", "sk_domain_origin") + ".xy" : "";
+    const std::string first = fmt::format("ivec4({}{}{}, 0, 0)", program_.texel(), inElements(), origin);
+    program_.function(signature, {fmt::format("return {};", plus(first, 4))});
+    return;
+  }
+  if (layout_.domain != Domain::Entry) program_.prologue(fmt::format("int sk_element = {};", firstElement()));
+  std::string value = "ivec4(sk_element, 0, 0, 0)";
+  if (layout_.rank > 1) {
+    program_.require(layout_.rank == 2   ? Function::Unravel2
+                     : layout_.rank == 3 ? Function::Unravel3
+                                         : Function::Unravel4);
+    value = fmt::format("sk_unravel(sk_element, {})", program_.uniform("ivec4", "sk_domain_stride"));
+  }
+  program_.variable("ivec4", "sk_here");
+  program_.function(signature, {fmt::format("return {};", plus("sk_here", 4))});
+  if (layout_.domain != Domain::LinearBox) {
+    program_.prologue(fmt::format("sk_here = {};", value));
+    return;
+  }
+  const std::string origin = program_.uniform("ivec4", "sk_domain_origin");
+  const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
+  program_.prologue(fmt::format("sk_here = {} - {};", value, origin));
+  program_.prologue(fmt::format("if (any(greaterThanEqual(uvec4(sk_here), uvec4({})))) {};", shape,
+                                isDrawn() ? "discard" : "return"));
+}
+
+}  // namespace sk::assemble

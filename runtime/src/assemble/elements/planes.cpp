@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: MIT
+//
+// Spellings of planes.
+#include "assemble/elements/planes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sk/scalar_bytes.hpp"
+
+namespace sk::assemble {
+namespace {
+
+using program::Element;
+using program::Field;
+using program::Parameter;
+using program::Scalar;
+
+/// How a plane of a component type is spelled. `load` makes a value of its texel, `store` a texel of a
+/// value; `{0}` is the operand, `{1}` the type of the result. Empty: they are the same.
+struct Spelling {
+  std::string_view sampler;
+  std::string_view texelScalar;
+  std::string_view texelVector;   ///< without its width
+  std::string_view zero;
+  std::string_view valueScalar;
+  std::string_view valueVector;
+  std::string_view load;
+  std::string_view store;
+};
+
+// A normalized value is made anew of its integer even where the device makes one: that is exact.
+constexpr std::array<Spelling, 14> spellings = {{
+    /* Bool    */ {"usampler2D", "uint", "uvec", "0u", "bool", "bvec", "{1}({0})", "{1}({0})"},
+    /* Int     */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
+    /* Uint    */ {"usampler2D", "uint", "uvec", "0u", "uint", "uvec", "", ""},
+    /* Float   */ {"sampler2D", "float", "vec", "0.0", "float", "vec", "", ""},
+    /* Double  */
+    {"usampler2D", "uint", "uvec", "0u", "sk_double", "sk_double", "sk_unpack({0})", "sk_pack({0})"},
+    /* Half    */ {"sampler2D", "float", "vec", "0.0", "float", "vec", "", ""},
+    /* Char    */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
+    /* Uchar   */ {"usampler2D", "uint", "uvec", "0u", "int", "ivec", "{1}({0})", "{1}({0})"},
+    /* Short   */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
+    /* Ushort  */ {"usampler2D", "uint", "uvec", "0u", "int", "ivec", "{1}({0})", "{1}({0})"},
+    /* Unorm8  */
+    {"sampler2D", "float", "vec", "0.0", "float", "vec", "roundEven({0} * 255.0) / 255.0", ""},
+    /* Snorm8  */
+    {"isampler2D", "int", "ivec", "0", "float", "vec", "max({1}({0}) / 127.0, -1.0)",
+     "{1}(roundEven({0} * 127.0))"},
+    /* Unorm16 */
+    {"usampler2D", "uint", "uvec", "0u", "float", "vec", "{1}({0}) / 65535.0",
+     "{1}(roundEven({0} * 65535.0))"},
+    /* Snorm16 */
+    {"isampler2D", "int", "ivec", "0", "float", "vec", "max({1}({0}) / 32767.0, -1.0)",
+     "{1}(roundEven({0} * 32767.0))"},
+}};
+
+const program::Layer ownTexture;
+
+const program::Layer& layerOf(const Parameter& parameter, std::size_t plane) {
+  return parameter.layers.empty() ? ownTexture : parameter.layers[plane];
+}
+
+/// The first plane that a parameter writes, and the one after the last.
+std::pair<std::size_t, std::size_t> writtenPlanes(const Parameter& parameter) {
+  if (parameter.planeCount == 0) return {0, heldBy(parameter).fields.size()};
+  return {parameter.firstPlane, std::size_t{parameter.firstPlane} + parameter.planeCount};
+}
+
+const Spelling& spelling(const Field& field) { return spellings[static_cast<std::size_t>(field.scalar)]; }
+
+std::string sized(std::string_view scalar, std::string_view vector, int width) {
+  return width == 1 ? std::string(scalar) : fmt::format("{}{}", vector, width);
+}
+
+std::string texelType(const Field& field, int width) {
+  return sized(spelling(field).texelScalar, spelling(field).texelVector, width);
+}
+
+std::string valueType(const Field& field) {
+  return sized(spelling(field).valueScalar, spelling(field).valueVector, field.width);
+}
+
+/// `pattern` with the operand and the type of the result; the operand where there is no pattern.
+std::string converted(std::string_view pattern, std::string operand, const std::string& type) {
+  if (pattern.empty()) return operand;
+  return fmt::format(fmt::runtime(pattern), operand, type);
+}
+
+/// Components of a texel: a double takes two.
+int texelWidth(const Field& field) { return field.scalar == Scalar::Double ? 2 * field.width : field.width; }
+
+std::string memberOf(std::string_view variable, const Field& field) {
+  std::string text(variable);
+  if (!field.path.empty()) text += fmt::format(".{}", field.path);
+  return text;
+}
+
+/// The first component in a part of a vector of doubles.
+char firstComponent(const Field& field) { return "xz"[field.part]; }
+char secondComponent(const Field& field) { return "yw"[field.part]; }
+
+/// The value of a field of the element that `variable` holds.
+std::string valueOf(std::string_view variable, const Field& field) {
+  const std::string member = memberOf(variable, field);
+  if (field.part < 0) return member;
+  if (field.scalar != Scalar::Double) return fmt::format("{}[{}]", member, field.part);
+  if (field.width == 1) return fmt::format("{}.{}", member, firstComponent(field));
+  return fmt::format("sk_double2({0}.{1}, {0}.{2})", member, firstComponent(field), secondComponent(field));
+}
+
+/// Statements that make `value` the field of the element that `variable` holds.
+void assignField(std::vector<std::string>& statements, std::string_view variable, const Field& field,
+                 std::string_view value) {
+  if (field.scalar != Scalar::Double || field.part < 0 || field.width == 1) {
+    statements.push_back(fmt::format("{} = {};", valueOf(variable, field), value));
+    return;
+  }
+  // a name of its own in a struct of several such vectors
+  const std::string two = fmt::format("sk_two{}", statements.size());
+  const std::string member = memberOf(variable, field);
+  statements.push_back(fmt::format("sk_double2 {} = {};", two, value));
+  statements.push_back(fmt::format("{}.{} = {}.x;", member, firstComponent(field), two));
+  statements.push_back(fmt::format("{}.{} = {}.y;", member, secondComponent(field), two));
+}
+
+/// Textures of 3 components are not renderable: those planes have 4.
+int outputWidth(const Field& field) { return field.width == 3 ? 4 : texelWidth(field); }
+
+std::string planeName(std::string_view prefix, const Parameter& parameter, std::size_t plane) {
+  if (heldBy(parameter).fields.size() == 1) return fmt::format("{}_{}", prefix, parameter.symbol);
+  return fmt::format("{}{}_{}", prefix, plane, parameter.symbol);
+}
+
+std::string outputName(const Parameter& parameter, std::size_t plane) {
+  return planeName("sk_out", parameter, plane);
+}
+
+/// In a bundle, the first layers of all planes come first, then the second ones.
+std::string placeOfPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
+                         const Texel& texel) {
+  const program::Layer& layer = layerOf(parameter, plane);
+  if (layer.bundle < 0) return place(program, texel);
+  if (texel.shift.empty()) return fmt::format("ivec3({}, {})", texel.at, layer.layer);
+  return fmt::format("{} * ivec3(1, 1, {}) + ivec3(0, 0, {})", place(program, texel), layer.count,
+                     layer.layer);
+}
+
+/// The scalar that the program has where a field of what the stream holds is.
+Scalar valueScalar(const Parameter& parameter, const Field& field) {
+  if (parameter.held == nullptr) return field.scalar;
+  const auto same = std::ranges::find(parameter.element->fields, field.path, &Field::path);
+  return same->scalar;
+}
+
+bool isFloating(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Half; }
+
+/// Whether the planes of a field hold floats or halves of which the program makes doubles.
+bool isWidened(const Parameter& parameter, const Field& field) {
+  return isFloating(field.scalar) && valueScalar(parameter, field) == Scalar::Double;
+}
+
+/// Whether they hold doubles of which it makes floats.
+bool isNarrowed(const Parameter& parameter, const Field& field) {
+  return field.scalar == Scalar::Double && valueScalar(parameter, field) == Scalar::Float;
+}
+
+/// The components of a vector of floats that a plane of doubles holds: the program keeps such vectors whole.
+std::string partOf(std::string_view variable, const Field& field) {
+  static constexpr std::array<std::array<std::string_view, 2>, 2> swizzles = {{{".x", ".xy"}, {".z", ".zw"}}};
+  std::string member = memberOf(variable, field);
+  if (field.part >= 0) member += swizzles[static_cast<std::size_t>(field.part)][field.width - 1u];
+  return member;
+}
+
+/// The nearest half, of two the even one: drivers round by rules of their own.
+std::string halved(ProgramText& program, const Field& field, const std::string& value) {
+  program.require(Function::ToHalf);
+  if (field.width == 1) return fmt::format("sk_to_half({})", value);
+  const std::string signature = fmt::format("vec{0} sk_to_half{0}(vec{0} sk_v)", field.width);
+  if (!program.isDefined(signature)) {
+    std::vector<std::string> parts;
+    for (int c = 0; c < field.width; ++c) parts.push_back(fmt::format("sk_to_half(sk_v.{})", "xyzw"[c]));
+    program.function(signature, {fmt::format("return vec{}({});", field.width, fmt::join(parts, ", "))});
+  }
+  return fmt::format("sk_to_half{}({})", field.width, value);
+}
+
+/// A float or a vector of them as doubles.
+std::string widened(ProgramText& program, const Field& field, const std::string& value) {
+  if (field.width == 1) return fmt::format("sk_to_double({})", value);
+  const std::string signature = fmt::format("sk_double{0} sk_widen{0}(vec{0} sk_v)", field.width);
+  if (!program.isDefined(signature)) {
+    std::vector<std::string> parts;
+    for (int c = 0; c < field.width; ++c) parts.push_back(fmt::format("sk_to_double(sk_v.{})", "xyzw"[c]));
+    program.function(signature,
+                     {fmt::format("return sk_double{}({});", field.width, fmt::join(parts, ", "))});
+  }
+  return fmt::format("sk_widen{}({})", field.width, value);
+}
+
+/// And back.
+std::string narrowed(ProgramText& program, const Field& field, const std::string& value) {
+  if (field.width == 1) return fmt::format("sk_to_float({})", value);
+  const std::string signature = fmt::format("vec{0} sk_narrow{0}(sk_double{0} sk_v)", field.width);
+  if (!program.isDefined(signature)) {
+    std::vector<std::string> parts;
+    for (int c = 0; c < field.width; ++c) parts.push_back(fmt::format("sk_to_float(sk_v.{})", "xyzw"[c]));
+    program.function(signature, {fmt::format("return vec{}({});", field.width, fmt::join(parts, ", "))});
+  }
+  return fmt::format("sk_narrow{}({})", field.width, value);
+}
+
+/// The program's value of what a plane's texel holds.
+std::string fetchedValue(ProgramText& program, const Parameter& parameter, const Field& field,
+                         std::string value) {
+  if (field.scalar == Scalar::Bool) {
+    return field.width == 1 ? value + " != 0u" : fmt::format("notEqual({}, uvec{}(0u))", value, field.width);
+  }
+  if (isWidened(parameter, field)) return widened(program, field, value);
+  value = converted(spelling(field).load, std::move(value), valueType(field));
+  return isNarrowed(parameter, field) ? narrowed(program, field, value) : value;
+}
+
+/// Four of each scalar.
+class FourElements {
+ public:
+  FourElements() {
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      const auto scalar = static_cast<Scalar>(i);
+      types_[i] = fmt::format("{}4", spellings[i].valueVector);
+      fields_[i] = {"", scalar, lanes, 0};
+      elements_[i] = {"texel",
+                      types_[i],
+                      static_cast<std::uint32_t>(lanes * program::hostBytes(scalar)),
+                      {&fields_[i], 1}};
+    }
+  }
+  const Element& of(Scalar scalar) const { return elements_[static_cast<std::size_t>(scalar)]; }
+
+ private:
+  std::array<std::string, spellings.size()> types_;
+  std::array<Field, spellings.size()> fields_;
+  std::array<Element, spellings.size()> elements_;
+};
+
+/// All that a texel of a plane holds.
+std::string fetchWhole(ProgramText& program, const Parameter& parameter, std::size_t plane,
+                       const Texel& texel) {
+  const std::string name = samplerName(parameter, plane);
+  const std::string at = placeOfPlane(program, parameter, plane, texel);
+  const bool isArray = !texel.shift.empty() || layerOf(parameter, plane).bundle >= 0;
+  return texel.filtered ? fmt::format("texelFetch({}, {}, 0)", name, at)
+                        : texelIn(program, name, at, isArray);
+}
+
+std::string fetchPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
+                       const Texel& texel) {
+  static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
+  const Field& field = heldBy(parameter).fields[plane];
+  return fetchedValue(program, parameter, field,
+                      fetchWhole(program, parameter, plane, texel) +
+                          std::string(swizzles[static_cast<std::size_t>(texelWidth(field) - 1)]));
+}
+
+/// `value`, of the field's type, as its output's type.
+std::string toOutput(const Field& field, std::string value) {
+  value = converted(spelling(field).store, std::move(value), texelType(field, texelWidth(field)));
+  if (field.width == 3) value = fmt::format("{}({}, {})", texelType(field, 4), value, spelling(field).zero);
+  return value;
+}
+
+bool outputHasType(const Parameter& parameter) {
+  const Element& element = *parameter.element;
+  const Field& field = element.fields.front();
+  return parameter.held == nullptr && !isStruct(element) && spelling(field).store.empty() && field.width != 3;
+}
+
+}  // namespace
+
+std::string bundleName(std::size_t bundle) { return fmt::format("sk_bundle{}", bundle); }
+
+std::string samplerName(const Parameter& parameter, std::size_t plane) {
+  const program::Layer& layer = layerOf(parameter, plane);
+  if (layer.bundle >= 0) return bundleName(static_cast<std::size_t>(layer.bundle));
+  return planeName("sk_tex", parameter, plane);
+}
+
+bool isStruct(const Element& element) {
+  const Field& first = element.fields.front();
+  return !first.path.empty() || first.part >= 0;
+}
+
+std::string place(ProgramText& program, const Texel& texel) {
+  if (texel.shift.empty()) return texel.at;
+  program.require(Function::Layered);
+  return fmt::format("sk_layered({}, {})", texel.at, texel.shift);
+}
+
+std::string texelIn(ProgramText& program, std::string_view sampler, const std::string& place, bool isArray) {
+  if (!program.samples() || isArray) return fmt::format("texelFetch({}, {}, 0)", sampler, place);
+  program.require(Function::Sampled);
+  return fmt::format("sk_sampled({}, {})", sampler, place);
+}
+
+std::string samplerType(std::string_view sampler, bool isArray) {
+  return isArray ? fmt::format("highp {}Array", sampler) : std::string(sampler);
+}
+
+void declareSamplers(ProgramText& program, const Parameter& parameter, bool layered) {
+  for (std::size_t plane = 0; plane < heldBy(parameter).fields.size(); ++plane) {
+    const std::string_view sampler = spelling(heldBy(parameter).fields[plane]).sampler;
+    const bool isArray = layered || layerOf(parameter, plane).bundle >= 0;
+    program.uniform(samplerType(sampler, isArray), samplerName(parameter, plane));
+  }
+}
+
+void declareOutputs(ProgramText& program, const Parameter& parameter) {
+  const auto [first, end] = writtenPlanes(parameter);
+  for (std::size_t plane = first; plane < end; ++plane) {
+    const Field& field = heldBy(parameter).fields[plane];
+    program.output(texelType(field, outputWidth(field)), outputName(parameter, plane));
+  }
+}
+
+std::vector<Parameter> withPlanes(const std::vector<const Parameter*>& outputs, std::size_t first,
+                                  std::size_t count) {
+  std::vector<Parameter> written;
+  std::size_t before = 0;  // planes of the outputs so far
+  const std::size_t end = count == 0 ? SIZE_MAX : first + count;
+  for (const Parameter* output : outputs) {
+    const std::size_t after = before + output->element->fields.size();
+    const std::size_t from = std::max(first, before);
+    const std::size_t to = std::min(end, after);
+    if (from < to) {
+      written.push_back(*output);
+      written.back().firstPlane = static_cast<std::uint8_t>(from - before);
+      written.back().planeCount = static_cast<std::uint8_t>(to - from);
+    }
+    before = after;
+  }
+  return written;
+}
+
+std::string fetch(ProgramText& program, const Parameter& parameter, const Texel& texel) {
+  const Element& element = heldBy(parameter);
+  const std::string_view type = parameter.element->glsl;
+  if (texel.packed) {
+    Texel four = texel;
+    four.at = "ivec2(sk_t.x >> 2, sk_t.y)";
+    const std::string whole = fetchWhole(program, parameter, 0, four);
+    program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", type, parameter.symbol),
+                     {fmt::format("return {};", fetchedComponent(program, parameter, whole, "sk_t.x & 3"))});
+    return fmt::format("sk_fetch_{}({})", parameter.symbol, texel.at);
+  }
+  if (!isStruct(element)) return fetchPlane(program, parameter, 0, texel);
+  std::vector<std::string> statements = {fmt::format("{} sk_e;", type)};
+  for (std::size_t plane = 0; plane < element.fields.size(); ++plane) {
+    const Field& field = element.fields[plane];
+    Texel here = texel;
+    here.at = "sk_t";
+    const std::string value = fetchPlane(program, parameter, plane, here);
+    if (isNarrowed(parameter, field)) {
+      statements.push_back(fmt::format("{} = {};", partOf("sk_e", field), value));
+    } else {
+      assignField(statements, "sk_e", field, value);
+    }
+  }
+  statements.emplace_back("return sk_e;");
+  program.function(fmt::format("{} sk_fetch_{}(ivec2 sk_t)", type, parameter.symbol), statements);
+  return fmt::format("sk_fetch_{}({})", parameter.symbol, texel.at);
+}
+
+std::string fetchedComponent(ProgramText& program, const Parameter& parameter, std::string_view texel,
+                             std::string_view component) {
+  return fetchedValue(program, parameter, heldBy(parameter).fields.front(),
+                      fmt::format("{}[{}]", texel, component));
+}
+
+std::string packedType(const Parameter& parameter) {
+  return texelType(heldBy(parameter).fields.front(), lanes);
+}
+
+const Element& fourOf(Scalar scalar) {
+  static const FourElements elements;
+  return elements.of(scalar);
+}
+
+Parameter fourOf(const Parameter& parameter) {
+  Parameter four = parameter;
+  four.element = &fourOf(parameter.element->fields.front().scalar);
+  if (parameter.held != nullptr) four.held = &fourOf(parameter.held->fields.front().scalar);
+  return four;
+}
+
+std::string resultVariable(ProgramText& program, const Parameter& parameter) {
+  if (outputHasType(parameter)) return outputName(parameter, 0);
+  const std::string name = fmt::format("sk_value_{}", parameter.symbol);
+  program.statement(fmt::format("{} {};", parameter.element->glsl, name));
+  return name;
+}
+
+void copyPlanes(ProgramText& program, const Parameter& parameter, const Texel& texel) {
+  static constexpr std::array<std::string_view, 5> swizzles = {"", ".x", ".xy", "", ""};
+  declareSamplers(program, parameter, !texel.shift.empty());
+  declareOutputs(program, parameter);
+  for (std::size_t plane = 0; plane < heldBy(parameter).fields.size(); ++plane) {
+    program.statement(fmt::format(
+        "{} = {}{};", outputName(parameter, plane),
+        texelIn(program, samplerName(parameter, plane), place(program, texel), !texel.shift.empty()),
+        swizzles[static_cast<std::size_t>(texelWidth(heldBy(parameter).fields[plane]))]));
+  }
+}
+
+void store(ProgramText& program, const Parameter& parameter, std::string_view variable) {
+  const Element& element = heldBy(parameter);
+  const auto [first, end] = writtenPlanes(parameter);
+  for (std::size_t plane = first; plane < end; ++plane) {
+    const Field& field = element.fields[plane];
+    const std::string output = outputName(parameter, plane);
+    if (output == variable) continue;
+    const bool isWhole = !isNarrowed(parameter, field);
+    std::string value = isWhole ? valueOf(variable, field) : widened(program, field, partOf(variable, field));
+    if (isWidened(parameter, field)) value = narrowed(program, field, value);
+    if (field.scalar == Scalar::Half && parameter.held != nullptr) value = halved(program, field, value);
+    program.statement(fmt::format("{} = {};", output, toOutput(field, std::move(value))));
+  }
+}
+
+}  // namespace sk::assemble

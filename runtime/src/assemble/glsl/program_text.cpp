@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+//
+// Sections in, program out.
+#include "assemble/glsl/program_text.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "assemble/glsl/double_intrinsics.hpp"
+#include "assemble/glsl/doubles.hpp"
+#include "assemble/glsl/exact_sums.hpp"
+#include "assemble/glsl/intrinsics.hpp"
+#include "assemble/glsl/tables.hpp"
+
+namespace sk::assemble {
+namespace {
+
+constexpr std::size_t lineLength = 100;
+
+constexpr std::uint32_t bit(Function function) { return 1u << static_cast<unsigned>(function); }
+
+void addOnce(std::vector<std::string>& lines, std::string line) {
+  if (std::ranges::find(lines, line) == lines.end()) lines.push_back(std::move(line));
+}
+
+/// Adds text of the kernel's, which numbers its own lines, and goes back to numbering the lines of
+/// the program.
+void addForeign(std::string& program, std::string_view text) {
+  if (text.empty()) return;
+  program += '\n';
+  program += text;
+  if (!text.ends_with('\n')) program += '\n';
+  const auto next = std::ranges::count(program, '\n') + 2;
+  fmt::format_to(std::back_inserter(program), "#line {} 0\n", next);
+}
+
+void addLines(std::string& program, const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) program += line + '\n';
+}
+
+/// The functions of the set in their order, but of the unravelling ones the highest.
+void addFunctions(std::string& program, std::uint32_t set) {
+  if (set & bit(Function::Unravel4)) set &= ~(bit(Function::Unravel2) | bit(Function::Unravel3));
+  if (set & bit(Function::Unravel3)) set &= ~bit(Function::Unravel2);
+  for (unsigned i = 0; set >> i != 0; ++i) {
+    if (set >> i & 1u) program += text(static_cast<Function>(i));
+  }
+}
+
+/// Of a texel's type: "vec2", "uint" ...
+int componentsOf(std::string_view type) {
+  const char last = type.back();
+  return last >= '2' && last <= '4' ? last - '0' : 1;
+}
+
+std::string_view imageType(std::string_view texel, bool isArray) {
+  switch (texel.front()) {
+    case 'i': return isArray ? "iimage2DArray" : "iimage2D";
+    case 'u': return isArray ? "uimage2DArray" : "uimage2D";
+    default: return isArray ? "image2DArray" : "image2D";
+  }
+}
+
+std::string_view vectorOf(std::string_view texel) {
+  return texel.front() == 'i' ? "ivec4" : texel.front() == 'u' ? "uvec4" : "vec4";
+}
+
+/// Four components, as imageStore() takes them; those that the image has not are ignored.
+std::string wholeTexel(std::string_view type, std::string_view value) {
+  const int components = componentsOf(type);
+  if (components == 4) return std::string(value);
+  const std::string_view vector = vectorOf(type);
+  if (components == 1) return fmt::format("{}({})", vector, value);
+  const std::string_view zero = vector == "ivec4" ? "0" : vector == "uvec4" ? "0u" : "0.0";
+  return fmt::format("{}({}, {}, {})", vector, value, zero, zero);
+}
+
+/// Invocations of a work group.
+std::pair<int, int> groupForTexels(int components) {
+  return components == 4 ? groupOfWideTexels : std::pair(16, 16);
+}
+
+constexpr std::string_view esPrecision =
+    "precision highp float;\n"
+    "precision highp int;\n"
+    "precision highp sampler2D;\n"
+    "precision highp isampler2D;\n"
+    "precision highp usampler2D;\n";
+
+}  // namespace
+
+std::string ProgramText::uniform(std::string_view type, std::string_view name) {
+  if (relaysUniforms_ && relayed_.take(type, name)) {
+    flatInput(type, relayedName(name));
+    return relayedName(name);
+  }
+  addOnce(uniforms_, fmt::format("uniform {} {};", type, name));
+  return std::string(name);
+}
+
+void ProgramText::flatInput(std::string_view type, std::string_view name) {
+  addOnce(uniforms_, fmt::format("flat in {} {};", type, name));
+}
+
+void ProgramText::output(std::string_view type, std::string_view name) {
+  outputs_.push_back({std::string(type), std::string(name)});
+}
+
+void ProgramText::storeAt(std::string_view place, bool isArray) {
+  place_ = place;
+  isArray_ = isArray;
+}
+
+void ProgramText::storeInBuffer() { isInBuffer_ = true; }
+
+void ProgramText::dispatchGroups(std::int32_t width, std::int32_t height) { group_ = {width, height}; }
+
+void ProgramText::variable(std::string_view type, std::string_view name) {
+  addOnce(variables_, fmt::format("{} {};", type, name));
+}
+
+void ProgramText::require(Function function) { used_ |= bit(function); }
+
+void ProgramText::function(std::string_view signature, const std::vector<std::string>& statements) {
+  if (isDefined(signature)) return;
+  signatures_.emplace_back(signature);
+  fmt::format_to(std::back_inserter(functions_), "\n{} {{\n", signature);
+  for (const std::string& line : statements) functions_ += "  " + line + '\n';
+  functions_ += "}\n";
+}
+
+bool ProgramText::isDefined(std::string_view signature) const {
+  return std::ranges::find(signatures_, signature) != signatures_.end();
+}
+
+void ProgramText::statement(std::string_view line) {
+  fmt::format_to(std::back_inserter(main_), "  {}\n", line);
+}
+
+void ProgramText::prologue(std::string_view line) {
+  fmt::format_to(std::back_inserter(prologue_), "  {}\n", line);
+}
+
+void ProgramText::together(std::string_view line) {
+  require(Function::Local);
+  fmt::format_to(std::back_inserter(together_), "  {}\n", line);
+}
+
+void ProgramText::keepTogether(std::string_view line) {
+  fmt::format_to(std::back_inserter(keptTogether_), "  {}\n", line);
+}
+
+bool ProgramText::takeShared(std::size_t bytes) {
+  if (shared_ + bytes > groupBytes) return false;
+  shared_ += bytes;
+  return true;
+}
+
+void ProgramText::foreign(std::string_view text) { foreign_ += text; }
+
+std::string ProgramText::finish(const Profile& profile, std::string_view comment,
+                                const program::Kernel& kernel) const {
+  std::string program = fmt::format("{}\n// {}\n", profile.version, comment);
+  const IntrinsicTexts intrinsics = intrinsicTexts(kernel.intrinsics, profile.accurate);
+  const bool hasExactFloats = kernel.usesExactSums || intrinsics.useExactFloats ||
+                              callDoubleIntrinsics(kernel.intrinsics) ||
+                              (kernel.usesDoubles && profile.doubles == Doubles::Pairs);
+  if (kernel.usesDoubles) program += doubleExtensions(profile.doubles);
+  if (hasExactFloats) program += exactExtensions(profile.barrier);
+  if (profile.es) program += esPrecision;
+  if (hasExactFloats) program += exactDefinitions(profile.barrier);
+  if (kernel.usesDoubles) program += doubleDefinitions(profile.doubles);
+  program += doubleIntrinsicDefinitions(kernel.intrinsics, profile.doubles, profile.barrier);
+  program += intrinsics.definitions;
+  addForeign(program, kernel.declarations);
+  program += '\n';
+  if (!isDrawn()) program += "uniform ivec4 sk_rect;\n";
+  addLines(program, uniforms_);
+  program += declarationOfOutputs();
+  if (!isDrawn()) program += "ivec2 sk_pixel;\n";
+  addLines(program, variables_);
+  addFunctions(program, used_);
+  program += functions_;
+  program += tableDefinitions(kernel.tables, profile.tables);
+  addForeign(program, kernel.body);
+  addForeign(program, foreign_);
+  return program + mainOf(prologue_ + main_);
+}
+
+/// Outputs are variables in either stage; those of a compute program are copied to images, or to a buffer.
+std::string ProgramText::declarationOfOutputs() const {
+  std::string text = isInBuffer_ ? declarationOfBuffer() : std::string();
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const auto& [type, name] = outputs_[i];
+    if (isDrawn()) {
+      fmt::format_to(std::back_inserter(text), "layout(location = {}) out {} {};\n", i, type, name);
+    } else {
+      if (!isInBuffer_)
+        fmt::format_to(std::back_inserter(text), "layout(binding = {}) writeonly uniform {} sk_image{};\n", i,
+                       imageType(type, isArray_), i);
+      fmt::format_to(std::back_inserter(text), "{} {};\n", type, name);
+    }
+  }
+  return text;
+}
+
+std::string ProgramText::declarationOfBuffer() const {
+  std::string text = "layout(std430, binding = 0) writeonly buffer sk_values {\n";
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    fmt::format_to(std::back_inserter(text), "  {} sk_value{};\n", vectorOf(outputs_[i].type), i);
+  }
+  return text + "};\n";
+}
+
+/// Invocations beside the rectangle, which fill its last work groups, leave at once.
+std::string ProgramText::mainOf(const std::string& body) const {
+  if (isDrawn()) return "\nvoid main() {\n" + body + "}\n";
+  const bool isGrouped = group_.first > 0;
+  const auto [width, height] =
+      isGrouped ? group_ : groupForTexels(outputs_.empty() ? 1 : componentsOf(outputs_.front().type));
+  std::string text =
+      fmt::format("\nlayout(local_size_x = {}, local_size_y = {}) in;\n\nvoid main() {{\n", width, height);
+  if (isGrouped) {
+    text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body +
+            "  if (gl_LocalInvocationIndex != 0u) return;\n";
+  } else if (together_.empty()) {
+    text += "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n";
+    text += "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n" + body;
+  } else {
+    text += fmt::format("  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy) * ivec2({}, {}) + sk_local();\n",
+                        width, height);
+    text += together_ + keptTogether_ + "  memoryBarrierShared();\n  barrier();\n";
+    text += "  if (any(greaterThanEqual(sk_pixel - sk_rect.xy, sk_rect.zw))) return;\n" + body;
+  }
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const auto& [type, name] = outputs_[i];
+    if (isInBuffer_) {
+      fmt::format_to(std::back_inserter(text), "  sk_value{} = {};\n", i, wholeTexel(type, name));
+    } else {
+      fmt::format_to(std::back_inserter(text), "  imageStore(sk_image{}, {}, {});\n", i, place_,
+                     wholeTexel(type, name));
+    }
+  }
+  return text + "}\n";
+}
+
+std::string call(std::string_view name, const std::vector<std::string>& arguments, std::string_view indent) {
+  std::string line = fmt::format("{}({})", name, fmt::join(arguments, ", "));
+  if (line.size() <= lineLength) return line;
+  return fmt::format("{}(\n{}{})", name, indent, fmt::join(arguments, fmt::format(",\n{}", indent)));
+}
+
+}  // namespace sk::assemble

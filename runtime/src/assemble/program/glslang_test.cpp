@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: MIT
+//
+// glslang accepts every kind of program: profiles x domains x addressing x boundaries x ranks x types,
+// and every pass of a reduction. The programs stay in SK_TEST_FOLDER to be looked at.
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <catch2/catch.hpp>
+
+#include "assemble/append/histo_pyramid.hpp"
+#include "assemble/append/point_program.hpp"
+#include "assemble/program/sample_kernels.hpp"
+#include "assemble/reduce/reduce_program.hpp"
+
+using namespace sk::assemble;
+using namespace sk::program;
+
+namespace {
+
+/// A folder of programs that one process checks.
+class Programs {
+ public:
+  explicit Programs(std::string_view name) : folder_(std::filesystem::path(SK_TEST_FOLDER) / name) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+
+  void add(std::string_view text, std::string_view stage = "frag") {
+    std::ofstream(folder_ / fmt::format("{:04}.{}", count_++, stage)) << text;
+  }
+
+  void add(const Profile& profile, std::string_view text) {
+    add(text, profile.stage == Stage::Compute ? "comp" : "frag");
+  }
+
+  /// What glslang complains of.
+  std::string complaints() const {
+    const std::string command =
+        fmt::format("cd '{}' && '{}' *.* > complaints.txt 2>&1", folder_.string(), SK_GLSLANG_VALIDATOR);
+    const bool accepted = std::system(command.c_str()) == 0;
+    std::ifstream file(folder_ / "complaints.txt");
+    std::string line;
+    std::string result;
+    for (int shown = 0; shown < 20 && std::getline(file, line);) {
+      if (!line.starts_with("ERROR") && !line.starts_with("WARNING")) continue;
+      result += line + '\n';
+      ++shown;
+    }
+    return accepted && result.empty() ? "" : "glslang: " + result;
+  }
+
+  int count() const { return count_; }
+
+ private:
+  std::filesystem::path folder_;
+  int count_ = 0;
+};
+
+void checkAccepted(const Programs& programs) {
+  const std::string complaints = programs.complaints();
+  INFO(complaints);
+  CHECK(complaints.empty());
+}
+
+struct Type {
+  const Element* element;
+  std::string_view border;
+};
+const std::array types = {
+    Type{&samples::floatElement, "1.0"},
+    Type{&samples::float3Element, "vec3(0.0, 1.0, 2.0)"},
+    Type{&samples::intElement, "-1"},
+    Type{&samples::int3Element, "ivec3(0)"},
+    Type{&samples::uint2Element, "uvec2(1u, 2u)"},
+    Type{&samples::boolElement, "true"},
+    Type{&samples::bool3Element, "bvec3(true, false, true)"},
+    Type{&samples::hitElement, "Hit(0.0, Place(vec3(0.0), false), -1)"},
+};
+
+struct Place {
+  Domain domain;
+  bool view;
+};
+constexpr std::array domains = {Place{Domain::Plane, false}, Place{Domain::Plane, true},
+                                Place{Domain::Linear, false}, Place{Domain::LinearBox, false}};
+
+constexpr std::array inputs = {StreamAccess{Addressing::Aligned}, StreamAccess{Addressing::Plane},
+                               StreamAccess{Addressing::Plane, true}, StreamAccess{Addressing::Linear},
+                               StreamAccess{Addressing::Linear, true}};
+
+constexpr std::array boundaries = {Boundary::Clamp, Boundary::Wrap, Boundary::Mirror, Boundary::Border};
+
+/// Offsets that are not constant, that are but may pass an extent, and that stay below each.
+struct Neighbours {
+  int reach;
+  bool nearby;
+};
+constexpr std::array neighbours = {Neighbours{-1, false}, Neighbours{2, false}, Neighbours{2, true}};
+
+StreamAccess with(StreamAccess access, bool nearby) {
+  access.nearby = nearby;
+  return access;
+}
+
+void addBoundaries(Programs& programs, const Type& type, int rank, const Place& domain,
+                   const StreamAccess& input, const StreamAccess& gather) {
+  for (const Profile& profile : profiles()) {
+    for (const Boundary boundary : boundaries) {
+      for (const auto [reach, nearby] : neighbours) {
+        const samples::EveryAccess sample(*type.element, type.border, rank, boundary, reach);
+        const Variant variant{.domain = domain.domain,
+                              .domainView = domain.view,
+                              .domainRank = static_cast<std::uint8_t>(rank),
+                              .access = {{}, input, with(gather, nearby), {}, {}}};
+        Profile sampling = profile;
+        sampling.samples = nearby;
+        programs.add(profile, kernelProgram(sampling, sample.kernel(), variant));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("glslang finds what is wrong") {
+  Programs programs("wrong");
+  programs.add("#version 330 core\nvoid main() { int i = 1.0; }\n");
+  CHECK_FALSE(programs.complaints().empty());
+}
+
+TEST_CASE("glslang accepts every layout with every boundary") {
+  Programs programs("layouts");
+  for (const Place& domain : domains) {
+    for (const StreamAccess& input : inputs) {
+      for (const StreamAccess& gather : inputs) {
+        if (gather.addressing == Addressing::Aligned) continue;
+        addBoundaries(programs, types[0], 2, domain, input, gather);
+      }
+    }
+  }
+  REQUIRE(programs.count() == 4 * 5 * 4 * 3 * 4 * 3);
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts every type and rank with every boundary") {
+  Programs programs("types");
+  for (const Type& type : types) {
+    for (const int rank : {1, 2, 3, 4}) {
+      addBoundaries(programs, type, rank, domains[0], inputs[0], inputs[1]);
+      addBoundaries(programs, type, rank, domains[3], inputs[4], inputs[4]);
+    }
+  }
+  REQUIRE(programs.count() == 8 * 4 * 2 * 3 * 4 * 3);
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts layers, of what is drawn and of what is read") {
+  Programs programs("layers");
+  constexpr std::array layered = {StreamAccess{Addressing::Aligned}, StreamAccess{Addressing::Layered},
+                                  StreamAccess{Addressing::Layered, true}};
+  for (const Profile& profile : profiles()) {
+    for (const Type& type : types) {
+      for (const StreamAccess& input : layered) {
+        for (const Domain domain : {Domain::Linear, Domain::LinearBox}) {
+          const samples::EveryAccess sample(*type.element, type.border, 2, Boundary::Border, -1);
+          programs.add(profile, kernelProgram(profile, sample.kernel(),
+                                              {.domain = domain,
+                                               .domainLayered = true,
+                                               .access = {{}, input, {Addressing::Layered, true}, {}, {}}}));
+        }
+      }
+    }
+    for (const bool source : {false, true}) {
+      for (const bool domain : {false, true}) {
+        programs.add(
+            profile,
+            reduceProgram(profile, samples::firstHit,
+                          {.walk = Walk::Partials, .sourceLayered = source, .domainLayered = domain}));
+        if (profile.stage == Stage::Compute) continue;
+        programs.add(treeProgram(profile, {true, source, domain}));
+        programs.add(treeProgram(profile, {false, source, domain}));
+      }
+    }
+  }
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts the points of a scatter output, in layers or not") {
+  Programs programs("points");
+  const Parameter appendOutput{
+      .name = "r", .symbol = "r", .role = Role::Scatter, .element = &samples::int3Element, .rank = 1};
+  for (const Profile& profile : profiles()) {
+    if (profile.stage == Stage::Compute) continue;
+    for (const PointTextures& textures :
+         {PointTextures{false, false}, {false, true}, {true, false}, {true, true}}) {
+      programs.add(pointVertexProgram(profile, textures), "vert");
+      for (int step = 0; step <= static_cast<int>(PointStep::JoinHalves); ++step) {
+        programs.add(pointProgram(profile, appendOutput, static_cast<PointStep>(step), textures));
+      }
+    }
+  }
+  checkAccepted(programs);
+}
+
+// `precise` is left to the device tests: glslang does not take it from GL_ARB_gpu_shader5.
+TEST_CASE(
+    "glslang accepts doubles and their functions in either form, behind other barriers than `precise`") {
+  Programs programs("doubles");
+  std::vector<IntrinsicUse> all;
+  for (int i = 0; i <= static_cast<int>(Intrinsic::Pow); ++i)
+    all.push_back({static_cast<Intrinsic>(i), 1, true});
+  Kernel kernel = samples::saxpy;
+  kernel.usesDoubles = true;
+  for (Profile profile : profiles()) {
+    for (const Doubles form : {Doubles::Native, Doubles::Pairs}) {
+      if (profile.es && form == Doubles::Native) continue;
+      profile.doubles = form;
+      for (const sk::Barrier barrier : {sk::Barrier::None, sk::Barrier::Xor}) {
+        profile.barrier = barrier;
+        for (const std::span<const IntrinsicUse> uses :
+             {std::span<const IntrinsicUse>{}, std::span<const IntrinsicUse>(all)}) {
+          kernel.intrinsics = uses;
+          programs.add(profile,
+                       kernelProgram(profile, kernel,
+                                     {.access = std::vector<StreamAccess>(kernel.parameters.size())}));
+        }
+      }
+    }
+  }
+  REQUIRE(programs.count() == 20);
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts kernels that use nothing of the assembler's, and the vertex program") {
+  Programs programs("plain");
+  for (const Profile& profile : profiles()) {
+    programs.add(profile, kernelProgram(profile, samples::saxpy, {.access = {{}, {}, {}, {}}}));
+    programs.add(profile,
+                 kernelProgram(profile, samples::diffuse, {.access = {{}, {Addressing::Plane}, {}}}));
+    if (profile.stage == Stage::Fragment) programs.add(vertexProgram(profile), "vert");
+  }
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts values that the vertex program hands on") {
+  Programs programs("relayed");
+  for (Profile profile : profiles()) {
+    if (profile.stage == Stage::Compute) continue;
+    profile.relaysUniforms = true;
+    for (const auto [domain, view] : domains) {
+      const Variant variant{
+          .domain = domain, .domainView = view, .access = {{}, inputs[2], {Addressing::Plane}, {}}};
+      const auto [vertex, main] = kernelPrograms(profile, samples::saxpy, variant);
+      programs.add(main);
+      programs.add(vertex, "vert");
+    }
+  }
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts every pass of a reduction") {
+  Programs programs("reductions");
+  for (const Profile& profile : profiles()) {
+    for (const Reduction* reduction : {&samples::sum, &samples::firstHit, &samples::countTrue}) {
+      for (const Walk walk : {Walk::Line, Walk::Plane, Walk::Box, Walk::Partials}) {
+        for (const Runs runs : {Runs::OneBlock, Runs::WholeBlocks, Runs::Split}) {
+          for (const auto [domain, view] : domains) {
+            for (const std::uint8_t rank :
+                 {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{3}, std::uint8_t{4}}) {
+              programs.add(profile,
+                           reduceProgram(profile, *reduction, {walk, runs, domain, view, rank, rank}));
+            }
+          }
+        }
+      }
+    }
+  }
+  REQUIRE(programs.count() == 3 * 3 * 4 * 3 * 4 * 4);
+  checkAccepted(programs);
+}
+
+TEST_CASE("glslang accepts folds of several inputs to several accumulators, by index") {
+  Programs programs("weighings");
+  constexpr StreamAccess plane{Addressing::Plane, true};
+  constexpr StreamAccess linear{Addressing::Linear};
+  for (const Profile& profile : profiles()) {
+    for (const Walk walk : {Walk::Index, Walk::Partials, Walk::Nothing}) {
+      for (const auto& [x, y] : {std::pair(plane, linear), std::pair(linear, plane)}) {
+        for (const auto [domain, view] : domains) {
+          for (const std::uint8_t first : {std::uint8_t{0}, std::uint8_t{2}}) {
+            const auto count = static_cast<std::uint8_t>(first == 0 ? 0 : 3);
+            programs.add(profile, reduceProgram(profile, samples::weigh,
+                                                {.walk = walk,
+                                                 .runs = Runs::Split,
+                                                 .domain = domain,
+                                                 .domainView = view,
+                                                 .domainRank = 4,
+                                                 .axes = 4,
+                                                 .firstPlane = first,
+                                                 .planeCount = count,
+                                                 .access = {{}, x, y, {Addressing::Plane}, {}, {}}}));
+          }
+        }
+      }
+    }
+  }
+  checkAccepted(programs);
+}

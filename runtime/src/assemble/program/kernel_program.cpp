@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: MIT
+//
+// The program of a kernel for one variant. Sections are filled parameter by parameter; main() is one
+// call of the kernel's entry function between fetches and stores.
+#include <algorithm>
+#include <cassert>
+#include <deque>
+
+#include <fmt/format.h>
+
+#include "assemble/append/append_passes.hpp"
+#include "assemble/assemble.hpp"
+#include "assemble/elements/arguments.hpp"
+#include "assemble/elements/domain.hpp"
+#include "assemble/elements/gather.hpp"
+#include "assemble/elements/planes.hpp"
+#include "assemble/elements/storage.hpp"
+#include "assemble/glsl/program_text.hpp"
+
+namespace sk::assemble {
+namespace {
+
+using program::Fit;
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+std::string_view name(Domain domain) {
+  switch (domain) {
+    case Domain::Plane: return "plane";
+    case Domain::Linear: return "linear";
+    case Domain::LinearBox: return "linear box";
+    case Domain::Entry: return "list";
+  }
+  return {};
+}
+
+std::string_view name(Addressing addressing) {
+  switch (addressing) {
+    case Addressing::Aligned: return "aligned";
+    case Addressing::Plane: return "plane";
+    case Addressing::Linear: return "linear";
+    case Addressing::Layered: return "layered";
+  }
+  return {};
+}
+
+std::string_view name(Storage storage) {
+  switch (storage) {
+    case Storage::Default:
+    case Storage::Single: return "";
+    case Storage::Half: return " of halves";
+    case Storage::Extended:
+    case Storage::Double: return " of doubles";
+  }
+  return {};
+}
+
+std::string_view name(Fit fit) {
+  switch (fit) {
+    case Fit::Same: return "";
+    case Fit::Stretched: return " stretched";
+    case Fit::Strided: return " strided";
+  }
+  return {};
+}
+
+/// "diffuse for glsl330: plane domain; u plane view nearby".
+std::string describe(const Profile& profile, const Kernel& kernel, const Variant& variant) {
+  std::string text = fmt::format(
+      "{} for {}: {}{}{}{} domain", kernel.name, profile.name, variant.domainLayered ? "layered " : "",
+      variant.domainPacked ? "packed " : "", name(variant.domain), variant.domainView ? " view" : "");
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const Parameter& parameter = kernel.parameters[i];
+    const bool isRead = parameter.role == Role::Input || parameter.role == Role::Gather;
+    if (!isNeeded(parameter, variant.specs)) {
+      text += fmt::format("; no {}", parameter.name);
+      continue;
+    }
+    const StreamAccess& access = variant.access[i];
+    if (!isRead) {
+      if (access.storage != Storage::Single)
+        text += fmt::format("; {}{}", parameter.name, name(access.storage));
+      continue;
+    }
+    text += fmt::format("; {} {}{}{}{}{}{}", parameter.name, access.packed ? "packed " : "",
+                        name(access.addressing), access.view ? " view" : "", access.nearby ? " nearby" : "",
+                        access.filtered ? " filtered" : name(access.fit), name(access.storage));
+  }
+  return text;
+}
+
+class KernelText {
+ public:
+  KernelText(const Profile& profile, const Kernel& kernel, const Variant& variant)
+      : profile_(profile),
+        held_(kernel, variant.access),
+        kernel_(held_.kernel()),
+        variant_(variant),
+        program_(profile),
+        domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered,
+                           variant.domainPacked}) {}
+
+  std::string write() {
+    assert(profile_.stage == Stage::Fragment || variant_.task.work == Work::Elements);
+    if (profile_.relaysUniforms && !isList()) relayUniforms();
+    if (isList())
+      findEntry(program_, domain_, kernel_.parameters[variant_.task.appendOutput], variant_.task.treeLayered);
+    if (kernel_.usesLoops && !variant_.domainEven) domain_.leaveOutside();
+    if (kernel_.usesIndex) domain_.index();
+    if (kernel_.usesExtent) {
+      program_.function("ivec4 sk_extent()",
+                        {fmt::format("return {};", program_.uniform("ivec4", "sk_domain_shape"))});
+    }
+    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+      if (isNeeded(kernel_.parameters[i], variant_.specs)) {
+        defineAccess(i, variant_.access[i]);
+      } else {
+        defineUnused(kernel_.parameters[i]);
+      }
+    }
+    callEntry();
+    for (const auto& [parameter, variable] : results_) store(program_, *parameter, variable);
+    storeAppendOutputs();
+    if (profile_.stage == Stage::Compute)
+      program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
+    return program_.finish(profile_, describe(profile_, kernel_, variant_), kernel_);
+  }
+
+  const std::vector<RelayedValue>& relayed() const { return program_.relayed(); }
+
+ private:
+  struct Result {
+    const Parameter* parameter;
+    std::string variable;
+  };
+  /// Of the entry function. `isLanes`: a vector of the values for the elements of a packed texel.
+  struct Value {
+    std::string text;
+    bool isLanes = false;
+  };
+
+  /// Once, or for each element of a packed texel.
+  void callEntry() {
+    const auto callWith = [&](std::string_view component) {
+      std::vector<std::string> arguments;
+      for (const Value& value : arguments_) {
+        arguments.push_back(value.isLanes ? fmt::format("{}.{}", value.text, component) : value.text);
+      }
+      program_.statement(call(kernel_.entry, arguments, "      ") + ";");
+    };
+    if (!variant_.domainPacked) return callWith("");
+    for (int lane = 0; lane < lanes; ++lane) {
+      if (domain_.usesLane()) program_.statement(fmt::format("sk_lane = {};", lane));
+      callWith(std::string_view("xyzw").substr(static_cast<std::size_t>(lane), 1));
+    }
+  }
+
+  /// What calls change most often first, since there is room for so many.
+  void relayUniforms() {
+    program_.relayUniforms();
+    for (const Parameter& parameter : kernel_.parameters) {
+      if (!isNeeded(parameter, variant_.specs)) continue;
+      if (parameter.role == Role::Uniform) {
+        parameterUniform(program_, parameter.element->glsl, "arg", parameter);
+      } else if (parameter.role == Role::Iterator) {
+        parameterUniform(program_, parameter.element->glsl, "begin", parameter);
+        parameterUniform(program_, parameter.element->glsl, "step", parameter);
+      }
+    }
+    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+      if (variant_.access[i].view) parameterUniform(program_, "ivec4", "origin", kernel_.parameters[i]);
+    }
+  }
+
+  bool isList() const { return variant_.task.work == Work::List; }
+
+  void defineAccess(std::size_t i, const StreamAccess& access) {
+    const Parameter& parameter = kernel_.parameters[i];
+    switch (parameter.role) {
+      case Role::Uniform:
+        arguments_.push_back({parameterUniform(program_, parameter.element->glsl, "arg", parameter)});
+        break;
+      case Role::Input: defineInput(parameter, access); break;
+      case Role::Output: defineOutput(parameter); break;
+      case Role::Gather:
+        defineGather(
+            program_, [&](int components) { return domain_.position(components); }, parameter, access,
+            sharesTexels(parameter, access) ? &domain_ : nullptr);
+        defineExtent(program_, parameter);
+        break;
+      case Role::Iterator:
+        arguments_.push_back({iteratorValue(program_, parameter, access, domain_.index())});
+        break;
+      case Role::Spec:
+        arguments_.push_back({specConstant(program_, parameter, variant_.specs[specs_++])});
+        break;
+      case Role::Accumulator: assert(!"a reduction has programs of its own"); break;
+      case Role::VariableOutput:
+      case Role::Scatter:
+        defineAppendOutput(i, access);
+        defineExtent(program_, parameter);
+        break;
+    }
+  }
+
+  void defineUnused(const Parameter& parameter) {
+    defineAbsent(program_, parameter);
+    if (parameter.role != Role::Gather) arguments_.push_back({absentElement(parameter)});
+    if (parameter.role == Role::Output) defineDomainGetters(parameter);
+  }
+
+  void defineInput(const Parameter& parameter, const StreamAccess& access) {
+    const bool isAligned = access.addressing == Addressing::Aligned;
+    declareSamplers(program_, parameter,
+                    isAligned ? variant_.domainLayered : access.addressing == Addressing::Layered);
+    if (parameter.usesIndex || !isAligned) defineInputIndex(program_, parameter, access, domain_.index());
+    if (isAligned && variant_.domainPacked) {
+      fetchLanes(parameter);
+    } else {
+      const Texel texel = isAligned ? domain_.texel() : inputTexel(program_, parameter, access);
+      arguments_.push_back({fetch(program_, parameter, texel)});
+    }
+    defineExtent(program_, parameter);
+  }
+
+  /// The four elements of the texel, by one fetch.
+  void fetchLanes(const Parameter& parameter) {
+    const Parameter four = fourOf(parameter);
+    const std::string name = fmt::format("sk_in_{}", parameter.symbol);
+    program_.statement(
+        fmt::format("{} {} = {};", four.element->glsl, name, fetch(program_, four, domain_.texel())));
+    arguments_.push_back({name, true});
+  }
+
+  /// Whether a gather's texels lie as those of the domain do, so that neighbours are found by texels.
+  bool sharesTexels(const Parameter& gather, const StreamAccess& access) const {
+    constexpr int farthest = 4;  // a gather of rank 2 has 27 texels in reach then
+    if (gather.reach > farthest || !variant_.domainPacked || !access.packed || !access.nearby ||
+        access.view || variant_.domainView) {
+      return false;
+    }
+    const bool isRow = variant_.domain == Domain::Linear && variant_.domainRank == 1 && gather.rank == 1;
+    return variant_.domain == Domain::Plane ? access.addressing == Addressing::Plane
+                                            : isRow && access.addressing != Addressing::Plane;
+  }
+
+  void defineAppendOutput(std::size_t i, const StreamAccess& access) {
+    const Parameter& appendOutput = kernel_.parameters[i];
+    if (!isList()) return defineCounting(program_, appendOutput);
+    i == variant_.task.appendOutput ? defineListed(program_, appendOutput, access)
+                                    : defineIgnored(program_, appendOutput);
+  }
+
+  void storeAppendOutputs() {
+    if (isList()) return storeListed(program_, kernel_.parameters[variant_.task.appendOutput]);
+    for (const Parameter& parameter : kernel_.parameters) {
+      if (isAppendOutput(parameter)) storeCount(program_, parameter);
+    }
+  }
+
+  void defineOutput(const Parameter& parameter) {
+    if (isList()) {   // written by another pass
+      arguments_.push_back({fmt::format("sk_unused_{}", parameter.symbol)});
+      program_.statement(fmt::format("{} {};", parameter.element->glsl, arguments_.back().text));
+    } else {
+      const Parameter& written = variant_.domainPacked ? written_.emplace_back(fourOf(parameter)) : parameter;
+      declareOutputs(program_, written);
+      results_.push_back({&written, resultVariable(program_, written)});
+      arguments_.push_back({results_.back().variable, variant_.domainPacked});
+    }
+    defineDomainGetters(parameter);
+  }
+
+  void defineDomainGetters(const Parameter& parameter) {
+    if (parameter.usesIndex) defineGetter(program_, "index", parameter, domain_.index());
+    if (parameter.usesExtent) {
+      defineGetter(program_, "extent", parameter, program_.uniform("ivec4", "sk_domain_shape"));
+    }
+  }
+
+  const Profile& profile_;
+  const HeldKernel held_;
+  const Kernel& kernel_;
+  const Variant& variant_;
+  ProgramText program_;
+  DomainText domain_;
+  std::vector<Value> arguments_;
+  std::deque<Parameter> written_;  ///< of packed texels
+  std::vector<Result> results_;
+  std::size_t specs_ = 0;   ///< whose constants are declared
+};
+
+}  // namespace
+
+Domain domainOf(const RegionLayout& output) {
+  if (!output.linear) return Domain::Plane;
+  return output.view ? Domain::LinearBox : Domain::Linear;
+}
+
+bool mayPack(const program::Element& held) {
+  const program::Field& field = held.fields.front();
+  return held.fields.size() == 1 && field.path.empty() && field.width == 1 &&
+         field.scalar != program::Scalar::Double;
+}
+
+bool mayWritePacked(const Kernel& kernel) {
+  return !kernel.usesLoops && kernel.body.size() <= longestPackedBody &&
+         std::ranges::all_of(kernel.parameters, [](const Parameter& parameter) {
+           return !isAppendOutput(parameter) &&
+                  (parameter.role != Role::Output || mayPack(heldBy(parameter)));
+         });
+}
+
+ProgramPair kernelPrograms(const Profile& profile, const Kernel& kernel, const Variant& variant) {
+  assert(variant.access.size() == kernel.parameters.size());
+  KernelText text(profile, kernel, variant);
+  ProgramPair programs{.vertex = {}, .main = text.write()};
+  if (profile.stage == Stage::Fragment) programs.vertex = vertexProgram(profile, text.relayed());
+  return programs;
+}
+
+std::string kernelProgram(const Profile& profile, const Kernel& kernel, const Variant& variant) {
+  return kernelPrograms(profile, kernel, variant).main;
+}
+
+}  // namespace sk::assemble

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+//
+// Which programs and passes reductions are planned to take.
+#include "assemble/reduce/reduce_plan.hpp"
+
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "assemble/program/sample_kernels.hpp"
+
+using namespace sk::assemble;
+
+namespace {
+
+constexpr std::int32_t mostLayers = 256;
+
+}  // namespace
+
+TEST_CASE("a linearised stream is seen with as few axes as it allows") {
+  const auto walk = [](const Index4& extent, const Index4& blocks) {
+    RegionLayout input{.linear = true, .extent = extent, .stride = stridesOf(extent), .shift = 4};
+    RegionLayout result{.linear = true, .extent = blocks, .stride = stridesOf(blocks), .shift = 4};
+    const ReduceVariant variant = planReduction(input, result, {{1024, mostLayers}}).front().variant;
+    return std::pair(variant.walk, int{variant.axes});
+  };
+  CHECK(walk({4, 5, 6, 7}, {1, 1, 1, 1}).first == Walk::Line);
+  CHECK(walk({4, 5, 6, 7}, {1, 5, 6, 7}).first == Walk::Line);
+  CHECK(walk({4, 5, 6, 7}, {1, 1, 2, 7}).first == Walk::Line);
+  CHECK(walk({4, 5, 6, 7}, {4, 5, 6, 1}) == std::pair(Walk::Box, 2));
+  CHECK(walk({4, 5, 6, 7}, {4, 5, 1, 1}) == std::pair(Walk::Box, 2));
+  CHECK(walk({4, 6, 6, 7}, {2, 3, 2, 1}) == std::pair(Walk::Box, 4));
+}
+
+TEST_CASE("a reduction to a value takes two programs and the fewest passes") {
+  const RegionLayout square{.extent = {4096, 4096, 1, 1}};
+  const auto passes = planReduction(square, valueLayout(), {{16384, 256}, 32});
+  REQUIRE(passes.size() == 5);
+  CHECK(passes[0].variant.walk == Walk::Rows);
+  CHECK(passes[0].variant.run == 32);
+  CHECK(passes[0].texture == TextureShape{128, 4096, 0});
+  for (std::size_t i = 1; i < passes.size(); ++i) CHECK(passes[i].variant == passes[1].variant);
+  CHECK(passes.back().draws == std::vector<Rect>{{0, 0, 1, 1}});
+}
+
+TEST_CASE("of few elements, programs know of no shape") {
+  const auto program = [](std::int32_t width, std::int32_t height) {
+    const RegionLayout rows{.extent = {width, height, 1, 1}};
+    return planReduction(rows, valueLayout(), {{16384, 256}, 32}).front().variant;
+  };
+  for (std::int32_t width = 2; width < 100; ++width) CHECK(program(width, width + 1) == program(2, 3));
+  CHECK(program(1024, 1024).run == 32);
+  CHECK(program(1001, 1001).run == 0);
+}
+
+TEST_CASE("a linearised stream is folded by rows where it ends with one, or where order does not count") {
+  const auto first = [](std::int32_t count, bool inAnyOrder) {
+    const RegionLayout line = linearLayout(count, *linearTexture(count, {1024, mostLayers}));
+    const Division division{.blocks = {1, 1, 1, 1}, .inAnyOrder = inAnyOrder};
+    return planReduction(line, valueLayout(), {{1024, mostLayers}}, division).front().variant;
+  };
+  CHECK(first(1 << 16, false).walk == Walk::Rows);
+  CHECK(first((1 << 16) - 1, false).walk == Walk::Line);
+  CHECK(first((1 << 16) - 1, true).walk == Walk::Rows);
+  CHECK(first((1 << 16) - 1, true).column);
+}
+
+TEST_CASE("long runs are columns of parts, whose number is known where all have as many") {
+  const auto plan = [](std::int32_t width, std::int32_t height) {
+    const RegionLayout plane{.extent = {width, height, 1, 1}};
+    const Division division{.blocks = {1, 1, 1, 1}, .inAnyOrder = true, .inGroups = true};
+    return planReduction(plane, valueLayout(), {.texture = {16384, mostLayers}, .longRun = 64}, division);
+  };
+  const std::vector<ReducePass> passes = plan(1024, 1024);
+  REQUIRE(passes.size() == 4);
+  CHECK(passes[0].variant.column);
+  CHECK(int{passes[0].variant.run} == 64);
+  CHECK(int{passes[0].variant.part} == 8);
+  CHECK(passes[0].texture == TextureShape{1024, 16, 0});
+  CHECK(int{plan(1024, 72).front().variant.run} == 36);
+  CHECK(int{plan(1024, 72).front().variant.part} == 4);
+  CHECK(int{plan(1024, 67).front().variant.run} == 0);
+  CHECK(int{plan(1024, 67).front().variant.part} == 8);
+}
+
+TEST_CASE("work groups fold long runs part by part, whether all are as long or not") {
+  const auto first = [](std::int32_t width, std::int32_t height) {
+    const RegionLayout plane{.extent = {width, height, 1, 1}};
+    const Division division{.blocks = {1, 1, 1, 1}, .inAnyOrder = true, .inGroups = true};
+    const ReduceLimits limits{.texture = {32768, mostLayers}, .grouped = true, .longRun = 16};
+    return planReduction(plane, valueLayout(), limits, division).front();
+  };
+  CHECK(first(4096, 4096).variant.grouped);
+  CHECK(int{first(4096, 4096).variant.run} == 16);
+  CHECK(int{first(4096, 4096).variant.part} == 8);
+  CHECK(first(4096, 4096).texture == TextureShape{256, 16, 0});
+  CHECK(int{first(1025, 16411).variant.run} == 0);
+  CHECK(int{first(1025, 16411).variant.part} == 8);
+  CHECK(first(1025, 16411).texture == TextureShape{65, 65, 0});
+}
+
+TEST_CASE("of a dispatched reduction to a value, the last pass alone writes to a buffer") {
+  const RegionLayout plane{.extent = {1024, 1024, 1, 1}};
+  const Division division{.blocks = {1, 1, 1, 1}, .inAnyOrder = true, .inGroups = true};
+  const ReduceLimits limits{.texture = {16384, mostLayers}, .grouped = true, .toBuffer = true};
+  const std::vector<ReducePass> passes = planReduction(plane, valueLayout(), limits, division);
+  REQUIRE(passes.size() == 2);
+  CHECK_FALSE(passes[0].variant.toBuffer);
+  CHECK(passes[1].variant.toBuffer);
+}
+
+TEST_CASE("values of components of 32 bits may end in a buffer") {
+  CHECK(mayEndInBuffer(samples::sum));
+  CHECK_FALSE(mayEndInBuffer(samples::weigh));  // its best has a bool
+}
+
+TEST_CASE("as many elements as there may be are folded to one") {
+  const TextureLimits textures{16384, 256};
+  const RegionLayout all = linearLayout(sk::mostElements, *linearTexture(sk::mostElements, textures));
+  for (const bool grouped : {false, true}) {
+    for (const std::int32_t fanIn : {2, 32}) {
+      const std::vector<ReducePass> passes =
+          planReduction(all, valueLayout(), {.texture = textures, .fanIn = fanIn, .grouped = grouped},
+                        {.blocks = {1, 1, 1, 1}, .inAnyOrder = grouped, .inGroups = grouped});
+      std::int64_t left = sk::mostElements;
+      for (const ReducePass& pass : passes) {
+        std::int64_t results = 0;
+        for (const Rect& rect : pass.draws) {
+          REQUIRE((rect.x >= 0 && rect.y >= 0 && rect.width > 0 && rect.height > 0));
+          results += std::int64_t{rect.width} * rect.height;
+        }
+        CHECK(results < left);
+        CHECK(results * fanIn * (grouped ? groupSize : 1) >= left);
+        left = results;
+      }
+      CHECK(passes.back().toResult);
+      CHECK(left == 1);
+    }
+  }
+}

@@ -1,0 +1,600 @@
+// SPDX-License-Identifier: MIT
+//
+// The program of one pass of a reduction. main() finds its run, that is, a block and the place in it
+// where the run starts, and folds the run's elements with one loop.
+#include "assemble/reduce/reduce_program.hpp"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+
+#include <fmt/format.h>
+
+#include "assemble/elements/arguments.hpp"
+#include "assemble/elements/domain.hpp"
+#include "assemble/elements/gather.hpp"
+#include "assemble/elements/planes.hpp"
+#include "assemble/elements/storage.hpp"
+#include "assemble/glsl/program_text.hpp"
+#include "assemble/reduce/reduce_names.hpp"
+
+namespace sk::assemble {
+namespace {
+
+using program::Kernel;
+using program::Parameter;
+using program::Reduction;
+using program::Role;
+
+/// The kernel that a walk calls: none, but for the identities, where there is no element.
+Kernel kernelOf(const Reduction& reduction, Walk walk) {
+  if (isOfPartials(walk)) return reduction.combine;
+  Kernel kernel = reduction.fold;
+  if (walk == Walk::Nothing) {
+    kernel.body = {};
+    kernel.usesIndex = kernel.usesExtent = kernel.usesLoops = false;
+    kernel.tables = {};
+  }
+  return kernel;
+}
+
+class ReductionText {
+ public:
+  ReductionText(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant)
+      : profile_(profile),
+        reduction_(reduction),
+        variant_(variant),
+        held_(kernelOf(reduction, variant.walk), variant.access),
+        kernel_(held_.kernel()),
+        program_(profile),
+        domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered},
+                "sk_result") {
+    for (const Parameter& parameter : kernel_.parameters) {
+      if (parameter.role == Role::Input) inputs_.push_back(&parameter);
+      if (parameter.role == Role::Accumulator) accumulators_.push_back(&parameter);
+    }
+  }
+
+  std::string write() {
+    if (kernel_.usesLoops && !isByRows() && variant_.walk != Walk::GroupedPartials) domain_.leaveOutside();
+    if (variant_.walk != Walk::Nothing) defineParameters();
+    if (variant_.grouped || variant_.part > 0) program_.foreign(reduction_.addition);
+    const std::vector<Parameter> written =
+        withPlanes(accumulators_, variant_.firstPlane, variant_.planeCount);
+    for (const Parameter& parameter : written) declareOutputs(program_, parameter);
+    if (variant_.walk == Walk::Nothing) {
+      startFromIdentities();
+    } else if (variant_.walk == Walk::GroupedPartials) {
+      foldGroup();
+    } else {
+      findRun();
+      startWalk();
+      foldRun();
+      if (variant_.grouped) combineInGroup();
+    }
+    for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
+    if (profile_.stage == Stage::Compute)
+      program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
+    if (variant_.toBuffer) program_.storeInBuffer();
+    const std::string comment =
+        fmt::format("{} for {}: {}{}, {}", reduction_.fold.name, profile_.name,
+                    variant_.packed ? "packed " : "", nameOf(variant_.walk), nameOf(variant_.runs));
+    return program_.finish(profile_, comment, kernel_);
+  }
+
+ private:
+  // ---- parameters -------------------------------------------------------------------------------
+
+  StreamAccess access(std::size_t i) const {
+    return variant_.access.empty() ? StreamAccess{} : variant_.access[i];
+  }
+
+  /// The variable that holds an accumulator.
+  std::string total(const Parameter& accumulator) const {
+    return held(isInPart_ ? "sk_part" : "sk_total", accumulator);
+  }
+  std::string held(std::string_view name, const Parameter& accumulator) const {
+    return accumulators_.size() == 1 ? std::string(name) : fmt::format("{}_{}", name, accumulator.symbol);
+  }
+
+  /// The index of the element that is folded, among all elements.
+  std::string item() {
+    program_.variable("ivec4", "sk_item");
+    return "sk_item";
+  }
+
+  std::string itemPosition(int components) {
+    static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
+    return fmt::format("{}{}", item(), swizzles[static_cast<std::size_t>(components - 1)]);
+  }
+
+  void defineParameters() {
+    if (kernel_.usesIndex) program_.function("ivec4 sk_index()", {fmt::format("return {};", item())});
+    if (kernel_.usesExtent) {
+      const std::string shape = program_.uniform("ivec4", "sk_item_shape");
+      program_.function("ivec4 sk_extent()", {fmt::format("return {};", shape)});
+    }
+    std::size_t specs = 0;
+    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+      const Parameter& parameter = kernel_.parameters[i];
+      if (parameter.role == Role::Spec) {
+        arguments_.push_back(specConstant(program_, parameter, variant_.specs[specs++]));
+      } else if (isNeeded(parameter, variant_.specs)) {
+        defineParameter(parameter, access(i));
+      } else {
+        defineAbsent(program_, parameter);
+      }
+    }
+  }
+
+  void defineParameter(const Parameter& parameter, const StreamAccess& access) {
+    switch (parameter.role) {
+      case Role::Uniform:
+        arguments_.push_back(parameterUniform(program_, parameter.element->glsl, "arg", parameter));
+        return;
+      case Role::Iterator: arguments_.push_back(iteratorValue(program_, parameter, access, item())); return;
+      case Role::Input:
+        declareSamplers(
+            program_, parameter,
+            variant_.walk == Walk::Index ? access.addressing == Addressing::Layered : variant_.sourceLayered);
+        if (variant_.walk == Walk::Index) defineInputIndex(program_, parameter, access, item());
+        defineExtent(program_, parameter);
+        return;
+      case Role::Gather:
+        defineGather(program_, [&](int components) { return itemPosition(components); }, parameter, access);
+        defineExtent(program_, parameter);
+        return;
+      case Role::Spec:
+      case Role::Accumulator:
+      case Role::Output:
+      case Role::VariableOutput:
+      case Role::Scatter: return;
+    }
+  }
+
+  // ---- the walk ---------------------------------------------------------------------------------
+
+  /// Defines sk_block (its number), sk_first (the run's first element in it) and sk_count, as far as
+  /// they are not constants.
+  void findRun() {
+    if (isByRows()) return;
+    const bool isByBlock = variant_.runs == Runs::WholeBlocks && variant_.walk == Walk::Plane;
+    const std::string number = isByBlock && !variant_.reshaped ? std::string() : domain_.number();
+    switch (variant_.runs) {
+      case Runs::OneBlock:
+        integers({"sk_fan", "sk_block_length"});
+        statement("int sk_first = (" + number + ") * sk_fan;");
+        statement("int sk_count = min(sk_fan, sk_block_length - sk_first);");
+        return;
+      case Runs::WholeBlocks:
+        integers({"sk_block_length"});
+        if (!number.empty()) statement("int sk_block = " + number + ";");
+        statement("int sk_count = sk_block_length;");
+        return;
+      case Runs::Split:
+        integers({"sk_blocks", "sk_fan", "sk_block_length"});
+        statement("int sk_number = " + number + ";");
+        statement("int sk_run = sk_number / sk_blocks;");
+        statement("int sk_block = sk_number - sk_run * sk_blocks;");
+        statement("int sk_first = sk_run * sk_fan;");
+        statement("int sk_count = min(sk_fan, sk_block_length - sk_first);");
+        return;
+    }
+  }
+
+  void startWalk() {
+    switch (variant_.walk) {
+      case Walk::Line: startLine(); return;
+      case Walk::Plane: startPlane(); return;
+      case Walk::Box: startBox(); return;
+      case Walk::Index: startIndex(); return;
+      case Walk::Rows:
+      case Walk::PartialRows: startRows(); return;
+      case Walk::Partials: startPartials(); return;
+      case Walk::GroupedPartials:
+      case Walk::Nothing: return;
+    }
+  }
+
+  bool isByRows() const { return variant_.walk == Walk::Rows || variant_.walk == Walk::PartialRows; }
+
+  bool manyBlocks() const { return variant_.runs != Runs::OneBlock; }
+  bool startsInside() const { return variant_.runs != Runs::WholeBlocks; }
+
+  void startLine() {
+    integers({"sk_start"});
+    const std::string_view block = manyBlocks() ? " + sk_block * sk_block_length" : "";
+    const std::string_view first = startsInside() ? " + sk_first" : "";
+    statement(fmt::format("int sk_at = sk_start{}{};", block, first));
+    walkNumbers("sk_at", "sk_k");
+  }
+
+  void startPartials() {
+    if (!manyBlocks()) return walkNumbers("sk_first", "sk_k");
+    integers({"sk_blocks"});
+    if (!startsInside()) return walkNumbers("sk_block", "sk_k * sk_blocks");
+    statement("int sk_at = sk_first * sk_blocks + sk_block;");
+    walkNumbers("sk_at", "sk_k * sk_blocks");
+  }
+
+  void walkNumbers(std::string_view start, std::string_view distance) {
+    first_ = numberedTexel(start);
+    next_ = numberedTexel(fmt::format("{} + {}", start, distance));
+  }
+
+  /// sk_corner is the block's first texel, sk_p the texel of the element.
+  void startPlane() {
+    vectors({"sk_origin", "sk_block_shape"});
+    const std::string block = manyBlocks() ? " + " + blockIndex() + ".xy * sk_block_shape.xy" : "";
+    statement("ivec2 sk_corner = sk_origin.xy" + block + ";");
+    if (startsInside()) {
+      statement("int sk_y = sk_first / sk_block_shape.x;");
+      statement("ivec2 sk_p = sk_corner + ivec2(sk_first - sk_y * sk_block_shape.x, sk_y);");
+    } else {
+      statement("ivec2 sk_p = sk_corner;");
+    }
+    statement("int sk_end = sk_corner.x + sk_block_shape.x;");
+    step_ = {"++sk_p.x;", "if (sk_p.x == sk_end) sk_p = ivec2(sk_corner.x, sk_p.y + 1);"};
+    first_ = next_ = {"sk_p"};
+  }
+
+  /// sk_corner is the run's first texel, sk_p the texel of the element.
+  void startRows() {
+    vectors({"sk_origin", "sk_target"});
+    if (variant_.grouped) program_.dispatchGroups(groupSide, groupSide);
+    const std::string run = variant_.run == 0 ? "sk_run_shape.xy"
+                            : variant_.column ? fmt::format("ivec2(1, {})", variant_.run)
+                                              : fmt::format("ivec2({}, 1)", variant_.run);
+    const std::string number =
+        variant_.grouped ? fmt::format("(({} - sk_target.xy) * {} + ivec2(gl_LocalInvocationID.xy))",
+                                       domain_.texel().at, groupSide)
+                         : fmt::format("({} - sk_target.xy)", domain_.texel().at);
+    statement(fmt::format("ivec2 sk_corner = {} * {};", number, run));
+    if (variant_.grouped) {
+      vectors({"sk_source"});
+      statement("bool sk_isInside = all(lessThan(sk_corner, sk_source.xy));");
+    } else if (kernel_.usesLoops) {  // as DomainText::leaveOutside()
+      vectors({"sk_source"});
+      statement("if (any(greaterThanEqual(uvec2(sk_corner), uvec2(sk_source.xy)))) return;");
+    }
+    if (variant_.run > 0) {
+      statement("ivec2 sk_p = sk_origin.xy + sk_corner;");
+      first_ = {"sk_p"};
+      next_ = {variant_.column ? "sk_p + ivec2(0, sk_k)" : "sk_p + ivec2(sk_k, 0)"};
+      return;
+    }
+    vectors({"sk_source", "sk_run_shape"});
+    if (variant_.column) {
+      statement("ivec2 sk_p = sk_origin.xy + sk_corner;");
+      statement("int sk_left = sk_source.y - sk_corner.y;");
+      statement(
+          "int sk_count = sk_left > sk_run_shape.y ? sk_run_shape.y : sk_left + int(sk_corner.x < "
+          "sk_source.z);");
+      first_ = {"sk_p"};
+      next_ = {"sk_p + ivec2(0, sk_k)"};
+      return;
+    }
+    statement("ivec2 sk_shape = max(min(sk_run_shape.xy, sk_source.xy - sk_corner), 0);");
+    statement("sk_corner += sk_origin.xy;");
+    statement("ivec2 sk_p = sk_corner;");
+    statement("int sk_count = sk_shape.x * sk_shape.y, sk_end = sk_corner.x + sk_shape.x;");
+    step_ = {"++sk_p.x;", "if (sk_p.x == sk_end) sk_p = ivec2(sk_corner.x, sk_p.y + 1);"};
+    first_ = next_ = {"sk_p"};
+  }
+
+  /// An invocation folds some partial results, in a last group maybe none, and then the group what these have, in their order.
+  void foldGroup() {
+    integers({"sk_fan", "sk_block_length", "sk_source_width"});
+    declareShared();
+    program_.function("ivec2 sk_place(int sk_n)", {"int sk_y = sk_n / sk_source_width;",
+                                                   "return ivec2(sk_n - sk_y * sk_source_width, sk_y);"});
+    vectors({"sk_target"});
+    integers({"sk_domain_shift"});
+    program_.dispatchGroups(groupSize, 1);
+    const std::string texel = domain_.texel().at;
+    statement(fmt::format("int sk_group = ({0}.y - sk_target.y) << sk_domain_shift | ({0}.x - sk_target.x);",
+                          texel));
+    statement("int sk_i = int(gl_LocalInvocationIndex);");
+    statement(fmt::format("int sk_base = sk_group * {} * sk_fan;", groupSize));
+    statement(fmt::format("int sk_left = min({} * sk_fan, sk_block_length - sk_base);", groupSize));
+    if (variant_.strided) {
+      statement(fmt::format("int sk_runs = min({0}, sk_left), sk_count = (sk_left - sk_i + {1}) / {0};",
+                            groupSize, groupSize - 1));
+      statement("sk_base += sk_i;");
+      next_ = {fmt::format("sk_place(sk_base + sk_k * {})", groupSize)};
+    } else {
+      statement(
+          "int sk_runs = (sk_left + sk_fan - 1) / sk_fan, sk_count = min(sk_fan, sk_left - sk_i * sk_fan);");
+      statement("sk_base += sk_i * sk_fan;");
+      next_ = {"sk_place(sk_base + sk_k)"};
+    }
+    for (const Parameter* accumulator : accumulators_) {
+      statement(fmt::format("{} {};", accumulator->element->glsl, total(*accumulator)));
+    }
+    first_ = {"sk_place(sk_base)"};
+    statement("if (sk_i < sk_runs) {");
+    forEachStart([&](const std::string& name, const std::string& value) {
+      statement(fmt::format("  {} = {};", name, value));
+    });
+    statement("  for (int sk_k = 1; sk_k < sk_count; ++sk_k) {");
+    statement("    " + foldingNext());
+    statement("  }");
+    statement("}");
+    foldShared();
+  }
+
+  void declareShared() {
+    for (const Parameter* accumulator : accumulators_) {
+      program_.variable("shared " + std::string(accumulator->element->glsl),
+                        fmt::format("{}[{}]", sharedName(*accumulator), groupSize));
+    }
+  }
+
+  /// Invocations without elements have the identities.
+  void combineInGroup() {
+    declareShared();
+    statement(fmt::format("int sk_i = int(gl_LocalInvocationIndex), sk_runs = {};", groupSize));
+    foldShared();
+  }
+
+  void foldShared() {
+    const auto keep = [&](std::string_view indent) {
+      for (const Parameter* accumulator : accumulators_) {
+        statement(fmt::format("{}{}[sk_i] = {};", indent, sharedName(*accumulator), total(*accumulator)));
+      }
+    };
+    keep("");
+    statement(fmt::format("for (int sk_s = 1; sk_s < {}; sk_s *= 2) {{", groupSize));
+    statement("  memoryBarrierShared();");
+    statement("  barrier();");
+    statement("  if ((sk_i & (2 * sk_s - 1)) == 0 && sk_i + sk_s < sk_runs) {");
+    statement("    " + calling(reduction_.combine, [&](std::size_t, std::size_t k) {
+                return fmt::format("{}[sk_i + sk_s]", sharedName(*accumulators_[k]));
+              }));
+    keep("    ");
+    statement("  }");
+    statement("}");
+  }
+
+  std::string sharedName(const Parameter& accumulator) const {
+    return fmt::format("sk_shared_{}", accumulator.symbol);
+  }
+
+  std::string blockIndex() {
+    if (variant_.runs == Runs::WholeBlocks && !variant_.reshaped) return domain_.index();
+    program_.require(Function::Unravel2);
+    vectors({"sk_blocks_step"});
+    return "sk_unravel(sk_block, sk_blocks_step)";
+  }
+
+  /// sk_at is the number of the block's first element, sk_p the element's index in the block.
+  void startBox() {
+    program_.require(Function::Ravel);
+    integers({"sk_start"});
+    vectors({"sk_stride", "sk_block_shape"});
+    std::string block;
+    if (manyBlocks()) {
+      const std::string index = unravel("sk_block", "sk_blocks_step");
+      block = fmt::format(" + sk_ravel({} * sk_block_shape, sk_stride)", index);
+    }
+    statement("int sk_at = sk_start" + block + ";");
+    walkBox();
+    first_ = next_ = numberedTexel("sk_at + sk_ravel(sk_p, sk_stride)");
+  }
+
+  /// sk_p steps through the indices in a block.
+  void walkBox() {
+    vectors({"sk_block_shape"});
+    statement("ivec4 sk_p = " + (startsInside() ? unravel("sk_first", "sk_block_step") : "ivec4(0)") + ";");
+    step_ = {"++sk_p.x;"};
+    for (std::size_t axis = 0; axis + 1 < variant_.axes; ++axis) {
+      step_.push_back(fmt::format("if (sk_p.{0} == sk_block_shape.{0}) {{ sk_p.{0} = 0; ++sk_p.{1}; }}",
+                                  "xyzw"[axis], "xyzw"[axis + 1]));
+    }
+  }
+
+  /// sk_item is the index of the element, sk_corner that of the block's first one.
+  void startIndex() {
+    std::string place = "sk_p";
+    if (manyBlocks()) {
+      vectors({"sk_block_shape"});
+      statement(fmt::format("ivec4 sk_corner = {} * sk_block_shape;", unravel("sk_block", "sk_blocks_step")));
+      place = "sk_corner + sk_p";
+    }
+    walkBox();
+    const std::string here = fmt::format("{} = {};", item(), place);
+    statement(here);
+    step_.push_back(here);
+  }
+
+  std::string unravel(std::string_view number, std::string_view strides) {
+    if (variant_.axes == 1) return fmt::format("ivec4({}, 0, 0, 0)", number);
+    program_.require(variant_.axes == 2   ? Function::Unravel2
+                     : variant_.axes == 3 ? Function::Unravel3
+                                          : Function::Unravel4);
+    vectors({strides});
+    return fmt::format("sk_unravel({}, {})", number, strides);
+  }
+
+  // ---- the fold ---------------------------------------------------------------------------------
+
+  /// The element of an input at a texel of the walk, or at a place of its own.
+  std::string element(std::size_t i, const Texel& texel) {
+    const Parameter& input = kernel_.parameters[i];
+    if (!isNeeded(input, variant_.specs)) return absentElement(input);
+    if (variant_.walk != Walk::Index) return fetch(program_, input, texel);
+    return fetch(program_, input, inputTexel(program_, input, access(i)));
+  }
+
+  /// The four elements of a packed input at a texel of the walk.
+  static std::string lanesOf(const Parameter& input) { return fmt::format("sk_in_{}", input.symbol); }
+  void fetchLanes(const Texel& texel, std::string_view indent) {
+    for (const Parameter* input : inputs_) {
+      if (!isNeeded(*input, variant_.specs)) continue;
+      statement(fmt::format("{}{} = {};", indent, lanesOf(*input), fetch(program_, fourOf(*input), texel)));
+    }
+  }
+  void declareLanes() {
+    for (const Parameter* input : inputs_) {
+      if (isNeeded(*input, variant_.specs))
+        statement(fmt::format("{} {};", fourOf(*input).element->glsl, lanesOf(*input)));
+    }
+  }
+
+  /// An element, or from component `first` on those of a packed texel.
+  void foldTexel(std::string_view indent, int first = 0) {
+    if (!variant_.packed) return statement(fmt::format("{}{}", indent, foldingNext()));
+    for (int lane = first; lane < lanes; ++lane) {
+      const std::string component = fmt::format(".{}", "xyzw"[lane]);
+      const std::string fold = folding([&](std::size_t i, std::size_t) { return elementOf(i, component); });
+      statement(fmt::format("{}{}", indent, fold));
+    }
+  }
+
+  std::string foldingNext() {
+    return folding([&](std::size_t i, std::size_t) { return element(i, next_); });
+  }
+
+  template <class ElementOf>
+  std::string folding(const ElementOf& inputElement) {
+    return calling(kernel_, inputElement);
+  }
+
+  /// A call of the entry of this kernel, or of one that combines, with the arguments in its order. inputElement(i, k): of
+  /// parameter i, the k-th input.
+  template <class ElementOf>
+  std::string calling(const Kernel& kernel, const ElementOf& inputElement) {
+    std::vector<std::string> arguments;
+    std::size_t inputs = 0;
+    std::size_t accumulators = 0;
+    std::size_t values = 0;
+    for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+      const Parameter& parameter = kernel.parameters[i];
+      switch (parameter.role) {
+        case Role::Uniform:
+        case Role::Iterator:
+        case Role::Spec: arguments.push_back(arguments_[values++]); break;
+        case Role::Input: arguments.push_back(inputElement(i, inputs++)); break;
+        case Role::Accumulator: arguments.push_back(total(*accumulators_[accumulators++])); break;
+        case Role::Gather:
+        case Role::Output:
+        case Role::VariableOutput:
+        case Role::Scatter: break;
+      }
+    }
+    return call(kernel.entry, arguments, "        ") + ";";
+  }
+
+  std::string elementOf(std::size_t i, std::string_view lane) const {
+    const Parameter& input = kernel_.parameters[i];
+    return isNeeded(input, variant_.specs) ? fmt::format("{}{}", lanesOf(input), lane) : absentElement(input);
+  }
+
+  void startFromIdentities(std::string_view indent = "") {
+    for (const Parameter* accumulator : accumulators_) {
+      statement(fmt::format("{}{} {} = {};", indent, accumulator->element->glsl, total(*accumulator),
+                            accumulator->identity));
+    }
+  }
+
+  /// visit(accumulator, first value): an accumulator begins as the input that stands where it does among them.
+  template <class Visit>
+  void forEachStart(const Visit& visit) {
+    for (std::size_t k = 0; k < accumulators_.size(); ++k) {
+      const auto i = static_cast<std::size_t>(inputs_[k] - kernel_.parameters.data());
+      visit(total(*accumulators_[k]), variant_.packed ? elementOf(i, ".x") : element(i, first_));
+    }
+  }
+
+  void startFromElements() {
+    std::size_t k = 0;
+    forEachStart([&](const std::string& name, const std::string& value) {
+      statement(fmt::format("{} {} = {};", accumulators_[k++]->element->glsl, name, value));
+    });
+  }
+
+  /// A run starts from its first element, or else from the identity.
+  void foldRun() {
+    const bool isSeeded = isOfPartials(variant_.walk) || reduction_.seeded;
+    const std::string count = variant_.run > 0 ? fmt::format("{}", variant_.run) : "sk_count";
+    if (isSeeded) {
+      if (variant_.packed) declareLanes();
+      if (variant_.packed) fetchLanes(first_, "");
+      startFromElements();
+      if (variant_.packed) foldTexel("", 1);
+    } else {
+      startFromIdentities();
+      if (variant_.packed) declareLanes();
+    }
+    if (variant_.part > 0) foldParts();
+    if (variant_.part > 0 && variant_.run > 0) return;
+    const std::string_view bound = variant_.grouped ? "sk_isInside && sk_k" : "sk_k";
+    statement(fmt::format("for (int sk_k = {}; {} < {}; ++sk_k) {{", isSeeded ? 1 : 0, bound, count));
+    if (isSeeded) step();
+    if (variant_.packed) fetchLanes(next_, "  ");
+    foldTexel("  ");
+    if (!isSeeded) step();
+    statement("}");
+  }
+
+  /// As many parts as a run has. What is left of it is sk_count elements or texels from sk_p on.
+  void foldParts() {
+    const int part = variant_.part;
+    const std::string loop =
+        variant_.run > 0 ? fmt::format("for (int sk_i = 0; sk_i < {}; ++sk_i) {{", variant_.run / part)
+                         : fmt::format("for (; sk_count >= {0}; sk_count -= {0}) {{", part);
+    statement((variant_.grouped ? "if (sk_isInside) " : "") + loop);
+    isInPart_ = true;
+    startFromIdentities("  ");
+    statement(fmt::format("  for (int sk_k = 0; sk_k < {}; ++sk_k) {{", part));
+    if (variant_.packed) fetchLanes(next_, "    ");
+    foldTexel("    ");
+    isInPart_ = false;
+    statement("  }");
+    statement("  " + calling(reduction_.combine,
+                             [&](std::size_t, std::size_t k) { return held("sk_part", *accumulators_[k]); }));
+    statement(fmt::format("  sk_p.y += {};", part));
+    statement("}");
+  }
+
+  void step() {
+    for (const std::string& line : step_) statement("  " + line);
+  }
+
+  Texel numberedTexel(std::string_view number) {
+    program_.require(Function::Texel);
+    integers({"sk_shift"});
+    return {fmt::format("sk_texel({}, sk_shift)", number), variant_.sourceLayered ? "sk_shift" : ""};
+  }
+
+  void integers(std::initializer_list<std::string_view> uniforms) {
+    for (const std::string_view uniform : uniforms) program_.uniform("int", uniform);
+  }
+  void vectors(std::initializer_list<std::string_view> uniforms) {
+    for (const std::string_view uniform : uniforms) program_.uniform("ivec4", uniform);
+  }
+  void statement(std::string_view line) { program_.statement(line); }
+
+  const Profile& profile_;
+  const Reduction& reduction_;
+  const ReduceVariant& variant_;
+  const HeldKernel held_;
+  const Kernel& kernel_;
+  std::vector<const Parameter*> inputs_;
+  std::vector<const Parameter*> accumulators_;
+  std::vector<std::string> arguments_;  ///< those that are the same for all elements, and iterators
+  ProgramText program_;
+  DomainText domain_;
+  Texel first_;  ///< of the run's first element
+  Texel next_;  ///< of its element sk_k
+  bool isInPart_ = false;  ///< whether accumulators are those of a part of the run
+  std::vector<std::string> step_;  ///< statements that go from one element to the next
+};
+
+}  // namespace
+
+std::string reduceProgram(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant) {
+  return ReductionText(profile, reduction, variant).write();
+}
+
+}  // namespace sk::assemble

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+//
+// The checks, in the order in which their messages help most.
+#include "call/check_call.hpp"
+
+#include <algorithm>
+
+#include "assemble/append/append_passes.hpp"
+#include "call/check_argument.hpp"
+#include "device/device_state.hpp"
+#include "device/stream_state.hpp"
+
+namespace sk {
+
+namespace {
+
+using assemble::isNeeded;
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+void checkOutputShape(const Kernel& kernel, const Parameter& first, const Shape& domain,
+                      const Parameter& output, const Shape& shape) {
+  if (shape != domain) {
+    fail(Error::Kind::Shape, kernel,
+         "the outputs '{}' and '{}' have shapes {} and {}; give them the same shape", first.name, output.name,
+         toString(domain), toString(shape));
+  }
+}
+
+/// The stream of a variable output is taken whole, and has one dimension afterwards.
+void checkVariableOutput(const Kernel& kernel, const Parameter& output, const StreamState& stream) {
+  if (stream.shape.rank() != 1) {
+    fail(Error::Kind::Shape, kernel,
+         "'{}' is a variable output, but its stream has shape {}; give it one of one dimension", output.name,
+         toString(stream.shape));
+  }
+}
+
+void checkScatter(const Kernel& kernel, const Parameter& output, const Shape& shape,
+                  const DeviceState& device) {
+  if (shape.rank() != output.rank) {
+    fail(Error::Kind::Shape, kernel, "'{}' is declared with {} dimension(s), but its stream has shape {}",
+         output.name, output.rank, toString(shape));
+  }
+  if (output.scatter != program::ScatterOp::Store && !device.combinesScattered()) {
+    fail(Error::Kind::Device, kernel,
+         "'{}' combines what is scattered to it, but '{}' cannot blend 32-bit floats (GL_EXT_float_blend); "
+         "push indices and values to variable outputs, and combine them in a kernel",
+         output.name, device.name());
+  }
+}
+
+void checkDisjoint(const Kernel& kernel, std::span<const Argument> arguments,
+                   const assemble::SpecValues& specs, std::size_t output) {
+  for (std::size_t i = 0; i < output; ++i) {
+    const Role role = kernel.parameters[i].role;
+    if ((role != Role::Output && !assemble::isAppendOutput(kernel.parameters[i])) ||
+        !isNeeded(kernel.parameters[i], specs)) {
+      continue;
+    }
+    const bool isWhole =
+        role == Role::VariableOutput || kernel.parameters[output].role == Role::VariableOutput;
+    const bool isShared = isWhole ? arguments[i].region.stream == arguments[output].region.stream
+                                  : overlap(arguments[i].region, arguments[output].region);
+    if (isShared) {
+      fail(kernel,
+           "the outputs '{}' and '{}' overlap: both write elements of one stream; give them different "
+           "streams, or regions that have no element in common",
+           kernel.parameters[i].name, kernel.parameters[output].name);
+    }
+  }
+}
+
+void checkPlanes(const Kernel& kernel, const DeviceState& device, std::size_t written, std::size_t read) {
+  if (written > static_cast<std::size_t>(device.limits.drawBuffers)) {
+    fail(Error::Kind::Device, kernel,
+         "the outputs have {} planes (one a scalar, vector, or member of a struct), but this device writes "
+         "{} in one kernel; divide the kernel",
+         written, device.limits.drawBuffers);
+  }
+  if (read > static_cast<std::size_t>(device.limits.textureUnits)) {
+    fail(Error::Kind::Device, kernel,
+         "the inputs have {} planes (one a scalar, vector, or member of a struct), but this device reads "
+         "{} in one kernel; divide the kernel",
+         read, device.limits.textureUnits);
+  }
+}
+
+/// Planes of the passes that an append output adds: of its list, and, where it is counted, one of counts to the pass that
+/// writes the other outputs, and two of the tree to what its list's pass reads.
+struct AppendPlanes {
+  std::size_t counts = 0;
+  std::size_t list = 0;
+  std::size_t tree = 0;
+
+  void add(const Parameter& appendOutput) {
+    const bool isCounted = assemble::isCounted(appendOutput);
+    counts += isCounted ? 1 : 0;
+    tree = isCounted ? 2 : tree;
+    const std::size_t texels = appendOutput.role == Role::Scatter ? 1 : 0;
+    list = std::max(list, appendOutput.element->fields.size() + texels);
+  }
+};
+
+/// The parameter whose stream says what device a kernel runs on: the first output that the spec parameters leave,
+/// or the first append output; where there is none, the number of parameters.
+std::size_t firstWritten(const Kernel& kernel, const assemble::SpecValues& specs) {
+  const auto isOutput = [&](const Parameter& p) { return p.role == Role::Output && isNeeded(p, specs); };
+  auto found = std::find_if(kernel.parameters.begin(), kernel.parameters.end(), isOutput);
+  if (found == kernel.parameters.end()) {
+    found = std::find_if(kernel.parameters.begin(), kernel.parameters.end(), assemble::isAppendOutput);
+  }
+  return static_cast<std::size_t>(found - kernel.parameters.begin());
+}
+
+}  // namespace
+
+std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argument> arguments) {
+  const std::span<const Parameter> parameters = kernel.parameters;
+  if (arguments.size() != parameters.size()) {
+    fail(kernel, "{} arguments are given, but {} are declared", arguments.size(), parameters.size());
+  }
+  const assemble::SpecValues specs = specsOf(kernel, arguments);
+  const std::size_t first = firstWritten(kernel, specs);
+  if (first == parameters.size()) {
+    return std::nullopt;
+  }
+  checkGiven(kernel, parameters[first], arguments[first]);
+  const StreamState& firstStream = checkStream(kernel, parameters[first], arguments[first].region);
+  DeviceState& device = *firstStream.device;
+  const ResolvedCall call = resolveCall(kernel, arguments, device.limits);
+  const Shape& domain = call.domain;
+  if (domain.rank() == 0) {
+    fail(Error::Kind::Shape, kernel,
+         "no input of the domain's own shape and no iterator with one says how many elements there are; "
+         "give one");
+  }
+  checkElements(kernel, device, domain);
+  std::size_t written = 0;
+  std::size_t read = 0;
+  AppendPlanes appendOutputs;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& parameter = parameters[i];
+    const StreamRegion& region = arguments[i].region;
+    if (isValue(parameter)) {
+      checkValue(kernel, parameter, arguments[i], domain);
+      continue;
+    }
+    if (!isNeeded(parameter, specs)) {
+      continue;
+    }
+    checkGiven(kernel, parameter, arguments[i]);
+    const StreamState& stream = checkStream(kernel, parameter, region);
+    checkSameDevice(kernel, parameters[first], firstStream, parameter, stream);
+    switch (parameter.role) {
+      case Role::Output:
+        written += parameter.element->fields.size();
+        checkOutputShape(kernel, parameters[first], domain, parameter, region.shape);
+        checkDisjoint(kernel, arguments, specs, i);
+        break;
+      case Role::VariableOutput:
+      case Role::Scatter:
+        appendOutputs.add(parameter);
+        if (parameter.role == Role::Scatter) {
+          checkScatter(kernel, parameter, region.shape, device);
+        } else {
+          checkVariableOutput(kernel, parameter, stream);
+        }
+        checkDisjoint(kernel, arguments, specs, i);
+        break;
+      case Role::Gather:
+        read += parameter.element->fields.size();
+        checkGatherShape(kernel, parameter, region.shape, domain);
+        break;
+      case Role::Input:
+        read += parameter.element->fields.size();
+        checkInputShape(kernel, parameter, arguments[i], parameters[first], domain);
+        break;
+      case Role::Uniform:
+      case Role::Iterator:
+      case Role::Spec:
+      case Role::Accumulator: break;
+    }
+  }
+  device.checkProgram(kernel);
+  if (call.plan == nullptr) {
+    checkUniforms(kernel, device);
+    checkPlanes(kernel, device, std::max(written + appendOutputs.counts, appendOutputs.list),
+                read + appendOutputs.tree);
+  }
+  const bool hasAppendOutputs = appendOutputs.list > 0;  // which are emptied where there is no element
+  if (domain.size() == 0 && !hasAppendOutputs) return std::nullopt;
+  return CheckedCall{device, call};
+}
+
+}  // namespace sk

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+//
+// The checks of reductions, in the order in which their messages help most.
+#include "call/check_reduction.hpp"
+
+#include <algorithm>
+
+#include "call/block_grid.hpp"
+#include "call/check_argument.hpp"
+#include "device/device_state.hpp"
+#include "device/stream_state.hpp"
+
+namespace sk {
+
+namespace {
+
+using program::Kernel;
+using program::Parameter;
+using program::Reduction;
+using program::Role;
+
+/// The streams that a reduction reads, or also those that it writes.
+class Arguments {
+ public:
+  Arguments(const Reduction& reduction, std::span<const Argument> arguments)
+      : reduction_(reduction), fold_(reduction.fold), arguments_(arguments) {
+    if (arguments.size() != fold_.parameters.size()) {
+      fail(fold_, "{} arguments are given, but {} are declared", arguments.size(), fold_.parameters.size());
+    }
+    specs_ = specsOf(fold_, arguments);
+  }
+
+  CheckedReduction check(bool toStreams) {
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      const Role role = fold_.parameters[i].role;
+      const bool isStream =
+          role == Role::Input || role == Role::Gather || (toStreams && role == Role::Accumulator);
+      if (isStream && assemble::isNeeded(fold_.parameters[i], specs_)) {
+        checkLives(i);
+      }
+    }
+    const Shape domain = domainOf(fold_, arguments_, specs_);
+    if (domain.rank() == 0) {
+      fail(Error::Kind::Shape, fold_,
+           "no input and no iterator with a shape says how many elements there are; give one");
+    }
+    if (first_ == SIZE_MAX) {
+      fail(fold_, "no stream is given that says what device to fold on; give one");
+    }
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      checkShape(i, domain);
+    }
+    const StreamState& first = *arguments_[first_].region.stream;
+    CheckedReduction checked{*first.device, domain};
+    checkElements(fold_, checked.device, domain);
+    checked.device.checkProgram(reduction_);
+    checkUniforms(fold_, checked.device);
+    checkUnits(checked.device);
+    if (toStreams) {
+      checked.blocks = checkResults(domain);
+      if (checked.blocks.size() == 0) {
+        return checked;
+      }
+    }
+    if (domain.size() == 0) {
+      checkIdentities(domain);
+    }
+    return checked;
+  }
+
+ private:
+  void checkLives(std::size_t i) {
+    const Parameter& parameter = fold_.parameters[i];
+    checkGiven(fold_, parameter, arguments_[i]);
+    const StreamState& stream = checkStream(fold_, parameter, arguments_[i].region);
+    if (first_ == SIZE_MAX) {
+      first_ = i;
+    }
+    checkSameDevice(fold_, fold_.parameters[first_], *arguments_[first_].region.stream, parameter, stream);
+  }
+
+  void checkShape(std::size_t i, const Shape& domain) const {
+    const Parameter& parameter = fold_.parameters[i];
+    if (isValue(parameter)) {
+      checkValue(fold_, parameter, arguments_[i], domain);
+    } else if (!assemble::isNeeded(parameter, specs_)) {
+      return;
+    } else if (parameter.role == Role::Input) {
+      checkInputShape(fold_, parameter, arguments_[i], parameter, domain);
+    } else if (parameter.role == Role::Gather) {
+      checkGatherShape(fold_, parameter, arguments_[i].region.shape, domain);
+    }
+  }
+
+  void checkUnits(const DeviceState& device) const {
+    const auto most = static_cast<std::size_t>(device.limits.textureUnits);
+    if (const std::size_t planes = planesRead(fold_, specs_); planes > most) {
+      fail(Error::Kind::Device, fold_,
+           "the inputs and gathers have {} planes (one a scalar, vector, or member of a struct), but this "
+           "device reads {} in one pass; put scalars together in vectors, or divide the reduce",
+           planes, most);
+    }
+    if (const std::size_t planes = planesRead(reduction_.combine, specs_); planes > most) {
+      fail(Error::Kind::Device, fold_,
+           "to combine partial results, {} planes are read (one a scalar, vector, or member of a struct of "
+           "the accumulators), but this device reads {} in one pass; put scalars together in vectors, or "
+           "divide the reduce",
+           planes, most);
+    }
+  }
+
+  /// Returns the numbers of blocks.
+  Shape checkResults(const Shape& domain) const {
+    const Parameter* first = nullptr;
+    Shape shape;
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      const Parameter& result = fold_.parameters[i];
+      if (result.role != Role::Accumulator) {
+        continue;
+      }
+      const StreamRegion& region = arguments_[i].region;
+      if (first == nullptr) {
+        first = &result;
+        shape = region.shape;
+      } else if (region.shape != shape) {
+        fail(Error::Kind::Shape, fold_,
+             "the outputs '{}' and '{}' have shapes {} and {}; give them the same shape", first->name,
+             result.name, toString(shape), toString(region.shape));
+      }
+      checkDisjoint(i);
+    }
+    return checkBlocks(domain, *first, shape);
+  }
+
+  void checkDisjoint(std::size_t output) const {
+    for (std::size_t i = 0; i < output; ++i) {
+      if (fold_.parameters[i].role == Role::Accumulator &&
+          overlap(arguments_[i].region, arguments_[output].region)) {
+        fail(fold_,
+             "the outputs '{}' and '{}' overlap: both write elements of one stream; give them different "
+             "streams, or regions that have no element in common",
+             fold_.parameters[i].name, fold_.parameters[output].name);
+      }
+    }
+  }
+
+  Shape checkBlocks(const Shape& domain, const Parameter& result, const Shape& shape) const {
+    const std::vector<Shape> grids = blockGrids(domain, shape);
+    if (grids.size() == 1) {
+      return grids.front();
+    }
+    if (grids.empty()) {
+      fail(Error::Kind::Shape, fold_,
+           "{} {}, and the output '{}' has {}; give the output as many dimensions, or fewer, each extent a "
+           "divisor of the input's",
+           inputs(), toString(domain), result.name, toString(shape));
+    }
+    fail(Error::Kind::Shape, fold_,
+         "{} {}, and the output '{}' has {}, which could mean {} or {}; write the one that you mean",
+         inputs(), toString(domain), result.name, toString(shape), toString(grids[0]), toString(grids[1]));
+  }
+
+  /// "'x' has shape", or of several "the inputs together have".
+  std::string inputs() const {
+    const auto isInput = [](const Parameter& parameter) { return parameter.role == Role::Input; };
+    if (std::ranges::count_if(fold_.parameters, isInput) > 1) {
+      return "the inputs together have shape";
+    }
+    return fmt::format("'{}' has shape", std::ranges::find_if(fold_.parameters, isInput)->name);
+  }
+
+  void checkIdentities(const Shape& domain) const {
+    for (const Parameter& parameter : fold_.parameters) {
+      if (parameter.role == Role::Accumulator && parameter.identity.empty()) {
+        fail(Error::Kind::Shape, fold_, "{} {}: there is no element to fold, and '{}' declares no identity",
+             inputs(), toString(domain), parameter.name);
+      }
+    }
+  }
+
+  const Reduction& reduction_;
+  const Kernel& fold_;
+  std::span<const Argument> arguments_;
+  assemble::SpecValues specs_{};
+  std::size_t first_ = SIZE_MAX;   ///< argument that says what device it is
+};
+
+}  // namespace
+
+std::size_t planesRead(const Kernel& kernel, const assemble::SpecValues& specs) {
+  std::size_t planes = 0;
+  for (const Parameter& parameter : kernel.parameters) {
+    if (parameter.role == Role::Input || parameter.role == Role::Gather) {
+      planes += assemble::isNeeded(parameter, specs) ? parameter.element->fields.size() : 0;
+    }
+  }
+  return planes;
+}
+
+CheckedReduction checkReduction(const Reduction& reduction, std::span<const Argument> arguments) {
+  return Arguments(reduction, arguments).check(false);
+}
+
+CheckedReduction checkReductionToStreams(const Reduction& reduction, std::span<const Argument> arguments) {
+  return Arguments(reduction, arguments).check(true);
+}
+
+}  // namespace sk

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "call/resolved_call.hpp"
+
+#include <cstring>
+
+#include "assemble/program/plans.hpp"
+
+namespace sk {
+
+using assemble::isNeeded;
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+std::uint32_t specBits(const Parameter& parameter, const void* value) {
+  if (parameter.element->fields[0].scalar == program::Scalar::Bool) {
+    return *static_cast<const bool*>(value) ? 1u : 0u;
+  }
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, value, sizeof bits);
+  return bits;
+}
+
+assemble::SpecValues specsOf(const Kernel& kernel, std::span<const Argument> arguments) {
+  assemble::SpecValues specs{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    if (kernel.parameters[i].role == Role::Spec) {
+      specs[count++] = specBits(kernel.parameters[i], arguments[i].value);
+    }
+  }
+  return specs;
+}
+
+Shape domainOf(const Kernel& kernel, std::span<const Argument> arguments, const assemble::SpecValues& specs) {
+  Shape domain;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const Role role = kernel.parameters[i].role;
+    const Shape& shape = arguments[i].region.shape;
+    if (!isNeeded(kernel.parameters[i], specs)) {
+      continue;
+    }
+    if (role == Role::Output) {
+      return shape;
+    }
+    if ((role != Role::Input && role != Role::Iterator) || arguments[i].fit != program::Fit::Same) {
+      continue;
+    }
+    if (domain.rank() == 0) {
+      domain = shape;
+    }
+    for (int d = 0; shape.rank() == domain.rank() && d < shape.rank(); ++d) {
+      if (domain[d] == 1) {
+        domain = domain.with(d, shape[d]);
+      }
+    }
+  }
+  return domain;
+}
+
+const program::Plan* planFor(const Kernel& kernel, const DeviceLimits& limits) {
+  const assemble::PassLimits pass{limits.drawBuffers, limits.textureUnits};
+  const bool isWhole = kernel.planCount == 0 || assemble::fitsOnePass(kernel, pass);
+  return isWhole ? nullptr : assemble::planWithin(kernel, pass);
+}
+
+ResolvedCall resolveCall(const Kernel& kernel, std::span<const Argument> arguments,
+                         const DeviceLimits& limits, const CallOptions& options) {
+  const assemble::SpecValues specs = specsOf(kernel, arguments);
+  return {kernel, arguments, options, specs, domainOf(kernel, arguments, specs), planFor(kernel, limits)};
+}
+
+ResolvedCall ResolvedCall::of(const Kernel& variant, const DeviceLimits& limits) const {
+  return {variant, arguments, options, specs, domain, &variant == &kernel ? plan : planFor(variant, limits)};
+}
+
+}  // namespace sk

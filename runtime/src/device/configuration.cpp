@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#include "device/configuration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#define TOML_HEADER_ONLY 1
+#include <toml++/toml.h>
+
+#include "sk/error.hpp"
+
+namespace sk {
+
+namespace {
+
+constexpr std::string_view precisions[] = {"half", "single", "extended", "double"};
+constexpr std::string_view accumulates[] = {"tree", "compensated", "extended", "exact"};
+constexpr std::string_view intrinsics[] = {"fast", "accurate"};
+constexpr std::string_view storages[] = {"single", "half", "extended", "double"};
+constexpr std::string_view tableUses[] = {"off", "on"};
+constexpr std::string_view targets[] = {"fragment", "compute", "native"};
+constexpr std::string_view contractions[] = {"exact", "fast"};
+
+/// The enumerator of a name: they follow Default in this order.
+template <class Choice>
+Choice choiceOf(std::span<const std::string_view> names, const std::string& file, std::string_view key,
+                const toml::node& node) {
+  const std::string name = node.value_or(std::string());
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) {
+    throw Error(fmt::format("{}:{}: {} is one of \"{}\"", file, node.source().begin.line, key,
+                            fmt::join(names, "\", \"")),
+                Error::Kind::File);
+  }
+  return static_cast<Choice>(found - names.begin() + 1);
+}
+
+CallOptions optionsOf(const std::string& file, const toml::table& table) {
+  CallOptions options;
+  for (const auto& [key, node] : table) {
+    if (key == "precision") {
+      options.precision = choiceOf<Precision>(precisions, file, "precision", node);
+    } else if (key == "accumulate") {
+      options.accumulate = choiceOf<Accumulate>(accumulates, file, "accumulate", node);
+    } else if (key == "intrinsics") {
+      options.intrinsics = choiceOf<Intrinsics>(intrinsics, file, "intrinsics", node);
+    } else if (key == "tables") {
+      options.tables = choiceOf<Tables>(tableUses, file, "tables", node);
+    } else if (key == "target") {
+      options.target = choiceOf<Target>(targets, file, "target", node);
+    } else if (key == "contraction") {
+      options.contraction = choiceOf<Contraction>(contractions, file, "contraction", node);
+    } else {
+      throw Error(
+          fmt::format(
+              "{}:{}: there is no choice '{}'; there are precision, accumulate, intrinsics, tables, target "
+              "and contraction",
+              file, key.source().begin.line, key.str()),
+          Error::Kind::File);
+    }
+  }
+  return options;
+}
+
+/// A number of the file, which is finite.
+float numberOf(const std::string& file, const toml::key& key, const toml::node& node) {
+  const std::optional<double> value = node.value<double>();
+  if (!value || !std::isfinite(static_cast<float>(*value))) {
+    throw Error(
+        fmt::format("{}:{}: {} is a number of float's range", file, node.source().begin.line, key.str()),
+        Error::Kind::File);
+  }
+  return static_cast<float>(*value);
+}
+
+Configuration::RangeChoice rangeOf(const std::string& file, const toml::key& name, const toml::table& table) {
+  Configuration::RangeChoice choice{.place = fmt::format("{}:{}", file, name.source().begin.line)};
+  for (const auto& [key, node] : table) {
+    if (key == "low") {
+      choice.low = numberOf(file, key, node);
+    } else if (key == "high") {
+      choice.high = numberOf(file, key, node);
+    } else if (key == "intervals") {
+      const std::int64_t count = node.value_exact<std::int64_t>().value_or(0);
+      if (count < 1 || count > mostIntervals) {
+        throw Error(fmt::format("{}:{}: intervals is a whole number from 1 to {}", file,
+                                node.source().begin.line, mostIntervals),
+                    Error::Kind::File);
+      }
+      choice.intervals = static_cast<std::int32_t>(count);
+    } else {
+      throw Error(fmt::format("{}:{}: a table has no '{}'; it has low, high and intervals", file,
+                              key.source().begin.line, key.str()),
+                  Error::Kind::File);
+    }
+  }
+  return choice;
+}
+
+Storage storageOf(const std::string& file, const toml::key& name, const toml::table& table) {
+  Storage storage = Storage::Default;
+  for (const auto& [key, node] : table) {
+    if (key != "storage") {
+      throw Error(fmt::format("{}:{}: a stream has no '{}'; it has storage", file, key.source().begin.line,
+                              key.str()),
+                  Error::Kind::File);
+    }
+    storage = choiceOf<Storage>(storages, file, "storage", node);
+  }
+  if (storage == Storage::Default) {
+    throw Error(fmt::format("{}:{}: expected storage = \"half\" or the like for stream '{}'", file,
+                            name.source().begin.line, name.str()),
+                Error::Kind::File);
+  }
+  return storage;
+}
+
+toml::table parsed(const std::string& file) {
+  try {
+    return toml::parse_file(file);
+  } catch (const toml::parse_error& error) {
+    const auto line = error.source().begin.line;
+    throw Error(line == 0 ? fmt::format("{} (option or SK_CONFIG): {}", file, error.description())
+                          : fmt::format("{}:{}: {}", file, line, error.description()),
+                Error::Kind::File);
+  }
+}
+
+/// What `first` leaves open is as in `second`.
+CallOptions merged(CallOptions first, const CallOptions& second) {
+  if (first.accumulate == Accumulate::Default) first.accumulate = second.accumulate;
+  if (first.precision == Precision::Default) first.precision = second.precision;
+  if (first.intrinsics == Intrinsics::Default) first.intrinsics = second.intrinsics;
+  if (first.tables == Tables::Default) first.tables = second.tables;
+  if (first.target == Target::Default) first.target = second.target;
+  if (first.contraction == Contraction::Default) first.contraction = second.contraction;
+  return first;
+}
+
+}  // namespace
+
+Configuration::Configuration(const std::string& file) {
+  for (const auto& [key, node] : parsed(file)) {
+    const toml::table* named = node.as_table();
+    const bool isKnown = key == "kernels" || key == "tables" || key == "streams";
+    if (!isKnown || named == nullptr) {
+      throw Error(fmt::format("{}:{}: expected tables like [kernels.\"heat::diffuse\"], [kernels.\"*\"], "
+                              "[tables.\"heat::response\"] or [streams.\"heat::u\"]",
+                              file, key.source().begin.line),
+                  Error::Kind::File);
+    }
+    for (const auto& [name, choices] : *named) {
+      if (!choices.is_table()) {
+        throw Error(fmt::format("{}:{}: expected a table, [{}.\"{}\"]", file, name.source().begin.line,
+                                key.str(), name.str()),
+                    Error::Kind::File);
+      }
+      if (key == "kernels") {
+        kernels_[std::string(name.str())] = optionsOf(file, *choices.as_table());
+      } else if (key == "streams") {
+        streams_[std::string(name.str())] = sk::storageOf(file, name, *choices.as_table());
+      } else {
+        tables_[std::string(name.str())] = sk::rangeOf(file, name, *choices.as_table());
+      }
+    }
+  }
+}
+
+Storage Configuration::storageOf(std::string_view stream) const {
+  for (const std::string_view name : {stream, std::string_view("*")}) {
+    if (const auto found = streams_.find(name); found != streams_.end()) return found->second;
+  }
+  return Storage::Single;
+}
+
+TableRange Configuration::rangeOf(const program::Table& table) const {
+  TableRange range = table.range;
+  const auto found = tables_.find(table.function);
+  if (found == tables_.end()) return range;
+  const RangeChoice& choice = found->second;
+  range = {choice.low.value_or(range.low), choice.high.value_or(range.high),
+           choice.intervals.value_or(range.intervals)};
+  if (!(range.low < range.high)) {
+    throw Error(
+        fmt::format("{}: the table of '{}' begins at {} and ends at {}; say low and high so that low is less",
+                    choice.place, table.function, range.low, range.high),
+        Error::Kind::File);
+  }
+  return range;
+}
+
+CallOptions Configuration::resolve(const program::Kernel& kernel, const CallOptions& call) const {
+  CallOptions options = call;
+  for (const std::string_view name : {kernel.name, std::string_view("*")}) {
+    if (const auto found = kernels_.find(name); found != kernels_.end())
+      options = merged(options, found->second);
+  }
+  return merged(options, kernel.options);
+}
+
+}  // namespace sk

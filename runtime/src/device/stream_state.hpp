@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+//
+// What is behind a Stream on any device: its type and shape, and the device that it is on, as long as there
+// is one.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "device/transfer_state.hpp"
+#include "sk/program.hpp"
+#include "sk/shape.hpp"
+#include "sk/stream.hpp"
+
+namespace sk {
+
+class DeviceState;
+
+class StreamState {
+ public:
+  virtual ~StreamState();
+  StreamState(const StreamState&) = delete;
+  StreamState& operator=(const StreamState&) = delete;
+
+  /// Finds out how many elements there are, if that is not known, which waits for the device. No scope of the
+  /// device is open.
+  virtual void settle() = 0;
+  /// The region is inside, and has an element; `elements` are as many, laid out as the Element says.
+  virtual void write(const StreamRegion& region, const std::byte* elements) = 0;
+  virtual void read(const StreamRegion& region, std::byte* elements) = 0;
+  /// Begins to read. The default reads at once, which is as fast where elements are in host memory.
+  virtual std::unique_ptr<TransferState> readAsync(const StreamRegion& region);
+  /// As write(), without waiting for what the device has to do; the elements may be changed at once.
+  virtual void writeAsync(const StreamRegion& region, const std::byte* elements) { write(region, elements); }
+  /// `values` has room for every component of every element; all are floats.
+  virtual void readReals(const StreamRegion& region, double* values) = 0;
+  virtual void writeReals(const StreamRegion& region, const double* values) = 0;
+  /// Throws sk::Error where the device has no textures.
+  virtual StreamTexture texture(int plane) = 0;
+  /// The plane exists, the offset is good for it, and the stream has an element. Throws sk::Error where the device has no buffers.
+  virtual void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) = 0;
+
+  /// What debuggers and the trace call it.
+  virtual void setName(std::string_view given) { name = given; }
+
+  /// In the device's list.
+  StreamState* next() const { return next_; }
+  /// Takes the stream off its device's list, and forgets the device.
+  void leave() noexcept;
+
+  DeviceState* device;  ///< null once the device is gone
+  const program::Element* const element;
+  const Storage storage;
+  Shape shape;  ///< holds once the stream is settled
+  std::string name;  ///< may be empty
+
+ protected:
+  /// Puts the stream on its device's list.
+  StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as);
+
+ private:
+  StreamState* previous_ = nullptr;
+  StreamState* next_ = nullptr;
+};
+
+/// The stream of a region, settled. Throws sk::Error, its text after `context`, where it was moved from, its
+/// device is gone, or a kernel has left it less elements than the region has.
+StreamState& liveStream(const StreamRegion& region, std::string_view context);
+
+/// Whether a region is inside its stream, which is settled: a kernel that pushes to a stream changes its size.
+bool isInside(const StreamRegion& region);
+
+}  // namespace sk

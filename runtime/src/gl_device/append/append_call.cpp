@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+//
+// Counts, trees, lists, and what becomes of the lists. All passes that run the kernel come before any that
+// changes a stream which it may read.
+#include "gl_device/append/append_call.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "assemble/append/append_passes.hpp"
+#include "call/check_argument.hpp"
+#include "gl_device/append/histo_pyramid.hpp"
+#include "gl_device/append/scatter_points.hpp"
+#include "gl_device/gl_device.hpp"
+#include "gl_device/gl_stream.hpp"
+#include "gl_device/pass/output_targets.hpp"
+#include "gl_device/pass/pass.hpp"
+#include "sk/limits.hpp"
+
+namespace sk {
+
+namespace {
+
+using assemble::Task;
+using assemble::Work;
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+/// Up to so many pushes an element, a variable output gets room for all that may come, and nobody waits for
+/// their number.
+constexpr std::int32_t mostRoom = 4;
+
+/// What was pushed to one append output.
+struct List {
+  explicit List(GlDevice& device) : planes(device), total(device) {}
+
+  std::size_t appendOutput = 0;
+  Layout layout;         ///< of `planes`
+  PlanesLease planes;    ///< none where nothing was pushed; of a scatter output, the texels first
+  PlanesLease total;     ///< where the number of entries is not known: HistoPyramid::totalTexture()
+};
+
+class AppendCall {
+ public:
+  AppendCall(GlDevice& device, const ResolvedCall& call)
+      : device_(device),
+        kernel_(call.kernel),
+        arguments_(call.arguments),
+        specs_(call.specs),
+        layout_(layoutOf(call.domain, device.textureLimits())),
+        counts_(device) {
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      if (isScattered(i)) glStream(arguments_[i].region).unpack();
+    }
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      operands_.push_back(operandOf(i, call.domain));
+    }
+  }
+
+  void run() {
+    OutputTargets outputs(device_, kernel_, arguments_, specs_, operands_, layout_.whole, layout_);
+    drawCounts(outputs);
+    std::vector<std::unique_ptr<List>> lists;
+    std::size_t counted = 0;
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      const Parameter& parameter = kernel_.parameters[i];
+      if (!assemble::isAppendOutput(parameter)) {
+        continue;
+      }
+      RenderTarget* counts = assemble::isCounted(parameter) ? &counts_.planes[counted++] : nullptr;
+      lists.push_back(makeList(i, counts));
+    }
+    outputs.putInPlace();
+    for (const std::unique_ptr<List>& list : lists) {
+      putInPlace(*list);
+    }
+  }
+
+ private:
+  bool isScattered(std::size_t i) const {
+    return kernel_.parameters[i].role == Role::Scatter && assemble::isNeeded(kernel_.parameters[i], specs_);
+  }
+
+  Operand operandOf(std::size_t i, const Shape& domain) const {
+    const Parameter& parameter = kernel_.parameters[i];
+    const Argument& argument = arguments_[i];
+    if (parameter.role == Role::Uniform || parameter.role == Role::Spec) {
+      return {.value = argument.value};
+    }
+    if (parameter.role == Role::Iterator) {
+      return iteration(parameter, argument.value, domain);
+    }
+    if (parameter.role == Role::VariableOutput || !assemble::isNeeded(parameter, specs_)) {
+      return {};
+    }
+    return regionOperand(argument, domain);
+  }
+
+  /// Element outputs, and the counts of each counted append output.
+  void drawCounts(OutputTargets& targets) {
+    const auto counted = std::count_if(
+        kernel_.parameters.begin(), kernel_.parameters.end(),
+        [](const Parameter& p) { return assemble::isAppendOutput(p) && assemble::isCounted(p); });
+    for (std::ptrdiff_t i = 0; i < counted; ++i) {
+      std::vector<RenderTarget> plane = device_.takePlanes(ElementTraits<int>::element(), layout_.texture,
+                                                           "the numbers of what a kernel pushes");
+      counts_.planes.push_back(std::move(plane.front()));
+    }
+    for (RenderTarget& plane : counts_.planes) {
+      targets.add(plane);
+    }
+    if (targets.planes().empty()) {
+      return;
+    }
+    runKernel(device_, kernel_, operands_, layout_.whole, layout_.draws, targets.planes(), {},
+              {Work::Counts});
+  }
+
+  /// Where `counts` is null, the list has slots.
+  std::unique_ptr<List> makeList(std::size_t i, RenderTarget* counts) {
+    const Parameter& appendOutput = kernel_.parameters[i];
+    const std::int64_t elements = assemble::elements(layout_.whole.extent);
+    auto list = std::make_unique<List>(device_);
+    list->appendOutput = i;
+    std::optional<HistoPyramid> tree;
+    std::int64_t length = elements * appendOutput.pushes;
+    if (counts != nullptr) {
+      tree.emplace(device_, *counts, layout_);
+      if (hasRoom(appendOutput, elements)) {
+        list->total.planes = tree->totalTexture();
+      } else {
+        length = tree->total();
+        if (length > mostPushes) failForPushes(appendOutput);
+      }
+    }
+    list->layout = listLayout(length, device_.textureLimits());
+    if (length > 0) {
+      drawList(*list, tree ? &*tree : nullptr);
+    }
+    return list;
+  }
+
+  [[noreturn]] void failForPushes(const Parameter& appendOutput) const {
+    fail(Error::Kind::Shape, kernel_, "it {} '{}' more than {} values in one call; divide the domain",
+         appendOutput.role == Role::Scatter ? "scatters to" : "pushes to", appendOutput.name, mostPushes);
+  }
+
+  /// Whether the list can be made without its length.
+  bool hasRoom(const Parameter& appendOutput, std::int64_t elements) const {
+    const std::int64_t most = std::int64_t{device_.limits.textureSize} * device_.limits.textureSize / 2;
+    return appendOutput.role == Role::VariableOutput && appendOutput.pushes >= 0 &&
+           appendOutput.pushes <= mostRoom && elements * appendOutput.pushes <= most;
+  }
+
+  void drawList(List& list, HistoPyramid* tree) {
+    const Parameter& appendOutput = kernel_.parameters[list.appendOutput];
+    const auto take = [&](const program::Element& element) {
+      for (RenderTarget& plane :
+           device_.takePlanes(element, list.layout.texture, "what a kernel pushes or scatters")) {
+        list.planes.planes.push_back(std::move(plane));
+      }
+    };
+    if (appendOutput.role == Role::Scatter) {
+      take(ElementTraits<int2>::element());
+    }
+    take(*appendOutput.element);
+    std::vector<RenderTarget*> targets;
+    for (RenderTarget& plane : list.planes.planes) {
+      targets.push_back(&plane);
+    }
+    assemble::RegionLayout
+        domain;  // of the elements, as their numbers are decoded; the list's own is `draws`
+    domain.linear = true;
+    domain.extent = layout_.whole.extent;
+    domain.stride = assemble::stridesOf(domain.extent);
+    domain.layered = list.layout.whole.layered;
+    domain.shift = list.layout.whole.shift;
+    const Task task{Work::List, static_cast<std::uint8_t>(list.appendOutput),
+                    tree != nullptr && tree->plan().isLayered()};
+    if (tree != nullptr) {
+      bindTree(task, domain, *tree);
+    }
+    runKernel(device_, kernel_, operands_, domain, list.layout.draws, targets, {}, task);
+  }
+
+  void bindTree(const Task& task, const assemble::RegionLayout& domain, HistoPyramid& tree) {
+    KernelProgram& program = device_.programs().kernelProgram(kernel_, operands_, domain, task);
+    device_.bound.program(program.program.name());
+    bindPlanes(device_, {&tree.odd(), 1}, program.units);
+    bindPlanes(device_, {&tree.even(), 1}, program.units + 1);
+    program.tree.set(tree.plan());
+  }
+
+  void putInPlace(List& list) {
+    const Parameter& appendOutput = kernel_.parameters[list.appendOutput];
+    if (appendOutput.role == Role::VariableOutput) {
+      const bool isKnown = list.total.planes.empty();
+      glStream(arguments_[list.appendOutput].region)
+          .become(list.planes.planes, list.layout, isKnown ? nullptr : &list.total.planes.front());
+      list.total.planes.clear();
+      return;
+    }
+    if (list.planes.planes.empty()) {
+      return;
+    }
+    GlStream& stream = glStream(arguments_[list.appendOutput].region);
+    scatterPoints(device_, appendOutput, list.planes.planes, list.layout.whole,
+                  operands_[list.appendOutput].regionLayout, stream.planes);
+  }
+
+  GlDevice& device_;
+  const Kernel& kernel_;
+  std::span<const Argument> arguments_;
+  const assemble::SpecValues& specs_;
+  Layout layout_;  ///< of the domain
+  PlanesLease counts_;  ///< one a counted append output
+  std::vector<Operand> operands_;
+};
+
+}  // namespace
+
+bool hasAppendOutputs(const Kernel& kernel) {
+  return std::any_of(kernel.parameters.begin(), kernel.parameters.end(), assemble::isAppendOutput);
+}
+
+void runWithAppendOutputs(GlDevice& device, const ResolvedCall& call) { AppendCall(device, call).run(); }
+
+void runOverNothing(const ResolvedCall& call) {
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    if (call.kernel.parameters[i].role == Role::VariableOutput) {
+      std::vector<RenderTarget> nothing;
+      glStream(call.arguments[i].region).become(nothing, listLayout(0, {1, 1}), nullptr);
+    }
+  }
+}
+
+}  // namespace sk

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+//
+// Assembling, compiling and keeping programs of append outputs.
+#include "gl_device/append/append_programs.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "assemble/assemble.hpp"
+#include "gl_device/gl_device.hpp"
+#include "sk/error.hpp"
+
+namespace sk {
+
+using assemble::PointStep;
+
+gl::IntUniform& StepProgram::find(std::string_view name, bool isVector) {
+  const auto found = std::find_if(uniforms_.begin(), uniforms_.end(),
+                                  [&](const auto& known) { return known.first == name; });
+  if (found != uniforms_.end()) {
+    return found->second;
+  }
+  const std::string kept(name);
+  return uniforms_.emplace_back(kept, gl::IntUniform(program_.location(kept), isVector)).second;
+}
+
+std::unique_ptr<StepProgram> AppendPrograms::build(const std::string& vertexSource,
+                                                   const std::string& fragmentSource, std::string_view what) {
+  std::string log;
+  gl::Program program = ProgramBuild(device_, {vertexSource, fragmentSource}).finish(device_, log);
+  if (!program) {
+    throw Error(fmt::format("the driver of '{}' refuses the program of {}:\n{}",
+                            device_.capabilities.renderer, what, log),
+                Error::Kind::Compile);
+  }
+  device_.bound.program(program.name());
+  return std::make_unique<StepProgram>(std::move(program));
+}
+
+StepProgram& AppendPrograms::tree(const assemble::PyramidTextures& textures) {
+  std::unique_ptr<StepProgram>& kept = trees_[textures];
+  if (!kept) {
+    kept = build(assemble::vertexProgram(device_.profile), assemble::treeProgram(device_.profile, textures),
+                 "sums of counts");
+    kept->program().setSampler("sk_below", 0);
+  }
+  return *kept;
+}
+
+StepProgram& AppendPrograms::points(const program::Parameter& appendOutput, PointStep step,
+                                    const assemble::PointTextures& textures) {
+  std::unique_ptr<StepProgram>& kept = points_[{&appendOutput, step, textures}];
+  if (!kept) {
+    const std::string vertexSource = assemble::hasPoints(step)
+                                         ? assemble::pointVertexProgram(device_.profile, textures)
+                                         : assemble::vertexProgram(device_.profile);
+    kept = build(vertexSource, assemble::pointProgram(device_.profile, appendOutput, step, textures),
+                 appendOutput.name);
+    const gl::Program& program = kept->program();
+    int unit = 0;
+    program.setSampler("sk_targets", unit++);
+    for (std::size_t plane = 0; plane < appendOutput.element->fields.size(); ++plane) {
+      program.setSampler(assemble::samplerName(appendOutput, plane), unit++);
+    }
+    for (const char* name : {"sk_limbs0", "sk_limbs1", "sk_limbs2", "sk_limbs3"}) {
+      program.setSampler(name, unit++);
+    }
+    unit -= 4;
+    for (const char* name : {"sk_upper", "sk_lower"}) {
+      program.setSampler(name, unit++);
+    }
+  }
+  return *kept;
+}
+
+void AppendPrograms::clear() {
+  trees_.clear();
+  points_.clear();
+}
+
+void AppendPrograms::forget() noexcept {
+  for (auto& [key, program] : trees_) {
+    if (program) {
+      program->forget();
+    }
+  }
+  for (auto& [key, program] : points_) {
+    if (program) {
+      program->forget();
+    }
+  }
+}
+
+}  // namespace sk

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: MIT
+//
+// A device's beginning and end.
+#include "gl_device/gl_device.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "assemble/append/append_passes.hpp"
+#include "assemble/glsl/tables.hpp"
+#include "call/check_argument.hpp"
+#include "call/precision.hpp"
+#include "gl/commands.hpp"
+#include "gl/errors.hpp"
+#include "gl_device/append/append_call.hpp"
+#include "gl_device/gl_stream.hpp"
+#include "gl_device/memory/keep_heap.hpp"
+#include "gl_device/pass/pass_trace.hpp"
+#include "gl_device/transfer/pending_read.hpp"
+#include "probe/copy_bandwidth.hpp"
+#include "probe/probe.hpp"
+#include "sk/error.hpp"
+
+namespace sk {
+
+namespace {
+
+/// A trial is off by as much at times, in software by more, and what is drawn runs on more devices.
+constexpr double worthDispatching = 0.9, worthDispatchingInSoftware = 0.7;
+
+assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capabilities,
+                            const DeviceChoices& choices) {
+  assemble::Profile profile = *assemble::findProfile(name);
+  if (!capabilities.hasDoubles || choices.pairs) {
+    profile.doubles = assemble::Doubles::Pairs;
+  }
+  profile.sharesTexels = choices.sharesTexels.value_or(!capabilities.isSoftware);
+  profile.samples = capabilities.isSoftware;
+  profile.relaysUniforms = capabilities.isSoftware && profile.stage == assemble::Stage::Fragment;
+  return profile;
+}
+
+/// The one that is asked for, else the strongest that the language has.
+Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& choices) {
+  if (choices.barrier == Barrier::Precise && !capabilities.hasPrecise) {
+    throw Error(
+        fmt::format("'{}' has no `precise` in its {}; choose xor or none (option or SK_BARRIER)",
+                    capabilities.renderer, capabilities.api == gl::Api::Gl ? "GLSL 3.30" : "ESSL 3.00"),
+        Error::Kind::Device);
+  }
+  return choices.barrier.value_or(capabilities.hasPrecise ? Barrier::Precise : Barrier::Xor);
+}
+
+}  // namespace
+
+GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
+    : context(std::move(opened.context)),
+      capabilities(std::move(opened.capabilities)),
+      profile(profileOf(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", capabilities, choices)),
+      computeProfile(profileOf("glsl430", capabilities, choices)),
+      target(choices.target),
+      barrier(barrierOf(capabilities, choices)),
+      framebuffers(bound),
+      pool(bound, framebuffers),
+      appendPrograms(*this),
+      binaries(cache, capabilities, driverKey(name(), driver(), profileName())),
+      sharesContext_(choices.sharesContext) {
+  if (target == Target::Compute && !capabilities.hasCompute) {
+    throw Error(
+        fmt::format("'{}' runs no compute programs, which take OpenGL 4.3; leave profile glsl430 (option or "
+                    "SK_PROFILE) out",
+                    capabilities.renderer),
+        Error::Kind::Device);
+  }
+  choose({}, assemble::Stage::Fragment);
+  limits.textureSize = capabilities.textureSize;
+  limits.textureLayers = capabilities.textureLayers;
+  if (choices.textureLimit > 0 && choices.textureLimit < limits.textureSize) {
+    limits.textureSize = choices.textureLimit;
+  }
+  limits.elements = mostElements;
+  limits.drawBuffers = capabilities.drawBuffers;
+  limits.textureUnits = capabilities.textureUnits;
+  limits.uniformComponents = capabilities.uniformComponents;
+  if (choices.guaranteedLimits) {
+    limits.drawBuffers = profile.drawBuffers;
+    limits.textureUnits = profile.textureUnits;
+    limits.uniformComponents = profile.uniformComponents;
+  }
+  if (choices.barrier) {
+    arithmetic_ = {.exactSums = *choices.barrier != Barrier::None, .barrier = *choices.barrier};
+  }
+  const gl::CurrentScope current(context);
+  vertexArray = gl::VertexArray::create();
+  if (!isGuest()) {
+    gl::setPassState(capabilities);
+  }
+  if (capabilities.hasLabels && capabilities.isDebugged) labels.turnOn();
+  if (capabilities.isSoftware) keepHeap();
+}
+
+// GL objects are deleted only with their context current. Where it cannot be made current, because
+// another thread has it or the application has ended it, they are left to die with it.
+GlDevice::~GlDevice() {
+  std::optional<gl::CurrentScope> current;
+  try {
+    current.emplace(context);
+  } catch (const Error&) {
+    forgetObjects();
+  }
+  if (current) {
+    const std::lock_guard lock(pendingReads->mutex);
+    while (!pendingReads->list.empty()) pendingReads->list.back()->land();
+  }
+  if (passes && current) passes->complete();
+  passes.reset();
+  while (firstStream() != nullptr) {
+    auto& stream = static_cast<GlStream&>(*firstStream());
+    stream.leave();
+    stream.planes.clear();
+    stream.total_ = {};
+  }
+  if (current) {
+    pool.clear();
+    framebuffers.clear();
+    for (auto& [choice, programs] : caches_) programs.clear();
+    appendPrograms.clear();
+    tableTextures_.clear();
+    samplers.clear();
+    values.clear();
+    transferBuffers.clear();
+    vertexArray = {};
+  }
+}
+
+void GlDevice::forgetObjects() noexcept {
+  {
+    const std::lock_guard lock(pendingReads->mutex);
+    while (!pendingReads->list.empty()) pendingReads->list.back()->abandon();
+  }
+  transferBuffers.forget();
+  if (passes) passes->forget();
+  for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
+    auto& stream = static_cast<GlStream&>(*state);
+    for (RenderTarget& plane : stream.planes) {
+      plane.forget();
+    }
+    stream.total_.forget();
+  }
+  pool.forget();
+  framebuffers.forget();
+  for (auto& [choice, programs] : caches_) programs.forget();
+  appendPrograms.forget();
+  for (auto& [table, texture] : tableTextures_) texture.forget();
+  samplers.forget();
+  values.forget();
+  vertexArray.forget();
+}
+
+std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& element, const Shape& shape,
+                                                    Storage storage) {
+  const DeviceScope scope(*this);
+  return std::make_unique<GlStream>(*this, element, shape, storage);
+}
+
+// Accumulate::Extended asks for bits: a program on the CPU has more of them in doubles, and in less time.
+bool GlDevice::takesPairs(const CallOptions& options) const {
+  const bool asksForPairs = options.precision == Precision::Extended;
+  return isExtended(options) &&
+         (asksForPairs || !capabilities.isSoftware || profile.doubles == assemble::Doubles::Pairs);
+}
+
+bool GlDevice::mayDispatch(const program::Kernel& kernel) const {
+  return capabilities.hasCompute && kernel.dispatched && !hasAppendOutputs(kernel);
+}
+
+assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, KernelClass kernels,
+                                  const CallOptions& options) {
+  using assemble::Stage;
+  const Target wanted = options.target != Target::Default ? options.target : target;
+  if (!mayDispatch(kernel)) return Stage::Fragment;
+  if (!kernel.drawn || wanted == Target::Compute) return Stage::Compute;
+  if (wanted == Target::Fragment) return Stage::Fragment;
+  return fasterFor(kernels);
+}
+
+// Drawing reaches but a part of some GPUs, and dispatches all of it; on others, and in software, it is the other way.
+assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
+  std::optional<assemble::Stage>& known = faster_[static_cast<std::size_t>(kernels)];
+  if (!known) {
+    const std::optional<PassCount> counted = passCount;
+    const std::optional<double> ratio = computeOverFragment(*this, kernels);
+    passCount = counted;
+    const double worth = capabilities.isSoftware ? worthDispatchingInSoftware : worthDispatching;
+    known = ratio.value_or(1) < worth ? assemble::Stage::Compute : assemble::Stage::Fragment;
+  }
+  return *known;
+}
+
+std::vector<TargetTrial> GlDevice::trialTargets() {
+  std::vector<TargetTrial> trials;
+  for (std::size_t i = 0; capabilities.hasCompute && i < kernelClasses; ++i) {
+    const auto kernels = static_cast<KernelClass>(i);
+    if (const std::optional<double> ratio = computeOverFragment(*this, kernels)) {
+      trials.push_back({nameOf(kernels), *ratio});
+    }
+  }
+  return trials;
+}
+
+void GlDevice::choose(const CallOptions& options, assemble::Stage stage) {
+  const ProgramChoice choice{.stage = stage,
+                             .accurate = options.intrinsics != Intrinsics::Fast,
+                             .doubles = takesPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
+                             .barrier = barrier,
+                             .tables = options.tables != Tables::Off};
+  if (programs_ != nullptr && choice == chosen_) {
+    return;
+  }
+  auto found = caches_.find(choice);
+  if (found == caches_.end()) {
+    assemble::Profile chosen = stage == assemble::Stage::Compute ? computeProfile : profile;
+    chosen.accurate = choice.accurate;
+    chosen.doubles = choice.doubles;
+    chosen.barrier = choice.barrier;
+    chosen.tables = choice.tables;
+    found = caches_.try_emplace(choice, *this, chosen).first;
+  }
+  programs_ = &found->second;
+  chosen_ = choice;
+}
+
+GLuint GlDevice::textureOf(const FunctionTable& table) {
+  gl::Texture& texture = tableTextures_[&table];
+  if (texture.name() == 0) {
+    const int width = assemble::coefficientsOf(table.report.interpolation);
+    const std::int32_t rows =
+        (table.report.range.intervals + assemble::tableWidth - 1) / assemble::tableWidth;
+    std::vector<float> texels = table.coefficients;
+    texels.resize(static_cast<std::size_t>(rows) * assemble::tableWidth * static_cast<std::size_t>(width));
+    texture = gl::Texture(bound, gl::formatOf(program::Scalar::Float, width), {assemble::tableWidth, rows});
+    if (texture.name() == 0) {
+      throw Error(fmt::format("'{}' has no memory for the table of '{}': {} KiB", capabilities.renderer,
+                              table.report.function, texels.size() * sizeof(float) >> 10),
+                  Error::Kind::Memory);
+    }
+    texture.write(bound, {0, 0, assemble::tableWidth, rows}, 0, texels.data());
+  }
+  return texture.name();
+}
+
+void GlDevice::startTrace(const std::string& file) {
+  auto started = std::make_unique<Trace>(file, fmt::format("{} ({})", name(), profileName()));
+  started->setBandwidth(copyBandwidth(*this));
+  trace = std::move(started);
+  const DeviceScope scope(*this);
+  passes = std::make_unique<PassTrace>(*this, *trace);
+  if (capabilities.hasLabels) labels.turnOn();
+}
+
+void GlDevice::finish() {
+  const DeviceScope scope(*this);
+  gl::finish();
+  throwPendingError();
+}
+
+const Arithmetic& GlDevice::arithmetic() {
+  if (!arithmetic_) {
+    arithmetic_ = probeArithmetic(*this);
+  }
+  return *arithmetic_;
+}
+
+void GlDevice::needExactSums(const program::Kernel& kernel) {
+  if (!arithmetic().exactSums) {
+    fail(Error::Kind::Device, kernel,
+         "it computes with pairs of floats, and the compiler of '{}' simplifies their rounding errors away; "
+         "use float, or a device that has doubles (SK_DEVICE=native)",
+         name());
+  }
+}
+
+void GlDevice::checkProgram(const program::Kernel& kernel) {
+  if (kernel.usesDoubles && profile.doubles == assemble::Doubles::Pairs) {
+    needExactSums(kernel);
+  } else if (kernel.usesExactSums) {
+    arithmetic();
+  }
+}
+
+void GlDevice::checkProgram(const program::Reduction& reduction) {
+  checkProgram(reduction.fold);
+  checkProgram(reduction.combine);
+}
+
+void GlDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
+  if (asked == Target::Native) {
+    fail(Error::Kind::Device, kernel,
+         "its streams are on '{}'; native code runs on streams of sk::Device::native()", name());
+  }
+  constexpr std::string_view compileForBoth = "compile its .sk file with skc --target=fragment,compute";
+  const bool mustDispatch = asked == Target::Compute || !kernel.drawn;
+  const std::string_view wayOut = kernel.drawn ? "call it without Target::Compute" : compileForBoth;
+  if (mustDispatch && !capabilities.hasCompute) {
+    fail(Error::Kind::Device, kernel, "'{}' runs no compute programs, which take OpenGL 4.3; {}", name(),
+         wayOut);
+  }
+  if (mustDispatch && hasAppendOutputs(kernel)) {
+    fail(Error::Kind::Device, kernel, "variable and scatter outputs are drawn; {}", wayOut);
+  }
+  if (mustDispatch && !kernel.dispatched) {
+    fail(Error::Kind::Compile, kernel, "it has no compute programs; {}", compileForBoth);
+  }
+  if (asked == Target::Fragment && !kernel.drawn) {
+    fail(Error::Kind::Compile, kernel, "it has no fragment programs; {}", compileForBoth);
+  }
+}
+
+void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& options) {
+  checkTarget(kernel, options.target);
+  if (takesPairs(options)) {
+    needExactSums(kernel);
+  }
+  if (options.precision == Precision::Double && profile.doubles != assemble::Doubles::Native) {
+    fail(Error::Kind::Device, kernel, "'{}' has no doubles of its own; call it in Precision::Extended",
+         name());
+  }
+}
+
+// Lists of append outputs, and bundles of planes, are made of what the kernel declares; a vector of doubles has more planes than
+// one of floats.
+void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments,
+                             const program::Plan* plan) const {
+  std::size_t written = 0;
+  std::size_t read = 0;
+  bool isOther = false;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const program::Parameter& parameter = kernel.parameters[i];
+    if (arguments[i].region.stream == nullptr) continue;
+    const GlStream& stream = glStream(arguments[i].region);
+    const std::size_t planes = stream.held().fields.size();
+    if (parameter.role == program::Role::Output) written += planes;
+    if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather) read += planes;
+    if (stream.storage == Storage::Single) continue;
+    isOther = true;
+    if (assemble::isAppendOutput(parameter)) {
+      fail(kernel,
+           "'{}' is a variable or scatter output, whose stream holds floats; make it with Storage::Single",
+           parameter.name);
+    }
+    if (plan != nullptr) {
+      fail(kernel,
+           "it takes several passes on this device, for which the stream of '{}' has to hold floats; make it "
+           "with Storage::Single",
+           parameter.name);
+    }
+  }
+  if (!isOther) return;
+  if (written > static_cast<std::size_t>(limits.drawBuffers) ||
+      read > static_cast<std::size_t>(limits.textureUnits)) {
+    fail(Error::Kind::Device, kernel,
+         "its streams hold {} planes to write and {} to read, but this device has room for {} and {}; make "
+         "those of vectors with Storage::Single",
+         written, read, limits.drawBuffers, limits.textureUnits);
+  }
+}
+
+std::vector<RenderTarget> GlDevice::takePlanes(const program::Element& element,
+                                               const assemble::TextureShape& shape,
+                                               std::string_view whatFor) {
+  std::vector<RenderTarget> planes;
+  planes.reserve(element.fields.size());
+  for (const program::Field& field : element.fields) {
+    const gl::Format& format = gl::formatOf(field);
+    RenderTarget plane = pool.take(format, shape);
+    if (!plane) {
+      givePlanes(planes);
+      const std::int64_t texels = std::int64_t{shape.width} * shape.height * std::max(shape.layers, 1);
+      throw Error(
+          fmt::format("'{}' has no memory for {}: {} texture(s) of {} x {}{} texels, one of them of {} MiB",
+                      capabilities.renderer, whatFor, element.fields.size(), shape.width, shape.height,
+                      shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
+                      (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20),
+          Error::Kind::Memory);
+    }
+    labels.texture(plane.texture.name(), whatFor);
+    planes.push_back(std::move(plane));
+  }
+  countBytes();
+  return planes;
+}
+
+void GlDevice::givePlanes(std::vector<RenderTarget>& planes) noexcept {
+  for (RenderTarget& plane : planes) {
+    pool.give(std::move(plane));
+  }
+  planes.clear();
+  countBytes();
+}
+
+// An adopted context is current already, or cannot be made so.
+void GlDevice::makeCurrent() {
+  if (!context.isCurrent()) context.makeCurrent();
+}
+
+// An application's own mistakes in a context that it draws in are not ours to report.
+void GlDevice::throwPendingError() {
+  if (passes) passes->collect();
+  const GLenum error = gl::takeError();
+  const bool isOurs = !isGuest() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
+  if (error != GL_NO_ERROR && isOurs) {
+    throw Error(fmt::format("the driver of '{}' reports {}; what the device's streams hold is undefined",
+                            capabilities.renderer, gl::errorName(error)),
+                error == GL_OUT_OF_MEMORY ? Error::Kind::Memory : Error::Kind::Lost);
+  }
+}
+
+}  // namespace sk

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// The ways of outputs.
+#include "gl_device/pass/output_targets.hpp"
+
+#include <utility>
+
+#include "assemble/elements/planes.hpp"
+#include "gl_device/gl_stream.hpp"
+#include "gl_device/pass/pass.hpp"
+
+namespace sk {
+
+using assemble::RegionLayout;
+using program::Role;
+
+OutputTargets::OutputTargets(GlDevice& device, const program::Kernel& kernel,
+                             std::span<const Argument> arguments, const assemble::SpecValues& specs,
+                             std::span<const Operand> operands, const RegionLayout& domain,
+                             const Layout& layout)
+    : device_(device),
+      kernel_(kernel),
+      arguments_(arguments),
+      specs_(specs),
+      operands_(operands),
+      domain_(domain),
+      layout_(layout) {
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    if (!isOutput(i)) {
+      continue;
+    }
+    if (wayOf(i) != Way::Direct) {
+      addAside(i);
+      continue;
+    }
+    for (RenderTarget& plane : operands_[i].planes) {
+      add(plane);
+    }
+  }
+}
+
+OutputTargets::Way OutputTargets::wayOf(std::size_t output) const {
+  bool isReadToo = false;
+  bool isWrittenBefore = false;
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    const Role role = kernel_.parameters[i].role;
+    const bool isSame = arguments_[i].region.stream == arguments_[output].region.stream;
+    isReadToo = isReadToo || (isSame && isNeeded(i) && (role == Role::Input || role == Role::Gather));
+    isWrittenBefore = isWrittenBefore || (isSame && isOutput(i) && i < output);
+  }
+  const RegionLayout& regionLayout = operands_[output].regionLayout;
+  const bool isSame = haveSameTexels(regionLayout, domain_);
+  if (!isWrittenBefore && isSame && !isReadToo) {
+    return Way::Direct;
+  }
+  const bool isWhole = !regionLayout.view && !domain_.view;
+  return isWhole && !isWrittenBefore ? Way::Swap : Way::Copy;
+}
+
+/// New planes lie as the domain does.
+void OutputTargets::addAside(std::size_t output) {
+  const program::Element& held = glStream(arguments_[output].region).held();
+  aside_.resize(arguments_.size());
+  aside_[output] = std::make_unique<PlanesLease>(device_);
+  aside_[output]->planes =
+      device_.takePlanes(domain_.packed ? assemble::fourOf(held.fields.front().scalar) : held,
+                         layout_.texture, "an output that the kernel reads too");
+  for (RenderTarget& plane : aside_[output]->planes) {
+    add(plane);
+  }
+}
+
+std::vector<std::span<RenderTarget>> OutputTargets::planesOfOutputs() const {
+  std::vector<std::span<RenderTarget>> planes(arguments_.size());
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    if (isOutput(i)) {
+      const bool isAside = i < aside_.size() && aside_[i];
+      planes[i] = isAside ? std::span<RenderTarget>(aside_[i]->planes) : operands_[i].planes;
+    }
+  }
+  return planes;
+}
+
+void OutputTargets::putCopy(GlStream& stream, const StreamRegion& region, std::span<RenderTarget> drawn) {
+  if (!domain_.packed || !assemble::isWholeTexels(regionLayoutOf(region, stream.layout))) {
+    stream.unpack();
+  }
+  copyRegion(device_, stream.held(), drawn, domain_, stream.planes, regionLayoutOf(region, stream.layout));
+}
+
+void OutputTargets::putInPlace() {
+  for (std::size_t i = 0; i < aside_.size(); ++i) {
+    if (!aside_[i]) {
+      continue;
+    }
+    GlStream& stream = glStream(arguments_[i].region);
+    if (wayOf(i) == Way::Swap) {
+      std::swap(stream.planes, aside_[i]->planes);
+      stream.layout = layout_;
+      stream.labelPlanes();
+    } else {
+      putCopy(stream, arguments_[i].region, aside_[i]->planes);
+    }
+  }
+}
+
+}  // namespace sk

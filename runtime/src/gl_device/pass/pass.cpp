@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+//
+// Binding and drawing.
+#include "gl_device/pass/pass.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "assemble/elements/planes.hpp"
+#include "gl/commands.hpp"
+#include "gl_device/gl_device.hpp"
+#include "gl_device/memory/layout.hpp"
+#include "gl_device/pass/pass_trace.hpp"
+#include "gl_device/transfer/copy_kernel.hpp"
+#include "gl_device/transfer/copy_regions.hpp"
+
+namespace sk {
+
+namespace {
+
+using assemble::Rect;
+using assemble::RegionLayout;
+
+void blit(GlDevice& device, RenderTarget& from, const RegionLayout& source, RenderTarget& to,
+          const RegionLayout& target) {
+  const GLuint read = from.framebufferIn(device.bound).name();
+  const GLuint draw = to.framebufferIn(device.bound).name();
+  gl::blit(device.bound, read, {source.origin[0], source.origin[1]}, draw,
+           {target.origin[0], target.origin[1]}, target.extent[0], target.extent[1]);
+}
+
+/// The images are those of whole textures, whose layers are numbered by the rows of the rectangles.
+void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes,
+                   std::span<const Rect> rects) {
+  if (std::exchange(device.hasDrawn, false)) {
+    gl::finishDraws();
+  }
+  int unit = 0;
+  for (const RenderTarget* plane : planes) {
+    device.bound.image(unit++, plane->texture.name(), plane->texture.format().internalFormat);
+  }
+  const auto groups = [&](GLsizei texels, GLint group) {
+    return program.isGrouped ? texels : (texels + group - 1) / group;
+  };
+  constexpr GLsizei mostGroups = 65535;  // in each dimension, of any context
+  for (const Rect& rect : rects) {
+    const GLint rows = program.isGrouped ? mostGroups : mostGroups * program.workGroup[1];
+    for (std::int32_t done = 0; done < rect.height; done += rows) {
+      const std::int32_t height = std::min(rows, rect.height - done);
+      program.rect.set({rect.x, rect.y + done, rect.width, height});
+      gl::dispatch(groups(rect.width, program.workGroup[0]), groups(height, program.workGroup[1]));
+    }
+  }
+}
+
+/// Those planes of a parameter that are not in a bundle.
+int bindOwnPlanes(GlDevice& device, const program::Parameter& parameter, std::span<RenderTarget> planes,
+                  int unit) {
+  if (parameter.layers.empty()) {
+    return bindPlanes(device, planes, unit);
+  }
+  for (std::size_t plane = 0; plane < planes.size(); ++plane) {
+    if (parameter.layers[plane].bundle < 0) {
+      unit = bindPlanes(device, planes.subspan(plane, 1), unit);
+    }
+  }
+  return unit;
+}
+
+}  // namespace
+
+int bindPlanes(GlDevice& device, std::span<RenderTarget> planes, int unit) {
+  for (const RenderTarget& plane : planes) {
+    device.bound.texture(unit, plane.texture.name(), plane.texture.isLayered());
+    device.bound.sampler(unit++, device.samplers.nearest());
+  }
+  return unit;
+}
+
+DrawTarget targetOf(GlDevice& device, RenderTarget& plane) {
+  const gl::Texture& texture = plane.texture;
+  return {&plane.framebufferIn(device.bound), texture.isLayered() ? texture.shape().height : 0};
+}
+
+DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
+  RenderTarget& first = *planes[0];
+  if (planes.size() == 1) {
+    return targetOf(device, first);
+  }
+  std::array<GLuint, gl::maxDrawBuffers> names{};
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    names[i] = planes[i]->texture.name();
+  }
+  const bool isLayered = first.texture.isLayered();
+  return {&device.framebuffers.framebufferOf(std::span(names).first(planes.size()), isLayered),
+          isLayered ? first.texture.shape().height : 0};
+}
+
+void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect> rects, gl::IntUniform& row) {
+  device.bound.vertexArray(device.vertexArray.name());
+  device.hasDrawn = true;
+  for (const Rect& rect : rects) {
+    forEachLayer(rect, target.layerRows, [&](const Rect& part, std::int32_t layer, std::int32_t) {
+      selectLayer(device, target, layer, row);
+      device.bound.viewport(part.x, part.y, part.width, part.height);
+      gl::drawViewport();
+    });
+  }
+}
+
+void writeRects(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes,
+                std::span<const Rect> rects) {
+  switch (program.stage) {
+    case assemble::Stage::Fragment:
+      drawRects(device, targetOf(device, planes), rects, program.domainRow);
+      return;
+    case assemble::Stage::Compute: dispatchRects(device, program, planes, rects); return;
+  }
+}
+
+void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row) {
+  if (target.layerRows == 0) {
+    device.bound.framebuffer(target.framebuffer->name());
+    row.set(0);
+    return;
+  }
+  target.framebuffer->selectLayer(device.bound, layer);
+  row.set(layer * target.layerRows);
+}
+
+void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
+                  std::span<const Operand> operands, std::span<const gl::Texture> bundles) {
+  int unit = 0;
+  for (KernelProgram::Read& read : program.reads) {
+    const Operand& operand = operands[read.parameter];
+    const int next = bindOwnPlanes(device, kernel.parameters[read.parameter], operand.planes, unit);
+    if (read.sampler != 0) {
+      device.bound.sampler(unit, read.sampler);
+    }
+    unit = next;
+    read.uniforms.set(operand.regionLayout);
+    read.ratio.set(operand.ratio);
+  }
+  for (const std::size_t bundle : program.bundles) {
+    device.bound.texture(unit, bundles[bundle].name(), true);
+    device.bound.sampler(unit++, 0);
+  }
+  for (KernelProgram::Table& table : program.tables) {
+    device.bound.texture(unit, table.texture, false);
+    device.bound.sampler(unit++, 0);
+    table.range.set(table.values.data());
+  }
+  for (KernelProgram::Value& value : program.values) {
+    value.uniform.set(operands[value.parameter].value);
+  }
+  for (KernelProgram::Double& value : program.doubles) {
+    value.uniform.set(operands[value.parameter].value);
+  }
+  for (KernelProgram::Value& step : program.steps) {
+    step.uniform.set(operands[step.parameter].step.data());
+  }
+}
+
+void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
+               const RegionLayout& domain, std::span<const Rect> rects,
+               std::span<RenderTarget* const> targets, std::span<const gl::Texture> bundles,
+               const assemble::Task& task) {
+  KernelProgram& program = device.programs().kernelProgram(kernel, operands, domain, task);
+  const PassScope traced(device, nameOf(kernel.name, stepOf(task), program), program, operands, rects,
+                         texelBytesOf(targets));
+  device.bound.program(program.program.name());
+  bindOperands(device, program, kernel, operands, bundles);
+  program.domain.set(domain);
+  if (task.work == assemble::Work::List) {
+    program.target.set(operands[task.appendOutput].regionLayout);
+  }
+  writeRects(device, program, targets, rects);
+}
+
+void copyRegion(GlDevice& device, const program::Element& element, std::span<RenderTarget> from,
+                const RegionLayout& source, std::span<RenderTarget> to, const RegionLayout& target) {
+  if (source.packed && target.packed) {
+    copyRegion(device, assemble::fourOf(element.fields.front().scalar), from, assemble::texelsOf(source), to,
+               assemble::texelsOf(target));
+    return;
+  }
+  for (std::size_t plane = 0; plane < from.size(); ++plane) {
+    if (!source.linear && !target.linear && source.packed == target.packed) {
+      const assemble::Rect rect{target.origin[0], target.origin[1], target.extent[0], target.extent[1]};
+      const PassScope traced(device, {"copy", {}, "blit"}, rect, to[plane].texture.format().texelBytes());
+      blit(device, from[plane], source, to[plane], target);
+      continue;
+    }
+    const Operand operands[] = {{nullptr, source, from.subspan(plane, 1)}, {}};
+    RenderTarget* const targets[] = {&to[plane]};
+    runKernel(device, copyKernel(element.fields[plane]), operands, target, assemble::drawnTexels(target),
+              targets);
+  }
+}
+
+}  // namespace sk

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: MIT
+//
+// Assembling, compiling and keeping programs.
+#include "gl_device/program/program_cache.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "assemble/elements/storage.hpp"
+#include "assemble/glsl/tables.hpp"
+#include "gl_device/gl_device.hpp"
+#include "gl_device/program/shader_log.hpp"
+#include "sk/error.hpp"
+
+namespace sk {
+
+namespace {
+
+/// The bundles that a pass reads, in order.
+std::vector<std::size_t> bundlesOf(const program::Kernel& kernel) {
+  std::vector<std::size_t> bundles;
+  for (const program::Parameter& parameter : kernel.parameters) {
+    for (const program::Layer& layer : parameter.layers) {
+      if (layer.bundle >= 0) {
+        bundles.push_back(static_cast<std::size_t>(layer.bundle));
+      }
+    }
+  }
+  std::sort(bundles.begin(), bundles.end());
+  bundles.erase(std::unique(bundles.begin(), bundles.end()), bundles.end());
+  return bundles;
+}
+
+/// The fields of an element, one span for each scalar, vector or matrix.
+std::vector<std::span<const program::Field>> valuesOf(const program::Element& element) {
+  std::vector<std::span<const program::Field>> values;
+  for (std::size_t begin = 0, end = 0; begin < element.fields.size(); begin = end) {
+    for (end = begin + 1; end < element.fields.size() && element.fields[end].part > 0;) ++end;
+    values.push_back(element.fields.subspan(begin, end - begin));
+  }
+  return values;
+}
+
+KernelProgram::Read readOf(const gl::Program& program, std::size_t i, const program::Parameter& parameter) {
+  return {i,
+          LayoutUniforms(program, fmt::format("sk_*_{}", parameter.symbol)),
+          {program.location(fmt::format("sk_ratio_{}", parameter.symbol)), true}};
+}
+
+}  // namespace
+
+ProgramCache::ProgramCache(GlDevice& device, const assemble::Profile& profile)
+    : device_(device), profile_(profile) {}
+
+template <class Programs, class IsOfKernel>
+void ProgramCache::makeRoom(Programs& programs, IsOfKernel&& isOfKernel) {
+  std::ptrdiff_t count = 0;
+  auto oldest = programs.end();
+  for (auto program = programs.begin(); program != programs.end(); ++program) {
+    if (!isOfKernel(program->first)) continue;
+    ++count;
+    if (oldest == programs.end() || program->second.used < oldest->second.used) oldest = program;
+  }
+  if (count >= mostVariants) programs.erase(oldest);
+}
+
+KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
+                                           const assemble::RegionLayout& domain, const assemble::Task& task) {
+  const ProgramKey key = variantKey(kernel, operands, domain, task, device_.capabilities.filtersFloats);
+  const auto found = kernels_.find(key);
+  if (found == kernels_.end()) {
+    const TraceScope traced(device_.trace.get(), "program", kernel.name);
+    const assemble::Variant variant =
+        chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats);
+    auto started = startedKernels_.extract(key);
+    auto made = makeKernelProgram(kernel, variant,
+                                  started.empty() ? begin(kernel, variant) : std::move(started.mapped()));
+    makeRoom(kernels_, [&](const ProgramKey& other) { return other.kernel == &kernel; });
+    return *kernels_.insert_or_assign(key, Kept<KernelProgram>{std::move(made), ++clock_})
+                .first->second.program;
+  }
+  found->second.used = ++clock_;
+  return *found->second.program;
+}
+
+bool ProgramCache::startKernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
+                                      const assemble::RegionLayout& domain) {
+  const ProgramKey key = variantKey(kernel, operands, domain, {}, device_.capabilities.filtersFloats);
+  if (kernels_.contains(key)) {
+    return false;
+  }
+  if (!startedKernels_.contains(key)) {
+    const assemble::Variant variant =
+        chooseVariant(kernel, operands, domain, {}, device_.capabilities.filtersFloats);
+    startedKernels_.emplace(key, begin(kernel, variant));
+  }
+  return true;
+}
+
+std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Kernel& kernel,
+                                                               const assemble::Variant& variant,
+                                                               ProgramBuild&& begun) {
+  auto made = std::make_unique<KernelProgram>();
+  made->isPacked = variant.domainPacked;
+  finish(*made, kernel, std::move(begun));
+  made->domain = LayoutUniforms(made->program, "sk_domain_*");
+  findParameters(*made, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
+  for (KernelProgram::Read& read : made->reads) {
+    const bool isFiltered = variant.access[read.parameter].filtered;
+    read.sampler = isFiltered ? device_.samplers.linear(kernel.parameters[read.parameter].boundary) : 0;
+  }
+  if (variant.task.work == assemble::Work::List) {
+    findListUniforms(*made, kernel.parameters[variant.task.appendOutput]);
+  }
+  return made;
+}
+
+void ProgramCache::findParameters(KernelProgram& made, const program::Kernel& kernel,
+                                  const assemble::SpecValues& specs) {
+  int unit = 0;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const program::Parameter& parameter = kernel.parameters[i];
+    if (!assemble::isNeeded(parameter, specs) || parameter.role == program::Role::Spec) {
+      continue;
+    }
+    if (parameter.role == program::Role::Iterator) {
+      const program::Field& field = parameter.element->fields.front();
+      const auto find = [&](std::string_view kind) {
+        return gl::FieldUniform(made.program.location(fmt::format("sk_{}_{}", kind, parameter.symbol)),
+                                {&field, 1});
+      };
+      made.values.push_back({i, find("begin")});
+      made.steps.push_back({i, find("step")});
+      made.reads.push_back(readOf(made.program, i, parameter));
+    } else if (parameter.role == program::Role::Uniform) {
+      findValue(made, i, parameter);
+    } else if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather) {
+      made.reads.push_back(readOf(made.program, i, parameter));
+      bindSamplers(made.program, parameter, unit);
+    }
+  }
+  made.bundles = bundlesOf(kernel);
+  for (const std::size_t bundle : made.bundles) {
+    made.program.setSampler(assemble::bundleName(bundle), unit++);
+  }
+  if (profile_.tables) {
+    findTables(made, kernel, unit);
+  }
+  made.units = unit;
+}
+
+void ProgramCache::findTables(KernelProgram& made, const program::Kernel& kernel, int& unit) {
+  static constexpr program::Field range{"", program::Scalar::Float, 3, 0};
+  const int units = unit + static_cast<int>(kernel.tables.size());
+  if (!kernel.tables.empty() && units > device_.limits.textureUnits) {
+    throw Error(
+        fmt::format("{}: its streams and the tables of its functions take {} texture units, but this device "
+                    "has {}; call it "
+                    "with Tables::Off",
+                    kernel.name, units, device_.limits.textureUnits),
+        Error::Kind::Device);
+  }
+  for (const program::TableUse& use : kernel.tables) {
+    const FunctionTable& table = device_.tables.of(*use.table, device_.configuration);
+    made.tables.push_back(
+        {device_.textureOf(table),
+         gl::FieldUniform(made.program.location(assemble::rangeName(use.name)), {&range, 1}),
+         {table.report.range.low, table.perUnit, static_cast<float>(table.report.range.intervals)}});
+    device_.bound.program(made.program.name());
+    made.program.setSampler(assemble::tableName(use.name), unit++);
+  }
+}
+
+void ProgramCache::findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter) {
+  for (const auto parts : valuesOf(*parameter.element)) {
+    const program::Field& first = parts.front();
+    const bool isMember = !first.path.empty() && first.path.front() != '[';
+    const std::string name = fmt::format("sk_arg_{}{}{}", parameter.symbol, isMember ? "." : "", first.path);
+    if (first.scalar == program::Scalar::Double) {
+      addDoubles(made, number, name, parts);
+    } else {
+      made.values.push_back({number, gl::FieldUniform(made.program.location(name), parts)});
+    }
+  }
+}
+
+/// A double is a struct of its bits, or of two floats; a vector of doubles is a struct of these.
+void ProgramCache::addDoubles(KernelProgram& made, std::size_t number, const std::string& name,
+                              std::span<const program::Field> parts) const {
+  const auto location = [&](const std::string& member) { return made.program.location(member); };
+  std::size_t width = 0;
+  for (const program::Field& part : parts) width += part.width;
+  for (std::size_t c = 0; c < width; ++c) {
+    const std::string one = width == 1 ? name : fmt::format("{}.{}", name, "xyzw"[c]);
+    const auto offset = static_cast<std::uint32_t>(parts.front().offset + c * sizeof(double));
+    const bool isNative = profile_.doubles == assemble::Doubles::Native;
+    made.doubles.push_back(
+        {number, isNative ? gl::DoubleUniform::bits(location(one + ".bits"), offset)
+                          : gl::DoubleUniform::pair(location(one + ".hi"), location(one + ".lo"), offset)});
+  }
+}
+
+void ProgramCache::findListUniforms(KernelProgram& made, const program::Parameter& appendOutput) {
+  made.target = LayoutUniforms(made.program, fmt::format("sk_*_{}", appendOutput.symbol));
+  made.tree.shift = {made.program.location("sk_tree_shift"), false};
+  made.tree.levels = {made.program.location("sk_levels"), false};
+  for (std::size_t level = 0; level < made.tree.rows.size(); ++level) {
+    made.tree.rows[level] = {made.program.location(fmt::format("sk_rows[{}]", level)), false};
+  }
+  device_.bound.program(made.program.name());
+  made.program.setSampler("sk_odd", made.units);
+  made.program.setSampler("sk_even", made.units + 1);
+}
+
+void KernelProgram::Tree::set(const assemble::PyramidPlan& plan) {
+  shift.set(plan.shift);
+  levels.set(static_cast<std::int32_t>(plan.levels.size()));
+  for (std::size_t level = 0; level < plan.levels.size(); ++level) {
+    rows[level + 1].set(plan.levels[level].row);
+  }
+}
+
+void ProgramCache::bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit) {
+  device_.bound.program(program.name());
+  for (std::size_t plane = 0; plane < heldBy(parameter).fields.size(); ++plane) {
+    if (!parameter.layers.empty() && parameter.layers[plane].bundle >= 0) {
+      continue;
+    }
+    program.setSampler(assemble::samplerName(parameter, plane), unit++);
+  }
+}
+
+ProgramBuild ProgramCache::begin(const program::Kernel& kernel, const assemble::Variant& variant) {
+  assemble::ProgramPair programs = assemble::kernelPrograms(profile_, kernel, variant);
+  return {device_, {std::move(programs.vertex), std::move(programs.main)}};
+}
+
+ProgramBuild ProgramCache::begin(const program::Reduction& reduction,
+                                 const assemble::ReduceVariant& variant) {
+  return {device_,
+          {isCompute() ? std::string() : assemble::vertexProgram(profile_),
+           assemble::reduceProgram(profile_, reduction, variant)}};
+}
+
+void ProgramCache::finish(KernelProgram& made, const program::Kernel& kernel, ProgramBuild&& begun) {
+  std::string log;
+  made.program = begun.finish(device_, log);
+  if (!made.program) {
+    log.clear();
+    gl::Program::build({begun.sources().vertex, withTellingLines(begun.sources().main)}, log);
+    throw Error(
+        fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
+                    device_.capabilities.renderer, profile_.name, withSourceNames(log, kernel.sources)),
+        Error::Kind::Compile);
+  }
+  device_.labels.program(made.program.name(), kernel.name);
+  made.stage = profile_.stage;
+  made.domainRow = {made.program.location("sk_domain_row"), false};
+  if (made.stage == assemble::Stage::Compute) {
+    made.rect = {made.program.location("sk_rect"), true};
+    made.workGroup = made.program.workGroup();
+  }
+}
+
+bool ProgramCache::startReduceProgram(const program::Reduction& reduction,
+                                      const assemble::ReduceVariant& variant) {
+  const ReduceKey key{&reduction, variant};
+  if (reductions_.contains(key)) {
+    return false;
+  }
+  if (!startedReductions_.contains(key)) {
+    startedReductions_.emplace(key, begin(reduction, variant));
+  }
+  return true;
+}
+
+ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
+                                           const assemble::ReduceVariant& variant) {
+  const ReduceKey key{&reduction, variant};
+  const auto found = reductions_.find(key);
+  if (found == reductions_.end()) {
+    const TraceScope traced(device_.trace.get(), "program", reduction.fold.name);
+    auto made = std::make_unique<ReduceProgram>();
+    const bool isPartial = assemble::isOfPartials(variant.walk);
+    const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
+    auto started = startedReductions_.extract(key);
+    finish(made->kernel, kernel, started.empty() ? begin(reduction, variant) : std::move(started.mapped()));
+    made->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials;
+    if (variant.walk != assemble::Walk::Nothing) {
+      findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
+    }
+    makeRoom(reductions_, [&](const ReduceKey& other) { return other.first == &reduction; });
+    return *reductions_.insert_or_assign(key, Kept<ReduceProgram>{std::move(made), ++clock_})
+                .first->second.program;
+  }
+  found->second.used = ++clock_;
+  return *found->second.program;
+}
+
+gl::IntUniform& ReduceProgram::uniform(const assemble::UniformValue& value) {
+  const auto found = std::find_if(uniforms.begin(), uniforms.end(),
+                                  [&](const auto& known) { return known.first == value.name; });
+  if (found != uniforms.end()) {
+    return found->second;
+  }
+  const std::string name(value.name);
+  return uniforms.emplace_back(name, gl::IntUniform(kernel.program.location(name), value.isVector)).second;
+}
+
+void ProgramCache::clear() {
+  startedKernels_.clear();
+  startedReductions_.clear();
+  kernels_.clear();
+  reductions_.clear();
+}
+
+void ProgramCache::forget() noexcept {
+  for (auto& [key, begun] : startedKernels_) {
+    begun.forget();
+  }
+  for (auto& [key, begun] : startedReductions_) {
+    begun.forget();
+  }
+  for (auto& [key, kept] : kernels_) {
+    kept.program->program.forget();
+  }
+  for (auto& [key, kept] : reductions_) {
+    kept.program->kernel.program.forget();
+  }
+}
+
+}  // namespace sk

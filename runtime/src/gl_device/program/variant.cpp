@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+//
+// The choices of a variant, in one place for both of its forms.
+#include "gl_device/program/variant.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "call/iterator.hpp"
+#include "call/resolved_call.hpp"
+#include "gl_device/gl_stream.hpp"
+#include "gl_device/memory/layout.hpp"
+
+namespace sk {
+
+namespace {
+
+using assemble::Addressing;
+using assemble::isNeeded;
+using assemble::RegionLayout;
+using assemble::StreamAccess;
+using assemble::Task;
+using assemble::Work;
+using program::Fit;
+using program::Parameter;
+using program::Role;
+
+/// Whether a program depends on where the elements of a parameter lie, beside the domain's.
+bool hasAccess(const program::Kernel& kernel, std::size_t i, const Task& task) {
+  const Role role = kernel.parameters[i].role;
+  return role == Role::Input || role == Role::Gather ||
+         (role == Role::Scatter && task.work == Work::List && task.appendOutput == i);
+}
+
+assemble::Domain domainOf(const RegionLayout& domain, const Task& task) {
+  return task.work == Work::List ? assemble::Domain::Entry : assemble::domainOf(domain);
+}
+
+/// Whether one step brings a neighbour's index back inside the gather, wherever the domain's index is.
+bool isNearby(const Parameter& gather, const RegionLayout& regionLayout, const RegionLayout& domain) {
+  if (!gather.usesNear || gather.reach < 0) {
+    return false;
+  }
+  for (std::size_t d = 0; d < gather.rank; ++d) {
+    if (gather.reach >= regionLayout.extent[d] || domain.extent[d] > regionLayout.extent[d]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Whether the sampler's filter reads what sample() means: the whole of a texture, at its edges too.
+bool isFiltered(const Parameter& gather, const RegionLayout& regionLayout, bool filtersFloats) {
+  const bool isFloat = gather.element->fields.front().scalar == program::Scalar::Float;
+  return assemble::mayFilter(gather) && !regionLayout.linear && !regionLayout.packed && !regionLayout.view &&
+         (!isFloat || filtersFloats);
+}
+
+StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, const RegionLayout& domain,
+                          const Task& task, bool filtersFloats) {
+  StreamAccess access{.storage = operand.storage};
+  const RegionLayout& regionLayout = operand.regionLayout;
+  const bool isAligned = task.work != Work::List && haveSameTexels(regionLayout, domain);
+  if (parameter.role == Role::Input && isAligned) {
+    return access;
+  }
+  access.addressing = addressingOf(regionLayout);
+  access.packed = regionLayout.packed;
+  access.fit = operand.fit;
+  access.view = access.fit != Fit::Same || regionLayout.origin != assemble::Index4{};
+  access.nearby = parameter.role == Role::Gather && isNearby(parameter, regionLayout, domain);
+  access.filtered = parameter.role == Role::Gather && operand.storage < Storage::Extended &&
+                    isFiltered(parameter, regionLayout, filtersFloats);
+  return access;
+}
+
+bool isFlat(const RegionLayout& domain) { return assemble::elements(domain.extent) == domain.extent[0]; }
+
+/// In a domain of one dimension, or one that might be, the index along it is the element's number.
+StreamAccess chooseIteration(const Parameter& iterator, const Operand& operand, const RegionLayout& domain) {
+  const bool isScalar = iterator.element->fields[0].width == 1;
+  const bool counts = countsElements(iterator, operand.rank) && !(isScalar && isFlat(domain));
+  return {.addressing = counts ? Addressing::Linear : Addressing::Aligned};
+}
+
+assemble::SpecValues specsOf(const program::Kernel& kernel, std::span<const Operand> operands) {
+  assemble::SpecValues specs{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    if (kernel.parameters[i].role == Role::Spec) {
+      specs[count++] = specBits(kernel.parameters[i], operands[i].value);
+    }
+  }
+  return specs;
+}
+
+bool isDomainView(const RegionLayout& domain) {
+  return !domain.linear && domain.origin != assemble::Index4{};
+}
+
+/// A fitted input is taken as a view, and no input is nearby, so that two bits tell all choices apart.
+std::uint64_t choiceBits(const StreamAccess& access) {
+  switch (access.fit) {
+    case Fit::Same: break;
+    case Fit::Stretched: return 2;
+    case Fit::Strided: return 3;
+  }
+  return std::uint64_t{access.view} | std::uint64_t{access.nearby} << 1;
+}
+
+/// Whether a kernel with loops need not look for fragments outside. A list's passes draw other texels than its domain's.
+bool isEven(const program::Kernel& kernel, const RegionLayout& domain, const Task& task) {
+  return kernel.usesLoops && task.work != Work::List && assemble::drawsWholeQuads(domain);
+}
+
+/// Packs small numbers into the words of a key.
+class KeyBits {
+ public:
+  explicit KeyBits(ProgramKey& key) : key_(key) {}
+
+  void add(std::uint64_t value, unsigned bits) {
+    word(used_ / 64) |= value << used_ % 64;
+    used_ += bits;
+  }
+
+ private:
+  std::uint64_t& word(std::size_t number) {
+    if (number < key_.words.size()) return key_.words[number];
+    number -= key_.words.size();
+    if (number == key_.more.size()) key_.more.push_back(0);
+    return key_.more[number];
+  }
+
+  ProgramKey& key_;
+  std::size_t used_ = 0;
+};
+
+}  // namespace
+
+std::size_t ProgramKeyHash::operator()(const ProgramKey& key) const {
+  std::uint64_t hash = reinterpret_cast<std::uintptr_t>(key.kernel);
+  const auto add = [&](std::uint64_t word, std::size_t place) {
+    if (word == 0) return;  // most are
+    hash = (hash ^ (word + place)) * 0x9E3779B97F4A7C15u;
+    hash ^= hash >> 29;
+  };
+  for (std::size_t i = 0; i < key.words.size(); ++i) add(key.words[i], i);
+  for (std::size_t i = 0; i < key.more.size(); ++i) add(key.more[i], key.words.size() + i);
+  for (std::size_t i = 0; i < key.specs.size(); ++i) add(key.specs[i], i);
+  return hash * 0x9E3779B97F4A7C15u >> 32;
+}
+
+Addressing addressingOf(const RegionLayout& regionLayout) {
+  if (!regionLayout.linear) {
+    return Addressing::Plane;
+  }
+  return regionLayout.layered ? Addressing::Layered : Addressing::Linear;
+}
+
+Operand regionOperand(const Argument& argument, const Shape& domain) {
+  GlStream& stream = glStream(argument.region);
+  Operand operand{.regionLayout = regionLayoutOf(argument.region, stream.layout), .planes = stream.planes};
+  operand.storage = stream.storage;
+  if (argument.fit == Fit::Same) return operand;
+  const assemble::Index4 whole = xFirst(domain);
+  for (std::size_t d = 0; d < whole.size(); ++d) {
+    switch (argument.fit) {
+      case Fit::Same: break;
+      case Fit::Stretched:
+        operand.fit = Fit::Stretched;
+        operand.ratio[d] = whole[d] / operand.regionLayout.extent[d];
+        break;
+      case Fit::Strided:
+        operand.fit = Fit::Strided;
+        operand.ratio[d] = operand.regionLayout.extent[d] / whole[d];
+        break;
+    }
+  }
+  return operand;
+}
+
+Operand iteration(const Parameter& iterator, const void* ends, const Shape& domain) {
+  RegionLayout regionLayout;
+  regionLayout.extent = xFirst(domain);
+  regionLayout.stride = assemble::stridesOf(regionLayout.extent);
+  return {.value = ends,
+          .regionLayout = regionLayout,
+          .step = stepOf(iterator, ends, domain),
+          .rank = domain.rank()};
+}
+
+assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
+                                const RegionLayout& domain, const Task& task, bool filtersFloats) {
+  assemble::Variant variant;
+  variant.task = task;
+  variant.domain = domainOf(domain, task);
+  variant.domainView = isDomainView(domain);
+  variant.domainPacked = domain.packed;
+  variant.domainEven = isEven(kernel, domain, task);
+  variant.domainLayered = domain.layered;
+  variant.domainRank = assemble::decodedRank(domain);
+  variant.specs = specsOf(kernel, operands);
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const Parameter& parameter = kernel.parameters[i];
+    StreamAccess access;
+    if (parameter.role == Role::Iterator) {
+      access = chooseIteration(parameter, operands[i], domain);
+    } else if (hasAccess(kernel, i, task) && isNeeded(parameter, variant.specs)) {
+      access = chooseAccess(parameter, operands[i], domain, task, filtersFloats);
+    } else if (parameter.role == Role::Output && isNeeded(parameter, variant.specs)) {
+      access.storage = operands[i].storage;
+    }
+    variant.access.push_back(access);
+  }
+  return variant;
+}
+
+// Each entry is 4 bits, so that none is divided between words.
+ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
+                      const RegionLayout& domain, const Task& task, bool filtersFloats) {
+  ProgramKey key{&kernel, {}, {}, specsOf(kernel, operands)};
+  KeyBits bits(key);
+  bits.add(static_cast<std::uint64_t>(domainOf(domain, task)) | std::uint64_t{domain.layered} << 2 |
+               std::uint64_t{isDomainView(domain)} << 3,
+           4);
+  bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{domain.packed} << 2 |
+               std::uint64_t{task.treeLayered} << 3,
+           4);
+  bits.add(task.appendOutput & 15u, 4);
+  bits.add(task.appendOutput >> 4, 4);
+  const bool hasStorages = std::ranges::any_of(operands, [](const Operand& operand) {
+    return operand.storage != Storage::Single || operand.regionLayout.packed;
+  });
+  bits.add(static_cast<std::uint64_t>(assemble::decodedRank(domain)) | std::uint64_t{hasStorages} << 3, 4);
+  if (kernel.usesLoops) {
+    bits.add(isEven(kernel, domain, task), 4);
+  }
+  bool hasIterator = false;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    const Parameter& parameter = kernel.parameters[i];
+    if (parameter.role == Role::Iterator && !std::exchange(hasIterator, true)) {
+      // both that chooseIteration() asks of the domain, for all iterators
+      bits.add(std::uint64_t{operands[i].rank == 1} | std::uint64_t{isFlat(domain)} << 1, 4);
+    }
+    if (hasAccess(kernel, i, task) && isNeeded(parameter, key.specs)) {
+      const StreamAccess access = chooseAccess(parameter, operands[i], domain, task, filtersFloats);
+      // what is filtered lies in a plane and is no view; no gather is aligned
+      const Addressing addressing = access.filtered ? Addressing::Aligned : access.addressing;
+      bits.add(static_cast<std::uint64_t>(addressing) | choiceBits(access) << 2, 4);
+    }
+    if (hasStorages && parameter.role != Role::Uniform && parameter.role != Role::Spec) {
+      bits.add(static_cast<std::uint64_t>(operands[i].storage) |
+                   std::uint64_t{operands[i].regionLayout.packed} << 3,
+               4);
+    }
+  }
+  return key;
+}
+
+}  // namespace sk

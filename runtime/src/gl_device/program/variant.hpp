@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+//
+// Which variant of a kernel a call needs: from where its streams lie, to the assembler's choices and
+// to a key that is quick to look up.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "assemble/assemble.hpp"
+#include "assemble/region_layout.hpp"
+#include "call/iterator.hpp"
+#include "gl_device/memory/render_target.hpp"
+#include "sk/call.hpp"
+#include "sk/program.hpp"
+
+namespace sk {
+
+/// One argument of a pass. Uniform and Spec parameters have a value; iterators their first value, the step
+/// and the domain as region layout; all others a region layout and planes.
+struct Operand {
+  const void* value = nullptr;
+  assemble::RegionLayout regionLayout = {};
+  std::span<RenderTarget> planes = {};
+  IteratorStep step = {};
+  int rank = 0;                      ///< iterators: of the domain's shape
+  program::Fit fit = program::Fit::Same;      ///< inputs
+  assemble::Index4 ratio = {1, 1, 1, 1};        ///< fitted inputs: the stretch or stride
+  Storage storage = Storage::Single;
+};
+
+/// A program's identity: the address of its descriptor and the packed choices of its variant.
+struct ProgramKey {
+  const program::Kernel* kernel = nullptr;
+  std::array<std::uint64_t, 8> words{};
+  std::vector<std::uint64_t> more{};  ///< where these are too few: kernels may have any number of streams
+  assemble::SpecValues specs{};
+
+  bool operator==(const ProgramKey&) const = default;
+};
+
+struct ProgramKeyHash {
+  std::size_t operator()(const ProgramKey& key) const;
+};
+
+/// How an element is found in the textures of a region that lies so, by its index.
+assemble::Addressing addressingOf(const assemble::RegionLayout& regionLayout);
+
+/// The operand of a region that is given as `argument` of a call over a domain of this shape.
+Operand regionOperand(const Argument& argument, const Shape& domain);
+
+/// The operand of an iterator with these ends over a domain of this shape.
+Operand iteration(const program::Parameter& iterator, const void* ends, const Shape& domain);
+
+/// The variant of `kernel` for operands, one a parameter, over `domain`; `variant` and `key` hold the
+/// same choices. `filtersFloats`: what the device can.
+assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
+                                const assemble::RegionLayout& domain, const assemble::Task& task = {},
+                                bool filtersFloats = false);
+ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
+                      const assemble::RegionLayout& domain, const assemble::Task& task = {},
+                      bool filtersFloats = false);
+
+}  // namespace sk

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "gl_device/program/variant.hpp"
+
+#include <set>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "gl_device/memory/layout.hpp"
+#include "sk/types.hpp"
+
+using namespace sk;
+using assemble::Addressing;
+using assemble::Domain;
+using assemble::RegionLayout;
+using program::Role;
+
+namespace {
+
+const program::Parameter parameters[] = {
+    {.name = "a", .symbol = "a", .role = Role::Uniform, .element = &ElementTraits<float>::element()},
+    {.name = "x", .symbol = "x", .role = Role::Input, .element = &ElementTraits<float>::element()},
+    {.name = "g",
+     .symbol = "g",
+     .role = Role::Gather,
+     .element = &ElementTraits<float>::element(),
+     .rank = 2,
+     .usesNear = true,
+     .reach = 2},
+    {.name = "r", .symbol = "r", .role = Role::Output, .element = &ElementTraits<float>::element()}};
+
+program::Kernel makeKernel() {
+  program::Kernel kernel;
+  kernel.name = "k";
+  kernel.parameters = parameters;
+  return kernel;
+}
+const program::Kernel kernel = makeKernel();
+
+RegionLayout region(const Shape& stream, const Index& begin, const Shape& shape) {
+  return regionLayoutOf({nullptr, begin, shape}, layoutOf(stream, {64, 256}));
+}
+RegionLayout whole(const Shape& stream) { return region(stream, Index::origin(stream.rank()), stream); }
+
+struct Chosen {
+  assemble::Variant variant;
+  ProgramKey key;
+};
+Chosen choose(const RegionLayout& x, const RegionLayout& g, const RegionLayout& domain) {
+  const float a = 0;
+  const std::vector<Operand> operands{
+      {&a, {}, {}}, {nullptr, x, {}}, {nullptr, g, {}}, {nullptr, domain, {}}};
+  return {chooseVariant(kernel, operands, domain), variantKey(kernel, operands, domain)};
+}
+
+}  // namespace
+
+TEST_CASE("whole planes of one shape are aligned") {
+  const auto chosen = choose(whole({8, 9}), whole({8, 9}), whole({8, 9})).variant;
+  CHECK(chosen.domain == Domain::Plane);
+  CHECK_FALSE(chosen.domainView);
+  CHECK(chosen.access[1].addressing == Addressing::Aligned);
+  CHECK(chosen.access[2].addressing == Addressing::Plane);
+  CHECK_FALSE(chosen.access[2].view);
+  CHECK(chosen.access[2].nearby);
+}
+
+TEST_CASE("views, repeats and linearised streams are told apart, each with a key of its own") {
+  const Shape plane(8, 9);
+  const Shape line(8, 90);
+  const std::vector<Chosen> all{
+      choose(whole(plane), whole(plane), whole(plane)),
+      choose(region(plane, {1, 1}, {4, 4}), whole(plane), region(plane, {2, 2}, {4, 4})),
+      choose(region(plane, {1, 1}, {4, 4}), whole(plane), region(plane, {1, 1}, {4, 4})),
+      choose(whole({8, 1}), whole(plane), whole(plane)),
+      choose(whole(line), whole(plane), whole(line)),
+      choose(whole(line), whole(line), whole(line)),
+      choose(region(line, {0, 0}, {8, 9}), whole(plane), whole(plane)),
+      choose(region(line, {1, 1}, {2, 9}), region(line, {1, 1}, {2, 9}), region(plane, {0, 0}, {2, 9})),
+      choose(region(line, {1, 1}, {2, 9}), whole(plane), region(line, {1, 1}, {2, 9})),
+      choose(whole(plane), whole({2, 9}), whole(plane)),
+  };
+  CHECK(all[1].variant.domainView);
+  CHECK(all[1].variant.access[1].addressing == Addressing::Plane);
+  CHECK(all[1].variant.access[1].view);
+  CHECK(all[2].variant.access[1].addressing == Addressing::Aligned);
+  CHECK(all[3].variant.access[1].addressing == Addressing::Plane);
+  CHECK(all[4].variant.domain == Domain::Linear);
+  CHECK(all[4].variant.access[1].addressing == Addressing::Aligned);
+  CHECK(all[5].variant.access[2].addressing == Addressing::Linear);
+  CHECK(all[8].variant.domain == Domain::LinearBox);
+  CHECK_FALSE(all[9].variant.access[2].nearby);
+  for (const Chosen& a : all) {
+    for (const Chosen& b : all) {
+      CHECK((a.variant == b.variant) == (a.key == b.key));
+    }
+  }
+}
+
+TEST_CASE("kernels of many streams have keys of their own for each way that these lie") {
+  // Operands that are packed take two entries a stream, and 200 of them more than the words inside a key.
+  constexpr std::size_t count = 200;
+  std::vector<program::Parameter> many(count, parameters[1]);
+  many.push_back(parameters[3]);
+  program::Kernel wide = makeKernel();
+  wide.parameters = many;
+  RegionLayout packed = layoutOf({8, 16}, {64, 256}, true).whole;
+  std::vector<Operand> operands(count + 1, Operand{nullptr, packed, {}});
+  const auto keyOf = [&] { return variantKey(wide, operands, packed); };
+  const ProgramKey same = keyOf();
+  CHECK(keyOf() == same);
+  std::set<std::size_t> hashes{ProgramKeyHash{}(same)};
+  for (std::size_t changed : {std::size_t{0}, count / 2, count - 1}) {
+    std::vector<Operand> others = operands;
+    others[changed].regionLayout = whole({8, 16});
+    const ProgramKey other = variantKey(wide, others, packed);
+    CHECK_FALSE(other == same);
+    CHECK(other.specs == same.specs);
+    CHECK(hashes.insert(ProgramKeyHash{}(other)).second);
+  }
+}
+
+TEST_CASE("a gather is near only where one step always brings its index back") {
+  CHECK(choose(whole({8, 9}), whole({8, 9}), whole({8, 9})).variant.access[2].nearby);
+  CHECK(choose(whole({3, 3}), whole({3, 3}), whole({3, 3})).variant.access[2].nearby);
+  CHECK_FALSE(choose(whole({2, 9}), whole({2, 9}), whole({2, 9})).variant.access[2].nearby);
+  CHECK_FALSE(choose(whole({8, 9}), whole({8, 8}), whole({8, 9})).variant.access[2].nearby);
+}
+
+TEST_CASE("the device's filter reads whole textures of floats that it can filter, at edges that it knows") {
+  program::Parameter gather = parameters[2];
+  gather.usesSample = gather.filter = true;
+  program::Kernel sampling = makeKernel();
+  const auto isFiltered = [&](const RegionLayout& regionLayout, bool filtersFloats) {
+    const program::Parameter list[] = {gather, parameters[3]};
+    sampling.parameters = list;
+    const RegionLayout domain = whole({8, 9});
+    const Operand operands[] = {{nullptr, regionLayout, {}}, {nullptr, domain, {}}};
+    const bool is = chooseVariant(sampling, operands, domain, {}, filtersFloats).access[0].filtered;
+    const bool hasKeyOfItsOwn = variantKey(sampling, operands, domain, {}, filtersFloats) !=
+                                variantKey(sampling, operands, domain, {}, false);
+    CHECK((is && gather.element == &ElementTraits<float>::element()) == hasKeyOfItsOwn);
+    return is;
+  };
+  const RegionLayout plane = whole({8, 9});
+  CHECK(isFiltered(plane, true));
+  CHECK_FALSE(isFiltered(plane, false));
+  CHECK_FALSE(isFiltered(whole({8, 90}), true));
+  CHECK_FALSE(isFiltered(region({8, 9}, {0, 0}, {4, 4}), true));
+  gather.boundary = program::Boundary::Border;
+  CHECK_FALSE(isFiltered(plane, true));
+  gather.boundary = program::Boundary::Mirror;
+  CHECK(isFiltered(plane, true));
+  gather.element = &ElementTraits<half>::element();
+  CHECK(isFiltered(plane, false));
+  gather.element = &ElementTraits<unorm8>::element();
+  CHECK_FALSE(isFiltered(plane, true));
+  gather.element = &ElementTraits<float>::element();
+  gather.filter = false;
+  CHECK_FALSE(isFiltered(plane, true));
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "gl_device/transfer/pending_read.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <utility>
+
+#include "gl_device/gl_stream.hpp"
+#include "sk/error.hpp"
+#include "support/convert_elements.hpp"
+
+namespace sk {
+
+namespace {
+
+std::unique_ptr<assemble::HeldElement> heldOf(const StreamState& stream) {
+  if (stream.storage == Storage::Single) return nullptr;
+  return std::make_unique<assemble::HeldElement>(*stream.element, stream.storage);
+}
+
+}  // namespace
+
+PendingRead::PendingRead(GlDevice& device, GlStream& stream, const StreamRegion& region)
+    : all_(device.pendingReads),
+      device_(&device),
+      element_(*stream.element),
+      held_(heldOf(stream)),
+      count_(static_cast<std::size_t>(region.shape.size())) {
+  {
+    const std::lock_guard lock(all_->mutex);
+    all_->list.push_back(this);
+  }
+  try {
+    const GlStream::Travelling what = stream.travelling(region);
+    const program::Element& own = held_ ? held_->element : element_;  // the stream's may end before this does
+    read_.emplace(device).add(what.element == &stream.held() ? own : *what.element, stream.planes,
+                              what.place);
+    read_->begin();
+  } catch (...) {
+    const std::lock_guard lock(all_->mutex);
+    leave();
+    throw;
+  }
+}
+
+// On any thread: where the device ends at the same time, it is either told before or never knew.
+PendingRead::~PendingRead() {
+  const std::lock_guard lock(all_->mutex);
+  if (device_ != nullptr) leave();
+}
+
+bool PendingRead::isReady() {
+  if (device_ == nullptr) return true;
+  const DeviceScope scope(*device_);
+  return read_->isReady();
+}
+
+void PendingRead::wait() {
+  if (device_ == nullptr) return;
+  const TraceScope traced(device_->trace.get(), "wait", "readAsync: wait");
+  const DeviceScope scope(*device_);
+  read_->wait();
+}
+
+void PendingRead::take(std::byte* elements) {
+  if (!failure_.empty()) throw Error(failure_, Error::Kind::Lost);
+  if (device_ == nullptr) {
+    std::memcpy(elements, landed_.data(), landed_.size());
+    return;
+  }
+  const TraceScope traced(device_->trace.get(), "transfer", "readAsync: get");
+  const DeviceScope scope(*device_);
+  copy(elements);
+  device_->throwPendingError();
+}
+
+void PendingRead::copy(std::byte* elements) {
+  std::vector<std::byte> texels;
+  if (held_) texels.resize(count_ * held_->element.size);
+  read_->take(0, held_ ? texels.data() : elements);
+  if (held_) convertElements(held_->element, texels.data(), element_, elements, count_);
+}
+
+void PendingRead::land() noexcept {
+  try {
+    const DeviceScope scope(*device_);
+    landed_.resize(count_ * element_.size);
+    copy(landed_.data());
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+  }
+  leave();
+}
+
+void PendingRead::abandon() noexcept {
+  read_->forget();
+  try {
+    failure_ =
+        "readAsync: the device has ended on a thread that could not use it, before the elements were there; "
+        "get() them before the device ends";
+  } catch (const std::bad_alloc&) {
+    landed_.clear();
+  }
+  leave();
+}
+
+// Touches no GL: a future may be destroyed where the context is not current. The lock is held.
+void PendingRead::leave() noexcept {
+  std::erase(all_->list, this);
+  read_.reset();
+  device_ = nullptr;
+}
+
+}  // namespace sk

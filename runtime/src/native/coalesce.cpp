@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "native/coalesce.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace sk {
+
+namespace {
+
+using native::Extents;
+using native::Operand;
+using program::Parameter;
+using program::Role;
+
+/// Whether nothing in the kernel depends on the dimensions of its domain.
+bool knowsNoPlace(const program::Kernel& kernel, std::span<const Operand> operands) {
+  if (kernel.usesIndex || kernel.usesExtent) return false;
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    const Parameter& parameter = kernel.parameters[i];
+    const bool isOfDomain = parameter.role == Role::Input || parameter.role == Role::Output;
+    if (parameter.usesNear || parameter.usesIndex || (parameter.usesExtent && isOfDomain)) return false;
+    if (parameter.role == Role::Iterator && !operands[i].countsElements) return false;
+  }
+  return true;
+}
+
+void drop(Extents& extents, std::size_t dimension, std::int64_t last) {
+  std::move(extents.begin() + static_cast<std::ptrdiff_t>(dimension) + 1, extents.end(),
+            extents.begin() + static_cast<std::ptrdiff_t>(dimension));
+  extents.back() = last;
+}
+void drop(Operand& operand, std::size_t dimension) {
+  drop(operand.stride, dimension, 0);
+  drop(operand.extent, dimension, 1);
+  drop(operand.multiply, dimension, 1);
+  drop(operand.divide, dimension, 1);
+}
+
+class Collapse {
+ public:
+  Collapse(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block)
+      : kernel_(kernel), operands_(operands), domain_(domain), block_(block) {}
+
+  void run() {
+    while (domain_[1] * domain_[2] * domain_[3] != 1) {
+      if (domain_[1] == 1) {
+        dropAll(1);
+      } else if (domain_[0] == 1 && outputsAreDense()) {
+        dropAll(0);
+      } else if (areRowsInOne()) {
+        mergeRows();
+      } else {
+        return;
+      }
+    }
+  }
+
+ private:
+  bool isElement(std::size_t i) const {
+    const Role role = kernel_.parameters[i].role;
+    return (role == Role::Input || role == Role::Output) && !operands_[i].components.empty();
+  }
+  bool isResult(std::size_t i) const { return kernel_.parameters[i].role == Role::Accumulator; }
+
+  /// Of a dimension of one element.
+  void dropAll(std::size_t dimension) {
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      if (isElement(i) || isResult(i)) drop(operands_[i], dimension);
+    }
+    drop(domain_, dimension, 1);
+    drop(block_, dimension, 1);
+  }
+
+  /// What is stored lies element by element along x.
+  bool outputsAreDense() const {
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      if (isElement(i) && kernel_.parameters[i].role == Role::Output && operands_[i].stride[1] != 1)
+        return false;
+    }
+    return true;
+  }
+
+  /// Whether each row follows the one before it, in every stream, and a block has whole rows.
+  bool areRowsInOne() const {
+    if (block_[0] != domain_[0]) return false;
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      if (!isElement(i)) continue;
+      const Operand& o = operands_[i];
+      if (o.divide[0] != 1 || o.divide[1] != 1 || o.multiply[0] != o.multiply[1] || o.multiply[0] > 1)
+        return false;
+      if (o.multiply[0] == 1 && o.stride[1] != o.stride[0] * domain_[0]) return false;
+    }
+    return true;
+  }
+  void mergeRows() {
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      if (isElement(i)) {
+        const std::int64_t extent = operands_[i].extent[0] * operands_[i].extent[1];
+        drop(operands_[i], 1);
+        operands_[i].extent[0] = extent;
+      } else if (isResult(i)) {
+        drop(operands_[i], 0);   // there is one block along x
+      }
+    }
+    const std::int64_t width = domain_[0];
+    drop(domain_, 0, 1);
+    drop(block_, 0, 1);
+    domain_[0] *= width;
+    block_[0] *= width;
+  }
+
+  const program::Kernel& kernel_;
+  std::span<Operand> operands_;
+  Extents& domain_;
+  Extents& block_;
+};
+
+}  // namespace
+
+void coalesce(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block) {
+  constexpr std::int64_t longest = std::int64_t{1} << 31;   // indices are ints
+  const bool isCounted = domain[0] * domain[1] * domain[2] * domain[3] < longest;
+  if (isCounted && knowsNoPlace(kernel, operands)) Collapse(kernel, operands, domain, block).run();
+}
+
+}  // namespace sk

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: a trial of one device decides for no other that would have come out otherwise.
+#include "probe/target_choice.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace sk;
+
+TEST_CASE("trials are kept for a driver, its limits and, of software, the processor") {
+  const DeviceLimits large{.textureSize = 16384, .textureLayers = 2048};
+  DeviceLimits small = large, few = large;
+  small.textureSize = 64;
+  few.textureLayers = 16;
+  const std::string gpu = trialKey("a GPU", large, false);
+  CHECK(trialKey("a GPU", large, false) == gpu);
+  CHECK(trialKey("another", large, false) != gpu);
+  CHECK(trialKey("a GPU", small, false) != gpu);
+  CHECK(trialKey("a GPU", few, false) != gpu);
+  const std::string software = trialKey("a renderer", large, true);
+  CHECK(software.find("threads") != std::string::npos);
+  CHECK(software != trialKey("a renderer", large, false));
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "support/convert_elements.hpp"
+
+#include <cstring>
+#include <vector>
+
+#include "sk/narrow.hpp"
+#include "sk/scalar_bytes.hpp"
+
+namespace sk {
+
+namespace {
+
+using program::Element;
+using program::Scalar;
+
+struct Component {
+  std::size_t offset;
+  Scalar scalar;
+};
+
+std::vector<Component> componentsOf(const Element& element) {
+  std::vector<Component> components;
+  for (const program::Field& field : element.fields) {
+    for (std::size_t c = 0; c < field.width; ++c) {
+      components.push_back({field.offset + c * program::hostBytes(field.scalar), field.scalar});
+    }
+  }
+  return components;
+}
+
+template <class T>
+T load(const std::byte* place) {
+  T value;
+  std::memcpy(&value, place, sizeof value);
+  return value;
+}
+
+template <class T>
+void keep(std::byte* place, T value) {
+  std::memcpy(place, &value, sizeof value);
+}
+
+double loadReal(Scalar scalar, const std::byte* place) {
+  if (scalar == Scalar::Double) return load<double>(place);
+  return scalar == Scalar::Half ? float{load<half>(place)} : load<float>(place);
+}
+
+/// A float on the way to a half: rounded to odd, so that the second rounding is as if it were the only one.
+float toOdd(double value) {
+  const auto nearest = static_cast<float>(value);
+  if (static_cast<double>(nearest) == value || value != value) return nearest;
+  auto bits = load<std::uint32_t>(reinterpret_cast<const std::byte*>(&nearest));
+  const bool isBeyond = (nearest > value) == (value > 0);   // in magnitude
+  if (isBeyond) --bits;
+  bits |= 1u;
+  float odd;
+  std::memcpy(&odd, &bits, sizeof odd);
+  return odd;
+}
+
+void keepReal(Scalar scalar, std::byte* place, double value) {
+  if (scalar == Scalar::Double) return keep(place, value);
+  if (scalar == Scalar::Half) return keep(place, half(toOdd(value)));
+  keep(place, static_cast<float>(value));
+}
+
+}  // namespace
+
+void convertElements(const Element& from, const std::byte* source, const Element& to, std::byte* target,
+                     std::size_t count) {
+  const std::vector<Component> sources = componentsOf(from);
+  const std::vector<Component> targets = componentsOf(to);
+  for (std::size_t i = 0; i < count; ++i, source += from.size, target += to.size) {
+    for (std::size_t c = 0; c < sources.size(); ++c) {
+      const std::byte* given = source + sources[c].offset;
+      std::byte* taken = target + targets[c].offset;
+      if (sources[c].scalar == targets[c].scalar) {
+        std::memcpy(taken, given, program::hostBytes(sources[c].scalar));
+      } else {
+        keepReal(targets[c].scalar, taken, loadReal(sources[c].scalar, given));
+      }
+    }
+  }
+}
+
+void readComponents(const Element& element, const std::byte* elements, std::size_t count, double* values) {
+  const std::vector<Component> components = componentsOf(element);
+  for (std::size_t i = 0; i < count; ++i, elements += element.size) {
+    for (const Component& component : components)
+      *values++ = loadReal(component.scalar, elements + component.offset);
+  }
+}
+
+void writeComponents(const Element& element, std::byte* elements, std::size_t count, const double* values) {
+  const std::vector<Component> components = componentsOf(element);
+  for (std::size_t i = 0; i < count; ++i, elements += element.size) {
+    for (const Component& component : components)
+      keepReal(component.scalar, elements + component.offset, *values++);
+  }
+}
+
+}  // namespace sk
