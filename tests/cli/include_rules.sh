@@ -28,7 +28,7 @@ runtime/src/device    sk trace device call/resolved_call.hpp native/native_devic
 runtime/src/call      sk support device call assemble
 runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp
 runtime/src/native    sk support trace device call native assemble probe/copy_bandwidth.hpp
-runtime/src/probe     sk support trace device gl gl_device probe assemble
+runtime/src/probe     sk support trace device call gl gl_device probe assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
 runtime/src/gl_device sk support trace device call probe gl gl_device assemble native/rest_threads.hpp
 runtime/src/gl_device/memory sk gl gl_device/memory assemble

@@ -19,29 +19,23 @@ using program::Role;
 /// One sum: rounded by the device, or its digits, a stream for each accumulator of its fold.
 struct Sum {
   std::unique_ptr<RoundedSums> rounded;
-  std::vector<detail::StreamOwner> streams;
-  std::vector<Argument> arguments;
+  std::unique_ptr<TemporaryResults> digits;
 };
 
-/// Folds to floats or to digits, one element for each of the results.
-Sum fold(const ExactSum& sum, std::span<const Argument> plain, const Reduction& reduction,
-         const CheckedReduction& checked, const CallOptions& options) {
+/// Folds to floats or to digits, one element for each of the stream results.
+Sum fold(const ExactSum& sum, const ResolvedReduction& call) {
   Sum made;
-  made.rounded = checked.device.sumExactly(reduction, sum, plain, checked.domain, checked.blocks, options);
+  made.rounded = call.device.sumExactly(call, sum);
   if (made.rounded) return made;
+  made.digits = std::make_unique<TemporaryResults>(call);
   std::vector<Argument> all;
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    if (reduction.fold.parameters[i].role != Role::Accumulator) all.push_back(plain[i]);
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    if (call.reduction.fold.parameters[i].role != Role::Accumulator) all.push_back(call.arguments[i]);
   }
   for (const Parameter& parameter : sum.reduction.fold.parameters) {
-    if (parameter.role != Role::Accumulator) continue;
-    const Shape& shape = plain[sum.accumulator].region.shape;
-    made.streams.emplace_back(
-        checked.device.createStream(*parameter.element, shape, Storage::Single).release());
-    made.arguments.push_back({.region = detail::wholeRegion(made.streams.back().get())});
+    if (parameter.role == Role::Accumulator) all.push_back(made.digits->add(*parameter.element));
   }
-  all.insert(all.end(), made.arguments.begin(), made.arguments.end());
-  checked.device.reduce(sum.reduction, all, checked.domain, checked.blocks, options);
+  call.device.reduce(call.of(sum.reduction, all, {}));
   return made;
 }
 
@@ -55,51 +49,40 @@ bool sumsEverything(const Reduction& reduction) {
   return scalars == reduction.exact.size();
 }
 
-/// One block that is all of the domain.
-Shape oneBlock(Shape domain) {
-  for (int d = 0; d < domain.rank(); ++d) domain = domain.with(d, 1);
-  return domain;
+void reduceToStreams(const ResolvedReduction& call) {
+  const Reduction& reduction = call.reduction;
+  std::vector<Sum> sums;   // all of them first: a result may be an input
+  for (const ExactSum& sum : reduction.exact) sums.push_back(fold(sum, call));
+  if (!sumsEverything(reduction)) call.device.reduce(call);
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    const ExactSum& sum = reduction.exact[k];
+    const Argument result = {.region = call.arguments[sum.accumulator].region};
+    if (sums[k].rounded) {
+      sums[k].rounded->store(result.region, sum.offset);
+      continue;
+    }
+    std::vector<Argument> all = {result};
+    all.insert(all.end(), sums[k].digits->arguments.begin(), sums[k].digits->arguments.end());
+    all.push_back(result);
+    run(sum.finish, all, {.precision = Precision::Single});
+  }
 }
 
 }  // namespace
 
-void reduceExactly(const Reduction& reduction, std::span<const Argument> arguments,
-                   const CheckedReduction& checked, const CallOptions& options) {
-  std::vector<Sum> sums;   // all of them first: a result may be an input
-  for (const ExactSum& sum : reduction.exact) {
-    sums.push_back(fold(sum, arguments, reduction, checked, options));
-  }
-  if (!sumsEverything(reduction)) {
-    checked.device.reduce(reduction, arguments, checked.domain, checked.blocks, options);
-  }
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    if (sums[k].rounded) {
-      const ExactSum& sum = reduction.exact[k];
-      sums[k].rounded->store(arguments[sum.accumulator].region, sum.offset);
-      continue;
-    }
-    const Argument result = {.region = arguments[reduction.exact[k].accumulator].region};
-    std::vector<Argument> all = {result};
-    all.insert(all.end(), sums[k].arguments.begin(), sums[k].arguments.end());
-    all.push_back(result);
-    run(reduction.exact[k].finish, all, {.precision = Precision::Single});
-  }
-}
-
-void reduceExactly(const Reduction& reduction, std::span<const Argument> arguments,
-                   const CheckedReduction& checked, std::span<void* const> results,
-                   const CallOptions& options) {
-  std::vector<Argument> all(arguments.begin(), arguments.end());
+void reduceExactly(const ResolvedReduction& call) {
+  if (!call.isToValues()) return reduceToStreams(call);
+  std::vector<Argument> all(call.arguments.begin(), call.arguments.end());
   std::vector<detail::StreamOwner> values;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Parameter& parameter = reduction.fold.parameters[i];
+    const Parameter& parameter = call.reduction.fold.parameters[i];
     if (parameter.role != Role::Accumulator) continue;
-    values.emplace_back(checked.device.createStream(*parameter.element, {1}, Storage::Single).release());
+    values.emplace_back(call.device.createStream(*parameter.element, {1}, Storage::Single).release());
     all[i] = {.region = detail::wholeRegion(values.back().get())};
   }
-  reduceExactly(reduction, all, {checked.device, checked.domain, oneBlock(checked.domain)}, options);
+  reduceToStreams(call.of(call.reduction, all, {}));
   for (std::size_t k = 0; k < values.size(); ++k) {
-    values[k].get()->read(detail::wholeRegion(values[k].get()), static_cast<std::byte*>(results[k]));
+    values[k].get()->read(detail::wholeRegion(values[k].get()), static_cast<std::byte*>(call.values[k]));
   }
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <deque>
 #include <vector>
 
 #include "api/exact_reduction.hpp"
@@ -27,32 +26,33 @@ using program::Reduction;
 using program::Role;
 
 /// The compensated form, where the call takes it; else null. Of no element, the plain form's identity is the result.
-const CompensatedReduction* compensated(const Reduction& reduction, std::span<const Argument> arguments,
-                                        const CheckedReduction& checked, const CallOptions& options) {
+const CompensatedReduction* compensated(const ResolvedReduction& call) {
+  const Reduction& reduction = call.reduction;
+  const Accumulate asked = call.options.accumulate;
   const CompensatedReduction* second = reduction.compensated;
-  if (options.accumulate == Accumulate::Exact && reduction.exact.empty()) {
+  if (asked == Accumulate::Exact && reduction.exact.empty()) {
     fail(reduction.fold, "it has no sum of floats to add exactly; call it without Accumulate::Exact");
   }
-  if (options.accumulate == Accumulate::Compensated && second == nullptr) {
+  if (asked == Accumulate::Compensated && second == nullptr) {
     fail(reduction.fold,
          "it has no sum of floats to compensate, one that elements and partial results are added to and no "
          "more; call it without Accumulate::Compensated");
   }
-  if (options.accumulate == Accumulate::Tree || second == nullptr || checked.domain.size() == 0) {
+  if (asked == Accumulate::Tree || second == nullptr || call.domain.size() == 0) {
     return nullptr;
   }
-  if (!checked.device.arithmetic().exactSums) {
-    if (options.accumulate == Accumulate::Compensated) {
+  if (!call.device.arithmetic().exactSums) {
+    if (asked == Accumulate::Compensated) {
       fail(Error::Kind::Device, reduction.fold,
            "its sums cannot be compensated on '{}', whose compiler simplifies their rounding errors away; "
            "call it without Accumulate::Compensated, or on another device (SK_DEVICE=native)",
-           checked.device.name());
+           call.device.name());
     }
     return nullptr;
   }
-  const auto room = static_cast<std::size_t>(checked.device.limits.textureUnits);
-  const bool fits = planesRead(second->reduction.combine, specsOf(reduction.fold, arguments)) <= room;
-  return fits || options.accumulate == Accumulate::Compensated ? second : nullptr;
+  const auto room = static_cast<std::size_t>(call.device.limits.textureUnits);
+  const bool fits = planesRead(second->reduction.combine, specsOf(reduction.fold, call.arguments)) <= room;
+  return fits || asked == Accumulate::Compensated ? second : nullptr;
 }
 
 /// Adds what floats have lost to them, in memory.
@@ -95,27 +95,22 @@ std::vector<Argument> resultsWithSums(const CompensatedReduction& second,
 }
 
 /// Whether the call takes the exact form. Of no element, the plain form's identity is the result.
-bool isExact(const CheckedReduction& checked, const Reduction& reduction, const CallOptions& options) {
-  return options.accumulate == Accumulate::Exact && checked.domain.size() != 0 &&
-         checked.device.sumsExactly(reduction);
+bool isExact(const ResolvedReduction& call) {
+  return call.options.accumulate == Accumulate::Exact && call.domain.size() != 0 &&
+         call.device.sumsExactly(call.reduction);
 }
 
 /// Whether the plain form in doubles serves for the compensated one: a kernel of floats sees no bits that a stream has beyond them.
-bool isInDoubles(const CompensatedReduction& second, const CheckedReduction& checked,
-                 std::span<const Argument> arguments) {
-  return second.inDoubles && checked.device.sumsInDoubles() &&
-         std::ranges::none_of(arguments, [](const Argument& argument) {
+bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& second) {
+  return second.inDoubles && call.device.sumsInDoubles() &&
+         std::ranges::none_of(call.arguments, [](const Argument& argument) {
            return argument.region.stream != nullptr && argument.region.stream->storage >= Storage::Extended;
          });
 }
 
-CallOptions inDoubles(CallOptions options) {
-  options.accumulate = Accumulate::Extended;
-  return options;
-}
-
 /// With what a file or the declaration chooses; a file's choice for all reduces is one for those that sum floats.
-CallOptions resolved(const CheckedReduction& checked, const Reduction& reduction, const CallOptions& call) {
+CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions& call) {
+  const Reduction& reduction = checked.reduction;
   CallOptions options = checked.device.configuration.resolve(reduction.fold, call);
   if (reduction.compensated == nullptr && reduction.exact.empty()) options.accumulate = call.accumulate;
   checkTables(reduction.fold, options);
@@ -129,137 +124,95 @@ CallOptions resolved(const CheckedReduction& checked, const Reduction& reduction
 }
 
 /// Whether a result stream holds halves or doubles for floats.
-bool isHeldOtherwise(const Reduction& reduction, std::span<const Argument> arguments) {
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (reduction.fold.parameters[i].role == Role::Accumulator &&
-        arguments[i].region.stream->storage != Storage::Single) {
+bool isHeldOtherwise(const ResolvedReduction& call) {
+  if (call.isToValues()) return false;
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    if (call.reduction.fold.parameters[i].role == Role::Accumulator &&
+        call.arguments[i].region.stream->storage != Storage::Single) {
       return true;
     }
   }
   return false;
 }
 
+void reduceResolved(const ResolvedReduction& call);
+
 /// Reduces to streams of floats, and copies these.
-void reduceByFloats(const CheckedReduction& checked, const Reduction& reduction,
-                    std::span<const Argument> arguments, const CallOptions& options) {
-  std::vector<Argument> all(arguments.begin(), arguments.end());
-  std::vector<detail::StreamOwner> floats;
+void reduceByFloats(const ResolvedReduction& call) {
+  TemporaryResults floats(call);
+  std::vector<Argument> all(call.arguments.begin(), call.arguments.end());
+  std::vector<std::size_t> results;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Parameter& parameter = reduction.fold.parameters[i];
+    const Parameter& parameter = call.reduction.fold.parameters[i];
     if (parameter.role != Role::Accumulator) continue;
-    floats.emplace_back(
-        checked.device.createStream(*parameter.element, arguments[i].region.shape, Storage::Single)
-            .release());
-    all[i].region = detail::wholeRegion(floats.back().get());
+    all[i] = floats.add(*parameter.element);
+    results.push_back(i);
   }
-  reduce(reduction, all, options);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Parameter& parameter = reduction.fold.parameters[i];
-    if (parameter.role != Role::Accumulator) continue;
+  reduceResolved(call.of(call.reduction, all, {}));
+  for (const std::size_t i : results) {
     std::vector<std::byte> elements(static_cast<std::size_t>(all[i].region.shape.size()) *
-                                    parameter.element->size);
+                                    call.reduction.fold.parameters[i].element->size);
     all[i].region.stream->read(all[i].region, elements.data());
-    arguments[i].region.stream->write(arguments[i].region, elements.data());
+    call.arguments[i].region.stream->write(call.arguments[i].region, elements.data());
   }
 }
 
-void reduceToValues(const Reduction& reduction, std::span<const Argument> arguments,
-                    std::span<void* const> results, const CallOptions& call) {
-  const CheckedReduction checked = checkReduction(reduction, arguments);
-  const TraceScope traced(checked.device.trace.get(), "call", reduction.fold.name);
-  traced.add("domain", checked.domain);
-  const CallOptions options = resolved(checked, reduction, call);
-  if (takesForm(options)) {
-    reduceInForm(checked, reduction, arguments, results, options);
-    return;
+/// The sums go where the results will be, what they lose beside them; then both are added.
+void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction& second) {
+  TemporaryResults lost(call);
+  std::vector<Argument> all(call.arguments.begin(), call.arguments.end());
+  for (const Parameter& parameter : accumulatorsOfLosses(second)) all.push_back(lost.add(*parameter.element));
+  std::vector<void*> values(call.values.begin(), call.values.end());
+  values.insert(values.end(), lost.values.begin(), lost.values.end());
+  checkReduction(second.reduction, all, values);
+  call.device.reduce(call.of(second.reduction, all, values));
+  for (std::size_t k = 0; k < lost.values.size(); ++k) {
+    const auto& [accumulator, offset] = second.sums[k];
+    auto* const result = static_cast<std::byte*>(call.values[resultOf(call.reduction.fold, accumulator)]);
+    const std::size_t bytes = accumulatorsOfLosses(second)[k].element->size;
+    addFloats(result + offset, lost.values[k], bytes);
   }
-  const CompensatedReduction* second = compensated(reduction, arguments, checked, options);
-  if (isExact(checked, reduction, options)) {
-    reduceExactly(reduction, arguments, checked, results, options);
-    return;
-  }
-  if (second == nullptr) {
-    checked.device.reduce(reduction, arguments, checked.domain, results, options);
-    return;
-  }
-  if (isInDoubles(*second, checked, arguments)) {
-    reduceInForm(checked, reduction, arguments, results, inDoubles(options));
-    return;
-  }
-  std::vector<Argument> all(arguments.begin(), arguments.end());
-  std::vector<void*> places(results.begin(), results.end());
-  std::deque<std::vector<std::byte>> lost;
-  for (const Parameter& parameter : accumulatorsOfLosses(*second)) {
-    all.emplace_back();
-    places.push_back(lost.emplace_back(parameter.element->size).data());
-  }
-  checkReduction(second->reduction, all);
-  checked.device.reduce(second->reduction, all, checked.domain, places, options);
-  for (std::size_t k = 0; k < lost.size(); ++k) {
-    const auto& [accumulator, offset] = second->sums[k];
-    auto* const result = static_cast<std::byte*>(results[resultOf(reduction.fold, accumulator)]);
-    addFloats(result + offset, lost[k].data(), lost[k].size());
-  }
-}
-
-void reduceToStreams(const Reduction& reduction, std::span<const Argument> arguments,
-                     const CallOptions& call) {
-  const CheckedReduction checked = checkReductionToStreams(reduction, arguments);
-  const TraceScope traced(checked.device.trace.get(), "call", reduction.fold.name);
-  traced.add("domain", checked.domain);
-  traced.add("blocks", checked.blocks);
-  const CallOptions options = resolved(checked, reduction, call);
-  if (checked.blocks.size() == 0) {
-    return;
-  }
-  if (isHeldOtherwise(reduction, arguments)) {
-    reduceByFloats(checked, reduction, arguments, options);
-    return;
-  }
-  if (takesForm(options)) {
-    reduceInForm(checked, reduction, arguments, options);
-    return;
-  }
-  const CompensatedReduction* second = compensated(reduction, arguments, checked, options);
-  if (isExact(checked, reduction, options)) {
-    reduceExactly(reduction, arguments, checked, options);
-    return;
-  }
-  if (second == nullptr) {
-    checked.device.reduce(reduction, arguments, checked.domain, checked.blocks, options);
-    return;
-  }
-  if (isInDoubles(*second, checked, arguments)) {
-    reduceInForm(checked, reduction, arguments, inDoubles(options));
-    return;
-  }
-  // the sums go where the results will be, what they lose to streams beside them
-  std::vector<Argument> all(arguments.begin(), arguments.end());
-  std::vector<detail::StreamOwner> lost;
-  const Shape& shape = arguments[second->sums.front().accumulator].region.shape;
-  for (const Parameter& parameter : accumulatorsOfLosses(*second)) {
-    lost.emplace_back(checked.device.createStream(*parameter.element, shape, Storage::Single).release());
-    all.push_back({.region = detail::wholeRegion(lost.back().get())});
-  }
-  checkReductionToStreams(second->reduction, all);
-  checked.device.reduce(second->reduction, all, checked.domain, checked.blocks, options);
-  const std::vector<Argument> results = resultsWithSums(*second, arguments);
+  if (call.isToValues()) return;
+  const std::vector<Argument> results = resultsWithSums(second, call.arguments);
   std::vector<Argument> finished = results;
-  finished.insert(finished.end(), all.begin() + static_cast<std::ptrdiff_t>(arguments.size()), all.end());
+  finished.insert(finished.end(), lost.arguments.begin(), lost.arguments.end());
   finished.insert(finished.end(), results.begin(), results.end());
-  run(second->finish, finished,
-      {.precision = Precision::Single, .intrinsics = options.intrinsics, .tables = options.tables});
+  run(second.finish, finished,
+      {.precision = Precision::Single, .intrinsics = call.options.intrinsics, .tables = call.options.tables});
+}
+
+/// In the form that the options, the device and the results ask for.
+void reduceResolved(const ResolvedReduction& call) {
+  if (isHeldOtherwise(call)) return reduceByFloats(call);
+  if (takesForm(call.options)) return reduceInForm(call);
+  const CompensatedReduction* second = compensated(call);
+  if (isExact(call)) return reduceExactly(call);
+  if (second == nullptr) return call.device.reduce(call);
+  if (!isInDoubles(call, *second)) return reduceCompensated(call, *second);
+  ResolvedReduction inDoubles = call;
+  inDoubles.options.accumulate = Accumulate::Extended;
+  reduceInForm(inDoubles);
+}
+
+void checkAndReduce(const Reduction& reduction, std::span<const Argument> arguments,
+                    std::span<void* const> values, const CallOptions& options) {
+  ResolvedReduction call = checkReduction(reduction, arguments, values);
+  const TraceScope traced(call.device.trace.get(), "call", reduction.fold.name);
+  traced.add("domain", call.domain);
+  if (!call.isToValues()) traced.add("blocks", call.blocks);
+  call.options = resolvedOptions(call, options);
+  if (call.blocks.size() != 0) reduceResolved(call);
 }
 
 }  // namespace
 
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, std::span<void* const> results,
-            const CallOptions& call) {
-  withHostMemory(reduction.fold.name, [&] { reduceToValues(reduction, arguments, results, call); });
+            const CallOptions& options) {
+  withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, results, options); });
 }
 
-void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& call) {
-  withHostMemory(reduction.fold.name, [&] { reduceToStreams(reduction, arguments, call); });
+void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
+  withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, {}, options); });
 }
 
 }  // namespace sk

@@ -53,4 +53,9 @@ std::vector<Shape> blockGrids(const Shape& domain, const Shape& result) {
   return grids;
 }
 
+Shape oneBlock(Shape domain) {
+  for (int d = 0; d < domain.rank(); ++d) domain = domain.with(d, 1);
+  return domain;
+}
+
 }  // namespace sk

@@ -14,4 +14,7 @@ namespace sk {
 /// (0 divides 0). None where it does not fit, several where it could mean several things.
 std::vector<Shape> blockGrids(const Shape& domain, const Shape& result);
 
+/// One block that is all of the domain.
+Shape oneBlock(Shape domain);
+
 }  // namespace sk

@@ -30,7 +30,8 @@ class Arguments {
     specs_ = specsOf(fold_, arguments);
   }
 
-  CheckedReduction check(bool toStreams) {
+  ResolvedReduction check(std::span<void* const> values) {
+    const bool toStreams = values.empty();
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
       const Role role = fold_.parameters[i].role;
       const bool isStream =
@@ -51,7 +52,7 @@ class Arguments {
       checkShape(i, domain);
     }
     const StreamState& first = *arguments_[first_].region.stream;
-    CheckedReduction checked{*first.device, domain};
+    ResolvedReduction checked{*first.device, reduction_, arguments_, domain, oneBlock(domain), values};
     checkElements(fold_, checked.device, domain);
     checked.device.checkProgram(reduction_);
     checkUniforms(fold_, checked.device);
@@ -197,12 +198,9 @@ std::size_t planesRead(const Kernel& kernel, const assemble::SpecValues& specs) 
   return planes;
 }
 
-CheckedReduction checkReduction(const Reduction& reduction, std::span<const Argument> arguments) {
-  return Arguments(reduction, arguments).check(false);
-}
-
-CheckedReduction checkReductionToStreams(const Reduction& reduction, std::span<const Argument> arguments) {
-  return Arguments(reduction, arguments).check(true);
+ResolvedReduction checkReduction(const Reduction& reduction, std::span<const Argument> arguments,
+                                 std::span<void* const> values) {
+  return Arguments(reduction, arguments).check(values);
 }
 
 }  // namespace sk

@@ -2,7 +2,6 @@
 #include "call/precision.hpp"
 
 #include <cstddef>
-#include <deque>
 #include <vector>
 
 #include "call/check_argument.hpp"
@@ -72,63 +71,38 @@ void checkTables(const Kernel& kernel, const CallOptions& options) {
   }
 }
 
-void reduceInForm(const CheckedReduction& checked, const Reduction& reduction,
-                  std::span<const Argument> arguments, std::span<void* const> results,
-                  const CallOptions& options) {
-  DeviceState& device = checked.device;
-  const bool isPlain = !device.takesForms() || checked.domain.size() == 0;
-  const WideReduction* wide = isPlain || !isWide(options) ? nullptr : wideForm(reduction);
+void reduceInForm(const ResolvedReduction& call) {
+  const Reduction& reduction = call.reduction;
+  const bool isPlain = !call.device.takesForms() || call.domain.size() == 0;
+  const WideReduction* wide = isPlain || !isWide(call.options) ? nullptr : wideForm(reduction);
   if (wide == nullptr) {
-    const Reduction& form = isPlain || isWide(options) ? reduction : halfForm(reduction);
-    device.reduce(form, arguments, checked.domain, results, options);
+    const Reduction& form = isPlain || isWide(call.options) ? reduction : halfForm(reduction);
+    call.device.reduce(call.of(form, call.arguments, call.values));
     return;
   }
-  checkPlanes(reduction, wide->reduction, device.limits);
-  std::deque<std::vector<std::byte>> values;
-  std::vector<void*> places;
-  for (const Parameter& parameter : wide->reduction.fold.parameters) {
-    if (parameter.role == Role::Accumulator) {
-      places.push_back(values.emplace_back(parameter.element->size).data());
-    }
-  }
-  device.reduce(wide->reduction, arguments, checked.domain, places, options);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const Parameter& plain = reduction.fold.parameters[i];
-    if (plain.role != Role::Accumulator) continue;
-    convertElements(*wide->reduction.fold.parameters[i].element, values[next].data(), *plain.element,
-                    static_cast<std::byte*>(results[next]), 1);
-    ++next;
-  }
-}
-
-void reduceInForm(const CheckedReduction& checked, const Reduction& reduction,
-                  std::span<const Argument> arguments, const CallOptions& options) {
-  DeviceState& device = checked.device;
-  const bool isPlain = !device.takesForms() || checked.domain.size() == 0;
-  const WideReduction* wide = isPlain || !isWide(options) ? nullptr : wideForm(reduction);
-  if (wide == nullptr) {
-    const Reduction& form = isPlain || isWide(options) ? reduction : halfForm(reduction);
-    device.reduce(form, arguments, checked.domain, checked.blocks, options);
-    return;
-  }
-  checkPlanes(reduction, wide->reduction, device.limits);
-  std::vector<Argument> folded(arguments.begin(), arguments.end());
-  std::vector<Argument> finished;
-  std::vector<detail::StreamOwner> doubles;
+  checkPlanes(reduction, wide->reduction, call.device.limits);
+  TemporaryResults doubles(call);
+  std::vector<Argument> folded(call.arguments.begin(), call.arguments.end());
+  std::vector<std::size_t> results;
   for (std::size_t i = 0; i < folded.size(); ++i) {
     const Parameter& parameter = wide->reduction.fold.parameters[i];
     if (parameter.role != Role::Accumulator) continue;
-    doubles.emplace_back(
-        device.createStream(*parameter.element, arguments[i].region.shape, Storage::Single).release());
-    folded[i] = {.region = detail::wholeRegion(doubles.back().get())};
-    finished.push_back(folded[i]);
+    folded[i] = doubles.add(*parameter.element);
+    results.push_back(i);
   }
-  device.reduce(wide->reduction, folded, checked.domain, checked.blocks, options);
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (reduction.fold.parameters[i].role == Role::Accumulator) finished.push_back(arguments[i]);
+  call.device.reduce(call.of(wide->reduction, folded, doubles.values));
+  if (call.isToValues()) {
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      convertElements(*wide->reduction.fold.parameters[results[k]].element,
+                      static_cast<const std::byte*>(doubles.values[k]),
+                      *reduction.fold.parameters[results[k]].element, static_cast<std::byte*>(call.values[k]),
+                      1);
+    }
+    return;
   }
-  device.run(resolveCall(wide->finish, finished, device.limits, options));
+  std::vector<Argument> finished = doubles.arguments;
+  for (const std::size_t i : results) finished.push_back(call.arguments[i]);
+  call.device.run(resolveCall(wide->finish, finished, call.device.limits, call.options));
 }
 
 }  // namespace sk

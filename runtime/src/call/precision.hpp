@@ -6,7 +6,7 @@
 
 #include <span>
 
-#include "call/check_reduction.hpp"
+#include "call/resolved_reduction.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
 
@@ -37,11 +37,7 @@ const program::Reduction& halfForm(const program::Reduction& reduction);
 /// Throws sk::Error where a call asks for tables in another precision than theirs, which is float's.
 void checkTables(const program::Kernel& kernel, const CallOptions& options);
 
-/// Reduces in the form that the options take; the arguments have been checked. Throws sk::Error where there is none.
-void reduceInForm(const CheckedReduction& checked, const program::Reduction& reduction,
-                  std::span<const Argument> arguments, std::span<void* const> results,
-                  const CallOptions& options);
-void reduceInForm(const CheckedReduction& checked, const program::Reduction& reduction,
-                  std::span<const Argument> arguments, const CallOptions& options);
+/// Reduces in the form that the options take. Throws sk::Error where there is none.
+void reduceInForm(const ResolvedReduction& call);
 
 }  // namespace sk

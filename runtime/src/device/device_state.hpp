@@ -23,6 +23,7 @@
 namespace sk {
 
 struct ResolvedCall;
+struct ResolvedReduction;
 
 /// Exact sums, one for each element of the results, which get them once all are known: a result may be an input.
 class RoundedSums {
@@ -74,18 +75,12 @@ class DeviceState {
 
   /// Only variable outputs may lack elements: they become empty.
   virtual void run(const ResolvedCall& call) = 0;
-  /// Of a domain without elements, the identities, which then exist.
-  virtual void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
-                      const Shape& domain, std::span<void* const> results, const CallOptions& options) = 0;
-  /// `blocks`: how many there are in each dimension of the domain; one at least.
-  virtual void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
-                      const Shape& domain, const Shape& blocks, const CallOptions& options) = 0;
+  /// There is one block at least. Of a domain without elements, the results are the identities, which then exist.
+  virtual void reduce(const ResolvedReduction& call) = 0;
   /// Whether it adds sums of floats without rounding. Else it compensates them, in a precision of its own.
   virtual bool sumsExactly(const program::Reduction&) const { return true; }
   /// The rounded sums of all blocks where the device adds them itself; else null, and the sum is folded to digits.
-  virtual std::unique_ptr<RoundedSums> sumExactly(const program::Reduction&, const program::ExactSum&,
-                                                  std::span<const Argument>, const Shape& /*domain*/,
-                                                  const Shape& /*blocks*/, const CallOptions&) {
+  virtual std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction&, const program::ExactSum&) {
     return nullptr;
   }
 

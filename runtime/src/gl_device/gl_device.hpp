@@ -83,10 +83,7 @@ class GlDevice final : public DeviceState {
   void release() override { context.release(); }
   void makeCurrent() override;
   void run(const ResolvedCall& call) override;
-  void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
-              std::span<void* const> results, const CallOptions& options) override;
-  void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
-              const Shape& blocks, const CallOptions& options) override;
+  void reduce(const ResolvedReduction& call) override;
 
   /// New planes of an element type, with undefined texels. Throws sk::Error saying what for, where
   /// there is no memory.

@@ -17,9 +17,9 @@ namespace {
 void run(const sk::native::Frame*, const sk::native::Chunk*) {}
 
 /// A kernel with code for these levels.
-class Kernel {
+class NativeKernel {
  public:
-  explicit Kernel(std::initializer_list<Level> levels) {
+  explicit NativeKernel(std::initializer_list<Level> levels) {
     for (const Level level : levels) {
       Entry entry = sk::test::entry(EntryKind::Run, &run);
       entry.level = level;
@@ -38,20 +38,20 @@ class Kernel {
 }  // namespace
 
 TEST_CASE("the newest code that the CPU runs is chosen") {
-  Kernel kernel({Level::Base, Level::V3});
+  NativeKernel kernel({Level::Base, Level::V3});
   CHECK(kernel.chosenOn(Level::Base) == Level::Base);
   CHECK(kernel.chosenOn(Level::V3) == Level::V3);
   CHECK(kernel.chosenOn(Level::V4) == Level::V3);
 }
 
 TEST_CASE("code for newer CPUs alone is refused with the way out") {
-  Kernel kernel({Level::V4});
+  NativeKernel kernel({Level::V4});
   CHECK_THROWS_WITH(kernel.chosenOn(Level::V3),
                     Catch::Contains("x86-64-v4") && Catch::Contains("skc --levels=x86-64"));
 }
 
 TEST_CASE("code of another version is refused with the way out") {
-  Kernel kernel({Level::Base});
+  NativeKernel kernel({Level::Base});
   kernel.code().version = sk::native::Code::currentVersion + 1;
   CHECK_THROWS_WITH(kernel.chosenOn(Level::Base),
                     Catch::Contains("version " + std::to_string(sk::native::Code::currentVersion)) &&

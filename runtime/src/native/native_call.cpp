@@ -4,13 +4,16 @@
 // read and written is read as it was, unless each element reads only itself: where all of it is written, it takes other arrays for
 // that, which become its own afterwards; else what reads it gets a copy.
 #include <algorithm>
+#include <functional>
 #include <list>
+#include <numeric>
 
 #include "assemble/condition.hpp"
 #include "call/check_argument.hpp"
 #include "call/iterator.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
+#include "call/resolved_reduction.hpp"
 #include "native/coalesce.hpp"
 #include "native/entries.hpp"
 #include "native/fold_code.hpp"
@@ -283,7 +286,23 @@ class Folding {
     const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block};
     foldCode(reduction_, call, choice_);
   }
-  void storeIdentity() { storeIdentities(reduction_, fold.callAsItIs(), choice_); }
+  /// Stores the identities to all blocks, of which there are `counts` in each dimension. `results`: the accumulators.
+  void storeIdentities(std::span<const std::size_t> results, const Extents& counts) {
+    const std::vector<Operand> wholes(fold.list().begin(), fold.list().end());
+    const std::int64_t blocks =
+        std::accumulate(counts.begin(), counts.end(), std::int64_t{1}, std::multiplies<>());
+    for (std::int64_t n = 0; n < blocks; ++n) {
+      for (const std::size_t i : results) {
+        Operand& one = fold.list()[i] = wholes[i];
+        std::int64_t rest = n;
+        for (std::size_t d = 0; d < counts.size(); ++d) {
+          one.first += rest % counts[d] * one.stride[d];
+          rest /= counts[d];
+        }
+      }
+      sk::storeIdentities(reduction_, fold.callAsItIs(), choice_);
+    }
+  }
 
  private:
   CodeChoice choice_;
@@ -336,72 +355,43 @@ void NativeDevice::run(const ResolvedCall& call) {
   operands.settle();
 }
 
-void NativeDevice::reduce(const program::Reduction& called, std::span<const Argument> arguments,
-                          const Shape& domain, std::span<void* const> results, const CallOptions& options) {
-  checkTarget(called.fold, options.target);
-  const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
-  const RealType real = realOf(options);
-  Folding folding(codeChoice(real, options), reduction, arguments, domain,
-                  tablesOf(reduction.fold, real, options), tablesOf(reduction.combine, real, options));
-  std::vector<std::pair<const program::Element*, const Components*>> values;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
+void NativeDevice::reduce(const ResolvedReduction& call) {
+  checkTarget(call.reduction.fold, call.options.target);
+  const program::Reduction& reduction = takesHalf(call.options) ? halfForm(call.reduction) : call.reduction;
+  const RealType real = realOf(call.options);
+  Folding folding(codeChoice(real, call.options), reduction, call.arguments, call.domain,
+                  tablesOf(reduction.fold, real, call.options),
+                  tablesOf(reduction.combine, real, call.options));
+  const Extents counts = fastestFirst(call.blocks);
+  std::vector<std::size_t> results;
+  std::vector<const Components*> values;
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     const Parameter& parameter = reduction.fold.parameters[i];
     if (parameter.role != Role::Accumulator) continue;
-    const Components& value = folding.fold.value(*parameter.element);
-    folding.fold.list()[i] = {.components = value.arrays(), .stride = {1, 1, 1, 1}};
-    values.emplace_back(parameter.element, &value);
-  }
-  const NativePass traced(*this, reduction.fold, "fold", arguments, domain);
-  if (domain.size() == 0) {
-    folding.storeIdentity();
-  } else {
-    folding.run(fastestFirst(domain));
-  }
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    values[k].second->read(0, 1, static_cast<std::byte*>(results[k]), values[k].first->size);
-  }
-}
-
-void NativeDevice::reduce(const program::Reduction& called, std::span<const Argument> arguments,
-                          const Shape& domain, const Shape& blocks, const CallOptions& options) {
-  checkTarget(called.fold, options.target);
-  const program::Reduction& reduction = takesHalf(options) ? halfForm(called) : called;
-  const RealType real = realOf(options);
-  Folding folding(codeChoice(real, options), reduction, arguments, domain,
-                  tablesOf(reduction.fold, real, options), tablesOf(reduction.combine, real, options));
-  const Extents counts = fastestFirst(blocks);
-  std::vector<std::size_t> results;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (reduction.fold.parameters[i].role != Role::Accumulator) continue;
-    folding.fold.list()[i] = resultOperand(folding.fold, arguments[i].region, counts);
+    if (call.isToValues()) {
+      const Components& value = folding.fold.value(*parameter.element);
+      folding.fold.list()[i] = {.components = value.arrays(), .stride = {1, 1, 1, 1}};
+      values.push_back(&value);
+    } else {
+      folding.fold.list()[i] = resultOperand(folding.fold, call.arguments[i].region, counts);
+    }
     results.push_back(i);
   }
-  if (domain.size() != 0) {
-    Extents block = fastestFirst(domain);
-    for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
-    {
-      const NativePass traced(*this, reduction.fold, "fold", arguments, domain);
+  {
+    const NativePass traced(*this, reduction.fold, "fold", call.arguments, call.domain);
+    if (call.domain.size() == 0) {
+      folding.storeIdentities(results, counts);
+    } else {
+      Extents block = fastestFirst(call.domain);
+      for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
       folding.run(block);
     }
-    folding.fold.settle();
-    return;
-  }
-  // no element at all: the identity in each of the results
-  std::vector<Operand> wholes;
-  for (const std::size_t i : results) wholes.push_back(folding.fold.list()[i]);
-  for (std::int64_t n = 0; n < blocks.size(); ++n) {
-    for (std::size_t k = 0; k < results.size(); ++k) {
-      Operand one = wholes[k];
-      std::int64_t rest = n;
-      for (std::size_t d = 0; d < counts.size(); ++d) {
-        one.first += rest % counts[d] * one.stride[d];
-        rest /= counts[d];
-      }
-      folding.fold.list()[results[k]] = one;
-    }
-    folding.storeIdentity();
   }
   folding.fold.settle();
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    values[k]->read(0, 1, static_cast<std::byte*>(call.values[k]),
+                    reduction.fold.parameters[results[k]].element->size);
+  }
 }
 
 // Digits, to which sums are folded that have no term, are those of floats.
@@ -412,11 +402,10 @@ bool NativeDevice::sumsExactly(const program::Reduction& reduction) const {
   });
 }
 
-std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const program::Reduction& reduction,
-                                                      const program::ExactSum& sum,
-                                                      std::span<const Argument> arguments,
-                                                      const Shape& domain, const Shape& blocks,
-                                                      const CallOptions& options) {
+std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& whole,
+                                                      const program::ExactSum& sum) {
+  const program::Reduction& reduction = whole.reduction;
+  const std::span<const Argument> arguments = whole.arguments;
   if (reduction.fold.code == nullptr || !hasTerm(sum)) return nullptr;
   const Kernel& kernel = kernelOfTerm(reduction, sum);
   std::vector<Argument> all;
@@ -428,12 +417,12 @@ std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const program::Reduction& 
     }
     all.resize(kernel.parameters.size());  // its outputs are looked at and never stored
   }
-  const RealType real = realOf(options);
-  Operands operands(real, kernel, all, domain, tablesOf(kernel, real, options));
-  const Extents counts = fastestFirst(blocks);
-  Extents block = fastestFirst(domain);
+  const RealType real = realOf(whole.options);
+  Operands operands(real, kernel, all, whole.domain, tablesOf(kernel, real, whole.options));
+  const Extents counts = fastestFirst(whole.blocks);
+  Extents block = fastestFirst(whole.domain);
   for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
-  const NativePass traced(*this, kernel, "fold", all, domain);
+  const NativePass traced(*this, kernel, "fold", all, whole.domain);
   const native::Call call = operands.call(block);
   const CodeChoice choice{.real = real};  // the same bits on every device: never contracted
   switch (real) {

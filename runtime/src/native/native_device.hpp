@@ -40,14 +40,10 @@ class NativeDevice final : public DeviceState {
   void release() override {}
   void makeCurrent() override;
   void run(const ResolvedCall& call) override;
-  void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
-              std::span<void* const> results, const CallOptions& options) override;
-  void reduce(const program::Reduction& reduction, std::span<const Argument> arguments, const Shape& domain,
-              const Shape& blocks, const CallOptions& options) override;
+  void reduce(const ResolvedReduction& call) override;
   bool sumsExactly(const program::Reduction& reduction) const override;
-  std::unique_ptr<RoundedSums> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
-                                          std::span<const Argument> arguments, const Shape& domain,
-                                          const Shape& blocks, const CallOptions& options) override;
+  std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction& call,
+                                          const program::ExactSum& sum) override;
 
  private:
   RealType realOf(const CallOptions& options) const;

@@ -13,6 +13,8 @@
 
 #include <fmt/format.h>
 
+#include "call/block_grid.hpp"
+#include "call/resolved_reduction.hpp"
 #include "device/stream_state.hpp"
 #include "gl_device/gl_device.hpp"
 #include "sk/error.hpp"
@@ -157,7 +159,8 @@ class Trial {
       case KernelClass::Reduces: {
         float total = 0;
         const std::array<void*, 1> results{&total};
-        return device_.reduce(sum, std::array{x, Argument{}}, shape_, results, options);
+        return device_.reduce(
+            {device_, sum, std::array{x, Argument{}}, shape_, oneBlock(shape_), results, options});
       }
     }
   }

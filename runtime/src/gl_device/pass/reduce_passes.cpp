@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: MIT
+#include "gl_device/pass/reduce_passes.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "assemble/glsl/program_text.hpp"
+#include "call/resolved_call.hpp"
+#include "gl_device/gl_stream.hpp"
+#include "gl_device/pass/pass.hpp"
+#include "gl_device/pass/pass_trace.hpp"
+
+namespace sk {
+
+using assemble::Addressing;
+using assemble::Index4;
+using assemble::ReducePass;
+using assemble::RegionLayout;
+using assemble::StreamAccess;
+using assemble::Walk;
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+namespace {
+
+/// What the trace calls a pass.
+std::string_view stepOf(Walk walk) {
+  switch (walk) {
+    case Walk::Partials:
+    case Walk::PartialRows:
+    case Walk::GroupedPartials: return "combine";
+    case Walk::Nothing: return "identity";
+    case Walk::Line:
+    case Walk::Plane:
+    case Walk::Box:
+    case Walk::Rows:
+    case Walk::Index: break;
+  }
+  return "fold";
+}
+
+}  // namespace
+
+std::size_t accumulatorPlanes(const Kernel& fold) {
+  std::size_t planes = 0;
+  for (const Parameter& parameter : fold.parameters) {
+    if (parameter.role == Role::Accumulator) planes += parameter.element->fields.size();
+  }
+  return planes;
+}
+
+void takeAccumulators(GlDevice& device, const Kernel& fold, const assemble::TextureShape& shape,
+                      std::string_view whatFor, PlanesLease& lease) {
+  for (const Parameter& parameter : fold.parameters) {
+    if (parameter.role == Role::Accumulator) {
+      for (RenderTarget& plane : device.takePlanes(*parameter.element, shape, whatFor)) {
+        lease.planes.push_back(std::move(plane));
+      }
+    }
+  }
+}
+
+std::vector<RenderTarget*> pointersTo(std::span<RenderTarget> planes) {
+  std::vector<RenderTarget*> pointers;
+  for (RenderTarget& plane : planes) {
+    pointers.push_back(&plane);
+  }
+  return pointers;
+}
+
+ReducePasses::ReducePasses(GlDevice& device, const ResolvedReduction& call)
+    : device_(device),
+      reduction_(call.reduction),
+      specs_(specsOf(call.reduction.fold, call.arguments)),
+      blocks_(xFirst(call.blocks)) {
+  findOperands(call.arguments, call.domain);
+  byTexel_ = foldsByTexel(blocks_);
+  if (!byTexel_ && call.domain.size() > 0) {
+    for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+      if (isRead(i)) glStream(call.arguments[i].region).unpack();
+    }
+    findOperands(call.arguments, call.domain);
+  }
+}
+
+bool ReducePasses::mayEndInBuffer() const {
+  return device_.programs().stage() == assemble::Stage::Compute && assemble::mayEndInBuffer(reduction_);
+}
+
+void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const> targets) {
+  if (assemble::elements(elements_.extent) == 0) {
+    draw(assemble::planIdentities(result), {}, targets);
+    return;
+  }
+  assemble::ReduceLimits limits = limitsOfPasses();
+  limits.toBuffer = targets.empty();
+  PlanesLease partials(device_);
+  const assemble::Division division{.blocks = blocks_,
+                                    .byIndex = foldsByIndex(),
+                                    .byTexel = byTexel_,
+                                    .inAnyOrder = reduction_.commutative,
+                                    .inGroups = assemble::foldsInGroups(reduction_)};
+  const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
+  for (const ReducePass& pass : passes) {
+    if (!start(pass)) break;  // nor are the others new
+  }
+  for (const ReducePass& pass : passes) {
+    if (pass.toResult) {
+      draw(pass, partials.planes, targets);
+      continue;
+    }
+    PlanesLease next(device_);
+    takeAccumulators(device_, reduction_.fold, pass.texture, "partial results", next);
+    draw(pass, partials.planes, pointersTo(next.planes));
+    std::swap(partials.planes, next.planes);
+  }
+}
+
+void ReducePasses::findOperands(std::span<const Argument> arguments, const Shape& domain) {
+  operands_.clear();
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    operands_.push_back(operandOf(i, arguments[i], domain));
+  }
+  elements_ = layoutOfElements(xFirst(domain));
+}
+
+assemble::ReduceLimits ReducePasses::limitsOfPasses() const {
+  assemble::ReduceLimits limits{.texture = device_.textureLimits(), .grouped = mayGroup()};
+  if (device_.programs().stage() == assemble::Stage::Compute) {
+    limits.longRun = longRunOfGroups();
+  } else if (device_.capabilities.isSoftware) {
+    limits.longRun = 64;
+  }
+  return limits;
+}
+
+std::int32_t ReducePasses::longRunOfGroups() const {
+  const std::int64_t texels = assemble::elements(elements_.extent) / (byTexel_ ? assemble::lanes : 1);
+  return texels >= 1 << 26 ? 32 : texels >= 1 << 24 ? 16 : 0;
+}
+
+bool ReducePasses::mayGroup() const {
+  constexpr std::size_t planeBytes = 4 * sizeof(float);  // at most: four components, or two doubles
+  const std::size_t planes = accumulatorPlanes(reduction_.fold);
+  return device_.programs().stage() == assemble::Stage::Compute &&
+         planes * planeBytes * assemble::groupSize <= assemble::groupBytes &&
+         planes <= static_cast<std::size_t>(device_.limits.drawBuffers);
+}
+
+bool ReducePasses::foldsByTexel(const Index4& blocks) const {
+  return elements_.packed && !foldsByIndex() && assemble::isWholeTexels(elements_) &&
+         elements_.extent[0] / blocks[0] % assemble::lanes == 0;
+}
+
+Operand ReducePasses::operandOf(std::size_t i, const Argument& argument, const Shape& domain) const {
+  const Parameter& parameter = reduction_.fold.parameters[i];
+  switch (parameter.role) {
+    case Role::Uniform:
+    case Role::Spec: return {.value = argument.value};
+    case Role::Iterator: return domain.size() == 0 ? Operand{} : iteration(parameter, argument.value, domain);
+    case Role::Input:
+    case Role::Gather:
+    case Role::Accumulator: break;
+    case Role::Output:
+    case Role::VariableOutput:
+    case Role::Scatter: return {};
+  }
+  if (argument.region.stream == nullptr || !assemble::isNeeded(parameter, specs_)) {
+    return {};
+  }
+  return regionOperand(argument, domain);
+}
+
+RegionLayout ReducePasses::layoutOfElements(const Index4& shape) const {
+  for (std::size_t i = 0; i < operands_.size(); ++i) {
+    if (isRead(i) && operands_[i].regionLayout.extent == shape) {
+      return operands_[i].regionLayout;
+    }
+  }
+  return {.extent = shape};
+}
+
+bool ReducePasses::isRead(std::size_t i) const {
+  const Parameter& parameter = reduction_.fold.parameters[i];
+  return parameter.role == Role::Input && assemble::isNeeded(parameter, specs_);
+}
+
+bool ReducePasses::foldsByIndex() const {
+  bool byIndex = assemble::asksForPlace(reduction_.fold);
+  for (std::size_t i = 0; i < operands_.size(); ++i) {
+    byIndex = byIndex || (isRead(i) && !haveSameTexels(operands_[i].regionLayout, elements_));
+  }
+  return byIndex;
+}
+
+std::vector<Operand> ReducePasses::operandsOfCombine(std::span<RenderTarget> partials) const {
+  std::vector<Operand> operands;
+  const Kernel& combine = reduction_.combine;
+  for (std::size_t i = 0; i < combine.parameters.size(); ++i) {
+    const Parameter& parameter = combine.parameters[i];
+    if (parameter.role == Role::Input) {
+      const std::size_t count = std::min(parameter.element->fields.size(), partials.size());
+      operands.push_back({.regionLayout = elements_, .planes = partials.first(count)});
+      partials = partials.subspan(count);
+    } else if (parameter.role == Role::Accumulator) {
+      operands.emplace_back();
+    } else {
+      operands.push_back(operands_[reduction_.combineOperands[i]]);
+    }
+  }
+  return operands;
+}
+
+void ReducePasses::draw(const ReducePass& pass, std::span<RenderTarget> partials,
+                        std::span<RenderTarget* const> targets) {
+  const bool isPartial = assemble::isOfPartials(pass.variant.walk);
+  const Kernel& kernel = isPartial ? reduction_.combine : reduction_.fold;
+  const std::vector<Operand> operands = isPartial ? operandsOfCombine(partials) : operands_;
+  if (pass.variant.toBuffer) device_.values.bind(device_.bound);
+  forEachPart(
+      pass, operands, [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
+        ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
+        const bool isInBuffer = variant.toBuffer;
+        const auto planes = isInBuffer ? targets : targets.subspan(first, count);
+        const std::size_t bytes = isInBuffer ? count * gl::ValueBuffer::planeBytes : texelBytesOf(planes);
+        const PassScope traced(device_, nameOf(reduction_.fold.name, stepOf(variant.walk), program.kernel),
+                               program.kernel, operands, pass.draws, bytes);
+        device_.bound.program(program.kernel.program.name());
+        bindOperands(device_, program.kernel, kernel, operands);
+        for (const assemble::UniformValue& value : pass.uniforms) {
+          program.uniform(value).set(value.value);
+        }
+        writeRects(device_, program.kernel, planes, pass.draws);
+      });
+}
+
+bool ReducePasses::start(const ReducePass& pass) {
+  bool isNew = false;
+  const bool isPartial = assemble::isOfPartials(pass.variant.walk);
+  forEachPart(pass, isPartial ? operandsOfCombine({}) : operands_,
+              [&](const assemble::ReduceVariant& variant, std::size_t, std::size_t) {
+                isNew = device_.programs().startReduceProgram(reduction_, variant) || isNew;
+              });
+  return isNew;
+}
+
+template <class Visit>
+void ReducePasses::forEachPart(const ReducePass& pass, std::span<const Operand> operands,
+                               Visit&& visit) const {
+  assemble::ReduceVariant variant = pass.variant;
+  if (variant.walk != Walk::Nothing) {
+    addAccess(variant, assemble::isOfPartials(variant.walk) ? reduction_.combine : reduction_.fold, operands);
+  }
+  const auto most = static_cast<std::size_t>(device_.limits.drawBuffers);
+  const std::size_t planes = accumulatorPlanes(reduction_.fold);
+  for (std::size_t first = 0; first < planes; first += most) {
+    const std::size_t count = std::min(most, planes - first);
+    if (planes > most) {
+      variant.firstPlane = static_cast<std::uint8_t>(first);
+      variant.planeCount = static_cast<std::uint8_t>(count);
+    }
+    visit(variant, first, count);
+  }
+}
+
+void ReducePasses::addAccess(assemble::ReduceVariant& variant, const Kernel& kernel,
+                             std::span<const Operand> operands) const {
+  assemble::Variant chosen = chooseVariant(kernel, operands, elements_);
+  variant.specs = chosen.specs;
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    StreamAccess& access = chosen.access[i];
+    if (variant.walk == Walk::Index && kernel.parameters[i].role == Role::Input) {
+      const RegionLayout& regionLayout = operands[i].regionLayout;
+      access.addressing = addressingOf(regionLayout);
+      access.fit = operands[i].fit;
+      access.view = regionLayout.origin != Index4{};
+    }
+  }
+  variant.access = std::move(chosen.access);
+}
+
+}  // namespace sk
