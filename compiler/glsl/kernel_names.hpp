@@ -18,7 +18,7 @@ class KernelNames {
   KernelNames(const ir::Module& module, const ir::Kernel& kernel, const TypeNames& types);
 
   const std::string& function(ir::FunctionId id) const { return functions_.at(id).name; }
-  /// Where a constant is used: its name, or a call where it has to be a function (glsl_constants.hpp).
+  /// Where a constant is used: its name, or a call where it has to be a function (constants.hpp).
   const std::string& constant(ir::ConstantId id) const { return constants_[id]; }
   const std::string& variable(ir::FunctionId id, ir::VarId var) const {
     return functions_.at(id).variables[var];

@@ -29,7 +29,7 @@ std::string spelling(Scalar scalar, int width) {
 }
 
 std::string_view spelling(VarRole role) {
-  constexpr std::array<std::string_view, 6> names = {"local", "in", "inout", "element", "gather", "sink"};
+  constexpr std::array<std::string_view, 6> names = {"local", "in", "inout", "element", "gather", "append"};
   return names[static_cast<std::size_t>(role)];
 }
 

@@ -5,6 +5,8 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
@@ -52,6 +54,26 @@ TEST_CASE("links lead to files and headings that there are", "[text]") {
       if (hash == link.text.size()) continue;
       const docs::Document* target = documentAt(file);
       CHECK((target && hasAnchor(*target, link.text.substr(hash + 1))));
+    }
+  }
+}
+
+TEST_CASE("sources that documents name are there", "[text]") {
+  std::vector<std::string> sources;
+  for (const char* folder : {"cmake", "compiler", "examples", "runtime", "tests"}) {
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(fs::path(SK_DOCS_SOURCE) / folder)) {
+      if (entry.is_regular_file()) sources.push_back(entry.path().string());
+    }
+  }
+  // by as much of the path as tells which it is
+  static const std::regex named(R"re(`([a-z_/]+/[a-z_]+\.(?:hpp|cpp|def|cmake|sh))`)re");
+  for (const docs::Document& document : docs::documents()) {
+    const std::string text = docs::readFile(fs::path(SK_DOCS_SOURCE) / document.name);
+    for (std::sregex_iterator it(text.begin(), text.end(), named), end; it != end; ++it) {
+      const std::string tail = "/" + (*it)[1].str();
+      INFO(document.name << ": " << tail);
+      CHECK(std::ranges::any_of(sources, [&](const std::string& file) { return file.ends_with(tail); }));
     }
   }
 }

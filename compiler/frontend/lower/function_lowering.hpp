@@ -117,7 +117,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void emit(Loc loc, ir::Stmt::Node node);
   ir::VarId temporary(ir::Type type, Loc loc);
 
-  // ---- values (lower_expr.cpp) ------------------------------------------------------------------
+  // ---- values (lower_value.cpp, lower_literal.cpp) ----------------------------------------------
   ir::ExprPtr make(ir::Type type, clang::SourceLocation where, ir::Expr::Node node);
   ir::ExprPtr literal(ir::Type type, std::uint32_t bits, clang::SourceLocation where);
   /// A formula of nothing but literals (lower_literal.cpp), which takes its precision from its place.
@@ -172,7 +172,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   std::optional<ir::VarId> streamVariable(const clang::Expr* e) const;
   ir::VarId gatherVariable(const clang::Expr* e);
 
-  // ---- append outputs (lower_sink.cpp) -------------------------------------------------------------------
+  // ---- append outputs (lower_append.cpp) --------------------------------------------------------
   ir::VarId appendVariable(const clang::Expr* e);
   ir::ExprPtr push(const clang::CallExpr* e);
   /// Whether the expression writes an element of a scatter output; if so, it is lowered.

@@ -63,7 +63,7 @@ enum class Domain : std::uint8_t {
   Plane,  ///< texel = origin + index.xy: a whole 2-D stream or a rectangle of one
   Linear,  ///< a whole linearised stream: element number = y << shift | x
   LinearBox,  ///< a box of a linearised stream: texels outside the box are left out
-  Entry,  ///< of an append output's list, linearised: the element is the one that it comes from (append outputs.hpp)
+  Entry,  ///< of an append output's list, linearised: the element is the one that it comes from (append/append_passes.hpp)
 };
 Domain domainOf(const RegionLayout& output);
 
@@ -104,7 +104,7 @@ bool mayWritePacked(const program::Kernel& kernel);
 /// Characters of the longest body that is worth it.
 constexpr std::size_t longestPackedBody = 4096;
 
-/// What a program of a kernel computes (append outputs.hpp).
+/// What a program of a kernel computes (append/append_passes.hpp).
 enum class Work : std::uint8_t {
   Elements,  ///< its outputs; it has no append outputs
   Counts,  ///< its outputs, and how often each element pushes to each counted append output
@@ -153,7 +153,7 @@ struct Variant {
 /// work groups each compute a texel is dispatched with as many groups.
 /// Outputs are `layout(location = n) out`, or images of binding n, one a plane, numbered in order of parameters and
 /// fields; those of Work::Counts have one more for each counted append output, and those of Work::List are the planes of the append output, for a
-/// scatter output after one for its texel. A list of a counted append output reads a tree (count_tree.hpp):
+/// scatter output after one for its texel. A list of a counted append output reads a tree (append/histo_pyramid.hpp):
 ///   sk_odd sk_even sk_tree_shift   its textures (samplers) and log2 of their width
 ///   sk_levels, sk_rows[l]          the number of levels, and the first row of level l in its texture
 /// Of a function with a table, those of tables.hpp.

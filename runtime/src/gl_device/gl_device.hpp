@@ -136,8 +136,8 @@ class GlDevice final : public DeviceState {
   const CacheFolder cache;
   ProgramBinaries binaries;
   std::unique_ptr<PassTrace> passes;  ///< null where there is no trace
-  std::vector<std::byte> staging;  ///< texels on their way; transfer.cpp's
-  std::vector<Operand> operands;  ///< of the call that runs; run.cpp's
+  std::vector<std::byte> staging;  ///< texels on their way; transfer/transfer.cpp
+  std::vector<Operand> operands;  ///< of the call that runs; pass/run_kernel.cpp
   bool hasDrawn = false;  ///< since the last dispatch
 
  private:

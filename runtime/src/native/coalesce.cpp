@@ -37,9 +37,9 @@ void drop(Operand& operand, std::size_t dimension) {
   drop(operand.divide, dimension, 1);
 }
 
-class Collapse {
+class Coalesce {
  public:
-  Collapse(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block)
+  Coalesce(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block)
       : kernel_(kernel), operands_(operands), domain_(domain), block_(block) {}
 
   void run() {
@@ -121,7 +121,7 @@ class Collapse {
 void coalesce(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block) {
   constexpr std::int64_t longest = std::int64_t{1} << 31;   // indices are ints
   const bool isCounted = domain[0] * domain[1] * domain[2] * domain[3] < longest;
-  if (isCounted && knowsNoPlace(kernel, operands)) Collapse(kernel, operands, domain, block).run();
+  if (isCounted && knowsNoPlace(kernel, operands)) Coalesce(kernel, operands, domain, block).run();
 }
 
 }  // namespace sk

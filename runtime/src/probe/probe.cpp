@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t pairCount = 1024;
 
-/// The functions are those that pairs of floats are made of (assemble/doubles.cpp).
+/// The functions are those that pairs of floats are made of (assemble/glsl/doubles.cpp).
 const program::Kernel& exactSums() {
   using program::Role;
   static constexpr std::array<program::Parameter, 2> parameters{

@@ -4,7 +4,7 @@
 // count what each element pushes, and once more for each entry of the append output's list, to find its value:
 //
 //   pass 1     domain   ordinary outputs, and for each counted append output the number of pushes of the element
-//   tree       log4     sums of counts (count_tree.hpp)
+//   tree       log4     sums of counts (histo_pyramid.hpp)
 //   pass 2     list     entry j: the element and the push that it comes from, and the value pushed
 //
 // The list of a variable output is the stream. That of a scatter output holds the texels that its values
