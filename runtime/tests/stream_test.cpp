@@ -24,7 +24,7 @@ namespace {
 
 using namespace std::string_literals;
 
-constexpr const char* noStream =
+const std::string noStream =
     "there is no stream: it was default-constructed or moved from; make one by device.stream<T>(shape)";
 
 Device makeDevice(const std::string& profile, int textureLimit = 0) {
@@ -288,4 +288,107 @@ TEST_CASE("streams and devices move") {
   CHECK(errorOf([&] { a.domain(0, 0); }) == "domain: "s + noStream);
   CHECK(errorOf([&] { (void)a.texture(); }) == "texture: "s + noStream);
   CHECK(a.size() == 0);
+}
+
+namespace {
+
+/// fill() and copyTo() of a stream and of its parts on a device, against the same on the host.
+template <class T>
+void checkFillAndCopy(Device& device, const Shape& shape) {
+  INFO(device.name() << ", " << device.profile() << ", shape " << toString(shape));
+  const std::vector<T> given = patterned<T>(static_cast<std::size_t>(shape.size()));
+  const T value = patterned<T>(2).back();
+  auto x = device.stream<T>(shape);
+  auto y = device.stream<T>(shape);
+  x.write(given);
+  y.fill(value);
+  CHECK(haveSameBits(y.read(), std::vector<T>(given.size(), value)));
+  x.copyTo(y);
+  CHECK(haveSameBits(y.read(), given));
+
+  // a box at (1, 2), and one that overlaps it
+  const std::int64_t rows = shape[0] - 2, columns = shape[1] - 3;
+  std::vector<T> expected = given;
+  const auto at = [&](std::int64_t row, std::int64_t column) {
+    return static_cast<std::size_t>(row * shape[1] + column);
+  };
+  for (std::int64_t row = 0; row < rows; ++row) {
+    for (std::int64_t column = 0; column < columns; ++column) expected[at(row + 1, column + 2)] = value;
+  }
+  y.domain({1, 2}, {rows + 1, columns + 2}).fill(value);
+  CHECK(haveSameBits(y.read(), expected));
+
+  expected = given;
+  for (std::int64_t row = 0; row < rows; ++row) {
+    for (std::int64_t column = 0; column < columns; ++column)
+      expected[at(row + 1, column + 2)] = given[at(row, column)];
+  }
+  x.domain({0, 0}, {rows, columns}).copyTo(x.domain({1, 2}, {rows + 1, columns + 2}));
+  CHECK(haveSameBits(x.read(), expected));
+}
+
+}  // namespace
+
+TEST_CASE("streams are filled and copied on the device, in whole and in parts") {
+  const auto check = [](Device& device) {
+    for (const Shape& shape : {Shape{5, 8}, Shape{6, 7}, Shape{70, 68}}) {
+      checkFillAndCopy<float>(device, shape);
+      checkFillAndCopy<int3>(device, shape);
+      checkFillAndCopy<Hit>(device, shape);
+    }
+  };
+  SECTION("with GL") {
+    Device device = makeDevice(GENERATE(from_range(profileNames)), 64);
+    check(device);
+  }
+  SECTION("natively") {
+    Device device = Device::native();
+    check(device);
+  }
+}
+
+TEST_CASE("streams are copied between storages, devices and precisions") {
+  Device device = makeDevice({});
+  Device reference = Device::reference();
+  const std::vector<float> values{0.1F, -2.5F, 65504.0F, 1e-7F, 3.0F};
+  auto x = device.stream<float>({5});
+  x.write(values);
+  SECTION("to halves and back, rounded to nearest") {
+    auto halves = device.stream<float>({5}, Storage::Half);
+    auto back = device.stream<float>({5});
+    x.copyTo(halves);
+    halves.copyTo(back);
+    CHECK(back.read() == halves.read());
+    CHECK(back.read()[0] == float{half(0.1F)});
+    halves.fill(0.1F);
+    CHECK(halves.read() == std::vector<float>(5, float{half(0.1F)}));
+  }
+  SECTION("to another device") {
+    auto y = reference.stream<float>({5});
+    x.copyTo(y);
+    CHECK(y.read() == values);
+  }
+  SECTION("doubles of a reference stay doubles") {
+    auto y = reference.stream<float>({2});
+    auto z = reference.stream<float>({2});
+    y.writeReals(std::vector<double>{0.1, 1.0 / 3});
+    y.copyTo(z);
+    CHECK(z.readReals() == std::vector<double>{0.1, 1.0 / 3});
+  }
+  SECTION("bools, and what is empty") {
+    auto flags = device.stream<bool>({3});
+    flags.fill(true);
+    CHECK(flags.read() == std::vector<std::uint8_t>{1, 1, 1});
+    auto none = device.stream<float>({0});
+    none.fill(1);
+    none.copyTo(none);
+    CHECK(none.read().empty());
+  }
+  SECTION("other shapes are refused") {
+    auto y = device.stream<float>({4});
+    CHECK(errorOf([&] { x.copyTo(y); }) ==
+          "copyTo: the source has shape {5}, the target {4}; give them the same shape, by domain() for one");
+    CHECK(errorOf([&] { Stream<float>().fill(1); }) == "fill: " + noStream);
+    CHECK(errorOf([&] { x.copyTo(Stream<float>().domain({0}, {1})); }) == "domain: " + noStream);
+  }
 }

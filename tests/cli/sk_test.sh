@@ -91,8 +91,10 @@ says "cannot write 'no/such/folder.json'"
 __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent run 0 info
 if [[ $out == 'no OpenGL: '* ]]; then
   matches '^native$'
+  matches '^no GPU: '
   __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent run 0 info --json
   prints '"no_gl": "no device was found'
+  prints '"no_gpu": "'
 fi
 
 # With GL: both devices, the better one first, what is known of llvmpipe, and nothing of what this process wishes of it.
@@ -105,6 +107,7 @@ matches '^  driver '
 matches '^  gives +textures [0-9]+ texels wide or high'
 if grep -q '^llvmpipe' out.txt; then
   [[ $out == native* ]] || broken "native code is no better than a software renderer"
+  matches '^no GPU: '
   for operation in '\+' '-' '\*' '/' 'sqrt'; do matches "^    $operation +\[-0\.5, 0\.5\] .* correctly rounded$"; done
   matches 'a \* b \+ c is rounded twice$'
   matches 'fma of GLSL is rounded twice$'

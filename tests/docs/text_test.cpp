@@ -78,6 +78,31 @@ TEST_CASE("sources that documents name are there", "[text]") {
   }
 }
 
+TEST_CASE("docs/api.md lists what the public headers declare", "[text]") {
+  const std::string index = docs::readFile(fs::path(SK_DOCS_SOURCE) / "docs/api.md");
+  // Types, and members of the classes that programs use: at most two spaces in, and in no inner namespace.
+  static const std::regex declared(
+      R"re(^(?:(?:class|struct|enum class) (\w+)|  (?:[\w:<>&*]+ )+(\w+)\([^()]*\)(?: const| noexcept)*(?:;| \{.*)).*$)re");
+  for (const char* header : {"arithmetic", "call", "device", "error", "future", "iter", "narrow", "options",
+                             "shape", "stream", "table"}) {
+    const std::string file = fmt::format("runtime/include/sk/{}.hpp", header);
+    std::string space = "sk";
+    bool isPrivate = false;
+    for (const std::string& line : docs::linesOf(docs::readFile(fs::path(SK_DOCS_SOURCE) / file))) {
+      if (line.starts_with("namespace detail")) space = "detail";
+      if (line.starts_with("}  // namespace detail")) space = "sk";
+      if (line == " private:") isPrivate = true;
+      if (line == "};") isPrivate = false;
+      std::smatch match;
+      if (space != "sk" || isPrivate || line.find("// the runtime's own") != std::string::npos) continue;
+      if (!std::regex_match(line, match, declared)) continue;
+      const std::string name = match[1].matched ? match[1].str() : match[2].str();
+      INFO(file << ": " << line);
+      CHECK(std::regex_search(index, std::regex("\\b" + name + "\\b")));
+    }
+  }
+}
+
 TEST_CASE("headings of a document have anchors of their own", "[text]") {
   for (const docs::Document& document : docs::documents()) {
     std::set<std::string> anchors;

@@ -65,7 +65,7 @@ enum class Target : std::uint8_t {
   Default,  ///< what is faster on the device
   Fragment,  ///< drawn, as every GL and ES device can
   Compute,  ///< dispatched, by OpenGL 4.3
-  Native,  ///< C++ on the CPU, which native devices run
+  Native,  ///< compiled for the CPU; native devices alone run it
 };
 
 /// What a call may choose, by `sum.with({.accumulate = ...})(x)`.

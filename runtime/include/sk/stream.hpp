@@ -71,6 +71,8 @@ TransferOwner readAsync(const StreamRegion& region);
 void writeAsync(const StreamRegion& region, const void* elements, std::size_t count);
 std::vector<double> readReals(const StreamRegion& region);
 void writeReals(const StreamRegion& region, std::span<const double> values);
+void fill(const StreamRegion& region, const void* element);
+void copy(const StreamRegion& from, const StreamRegion& to);
 StreamTexture textureOf(StreamState* state, int plane);
 void fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t byteOffset, int plane);
 
@@ -154,6 +156,16 @@ class View {
     detail::writeReals(region_, components);
   }
 
+  /// Gives every element this value, on the device.
+  void fill(const value_type& value) const
+    requires isWritable
+  {
+    detail::fill(region_, &value);
+  }
+  /// Copies the elements to a region of the same shape, else sk::Error. The two may overlap, and may be on different devices;
+  /// on one device and in one storage, nothing goes through host memory.
+  void copyTo(const View<value_type>& target) const { detail::copy(region_, target.region()); }
+
   /// The box from `begin` (inclusive) to `end` (exclusive) of this one, rows first. Throws sk::Error
   /// where it is not inside.
   View domain(const Index& begin, const Index& end) const {
@@ -224,6 +236,13 @@ class Stream {
   std::vector<double> readReals() const { return all().readReals(); }
   /// The other way: `components` are as many as readReals() gives, else sk::Error. What holds less rounds them to nearest.
   void writeReals(std::span<const double> components) { all().writeReals(components); }
+
+  /// Gives every element this value, on the device.
+  void fill(const T& value) { all().fill(value); }
+  /// Copies the elements to a stream or a view of the same shape, else sk::Error. The two may overlap, and may be on different
+  /// devices; on one device and in one storage, nothing goes through host memory.
+  void copyTo(Stream& target) const { all().copyTo(target.all()); }
+  void copyTo(const View<T>& target) const { all().copyTo(target); }
 
   /// The box from `begin` (inclusive) to `end` (exclusive), rows first. Throws sk::Error where it is
   /// not inside the stream.

@@ -3,6 +3,8 @@
 // What streams and views do: life, regions, reading, writing.
 #include "sk/stream.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "device/device_state.hpp"
@@ -259,6 +261,51 @@ std::vector<double> detail::readReals(const StreamRegion& region) {
     withHostMemory("readReals", [&] { stream.readReals(region, values.data()); });
   }
   return values;
+}
+
+void detail::fill(const StreamRegion& region, const void* element) {
+  StreamState& stream = liveStream(region, "fill");
+  if (region.shape.size() == 0) return;
+  const TransferScope traced(stream, "fill", region);
+  withHostMemory("fill", [&] { stream.fill(region, static_cast<const std::byte*>(element)); });
+}
+
+namespace {
+
+/// Through host memory, in double where the elements are floats, so that a reference loses nothing.
+void copyByHost(const StreamRegion& from, const StreamRegion& to) {
+  const program::Element& element = *from.stream->element;
+  const bool isOfFloats = std::ranges::all_of(
+      element.fields, [](const program::Field& field) { return field.scalar == program::Scalar::Float; });
+  if (isOfFloats) {
+    auto values = detail::hostVector<double>(realsIn(from, element, "copyTo"));
+    from.stream->readReals(from, values.data());
+    to.stream->writeReals(to, values.data());
+    return;
+  }
+  auto elements = detail::hostVector<std::byte>(bytesOf(from.shape.size(), element.size));
+  from.stream->read(from, elements.data());
+  to.stream->write(to, elements.data());
+}
+
+}  // namespace
+
+void detail::copy(const StreamRegion& from, const StreamRegion& to) {
+  StreamState& source = liveStream(from, "copyTo");
+  StreamState& target = liveStream(to, "copyTo");
+  if (from.shape != to.shape) {
+    throw Error(
+        fmt::format(
+            "copyTo: the source has shape {}, the target {}; give them the same shape, by domain() for one",
+            toString(from.shape), toString(to.shape)),
+        Error::Kind::Shape);
+  }
+  if (from.shape.size() == 0) return;
+  const TransferScope traced(target, "copy", to);
+  withHostMemory("copyTo", [&] {
+    const bool isDone = source.device == target.device && target.copyFrom(from, to);
+    if (!isDone) copyByHost(from, to);
+  });
 }
 
 namespace {

@@ -38,6 +38,11 @@ class StreamState {
   /// `values` has room for every component of every element; all are floats.
   virtual void readReals(const StreamRegion& region, double* values) = 0;
   virtual void writeReals(const StreamRegion& region, const double* values) = 0;
+  /// `value` is laid out as the Element says.
+  virtual void fill(const StreamRegion& region, const std::byte* value) = 0;
+  /// From a region of the same shape in a stream of the same element on the same device, which may be this stream. False where the
+  /// device cannot copy the elements as they are stored; nothing has happened then.
+  virtual bool copyFrom(const StreamRegion& from, const StreamRegion& to) = 0;
   /// Throws sk::Error where the device has no textures.
   virtual StreamTexture texture(int plane) = 0;
   /// The plane exists, the offset is good for it, and the stream has an element. Throws sk::Error where the device has no buffers.

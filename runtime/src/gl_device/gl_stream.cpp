@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device/gl_stream.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "gl_device/gl_device.hpp"
 #include "gl_device/pass/pass.hpp"
 #include "gl_device/transfer/buffered_transfer.hpp"
+#include "gl_device/transfer/copy_kernel.hpp"
 #include "gl_device/transfer/pending_read.hpp"
 #include "gl_device/transfer/transfer.hpp"
 #include "sk/error.hpp"
@@ -212,6 +214,56 @@ void GlStream::writeReals(const StreamRegion& region, const double* values) {
   std::vector<std::byte> converted(count * held().size);
   writeComponents(held(), converted.data(), count, values);
   uploadHeld(region, converted.data());
+}
+
+// A texel with the value is an input that serves every element.
+void GlStream::fill(const StreamRegion& region, const std::byte* value) {
+  const DeviceScope scope(owner());
+  const Travelling what = travelling(region);
+  std::vector<std::byte> texel(std::max(what.element->size, held().size));
+  if (held_) {
+    convertElements(*element, value, held(), texel.data(), 1);
+  } else {
+    std::copy_n(value, element->size, texel.begin());
+  }
+  for (std::size_t at = held().size; at < what.element->size; at += held().size) {
+    std::copy_n(texel.begin(), held().size, texel.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+  PlanesLease one(owner());
+  one.planes = owner().takePlanes(*what.element, {1, 1}, "the value of fill()");
+  const RegionLayout single{.extent = {1, 1, 1, 1}};
+  upload(owner(), *what.element, one.planes, single, texel.data());
+  const std::vector<assemble::Rect> rects = assemble::drawnTexels(what.place);
+  for (std::size_t plane = 0; plane < planes.size(); ++plane) {
+    const Operand operands[] = {{nullptr, single, std::span(one.planes).subspan(plane, 1)}, {}};
+    RenderTarget* const targets[] = {&planes[plane]};
+    runKernel(owner(), copyKernel(what.element->fields[plane]), operands, what.place, rects, targets);
+  }
+}
+
+bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
+  GlStream& source = glStream(from);
+  if (source.storage != storage) return false;
+  const DeviceScope scope(owner());
+  const auto isWholeTexels = [](const StreamRegion& region) {
+    const RegionLayout place = regionLayoutOf(region, glStream(region).layout);
+    return place.packed && assemble::isWholeTexels(place);
+  };
+  if (!isWholeTexels(from) || !isWholeTexels(to)) {
+    source.unpack();
+    unpack();
+  }
+  const RegionLayout place = regionLayoutOf(to, layout);
+  if (&source != this) {
+    copyRegion(owner(), held(), source.planes, regionLayoutOf(from, source.layout), planes, place);
+    return true;
+  }
+  // regions of one stream may overlap: all of it is copied, and read from there
+  PlanesLease before(owner());
+  before.planes = takePlanesFor(layout);
+  copyRegion(owner(), held(), planes, layout.whole, before.planes, layout.whole);
+  copyRegion(owner(), held(), before.planes, regionLayoutOf(from, layout), planes, place);
+  return true;
 }
 
 StreamTexture GlStream::texture(int plane) {

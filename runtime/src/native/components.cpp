@@ -118,12 +118,20 @@ Components Components::clone(std::int64_t count, RealType real) const {
   return copy;
 }
 
-void Components::assign(const Components& from, std::int64_t count) {
+void Components::assign(const Components& from, std::int64_t count) { copy(from, 0, 0, count); }
+
+void Components::copy(const Components& others, std::int64_t from, std::int64_t first, std::int64_t count) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
     native::inParallel(count, 1, native::Deal::Evenly, [&](native::Range part) {
-      move(from.valuesFrom(c, part.begin), valuesFrom(c, part.begin), part.end - part.begin);
+      move(others.valuesFrom(c, from + part.begin), valuesFrom(c, first + part.begin), part.end - part.begin);
     });
   }
+}
+
+void Components::fill(std::int64_t first, std::int64_t count, const std::byte* element) {
+  native::inParallel(count, 1, native::Deal::Evenly, [&](native::Range part) {
+    write(first + part.begin, part.end - part.begin, element, 0);
+  });
 }
 
 Values<std::byte> Components::valuesFrom(std::size_t component, std::int64_t first) {

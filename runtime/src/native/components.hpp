@@ -53,6 +53,10 @@ class Components {
   void assign(const Components& from, std::int64_t count);
   std::span<void* const> arrays() const { return pointers_; }
 
+  /// Copies `count` elements of others, which are of as many components, from `from` on to those from `first` on.
+  void copy(const Components& others, std::int64_t from, std::int64_t first, std::int64_t count);
+  /// Gives `count` elements from `first` on the value of one in host memory.
+  void fill(std::int64_t first, std::int64_t count, const std::byte* element);
   /// `count` elements from `first` on, from and to host memory.
   void write(std::int64_t first, std::int64_t count, const std::byte* elements, std::size_t elementBytes);
   void read(std::int64_t first, std::int64_t count, std::byte* elements, std::size_t elementBytes) const;

@@ -2,6 +2,7 @@
 #include "native/native_stream.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -103,6 +104,27 @@ void NativeStream::writeReals(const StreamRegion& region, const double* values) 
                           values + static_cast<std::size_t>(number) * components.arrays().size());
   });
   keepStorage();
+}
+
+void NativeStream::fill(const StreamRegion& region, const std::byte* value) {
+  forEachRun(region, [&](std::int64_t first, std::int64_t, std::int64_t count) {
+    components.fill(first, count, value);
+  });
+  keepStorage();
+}
+
+bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
+  const NativeStream& source = nativeStream(from);
+  std::vector<std::int64_t> starts;
+  forEachRun(from, [&](std::int64_t first, std::int64_t, std::int64_t) { starts.push_back(first); });
+  Components before;  // elements that overlap are read as they were
+  if (&source == this) before = components.clone(shape.size(), components.real());
+  auto start = starts.begin();
+  forEachRun(to, [&](std::int64_t first, std::int64_t, std::int64_t count) {
+    components.copy(&source == this ? before : source.components, *start++, first, count);
+  });
+  keepStorage();
+  return true;
 }
 
 void NativeStream::writeScalars(const StreamRegion& region, std::size_t offset, const std::byte* values) {

@@ -25,6 +25,8 @@ class NativeStream final : public StreamState {
   void read(const StreamRegion& region, std::byte* elements) override;
   void readReals(const StreamRegion& region, double* values) override;
   void writeReals(const StreamRegion& region, const double* values) override;
+  void fill(const StreamRegion& region, const std::byte* value) override;
+  bool copyFrom(const StreamRegion& from, const StreamRegion& to) override;
   /// The scalar that is `offset` bytes from the start of each element in host memory: values as the arrays hold them.
   void writeScalars(const StreamRegion& region, std::size_t offset, const std::byte* values);
   StreamTexture texture(int plane) override;

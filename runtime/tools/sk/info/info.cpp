@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 
 #include "info/device_info.hpp"
+#include "info/missing_gpu.hpp"
 #include "info/report.hpp"
 #include "sk/error.hpp"
 #include "support/cache_folder.hpp"
@@ -80,6 +81,7 @@ Json infoOfAll(const InfoOptions& options) {
     if (!name.empty() || !options.profile.empty()) throw;
     all["no_gl"] = error.what();
   }
+  if (name.empty() && !hasGpu) all["no_gpu"] = whyNoGpu(thisMachine());
   if (name.empty()) {
     sk::Device native = sk::Device::native();
     devices.insert(hasGpu ? devices.end() : devices.begin(), infoOf(native, options.refresh));
@@ -111,6 +113,7 @@ void runInfo(const InfoOptions& options) {
   if (options.json) writeJson(options.jsonFile, json);
   if (all.contains("no_gl")) fmt::print("no OpenGL: {}\n\n", all["no_gl"].get<std::string>());
   for (const Json& device : all["devices"]) fmt::print("{}\n", report(device));
+  if (all.contains("no_gpu")) fmt::print("no GPU: {}\n", all["no_gpu"].get<std::string>());
 }
 
 }  // namespace
