@@ -100,6 +100,7 @@ includes() {
 
 license() {
   { sources '(' -name '*.hpp' -o -name '*.cpp' -o -name '*.def' -o -name '*.cmake' -o -name '*.sh' \
+      -o -name '*.glsl' \
       -o -name 'CMakeLists.txt' ')'
     sources -path 'examples/*.sk'
     find CMakeLists.txt dev cmake .ci -type f

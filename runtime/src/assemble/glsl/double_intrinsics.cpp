@@ -10,6 +10,7 @@
 
 #include "assemble/glsl/double_pieces.hpp"
 #include "assemble/glsl/double_polynomials.hpp"
+#include "glsl_text/double_intrinsics.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -24,178 +25,25 @@ struct Row {
 
 // clang-format off: in the order of program::Intrinsic
 constexpr std::array rows = {
-    Row{pieces(Piece::Wave), R"(
-sk_double sk_sin(sk_double x) { return sk_toggle(sk_wave(sk_abs(x), 0), x); }
-)"},
-    Row{pieces(Piece::Wave), R"(
-sk_double sk_cos(sk_double x) { return sk_wave(sk_abs(x), 1); }
-)"},
-    Row{pieces(Piece::Wave), R"(
-sk_double sk_tan(sk_double x) {
-  if (sk_isnan(x) || sk_isinf(x)) return sk_nan();
-  int q;
-  sk_double r = sk_reduce(sk_abs(x), q), s = sk_wave_part(r, false), c = sk_wave_part(r, true);
-  bool odd = (q & 1) != 0;
-  return sk_toggle(sk_div(odd ? sk_neg(c) : s, odd ? s : c), x);
-}
-)"},
-    Row{pieces(Piece::Angle), R"(
-sk_double sk_asin(sk_double x) {
-  sk_double a = sk_abs(x), one = D(1.0);
-  if (sk_isnan(x) || sk_less(one, a)) return sk_nan();
-  return sk_toggle(sk_angle(a, sk_sqrt(sk_mul(sk_sub(one, a), sk_add(one, a)))), x);
-}
-)"},
-    Row{pieces(Piece::Angle), R"(
-sk_double sk_acos(sk_double x) {
-  sk_double a = sk_abs(x), one = D(1.0);
-  if (sk_isnan(x) || sk_less(one, a)) return sk_nan();
-  sk_double angle = sk_angle(sk_sqrt(sk_mul(sk_sub(one, a), sk_add(one, a))), a);
-  return sk_is_negative(x) ? sk_sub(D(3.1415926535897931), angle) : angle;
-}
-)"},
-    Row{pieces(Piece::Angle), R"(
-sk_double sk_atan(sk_double x) {
-  if (sk_isnan(x)) return x;
-  sk_double a = sk_abs(x), most = D(1e30);
-  return sk_toggle(sk_angle(sk_less(most, a) ? most : a, D(1.0)), x);
-}
-)"},
-    Row{pieces(Piece::Angle), R"(
-sk_double sk_atan2(sk_double y, sk_double x) {
-  if (sk_isnan(x) || sk_isnan(y)) return sk_nan();
-  sk_double a = sk_ldexp(sk_abs(x), 0), b = sk_ldexp(sk_abs(y), 0), zero = D(0.0), one = D(1.0);
-  sk_double larger = sk_less(a, b) ? b : a;
-  int e = sk_exponent(larger);
-  if (sk_isinf(larger)) {
-    a = sk_isinf(a) ? one : zero;
-    b = sk_isinf(b) ? one : zero;
-  } else if (sk_equal(larger, zero)) {
-    a = one;
-  } else {
-    a = sk_ldexp(a, 60 - e);   // the smaller one stays far from 0 where the quotient does
-    b = sk_ldexp(b, 60 - e);
-  }
-  sk_double angle = sk_angle(b, a);
-  return sk_toggle(sk_is_negative(x) ? sk_sub(D(3.1415926535897931), angle) : angle, y);
-}
-)"},
-    Row{pieces(Piece::ExpReduced), R"(
-sk_double sk_sinh(sk_double x) {
-  if (sk_isnan(x)) return x;
-  sk_double a = sk_abs(x), one = D(1.0);
-  float f = sk_to_float(a);
-  if (f > 800.0) return sk_toggle(sk_infinity(), x);
-  int n;
-  sk_double e = sk_exp_reduced(a, n), t = sk_add(sk_ldexp(e, n), sk_sub(sk_ldexp(one, n), one));
-  sk_double y = sk_mul(D(0.5), sk_add(t, sk_div(t, sk_add(t, one))));
-  return sk_toggle(f < 22.0 ? y : sk_ldexp(sk_add(one, e), n - 1), x);
-}
-)"},
-    Row{pieces(Piece::ExpReduced), R"(
-sk_double sk_cosh(sk_double x) {
-  if (sk_isnan(x)) return x;
-  sk_double a = sk_abs(x);
-  if (sk_to_float(a) > 800.0) return sk_infinity();
-  int n;
-  sk_double e = sk_exp_reduced(a, n), y = sk_ldexp(sk_add(D(1.0), e), n - 1);
-  return sk_add(y, sk_div(D(0.25), y));
-}
-)"},
-    Row{pieces(Piece::ExpReduced), R"(
-sk_double sk_tanh(sk_double x) {
-  if (sk_isnan(x)) return x;
-  sk_double a = sk_abs(x), one = D(1.0);
-  if (sk_to_float(a) > 22.0) return sk_toggle(one, x);
-  int n;
-  sk_double e = sk_exp_reduced(sk_add(a, a), n), t = sk_add(sk_ldexp(e, n), sk_sub(sk_ldexp(one, n), one));
-  return sk_toggle(sk_div(t, sk_add(t, D(2.0))), x);
-}
-)"},
-    Row{pieces(Piece::LogPlus), R"(
-sk_double sk_asinh(sk_double x) {
-  if (sk_isnan(x) || sk_isinf(x)) return x;
-  sk_double a = sk_abs(x), z = sk_mul(a, a), one = D(1.0);
-  bool huge = sk_less(D(1e18), a);   // then sqrt(1 + x^2) is x
-  sk_double t = sk_add(a, sk_div(z, sk_add(one, sk_sqrt(sk_add(one, z)))));
-  return sk_toggle(sk_log_plus(huge ? a : t, huge ? 1 : 0), x);
-}
-)"},
-    Row{pieces(Piece::LogPlus), R"(
-sk_double sk_acosh(sk_double x) {
-  if (sk_isnan(x) || sk_less(x, D(1.0))) return sk_nan();
-  if (sk_isinf(x)) return x;
-  sk_double t = sk_sub(x, D(1.0));
-  bool huge = sk_less(D(1e18), x);
-  return sk_log_plus(huge ? x : sk_add(t, sk_sqrt(sk_mul(t, sk_add(t, D(2.0))))), huge ? 1 : 0);
-}
-)"},
-    Row{pieces(Piece::LogPlus), R"(
-sk_double sk_atanh(sk_double x) {
-  sk_double a = sk_abs(x), one = D(1.0);
-  if (sk_isnan(x) || sk_less(one, a)) return sk_nan();
-  if (sk_equal(a, one)) return sk_toggle(sk_infinity(), x);
-  return sk_toggle(sk_mul(D(0.5), sk_log_plus(sk_div(sk_add(a, a), sk_sub(one, a)), 0)), x);
-}
-)"},
-    Row{pieces(Piece::ExpReduced), R"(
-sk_double sk_exp(sk_double x) {
-  if (sk_isnan(x)) return x;
-  float f = sk_to_float(x);
-  if (abs(f) > 800.0) return sk_exp_limit(f);
-  int n;
-  sk_double e = sk_exp_reduced(x, n);
-  return sk_ldexp(sk_add(D(1.0), e), n);
-}
-)"},
-    Row{pieces(Piece::ExpTail), R"(
-sk_double sk_exp2(sk_double x) {
-  if (sk_isnan(x)) return x;
-  float f = sk_to_float(x);
-  if (abs(f) > 1200.0) return sk_exp_limit(f);
-  float n = roundEven(f);
-  sk_double r = sk_sub(x, sk_to_double(n));
-  return sk_ldexp(sk_add(D(1.0), sk_exp_tail(sk_mul(r, D(0.69314718055994529)))), int(n));
-}
-)"},
-    Row{pieces(Piece::Log), R"(
-sk_double sk_log(sk_double x) {
-  int e;
-  sk_double f = sk_fraction(x, e);
-  return sk_log_limited(x, sk_log_of(f, e));
-}
-)"},
-    Row{pieces(Piece::Log), R"(
-sk_double sk_log2(sk_double x) {
-  int e;
-  sk_double f = sk_fraction(x, e), y = sk_mul(sk_sub(f, sk_log_tail(f)), D(1.4426950408889634));
-  return sk_log_limited(x, sk_add(sk_to_double(float(e)), y));
-}
-)"},
-    Row{pieces(Piece::Log), R"(
-sk_double sk_log10(sk_double x) {
-  int e;
-  sk_double f = sk_fraction(x, e), k = sk_to_double(float(e));
-  sk_double y = sk_mul(sk_sub(f, sk_log_tail(f)), D(0.43429448190325182));
-  y = sk_add(y, sk_mul(k, D(1.1451100898021838e-10)));
-  return sk_log_limited(x, sk_add(sk_mul(k, D(0.30102999554947019)), y));
-}
-)"},
-    Row{pieces(Piece::Power), R"(
-sk_double sk_pow(sk_double x, sk_double y) {
-  sk_double one = D(1.0), zero = D(0.0), a = sk_ldexp(sk_abs(x), 0);
-  if (sk_equal(y, zero) || sk_equal(x, one)) return one;
-  if (sk_isnan(x) || sk_isnan(y)) return sk_nan();
-  bool whole = sk_equal(sk_floor(y), y), below = sk_is_negative(y), negative = sk_is_negative(x);
-  sk_double halved = sk_ldexp(y, -1);
-  bool odd = whole && !sk_equal(sk_floor(halved), halved);
-  sk_double p = sk_equal(a, one) ? one : sk_power(a, y);
-  if (sk_equal(a, zero)) p = below ? sk_infinity() : zero;
-  else if (sk_isinf(a)) p = below ? zero : sk_infinity();
-  else if (negative && !whole) return sk_nan();
-  return negative && odd ? sk_neg(p) : p;
-}
-)"},
+    Row{pieces(Piece::Wave), library::sin},
+    Row{pieces(Piece::Wave), library::cos},
+    Row{pieces(Piece::Wave), library::tan},
+    Row{pieces(Piece::Angle), library::asin},
+    Row{pieces(Piece::Angle), library::acos},
+    Row{pieces(Piece::Angle), library::atan},
+    Row{pieces(Piece::Angle), library::atan2},
+    Row{pieces(Piece::ExpReduced), library::sinh},
+    Row{pieces(Piece::ExpReduced), library::cosh},
+    Row{pieces(Piece::ExpReduced), library::tanh},
+    Row{pieces(Piece::LogPlus), library::asinh},
+    Row{pieces(Piece::LogPlus), library::acosh},
+    Row{pieces(Piece::LogPlus), library::atanh},
+    Row{pieces(Piece::ExpReduced), library::exp},
+    Row{pieces(Piece::ExpTail), library::exp2},
+    Row{pieces(Piece::Log), library::log},
+    Row{pieces(Piece::Log), library::log2},
+    Row{pieces(Piece::Log), library::log10},
+    Row{pieces(Piece::Power), library::pow},
 };
 // clang-format on
 static_assert(rows.size() == static_cast<std::size_t>(Intrinsic::Pow) + 1);

@@ -1,138 +1,26 @@
 // SPDX-License-Identifier: MIT
 //
-// The GLSL functions that assembled programs share. Indices are integers only, no negative operand of / or %,
-// and no overflow for any index or offset, since indices are not negative and extents at most sk::mostExtent.
-#include <array>
-#include <utility>
-
+// The GLSL functions that assembled programs share (functions.glsl).
+#include "glsl_text/functions.hpp"
 #include "assemble/glsl/program_text.hpp"
 
 namespace sk::assemble {
 
 std::string_view text(Function function) {
   switch (function) {
-    case Function::Unravel2:
-      return R"(
-// Index of element number n, given the strides.
-ivec4 sk_unravel(int sk_n, ivec4 sk_s) {
-  int sk_y = sk_n / sk_s.y;
-  return ivec4(sk_n - sk_y * sk_s.y, sk_y, 0, 0);
-}
-)";
-    case Function::Unravel3:
-      return R"(
-// Index of element number n, given the strides.
-ivec4 sk_unravel(int sk_n, ivec4 sk_s) {
-  int sk_z = sk_n / sk_s.z;
-  sk_n -= sk_z * sk_s.z;
-  int sk_y = sk_n / sk_s.y;
-  return ivec4(sk_n - sk_y * sk_s.y, sk_y, sk_z, 0);
-}
-)";
-    case Function::Unravel4:
-      return R"(
-// Index of element number n, given the strides.
-ivec4 sk_unravel(int sk_n, ivec4 sk_s) {
-  int sk_w = sk_n / sk_s.w;
-  sk_n -= sk_w * sk_s.w;
-  int sk_z = sk_n / sk_s.z;
-  sk_n -= sk_z * sk_s.z;
-  int sk_y = sk_n / sk_s.y;
-  return ivec4(sk_n - sk_y * sk_s.y, sk_y, sk_z, sk_w);
-}
-)";
-    case Function::Ravel:
-      return R"(
-// Number of the element at index i, given the strides.
-int sk_ravel(ivec4 sk_i, ivec4 sk_s) {
-  return sk_i.x * sk_s.x + sk_i.y * sk_s.y + sk_i.z * sk_s.z + sk_i.w * sk_s.w;
-}
-)";
-    case Function::Texel:
-      return R"(
-// Texel of element number n in a texture of width 1 << s.
-ivec2 sk_texel(int sk_n, int sk_s) {
-  return ivec2(sk_n & ((1 << sk_s) - 1), sk_n >> sk_s);
-}
-)";
-    case Function::Layered:
-      return R"(
-// Texel t of layers of 1 << s rows each, which continue each other.
-ivec3 sk_layered(ivec2 sk_t, int sk_s) {
-  return ivec3(sk_t.x, sk_t.y & ((1 << sk_s) - 1), sk_t.y >> sk_s);
-}
-)";
-    case Function::Wrap:
-      return R"(
-// i + d in a period of n elements, for i >= 0 and any d.
-int sk_wrap(int sk_i, int sk_d, int sk_n) {
-  bool sk_below = sk_d < -sk_i;
-  uint sk_p = uint(sk_i) + uint(sk_d);
-  int sk_r = int((sk_below ? ~sk_p : sk_p) % uint(sk_n));
-  return sk_below ? sk_n - 1 - sk_r : sk_r;
-}
-)";
-    case Function::WrapOnce:
-      return R"(
-// p in a period of n elements, for -n <= p < 2n.
-int sk_wrap(int sk_p, int sk_n) {
-  return sk_p < 0 ? sk_p + sk_n : sk_p < sk_n ? sk_p : sk_p - sk_n;
-}
-)";
-    case Function::Mirror:
-      return R"(
-// i + d mirrored at the ends of n elements, which repeats them, for i >= 0 and any d.
-int sk_mirror(int sk_i, int sk_d, int sk_n) {
-  uint sk_p = uint(sk_i) + uint(sk_d);
-  if (sk_d < -sk_i) sk_p = ~sk_p;
-  uint sk_turns = sk_p / uint(sk_n);
-  int sk_r = int(sk_p - sk_turns * uint(sk_n));
-  return (sk_turns & 1u) == 0u ? sk_r : sk_n - 1 - sk_r;
-}
-)";
-    case Function::MirrorOnce:
-      return R"(
-// p mirrored at the ends of n elements, which repeats them, for -n <= p < 2n.
-int sk_mirror(int sk_p, int sk_n) {
-  return sk_p < 0 ? -1 - sk_p : sk_p < sk_n ? sk_p : sk_n - 1 - (sk_p - sk_n);
-}
-)";
-    case Function::ToHalf:
-      return R"(
-// The half that is nearest to x, of two the even one; infinity from 65520 on.
-float sk_to_half(float sk_x) {
-  uint sk_b = floatBitsToUint(sk_x), sk_m = sk_b & 0x7fffffffu;
-  if (sk_m > 0x7f800000u) return sk_x;
-  uint sk_r = (sk_m + 0xfffu + ((sk_m >> 13) & 1u)) & 0xffffe000u;
-  if (sk_r > 0x477fe000u) sk_r = 0x7f800000u;
-  if (sk_m < 0x38800000u) {
-    sk_r = floatBitsToUint(roundEven(uintBitsToFloat(sk_m) * 16777216.0) * 5.9604645e-8);
-  }
-  return uintBitsToFloat((sk_b & 0x80000000u) | sk_r);
-}
-)";
-    case Function::Local:
-      return R"(
-// Where the invocation is in its work group of 8 x 16: eight after one another fetch a line of the cache, 2 x 4 texels.
-ivec2 sk_local() {
-  int sk_i = int(gl_LocalInvocationIndex);
-  return ivec2((sk_i & 1) | (sk_i >> 2 & 6), (sk_i >> 1 & 3) | (sk_i >> 5 << 2));
-}
-)";
-    case Function::Sampled:
-      return R"(
-// The texel at t of a texture of at most 2^20 texels in each direction, whose sampler takes the nearest.
-vec2 sk_centre(ivec2 sk_t, ivec2 sk_n) { return (vec2(sk_t) + 0.5) / vec2(sk_n); }
-vec4 sk_sampled(sampler2D sk_s, ivec2 sk_t) {
-  return textureLod(sk_s, sk_centre(sk_t, textureSize(sk_s, 0)), 0.0);
-}
-ivec4 sk_sampled(isampler2D sk_s, ivec2 sk_t) {
-  return textureLod(sk_s, sk_centre(sk_t, textureSize(sk_s, 0)), 0.0);
-}
-uvec4 sk_sampled(usampler2D sk_s, ivec2 sk_t) {
-  return textureLod(sk_s, sk_centre(sk_t, textureSize(sk_s, 0)), 0.0);
-}
-)";
+    case Function::Unravel2: return library::unravel2;
+    case Function::Unravel3: return library::unravel3;
+    case Function::Unravel4: return library::unravel4;
+    case Function::Ravel: return library::ravel;
+    case Function::Texel: return library::texel;
+    case Function::Layered: return library::layered;
+    case Function::Wrap: return library::wrap;
+    case Function::WrapOnce: return library::wrapOnce;
+    case Function::Mirror: return library::mirror;
+    case Function::MirrorOnce: return library::mirrorOnce;
+    case Function::ToHalf: return library::toHalf;
+    case Function::Local: return library::local;
+    case Function::Sampled: return library::sampled;
   }
   return {};
 }

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+//
+// Doubles, in two forms: GLSL's own, and pairs of floats.
+//
+// A native double is kept as its bits, and is a double only within these functions, where it costs nothing:
+// NVIDIA's GLSL compiler (seen on an H100, at every version) rounds doubles to floats that it keeps in an array
+// with a computed index, alone or in structs.
+//
+// A pair is the sum of two floats, of which the second is at most half a unit in the last place of the
+// first: 48 bits of precision in the range of float. Its arithmetic is made of error-free steps, each of which
+// has to stay as it is written (exact_sums.hpp).
+//
+//   sum, product    Joldes, Muller, Popescu, ACM TOMS 44 (2017): algorithms 6 and 10
+//   product's error Dekker, Numerische Mathematik 18 (1971), with halves of 12 bits cut by a mask: no fma,
+//                   which need not be fused, and no overflow
+//   quotient, root  long division: what is left of the dividend is divided again, so that the device's own
+//                   division and root may be off by some units in the last place
+//
+// A section begins with `////` and its name in C++; glsl_text/doubles.hpp has them as constants.
+
+//// native
+struct sk_double { uvec2 bits; };
+double sk_value(sk_double a) { return packDouble2x32(a.bits); }
+sk_double sk_of(double a) { return sk_double(unpackDouble2x32(a)); }
+sk_double sk_unpack(uvec2 b) { return sk_double(b); }
+uvec2 sk_pack(sk_double a) { return a.bits; }
+sk_double sk_to_double(float a) { return sk_of(double(a)); }
+sk_double sk_to_double(int a) { return sk_of(double(a)); }
+sk_double sk_to_double(uint a) { return sk_of(double(a)); }
+float sk_to_float(sk_double a) { return float(sk_value(a)); }
+bool sk_isnan(sk_double a) {
+  uint high = a.bits.y & 0x7fffffffu;
+  return high > 0x7ff00000u || (high == 0x7ff00000u && a.bits.x != 0u);
+}
+int sk_to_int(sk_double a) {
+  if (sk_isnan(a)) return 0;   // comparisons of NaN are not the same everywhere
+  double x = sk_value(a);
+  if (x >= 2147483648.0lf) return 2147483647;
+  return x > -2147483648.0lf ? int(x) : x <= -2147483648.0lf ? -2147483647 - 1 : 0;
+}
+uint sk_to_uint(sk_double a) {
+  if (sk_isnan(a)) return 0u;
+  double x = sk_value(a);
+  return x >= 4294967296.0lf ? 0xffffffffu : x > 0.0lf ? uint(x) : 0u;
+}
+sk_double sk_neg(sk_double a) { return sk_double(a.bits ^ uvec2(0u, 0x80000000u)); }
+sk_double sk_add(sk_double a, sk_double b) { return sk_of(sk_value(a) + sk_value(b)); }
+sk_double sk_sub(sk_double a, sk_double b) { return sk_of(sk_value(a) - sk_value(b)); }
+sk_double sk_mul(sk_double a, sk_double b) { return sk_of(sk_value(a) * sk_value(b)); }
+sk_double sk_div(sk_double a, sk_double b) { return sk_of(sk_value(a) / sk_value(b)); }
+bool sk_less(sk_double a, sk_double b) { return sk_value(a) < sk_value(b); }
+bool sk_less_equal(sk_double a, sk_double b) { return sk_value(a) <= sk_value(b); }
+bool sk_equal(sk_double a, sk_double b) { return sk_value(a) == sk_value(b); }
+sk_double sk_abs(sk_double a) { return sk_double(a.bits & uvec2(0xffffffffu, 0x7fffffffu)); }
+// From 2^52 on, all are whole. Of infinity, Mesa's functions are NaN.
+bool sk_is_whole(sk_double a) { return (a.bits.y & 0x7fffffffu) >= 0x43300000u; }
+sk_double sk_floor(sk_double a) { return sk_is_whole(a) ? a : sk_of(floor(sk_value(a))); }
+sk_double sk_trunc(sk_double a) { return sk_is_whole(a) ? a : sk_of(trunc(sk_value(a))); }
+sk_double sk_round(sk_double a) { return sk_is_whole(a) ? a : sk_of(roundEven(sk_value(a))); }
+sk_double sk_sqrt(sk_double a) { return sk_of(sqrt(sk_value(a))); }
+bool sk_isinf(sk_double a) { return sk_abs(a).bits == uvec2(0u, 0x7ff00000u); }
+// What is below the smallest normal double is 0.
+sk_double sk_ldexp(sk_double a, int e) {
+  uint sign = a.bits.y & 0x80000000u;
+  int old = int((a.bits.y >> 20) & 0x7ffu);
+  int scaled = old + clamp(e, -4096, 4096);
+  if (old == 2047) return a;
+  if (old == 0 || scaled <= 0) return sk_double(uvec2(0u, sign));
+  if (scaled >= 2047) return sk_double(uvec2(0u, sign | 0x7ff00000u));
+  return sk_double(uvec2(a.bits.x, (a.bits.y & 0x800fffffu) | (uint(scaled) << 20)));
+}
+
+//// pair
+struct sk_double { float hi, lo; };
+
+bool sk_is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+
+// The sum of two floats, for |a| >= |b| or a = 0.
+sk_double sk_join(float a, float b) {
+  sk_precise float s = sk_keep(a + b);
+  sk_precise float t = sk_keep(s - a);
+  sk_precise float e = sk_keep(b - t);
+  bool isOne = b == 0.0;   // keeps the sign of a zero
+  return sk_double(isOne ? a : s, isOne || !sk_is_finite(s) ? 0.0 : e);
+}
+
+// The result, unless its head is infinite or NaN. Without branches, which take compilers long.
+sk_double sk_where_finite(float head, sk_double result) {
+  bool isFinite = sk_is_finite(head);
+  return sk_double(isFinite ? result.hi : head, isFinite ? result.lo : 0.0);
+}
+
+// The sum of any two floats; what is lost is not finite where the sum is not.
+sk_double sk_two_sum(float a, float b) {
+  sk_precise float s = sk_keep(a + b);
+  bool isLarge = abs(a) >= abs(b);
+  sk_precise float t = sk_keep(s - (isLarge ? a : b));
+  sk_precise float e = sk_keep((isLarge ? b : a) - t);
+  return sk_double(s, e);
+}
+
+sk_double sk_two_product(float a, float b) {
+  sk_precise float p = sk_keep(a * b);
+  float ah = uintBitsToFloat(floatBitsToUint(a) & 0xfffff000u);
+  float bh = uintBitsToFloat(floatBitsToUint(b) & 0xfffff000u);
+  sk_precise float al = sk_keep(a - ah);
+  sk_precise float bl = sk_keep(b - bh);
+  sk_precise float d = sk_keep(ah * bh - p);   // products of halves are exact, contracted or not
+  sk_precise float e = sk_keep(d + ah * bl);
+  sk_precise float f = sk_keep(e + al * bh);
+  sk_precise float g = sk_keep(f + al * bl);
+  return sk_double(p, sk_is_finite(p) ? g : 0.0);
+}
+
+sk_double sk_neg(sk_double a) { return sk_double(-a.hi, -a.lo); }
+
+sk_double sk_add(sk_double a, sk_double b) {
+  sk_double s = sk_two_sum(a.hi, b.hi);
+  sk_double t = sk_two_sum(a.lo, b.lo);
+  sk_precise float c = sk_keep(s.lo + t.hi);
+  sk_double v = sk_join(s.hi, c);
+  sk_precise float w = sk_keep(t.lo + v.lo);
+  return sk_where_finite(s.hi, sk_join(v.hi, w));
+}
+
+sk_double sk_sub(sk_double a, sk_double b) { return sk_add(a, sk_neg(b)); }
+
+sk_double sk_mul(sk_double a, sk_double b) {
+  sk_double p = sk_two_product(a.hi, b.hi);
+  sk_precise float c = sk_keep(a.hi * b.lo);
+  sk_precise float d = sk_keep(a.lo * b.hi);
+  sk_precise float e = sk_keep(c + d);
+  sk_precise float f = sk_keep(p.lo + e);
+  return sk_where_finite(p.hi, sk_join(p.hi, f));
+}
+
+sk_double sk_div(sk_double a, sk_double b) {
+  sk_precise float q = sk_keep(a.hi / b.hi);
+  sk_double left = sk_sub(a, sk_mul(b, sk_double(q, 0.0)));
+  sk_precise float r = sk_keep(left.hi / b.hi);
+  left = sk_sub(left, sk_mul(b, sk_double(r, 0.0)));
+  sk_precise float s = sk_keep(left.hi / b.hi);
+  sk_double sum = sk_join(q, r);
+  sk_precise float t = sk_keep(sum.lo + s);
+  sum = sk_join(sum.hi, t);
+  bool isHead = q == 0.0 || !sk_is_finite(q) || !sk_is_finite(b.hi);
+  return sk_double(isHead ? q : sum.hi, isHead ? 0.0 : sum.lo);
+}
+
+sk_double sk_sqrt(sk_double a) {
+  sk_precise float s = sk_keep(sqrt(a.hi));
+  sk_double left = sk_sub(a, sk_two_product(s, s));
+  sk_precise float t = sk_keep(0.5 * left.hi / s);
+  sk_double root = sk_join(s, t);
+  left = sk_sub(a, sk_mul(root, root));
+  sk_precise float u = sk_keep(0.5 * left.hi / s);
+  root = sk_add(root, sk_double(u, 0.0));
+  bool isHead = s == 0.0 || !sk_is_finite(s);
+  return sk_double(isHead ? s : root.hi, isHead ? 0.0 : root.lo);
+}
+
+bool sk_less(sk_double a, sk_double b) { return a.hi < b.hi || (a.hi == b.hi && a.lo < b.lo); }
+bool sk_less_equal(sk_double a, sk_double b) { return a.hi < b.hi || (a.hi == b.hi && a.lo <= b.lo); }
+bool sk_equal(sk_double a, sk_double b) { return a.hi == b.hi && a.lo == b.lo; }
+
+bool sk_isnan(sk_double a) { return (floatBitsToUint(a.hi) & 0x7fffffffu) > 0x7f800000u; }
+bool sk_isinf(sk_double a) { return (floatBitsToUint(a.hi) & 0x7fffffffu) == 0x7f800000u; }
+
+sk_double sk_abs(sk_double a) { return floatBitsToUint(a.hi) >> 31 != 0u ? sk_neg(a) : a; }
+
+sk_double sk_floor(sk_double a) {
+  float f = floor(a.hi);
+  return f == a.hi ? sk_join(f, floor(a.lo)) : sk_double(f, 0.0);
+}
+
+sk_double sk_trunc(sk_double a) { return a.hi < 0.0 ? sk_neg(sk_floor(sk_neg(a))) : sk_floor(a); }
+
+// To the nearest integer; of two, to the even one.
+sk_double sk_round(sk_double a) {
+  float r = roundEven(a.hi);
+  if (r == a.hi) {
+    float s = roundEven(a.lo);
+    if (abs(a.lo) == 0.5 && fract(0.5 * r) != 0.0) s = a.lo < 0.0 ? -1.0 : 1.0;
+    return sk_join(r, s);
+  }
+  bool between = abs(a.hi - r) == 0.5 && a.lo != 0.0;
+  return sk_double(!between ? r : a.lo < 0.0 ? floor(a.hi) : ceil(a.hi), 0.0);
+}
+
+// ---- IEEE 754's doubles, and integers -------------------------------------------------------------
+
+sk_double sk_unpack(uvec2 b) {
+  uint sign = b.y & 0x80000000u;
+  int e = int((b.y >> 20) & 0x7ffu) - 1023;
+  bool isNan = e == 1024 && ((b.y & 0xfffffu) | b.x) != 0u;
+  if (isNan) return sk_double(uintBitsToFloat(sign | 0x7fc00000u), 0.0);
+  if (e > 127) return sk_double(uintBitsToFloat(sign | 0x7f800000u), 0.0);
+  if (e < -126) return sk_double(uintBitsToFloat(sign), 0.0);
+  uint m = ((b.y & 0xfffffu) << 3) | (b.x >> 29);
+  int left = int(b.x & 0x1fffffffu);   // in units of 2^(e - 52)
+  if (left > 0x10000000 || (left == 0x10000000 && (m & 1u) != 0u)) {
+    left -= 0x20000000;
+    m += 1u;
+  }
+  uint hi = (uint(e + 127) << 23) + m;
+  if (hi >= 0x7f800000u) return sk_double(uintBitsToFloat(sign | 0x7f800000u), 0.0);
+  uint l = floatBitsToUint(float(left));
+  int f = int((l >> 23) & 0xffu) + e - 52;
+  uint lo = left == 0 || f <= 0 ? 0u : (l & 0x807fffffu) | (uint(f) << 23);
+  return sk_double(uintBitsToFloat(hi | sign), uintBitsToFloat(lo ^ sign));
+}
+
+// The nearest double to the pair's sum; of two, the even one.
+uvec2 sk_pack(sk_double a) {
+  uint h = floatBitsToUint(a.hi);
+  uint l = floatBitsToUint(a.lo);
+  uint sign = h & 0x80000000u;
+  uint m = h & 0x7fffffu;
+  int e = int((h >> 23) & 0xffu);
+  int f = int((l >> 23) & 0xffu);
+  if (e == 255) return uvec2(0u, sign | (m != 0u ? 0x7ff80000u : 0x7ff00000u));
+  if (e == 0) return uvec2(0u, sign);
+  bool isLess = f != 0 && (l & 0x80000000u) != sign;
+  int k = isLess && m == 0u ? 1 : 0;   // below a power of 2, units are half as large
+  int g = f + 179 + k - e;             // of the tail in units of the double's last place
+  uint tail = f == 0 || g <= 0 ? 0u : uint(roundEven(uintBitsToFloat((uint(g) << 23) | (l & 0x7fffffu))));
+  uvec2 sum = uvec2((m << 29) << k, ((m | 0x800000u) >> 3) << k);
+  uint low = isLess ? sum.x - tail : sum.x + tail;
+  uint high = isLess ? sum.y - (tail > sum.x ? 1u : 0u) : sum.y + (low < tail ? 1u : 0u);
+  return uvec2(low, sign | ((uint(e - k + 896) << 20) + (high - 0x100000u)));
+}
+
+sk_double sk_to_double(float a) { return sk_double(a, 0.0); }
+sk_double sk_to_double(int a) { return sk_join(float(a >> 16) * 65536.0, float(a & 0xffff)); }
+sk_double sk_to_double(uint a) { return sk_join(float(a >> 16) * 65536.0, float(a & 0xffffu)); }
+float sk_to_float(sk_double a) { return a.hi; }
+
+uint sk_to_uint(sk_double a) {
+  if (sk_isnan(a) || a.hi <= 0.0) return 0u;
+  uvec2 b = sk_pack(a);
+  uint m = (b.y & 0xfffffu) | 0x100000u;
+  int e = int((b.y >> 20) & 0x7ffu) - 1023;
+  if (e < 0) return 0u;
+  if (e > 31) return 0xffffffffu;
+  return e <= 20 ? m >> (20 - e) : (m << (e - 20)) | (b.x >> (52 - e));
+}
+
+int sk_to_int(sk_double a) {
+  uint n = sk_to_uint(sk_abs(a));
+  if (a.hi < 0.0) return n >= 0x80000000u ? -2147483647 - 1 : -int(n);
+  return int(min(n, 0x7fffffffu));
+}
+
+// Of the bits, since a device may reorder products of which some are too large. What is below the smallest normal
+// float is 0.
+float sk_scaled(float a, int e) {
+  uint b = floatBitsToUint(a);
+  uint sign = b & 0x80000000u;
+  int old = int((b >> 23) & 0xffu);
+  int scaled = old + clamp(e, -1024, 1024);
+  if (old == 255) return a;
+  if (old == 0 || scaled <= 0) return uintBitsToFloat(sign);
+  return uintBitsToFloat(scaled >= 255 ? sign | 0x7f800000u : (b & 0x807fffffu) | (uint(scaled) << 23));
+}
+sk_double sk_ldexp(sk_double a, int e) {
+  float hi = sk_scaled(a.hi, e);
+  return sk_double(hi, sk_is_finite(hi) ? sk_scaled(a.lo, e) : 0.0);
+}
+
+//// common
+struct sk_double2 { sk_double x, y; };
+struct sk_double3 { sk_double x, y, z; };
+struct sk_double4 { sk_double x, y, z, w; };
+sk_double2 sk_unpack(uvec4 b) { return sk_double2(sk_unpack(b.xy), sk_unpack(b.zw)); }
+uvec4 sk_pack(sk_double2 a) { return uvec4(sk_pack(a.x), sk_pack(a.y)); }

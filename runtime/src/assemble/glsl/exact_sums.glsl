@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+//
+// How a result is kept from being simplified away, one section for each Barrier.
+// A section begins with `////` and its name in C++; glsl_text/exact_sums.hpp has them as constants.
+
+//// withoutBarrier
+#define sk_precise
+#define sk_keep(x) (x)
+
+//// xorBarrier
+#define sk_precise
+uniform uint sk_zero;   // never set, hence 0
+float sk_keep(float x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
+vec2 sk_keep(vec2 x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
+vec3 sk_keep(vec3 x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
+vec4 sk_keep(vec4 x) { return uintBitsToFloat(floatBitsToUint(x) ^ sk_zero); }
+
+//// preciseBarrier
+#define sk_precise precise
+#define sk_keep(x) (x)
