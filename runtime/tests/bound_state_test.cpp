@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What is known of bindings holds, also where the driver gives out the name of an object that was deleted, as drivers may.
+// What is known of bindings holds, also where the driver gives out the name of an object that was deleted, as drivers may; and objects are
+// deleted in their context.
 #include "gl/bound_state.hpp"
 
 #include <type_traits>
@@ -51,6 +52,7 @@ TEST_CASE("a texture and a framebuffer whose names others had are bound when the
   gl::BoundState bound;
   const gl::Format& format = gl::formatOf(program::Scalar::Float, 1);
   for (int layers : {0, 0, 3, 3}) {
+    const gl::DeletionScope deleted(bound);
     const gl::Texture texture(bound, format, {4, 4, layers});
     CHECK(isBound(layers == 0 ? GL_TEXTURE_BINDING_2D : GL_TEXTURE_BINDING_2D_ARRAY, onlyName));
     const GLuint names[] = {texture.name()};

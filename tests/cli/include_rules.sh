@@ -44,6 +44,7 @@ tests                 sk
 tests/bench           sk epoxy
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
+tests/faults          sk epoxy
 tests/fuzz            sk ir program driver
 '
 # What all rooms of the assembler share.

@@ -109,7 +109,8 @@ class View {
   void write(const std::vector<bool>& elements) const
     requires(isWritable && std::is_same_v<value_type, bool>)
   {
-    const std::vector<std::uint8_t> bytes(elements.begin(), elements.end());
+    auto bytes = detail::hostVector<std::uint8_t>(elements.size());
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = elements[i] ? 1 : 0;
     detail::write(region_, bytes.data(), bytes.size());
   }
 

@@ -162,8 +162,19 @@ std::unique_ptr<DeviceState> openState(const DeviceOptions& options) {
   return openGl(options, gl::openContext({options.device, apiOf(options.profile)}));
 }
 
-detail::DeviceOwner open(const DeviceOptions& options) {
-  return configured(openState(withEnvironment(options)), options.configuration);
+constexpr std::string_view aDevice = "a new device";
+
+/// `options()`: what is asked for.
+template <class Options>
+detail::DeviceOwner open(Options&& options) {
+  return withHostMemory(aDevice, [&] {
+    const DeviceOptions asked = withEnvironment(options());
+    return configured(openState(asked), asked.configuration);
+  });
+}
+
+detail::DeviceOwner openNative(RealType real) {
+  return withHostMemory(aDevice, [&] { return configured(std::make_unique<NativeDevice>(real), {}); });
 }
 
 }  // namespace
@@ -171,24 +182,26 @@ detail::DeviceOwner open(const DeviceOptions& options) {
 void detail::DeviceDeleter::operator()(DeviceState* state) const noexcept { delete state; }
 
 Device::Device() : Device(DeviceOptions{}) {}
-Device::Device(std::string_view device) : Device(DeviceOptions{.device = std::string(device)}) {}
-Device::Device(const DeviceOptions& options) : state_(open(options)) {}
+Device::Device(std::string_view device)
+    : state_(open([&] { return DeviceOptions{.device = std::string(device)}; })) {}
+Device::Device(const DeviceOptions& options) : state_(open([&] { return options; })) {}
 Device::Device(detail::DeviceOwner state) : state_(std::move(state)) {}
 Device::~Device() = default;
 Device::Device(Device&& other) noexcept = default;
 Device& Device::operator=(Device&& other) noexcept = default;
 
 Device Device::adopt(const DeviceOptions& options) {
-  const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles,
-                                          options.barrier, options.profile, true);
-  return Device(configured(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices),
-                           options.configuration));
+  return withHostMemory(aDevice, [&] {
+    const DeviceChoices choices = choicesOf(options.textureLimit, options.limits, options.doubles,
+                                            options.barrier, options.profile, true);
+    return Device(configured(std::make_unique<GlDevice>(gl::adoptContext(apiOf(options.profile)), choices),
+                             options.configuration));
+  });
 }
 
-Device Device::native() { return Device(configured(std::make_unique<NativeDevice>(RealType::Float), {})); }
+Device Device::native() { return Device(openNative(RealType::Float)); }
 Device Device::reference(Reference kind) {
-  const RealType real = kind == Reference::Double ? RealType::Double : RealType::Quad;
-  return Device(configured(std::make_unique<NativeDevice>(real), {}));
+  return Device(openNative(kind == Reference::Double ? RealType::Double : RealType::Quad));
 }
 
 DeviceState& Device::state() const {
@@ -200,18 +213,17 @@ DeviceState& Device::state() const {
 
 detail::StreamOwner Device::createStream(const program::Element& element, const Shape& shape, Storage storage,
                                          std::string_view name) {
-  const bool holdsFloats = assemble::holdsFloats(element);
-  if (storage == Storage::Default) {
-    storage = holdsFloats ? state().configuration.storageOf(name) : Storage::Single;
-  }
-  if (storage != Storage::Single && !holdsFloats) {
-    throw Error(
-        fmt::format(
-            "a stream of {} has no float or vector of floats to hold otherwise; make it without a Storage",
-            element.name),
-        Error::Kind::Type);
-  }
   return withHostMemory("a new stream", [&] {
+    const bool holdsFloats = assemble::holdsFloats(element);
+    if (storage == Storage::Default) {
+      storage = holdsFloats ? state().configuration.storageOf(name) : Storage::Single;
+    }
+    if (storage != Storage::Single && !holdsFloats) {
+      throw Error(fmt::format("a stream of {} has no float or vector of floats to hold otherwise; make it "
+                              "without a Storage",
+                              element.name),
+                  Error::Kind::Type);
+    }
     detail::StreamOwner stream(state().createStream(element, shape, storage).release());
     if (!name.empty()) stream->setName(name);
     return stream;
@@ -224,15 +236,25 @@ const std::string& Device::shadingLanguage() const { return state().shadingLangu
 std::string_view Device::profile() const { return state().profileName(); }
 const DeviceLimits& Device::limits() const { return state().limits; }
 bool Device::isSoftware() const { return state().isSoftware(); }
-const Arithmetic& Device::arithmetic() { return state().arithmetic(); }
-std::vector<TargetTrial> Device::trialTargets() { return state().trialTargets(); }
-std::vector<TableReport> Device::tables() const { return state().tables.reports(); }
+const Arithmetic& Device::arithmetic() {
+  return withHostMemory("arithmetic", [&]() -> const Arithmetic& { return state().arithmetic(); });
+}
+std::vector<TargetTrial> Device::trialTargets() {
+  return withHostMemory("trialTargets", [&] { return state().trialTargets(); });
+}
+std::vector<TableReport> Device::tables() const {
+  return withHostMemory("tables", [&] { return state().tables.reports(); });
+}
 void Device::finish() {
-  const TraceScope traced(state().trace.get(), "wait", "finish");
-  state().finish();
+  withHostMemory("finish", [&] {
+    const TraceScope traced(state().trace.get(), "wait", "finish");
+    state().finish();
+  });
 }
 void Device::release() { state().release(); }
-void Device::makeCurrent() { state().makeCurrent(); }
+void Device::makeCurrent() {
+  withHostMemory("makeCurrent", [&] { state().makeCurrent(); });
+}
 
 void Device::countPasses(bool on) {
   state().passCount = on ? std::optional<PassCount>(PassCount{}) : std::nullopt;

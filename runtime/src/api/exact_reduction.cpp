@@ -39,6 +39,19 @@ Sum fold(const ExactSum& sum, const ResolvedReduction& call) {
   return made;
 }
 
+/// Puts a sum in its place.
+void finish(const Sum& sum, const ExactSum& exact, std::span<const Argument> arguments) {
+  const StreamRegion& result = arguments[exact.accumulator].region;
+  if (sum.rounded) {
+    sum.rounded->store(result, exact.offset);
+    return;
+  }
+  std::vector<Argument> all = {{.region = result}};
+  all.insert(all.end(), sum.digits->arguments.begin(), sum.digits->arguments.end());
+  all.push_back({.region = result});
+  run(exact.finish, all, {.precision = Precision::Single});
+}
+
 /// Whether nothing is left for the plain form: every scalar of every accumulator is a sum.
 bool sumsEverything(const Reduction& reduction) {
   std::size_t scalars = 0;
@@ -53,19 +66,16 @@ void reduceToStreams(const ResolvedReduction& call) {
   const Reduction& reduction = call.reduction;
   std::vector<Sum> sums;   // all of them first: a result may be an input
   for (const ExactSum& sum : reduction.exact) sums.push_back(fold(sum, call));
-  if (!sumsEverything(reduction)) call.device.reduce(call);
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    const ExactSum& sum = reduction.exact[k];
-    const Argument result = {.region = call.arguments[sum.accumulator].region};
-    if (sums[k].rounded) {
-      sums[k].rounded->store(result.region, sum.offset);
-      continue;
+  bool hasBegun = false;
+  writeInSteps(reduction, call.arguments, hasBegun, [&] {
+    if (!sumsEverything(reduction)) {
+      call.device.reduce(call);
+      hasBegun = true;
     }
-    std::vector<Argument> all = {result};
-    all.insert(all.end(), sums[k].digits->arguments.begin(), sums[k].digits->arguments.end());
-    all.push_back(result);
-    run(sum.finish, all, {.precision = Precision::Single});
-  }
+    for (std::size_t k = 0; k < sums.size(); ++k, hasBegun = true) {
+      finish(sums[k], reduction.exact[k], call.arguments);
+    }
+  });
 }
 
 }  // namespace

@@ -149,12 +149,16 @@ void reduceByFloats(const ResolvedReduction& call) {
     results.push_back(i);
   }
   reduceResolved(call.of(call.reduction, all, {}));
-  for (const std::size_t i : results) {
-    std::vector<std::byte> elements(static_cast<std::size_t>(all[i].region.shape.size()) *
-                                    call.reduction.fold.parameters[i].element->size);
-    all[i].region.stream->read(all[i].region, elements.data());
-    call.arguments[i].region.stream->write(call.arguments[i].region, elements.data());
-  }
+  bool hasBegun = false;
+  writeInSteps(call.reduction, call.arguments, hasBegun, [&] {
+    for (const std::size_t i : results) {
+      std::vector<std::byte> elements(static_cast<std::size_t>(all[i].region.shape.size()) *
+                                      call.reduction.fold.parameters[i].element->size);
+      all[i].region.stream->read(all[i].region, elements.data());
+      call.arguments[i].region.stream->write(call.arguments[i].region, elements.data());
+      hasBegun = true;
+    }
+  });
 }
 
 /// The sums go where the results will be, what they lose beside them; then both are added.
@@ -173,12 +177,16 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
     addFloats(result + offset, lost.values[k], bytes);
   }
   if (call.isToValues()) return;
-  const std::vector<Argument> results = resultsWithSums(second, call.arguments);
-  std::vector<Argument> finished = results;
-  finished.insert(finished.end(), lost.arguments.begin(), lost.arguments.end());
-  finished.insert(finished.end(), results.begin(), results.end());
-  run(second.finish, finished,
-      {.precision = Precision::Single, .intrinsics = call.options.intrinsics, .tables = call.options.tables});
+  writeInSteps(call.reduction, call.arguments, true, [&] {
+    const std::vector<Argument> results = resultsWithSums(second, call.arguments);
+    std::vector<Argument> finished = results;
+    finished.insert(finished.end(), lost.arguments.begin(), lost.arguments.end());
+    finished.insert(finished.end(), results.begin(), results.end());
+    run(second.finish, finished,
+        {.precision = Precision::Single,
+         .intrinsics = call.options.intrinsics,
+         .tables = call.options.tables});
+  });
 }
 
 /// In the form that the options, the device and the results ask for.

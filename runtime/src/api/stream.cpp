@@ -18,8 +18,9 @@ namespace sk {
 namespace {
 
 /// Checks a transfer of `count` elements; the stream, or null where there is nothing to transfer.
-StreamState* checkTransfer(const StreamRegion& region, std::size_t count, const char* what) {
+StreamState* checkTransfer(const StreamRegion& region, std::size_t count, bool isWritten, const char* what) {
   StreamState& stream = liveStream(region, what);
+  checkElementsOf(region, isWritten, what);
   const std::int64_t size = region.shape.size();
   if (static_cast<std::size_t>(size) != count) {
     throw Error(fmt::format("{}: {} element(s) in host memory, but shape {} has {}; give exactly as many",
@@ -124,6 +125,17 @@ StreamState& liveStream(const StreamRegion& region, std::string_view context) {
   return *region.stream;
 }
 
+void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_view context) {
+  const StreamState& stream = *region.stream;
+  if (!stream.isBroken || (isWritten && region.shape == stream.shape)) return;
+  throw Error(
+      fmt::format(
+          "{}: the elements of this stream of shape {} are lost, since what wrote them has failed; write all "
+          "of it first",
+          context, toString(stream.shape)),
+      Error::Kind::Lost);
+}
+
 void detail::StreamDeleter::operator()(StreamState* state) const noexcept { delete state; }
 
 StreamRegion detail::wholeRegion(StreamState* state) {
@@ -131,7 +143,7 @@ StreamRegion detail::wholeRegion(StreamState* state) {
     return {};
   }
   if (state->device != nullptr) {
-    state->settle();
+    withHostMemory("the size of a stream", [&] { state->settle(); });
   }
   return {state, Index::origin(state->shape.rank()), state->shape};
 }
@@ -165,17 +177,21 @@ StreamRegion detail::partOf(const StreamRegion& region, const Index& begin, cons
 }
 
 void detail::write(const StreamRegion& region, const void* elements, std::size_t count) {
-  if (StreamState* stream = checkTransfer(region, count, "write")) {
-    const TransferScope traced(*stream, "write", region);
-    withHostMemory("write", [&] { stream->write(region, static_cast<const std::byte*>(elements)); });
-  }
+  withHostMemory("write", [&] {
+    if (StreamState* stream = checkTransfer(region, count, true, "write")) {
+      const TransferScope traced(*stream, "write", region);
+      stream->write(region, static_cast<const std::byte*>(elements));
+    }
+  });
 }
 
 void detail::read(const StreamRegion& region, void* elements, std::size_t count) {
-  if (StreamState* stream = checkTransfer(region, count, "read")) {
-    const TransferScope traced(*stream, "read", region);
-    withHostMemory("read", [&] { stream->read(region, static_cast<std::byte*>(elements)); });
-  }
+  withHostMemory("read", [&] {
+    if (StreamState* stream = checkTransfer(region, count, false, "read")) {
+      const TransferScope traced(*stream, "read", region);
+      stream->read(region, static_cast<std::byte*>(elements));
+    }
+  });
 }
 
 std::unique_ptr<TransferState> StreamState::readAsync(const StreamRegion& region) {
@@ -187,20 +203,24 @@ std::unique_ptr<TransferState> StreamState::readAsync(const StreamRegion& region
 void detail::TransferDeleter::operator()(TransferState* state) const noexcept { delete state; }
 
 detail::TransferOwner detail::readAsync(const StreamRegion& region) {
-  StreamState& stream = liveStream(region, "readAsync");
-  if (region.shape.size() == 0) {
-    return TransferOwner(new ReadyTransfer({}));
-  }
-  const TransferScope traced(stream, "readAsync", region);
-  return withHostMemory("readAsync", [&] { return TransferOwner(stream.readAsync(region).release()); });
+  return withHostMemory("readAsync", [&] {
+    StreamState& stream = liveStream(region, "readAsync");
+    checkElementsOf(region, false, "readAsync");
+    if (region.shape.size() == 0) {
+      return TransferOwner(new ReadyTransfer({}));
+    }
+    const TransferScope traced(stream, "readAsync", region);
+    return TransferOwner(stream.readAsync(region).release());
+  });
 }
 
 void detail::writeAsync(const StreamRegion& region, const void* elements, std::size_t count) {
-  if (StreamState* stream = checkTransfer(region, count, "writeAsync")) {
-    const TransferScope traced(*stream, "writeAsync", region);
-    withHostMemory("writeAsync",
-                   [&] { stream->writeAsync(region, static_cast<const std::byte*>(elements)); });
-  }
+  withHostMemory("writeAsync", [&] {
+    if (StreamState* stream = checkTransfer(region, count, true, "writeAsync")) {
+      const TransferScope traced(*stream, "writeAsync", region);
+      stream->writeAsync(region, static_cast<const std::byte*>(elements));
+    }
+  });
 }
 
 namespace {
@@ -215,8 +235,12 @@ TransferState& stateOf(const detail::TransferOwner& transfer) {
 
 }  // namespace
 
-bool detail::isReady(const TransferOwner& transfer) { return stateOf(transfer).isReady(); }
-void detail::wait(const TransferOwner& transfer) { stateOf(transfer).wait(); }
+bool detail::isReady(const TransferOwner& transfer) {
+  return withHostMemory("readAsync", [&] { return stateOf(transfer).isReady(); });
+}
+void detail::wait(const TransferOwner& transfer) {
+  withHostMemory("readAsync", [&] { stateOf(transfer).wait(); });
+}
 void detail::take(TransferOwner transfer, void* elements) {
   withHostMemory("readAsync", [&] { stateOf(transfer).take(static_cast<std::byte*>(elements)); });
 }
@@ -240,34 +264,42 @@ std::size_t realsIn(const StreamRegion& region, const program::Element& element,
 }  // namespace
 
 void detail::writeReals(const StreamRegion& region, std::span<const double> values) {
-  StreamState& stream = liveStream(region, "writeReals");
-  const std::size_t components = realsIn(region, *stream.element, "writeReals");
-  if (values.size() != components) {
-    throw Error(fmt::format("writeReals: {} numbers are given for a stream of shape {} that has {}",
-                            values.size(), toString(region.shape), components),
-                Error::Kind::Shape);
-  }
-  if (!values.empty()) {
+  withHostMemory("writeReals", [&] {
+    StreamState& stream = liveStream(region, "writeReals");
+    checkElementsOf(region, true, "writeReals");
+    const std::size_t components = realsIn(region, *stream.element, "writeReals");
+    if (values.size() != components) {
+      throw Error(fmt::format("writeReals: {} numbers are given for a stream of shape {} that has {}",
+                              values.size(), toString(region.shape), components),
+                  Error::Kind::Shape);
+    }
+    if (values.empty()) return;
     const TransferScope traced(stream, "writeReals", region);
-    withHostMemory("writeReals", [&] { stream.writeReals(region, values.data()); });
-  }
+    stream.writeReals(region, values.data());
+  });
 }
 
 std::vector<double> detail::readReals(const StreamRegion& region) {
-  StreamState& stream = liveStream(region, "readReals");
-  std::vector<double> values = detail::hostVector<double>(realsIn(region, *stream.element, "readReals"));
-  if (!values.empty()) {
-    const TransferScope traced(stream, "readReals", region);
-    withHostMemory("readReals", [&] { stream.readReals(region, values.data()); });
-  }
-  return values;
+  return withHostMemory("readReals", [&] {
+    StreamState& stream = liveStream(region, "readReals");
+    checkElementsOf(region, false, "readReals");
+    std::vector<double> values = detail::hostVector<double>(realsIn(region, *stream.element, "readReals"));
+    if (!values.empty()) {
+      const TransferScope traced(stream, "readReals", region);
+      stream.readReals(region, values.data());
+    }
+    return values;
+  });
 }
 
 void detail::fill(const StreamRegion& region, const void* element) {
-  StreamState& stream = liveStream(region, "fill");
-  if (region.shape.size() == 0) return;
-  const TransferScope traced(stream, "fill", region);
-  withHostMemory("fill", [&] { stream.fill(region, static_cast<const std::byte*>(element)); });
+  withHostMemory("fill", [&] {
+    StreamState& stream = liveStream(region, "fill");
+    checkElementsOf(region, true, "fill");
+    if (region.shape.size() == 0) return;
+    const TransferScope traced(stream, "fill", region);
+    stream.fill(region, static_cast<const std::byte*>(element));
+  });
 }
 
 namespace {
@@ -291,18 +323,19 @@ void copyByHost(const StreamRegion& from, const StreamRegion& to) {
 }  // namespace
 
 void detail::copy(const StreamRegion& from, const StreamRegion& to) {
-  StreamState& source = liveStream(from, "copyTo");
-  StreamState& target = liveStream(to, "copyTo");
-  if (from.shape != to.shape) {
-    throw Error(
-        fmt::format(
-            "copyTo: the source has shape {}, the target {}; give them the same shape, by domain() for one",
-            toString(from.shape), toString(to.shape)),
-        Error::Kind::Shape);
-  }
-  if (from.shape.size() == 0) return;
-  const TransferScope traced(target, "copy", to);
   withHostMemory("copyTo", [&] {
+    StreamState& source = liveStream(from, "copyTo");
+    StreamState& target = liveStream(to, "copyTo");
+    if (from.shape != to.shape) {
+      throw Error(fmt::format("copyTo: the source has shape {}, the target {}; give them the same shape, by "
+                              "domain() for one",
+                              toString(from.shape), toString(to.shape)),
+                  Error::Kind::Shape);
+    }
+    checkElementsOf(from, false, "copyTo");
+    checkElementsOf(to, true, "copyTo");
+    if (from.shape.size() == 0) return;
+    const TransferScope traced(target, "copy", to);
     const bool isDone = source.device == target.device && target.copyFrom(from, to);
     if (!isDone) copyByHost(from, to);
   });
@@ -321,21 +354,27 @@ void checkPlane(const StreamState& stream, int plane, std::string_view what) {
 }  // namespace
 
 StreamTexture detail::textureOf(StreamState* state, int plane) {
-  StreamState& stream = liveStream({state, {}, {}}, "texture");
-  checkPlane(stream, plane, "texture");
-  return stream.texture(plane);
+  return withHostMemory("texture", [&] {
+    StreamState& stream = liveStream({state, {}, {}}, "texture");
+    checkElementsOf({state, {}, {}}, false, "texture");
+    checkPlane(stream, plane, "texture");
+    return stream.texture(plane);
+  });
 }
 
 void detail::fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t byteOffset, int plane) {
-  StreamState& stream = liveStream({state, {}, {}}, "fillBuffer");
-  checkPlane(stream, plane, "fillBuffer");
-  if (byteOffset < 0 || byteOffset % 4 != 0) {
-    throw Error(fmt::format("fillBuffer: the offset {} is no multiple of 4 from 0 on", byteOffset));
-  }
-  if (stream.shape.size() == 0) return;
-  const TraceScope traced(stream.device->trace.get(), "transfer", "fillBuffer");
-  traced.add("stream", stream.name);
-  stream.fillBuffer(buffer, byteOffset, plane);
+  withHostMemory("fillBuffer", [&] {
+    StreamState& stream = liveStream({state, {}, {}}, "fillBuffer");
+    checkElementsOf({state, {}, {}}, false, "fillBuffer");
+    checkPlane(stream, plane, "fillBuffer");
+    if (byteOffset < 0 || byteOffset % 4 != 0) {
+      throw Error(fmt::format("fillBuffer: the offset {} is no multiple of 4 from 0 on", byteOffset));
+    }
+    if (stream.shape.size() == 0) return;
+    const TraceScope traced(stream.device->trace.get(), "transfer", "fillBuffer");
+    traced.add("stream", stream.name);
+    stream.fillBuffer(buffer, byteOffset, plane);
+  });
 }
 
 }  // namespace sk

@@ -75,6 +75,12 @@ StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const
          "element(s); make the view after that call",
          parameter.name, toString(region.shape), stream.shape.size());
   }
+  const bool isWritten = parameter.role == Role::Output || parameter.role == Role::Accumulator;
+  if (stream.isBroken && !(isWritten && region.shape == stream.shape)) {
+    fail(Error::Kind::Lost, kernel,
+         "the elements of '{}' are lost, since what wrote them has failed; write all of the stream first",
+         parameter.name);
+  }
   return stream;
 }
 

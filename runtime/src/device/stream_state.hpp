@@ -7,10 +7,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "device/transfer_state.hpp"
+#include "sk/call.hpp"
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
@@ -61,6 +63,8 @@ class StreamState {
   const Storage storage;
   Shape shape;  ///< holds once the stream is settled
   std::string name;  ///< may be empty
+  /// Its elements are lost: what wrote them has failed halfway. It must be written as a whole before anything else.
+  bool isBroken = false;
 
  protected:
   /// Puts the stream on its device's list.
@@ -74,6 +78,26 @@ class StreamState {
 /// The stream of a region, settled. Throws sk::Error, its text after `context`, where it was moved from, its
 /// device is gone, or a kernel has left it less elements than the region has.
 StreamState& liveStream(const StreamRegion& region, std::string_view context);
+
+/// steps(), which write the streams of a reduction's results one after the other: where an exception comes between, these are broken.
+/// `hasBegun` is true from the first step that has written something.
+template <class Steps>
+void writeInSteps(const program::Reduction& reduction, std::span<const Argument> arguments,
+                  const bool& hasBegun, Steps&& steps) {
+  try {
+    steps();
+  } catch (...) {
+    for (std::size_t i = 0; hasBegun && i < arguments.size(); ++i) {
+      const bool isResult = reduction.fold.parameters[i].role == program::Role::Accumulator;
+      if (isResult) arguments[i].region.stream->isBroken = true;
+    }
+    throw;
+  }
+}
+
+/// Throws sk::Error, its text after `context`, where the elements of a stream are lost and `isWritten` does not say that all of them are
+/// about to be written.
+void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_view context);
 
 /// Whether a region is inside its stream, which is settled: a kernel that pushes to a stream changes its size.
 bool isInside(const StreamRegion& region);

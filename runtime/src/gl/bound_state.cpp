@@ -35,14 +35,22 @@ void BoundState::forget() {
   storage_ = unknown;
 }
 
-void BoundState::newTexture(GLuint name) {
+void BoundState::forgetProgram(GLuint name) {
+  if (program_ == name) program_ = unknown;
+}
+
+void BoundState::forgetTexture(GLuint name) {
   for (auto* units : {&textures_, &arrayTextures_}) std::ranges::replace(*units, name, unknown);
   std::ranges::replace(images_, name, unknown);
 }
 
-void BoundState::newFramebuffer(GLuint name) {
+void BoundState::forgetFramebuffer(GLuint name) {
   if (drawFramebuffer_ == name) drawFramebuffer_ = unknown;
   if (readFramebuffer_ == name) readFramebuffer_ = unknown;
+}
+
+void BoundState::forgetStorage(GLuint name) {
+  if (storage_ == name) storage_ = unknown;
 }
 
 void BoundState::bindImage(int unit, GLuint name, GLenum format) {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// What is bound in a context, so that nothing is bound twice. The one place that binds: whoever binds
-// past it, or deletes an object, must call forget(). In an adopted context it also remembers what
+// What is bound in a context, so that nothing is bound twice; its errors, and its objects that are to be deleted. The one place that
+// binds: whoever binds past it must call forget(). In an adopted context it also remembers what
 // the application had on the texture units that it takes, and gives it back.
 #pragma once
 
 #include <array>
 
 #include <epoxy/gl.h>
+
+#include "gl/deletions.hpp"
+#include "gl/errors.hpp"
 
 namespace sk::gl {
 
@@ -18,6 +21,10 @@ inline constexpr int maxImageUnits = 16;
 
 class BoundState {
  public:
+  BoundState() = default;
+  BoundState(const BoundState&) = delete;
+  BoundState& operator=(const BoundState&) = delete;
+
   void program(GLuint name) {
     if (program_ != name) {
       glUseProgram(name);
@@ -78,15 +85,23 @@ class BoundState {
 
   /// Nothing is known of what is bound.
   void forget();
-  /// A name is new: where the driver has given out one of an object that was deleted, that one is bound nowhere any more.
-  void newTexture(GLuint name);
-  void newFramebuffer(GLuint name);
+  /// Objects that are deleted are bound nowhere any more, and the driver may give out their names again.
+  void forgetProgram(GLuint name);
+  void forgetTexture(GLuint name);
+  void forgetFramebuffer(GLuint name);
+  void forgetStorage(GLuint name);
+
+  /// Deletes the objects whose owners have ended. The context is current.
+  void deleteQueued() noexcept { deletions.run(*this); }
 
   /// From here on this is the application's context: the texture and sampler of a unit are kept as the
   /// unit is first used, and of several viewports only the first is set.
   void enterApplication(bool hasManyViewports);
   /// Gives back what was kept, and the active unit `activeUnit`.
   void leaveApplication(GLint activeUnit);
+
+  Errors errors;
+  Deletions deletions;
 
  private:
   void bindTexture(int unit, GLuint name, bool isArray);
@@ -140,6 +155,18 @@ class BoundState {
   std::array<KeptUnit, maxTextureUnits> keptUnits_{};
   std::array<KeptImage, maxImageUnits> keptImages_{};
   KeptStorage keptStorage_;
+};
+
+/// What owners in this scope leave is deleted at its end. The context is current.
+class DeletionScope {
+ public:
+  explicit DeletionScope(BoundState& bound) : bound_(bound) {}
+  ~DeletionScope() { bound_.deleteQueued(); }
+  DeletionScope(const DeletionScope&) = delete;
+  DeletionScope& operator=(const DeletionScope&) = delete;
+
+ private:
+  BoundState& bound_;
 };
 
 }  // namespace sk::gl

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "gl/bound_state.hpp"
-#include "gl/errors.hpp"
 #include "gl/framebuffer.hpp"
 #include "gl/texture.hpp"
 
@@ -63,7 +62,8 @@ std::vector<GLenum> binaryFormats(const Capabilities& found) {
   return {formats.begin(), formats.end()};
 }
 
-bool isRenderable(const Format& format, BoundState& bound) {
+bool canDrawTo(const Format& format, BoundState& bound) {
+  const DeletionScope deleted(bound);
   const Texture texture(bound, format, {1, 1});
   if (texture.name() == 0) {
     return false;
@@ -71,13 +71,6 @@ bool isRenderable(const Format& format, BoundState& bound) {
   const GLuint names[] = {texture.name()};
   const Framebuffer framebuffer(bound, names, false);
   return Framebuffer::isComplete();
-}
-
-/// Deletes what it tried with, the names of which the driver may give out again.
-bool canDrawTo(const Format& format, BoundState& bound) {
-  const bool can = isRenderable(format, bound);
-  bound.forget();
-  return can;
 }
 
 }  // namespace
@@ -104,6 +97,8 @@ Capabilities readCapabilities() {
       found.version >= (found.api == Api::Gl ? 43 : 32) || epoxy_has_gl_extension("GL_KHR_debug");
   found.isDebugged = epoxy_has_gl_extension("GL_EXT_debug_tool") ||
                      (found.hasLabels && (integerOf(GL_CONTEXT_FLAGS) & GL_CONTEXT_FLAG_DEBUG_BIT) != 0);
+  found.tellsResets =
+      found.version >= (found.api == Api::Gl ? 45 : 32) || epoxy_has_gl_extension("GL_KHR_robustness");
   found.binaryFormats = binaryFormats(found);
   if (found.api == Api::Gl && found.version >= 32) {
     found.isCompatibility = (integerOf(GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_COMPATIBILITY_PROFILE_BIT) != 0;
@@ -140,7 +135,7 @@ std::string whyUnfit(const Capabilities& capabilities, BoundState& bound) {
   bound.framebuffer(0);
   bound.texture(0, 0, false);
   bound.forget();
-  dropErrors();
+  static_cast<void>(bound.errors.take());
   return missing.empty() ? "" : "it cannot draw to textures of format " + missing;
 }
 

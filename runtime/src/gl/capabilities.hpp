@@ -26,6 +26,7 @@ struct Capabilities {
   bool hasCompute = false;       ///< compute programs of GLSL 4.30, within the limits below
   bool hasClipControl = false;   ///< where y is 0 may be chosen
   bool hasLabels = false;        ///< objects may have names for debuggers (KHR_debug)
+  bool tellsResets = false;      ///< glGetGraphicsResetStatus
   bool isDebugged = false;       ///< a debugger is there, or the context is one for debugging
   std::vector<GLenum> binaryFormats;  ///< of programs that the driver gives and takes; none where it does not
   std::string renderer;

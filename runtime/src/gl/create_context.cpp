@@ -4,6 +4,7 @@
 #include "gl/create_context.hpp"
 
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,12 @@ class ApiScope {
   bool isBound_;
 };
 
+/// Whether contexts of both APIs can tell of resets, without an extension.
+bool isEgl15(EGLDisplay display) {
+  const char* version = eglQueryString(display, EGL_VERSION);
+  return version != nullptr && std::string_view(version) >= "1.5";
+}
+
 EGLConfig chooseConfig(EGLDisplay display, Api api) {
   for (const EGLint surfaces : {EGL_PBUFFER_BIT, 0}) {
     const EGLint attributes[] = {EGL_SURFACE_TYPE, surfaces, EGL_RENDERABLE_TYPE,
@@ -52,7 +59,8 @@ EGLConfig chooseConfig(EGLDisplay display, Api api) {
   return EGL_NO_CONFIG_KHR;
 }
 
-EGLContext createHighest(EGLDisplay display, EGLConfig config, Api api) {
+/// `tellsResets`: of the contexts that a driver loses when it resets a GPU, and says so.
+EGLContext createHighest(EGLDisplay display, EGLConfig config, Api api, bool tellsResets) {
   const std::span<const Version> versions =
       api == Api::Gl ? std::span<const Version>(glVersions) : std::span<const Version>(esVersions);
   for (const auto& [major, minor] : versions) {
@@ -60,6 +68,10 @@ EGLContext createHighest(EGLDisplay display, EGLConfig config, Api api) {
     if (api == Api::Gl) {
       attributes.insert(attributes.end(),
                         {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
+    }
+    if (tellsResets) {
+      attributes.insert(attributes.end(),
+                        {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
     }
     attributes.push_back(EGL_NONE);
     EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
@@ -84,7 +96,9 @@ std::optional<Context> createContext(EGLDisplay display, Api api, std::string& w
     why = "it has no configuration without a window";
     return std::nullopt;
   }
-  EGLContext context = createHighest(display, config, api);
+  EGLContext context =
+      isEgl15(display) ? createHighest(display, config, api, /*tellsResets=*/true) : EGL_NO_CONTEXT;
+  if (context == EGL_NO_CONTEXT) context = createHighest(display, config, api, /*tellsResets=*/false);
   if (context == EGL_NO_CONTEXT) {
     why = fmt::format("it gives no context of version {} or later ({})", api == Api::Gl ? "3.3 core" : "3.0",
                       eglErrorName(eglGetError()));

@@ -5,13 +5,17 @@
 
 namespace sk::gl {
 
-GLenum takeError() {
+// It ends even on a lost context, whose flags never run dry.
+GLenum Errors::takeNew() {
   const GLenum first = glGetError();
-  if (first != GL_NO_ERROR) {
-    for (int flag = 0; flag < 16 && glGetError() != GL_NO_ERROR; ++flag) {
-    }
+  bool isLost = first == GL_CONTEXT_LOST;
+  GLenum next = first;
+  for (int flag = 0; flag < 16 && next != GL_NO_ERROR; ++flag) {
+    next = glGetError();
+    isLost = isLost || next == GL_CONTEXT_LOST;
   }
-  return first;
+  isLost_ = isLost_ || isLost;
+  return isLost ? GL_CONTEXT_LOST : first;
 }
 
 const char* errorName(GLenum error) {

@@ -9,21 +9,13 @@
 
 namespace sk::gl {
 
-namespace {
-
-GLuint newFramebuffer() {
-  GLuint name = 0;
-  glGenFramebuffers(1, &name);
-  return name;
+void deleteFramebuffer(BoundState& bound, GLuint name) {
+  glDeleteFramebuffers(1, &name);
+  bound.forgetFramebuffer(name);
 }
 
-}  // namespace
-
-void deleteFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
-
 Framebuffer::Framebuffer(BoundState& bound, std::span<const GLuint> textures, bool isLayered)
-    : name_(newFramebuffer()) {
-  bound.newFramebuffer(name());
+    : name_(bound.deletions, [] { return generated(glGenFramebuffers); }) {
   bound.framebuffer(name());
   std::vector<GLenum> attachments;
   for (const GLuint texture : textures) {

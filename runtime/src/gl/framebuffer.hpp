@@ -11,9 +11,7 @@
 
 namespace sk::gl {
 
-class BoundState;
-
-void deleteFramebuffer(GLuint name);
+void deleteFramebuffer(BoundState& bound, GLuint name);
 
 class Framebuffer {
  public:
@@ -33,7 +31,6 @@ class Framebuffer {
             void* texels) const;
   /// Whether an ES driver reads its first texture in these texels beside the wide ones.
   bool readsOnEs(BoundState& bound, const Transfer& transfer) const;
-  void forget() noexcept { name_.forget(); }
 
  private:
   ObjectName<deleteFramebuffer> name_;

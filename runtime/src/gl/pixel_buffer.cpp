@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "gl/pixel_buffer.hpp"
 
-#include "gl/errors.hpp"
+#include "gl/bound_state.hpp"
 
 namespace sk::gl {
 
-bool BoundPixels::allocate(std::size_t bytes) const {
+void deleteBuffer(BoundState& bound, GLuint name) {
+  glDeleteBuffers(1, &name);
+  bound.forgetStorage(name);
+}
+
+bool BoundPixels::allocate(Errors& errors, std::size_t bytes) const {
   const bool isRead = target_ == GL_PIXEL_PACK_BUFFER;
-  dropErrors();
+  errors.setAside();
   glBufferData(target_, static_cast<GLsizeiptr>(bytes), nullptr, isRead ? GL_STREAM_READ : GL_STREAM_DRAW);
-  return takeError() == GL_NO_ERROR;
+  return errors.takeNew() == GL_NO_ERROR;
 }
 
 std::byte* BoundPixels::map(std::size_t bytes) const {
@@ -18,11 +23,11 @@ std::byte* BoundPixels::map(std::size_t bytes) const {
   return static_cast<std::byte*>(glMapBufferRange(target_, 0, static_cast<GLsizeiptr>(bytes), access));
 }
 
-std::size_t BoundPixels::size() const {
+std::size_t BoundPixels::size(Errors& errors) const {
   GLint64 bytes = 0;
-  dropErrors();
+  errors.setAside();
   glGetBufferParameteri64v(target_, GL_BUFFER_SIZE, &bytes);
-  return takeError() == GL_NO_ERROR ? static_cast<std::size_t>(bytes) : 0;
+  return errors.takeNew() == GL_NO_ERROR ? static_cast<std::size_t>(bytes) : 0;
 }
 
 }  // namespace sk::gl

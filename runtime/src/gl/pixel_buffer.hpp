@@ -5,28 +5,22 @@
 
 #include <cstddef>
 
+#include "gl/errors.hpp"
 #include "gl/object_name.hpp"
 
 namespace sk::gl {
 
-inline void deleteBuffer(GLuint name) { glDeleteBuffers(1, &name); }
+void deleteBuffer(BoundState& bound, GLuint name);
 
 class PixelBuffer {
  public:
   PixelBuffer() = default;
-  static PixelBuffer create() {
-    GLuint name = 0;
-    glGenBuffers(1, &name);
-    return PixelBuffer(name);
-  }
+  explicit PixelBuffer(Deletions& deletions) : name_(deletions, [] { return generated(glGenBuffers); }) {}
 
   GLuint name() const { return name_.get(); }
   explicit operator bool() const { return static_cast<bool>(name_); }
-  void forget() noexcept { name_.forget(); }
 
  private:
-  explicit PixelBuffer(GLuint name) : name_(name) {}
-
   ObjectName<deleteBuffer> name_;
 };
 
@@ -43,12 +37,12 @@ class BoundPixels {
   BoundPixels& operator=(const BoundPixels&) = delete;
 
   /// New, undefined bytes; what still uses the old ones keeps them. False where there is no memory.
-  bool allocate(std::size_t bytes) const;
+  bool allocate(Errors& errors, std::size_t bytes) const;
   /// The address of all of them, until unmap(): after a read for reading, else for writing everything. Null where the
   /// driver fails.
   std::byte* map(std::size_t bytes) const;
   /// Bytes that it has; 0 where there is no such buffer.
-  std::size_t size() const;
+  std::size_t size(Errors& errors) const;
   /// False where the driver has lost what was written.
   bool unmap() const { return glUnmapBuffer(target_) == GL_TRUE; }
 

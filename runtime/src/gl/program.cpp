@@ -3,6 +3,8 @@
 // Compiling and linking. The driver is asked nothing before the end, since every question waits for the answer.
 #include "gl/program.hpp"
 
+#include "gl/bound_state.hpp"
+
 namespace sk::gl {
 
 namespace {
@@ -20,13 +22,8 @@ void appendLog(GLuint object, GetParameter getParameter, GetLog getLog, std::str
   }
 }
 
-ObjectName<deleteShader> compile(GLenum stage, const std::string& source) {
-  ObjectName<deleteShader> shader(glCreateShader(stage));
-  const char* text = source.data();
-  const auto length = static_cast<GLint>(source.size());
-  glShaderSource(shader.get(), 1, &text, &length);
-  glCompileShader(shader.get());
-  return shader;
+ObjectName<deleteShader> newShader(BoundState& bound, GLenum stage) {
+  return {bound.deletions, [&] { return glCreateShader(stage); }};
 }
 
 /// Adds the log of a shader that does not compile.
@@ -47,14 +44,25 @@ bool isLinked(GLuint program) {
 
 }  // namespace
 
-Program Program::build(const ProgramSources& sources, std::string& log) {
-  return PendingProgram(sources, false).finish(log);
+void deleteProgram(BoundState& bound, GLuint name) {
+  glDeleteProgram(name);
+  bound.forgetProgram(name);
+}
+void deleteShader(BoundState&, GLuint name) { glDeleteShader(name); }
+
+Program::Program(BoundState& bound) : name_(bound.deletions, [] { return glCreateProgram(); }) {}
+
+Program Program::build(BoundState& bound, const ProgramSources& sources, std::string& log) {
+  return PendingProgram(bound, sources, false).finish(log);
 }
 
-Program Program::load(GLenum format, std::span<const std::byte> bytes) {
-  Program program(glCreateProgram());
+Program Program::load(BoundState& bound, GLenum format, std::span<const std::byte> bytes) {
+  bound.errors.setAside();
+  Program program(bound);
   glProgramBinary(program.name(), format, bytes.data(), static_cast<GLsizei>(bytes.size()));
-  return isLinked(program.name()) ? std::move(program) : Program();
+  if (isLinked(program.name())) return program;
+  static_cast<void>(bound.errors.takeNew());  // it is compiled instead
+  return {};
 }
 
 ProgramBinary Program::binary() const {
@@ -69,21 +77,37 @@ ProgramBinary Program::binary() const {
   return binary;
 }
 
-PendingProgram::PendingProgram(const ProgramSources& sources, bool isKept)
-    : program_(glCreateProgram()),
-      main_(compile(sources.isCompute() ? GL_COMPUTE_SHADER : GL_FRAGMENT_SHADER, sources.main)) {
-  if (!sources.isCompute()) {
-    vertex_ = compile(GL_VERTEX_SHADER, sources.vertex);
-    glAttachShader(program_.name(), vertex_.get());
+PendingProgram::PendingProgram(BoundState& bound, const ProgramSources& sources, bool isKept) {
+  bound.errors.setAside();
+  program_ = Program(bound);
+  main_ = newShader(bound, sources.isCompute() ? GL_COMPUTE_SHADER : GL_FRAGMENT_SHADER);
+  if (!sources.isCompute()) vertex_ = newShader(bound, GL_VERTEX_SHADER);
+  if (!program_ || !main_ || (!vertex_ && !sources.isCompute())) {
+    static_cast<void>(bound.errors.takeNew());  // finish() tells of it
+    program_ = {};
+    return;
   }
-  glAttachShader(program_.name(), main_.get());
+  if (vertex_) addShader(vertex_.get(), sources.vertex);
+  addShader(main_.get(), sources.main);
   if (isKept) {
     glProgramParameteri(program_.name(), GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
   }
   glLinkProgram(program_.name());
 }
 
+void PendingProgram::addShader(GLuint shader, const std::string& source) const {
+  const char* text = source.data();
+  const auto length = static_cast<GLint>(source.size());
+  glShaderSource(shader, 1, &text, &length);
+  glCompileShader(shader);
+  glAttachShader(program_.name(), shader);
+}
+
 Program PendingProgram::finish(std::string& log) {
+  if (!program_) {
+    log += "it makes no shader or program any more";
+    return {};
+  }
   if (!isLinked(program_.name())) {
     if ((!vertex_ || isCompiled(vertex_.get(), log)) && isCompiled(main_.get(), log)) {
       appendLog(program_.name(), glGetProgramiv, glGetProgramInfoLog, log);
@@ -95,12 +119,6 @@ Program PendingProgram::finish(std::string& log) {
   vertex_ = {};
   main_ = {};
   return std::move(program_);
-}
-
-void PendingProgram::forget() noexcept {
-  program_.forget();
-  vertex_.forget();
-  main_.forget();
 }
 
 std::array<GLint, 3> Program::workGroup() const {

@@ -13,8 +13,8 @@
 
 namespace sk::gl {
 
-inline void deleteProgram(GLuint name) { glDeleteProgram(name); }
-inline void deleteShader(GLuint name) { glDeleteShader(name); }
+void deleteProgram(BoundState& bound, GLuint name);
+void deleteShader(BoundState& bound, GLuint name);
 
 /// A program as a driver has made it. Another driver, or another version, may refuse it.
 struct ProgramBinary {
@@ -34,9 +34,9 @@ class Program {
  public:
   Program() = default;
   /// Compiles and links. Where the driver refuses, the result is empty and `log` has its words.
-  static Program build(const ProgramSources& sources, std::string& log);
+  static Program build(BoundState& bound, const ProgramSources& sources, std::string& log);
   /// Empty where the driver refuses. The format is one that it knows.
-  static Program load(GLenum format, std::span<const std::byte> bytes);
+  static Program load(BoundState& bound, GLenum format, std::span<const std::byte> bytes);
 
   /// Of a program that was started to be kept.
   ProgramBinary binary() const;
@@ -49,11 +49,10 @@ class Program {
   void setSampler(const std::string& sampler, int unit) const { glUniform1i(location(sampler), unit); }
   /// Of a compute program: invocations in x and y.
   std::array<GLint, 3> workGroup() const;
-  void forget() noexcept { name_.forget(); }
 
  private:
   friend class PendingProgram;
-  explicit Program(GLuint name) : name_(name) {}
+  explicit Program(BoundState& bound);
 
   ObjectName<deleteProgram> name_;
 };
@@ -64,14 +63,15 @@ class PendingProgram {
  public:
   PendingProgram() = default;
   /// Waits for nothing. `isKept`: somebody will ask for the binary.
-  PendingProgram(const ProgramSources& sources, bool isKept);
+  PendingProgram(BoundState& bound, const ProgramSources& sources, bool isKept);
 
   /// Waits. Where the driver refuses, the result is empty and `log` has its words.
   Program finish(std::string& log);
-  void forget() noexcept;
 
  private:
   using Shader = ObjectName<deleteShader>;
+
+  void addShader(GLuint shader, const std::string& source) const;
 
   Program program_;
   Shader vertex_;  ///< none of a compute program

@@ -13,10 +13,12 @@
 
 namespace sk::gl {
 
-inline void deleteSampler(GLuint name) { glDeleteSamplers(1, &name); }
+inline void deleteSampler(BoundState&, GLuint name) { glDeleteSamplers(1, &name); }
 
 class Samplers {
  public:
+  explicit Samplers(Deletions& deletions) : deletions_(deletions) {}
+
   /// The context must be current.
   GLuint nearest() {
     if (!nearest_) nearest_ = made(GL_NEAREST, GL_CLAMP_TO_EDGE);
@@ -31,30 +33,19 @@ class Samplers {
     return linear_[mode].get();
   }
 
-  void clear() {
-    nearest_ = {};
-    linear_ = {};
-  }
-  void forget() noexcept {
-    nearest_.forget();
-    for (Name& name : linear_) {
-      name.forget();
-    }
-  }
-
  private:
   using Name = ObjectName<deleteSampler>;
 
-  static Name made(GLint filter, GLint wrap) {
-    GLuint name = 0;
-    glGenSamplers(1, &name);
-    glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER, filter);
-    glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, filter);
-    glSamplerParameteri(name, GL_TEXTURE_WRAP_S, wrap);
-    glSamplerParameteri(name, GL_TEXTURE_WRAP_T, wrap);
-    return Name(name);
+  Name made(GLint filter, GLint wrap) const {
+    Name name(deletions_, [] { return generated(glGenSamplers); });
+    glSamplerParameteri(name.get(), GL_TEXTURE_MIN_FILTER, filter);
+    glSamplerParameteri(name.get(), GL_TEXTURE_MAG_FILTER, filter);
+    glSamplerParameteri(name.get(), GL_TEXTURE_WRAP_S, wrap);
+    glSamplerParameteri(name.get(), GL_TEXTURE_WRAP_T, wrap);
+    return name;
   }
 
+  Deletions& deletions_;
   Name nearest_;
   std::array<Name, 3> linear_;  ///< for Clamp, Wrap, Mirror
 };

@@ -4,17 +4,13 @@
 #include "gl/texture.hpp"
 
 #include "gl/bound_state.hpp"
-#include "gl/errors.hpp"
 
 namespace sk::gl {
 
-GLuint newTexture() {
-  GLuint name = 0;
-  glGenTextures(1, &name);
-  return name;
+void deleteTexture(BoundState& bound, GLuint name) {
+  glDeleteTextures(1, &name);
+  bound.forgetTexture(name);
 }
-
-void deleteTexture(GLuint name) { glDeleteTextures(1, &name); }
 
 void setNearest(GLenum target) {
   glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -25,13 +21,12 @@ void setNearest(GLenum target) {
 }
 
 Texture::Texture(BoundState& bound, const Format& format, const assemble::TextureShape& shape)
-    : name_(newTexture()), format_(&format), shape_(shape) {
-  bound.newTexture(name());
+    : name_(bound.deletions, [] { return generated(glGenTextures); }), format_(&format), shape_(shape) {
   bound.textureToChange(name(), isLayered());
   const GLenum target = isLayered() ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
   const auto internalFormat = static_cast<GLint>(format.internalFormat);
   setNearest(target);
-  dropErrors();
+  bound.errors.setAside();
   if (isLayered()) {
     glTexImage3D(target, 0, internalFormat, shape.width, shape.height, shape.layers, 0, format.tight.format,
                  format.tight.type, nullptr);
@@ -39,10 +34,7 @@ Texture::Texture(BoundState& bound, const Format& format, const assemble::Textur
     glTexImage2D(target, 0, internalFormat, shape.width, shape.height, 0, format.tight.format,
                  format.tight.type, nullptr);
   }
-  if (takeError() != GL_NO_ERROR) {
-    bound.textureToChange(0, isLayered());
-    name_ = {};
-  }
+  if (bound.errors.takeNew() != GL_NO_ERROR) name_ = {};
 }
 
 void Texture::write(BoundState& bound, const assemble::Rect& rect, GLint layer, const void* texels) {

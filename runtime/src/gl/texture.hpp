@@ -9,10 +9,7 @@
 
 namespace sk::gl {
 
-class BoundState;
-
-GLuint newTexture();
-void deleteTexture(GLuint name);
+void deleteTexture(BoundState& bound, GLuint name);
 /// One level, no filter, for the texture that is bound to a target.
 void setNearest(GLenum target);
 
@@ -36,7 +33,6 @@ class Texture {
   /// Rows of all layers together.
   GLsizei rows() const { return shape_.height * (isLayered() ? shape_.layers : 1); }
   std::size_t bytes() const;
-  void forget() noexcept { name_.forget(); }
 
  private:
   ObjectName<deleteTexture> name_;

@@ -11,7 +11,7 @@
 
 namespace sk::gl {
 
-inline void deleteQuery(GLuint name) { glDeleteQueries(1, &name); }
+inline void deleteQuery(BoundState&, GLuint name) { glDeleteQueries(1, &name); }
 
 /// Whether the current context takes timestamps: OpenGL does, unless its clock has no bits.
 bool hasTimestamps(const Capabilities& capabilities);
@@ -22,22 +22,15 @@ std::int64_t timestampNow();
 class Timestamp {
  public:
   Timestamp() = default;
-  static Timestamp create() {
-    GLuint name = 0;
-    glGenQueries(1, &name);
-    return Timestamp(name);
-  }
+  explicit Timestamp(Deletions& deletions) : name_(deletions, [] { return generated(glGenQueries); }) {}
 
   explicit operator bool() const { return static_cast<bool>(name_); }
   /// Queues the taking of the time.
   void take() const { glQueryCounter(name_.get(), GL_TIMESTAMP); }
   /// Nanoseconds of the device's clock; none where the device has not come so far.
   std::optional<std::int64_t> result() const;
-  void forget() noexcept { name_.forget(); }
 
  private:
-  explicit Timestamp(GLuint name) : name_(name) {}
-
   ObjectName<deleteQuery> name_;
 };
 

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "gl/value_buffer.hpp"
 
+#include <utility>
+
 namespace sk::gl {
 
-void ValueBuffer::bind(BoundState& bound) {
-  if (name_) return bound.storage(name_.get());
-  GLuint name = 0;
-  glGenBuffers(1, &name);
-  name_ = ObjectName<deleteBuffer>(name);
-  bound.storage(name);
+bool ValueBuffer::bind(BoundState& bound) {
+  if (name_) {
+    bound.storage(name_.get());
+    return true;
+  }
+  ObjectName<deleteBuffer> made(bound.deletions, [] { return generated(glGenBuffers); });
+  bound.storage(made.get());
+  bound.errors.setAside();
   glBufferData(GL_SHADER_STORAGE_BUFFER, bytes, nullptr, GL_STREAM_READ);
+  if (bound.errors.takeNew() != GL_NO_ERROR) return false;
+  name_ = std::move(made);
+  return true;
 }
 
 void ValueBuffer::read(BoundState& bound, std::span<std::byte> values) const {

@@ -19,12 +19,10 @@ class ValueBuffer {
   static constexpr std::size_t planeBytes = 16;
   static constexpr std::size_t bytes = planeBytes * maxImageUnits;
 
-  /// Makes it what programs write, its binding 0. The context must be current.
-  void bind(BoundState& bound);
+  /// Makes it what programs write, its binding 0; false where there is no memory for it. The context must be current.
+  bool bind(BoundState& bound);
   /// What programs have left at its beginning, of its bytes at most; waits for them.
   void read(BoundState& bound, std::span<std::byte> values) const;
-  void clear() { name_ = {}; }
-  void forget() noexcept { name_.forget(); }
 
  private:
   ObjectName<deleteBuffer> name_;  ///< made when first needed

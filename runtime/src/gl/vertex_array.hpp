@@ -7,23 +7,17 @@
 
 namespace sk::gl {
 
-inline void deleteVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
+inline void deleteVertexArray(BoundState&, GLuint name) { glDeleteVertexArrays(1, &name); }
 
 class VertexArray {
  public:
   VertexArray() = default;
-  static VertexArray create() {
-    GLuint name = 0;
-    glGenVertexArrays(1, &name);
-    return VertexArray(name);
-  }
+  explicit VertexArray(Deletions& deletions)
+      : name_(deletions, [] { return generated(glGenVertexArrays); }) {}
 
   GLuint name() const { return name_.get(); }
-  void forget() noexcept { name_.forget(); }
 
  private:
-  explicit VertexArray(GLuint name) : name_(name) {}
-
   ObjectName<deleteVertexArray> name_;
 };
 

@@ -4,6 +4,7 @@
 #include "gl_device/gl_device.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,7 +14,6 @@
 #include "call/check_argument.hpp"
 #include "call/precision.hpp"
 #include "gl/commands.hpp"
-#include "gl/errors.hpp"
 #include "gl_device/append/append_call.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/memory/keep_heap.hpp"
@@ -93,7 +93,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
     arithmetic_ = {.exactSums = *choices.barrier != Barrier::None, .barrier = *choices.barrier};
   }
   const gl::CurrentScope current(context);
-  vertexArray = gl::VertexArray::create();
+  vertexArray = gl::VertexArray(bound.deletions);
   if (!isGuest()) {
     gl::setPassState(capabilities);
   }
@@ -101,62 +101,37 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
   if (capabilities.isSoftware) keepHeap();
 }
 
-// GL objects are deleted only with their context current. Where it cannot be made current, because
-// another thread has it or the application has ended it, they are left to die with it.
 GlDevice::~GlDevice() {
   std::optional<gl::CurrentScope> current;
   try {
     current.emplace(context);
-  } catch (const Error&) {
-    forgetObjects();
+  } catch (const std::exception&) {
+    current.reset();  // another thread has it, or the application has ended it
   }
-  if (current) {
+  {
     const std::lock_guard lock(pendingReads->mutex);
-    while (!pendingReads->list.empty()) pendingReads->list.back()->land();
+    while (!pendingReads->list.empty()) {
+      PendingRead& read = *pendingReads->list.back();
+      current ? read.land() : read.abandon();
+    }
   }
   if (passes && current) passes->complete();
-  passes.reset();
   while (firstStream() != nullptr) {
     auto& stream = static_cast<GlStream&>(*firstStream());
     stream.leave();
     stream.planes.clear();
     stream.total_ = {};
   }
-  if (current) {
-    pool.clear();
-    framebuffers.clear();
-    for (auto& [choice, programs] : caches_) programs.clear();
-    appendPrograms.clear();
-    tableTextures_.clear();
-    samplers.clear();
-    values.clear();
-    transferBuffers.clear();
-    vertexArray = {};
-  }
 }
 
-void GlDevice::forgetObjects() noexcept {
-  {
-    const std::lock_guard lock(pendingReads->mutex);
-    while (!pendingReads->list.empty()) pendingReads->list.back()->abandon();
+// Where the context is out of reach, its objects die with it.
+GlDevice::LastDeletions::~LastDeletions() {
+  try {
+    const gl::CurrentScope current(device.context);
+    device.bound.deleteQueued();
+  } catch (const std::exception&) {
+    return;
   }
-  transferBuffers.forget();
-  if (passes) passes->forget();
-  for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
-    auto& stream = static_cast<GlStream&>(*state);
-    for (RenderTarget& plane : stream.planes) {
-      plane.forget();
-    }
-    stream.total_.forget();
-  }
-  pool.forget();
-  framebuffers.forget();
-  for (auto& [choice, programs] : caches_) programs.forget();
-  appendPrograms.forget();
-  for (auto& [table, texture] : tableTextures_) texture.forget();
-  samplers.forget();
-  values.forget();
-  vertexArray.forget();
 }
 
 std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& element, const Shape& shape,
@@ -242,6 +217,7 @@ GLuint GlDevice::textureOf(const FunctionTable& table) {
     texels.resize(static_cast<std::size_t>(rows) * assemble::tableWidth * static_cast<std::size_t>(width));
     texture = gl::Texture(bound, gl::formatOf(program::Scalar::Float, width), {assemble::tableWidth, rows});
     if (texture.name() == 0) {
+      throwIfLost();
       throw Error(fmt::format("'{}' has no memory for the table of '{}': {} KiB", capabilities.renderer,
                               table.report.function, texels.size() * sizeof(float) >> 10),
                   Error::Kind::Memory);
@@ -370,26 +346,34 @@ void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argu
 std::vector<RenderTarget> GlDevice::takePlanes(const program::Element& element,
                                                const assemble::TextureShape& shape,
                                                std::string_view whatFor) {
-  std::vector<RenderTarget> planes;
-  planes.reserve(element.fields.size());
+  PlanesLease lease(*this);
+  lease.add(element, shape, whatFor);
+  return std::exchange(lease.planes, {});
+}
+
+void PlanesLease::add(const program::Element& element, const assemble::TextureShape& shape,
+                      std::string_view whatFor) {
+  planes.reserve(planes.size() + element.fields.size());
   for (const program::Field& field : element.fields) {
     const gl::Format& format = gl::formatOf(field);
-    RenderTarget plane = pool.take(format, shape);
-    if (!plane) {
-      givePlanes(planes);
-      const std::int64_t texels = std::int64_t{shape.width} * shape.height * std::max(shape.layers, 1);
-      throw Error(
-          fmt::format("'{}' has no memory for {}: {} texture(s) of {} x {}{} texels, one of them of {} MiB",
-                      capabilities.renderer, whatFor, element.fields.size(), shape.width, shape.height,
-                      shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
-                      (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20),
-          Error::Kind::Memory);
-    }
-    labels.texture(plane.texture.name(), whatFor);
+    RenderTarget plane = device_.pool.take(format, shape);
+    if (!plane) device_.failForPlanes(element, format, shape, whatFor);
     planes.push_back(std::move(plane));
+    device_.labels.texture(planes.back().texture.name(), whatFor);
   }
-  countBytes();
-  return planes;
+  device_.countBytes();
+}
+
+void GlDevice::failForPlanes(const program::Element& element, const gl::Format& format,
+                             const assemble::TextureShape& shape, std::string_view whatFor) {
+  throwIfLost();
+  const std::int64_t texels = std::int64_t{shape.width} * shape.height * std::max(shape.layers, 1);
+  throw Error(
+      fmt::format("'{}' has no memory for {}: {} texture(s) of {} x {}{} texels, one of them of {} MiB",
+                  capabilities.renderer, whatFor, element.fields.size(), shape.width, shape.height,
+                  shape.layers == 0 ? "" : fmt::format(" x {}", shape.layers),
+                  (texels * static_cast<std::int64_t>(format.texelBytes())) >> 20),
+      Error::Kind::Memory);
 }
 
 void GlDevice::givePlanes(std::vector<RenderTarget>& planes) noexcept {
@@ -405,16 +389,34 @@ void GlDevice::makeCurrent() {
   if (!context.isCurrent()) context.makeCurrent();
 }
 
+void GlDevice::failAsLost() const {
+  throw Error(fmt::format("the driver has reset '{}', and all of its streams are lost; make a new device",
+                          capabilities.renderer),
+              Error::Kind::Lost);
+}
+
+void GlDevice::throwIfLost() {
+  bound.errors.setAside();
+  if (bound.errors.isLost() || (capabilities.tellsResets && bound.errors.askIfLost())) failAsLost();
+}
+
 // An application's own mistakes in a context that it draws in are not ours to report.
 void GlDevice::throwPendingError() {
   if (passes) passes->collect();
-  const GLenum error = gl::takeError();
+  const GLenum error = bound.errors.take();
+  const std::int64_t unchecked = period_++;
   const bool isOurs = !isGuest() || error == GL_OUT_OF_MEMORY || error == GL_CONTEXT_LOST;
-  if (error != GL_NO_ERROR && isOurs) {
-    throw Error(fmt::format("the driver of '{}' reports {}; what the device's streams hold is undefined",
-                            capabilities.renderer, gl::errorName(error)),
-                error == GL_OUT_OF_MEMORY ? Error::Kind::Memory : Error::Kind::Lost);
+  if (error == GL_NO_ERROR || !isOurs) return;
+  throwIfLost();
+  for (StreamState* state = firstStream(); state != nullptr; state = state->next()) {
+    auto& stream = static_cast<GlStream&>(*state);
+    stream.isBroken = stream.isBroken || stream.wasWrittenIn(unchecked);
   }
+  throw Error(
+      fmt::format(
+          "the driver of '{}' reports {}; the streams that were written since it was last asked are lost",
+          capabilities.renderer, gl::errorName(error)),
+      error == GL_OUT_OF_MEMORY ? Error::Kind::Memory : Error::Kind::Lost);
 }
 
 }  // namespace sk

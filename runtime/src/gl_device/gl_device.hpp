@@ -90,6 +90,11 @@ class GlDevice final : public DeviceState {
   std::vector<RenderTarget> takePlanes(const program::Element& element, const assemble::TextureShape& shape,
                                        std::string_view whatFor);
   void givePlanes(std::vector<RenderTarget>& planes) noexcept;
+  [[noreturn]] void failForPlanes(const program::Element& element, const gl::Format& format,
+                                  const assemble::TextureShape& shape, std::string_view whatFor);
+  void countBytes() const noexcept {
+    if (trace) trace->countBytes(pool.bytesUsed(), pool.bytesKept());
+  }
 
   /// Whether the application draws in the context, too, so that each call puts its state back.
   bool isGuest() const { return context.isAdopted() || sharesContext_; }
@@ -114,8 +119,18 @@ class GlDevice final : public DeviceState {
   /// The texture of a table, made at first. Binds a texture.
   GLuint textureOf(const FunctionTable& table);
 
-  /// Throws sk::Error where the driver has reported an error since it was last asked.
+  /// Throws sk::Error where the driver has reported an error since it was last asked; the streams that were written meanwhile are
+  /// broken then.
   void throwPendingError();
+  /// Throws sk::Error where the context is lost. Asks the driver: for after a failure, whose reason this may be.
+  void throwIfLost();
+  /// The context, unless it is known to be lost, in which case this throws sk::Error.
+  const gl::Context& livingContext() const {
+    if (bound.errors.isLost()) failAsLost();
+    return context;
+  }
+  /// Between two looks at the driver's errors, streams are written in the same period.
+  std::int64_t period() const { return period_; }
 
   gl::Context context;
   const gl::Capabilities capabilities;
@@ -124,14 +139,24 @@ class GlDevice final : public DeviceState {
   const Target target;  ///< Fragment, Compute, or what is faster
   Barrier barrier;  ///< of programs; only arithmetic() tells whether it holds
   gl::BoundState bound;
+
+ private:
+  /// Deletes what all members below have left.
+  struct LastDeletions {
+    GlDevice& device;
+    ~LastDeletions();
+  };
+  LastDeletions lastDeletions_{*this};
+
+ public:
   FramebufferCache framebuffers;
   TexturePool pool;
   AppendPrograms appendPrograms;
-  gl::Samplers samplers;
+  gl::Samplers samplers{bound.deletions};
   gl::ValueBuffer values;
   gl::VertexArray vertexArray;
   const std::shared_ptr<PendingReads> pendingReads = std::make_shared<PendingReads>();
-  TransferBuffers transferBuffers;
+  TransferBuffers transferBuffers{bound.deletions};
   gl::Labels labels;
   const CacheFolder cache;
   ProgramBinaries binaries;
@@ -146,12 +171,10 @@ class GlDevice final : public DeviceState {
   bool mayDispatch(const program::Kernel& kernel) const;
   /// Throws sk::Error where a kernel cannot run as what a call asks for.
   void checkTarget(const program::Kernel& kernel, Target asked) const;
-  void forgetObjects() noexcept;
-  void countBytes() const noexcept {
-    if (trace) trace->countBytes(pool.bytesUsed(), pool.bytesKept());
-  }
   void needExactSums(const program::Kernel& kernel);
+  [[noreturn]] void failAsLost() const;
 
+  std::int64_t period_ = 1;
   const bool sharesContext_;
   std::map<ProgramChoice, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
@@ -164,7 +187,8 @@ class GlDevice final : public DeviceState {
 /// Makes a device's context current and ready for passes, for as long as it lives.
 class DeviceScope {
  public:
-  explicit DeviceScope(GlDevice& device) : current_(device.context) {
+  explicit DeviceScope(GlDevice& device) : current_(device.livingContext()) {
+    device.bound.deleteQueued();
     if (device.isGuest()) {
       saved_.emplace(device.capabilities, device.bound);
     }
@@ -185,6 +209,9 @@ class PlanesLease {
   ~PlanesLease() { device_.givePlanes(planes); }
   PlanesLease(const PlanesLease&) = delete;
   PlanesLease& operator=(const PlanesLease&) = delete;
+
+  /// Adds planes, as GlDevice::takePlanes().
+  void add(const program::Element& element, const assemble::TextureShape& shape, std::string_view whatFor);
 
   std::vector<RenderTarget> planes;
 

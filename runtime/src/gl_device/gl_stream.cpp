@@ -2,6 +2,7 @@
 #include "gl_device/gl_stream.hpp"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
@@ -60,18 +61,15 @@ void GlStream::unpack() {
   copyRegion(owner(), held(), planes, layout.whole, lease.planes, wanted.whole);
   std::swap(planes, lease.planes);
   layout = std::move(wanted);
+  period_ = owner().period();
   labelPlanes();
 }
 
 GlDevice& GlStream::owner() const { return static_cast<GlDevice&>(*device); }
 
-void GlStream::become(std::vector<RenderTarget>& elements, const Layout& list, RenderTarget* total) {
-  Layout next = list;
-  const std::int32_t count = next.whole.extent[0];
-  if (total == nullptr) setSize(next, count);
-  // from here on nothing throws: the stream is the old one, or the new
+void GlStream::become(std::vector<RenderTarget>& elements, Layout&& list, RenderTarget* total) noexcept {
   std::swap(planes, elements);
-  layout = std::move(next);
+  layout = std::move(list);
   if (total_) {
     owner().pool.give(std::move(total_));
     total_ = {};
@@ -79,8 +77,14 @@ void GlStream::become(std::vector<RenderTarget>& elements, const Layout& list, R
   if (total != nullptr) {
     total_ = std::move(*total);
   } else {
-    shape = Shape(count);
+    shape = Shape(layout.whole.extent[0]);
   }
+  setWritten();
+}
+
+void GlStream::setWritten() noexcept {
+  isBroken = false;
+  period_ = owner().period();
 }
 
 void GlStream::settle() {
@@ -88,19 +92,18 @@ void GlStream::settle() {
     return;
   }
   const DeviceScope scope(owner());
-  const std::int32_t count = readTotal(owner(), total_);
-  Layout next = layout;
-  setSize(next, count);
-  layout = std::move(next);
+  const std::int32_t count = isBroken ? 0 : readTotal(owner(), total_);
+  layout = withSize(layout, count);
   shape = Shape(count);
   owner().pool.give(std::move(total_));
   total_ = {};
 }
 
-void GlStream::setSize(Layout& list, std::int32_t count) {
+Layout GlStream::withSize(Layout list, std::int32_t count) {
   list.whole.extent = {count, 1, 1, 1};
   list.whole.stride = assemble::stridesOf(list.whole.extent);
   list.draws = assemble::drawnTexels(list.whole);
+  return list;
 }
 
 // A region of whole texels travels as such, and others once the stream is no longer packed.
@@ -130,8 +133,12 @@ bool GlStream::writesThroughBuffer(const StreamRegion& region) const {
 void GlStream::uploadHeld(const StreamRegion& region, const std::byte* elements) {
   const bool isBuffered = writesThroughBuffer(region);
   const Travelling what = travelling(region);
-  if (isBuffered) return writeBuffered(owner(), *what.element, planes, what.place, elements);
-  upload(owner(), *what.element, planes, what.place, elements);
+  if (isBuffered) {
+    writeBuffered(owner(), *what.element, planes, what.place, elements, isBroken);
+  } else {
+    upload(owner(), *what.element, planes, what.place, elements, isBroken);
+  }
+  setWritten();
 }
 
 void GlStream::downloadHeld(const StreamRegion& region, std::byte* elements) {
@@ -147,14 +154,18 @@ void GlStream::setName(std::string_view given) {
   }
 }
 
-void GlStream::labelPlanes() const {
+void GlStream::labelPlanes() const noexcept {
   if (name.empty() || !owner().labels.isOn()) {
     return;
   }
-  const std::span<const program::Field> fields = held().fields;
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    owner().labels.texture(planes[i].texture.name(),
-                           fields[i].path.empty() ? name : fmt::format("{}.{}", name, fields[i].path));
+  try {
+    const std::span<const program::Field> fields = held().fields;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      owner().labels.texture(planes[i].texture.name(),
+                             fields[i].path.empty() ? name : fmt::format("{}.{}", name, fields[i].path));
+    }
+  } catch (const std::bad_alloc&) {
+    return;  // they keep the labels of other streams
   }
 }
 
@@ -197,7 +208,8 @@ void GlStream::writeAsync(const StreamRegion& region, const std::byte* elements)
     elements = converted.data();
   }
   const Travelling what = travelling(region);
-  writeBuffered(owner(), *what.element, planes, what.place, elements);
+  writeBuffered(owner(), *what.element, planes, what.place, elements, isBroken);
+  setWritten();
 }
 
 void GlStream::readReals(const StreamRegion& region, double* values) {
@@ -232,13 +244,17 @@ void GlStream::fill(const StreamRegion& region, const std::byte* value) {
   PlanesLease one(owner());
   one.planes = owner().takePlanes(*what.element, {1, 1}, "the value of fill()");
   const RegionLayout single{.extent = {1, 1, 1, 1}};
-  upload(owner(), *what.element, one.planes, single, texel.data());
+  bool ignored = false;
+  upload(owner(), *what.element, one.planes, single, texel.data(), ignored);
   const std::vector<assemble::Rect> rects = assemble::drawnTexels(what.place);
+  prepareCopy(owner(), *what.element, single, what.place, /*byKernel=*/true);
+  isBroken = true;
   for (std::size_t plane = 0; plane < planes.size(); ++plane) {
     const Operand operands[] = {{nullptr, single, std::span(one.planes).subspan(plane, 1)}, {}};
     RenderTarget* const targets[] = {&planes[plane]};
     runKernel(owner(), copyKernel(what.element->fields[plane]), operands, what.place, rects, targets);
   }
+  setWritten();
 }
 
 bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
@@ -254,19 +270,21 @@ bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
     unpack();
   }
   const RegionLayout place = regionLayoutOf(to, layout);
-  if (&source != this) {
-    copyRegion(owner(), held(), source.planes, regionLayoutOf(from, source.layout), planes, place);
-    return true;
-  }
-  // regions of one stream may overlap: all of it is copied, and read from there
+  const RegionLayout sourcePlace = regionLayoutOf(from, source.layout);
+  prepareCopy(owner(), held(), sourcePlace, place);
   PlanesLease before(owner());
-  before.planes = takePlanesFor(layout);
-  copyRegion(owner(), held(), planes, layout.whole, before.planes, layout.whole);
-  copyRegion(owner(), held(), before.planes, regionLayoutOf(from, layout), planes, place);
+  if (&source == this) {  // the regions may overlap: all of the stream is copied, and read from there
+    before.planes = takePlanesFor(layout);
+    copyRegion(owner(), held(), planes, layout.whole, before.planes, layout.whole);
+  }
+  isBroken = true;
+  copyRegion(owner(), held(), &source == this ? before.planes : source.planes, sourcePlace, planes, place);
+  setWritten();
   return true;
 }
 
 StreamTexture GlStream::texture(int plane) {
+  static_cast<void>(owner().livingContext());
   if (planes.empty()) {
     return {};
   }

@@ -56,11 +56,17 @@ class GlStream final : public StreamState {
   std::vector<RenderTarget> planes;  ///< one a field of what is held; none where the stream is empty
 
   /// For debuggers, where planes have changed.
-  void labelPlanes() const;
+  void labelPlanes() const noexcept;
 
   /// Takes what a kernel has pushed for its elements, and gives its planes for it. `total`: where their number
-  /// is not known, HistoPyramid::totalTexture(); `list` has then room for all that may be.
-  void become(std::vector<RenderTarget>& elements, const Layout& list, RenderTarget* total);
+  /// is not known, HistoPyramid::totalTexture(); `list` has then room for all that may be, and is else of the elements.
+  void become(std::vector<RenderTarget>& elements, Layout&& list, RenderTarget* total) noexcept;
+  /// The layout of the first elements of a list.
+  static Layout withSize(Layout list, std::int32_t count);
+
+  /// All that is to be written is.
+  void setWritten() noexcept;
+  bool wasWrittenIn(std::int64_t period) const { return period_ == period; }
 
  private:
   friend class GlDevice;
@@ -70,10 +76,9 @@ class GlStream final : public StreamState {
   void uploadHeld(const StreamRegion& region, const std::byte* elements);
   void downloadHeld(const StreamRegion& region, std::byte* elements);
   std::vector<RenderTarget> takePlanesFor(const Layout& planned);
-  /// Makes a list's layout that of its first elements.
-  static void setSize(Layout& list, std::int32_t count);
 
   std::unique_ptr<assemble::HeldElement> held_;  ///< where the storage is not Single
+  std::int64_t period_ = 0;  ///< of the device, in which it was written last
   RenderTarget total_;  ///< holds the number of elements until somebody asks
 };
 

@@ -102,12 +102,28 @@ class Operands {
     return kept_.emplace_back(element, real_, count);
   }
 
-  /// Streams get what was pushed to them, and what was written to a copy in another real type.
-  void settle() {
+  /// From here on, the streams that are written where they lie are broken until settle().
+  void begin() noexcept {
     for (std::size_t i = 0; i < list_.size(); ++i) {
-      if (list_[i].pushed != nullptr)
-        nativeStream(arguments_[i].region).become(std::move(*list_[i].pushed), real_);
+      if (isWrittenInPlace(i)) nativeStream(arguments_[i].region).isBroken = true;
     }
+  }
+
+  /// Streams get what was pushed to them, and what was written to a copy in another real type. What may throw comes first.
+  void settle() {
+    struct Given {
+      NativeStream& stream;
+      Components components;
+      std::int64_t count;
+    };
+    std::list<Given> given;
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      if (list_[i].pushed == nullptr) continue;
+      NativeStream& stream = nativeStream(arguments_[i].region);
+      const std::int64_t count = list_[i].pushed->count;
+      given.push_back({stream, stream.heldOf(std::move(*list_[i].pushed), real_), count});
+    }
+    for (Given& one : given) one.stream.become(std::move(one.components), one.count);
     for (const auto& [stream, copy] : written_) stream->components.assign(copy, stream->shape.size());
     for (std::size_t i = 0; i < list_.size(); ++i) {
       const StreamRegion& region = arguments_[i].region;
@@ -115,7 +131,9 @@ class Operands {
     }
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (isWritten(kernel_.parameters[i].role) && arguments_[i].region.stream != nullptr) {
-        nativeStream(arguments_[i].region).keepStorage();
+        NativeStream& stream = nativeStream(arguments_[i].region);
+        stream.keepStorage();
+        stream.isBroken = false;
       }
     }
   }
@@ -131,6 +149,15 @@ class Operands {
   }
 
  private:
+  /// Neither to spare arrays nor to a copy.
+  bool isWrittenInPlace(std::size_t i) const {
+    const StreamRegion& region = arguments_[i].region;
+    const Role role = kernel_.parameters[i].role;
+    return isWritten(role) && role != Role::VariableOutput && region.stream != nullptr &&
+           assemble::isNeeded(kernel_.parameters[i], specs_) && !isReplaced(region) &&
+           nativeStream(region).components.real() == real_;
+  }
+
   Operand operandAt(std::size_t i) {
     const Parameter& parameter = kernel_.parameters[i];
     const Argument& argument = arguments_[i];
@@ -350,7 +377,9 @@ void NativeDevice::run(const ResolvedCall& call) {
   Operands operands(real, kernel, call.arguments, call.domain, tablesOf(kernel, real, call.options));
   {
     const NativePass traced(*this, kernel, {}, call.arguments, call.domain);
-    runCode(kernel, operands.call(), codeChoice(real, call.options));
+    const native::Call made = operands.call();
+    operands.begin();
+    runCode(kernel, made, codeChoice(real, call.options));
   }
   operands.settle();
 }
@@ -379,6 +408,7 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
   }
   {
     const NativePass traced(*this, reduction.fold, "fold", call.arguments, call.domain);
+    folding.fold.begin();
     if (call.domain.size() == 0) {
       folding.storeIdentities(results, counts);
     } else {

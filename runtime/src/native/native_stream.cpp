@@ -78,6 +78,7 @@ void NativeStream::countBytes() noexcept {
 NativeDevice& NativeStream::owner() const { return static_cast<NativeDevice&>(*device); }
 
 void NativeStream::write(const StreamRegion& region, const std::byte* elements) {
+  isBroken = false;  // from here on nothing throws
   forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
     components.write(first, count, elements + static_cast<std::size_t>(number) * element->size,
                      element->size);
@@ -99,6 +100,7 @@ void NativeStream::readReals(const StreamRegion& region, double* values) {
 }
 
 void NativeStream::writeReals(const StreamRegion& region, const double* values) {
+  isBroken = false;  // from here on nothing throws
   forEachRun(region, [&](std::int64_t first, std::int64_t number, std::int64_t count) {
     components.writeReals(first, count,
                           values + static_cast<std::size_t>(number) * components.arrays().size());
@@ -107,6 +109,7 @@ void NativeStream::writeReals(const StreamRegion& region, const double* values) 
 }
 
 void NativeStream::fill(const StreamRegion& region, const std::byte* value) {
+  isBroken = false;  // from here on nothing throws
   forEachRun(region, [&](std::int64_t first, std::int64_t, std::int64_t count) {
     components.fill(first, count, value);
   });
@@ -119,6 +122,7 @@ bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   forEachRun(from, [&](std::int64_t first, std::int64_t, std::int64_t) { starts.push_back(first); });
   Components before;  // elements that overlap are read as they were
   if (&source == this) before = components.clone(shape.size(), components.real());
+  isBroken = false;  // from here on nothing throws
   auto start = starts.begin();
   forEachRun(to, [&](std::int64_t first, std::int64_t, std::int64_t count) {
     components.copy(&source == this ? before : source.components, *start++, first, count);
@@ -166,7 +170,7 @@ void NativeStream::fillBuffer(std::uint32_t, std::int64_t, int) {
               Error::Kind::Device);
 }
 
-void NativeStream::become(native::Pushed pushed, RealType real) {
+Components NativeStream::heldOf(native::Pushed pushed, RealType real) const {
   const std::int64_t count = pushed.count;
   if (count > mostExtent) {
     throw Error(
@@ -177,9 +181,14 @@ void NativeStream::become(native::Pushed pushed, RealType real) {
   }
   Components given = pushed.arrays.empty() ? Components(*element, real, 0)
                                            : Components(*element, real, std::move(pushed.arrays));
-  components = real == components.real() ? std::move(given) : given.clone(count, components.real());
+  return real == components.real() ? std::move(given) : given.clone(count, components.real());
+}
+
+void NativeStream::become(Components&& pushed, std::int64_t count) noexcept {
+  components = std::move(pushed);
   spare_ = {};
   shape = Shape(count);
+  isBroken = false;
   countBytes();
 }
 

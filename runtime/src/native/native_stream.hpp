@@ -32,8 +32,10 @@ class NativeStream final : public StreamState {
   StreamTexture texture(int plane) override;
   void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
 
-  /// Takes what a kernel has pushed for its elements, which has floats as `real`.
-  void become(native::Pushed pushed, RealType real);
+  /// What a kernel has pushed, which has floats as `real`, as this stream holds it. Throws sk::Error where it is too much.
+  Components heldOf(native::Pushed pushed, RealType real) const;
+  /// Takes so many elements for its own.
+  void become(Components&& pushed, std::int64_t count) noexcept;
 
   /// After kernels have written to it: floats that are held as halves are rounded to these.
   void keepStorage();

@@ -8,18 +8,35 @@
 
 namespace sk {
 
-void failForHostMemory(std::string_view what, const std::bad_alloc& error) {
-  if (const auto* known = dynamic_cast<const NoMemory*>(&error)) {
-    throw Error(fmt::format("{}: there is no host memory for {} bytes", what, known->bytes()),
-                Error::Kind::Memory);
+namespace {
+
+/// Made while there is memory: copying an Error allocates nothing.
+const Error noMemory("there is not enough host memory", Error::Kind::Memory);
+
+/// Throws an Error with the text that `text` makes, or, if there is no memory for that either, without.
+template <class Text>
+[[noreturn]] void failWith(Text&& text) {
+  try {
+    throw Error(text(), Error::Kind::Memory);
+  } catch (const std::bad_alloc&) {
+    throw Error(noMemory);
   }
-  throw Error(fmt::format("{}: there is not enough host memory", what), Error::Kind::Memory);
+}
+
+}  // namespace
+
+void failForHostMemory(std::string_view what, const std::bad_alloc& error) {
+  failWith([&] {
+    const auto* known = dynamic_cast<const NoMemory*>(&error);
+    return known == nullptr ? fmt::format("{}: there is not enough host memory", what)
+                            : fmt::format("{}: there is no host memory for {} bytes", what, known->bytes());
+  });
 }
 
 void detail::failForElements(std::size_t count, std::size_t elementBytes) {
-  throw Error(
-      fmt::format("there is no host memory for {} element(s) of {} byte(s) each", count, elementBytes),
-      Error::Kind::Memory);
+  failWith([&] {
+    return fmt::format("there is no host memory for {} element(s) of {} byte(s) each", count, elementBytes);
+  });
 }
 
 }  // namespace sk

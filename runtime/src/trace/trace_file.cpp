@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <sstream>
 
 #include <fcntl.h>
@@ -129,17 +130,18 @@ void TraceFile::append(std::string_view events) noexcept {
   const Lock lock(file_);
   try {
     put(events);
-  } catch (const std::exception& error) {
-    failure_ = error.what();
+  } catch (const std::bad_alloc&) {
+    return;  // these events are missing in the file
   }
 }
 
 void TraceFile::put(std::string_view events) {
   const off_t end = ::lseek(file_, 0, SEEK_END) - static_cast<off_t>(tail.size());
   if (writeAt(file_, end, fmt::format(",\n{}{}", events, tail))) return;
-  failure_ = fmt::format("SK_TRACE: '{}' cannot be written any more: {}; what was traced before is in it",
-                         name_, std::strerror(errno));
+  const int why = errno;
   if (::ftruncate(file_, end) == 0) writeAt(file_, end, tail);
+  failure_ = fmt::format("SK_TRACE: '{}' cannot be written any more: {}; what was traced before is in it",
+                         name_, std::strerror(why));
 }
 
 }  // namespace sk

@@ -5,7 +5,10 @@
 #include "gl_device/append/append_call.hpp"
 
 #include <algorithm>
+#include <list>
 #include <optional>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "assemble/append/append_passes.hpp"
@@ -52,13 +55,14 @@ class AppendCall {
         layout_(layoutOf(call.domain, device.textureLimits())),
         counts_(device) {
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
-      if (isScattered(i)) glStream(arguments_[i].region).unpack();
+      if (isScattered(i) || isPartlyWritten(i)) glStream(arguments_[i].region).unpack();
     }
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
       operands_.push_back(operandOf(i, call.domain));
     }
   }
 
+  /// Everything that a driver may refuse comes before any stream changes, and what changes whole streams at the end.
   void run() {
     OutputTargets outputs(device_, kernel_, arguments_, specs_, operands_, layout_.whole, layout_);
     drawCounts(outputs);
@@ -72,15 +76,38 @@ class AppendCall {
       RenderTarget* counts = assemble::isCounted(parameter) ? &counts_.planes[counted++] : nullptr;
       lists.push_back(makeList(i, counts));
     }
-    outputs.putInPlace();
+    std::list<std::pair<GlStream*, Scatterer>> scatterers;
     for (const std::unique_ptr<List>& list : lists) {
-      putInPlace(*list);
+      if (!isScattered(list->appendOutput) || list->planes.planes.empty()) continue;
+      GlStream& stream = glStream(arguments_[list->appendOutput].region);
+      scatterers.emplace_back(
+          std::piecewise_construct, std::tuple(&stream),
+          std::forward_as_tuple(device_, kernel_.parameters[list->appendOutput], list->planes.planes,
+                                list->layout.whole, operands_[list->appendOutput].regionLayout,
+                                stream.planes));
+    }
+    outputs.copy();
+    for (auto& [stream, scatterer] : scatterers) {
+      stream->isBroken = true;
+      scatterer.run();
+      stream->setWritten();
+    }
+    outputs.exchange();
+    for (const std::unique_ptr<List>& list : lists) {
+      if (kernel_.parameters[list->appendOutput].role == Role::VariableOutput) become(*list);
     }
   }
 
  private:
   bool isScattered(std::size_t i) const {
     return kernel_.parameters[i].role == Role::Scatter && assemble::isNeeded(kernel_.parameters[i], specs_);
+  }
+
+  /// The domain does not lie packed, and what is copied there goes to a part of the stream.
+  bool isPartlyWritten(std::size_t i) const {
+    const StreamRegion& region = arguments_[i].region;
+    return kernel_.parameters[i].role == Role::Output && assemble::isNeeded(kernel_.parameters[i], specs_) &&
+           region.shape != region.stream->shape;
   }
 
   Operand operandOf(std::size_t i, const Shape& domain) const {
@@ -104,9 +131,7 @@ class AppendCall {
         kernel_.parameters.begin(), kernel_.parameters.end(),
         [](const Parameter& p) { return assemble::isAppendOutput(p) && assemble::isCounted(p); });
     for (std::ptrdiff_t i = 0; i < counted; ++i) {
-      std::vector<RenderTarget> plane = device_.takePlanes(ElementTraits<int>::element(), layout_.texture,
-                                                           "the numbers of what a kernel pushes");
-      counts_.planes.push_back(std::move(plane.front()));
+      counts_.add(ElementTraits<int>::element(), layout_.texture, "the numbers of what a kernel pushes");
     }
     for (RenderTarget& plane : counts_.planes) {
       targets.add(plane);
@@ -114,8 +139,11 @@ class AppendCall {
     if (targets.planes().empty()) {
       return;
     }
-    runKernel(device_, kernel_, operands_, layout_.whole, layout_.draws, targets.planes(), {},
-              {Work::Counts});
+    const Task task{Work::Counts};
+    KernelProgram& program = device_.programs().kernelProgram(kernel_, operands_, layout_.whole, task);
+    const PreparedPass pass = preparedPass(device_, program, targets.planes());
+    targets.begin();
+    runKernel(device_, pass, kernel_, operands_, layout_.whole, layout_.draws, targets.planes(), {}, task);
   }
 
   /// Where `counts` is null, the list has slots.
@@ -157,10 +185,7 @@ class AppendCall {
   void drawList(List& list, HistoPyramid* tree) {
     const Parameter& appendOutput = kernel_.parameters[list.appendOutput];
     const auto take = [&](const program::Element& element) {
-      for (RenderTarget& plane :
-           device_.takePlanes(element, list.layout.texture, "what a kernel pushes or scatters")) {
-        list.planes.planes.push_back(std::move(plane));
-      }
+      list.planes.add(element, list.layout.texture, "what a kernel pushes or scatters");
     };
     if (appendOutput.role == Role::Scatter) {
       take(ElementTraits<int2>::element());
@@ -193,21 +218,11 @@ class AppendCall {
     program.tree.set(tree.plan());
   }
 
-  void putInPlace(List& list) {
-    const Parameter& appendOutput = kernel_.parameters[list.appendOutput];
-    if (appendOutput.role == Role::VariableOutput) {
-      const bool isKnown = list.total.planes.empty();
-      glStream(arguments_[list.appendOutput].region)
-          .become(list.planes.planes, list.layout, isKnown ? nullptr : &list.total.planes.front());
-      list.total.planes.clear();
-      return;
-    }
-    if (list.planes.planes.empty()) {
-      return;
-    }
-    GlStream& stream = glStream(arguments_[list.appendOutput].region);
-    scatterPoints(device_, appendOutput, list.planes.planes, list.layout.whole,
-                  operands_[list.appendOutput].regionLayout, stream.planes);
+  void become(List& list) noexcept {
+    const bool isKnown = list.total.planes.empty();
+    glStream(arguments_[list.appendOutput].region)
+        .become(list.planes.planes, std::move(list.layout), isKnown ? nullptr : &list.total.planes.front());
+    list.total.planes.clear();
   }
 
   GlDevice& device_;

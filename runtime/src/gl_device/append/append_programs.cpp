@@ -30,6 +30,7 @@ std::unique_ptr<StepProgram> AppendPrograms::build(const std::string& vertexSour
   std::string log;
   gl::Program program = ProgramBuild(device_, {vertexSource, fragmentSource}).finish(device_, log);
   if (!program) {
+    device_.throwIfLost();
     throw Error(fmt::format("the driver of '{}' refuses the program of {}:\n{}",
                             device_.capabilities.renderer, what, log),
                 Error::Kind::Compile);
@@ -41,9 +42,10 @@ std::unique_ptr<StepProgram> AppendPrograms::build(const std::string& vertexSour
 StepProgram& AppendPrograms::tree(const assemble::PyramidTextures& textures) {
   std::unique_ptr<StepProgram>& kept = trees_[textures];
   if (!kept) {
-    kept = build(assemble::vertexProgram(device_.profile), assemble::treeProgram(device_.profile, textures),
-                 "sums of counts");
-    kept->program().setSampler("sk_below", 0);
+    auto made = build(assemble::vertexProgram(device_.profile),
+                      assemble::treeProgram(device_.profile, textures), "sums of counts");
+    made->program().setSampler("sk_below", 0);
+    kept = std::move(made);
   }
   return *kept;
 }
@@ -55,9 +57,9 @@ StepProgram& AppendPrograms::points(const program::Parameter& appendOutput, Poin
     const std::string vertexSource = assemble::hasPoints(step)
                                          ? assemble::pointVertexProgram(device_.profile, textures)
                                          : assemble::vertexProgram(device_.profile);
-    kept = build(vertexSource, assemble::pointProgram(device_.profile, appendOutput, step, textures),
-                 appendOutput.name);
-    const gl::Program& program = kept->program();
+    auto made = build(vertexSource, assemble::pointProgram(device_.profile, appendOutput, step, textures),
+                      appendOutput.name);
+    const gl::Program& program = made->program();
     int unit = 0;
     program.setSampler("sk_targets", unit++);
     for (std::size_t plane = 0; plane < appendOutput.element->fields.size(); ++plane) {
@@ -70,26 +72,9 @@ StepProgram& AppendPrograms::points(const program::Parameter& appendOutput, Poin
     for (const char* name : {"sk_upper", "sk_lower"}) {
       program.setSampler(name, unit++);
     }
+    kept = std::move(made);
   }
   return *kept;
-}
-
-void AppendPrograms::clear() {
-  trees_.clear();
-  points_.clear();
-}
-
-void AppendPrograms::forget() noexcept {
-  for (auto& [key, program] : trees_) {
-    if (program) {
-      program->forget();
-    }
-  }
-  for (auto& [key, program] : points_) {
-    if (program) {
-      program->forget();
-    }
-  }
 }
 
 }  // namespace sk

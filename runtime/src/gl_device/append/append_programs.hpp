@@ -32,7 +32,6 @@ class StepProgram {
   /// `sk_domain_row`, of those that draw to layers.
   gl::IntUniform& row() { return find("sk_domain_row", false); }
   const gl::Program& program() const { return program_; }
-  void forget() noexcept { program_.forget(); }
 
  private:
   gl::IntUniform& find(std::string_view name, bool isVector);
@@ -51,9 +50,6 @@ class AppendPrograms {
   /// steps have drawn.
   StepProgram& points(const program::Parameter& appendOutput, assemble::PointStep step,
                       const assemble::PointTextures& textures);
-
-  void clear();
-  void forget() noexcept;
 
  private:
   using PointKey = std::tuple<const program::Parameter*, assemble::PointStep, assemble::PointTextures>;

@@ -5,12 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
-#include "assemble/append/point_program.hpp"
-#include "gl/points.hpp"
-#include "gl_device/gl_device.hpp"
-#include "gl_device/pass/pass.hpp"
 #include "gl_device/pass/pass_trace.hpp"
 #include "gl_device/transfer/copy_regions.hpp"
 #include "sk/types.hpp"
@@ -35,140 +30,138 @@ const program::Element& floatsOf(int width) {
   }
 }
 
-class Scatterer {
- public:
-  Scatterer(GlDevice& device, const program::Parameter& appendOutput, std::span<RenderTarget> list,
-            const assemble::RegionLayout& listLayout, const assemble::RegionLayout& regionLayout,
-            std::span<RenderTarget> planes)
-      : device_(device),
-        appendOutput_(appendOutput),
-        list_(list),
-        listLayout_(listLayout),
-        length_(listLayout.extent[0]),
-        regionLayout_(regionLayout),
-        planes_(planes),
-        rects_(assemble::drawnTexels(regionLayout)) {}
+bool isOfFloats(const program::Parameter& appendOutput) {
+  return appendOutput.element->fields.front().scalar == Scalar::Float;
+}
 
-  void run() {
-    const bool isFloat = appendOutput_.element->fields.front().scalar == Scalar::Float;
-    switch (appendOutput_.scatter) {
-      case ScatterOp::Store: return store(gl::Blend::None);
-      case ScatterOp::Add: return isFloat ? store(gl::Blend::Add) : addIntegers();
-      case ScatterOp::Min: return isFloat ? store(gl::Blend::Min) : extremeIntegers();
-      case ScatterOp::Max: return isFloat ? store(gl::Blend::Max) : extremeIntegers();
-    }
-  }
-
- private:
-  void store(gl::Blend blend) { points(PointStep::Store, blend, planes_, 0, length_); }
-
-  /// In rounds of so many points that their limbs add up without rounding.
-  void addIntegers() {
-    PlanesLease limbs(device_);
-    for (int c = 0; c < width(); ++c) {
-      limbs.planes.push_back(floats(4));
-    }
-    for (std::int32_t first = 0; first < length_; first += assemble::mostLimbPoints) {
-      region(PointStep::SplitLimbs, limbs.planes);
-      points(PointStep::AddLimbs, gl::Blend::Add, limbs.planes, first,
-             std::min(assemble::mostLimbPoints, length_ - first));
-      bindAfterElements(limbs.planes);
-      region(PointStep::JoinLimbs, planes_);
-    }
-  }
-
-  void extremeIntegers() {
-    PlanesLease upper(device_);
-    PlanesLease lower(device_);
-    upper.planes.push_back(floats(width()));
-    lower.planes.push_back(floats(width()));
-    region(PointStep::SplitUpper, upper.planes);
-    points(PointStep::Upper, gl::Blend::Max, upper.planes, 0, length_);
-    bindAfterElements(upper.planes);
-    region(PointStep::SplitLower, lower.planes);
-    points(PointStep::Lower, gl::Blend::Max, lower.planes, 0, length_);
-    bindPlanes(device_, lower.planes, bindAfterElements(upper.planes));
-    region(PointStep::JoinHalves, planes_);
-  }
-
-  int width() const { return appendOutput_.element->fields.front().width; }
-
-  /// A plane of floats as large as those of the output.
-  RenderTarget floats(int width) {
-    std::vector<RenderTarget> planes =
-        device_.takePlanes(floatsOf(width), planes_.front().texture.shape(), whatFor);
-    return std::move(planes.front());
-  }
-
-  /// Units 0 and 1 are those of a list, or of the elements.
-  int bindAfterElements(std::span<RenderTarget> planes) { return bindPlanes(device_, planes, 2); }
-
-  StepProgram& programOf(PointStep step) {
-    StepProgram& program =
-        device_.appendPrograms.points(appendOutput_, step, {listLayout_.layered, regionLayout_.layered});
-    device_.bound.program(program.program().name());
-    program.set("sk_domain_shift", regionLayout_.shift);
-    return program;
-  }
-
-  DrawTarget target(std::span<RenderTarget> planes) {
-    std::array<RenderTarget*, gl::maxDrawBuffers> renderTargets{};
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      renderTargets[i] = &planes[i];
-    }
-    return targetOf(device_, std::span(renderTargets).first(planes.size()));
-  }
-
-  /// Every point is drawn to every layer, of which it is outside of all but one.
-  void points(PointStep step, gl::Blend blend, std::span<RenderTarget> targets, std::int32_t first,
-              std::int32_t count) {
-    StepProgram& program = programOf(step);
-    const DrawTarget drawn = target(targets);
-    bindPlanes(device_, list_, 0);
-    const gl::Texture& texture = targets.front().texture;
-    const assemble::TextureShape& shape = texture.shape();
-    program.set("sk_list_shift", listLayout_.shift);
-    program.set("sk_first", first);
-    program.set("sk_size", gl::Int4{shape.width, shape.height, 0, 0});
-    device_.bound.vertexArray(device_.vertexArray.name());
-    const gl::Blending blending(device_.capabilities, blend, device_.isGuest());
-    const assemble::Rect whole{0, 0, shape.width, texture.rows()};
-    const assemble::Rect written{0, 0, count, 1};
-    const PassScope traced(device_, {appendOutput_.name, "scatter"}, std::span<const RenderTarget>(list_),
-                           std::span(&written, 1), texelBytesOf(targets));
-    forEachLayer(whole, drawn.layerRows, [&](const assemble::Rect& part, std::int32_t layer, std::int32_t) {
-      selectLayer(device_, drawn, layer, program.row());
-      device_.bound.viewport(0, 0, part.width, part.height);
-      gl::drawPoints(count);
-    });
-  }
-
-  /// Over the region that is written. The steps that draw elements read none.
-  void region(PointStep step, std::span<RenderTarget> targets) {
-    StepProgram& program = programOf(step);
-    const DrawTarget drawn = target(targets);
-    bindPlanes(device_, planes_, 1);
-    const PassScope traced(device_, {appendOutput_.name, "scatter"}, std::span<const RenderTarget>(planes_),
-                           std::span<const assemble::Rect>(rects_), texelBytesOf(targets));
-    drawRects(device_, drawn, rects_, program.row());
-  }
-
-  GlDevice& device_;
-  const program::Parameter& appendOutput_;
-  std::span<RenderTarget> list_;
-  const assemble::RegionLayout& listLayout_;
-  std::int32_t length_;
-  const assemble::RegionLayout& regionLayout_;
-  std::span<RenderTarget> planes_;
-  std::vector<assemble::Rect> rects_;
-};
+/// What is drawn, one after the other.
+std::span<const PointStep> stepsOf(const program::Parameter& appendOutput) {
+  static constexpr PointStep store[] = {PointStep::Store};
+  static constexpr PointStep sums[] = {PointStep::SplitLimbs, PointStep::AddLimbs, PointStep::JoinLimbs};
+  static constexpr PointStep extremes[] = {PointStep::SplitUpper, PointStep::Upper, PointStep::SplitLower,
+                                           PointStep::Lower, PointStep::JoinHalves};
+  if (isOfFloats(appendOutput) || appendOutput.scatter == ScatterOp::Store) return store;
+  return appendOutput.scatter == ScatterOp::Add ? std::span<const PointStep>(sums) : extremes;
+}
 
 }  // namespace
 
-void scatterPoints(GlDevice& device, const program::Parameter& appendOutput, std::span<RenderTarget> list,
-                   const assemble::RegionLayout& listLayout, const assemble::RegionLayout& regionLayout,
-                   std::span<RenderTarget> planes) {
-  Scatterer(device, appendOutput, list, listLayout, regionLayout, planes).run();
+Scatterer::Scatterer(GlDevice& device, const program::Parameter& appendOutput, std::span<RenderTarget> list,
+                     const assemble::RegionLayout& listLayout, const assemble::RegionLayout& regionLayout,
+                     std::span<RenderTarget> planes)
+    : device_(device),
+      appendOutput_(appendOutput),
+      list_(list),
+      listLayout_(listLayout),
+      length_(listLayout.extent[0]),
+      regionLayout_(regionLayout),
+      planes_(planes),
+      rects_(assemble::drawnTexels(regionLayout)),
+      limbs_(device),
+      upper_(device),
+      lower_(device) {
+  const std::span<const PointStep> steps = stepsOf(appendOutput);
+  for (const PointStep step : steps) {
+    device.appendPrograms.points(appendOutput, step, {listLayout.layered, regionLayout.layered});
+  }
+  if (steps.front() == PointStep::SplitLimbs) {
+    for (int c = 0; c < width(); ++c) takeFloats(limbs_, 4);
+    target(limbs_.planes);
+  } else if (steps.front() == PointStep::SplitUpper) {
+    takeFloats(upper_, width());
+    takeFloats(lower_, width());
+  }
+  target(planes);
+}
+
+void Scatterer::run() {
+  switch (appendOutput_.scatter) {
+    case ScatterOp::Store: return store(gl::Blend::None);
+    case ScatterOp::Add: return isOfFloats(appendOutput_) ? store(gl::Blend::Add) : addIntegers();
+    case ScatterOp::Min: return isOfFloats(appendOutput_) ? store(gl::Blend::Min) : extremeIntegers();
+    case ScatterOp::Max: return isOfFloats(appendOutput_) ? store(gl::Blend::Max) : extremeIntegers();
+  }
+}
+
+void Scatterer::store(gl::Blend blend) { points(PointStep::Store, blend, planes_, 0, length_); }
+
+/// In rounds of so many points that their limbs add up without rounding.
+void Scatterer::addIntegers() {
+  for (std::int32_t first = 0; first < length_; first += assemble::mostLimbPoints) {
+    region(PointStep::SplitLimbs, limbs_.planes);
+    points(PointStep::AddLimbs, gl::Blend::Add, limbs_.planes, first,
+           std::min(assemble::mostLimbPoints, length_ - first));
+    bindAfterElements(limbs_.planes);
+    region(PointStep::JoinLimbs, planes_);
+  }
+}
+
+void Scatterer::extremeIntegers() {
+  region(PointStep::SplitUpper, upper_.planes);
+  points(PointStep::Upper, gl::Blend::Max, upper_.planes, 0, length_);
+  bindAfterElements(upper_.planes);
+  region(PointStep::SplitLower, lower_.planes);
+  points(PointStep::Lower, gl::Blend::Max, lower_.planes, 0, length_);
+  bindPlanes(device_, lower_.planes, bindAfterElements(upper_.planes));
+  region(PointStep::JoinHalves, planes_);
+}
+
+/// A plane of floats as large as those of the output.
+void Scatterer::takeFloats(PlanesLease& lease, int width) {
+  lease.add(floatsOf(width), planes_.front().texture.shape(), whatFor);
+}
+
+/// Units 0 and 1 are those of a list, or of the elements.
+int Scatterer::bindAfterElements(std::span<RenderTarget> planes) { return bindPlanes(device_, planes, 2); }
+
+StepProgram& Scatterer::programOf(PointStep step) {
+  StepProgram& program =
+      device_.appendPrograms.points(appendOutput_, step, {listLayout_.layered, regionLayout_.layered});
+  device_.bound.program(program.program().name());
+  program.set("sk_domain_shift", regionLayout_.shift);
+  return program;
+}
+
+DrawTarget Scatterer::target(std::span<RenderTarget> planes) {
+  std::array<RenderTarget*, gl::maxDrawBuffers> renderTargets{};
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    renderTargets[i] = &planes[i];
+  }
+  return targetOf(device_, std::span(renderTargets).first(planes.size()));
+}
+
+/// Every point is drawn to every layer, of which it is outside of all but one.
+void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> targets, std::int32_t first,
+                       std::int32_t count) {
+  StepProgram& program = programOf(step);
+  const DrawTarget drawn = target(targets);
+  bindPlanes(device_, list_, 0);
+  const gl::Texture& texture = targets.front().texture;
+  const assemble::TextureShape& shape = texture.shape();
+  program.set("sk_list_shift", listLayout_.shift);
+  program.set("sk_first", first);
+  program.set("sk_size", gl::Int4{shape.width, shape.height, 0, 0});
+  device_.bound.vertexArray(device_.vertexArray.name());
+  const gl::Blending blending(device_.capabilities, blend, device_.isGuest());
+  const assemble::Rect whole{0, 0, shape.width, texture.rows()};
+  const assemble::Rect written{0, 0, count, 1};
+  const PassScope traced(device_, {appendOutput_.name, "scatter"}, std::span<const RenderTarget>(list_),
+                         std::span(&written, 1), texelBytesOf(targets));
+  forEachLayer(whole, drawn.layerRows, [&](const assemble::Rect& part, std::int32_t layer, std::int32_t) {
+    selectLayer(device_, drawn, layer, program.row());
+    device_.bound.viewport(0, 0, part.width, part.height);
+    gl::drawPoints(count);
+  });
+}
+
+/// Over the region that is written. The steps that draw elements read none.
+void Scatterer::region(PointStep step, std::span<RenderTarget> targets) {
+  StepProgram& program = programOf(step);
+  const DrawTarget drawn = target(targets);
+  bindPlanes(device_, planes_, 1);
+  const PassScope traced(device_, {appendOutput_.name, "scatter"}, std::span<const RenderTarget>(planes_),
+                         std::span<const assemble::Rect>(rects_), texelBytesOf(targets));
+  drawRects(device_, drawn, rects_, program.row());
 }
 
 }  // namespace sk

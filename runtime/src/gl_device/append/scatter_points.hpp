@@ -4,19 +4,52 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
+#include "assemble/append/point_program.hpp"
 #include "assemble/region_layout.hpp"
+#include "gl/points.hpp"
+#include "gl_device/gl_device.hpp"
 #include "gl_device/memory/render_target.hpp"
+#include "gl_device/pass/pass.hpp"
 #include "sk/program.hpp"
 
 namespace sk {
 
-class GlDevice;
-
-/// Draws the entries of a list: its planes are the texels that they belong to, then their values. `region layout` and
+/// Draws the entries of a list: its planes are the texels that they belong to, then their values. `regionLayout` and
 /// `planes`: of the region that is written.
-void scatterPoints(GlDevice& device, const program::Parameter& appendOutput, std::span<RenderTarget> list,
-                   const assemble::RegionLayout& listLayout, const assemble::RegionLayout& regionLayout,
-                   std::span<RenderTarget> planes);
+class Scatterer {
+ public:
+  /// Makes the programs and temporaries. Throws sk::Error where a driver refuses one.
+  Scatterer(GlDevice& device, const program::Parameter& appendOutput, std::span<RenderTarget> list,
+            const assemble::RegionLayout& listLayout, const assemble::RegionLayout& regionLayout,
+            std::span<RenderTarget> planes);
+
+  /// Changes the region.
+  void run();
+
+ private:
+  void store(gl::Blend blend);
+  void addIntegers();
+  void extremeIntegers();
+  int width() const { return appendOutput_.element->fields.front().width; }
+  void takeFloats(PlanesLease& lease, int width);
+  int bindAfterElements(std::span<RenderTarget> planes);
+  StepProgram& programOf(assemble::PointStep step);
+  DrawTarget target(std::span<RenderTarget> planes);
+  void points(assemble::PointStep step, gl::Blend blend, std::span<RenderTarget> targets, std::int32_t first,
+              std::int32_t count);
+  void region(assemble::PointStep step, std::span<RenderTarget> targets);
+
+  GlDevice& device_;
+  const program::Parameter& appendOutput_;
+  std::span<RenderTarget> list_;
+  const assemble::RegionLayout& listLayout_;
+  std::int32_t length_;
+  const assemble::RegionLayout& regionLayout_;
+  std::span<RenderTarget> planes_;
+  std::vector<assemble::Rect> rects_;
+  PlanesLease limbs_, upper_, lower_;  ///< what integers are combined in
+};
 
 }  // namespace sk

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "gl/bound_state.hpp"
-#include "sk/error.hpp"
 
 namespace sk {
 
@@ -18,35 +17,22 @@ std::size_t FramebufferCache::Hash::operator()(const Key& key) const {
   return hash ^ hash >> 32;
 }
 
-gl::Framebuffer& FramebufferCache::framebufferOf(std::span<const GLuint> textures, bool isLayered) {
+gl::Framebuffer* FramebufferCache::framebufferOf(std::span<const GLuint> textures, bool isLayered) {
   Key key{};
   std::copy(textures.begin(), textures.end(), key.begin());
   if (const auto found = framebuffers_.find(key); found != framebuffers_.end()) {
-    return found->second;
+    return &found->second;
   }
-  if (framebuffers_.size() >= capacity) {
-    framebuffers_.clear();
-    bound_.forget();
-  }
+  if (framebuffers_.size() >= capacity) framebuffers_.clear();
   gl::Framebuffer made(bound_, textures, isLayered);
-  if (!gl::Framebuffer::isComplete()) {
-    bound_.framebuffer(0);
-    throw Error("the driver cannot draw to these textures at once; write fewer outputs in one kernel",
-                Error::Kind::Device);
-  }
-  return framebuffers_.emplace(key, std::move(made)).first->second;
+  if (!gl::Framebuffer::isComplete()) return nullptr;
+  return &framebuffers_.emplace(key, std::move(made)).first->second;
 }
 
 void FramebufferCache::dropTexture(GLuint texture) {
   std::erase_if(framebuffers_, [&](const auto& entry) {
     return std::find(entry.first.begin(), entry.first.end(), texture) != entry.first.end();
   });
-}
-
-void FramebufferCache::forget() noexcept {
-  for (auto& [key, framebuffer] : framebuffers_) {
-    framebuffer.forget();
-  }
 }
 
 }  // namespace sk

@@ -17,14 +17,12 @@ class FramebufferCache {
  public:
   explicit FramebufferCache(gl::BoundState& bound) : bound_(bound) {}
 
-  /// The framebuffer that draws to `textures`, 1 to gl::maxDrawBuffers, all with layers or none. Throws
-  /// sk::Error where the driver cannot draw to these together.
-  gl::Framebuffer& framebufferOf(std::span<const GLuint> textures, bool isLayered);
+  /// The framebuffer that draws to `textures`, 1 to gl::maxDrawBuffers, all with layers or none; null where the driver
+  /// cannot draw to these together.
+  gl::Framebuffer* framebufferOf(std::span<const GLuint> textures, bool isLayered);
 
   /// Forgets the framebuffers of a texture that is about to be deleted.
   void dropTexture(GLuint texture);
-  void clear() { framebuffers_.clear(); }
-  void forget() noexcept;
 
  private:
   using Key = std::array<GLuint, gl::maxDrawBuffers>;

@@ -15,11 +15,6 @@ gl::Framebuffer& RenderTarget::framebufferIn(gl::BoundState& bound) {
   return framebuffer;
 }
 
-void RenderTarget::forget() noexcept {
-  texture.forget();
-  framebuffer.forget();
-}
-
 std::uint64_t TexturePool::key(const gl::Format& format, const assemble::TextureShape& shape) {
   constexpr unsigned sizeBits = 20;
   constexpr unsigned layerBits = 16;
@@ -30,59 +25,55 @@ std::uint64_t TexturePool::key(const gl::Format& format, const assemble::Texture
 }
 
 RenderTarget TexturePool::take(const gl::Format& format, const assemble::TextureShape& shape) {
-  const auto found = idle_.find(key(format, shape));
-  if (found != idle_.end() && !found->second.empty()) {
-    RenderTarget renderTarget = std::move(found->second.back().renderTarget);
-    found->second.pop_back();
-    bytes_ -= renderTarget.texture.bytes();
-    used_ += static_cast<std::int64_t>(renderTarget.texture.bytes());
-    return renderTarget;
-  }
-  RenderTarget renderTarget{gl::Texture(bound_, format, shape), {}};
+  const std::uint64_t place = key(format, shape);
+  RenderTarget renderTarget = takeIdle(place);
+  if (!renderTarget) renderTarget.texture = gl::Texture(bound_, format, shape);
   if (!renderTarget && bytes_ > 0) {
-    clear();
+    deleteOlderThan(clock_ + 1);
+    bound_.deleteQueued();
     renderTarget.texture = gl::Texture(bound_, format, shape);
   }
-  if (renderTarget) used_ += static_cast<std::int64_t>(renderTarget.texture.bytes());
+  if (!renderTarget) return renderTarget;
+  Shelf& shelf = shelves_[place];
+  shelf.idle.reserve(shelf.idle.size() + shelf.taken + 1);
+  ++shelf.taken;
+  used_ += static_cast<std::int64_t>(renderTarget.texture.bytes());
   return renderTarget;
 }
 
-// Where the host has no memory for the list, the render target is deleted later with its context: its owner
-// may be a destructor on a thread that has no context.
+RenderTarget TexturePool::takeIdle(std::uint64_t place) {
+  const auto found = shelves_.find(place);
+  if (found == shelves_.end() || found->second.idle.empty()) return {};
+  std::vector<Idle>& idle = found->second.idle;
+  RenderTarget renderTarget = std::move(idle.back().renderTarget);
+  idle.pop_back();
+  bytes_ -= renderTarget.texture.bytes();
+  return renderTarget;
+}
+
 void TexturePool::give(RenderTarget&& renderTarget) noexcept {
   const gl::Texture& texture = renderTarget.texture;
   const std::size_t bytes = texture.bytes();
+  Shelf& shelf = shelves_.find(key(texture.format(), texture.shape()))->second;
+  shelf.idle.push_back({std::move(renderTarget), clock_});
+  --shelf.taken;
   used_ -= static_cast<std::int64_t>(bytes);
-  try {
-    std::vector<Idle>& shelf = idle_[key(texture.format(), texture.shape())];
-    shelf.reserve(shelf.size() + 1);
-    shelf.push_back({std::move(renderTarget), clock_});
-    bytes_ += bytes;
-  } catch (...) {
-    renderTarget.forget();
-  }
+  bytes_ += bytes;
 }
 
 void TexturePool::deleteOlderThan(std::int64_t time) {
-  for (auto shelf = idle_.begin(); shelf != idle_.end();) {
-    std::erase_if(shelf->second, [&](const Idle& idle) {
-      if (idle.since >= time) {
+  for (auto shelf = shelves_.begin(); shelf != shelves_.end();) {
+    std::vector<Idle>& idle = shelf->second.idle;
+    std::erase_if(idle, [&](const Idle& one) {
+      if (one.since >= time) {
         return false;
       }
-      bytes_ -= idle.renderTarget.texture.bytes();
-      framebuffers_.dropTexture(idle.renderTarget.texture.name());
+      bytes_ -= one.renderTarget.texture.bytes();
+      framebuffers_.dropTexture(one.renderTarget.texture.name());
       return true;
     });
-    shelf = shelf->second.empty() ? idle_.erase(shelf) : std::next(shelf);
-  }
-  bound_.forget();
-}
-
-void TexturePool::forget() noexcept {
-  for (auto& [key, shelf] : idle_) {
-    for (Idle& idle : shelf) {
-      idle.renderTarget.forget();
-    }
+    const bool isUsed = !idle.empty() || shelf->second.taken > 0;
+    shelf = isUsed ? std::next(shelf) : shelves_.erase(shelf);
   }
 }
 

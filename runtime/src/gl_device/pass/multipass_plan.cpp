@@ -56,6 +56,7 @@ gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const O
   shape.layers *= count;
   gl::Texture made(device.bound, gl::formatOf(bundle.scalar, bundle.width), shape);
   if (made.name() == 0) {
+    device.throwIfLost();
     throw Error(fmt::format("'{}' has no room for inputs that share a texture: {} layers of {} x {} texels",
                             device.capabilities.renderer, shape.layers, shape.width, shape.height),
                 Error::Kind::Memory);
@@ -74,8 +75,7 @@ class PlanRun {
  public:
   PlanRun(GlDevice& device, const Plan& plan, const PlannedCall& call) : device_(device), call_(call) {
     for (const program::Element* element : plan.temporaries) {
-      temporaries_.emplace_back(device).planes =
-          device.takePlanes(*element, call.layout.texture, "a value saved between passes");
+      temporaries_.emplace_back(device).add(*element, call.layout.texture, "a value saved between passes");
     }
     for (const Bundle& bundle : plan.bundles) {
       bundles_.push_back(copyBundle(device, bundle, call.operands));
@@ -88,6 +88,13 @@ class PlanRun {
   bool start(const Pass& pass) {
     choose(pass);
     return targets_.empty() || device_.programs().startKernelProgram(pass.kernel, operands_, call_.domain);
+  }
+
+  /// Makes what draw() needs.
+  void prepare(const Pass& pass) {
+    choose(pass);
+    if (targets_.empty()) return;
+    preparedPass(device_, device_.programs().kernelProgram(pass.kernel, operands_, call_.domain), targets_);
   }
 
   void draw(const Pass& pass) {
@@ -141,11 +148,14 @@ class PlanRun {
 
 }  // namespace
 
-void runPlan(GlDevice& device, const Plan& plan, const PlannedCall& call) {
+void runPlan(GlDevice& device, const Plan& plan, const PlannedCall& call,
+             const std::function<void()>& begin) {
   PlanRun run(device, plan, call);
   for (const Pass& pass : plan.passes) {
     if (!run.start(pass)) break;   // nor are the others new
   }
+  for (const Pass& pass : plan.passes) run.prepare(pass);
+  begin();
   for (const Pass& pass : plan.passes) {
     run.draw(pass);
   }

@@ -4,6 +4,7 @@
 // run_kernel.cpp's business.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "assemble/region_layout.hpp"
@@ -25,8 +26,9 @@ struct PlannedCall {
   std::span<const assemble::Rect> rects;
 };
 
-/// No output is drawn to planes that an operand reads. Throws sk::Error where there is no memory for the
-/// temporaries or bundles.
-void runPlan(GlDevice& device, const program::Plan& plan, const PlannedCall& call);
+/// No output is drawn to planes that an operand reads. `begin` is called before the first pass, when everything is there that a driver
+/// may refuse; without it this throws sk::Error.
+void runPlan(GlDevice& device, const program::Plan& plan, const PlannedCall& call,
+             const std::function<void()>& begin);
 
 }  // namespace sk

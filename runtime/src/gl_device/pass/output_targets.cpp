@@ -57,17 +57,20 @@ OutputTargets::Way OutputTargets::wayOf(std::size_t output) const {
   return isWhole && !isWrittenBefore ? Way::Swap : Way::Copy;
 }
 
-/// New planes lie as the domain does.
+/// New planes lie as the domain does. What it takes to bring them to their place is made beforehand.
 void OutputTargets::addAside(std::size_t output) {
   const program::Element& held = glStream(arguments_[output].region).held();
   aside_.resize(arguments_.size());
-  aside_[output] = std::make_unique<PlanesLease>(device_);
-  aside_[output]->planes =
-      device_.takePlanes(domain_.packed ? assemble::fourOf(held.fields.front().scalar) : held,
-                         layout_.texture, "an output that the kernel reads too");
-  for (RenderTarget& plane : aside_[output]->planes) {
+  const bool isSwapped = wayOf(output) == Way::Swap;
+  aside_[output] = std::make_unique<Aside>(device_);
+  if (isSwapped) aside_[output]->layout = layout_;
+  PlanesLease& drawn = aside_[output]->drawn;
+  drawn.add(domain_.packed ? assemble::fourOf(held.fields.front().scalar) : held, layout_.texture,
+            "an output that the kernel reads too");
+  for (RenderTarget& plane : drawn.planes) {
     add(plane);
   }
+  if (!isSwapped) prepareCopy(device_, held, domain_, operands_[output].regionLayout);
 }
 
 std::vector<std::span<RenderTarget>> OutputTargets::planesOfOutputs() const {
@@ -75,32 +78,39 @@ std::vector<std::span<RenderTarget>> OutputTargets::planesOfOutputs() const {
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     if (isOutput(i)) {
       const bool isAside = i < aside_.size() && aside_[i];
-      planes[i] = isAside ? std::span<RenderTarget>(aside_[i]->planes) : operands_[i].planes;
+      planes[i] = isAside ? std::span<RenderTarget>(aside_[i]->drawn.planes) : operands_[i].planes;
     }
   }
   return planes;
 }
 
-void OutputTargets::putCopy(GlStream& stream, const StreamRegion& region, std::span<RenderTarget> drawn) {
-  if (!domain_.packed || !assemble::isWholeTexels(regionLayoutOf(region, stream.layout))) {
-    stream.unpack();
+void OutputTargets::begin() noexcept {
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    const bool isAside = i < aside_.size() && aside_[i];
+    if (isOutput(i) && !isAside) glStream(arguments_[i].region).isBroken = true;
   }
-  copyRegion(device_, stream.held(), drawn, domain_, stream.planes, regionLayoutOf(region, stream.layout));
 }
 
-void OutputTargets::putInPlace() {
+void OutputTargets::copy() {
   for (std::size_t i = 0; i < aside_.size(); ++i) {
-    if (!aside_[i]) {
-      continue;
-    }
+    if (!aside_[i] || wayOf(i) == Way::Swap) continue;
     GlStream& stream = glStream(arguments_[i].region);
-    if (wayOf(i) == Way::Swap) {
-      std::swap(stream.planes, aside_[i]->planes);
-      stream.layout = layout_;
+    stream.isBroken = true;
+    copyRegion(device_, stream.held(), aside_[i]->drawn.planes, domain_, stream.planes,
+               operands_[i].regionLayout);
+  }
+}
+
+void OutputTargets::exchange() noexcept {
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    if (!isOutput(i)) continue;
+    GlStream& stream = glStream(arguments_[i].region);
+    if (i < aside_.size() && aside_[i] && wayOf(i) == Way::Swap) {
+      std::swap(stream.planes, aside_[i]->drawn.planes);
+      stream.layout = std::move(aside_[i]->layout);
       stream.labelPlanes();
-    } else {
-      putCopy(stream, arguments_[i].region, aside_[i]->planes);
     }
+    stream.setWritten();
   }
 }
 

@@ -36,8 +36,16 @@ class OutputTargets {
   /// The same, output by output: empty where an argument is none.
   std::vector<std::span<RenderTarget>> planesOfOutputs() const;
 
-  /// Brings what was drawn aside to its place, once nothing reads the old elements any more.
-  void putInPlace();
+  /// From here on, passes write outputs in place: these are broken until putInPlace().
+  void begin() noexcept;
+  /// Brings what was drawn aside to its place, once nothing reads the old elements any more. All copies come first, since they may
+  /// fail.
+  void putInPlace() {
+    copy();
+    exchange();
+  }
+  void copy();
+  void exchange() noexcept;
 
  private:
   /// How the elements of an output get to where they belong.
@@ -55,7 +63,13 @@ class OutputTargets {
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
   Way wayOf(std::size_t output) const;
   void addAside(std::size_t output);
-  void putCopy(GlStream& stream, const StreamRegion& region, std::span<RenderTarget> drawn);
+  /// What an output is drawn to, if that is not its place.
+  struct Aside {
+    explicit Aside(GlDevice& device) : drawn(device) {}
+
+    PlanesLease drawn;
+    Layout layout;  ///< Way::Swap
+  };
 
   GlDevice& device_;
   const program::Kernel& kernel_;
@@ -66,7 +80,7 @@ class OutputTargets {
   const Layout& layout_;
   std::array<RenderTarget*, gl::maxDrawBuffers> targets_{};
   std::size_t count_ = 0;
-  std::vector<std::unique_ptr<PlanesLease>> aside_;  ///< one an argument, or none at all
+  std::vector<std::unique_ptr<Aside>> aside_;  ///< one an argument, or none at all
 };
 
 }  // namespace sk

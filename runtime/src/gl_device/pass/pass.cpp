@@ -14,6 +14,7 @@
 #include "gl_device/pass/pass_trace.hpp"
 #include "gl_device/transfer/copy_kernel.hpp"
 #include "gl_device/transfer/copy_regions.hpp"
+#include "sk/error.hpp"
 
 namespace sk {
 
@@ -93,8 +94,19 @@ DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
     names[i] = planes[i]->texture.name();
   }
   const bool isLayered = first.texture.isLayered();
-  return {&device.framebuffers.framebufferOf(std::span(names).first(planes.size()), isLayered),
-          isLayered ? first.texture.shape().height : 0};
+  gl::Framebuffer* const made =
+      device.framebuffers.framebufferOf(std::span(names).first(planes.size()), isLayered);
+  if (made == nullptr) {
+    device.throwIfLost();
+    throw Error("the driver cannot draw to these textures at once; write fewer outputs in one kernel",
+                Error::Kind::Device);
+  }
+  return {made, isLayered ? first.texture.shape().height : 0};
+}
+
+PreparedPass preparedPass(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes) {
+  const bool isDrawn = program.stage == assemble::Stage::Fragment;
+  return {program, isDrawn ? targetOf(device, planes) : DrawTarget{}};
 }
 
 void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect> rects, gl::IntUniform& row) {
@@ -109,13 +121,11 @@ void drawRects(GlDevice& device, const DrawTarget& target, std::span<const Rect>
   }
 }
 
-void writeRects(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes,
+void writeRects(GlDevice& device, const PreparedPass& pass, std::span<RenderTarget* const> planes,
                 std::span<const Rect> rects) {
-  switch (program.stage) {
-    case assemble::Stage::Fragment:
-      drawRects(device, targetOf(device, planes), rects, program.domainRow);
-      return;
-    case assemble::Stage::Compute: dispatchRects(device, program, planes, rects); return;
+  switch (pass.program.stage) {
+    case assemble::Stage::Fragment: drawRects(device, pass.target, rects, pass.program.domainRow); return;
+    case assemble::Stage::Compute: dispatchRects(device, pass.program, planes, rects); return;
   }
 }
 
@@ -167,6 +177,15 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
                std::span<RenderTarget* const> targets, std::span<const gl::Texture> bundles,
                const assemble::Task& task) {
   KernelProgram& program = device.programs().kernelProgram(kernel, operands, domain, task);
+  runKernel(device, preparedPass(device, program, targets), kernel, operands, domain, rects, targets, bundles,
+            task);
+}
+
+void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel& kernel,
+               std::span<const Operand> operands, const RegionLayout& domain, std::span<const Rect> rects,
+               std::span<RenderTarget* const> targets, std::span<const gl::Texture> bundles,
+               const assemble::Task& task) {
+  KernelProgram& program = pass.program;
   const PassScope traced(device, nameOf(kernel.name, stepOf(task), program), program, operands, rects,
                          texelBytesOf(targets));
   device.bound.program(program.program.name());
@@ -175,7 +194,30 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
   if (task.work == assemble::Work::List) {
     program.target.set(operands[task.appendOutput].regionLayout);
   }
-  writeRects(device, program, targets, rects);
+  writeRects(device, pass, targets, rects);
+}
+
+namespace {
+
+/// Whether texels lie alike, so that no program is needed to copy them.
+bool isBlit(const RegionLayout& source, const RegionLayout& target) {
+  return !source.linear && !target.linear && source.packed == target.packed;
+}
+
+}  // namespace
+
+void prepareCopy(GlDevice& device, const program::Element& element, const RegionLayout& source,
+                 const RegionLayout& target, bool byKernel) {
+  if (source.packed && target.packed) {
+    prepareCopy(device, assemble::fourOf(element.fields.front().scalar), assemble::texelsOf(source),
+                assemble::texelsOf(target), byKernel);
+    return;
+  }
+  if (!byKernel && isBlit(source, target)) return;
+  for (const program::Field& field : element.fields) {
+    const Operand operands[] = {{nullptr, source, {}}, {}};
+    device.programs().kernelProgram(copyKernel(field), operands, target);
+  }
 }
 
 void copyRegion(GlDevice& device, const program::Element& element, std::span<RenderTarget> from,
@@ -186,7 +228,7 @@ void copyRegion(GlDevice& device, const program::Element& element, std::span<Ren
     return;
   }
   for (std::size_t plane = 0; plane < from.size(); ++plane) {
-    if (!source.linear && !target.linear && source.packed == target.packed) {
+    if (isBlit(source, target)) {
       const assemble::Rect rect{target.origin[0], target.origin[1], target.extent[0], target.extent[1]};
       const PassScope traced(device, {"copy", {}, "blit"}, rect, to[plane].texture.format().texelBytes());
       blit(device, from[plane], source, to[plane], target);

@@ -24,11 +24,11 @@ int bindPlanes(GlDevice& device, std::span<RenderTarget> planes, int unit);
 
 /// What a pass draws to: planes of one shape.
 struct DrawTarget {
-  gl::Framebuffer* framebuffer;
-  std::int32_t layerRows;   ///< 0 where the planes have no layers
+  gl::Framebuffer* framebuffer = nullptr;
+  std::int32_t layerRows = 0;  ///< 0 where the planes have no layers
 };
 
-/// Draws to these planes, 1 to gl::maxDrawBuffers. Good until the next one is asked for.
+/// Draws to these planes, 1 to gl::maxDrawBuffers. Good until the next one is asked for. Throws sk::Error where the driver cannot.
 DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes);
 DrawTarget targetOf(GlDevice& device, RenderTarget& plane);
 
@@ -39,8 +39,15 @@ void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer,
 void drawRects(GlDevice& device, const DrawTarget& target, std::span<const assemble::Rect> rects,
                gl::IntUniform& row);
 
-/// Writes each rectangle of planes of one shape with a kernel's program, which is bound: draws or dispatches it.
-void writeRects(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes,
+/// A kernel's program and what it draws to. Good until the next one is asked for.
+struct PreparedPass {
+  KernelProgram& program;
+  DrawTarget target;  ///< none of a compute program
+};
+PreparedPass preparedPass(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes);
+
+/// Writes each rectangle of planes of one shape with a program, which is bound: draws or dispatches it.
+void writeRects(GlDevice& device, const PreparedPass& pass, std::span<RenderTarget* const> planes,
                 std::span<const assemble::Rect> rects);
 
 /// Binds the planes that a kernel's program reads, and sets the uniforms of its parameters; the program is
@@ -55,6 +62,15 @@ void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const 
                const assemble::RegionLayout& domain, std::span<const assemble::Rect> rects,
                std::span<RenderTarget* const> targets, std::span<const gl::Texture> bundles = {},
                const assemble::Task& task = {});
+/// The same with what was prepared for it: nothing is left that a driver refuses.
+void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel& kernel,
+               std::span<const Operand> operands, const assemble::RegionLayout& domain,
+               std::span<const assemble::Rect> rects, std::span<RenderTarget* const> targets,
+               std::span<const gl::Texture> bundles = {}, const assemble::Task& task = {});
+
+/// Makes the programs that copyRegion() takes, without which it throws sk::Error. `byKernel`: also where it takes none.
+void prepareCopy(GlDevice& device, const program::Element& element, const assemble::RegionLayout& source,
+                 const assemble::RegionLayout& target, bool byKernel = false);
 
 /// Copies one region to another of the same shape, plane by plane, wherever each lies. They are not of
 /// the same render target. `element`: what both hold. A target that is packed is of whole texels, as its source then is.

@@ -61,13 +61,15 @@ std::int64_t texelsOf(std::span<const Rect> rects) {
 
 }  // namespace
 
-PassTrace::PassTrace(const GlDevice& device, Trace& trace)
-    : trace_(trace), usesTimestamps_(choosesTimestamps(device.capabilities)) {}
+PassTrace::PassTrace(GlDevice& device, Trace& trace)
+    : trace_(trace),
+      deletions_(device.bound.deletions),
+      usesTimestamps_(choosesTimestamps(device.capabilities)) {}
 
 gl::Timestamp PassTrace::takeTimestamp() {
   std::optional<gl::Timestamp> stamp;
   if (idle_.empty()) {
-    stamp = gl::Timestamp::create();
+    stamp.emplace(deletions_);
   } else {
     stamp = std::move(idle_.back());
     idle_.pop_back();
@@ -135,14 +137,6 @@ void PassTrace::complete() noexcept {
   } catch (const std::bad_alloc&) {
     return;  // some passes less in the trace
   }
-}
-
-void PassTrace::forget() noexcept {
-  for (Timed& pass : timed_) {
-    pass.begin.forget();
-    pass.end.forget();
-  }
-  for (gl::Timestamp& stamp : idle_) stamp.forget();
 }
 
 std::size_t texelBytesOf(std::span<RenderTarget* const> planes) {

@@ -22,7 +22,7 @@ namespace sk {
 class PassTrace {
  public:
   /// A scope of the device is open, here and below.
-  PassTrace(const GlDevice& device, Trace& trace);
+  PassTrace(GlDevice& device, Trace& trace);
 
   void begin(PassRecord&& record);
   void end() noexcept;
@@ -30,7 +30,6 @@ class PassTrace {
   void collect();
   /// Waits for all passes that are not in the trace yet.
   void complete() noexcept;
-  void forget() noexcept;
 
  private:
   struct Timed {
@@ -42,6 +41,7 @@ class PassTrace {
   gl::Timestamp takeTimestamp();
 
   Trace& trace_;
+  gl::Deletions& deletions_;
   const bool usesTimestamps_;
   PassRecord record_;  ///< of the pass that is drawn
   Trace::Time begin_ = 0;  ///< of it, on the host

@@ -90,13 +90,13 @@ void reduceToValues(GlDevice& device, const ResolvedReduction& call) {
   const RegionLayout layout = assemble::valueLayout();
   ReducePasses passes(device, call);
   if (call.domain.size() > 0 && passes.mayEndInBuffer()) {
-    passes.run(layout, {});
+    passes.run(layout, {}, [] {});
     const TraceScope traced(device.trace.get(), "transfer", "read value");
     return takeValues(device, fold, call.values);
   }
   PlanesLease value(device);
-  takeAccumulators(device, fold, {1, 1}, "the result of a reduction", value);
-  passes.run(layout, pointersTo(value.planes));
+  takeAccumulators(fold, {1, 1}, "the result of a reduction", value);
+  passes.run(layout, pointersTo(value.planes), [] {});
   const TraceScope traced(device.trace.get(), "transfer", "read value");
   readValues(device, fold, value.planes, layout, call.values);
 }
@@ -120,7 +120,7 @@ void reduceToStreams(GlDevice& device, const ResolvedReduction& call) {
       drawn.push_back(&plane);
     }
   }
-  passes.run(layout, drawn);
+  passes.run(layout, drawn, [&] { targets.begin(); });
   targets.putInPlace();
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "assemble/glsl/program_text.hpp"
+#include "call/check_argument.hpp"
 #include "call/resolved_call.hpp"
 #include "gl_device/gl_stream.hpp"
 #include "gl_device/pass/pass.hpp"
@@ -50,14 +51,10 @@ std::size_t accumulatorPlanes(const Kernel& fold) {
   return planes;
 }
 
-void takeAccumulators(GlDevice& device, const Kernel& fold, const assemble::TextureShape& shape,
-                      std::string_view whatFor, PlanesLease& lease) {
+void takeAccumulators(const Kernel& fold, const assemble::TextureShape& shape, std::string_view whatFor,
+                      PlanesLease& lease) {
   for (const Parameter& parameter : fold.parameters) {
-    if (parameter.role == Role::Accumulator) {
-      for (RenderTarget& plane : device.takePlanes(*parameter.element, shape, whatFor)) {
-        lease.planes.push_back(std::move(plane));
-      }
-    }
+    if (parameter.role == Role::Accumulator) lease.add(*parameter.element, shape, whatFor);
   }
 }
 
@@ -88,9 +85,13 @@ bool ReducePasses::mayEndInBuffer() const {
   return device_.programs().stage() == assemble::Stage::Compute && assemble::mayEndInBuffer(reduction_);
 }
 
-void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const> targets) {
+void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const> targets,
+                       const std::function<void()>& begin) {
   if (assemble::elements(elements_.extent) == 0) {
-    draw(assemble::planIdentities(result), {}, targets);
+    const ReducePass identities = assemble::planIdentities(result);
+    prepare(identities, targets);
+    begin();
+    draw(identities, {}, targets);
     return;
   }
   assemble::ReduceLimits limits = limitsOfPasses();
@@ -107,11 +108,13 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
   }
   for (const ReducePass& pass : passes) {
     if (pass.toResult) {
+      prepare(pass, targets);
+      begin();
       draw(pass, partials.planes, targets);
       continue;
     }
     PlanesLease next(device_);
-    takeAccumulators(device_, reduction_.fold, pass.texture, "partial results", next);
+    takeAccumulators(reduction_.fold, pass.texture, "partial results", next);
     draw(pass, partials.planes, pointersTo(next.planes));
     std::swap(partials.planes, next.planes);
   }
@@ -217,7 +220,7 @@ void ReducePasses::draw(const ReducePass& pass, std::span<RenderTarget> partials
   const bool isPartial = assemble::isOfPartials(pass.variant.walk);
   const Kernel& kernel = isPartial ? reduction_.combine : reduction_.fold;
   const std::vector<Operand> operands = isPartial ? operandsOfCombine(partials) : operands_;
-  if (pass.variant.toBuffer) device_.values.bind(device_.bound);
+  if (pass.variant.toBuffer) bindValues();
   forEachPart(
       pass, operands, [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
         ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
@@ -231,8 +234,23 @@ void ReducePasses::draw(const ReducePass& pass, std::span<RenderTarget> partials
         for (const assemble::UniformValue& value : pass.uniforms) {
           program.uniform(value).set(value.value);
         }
-        writeRects(device_, program.kernel, planes, pass.draws);
+        writeRects(device_, preparedPass(device_, program.kernel, planes), planes, pass.draws);
       });
+}
+
+void ReducePasses::prepare(const ReducePass& pass, std::span<RenderTarget* const> targets) {
+  const bool isPartial = assemble::isOfPartials(pass.variant.walk);
+  forEachPart(pass, isPartial ? operandsOfCombine({}) : operands_,
+              [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
+                ReduceProgram& program = device_.programs().reduceProgram(reduction_, variant);
+                if (!variant.toBuffer) preparedPass(device_, program.kernel, targets.subspan(first, count));
+              });
+}
+
+void ReducePasses::bindValues() {
+  if (device_.values.bind(device_.bound)) return;
+  device_.throwIfLost();
+  fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for its value", device_.name());
 }
 
 bool ReducePasses::start(const ReducePass& pass) {

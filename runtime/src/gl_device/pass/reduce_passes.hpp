@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -22,7 +23,7 @@ namespace sk {
 std::size_t accumulatorPlanes(const program::Kernel& fold);
 
 /// New planes of all accumulators, in their order.
-void takeAccumulators(GlDevice& device, const program::Kernel& fold, const assemble::TextureShape& shape,
+void takeAccumulators(const program::Kernel& fold, const assemble::TextureShape& shape,
                       std::string_view whatFor, PlanesLease& lease);
 
 std::vector<RenderTarget*> pointersTo(std::span<RenderTarget> planes);
@@ -40,8 +41,10 @@ class ReducePasses {
   bool mayEndInBuffer() const;
 
   /// Folds the elements to the planes of all results, or, where there are none, stores the identities. Without targets, there is
-  /// a value, which goes to the device's buffer of values.
-  void run(const assemble::RegionLayout& result, std::span<RenderTarget* const> targets);
+  /// a value, which goes to the device's buffer of values. `begin` is called before the targets change, when everything is there that
+  /// a driver may refuse.
+  void run(const assemble::RegionLayout& result, std::span<RenderTarget* const> targets,
+           const std::function<void()>& begin);
 
  private:
   void findOperands(std::span<const Argument> arguments, const Shape& domain);
@@ -66,6 +69,10 @@ class ReducePasses {
   /// Draws a pass, for as many of the targets at a time as the device draws to.
   void draw(const assemble::ReducePass& pass, std::span<RenderTarget> partials,
             std::span<RenderTarget* const> targets);
+  /// Makes what draw() needs: programs, and framebuffers over several planes.
+  void prepare(const assemble::ReducePass& pass, std::span<RenderTarget* const> targets);
+  /// Throws sk::Error where there is no memory for the buffer of values.
+  void bindValues();
   /// Lets the driver begin with the programs of a pass. False where they are there already.
   bool start(const assemble::ReducePass& pass);
   /// visit(variant, first, count) for as many of the planes at a time as the device draws to.

@@ -76,9 +76,12 @@ class KernelCall {
     const DrawnRects rects(domain_, layout);
     if (plan_ != nullptr) {
       const std::vector<std::span<RenderTarget>> drawn = targets.planesOfOutputs();
-      runPlan(device_, *plan_, {operands_, drawn, domain_, layout, rects.get()});
+      runPlan(device_, *plan_, {operands_, drawn, domain_, layout, rects.get()}, [&] { targets.begin(); });
     } else {
-      runKernel(device_, kernel_, operands_, domain_, rects.get(), targets.planes());
+      KernelProgram& program = device_.programs().kernelProgram(kernel_, operands_, domain_);
+      const PreparedPass pass = preparedPass(device_, program, targets.planes());
+      targets.begin();
+      runKernel(device_, pass, kernel_, operands_, domain_, rects.get(), targets.planes());
     }
     targets.putInPlace();
   }
@@ -89,15 +92,9 @@ class KernelCall {
   void layOut() {
     const StreamRegion& region = arguments_[first_].region;
     GlStream& stream = glStream(region);
-    const bool isWhole = region.shape == stream.shape;
-    bool packs = mayWritePacked();
-    if (!isWhole) {
-      packs = packs && stream.layout.whole.packed &&
-              assemble::isWholeTexels(regionLayoutOf(region, stream.layout));
-      if (!packs) stream.unpack();
-    }
+    const bool packs = mayWritePacked();
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
-      if (keepsScalars(i)) glStream(arguments_[i].region).unpack();
+      if (keepsScalars(i) || (!packs && isWrittenInPlace(i))) glStream(arguments_[i].region).unpack();
     }
     layout_ = &stream.layout;
     if (stream.layout.whole.packed != packs) {
@@ -107,11 +104,23 @@ class KernelCall {
     domain_ = regionLayoutOf(region, *layout_);
   }
 
+  /// Whether an output's planes are written themselves, and not replaced, because it or the domain is part of a stream.
+  bool isWrittenInPlace(std::size_t i) const {
+    const auto isPart = [](const StreamRegion& region) { return region.shape != region.stream->shape; };
+    return isOutput(i) && (isPart(arguments_[i].region) || isPart(arguments_[first_].region));
+  }
+
   /// Whether the outputs may lie packed.
   bool mayWritePacked() const {
     bool may = plan_ == nullptr && assemble::mayWritePacked(kernel_);
     for (std::size_t i = 0; may && i < arguments_.size(); ++i) {
-      may = !isOutput(i) || glStream(arguments_[i].region).canPack();
+      if (!isOutput(i)) continue;
+      const StreamRegion& region = arguments_[i].region;
+      const GlStream& stream = glStream(region);
+      may = stream.canPack();
+      if (may && isWrittenInPlace(i)) {
+        may = stream.layout.whole.packed && assemble::isWholeTexels(regionLayoutOf(region, stream.layout));
+      }
     }
     return may;
   }

@@ -30,13 +30,13 @@ ProgramBinaries::ProgramBinaries(const CacheFolder& cache, const gl::Capabilitie
 
 bool ProgramBinaries::areKept() const { return !formats_.empty() && !cache_.path().empty(); }
 
-gl::Program ProgramBinaries::load(std::string_view sources) const {
+gl::Program ProgramBinaries::load(gl::BoundState& bound, std::string_view sources) const {
   const std::optional<std::string> text = cache_.read(name, driver_ + std::string(sources));
   std::uint32_t format = 0;
   if (!text || text->size() <= sizeof format) return {};
   std::memcpy(&format, text->data(), sizeof format);
   if (std::ranges::find(formats_, format) == formats_.end()) return {};
-  return gl::Program::load(format, binaryIn(std::string_view(*text).substr(sizeof format)));
+  return gl::Program::load(bound, format, binaryIn(std::string_view(*text).substr(sizeof format)));
 }
 
 void ProgramBinaries::store(std::string_view sources, const gl::Program& program) const {
@@ -51,8 +51,8 @@ void ProgramBinaries::store(std::string_view sources, const gl::Program& program
 
 ProgramBuild::ProgramBuild(GlDevice& device, gl::ProgramSources sources)
     : sources_(std::move(sources)), isKept_(device.binaries.areKept()) {
-  if (isKept_) loaded_ = device.binaries.load(key());
-  if (!loaded_) pending_ = gl::PendingProgram(sources_, isKept_);
+  if (isKept_) loaded_ = device.binaries.load(device.bound, key());
+  if (!loaded_) pending_ = gl::PendingProgram(device.bound, sources_, isKept_);
 }
 
 gl::Program ProgramBuild::finish(GlDevice& device, std::string& log) {
@@ -62,11 +62,6 @@ gl::Program ProgramBuild::finish(GlDevice& device, std::string& log) {
   gl::Program program = pending_.finish(log);
   if (program && isKept_) device.binaries.store(key(), program);
   return program;
-}
-
-void ProgramBuild::forget() noexcept {
-  loaded_.forget();
-  pending_.forget();
 }
 
 }  // namespace sk

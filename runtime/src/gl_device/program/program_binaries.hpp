@@ -25,7 +25,7 @@ class ProgramBinaries {
 
   /// Whether the driver gives binaries, and there is a folder for them.
   bool areKept() const;
-  gl::Program load(std::string_view sources) const;
+  gl::Program load(gl::BoundState& bound, std::string_view sources) const;
   void store(std::string_view sources, const gl::Program& program) const;
 
  private:
@@ -42,7 +42,6 @@ class ProgramBuild {
   /// Waits. Where the driver refuses, the result is empty and `log` has its words.
   gl::Program finish(GlDevice& device, std::string& log);
   const gl::ProgramSources& sources() const { return sources_; }
-  void forget() noexcept;
 
  private:
   std::string key() const { return '\n' + sources_.vertex + '\n' + sources_.main; }

@@ -248,7 +248,8 @@ void ProgramCache::finish(KernelProgram& made, const program::Kernel& kernel, Pr
   made.program = begun.finish(device_, log);
   if (!made.program) {
     log.clear();
-    gl::Program::build({begun.sources().vertex, withTellingLines(begun.sources().main)}, log);
+    device_.throwIfLost();
+    gl::Program::build(device_.bound, {begun.sources().vertex, withTellingLines(begun.sources().main)}, log);
     throw Error(
         fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
                     device_.capabilities.renderer, profile_.name, withSourceNames(log, kernel.sources)),
@@ -306,28 +307,6 @@ gl::IntUniform& ReduceProgram::uniform(const assemble::UniformValue& value) {
   }
   const std::string name(value.name);
   return uniforms.emplace_back(name, gl::IntUniform(kernel.program.location(name), value.isVector)).second;
-}
-
-void ProgramCache::clear() {
-  startedKernels_.clear();
-  startedReductions_.clear();
-  kernels_.clear();
-  reductions_.clear();
-}
-
-void ProgramCache::forget() noexcept {
-  for (auto& [key, begun] : startedKernels_) {
-    begun.forget();
-  }
-  for (auto& [key, begun] : startedReductions_) {
-    begun.forget();
-  }
-  for (auto& [key, kept] : kernels_) {
-    kept.program->program.forget();
-  }
-  for (auto& [key, kept] : reductions_) {
-    kept.program->kernel.program.forget();
-  }
 }
 
 }  // namespace sk

@@ -104,8 +104,6 @@ class ProgramCache {
   bool startReduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
 
   assemble::Stage stage() const { return profile_.stage; }
-  void clear();
-  void forget() noexcept;
 
  private:
   using ReduceKey = std::pair<const program::Reduction*, assemble::ReduceVariant>;

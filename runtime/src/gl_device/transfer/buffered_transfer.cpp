@@ -33,7 +33,8 @@ std::size_t texelsOf(const Rect& rect) {
 /// An offset in the buffer that is bound.
 void* atOffset(std::size_t offset) { return static_cast<std::byte*>(nullptr) + offset; }
 
-[[noreturn]] void failForMemory(const GlDevice& device, std::size_t bytes) {
+[[noreturn]] void failForMemory(GlDevice& device, std::size_t bytes) {
+  device.throwIfLost();
   throw Error(fmt::format("'{}' has no memory for a transfer of {} KiB", device.name(), bytes >> 10),
               Error::Kind::Memory);
 }
@@ -72,11 +73,16 @@ void BufferedRead::addBlock(RenderTarget& plane, const Field& field, const Rect&
 void BufferedRead::begin() {
   {
     const gl::BoundPixels bound(held_.buffer, gl::BoundPixels::Way::Read);
-    if (!bound.allocate(bytes_)) failForMemory(device_, bytes_);
+    if (!bound.allocate(device_.bound.errors, bytes_)) failForMemory(device_, bytes_);
     held_.bytes = bytes_;
     for (const Block& block : blocks_) readBlock(block);
   }
-  held_.fence = gl::Fence::insert();
+  device_.bound.errors.setAside();
+  held_.fence = gl::Fence::insert(device_.bound.deletions);
+  if (!held_.fence) {
+    static_cast<void>(device_.bound.errors.takeNew());
+    failForMemory(device_, bytes_);
+  }
 }
 
 void BufferedRead::readBlock(const Block& block) {
@@ -93,16 +99,17 @@ void BufferedRead::readBlock(const Block& block) {
 void BufferedRead::take(std::size_t part, std::byte* elements) {
   wait();
   const gl::BoundPixels bound(held_.buffer, gl::BoundPixels::Way::Read);
+  device_.bound.errors.setAside();
   const std::byte* texels = bound.map(bytes_);
   if (texels == nullptr) {
-    device_.throwPendingError();
+    static_cast<void>(device_.bound.errors.takeNew());
     failForMemory(device_, bytes_);
   }
   const std::size_t end = part + 1 < parts_.size() ? parts_[part + 1].firstBlock : blocks_.size();
   for (std::size_t i = parts_[part].firstBlock; i < end; ++i) {
     unpack(parts_[part], blocks_[i], texels + blocks_[i].offset, elements);
   }
-  bound.unmap();
+  if (!bound.unmap()) failForMemory(device_, bytes_);
 }
 
 void BufferedRead::unpack(const Part& part, const Block& block, const std::byte* texels,
@@ -147,10 +154,10 @@ void readToBuffer(GlDevice& device, RenderTarget& plane, const RegionLayout& reg
   const std::size_t texelBytes = transfer.texelBytes();
   const std::size_t needed =
       offset + static_cast<std::size_t>(assemble::elements(region.extent)) * texelBytes;
-  if (bound.size() < needed) {
+  if (bound.size(device.bound.errors) < needed) {
     throw Error(fmt::format(
         "fillBuffer: the buffer {} has {} bytes, but {} are needed; allocate it by glBufferData first",
-        buffer, bound.size(), needed));
+        buffer, bound.size(device.bound.errors), needed));
   }
   gl::Framebuffer& framebuffer = plane.framebufferIn(device.bound);
   forEachCopyRegion(region, [&](const CopyRegion& run) {
@@ -165,15 +172,19 @@ void readToBuffer(GlDevice& device, RenderTarget& plane, const RegionLayout& reg
 }
 
 void writeBuffered(GlDevice& device, const Element& element, std::span<RenderTarget> planes,
-                   const RegionLayout& region, const std::byte* elements) {
+                   const RegionLayout& region, const std::byte* elements, bool& isTorn) {
   const auto count = static_cast<std::size_t>(assemble::elements(region.extent));
   std::size_t bytes = 0;
   for (const RenderTarget& plane : planes) bytes += aligned(count * plane.texture.format().texelBytes());
   TransferBuffer held = device.transferBuffers.take();
   {
     const gl::BoundPixels bound(held.buffer, gl::BoundPixels::Way::Write);
-    std::byte* const texels = bound.allocate(bytes) ? bound.map(bytes) : nullptr;
-    if (texels == nullptr) failForMemory(device, bytes);
+    gl::Errors& errors = device.bound.errors;
+    std::byte* const texels = bound.allocate(errors, bytes) ? bound.map(bytes) : nullptr;
+    if (texels == nullptr) {
+      static_cast<void>(errors.takeNew());
+      failForMemory(device, bytes);
+    }
     held.bytes = bytes;
     std::size_t offset = 0;
     for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -181,6 +192,7 @@ void writeBuffered(GlDevice& device, const Element& element, std::span<RenderTar
       offset += aligned(count * planes[i].texture.format().texelBytes());
     }
     if (!bound.unmap()) failForMemory(device, bytes);
+    isTorn = true;
     offset = 0;
     for (RenderTarget& plane : planes) {
       const std::size_t texelBytes = plane.texture.format().texelBytes();

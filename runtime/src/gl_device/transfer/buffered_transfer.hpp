@@ -36,7 +36,6 @@ class BufferedRead {
   void wait() const { held_.fence.wait(); }
   /// The elements of a part, row-major. Waits for them. Throws sk::Error where the driver fails.
   void take(std::size_t part, std::byte* elements);
-  void forget() noexcept { held_.forget(); }
 
  private:
   struct Part {
@@ -75,8 +74,8 @@ void readToBuffer(GlDevice& device, RenderTarget& plane, const assemble::RegionL
                   std::size_t offset);
 
 /// Copies all elements of a region, row-major in host memory, to its planes. The memory may be reused at once; nobody
-/// waits for the device. Throws sk::Error where there is no memory.
+/// waits for the device. Throws sk::Error where there is no memory. `isTorn` is set when the planes begin to change.
 void writeBuffered(GlDevice& device, const program::Element& element, std::span<RenderTarget> planes,
-                   const assemble::RegionLayout& region, const std::byte* elements);
+                   const assemble::RegionLayout& region, const std::byte* elements, bool& isTorn);
 
 }  // namespace sk

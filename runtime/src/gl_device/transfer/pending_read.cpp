@@ -64,7 +64,7 @@ void PendingRead::wait() {
 }
 
 void PendingRead::take(std::byte* elements) {
-  if (!failure_.empty()) throw Error(failure_, Error::Kind::Lost);
+  if (hasFailed_) throw Error(failure_, Error::Kind::Lost);
   if (device_ == nullptr) {
     std::memcpy(elements, landed_.data(), landed_.size());
     return;
@@ -88,21 +88,25 @@ void PendingRead::land() noexcept {
     landed_.resize(count_ * element_.size);
     copy(landed_.data());
   } catch (const std::exception& error) {
-    failure_ = error.what();
+    fail(error.what());
   }
   leave();
 }
 
 void PendingRead::abandon() noexcept {
-  read_->forget();
-  try {
-    failure_ =
-        "readAsync: the device has ended on a thread that could not use it, before the elements were there; "
-        "get() them before the device ends";
-  } catch (const std::bad_alloc&) {
-    landed_.clear();
-  }
+  fail(
+      "readAsync: the device has ended on a thread that could not use it, before the elements were there; "
+      "get() them before the device ends");
   leave();
+}
+
+void PendingRead::fail(const char* why) noexcept {
+  hasFailed_ = true;
+  try {
+    failure_ = why;
+  } catch (const std::bad_alloc&) {
+    failure_.clear();
+  }
 }
 
 // Touches no GL: a future may be destroyed where the context is not current. The lock is held.

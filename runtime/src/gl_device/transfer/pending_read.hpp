@@ -34,6 +34,7 @@ class PendingRead final : public TransferState {
 
  private:
   void copy(std::byte* elements);
+  void fail(const char* why) noexcept;
   void leave() noexcept;
 
   const std::shared_ptr<PendingReads> all_;
@@ -43,7 +44,8 @@ class PendingRead final : public TransferState {
   std::size_t count_;
   std::optional<BufferedRead> read_;
   std::vector<std::byte> landed_;
-  std::string failure_;
+  bool hasFailed_ = false;
+  std::string failure_;  ///< empty also where there was no memory for it
 };
 
 }  // namespace sk

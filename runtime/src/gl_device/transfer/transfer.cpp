@@ -45,12 +45,15 @@ void forEachBand(const Rect& rect, std::size_t texelBytes, Visit&& visit) {
 /// One plane of a stream, and the ways of its texels.
 class PlaneTransfer {
  public:
-  PlaneTransfer(GlDevice& device, const Element& element, const Field& field, RenderTarget& renderTarget)
+  /// `isTorn` is set when texels are written.
+  PlaneTransfer(GlDevice& device, const Element& element, const Field& field, RenderTarget& renderTarget,
+                bool* isTorn)
       : device_(device),
         element_(element),
         field_(field),
         renderTarget_(renderTarget),
-        format_(renderTarget.texture.format()) {}
+        format_(renderTarget.texture.format()),
+        isTorn_(isTorn) {}
 
   void write(const Rect& rect, const std::byte* elements) {
     if (areTexels(element_)) {
@@ -121,6 +124,7 @@ class PlaneTransfer {
   }
 
   void writeTexels(const Rect& rect, const std::byte* texels) {
+    *isTorn_ = true;
     forEachLayer(rect, layerRows(), [&](const Rect& part, std::int32_t layer, std::int32_t first) {
       renderTarget_.texture.write(device_.bound, part, layer, texels + bytesOfRows(rect, first));
     });
@@ -157,6 +161,7 @@ class PlaneTransfer {
   const Field& field_;
   RenderTarget& renderTarget_;
   const gl::Format& format_;
+  bool* isTorn_;
   std::vector<std::byte> rows_;
 };
 
@@ -186,9 +191,9 @@ bool readsByRows(const RegionLayout& region, std::size_t texelBytes) {
 }
 
 void upload(GlDevice& device, const Element& element, std::span<RenderTarget> planes,
-            const RegionLayout& region, const std::byte* elements) {
+            const RegionLayout& region, const std::byte* elements, bool& isTorn) {
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    PlaneTransfer plane(device, element, element.fields[i], planes[i]);
+    PlaneTransfer plane(device, element, element.fields[i], planes[i], &isTorn);
     if (goesByRows(region, planes[i].texture.format().texelBytes(), uploadCost, 2)) {
       plane.writeByRows(region, elements);
     } else {
@@ -202,7 +207,7 @@ void upload(GlDevice& device, const Element& element, std::span<RenderTarget> pl
 void download(GlDevice& device, const Element& element, std::span<RenderTarget> planes,
               const RegionLayout& region, std::byte* elements) {
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    PlaneTransfer plane(device, element, element.fields[i], planes[i]);
+    PlaneTransfer plane(device, element, element.fields[i], planes[i], nullptr);
     if (readsByRows(region, planes[i].texture.format().texelBytes())) {
       plane.readByRows(region, elements);
     } else {

@@ -20,9 +20,9 @@ gl::Transfer readTransferOf(GlDevice& device, RenderTarget& plane);
 /// Whether it is cheaper to read the rows that a region lies in than each of its runs by itself.
 bool readsByRows(const assemble::RegionLayout& region, std::size_t texelBytes);
 
-/// Copies all elements of a region, row-major in host memory, to its planes.
+/// Copies all elements of a region, row-major in host memory, to its planes. `isTorn` is set when these begin to change.
 void upload(GlDevice& device, const program::Element& element, std::span<RenderTarget> planes,
-            const assemble::RegionLayout& region, const std::byte* elements);
+            const assemble::RegionLayout& region, const std::byte* elements, bool& isTorn);
 
 /// The other way. Waits for the device. Throws sk::Error where the driver has reported an error since
 /// it was last asked.

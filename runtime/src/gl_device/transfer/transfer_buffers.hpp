@@ -22,16 +22,16 @@ struct TransferBuffer {
   gl::PixelBuffer buffer;
   gl::Fence fence;
   std::size_t bytes = 0;  ///< that were allocated last
-
-  void forget() noexcept;
 };
 
 /// The buffers that nobody uses. They wait here to be used again, or to be deleted with the context current.
 class TransferBuffers {
  public:
+  explicit TransferBuffers(gl::Deletions& deletions) : deletions_(deletions) {}
+
   /// One that nobody uses; its fence is none. The context is current.
   TransferBuffer take();
-  /// Any thread may call this: it touches no GL.
+  /// Of a buffer that was taken. Any thread may call this: it touches no GL and allocates nothing.
   void give(TransferBuffer&& buffer) noexcept;
 
   /// Deletes those that have lain unused for a while, where they take much. Once a call, with the context current.
@@ -40,8 +40,6 @@ class TransferBuffers {
                  std::memory_order_relaxed);  // no other thread changes it
     if (hasMany_.load(std::memory_order_relaxed)) deleteUnused();
   }
-  void clear();
-  void forget() noexcept;
 
  private:
   struct Idle {
@@ -55,8 +53,10 @@ class TransferBuffers {
   void deleteUnused();
   void countIdle() { hasMany_ = bytes_ > keptBytes || idle_.size() > keptBuffers; }
 
+  gl::Deletions& deletions_;
   std::mutex mutex_;
-  std::vector<Idle> idle_;
+  std::vector<Idle> idle_;  ///< with room for those that were taken
+  std::size_t taken_ = 0;
   std::size_t bytes_ = 0;
   std::atomic<std::int64_t> clock_ = 0;
   std::atomic<bool> hasMany_ = false;  ///< so that no call takes the lock where there are few

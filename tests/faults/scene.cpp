@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "scene.hpp"
+
+#include <cstring>
+#include <stdexcept>
+
+#include "faults.sk.hpp"
+
+namespace faults {
+
+namespace {
+
+using namespace faulty;
+
+/// 0, 1, 2 ..., and a bit more for each stream.
+template <class T>
+std::vector<T> numbers(const sk::Stream<T>& stream, int first) {
+  std::vector<T> made(static_cast<std::size_t>(stream.size()));
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    const auto number = static_cast<int>(i % 7) + first;
+    if constexpr (std::is_same_v<T, sk::float4>) {
+      made[i] = {static_cast<float>(number), 1, 2, 3};
+    } else {
+      made[i] = static_cast<T>(number);
+    }
+  }
+  return made;
+}
+
+template <class T>
+std::optional<std::vector<std::byte>> bytesOf(const sk::Stream<T>& stream) {
+  try {
+    const std::vector<T> elements = stream.read();
+    std::vector<std::byte> bytes(elements.size() * sizeof(T));
+    if (!bytes.empty()) std::memcpy(bytes.data(), elements.data(), bytes.size());
+    return bytes;
+  } catch (const sk::Error& error) {
+    if (error.kind() != sk::Error::Kind::Lost) throw;
+    return std::nullopt;
+  }
+}
+
+void expect(bool isRight, const char* what) {
+  if (!isRight) throw std::logic_error(what);
+}
+
+float sumOfNumbers(std::int64_t count) {
+  float total = 0;
+  for (std::int64_t i = 0; i < count; ++i) total += static_cast<float>(i % 7);
+  return total;
+}
+
+}  // namespace
+
+Scene::Scene(sk::Device& on, std::int64_t rows)
+    : device(on), size(rows), fives(static_cast<std::size_t>(rows * 8), 5.0F) {
+  x = device.stream<float>({size, 8});
+  r = device.stream<float>({size, 8});
+  s = device.stream<float>({size, 8});
+  box = device.stream<float>({2, size, 6});  // linearised
+  part = device.stream<float>({size, 1});
+  pushed = device.stream<float>({3});
+  indices = device.stream<std::int32_t>({size, 8});
+  bins = device.stream<std::int32_t>({size + 7});
+  for (auto& stream : wide) stream = device.stream<sk::float4>({size, 8});
+  reset();
+}
+
+void Scene::reset() {
+  x.write(numbers(x, 0));
+  r.write(numbers(r, 10));
+  s.write(numbers(s, 20));
+  box.write(numbers(box, 30));
+  part.write(numbers(part, 40));
+  pushed = device.stream<float>({3});
+  pushed.write(numbers(pushed, 50));
+  indices.write(numbers(indices, 0));
+  bins.write(numbers(bins, 60));
+  for (auto& stream : wide) stream.write(numbers(stream, 70));
+}
+
+Scene::Elements Scene::elements() const {
+  Elements all = {bytesOf(x),    bytesOf(r),      bytesOf(s),       bytesOf(box),
+                  bytesOf(part), bytesOf(pushed), bytesOf(indices), bytesOf(bins)};
+  for (const auto& stream : wide) all.push_back(bytesOf(stream));
+  return all;
+}
+
+const std::vector<Scenario>& scenarios() {
+  static const std::vector<Scenario> all = {
+      {"make a stream", [](Scene& of) { of.device.stream<sk::float3>({of.size, 5}); }},
+      {"write", [](Scene& of) { of.r.write(of.fives); }},
+      {"write a view", [](Scene& of) { of.r.domain({1, 1}, {3, 4}).write(std::span(of.fives).first(6)); }},
+      {"write a view of a box",
+       [](Scene& of) { of.box.domain({0, 1, 1}, {2, 3, 4}).write(std::span(of.fives).first(12)); }},
+      {"write without waiting", [](Scene& of) { of.r.writeAsync(of.fives); }},
+      {"write a view of a box without waiting",
+       [](Scene& of) { of.box.domain({0, 1, 1}, {2, 3, 4}).writeAsync(std::span(of.fives).first(12)); }},
+      {"fill", [](Scene& of) { of.r.fill(3); }},
+      {"fill a view of a box", [](Scene& of) { of.box.domain({0, 1, 1}, {2, 3, 4}).fill(3); }},
+      {"copy", [](Scene& of) { of.x.copyTo(of.r); }},
+      {"copy a view of a box",
+       [](Scene& of) { of.box.domain({0, 0, 0}, {2, 2, 3}).copyTo(of.box.domain({0, 1, 2}, {2, 3, 5})); }},
+      {"read", [](Scene& of) { expect(of.x.read()[9] == 2, "read"); }},
+      {"read a view", [](Scene& of) { expect(of.box.domain({0, 1, 1}, {2, 3, 4}).read()[0] == 30, "box"); }},
+      {"read without waiting",
+       [](Scene& of) {
+         sk::Future<float> early = of.x.readAsync();
+         static_cast<void>(early.ready());
+         early.wait();
+         expect(early.get()[9] == 2, "readAsync");
+       }},
+      {"call", [](Scene& of) { scale(2.0F, of.x, of.r); }},
+      {"call in place", [](Scene& of) { scale(3.0F, of.x, of.x); }},
+      {"call that reads what it writes",
+       [](Scene& of) { shift(of.part.domain({0, 0}, {of.size, 1}), of.part); }, true},
+      {"call on a view",
+       [](Scene& of) { scale(2.0F, of.x.domain({0, 1}, {2, 4}), of.r.domain({1, 3}, {3, 6})); }},
+      {"call on overlapping views",
+       [](Scene& of) { scale(2.0F, of.x.domain({0, 1}, {2, 4}), of.x.domain({1, 2}, {3, 5})); }},
+      {"call on overlapping views of a box",
+       [](Scene& of) {
+         scale(2.0F, of.box.domain({0, 0, 1}, {2, 2, 4}), of.box.domain({0, 1, 2}, {2, 3, 5}));
+       }},
+      {"call with two outputs", [](Scene& of) { two(of.x, of.wide[0], of.s); }},
+      {"call of several passes",
+       [](Scene& of) { many(of.x, of.wide[0], of.wide[1], of.wide[2], of.wide[3], of.wide[4], of.wide[5]); }},
+      {"call with a choice",
+       [](Scene& of) { scale.with({.precision = sk::Precision::Extended})(2.0F, of.x, of.r); }},
+      {"reduce to a value", [](Scene& of) { expect(sum(of.x) == sumOfNumbers(of.x.size()), "sum"); }},
+      {"reduce in a tree",
+       [](Scene& of) {
+         const float found = sum.with({.accumulate = sk::Accumulate::Tree})(of.x);
+         expect(found == sumOfNumbers(of.x.size()), "sum in a tree");
+       }},
+      {"reduce integers",
+       [](Scene& of) { expect(count(of.indices) == static_cast<int>(sumOfNumbers(of.x.size())), "count"); }},
+      {"reduce to a stream", [](Scene& of) { sum(of.x, of.part); }},
+      {"reduce exactly to a stream",
+       [](Scene& of) { sum.with({.accumulate = sk::Accumulate::Exact})(of.x, of.part); }},
+      {"push", [](Scene& of) { positive(of.x, of.pushed); }},
+      {"push any number", [](Scene& of) { repeat(of.x, of.pushed, of.s); }},
+      {"scatter", [](Scene& of) { histogram(of.indices, of.bins); }},
+      {"scatter and push", [](Scene& of) { everything(of.indices, of.r, of.bins, of.pushed, of.r, of.s); }},
+      {"texture", [](Scene& of) { expect(of.x.texture().name != 0, "texture"); }, true, true},
+  };
+  return all;
+}
+
+}  // namespace faults
