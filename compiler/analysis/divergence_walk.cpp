@@ -30,7 +30,7 @@ bool DivergenceWalk::run() {
   return isNew_;
 }
 
-// ---- what was found -----------------------------------------------------------------------------
+// ---- recording facts ----------------------------------------------------------------------------
 
 void DivergenceWalk::set(bool& flag) {
   isNew_ = isNew_ || !flag;
@@ -52,7 +52,7 @@ void DivergenceWalk::add(Leaves& into, const Leaves& from) {
 
 // ---- statements ---------------------------------------------------------------------------------
 
-/// From the first statement on that lets some lanes leave what this block is the body of, they are gone.
+/// From the first statement on that lets some lanes leave this body (`leaves`), these lanes are inactive.
 void DivergenceWalk::block(const Block& statements, Frame::Kind leaves) {
   const std::size_t frames = frames_.size();
   for (const Stmt& stmt : statements) {
@@ -66,7 +66,7 @@ void DivergenceWalk::block(const Block& statements, Frame::Kind leaves) {
   frames_.resize(frames);
 }
 
-/// Whether a divergent jump out of the function, or out of the round of the loop around it, stands in a statement.
+/// True if the statement contains a divergent jump out of the function, or out of this iteration of its loop.
 bool DivergenceWalk::jumps(const Stmt& stmt, Frame::Kind left) const {
   const bool isJump = left == Frame::Function ? std::holds_alternative<Return>(stmt.node)
                                               : std::holds_alternative<Continue>(stmt.node);
@@ -151,7 +151,7 @@ void DivergenceWalk::visit(const Stmt& stmt, const Loop& n) {
   enclosing_.pop_back();
 }
 
-/// The lanes in the cases of a divergent switch become more with each case, and those that join have not been before.
+/// Each case of a divergent switch activates more lanes, which were inactive in the cases before it.
 void DivergenceWalk::visit(const Stmt& stmt, const Switch& n) {
   if (isVarying(join(shapes(*n.value)))) insert(facts_.divergent, stmt);
   enclosing_.push_back({&stmt, frames_.size(), false});
@@ -161,7 +161,7 @@ void DivergenceWalk::visit(const Stmt& stmt, const Switch& n) {
   enclosing_.pop_back();
 }
 
-/// Whether lanes are inactive for another reason than that they have left what the jump leaves, too.
+/// True if lanes are inactive for any other reason than having left what this jump leaves.
 bool DivergenceWalk::isDivergentJump(std::size_t frames, Frame::Kind allowed) const {
   return std::any_of(frames_.begin() + static_cast<std::ptrdiff_t>(frames), frames_.end(),
                      [&](const Frame& frame) { return frame.kind != allowed; });
@@ -174,7 +174,7 @@ void DivergenceWalk::visit(const Stmt& stmt, const Break&) {
   insert(facts_.divergent, *left.stmt);
 }
 
-/// A switch that some lanes leave runs under a mask, so that they do not take part in its other cases.
+/// A switch that some lanes leave runs under a mask, so that these lanes skip its remaining cases.
 void DivergenceWalk::visit(const Stmt& stmt, const Continue&) {
   const auto loop = std::find_if(enclosing_.rbegin(), enclosing_.rend(),
                                  [](const Enclosing& enclosing) { return enclosing.isLoop; });
@@ -196,7 +196,7 @@ void DivergenceWalk::visit(const Stmt& stmt, const Return& n) {
 
 void DivergenceWalk::visit(const Stmt&, const Scope& n) { block(n.body); }
 
-// ---- what other lanes see -----------------------------------------------------------------------
+// ---- visibility to inactive lanes ----------------------------------------------------------------
 
 bool DivergenceWalk::isSeenByOthers(VarId var) const {
   const Declared& declared = declared_[var];
@@ -207,7 +207,7 @@ bool DivergenceWalk::isSeenByOthers(VarId var) const {
   return false;
 }
 
-/// Whether lanes that are inactive because of this frame read the variable before it is declared again.
+/// True if lanes that are inactive because of this frame may read the variable before it is declared again.
 bool DivergenceWalk::isSeenOutside(const Frame& frame, const Declared& declared, VarId var) const {
   switch (frame.kind) {
     case Frame::Branch: return true;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// Private to Uniformity: one walk over a function, which adds what makes values vary and control flow diverge. It is
-// repeated until it adds nothing.
+// Private to Uniformity: one walk over a function, which adds facts about varying values and divergent
+// control flow. Uniformity repeats the walk until it adds nothing.
 //
-// The walk keeps the reasons why some lanes are inactive as frames: they are in another branch, or have left the loop, the round of
-// a loop, or the function. A lane in another branch can read what is assigned meanwhile to a variable that
-// is declared outside of the branch. One that has left a loop cannot, where the variable lives in that loop only.
+// The walk keeps a stack of frames, the reasons why some lanes are inactive: they took another branch, or
+// have left the loop, the iteration or the function. A lane in another branch can read what is assigned
+// meanwhile to a variable declared outside the branch. A lane that has left a loop cannot, if the variable
+// lives only in that loop.
 #pragma once
 
 #include <cstddef>
@@ -21,24 +22,24 @@ class DivergenceWalk {
  public:
   DivergenceWalk(Uniformity& whole, ir::FunctionId id);
 
-  /// Whether something was added.
+  /// Returns true if the walk added a fact.
   bool run();
 
  private:
   /// Why some lanes are inactive.
   struct Frame {
     enum Kind : std::uint8_t { Branch, Loop, Round, Function } kind;
-    std::size_t loop = 0;  ///< of Loop and Round: how many loops are around it
+    std::size_t loop = 0;  ///< Loop and Round: the number of loops around it
   };
   /// A statement that a jump can leave.
   struct Enclosing {
     const ir::Stmt* stmt;
-    std::size_t frames;  ///< around it
+    std::size_t frames;  ///< number of frames around it
     bool isLoop;
   };
   struct Declared {
-    std::size_t frames, loops;  ///< around it
-    bool isCallers;  ///< read after the function's end
+    std::size_t frames, loops;  ///< numbers of frames and loops around the declaration
+    bool isCallers;  ///< the caller reads it after the function returns
   };
 
   void block(const ir::Block& statements, Frame::Kind leaves = Frame::Branch);

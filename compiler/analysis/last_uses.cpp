@@ -18,7 +18,7 @@ void LastUses::visit(const Block& block) {
     forEachBlock(stmt, [&](const Block& inner) { visit(inner); });
     const auto* loop = std::get_if<Loop>(&stmt.node);
     if (loop == nullptr) continue;
-    if (loop->cond) use(*loop->cond);  // of `do`, behind the body
+    if (loop->cond) use(*loop->cond);  // evaluated after the body in a `do` loop
     ends_[&stmt] = now_;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Where in its function each variable is named for the last time, and where each loop ends, in the order of the text.
+// Finds the last use of each variable of a function and the end of each loop, in source order.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class LastUses {
  public:
   explicit LastUses(const ir::Function& function);
 
-  /// Whether the variable is named after the end of the loop.
+  /// True if the variable is used after the end of the loop.
   bool isUsedAfter(ir::VarId var, const ir::Stmt& loop) const { return lastUse_[var] > ends_.at(&loop); }
 
  private:
@@ -24,7 +24,7 @@ class LastUses {
 
   std::vector<std::size_t> lastUse_;
   std::map<const ir::Stmt*, std::size_t> ends_;
-  std::size_t now_ = 0;  ///< statements so far
+  std::size_t now_ = 0;  ///< number of statements visited
 };
 
 }  // namespace skc::analysis

@@ -39,7 +39,7 @@ Leaf join(const Leaves& leaves) {
 
 namespace {
 
-/// The shape of what is computed from both by an operation that keeps nothing but uniformity.
+/// The shape of the result of an operation that preserves only uniformity.
 Leaf mixed(Leaf a, Leaf b) {
   if (!a || !b) return std::nullopt;
   return isVarying(a) || isVarying(b) ? Shape::Varying : Shape::Uniform;
@@ -52,7 +52,7 @@ Leaf mixed(const Leaves& leaves) {
   return all;
 }
 
-/// Addition and subtraction of ints keep what is consecutive.
+/// Adding or subtracting a uniform int preserves Consecutive.
 Leaf moved(BinaryOp op, Leaf lhs, Leaf rhs) {
   const bool isAdd = op == BinaryOp::Add;
   if (lhs == Shape::Consecutive && rhs == Shape::Uniform) return lhs;
@@ -67,7 +67,7 @@ bool isComponentwise(Intrinsic intrinsic) {
   return std::ranges::find(others, intrinsic) == std::end(others);
 }
 
-/// Where in a struct a field's leaves begin.
+/// The index of a field's first leaf in its struct.
 std::size_t firstLeaf(const Module& module, Type type, std::uint32_t field) {
   std::size_t first = 0;
   const std::vector<StructField>& fields = module.structs[type.index].fields;
@@ -106,7 +106,7 @@ class ExprRule {
                          [&](Leaf a, Leaf b) { return moves ? moved(op, a, b) : mixed(a, b); });
   }
 
-  /// Into the base of a place go the leaves of the place.
+  /// Wraps the leaves assigned to `place` in the leaves of the variable at its root.
   Leaves assigned(const Expr& place, Leaves value) const {
     if (const auto* n = std::get_if<Member>(&place.node)) {
       Leaves base(leafCount(module_, n->base->type));
@@ -134,12 +134,12 @@ class ExprRule {
     for (std::size_t i = 0; i < count; ++i) result.push_back(fn(component(lhs, i), component(rhs, i)));
     return result;
   }
-  /// A scalar goes with every component.
+  /// A scalar is broadcast to all components.
   static Leaf component(const Leaves& leaves, std::size_t i) {
     return leaves.size() == 1 ? leaves.front() : leaves[i];
   }
 
-  /// What an assignment to an element at an index does to the whole.
+  /// The leaves of the whole after an assignment to one of its elements.
   Leaves indexed(const ir::Index& n, const Leaves& value) const {
     Leaves base(leafCount(module_, n.base->type));
     if (isVarying(join(of(*n.index)))) {
@@ -224,8 +224,8 @@ class ExprRule {
   Leaves rule(Type type, const GatherRead& n) const { return all(type, mixed(of(*n.index))); }
   Leaves rule(Type type, const NeighborRead&) const { return all(type, Shape::Varying); }
   Leaves rule(Type type, const Sample& n) const { return all(type, mixed(of(*n.position))); }
-  /// The lanes are a run of elements along x, except in a fold, whose lanes may stand farther apart. An input's index
-  /// is the domain's after a multiplication and a division.
+  /// Lanes are consecutive elements along x, except in a fold, whose lanes may be farther apart. An input's
+  /// index is computed from the domain's by a multiplication and a division.
   Leaves rule(Type type, const IndexOf& n) const {
     Leaves result = uniform(type);
     if (axis_ == Axis::Y) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// How the values that neighbouring elements have of an expression relate to each other, given those of the variables. A value
-// is a list of scalar leaves, each with a shape, or without one as long as nothing is known to be assigned to it.
+// The shape of an expression: how its values for neighbouring elements relate to each other, given the shapes
+// of the variables. A value is a list of scalar leaves; a leaf has no shape until something is assigned to
+// it.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +15,16 @@
 
 namespace skc::analysis {
 
-/// Which elements are compared: the lanes, which are neighbours along x; or elements of consecutive rows, which have the same x.
+/// X compares lanes, which are neighbours along x; Y compares elements of consecutive rows with the same x.
 enum class Axis : std::uint8_t { X, Y };
 
 enum class Shape : std::uint8_t {
   Uniform,  ///< one value for all elements
-  Consecutive,  ///< an int along x; each lane has 1 more than the lane before
+  Consecutive,  ///< an int along x: each lane has 1 more than the lane before
   Varying,  ///< anything else
 };
 
-/// None is the bottom of the lattice; Uniform and Consecutive are above it, and Varying is the top.
+/// nullopt is the bottom of the lattice, Varying its top; Uniform and Consecutive are between them.
 using Leaf = std::optional<Shape>;
 using Leaves = std::vector<Leaf>;
 
@@ -33,10 +34,10 @@ struct FunctionShapes {
 };
 using KernelShapes = std::map<ir::FunctionId, FunctionShapes>;
 
-/// How many leaves a value of this type has: one for each scalar, and those of a single element for an array.
+/// The number of leaves of a type: one per scalar; an array counts as a single element.
 std::size_t leafCount(const ir::Module& module, ir::Type type);
 
-/// The shape of something that is one of the two.
+/// The shape of a value that is either of the two.
 Leaf join(Leaf a, Leaf b);
 Leaf join(const Leaves& leaves);
 inline bool isVarying(Leaf leaf) { return leaf && *leaf != Shape::Uniform; }
@@ -47,10 +48,10 @@ class ExprShapes {
       : module_(module), kernel_(kernel), shapes_(shapes), axis_(axis) {}
 
   Leaves of(ir::FunctionId function, const ir::Expr& expr) const;
-  /// What `place op= value` assigns.
+  /// The leaves of the value that `place op= value` assigns.
   Leaves ofCompound(ir::FunctionId function, const ir::Expr& place, ir::BinaryOp op,
                     const ir::Expr& value) const;
-  /// The leaves of the variable at the root of a place after an assignment of these, with none where it leaves them alone.
+  /// The leaves that an assignment to `place` gives to its root variable; nullopt for all others.
   Leaves assigned(ir::FunctionId function, const ir::Expr& place, Leaves value) const;
 
  private:

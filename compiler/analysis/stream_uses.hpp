@@ -23,16 +23,16 @@ struct StreamUse {
 struct StreamUses {
   std::vector<StreamUse> params;
   bool domainIndex = false;
-  bool domainExtent = false;   ///< where no parameter has the domain's shape
-  bool loops = false;   ///< has a loop whose rounds the values of elements decide
+  bool domainExtent = false;   ///< asked for where no parameter has the domain's shape
+  bool loops = false;   ///< has a loop with a data-dependent trip count
 };
 
 StreamUses streamUses(const ir::Module& module, const ir::Kernel& kernel);
 
-/// The largest |component| of a neighbour's offset, if all are known.
+/// The largest |component| of a neighbour's offset; nullopt if a component is not constant.
 std::optional<std::int32_t> reachOf(const ir::Module& module, const ir::Expr& offset);
 
-/// The parameter whose shape is the domain's: the first output; the number of parameters where there is none.
+/// The parameter whose shape is the domain's: the first output, or params.size() if there is none.
 std::uint32_t domainParam(const ir::Kernel& kernel);
 
 }  // namespace skc::analysis

@@ -12,7 +12,7 @@ using namespace ir;
 
 namespace {
 
-/// Without leaves that nothing is assigned to.
+/// Replaces missing shapes: a leaf that nothing is assigned to is uniform.
 std::vector<Shape> known(const Leaves& leaves) {
   std::vector<Shape> shapes;
   for (const Leaf leaf : leaves) shapes.push_back(leaf.value_or(Shape::Uniform));
@@ -23,9 +23,9 @@ void makeUniform(Leaves& leaves) {
   for (Leaf& leaf : leaves) leaf = leaf.value_or(Shape::Uniform);
 }
 
-/// What the entry's variables are when it starts.
+/// The shapes of the entry's variables at its start.
 Leaf atEntry(const Kernel& kernel, VarId var, Axis axis) {
-  // the mask of predicate says which lanes have an element; all rows have the same
+  // predicate's mask: true in the lanes that have an element, the same in all rows
   if (var >= kernel.params.size()) return axis == Axis::X ? Shape::Varying : Shape::Uniform;
   switch (kernel.params[var].role) {
     case ParamRole::Input:
@@ -58,7 +58,7 @@ Uniformity::Uniformity(const Module& module, const Kernel& kernel, Axis axis)
     facts_[id] = {};
   }
   propagate(functions);
-  // What nothing is assigned to has no shape so far, nor has what is computed from it alone.
+  // Variables that are never assigned still have no shape, nor have values computed from them alone.
   for (auto& [id, own] : shapes_) {
     for (Leaves& leaves : own.variables) makeUniform(leaves);
     makeUniform(own.result);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: what is the same for all lanes is found to be, also in parts of vectors and while lanes have left a loop; and
-// nothing is that is not.
+// Promises: every uniform value is found, also in components of vectors and after lanes have left a loop; no
+// varying value is taken for uniform.
 #include "analysis/uniformity.hpp"
 
 #include <string>
@@ -20,14 +20,14 @@ using namespace ir;
 constexpr Type int2Type = Type::of(Scalar::Int, 2);
 constexpr StreamRef domain{StreamRef::Space::Domain, 0};
 
-/// "u", "c" or "v" for each leaf.
+/// The shape of each leaf as "u", "c" or "v".
 std::string letters(std::span<const Shape> shapes) {
   std::string text;
   for (const Shape shape : shapes) text += "ucv"[static_cast<int>(shape)];
   return text;
 }
 
-/// A kernel of a uniform u, an input x and an output r.
+/// A kernel with a uniform u, an input x and an output r.
 struct Sample {
   Module module = testModule();
   KernelMaker k{module, "f"};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Checks what predicate promises: a valid module, in which no control flow depends on a value that varies.
+// Checks the postcondition of predicate: the module is valid, and no control flow depends on a varying value.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace skc::analysis {
 
-/// The first violation found; empty if there is none.
+/// Returns the first violation, or an empty string.
 std::string validatePredicated(const ir::Module& module);
 
 }  // namespace skc::analysis

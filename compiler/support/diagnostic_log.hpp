@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A Diagnostics that keeps what it is told: for tests, and wherever messages are wanted as values.
+// A Diagnostics that records every report, for tests and for code that wants messages as values.
 #pragma once
 
 #include <string>

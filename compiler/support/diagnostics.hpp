@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Everything that skc tells its user about a program, as rows of diagnostics.def. A Diagnostics
-// collects or prints; the frontend's implementation hands them to Clang's engine, so that messages
-// of Clang and ours look the same (file, line, column, caret).
+// Everything that skc reports about a user's program, as rows of diagnostics.def. A Diagnostics collects or
+// prints; the frontend's implementation hands the reports to Clang's engine, so that our messages look like
+// Clang's (file, line, column, caret).
 #pragma once
 
 #include <cstdint>
@@ -31,13 +31,13 @@ struct DiagRow {
 };
 const DiagRow& row(Diag diag);
 
-/// A change of the file that mends a mistake, for certain and by itself.
+/// A fix-it: an edit of the source that surely corrects the mistake.
 struct Mend {
   enum class Kind : std::uint8_t { Remove, Replace, InsertBefore, InsertAfter };
   Kind kind;
-  Loc first;           ///< the token that it is about; of Remove, the first one
-  Loc last;            ///< of Remove and Replace, the last one
-  std::string text;    ///< to insert, or to put in place
+  Loc first;           ///< the token that is edited; Remove and Replace: the first one
+  Loc last;            ///< Remove and Replace: the last token
+  std::string text;    ///< the inserted or replacing text
 
   static Mend remove(Loc first, Loc last) { return {Kind::Remove, first, last, {}}; }
   static Mend replace(Loc token, std::string text) { return replace(token, token, std::move(text)); }
@@ -56,7 +56,7 @@ class Diagnostics {
  public:
   virtual ~Diagnostics() = default;
   virtual void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments = {}) = 0;
-  /// With what would mend it, for those who can show that.
+  /// Also takes fix-its, for implementations that can show them.
   virtual void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments,
                       const std::vector<Mend>& /*mends*/) {
     report(diag, loc, arguments);
@@ -64,7 +64,7 @@ class Diagnostics {
   virtual bool hasErrors() const = 0;
 };
 
-/// The row's text with its arguments put in.
+/// The row's text with the arguments substituted.
 std::string format(Diag diag, std::initializer_list<std::string_view> arguments);
 
 }  // namespace skc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A function that is called, but not kept, by who takes it: what a walker of trees takes, so that it need not be a template.
+// A non-owning reference to a callable. Tree walkers take one, so that they need not be templates.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace skc {
 template <class Signature>
 class FunctionRef;
 
-/// Refers to anything that can be called with `Args`, which must outlive it.
+/// Refers to anything that can be called with `Args`; the callable must outlive the reference.
 template <class Result, class... Args>
 class FunctionRef<Result(Args...)> {
  public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Dispatch over a std::variant with one lambda for each alternative and no default: a new
-// alternative is a compile error wherever it is not handled. (std::visit does the same; with as many alternatives as the IR's
-// nodes have, it takes several times as long to compile.)
+// Dispatch over a std::variant with one lambda per alternative and no default: a new alternative is a compile
+// error wherever it is not handled. (std::visit does the same, but with as many alternatives as the IR has
+// nodes it takes several times as long to compile.)
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-/// `cases` of the alternative that `variant` holds, which is `Index` or a later one.
+/// Calls `cases` with the alternative that `variant` holds; the alternatives before `Index` are ruled out.
 template <std::size_t Index, class Variant, class Cases>
 decltype(auto) matchFrom(Variant& variant, Cases& cases) {
   if constexpr (Index + 1 < std::variant_size_v<std::remove_const_t<Variant>>) {

@@ -40,10 +40,10 @@ namespace {
 /// A space at which the line may be broken.
 struct BreakPoint {
   std::size_t position;
-  int cost;   ///< brackets open there, then how tightly the operator before it binds
+  int cost;   ///< number of open brackets first, then the precedence of the operator before the space
 };
 
-/// How tightly what ends a word binds: punctuation 0, operators more; nothing for other words.
+/// The precedence of the operator that ends the word: 0 for punctuation, nullopt if there is no operator.
 std::optional<int> bindingOf(std::string_view word) {
   if (word.empty()) return std::nullopt;
   if (word.back() == ',' || word.back() == ';') return 0;
@@ -56,7 +56,7 @@ std::optional<int> bindingOf(std::string_view word) {
   return std::nullopt;
 }
 
-/// Spaces after a comma, a semicolon or a binary operator.
+/// The spaces after commas, semicolons and binary operators.
 std::vector<BreakPoint> breakPoints(std::string_view line) {
   constexpr int perBracket = 16;
   std::vector<BreakPoint> points;
@@ -77,7 +77,7 @@ std::vector<BreakPoint> breakPoints(std::string_view line) {
   return points;
 }
 
-/// The cheapest break within the limit, and the last of these; none left of `first`.
+/// The cheapest break from `first` to `limit`, the last one if several cost the same.
 std::optional<std::size_t> chooseBreak(std::string_view line, std::size_t first, std::size_t limit) {
   std::optional<BreakPoint> best;
   for (const BreakPoint& point : breakPoints(line)) {
@@ -95,11 +95,11 @@ std::string wrapLine(std::string_view line, std::size_t limit, std::size_t conti
   const bool isTooFar = continuation > limit * 3 / 4;
   const std::string margin(continuation == 0 || isTooFar ? indent + 4 : continuation, ' ');
   std::string result;
-  std::size_t before = 0;   // the margin, which stands in front of `line`
+  std::size_t before = 0;   // the width of the margin in front of `line`
   while (before + line.size() > limit) {
     const std::size_t first = result.empty() ? indent : before;
     if (first >= limit) break;
-    // Nothing behind the limit is looked at: lists of a thousand items come here.
+    // Scans no further than the limit, because lines may be lists of a thousand items.
     const std::optional<std::size_t> at =
         chooseBreak(line.substr(0, limit - before + 1), first + (limit - first) / 3 - before, limit - before);
     if (!at) break;

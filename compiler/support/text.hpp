@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Small things that every printer of text needs.
+// Text utilities that all printers share.
 #pragma once
 
 #include <span>
@@ -13,14 +13,14 @@ namespace skc {
 /// "0.1", "1.0", "1e+30", "-0.0". `value` is finite.
 std::string shortestFloat(float value);
 
-/// The same for a double: "0.1", and of what is not finite "inf" and "nan".
+/// The same for a double. Values that are not finite give "inf", "-inf" and "nan".
 std::string shortestDouble(double value);
 
-/// The items with `separator` between them.
+/// Concatenates the items with `separator` between them.
 std::string join(std::span<const std::string> items, std::string_view separator);
 
-/// Breaks a long line of C-like text after commas and binary operators, where fewest brackets are open
-/// and the operator binds least, into lines of at most `limit` columns where possible. Continuation lines begin
+/// Breaks a long line of C-like text into lines of at most `limit` columns where possible: after commas and
+/// binary operators, preferring the fewest open brackets and the lowest precedence. Continuation lines begin
 /// in column `continuation`; 0 means four more than the line itself. String literals are not broken.
 std::string wrapLine(std::string_view line, std::size_t limit = 100, std::size_t continuation = 0);
 
