@@ -7,7 +7,7 @@
 namespace skc::ir {
 namespace {
 
-/// fn(variable) for each that the block changes, some more than once.
+/// Calls fn for each variable that the block changes, perhaps more than once.
 template <class Fn>
 void forEachAssigned(const Block& block, Fn&& fn) {
   walkStmts(block, [&](const Stmt& stmt) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Which variables statements change after their declaration: assignments, results of calls, and whatever a call that stands
-// as a statement is given, for it may take a reference.
+// Finds the variables that statements change after their declaration: by assignments, as results of calls,
+// and as arguments of CallStmts, whose parameters may be references.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace skc::ir {
 
-/// Whether a statement of the block changes the variable.
+/// True if a statement of the block changes the variable.
 bool assigns(const Block& block, VarId var);
 
-/// Does the same for every variable of a function, whatever statement assigns it.
+/// For each variable of the function, whether any of its statements changes it.
 std::vector<bool> assignedVariables(const Function& function);
 
 }  // namespace skc::ir

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Terse constructors of the IR's nodes. Types are derived from the operands; what comes out is
-// checked by `validate`, not here.
+// Terse constructors of IR nodes. They derive types from the operands and check nothing; `validate` checks
+// what they build.
 #pragma once
 
 #include <initializer_list>
@@ -24,7 +24,7 @@ ExprPtr literal(double value, Loc loc = {});
 ExprPtr literal(std::int32_t value, Loc loc = {});
 ExprPtr literal(std::uint32_t value, Loc loc = {});
 ExprPtr literal(bool value, Loc loc = {});
-/// `value`, which the type can hold, in that type: a Literal of a scalar, a splat of a vector.
+/// `value` in a type that can represent it: a Literal for a scalar, a splat for a vector.
 ExprPtr literalOf(Type type, int value, Loc loc = {});
 
 ExprPtr varRef(const Function& function, VarId var, Loc loc = {});
@@ -32,7 +32,7 @@ ExprPtr constantRef(const Module& module, ConstantId constant, Loc loc = {});
 ExprPtr unary(UnaryOp op, ExprPtr operand, Loc loc = {});
 ExprPtr binary(BinaryOp op, ExprPtr lhs, ExprPtr rhs, Loc loc = {});
 ExprPtr select(ExprPtr cond, ExprPtr yes, ExprPtr no, Loc loc = {});
-/// The operand itself if it has that component type already.
+/// Returns the operand itself if it has that component type already.
 ExprPtr convert(Scalar scalar, ExprPtr operand, Loc loc = {});
 ExprPtr construct(Type type, std::vector<ExprPtr> args, Loc loc = {});
 /// Components by name: "x", "xyz", "bgr".
@@ -40,7 +40,7 @@ ExprPtr swizzle(ExprPtr base, std::string_view components, Loc loc = {});
 ExprPtr member(const Module& module, ExprPtr base, std::uint32_t field, Loc loc = {});
 ExprPtr index(const Module& module, ExprPtr base, ExprPtr index, Loc loc = {});
 ExprPtr call(const Module& module, FunctionId callee, std::vector<ExprPtr> args, Loc loc = {});
-/// The arguments match one of the row's signatures.
+/// The arguments must match one of the row's signatures.
 ExprPtr intrinsic(Intrinsic intrinsic, std::vector<ExprPtr> args, Loc loc = {});
 ExprPtr gatherRead(Type element, StreamRef stream, ExprPtr index, Loc loc = {});
 ExprPtr neighborRead(Type element, StreamRef stream, ExprPtr offset, Loc loc = {});
@@ -52,7 +52,7 @@ Type binaryType(BinaryOp op, Type lhs, Type rhs);
 /// True for < <= > >= == !=.
 bool isComparison(BinaryOp op);
 
-/// Several expressions as one list of arguments.
+/// Collects expressions into a list of arguments.
 template <class... E>
 std::vector<ExprPtr> exprs(E... items) {
   std::vector<ExprPtr> list;
@@ -61,7 +61,7 @@ std::vector<ExprPtr> exprs(E... items) {
   return list;
 }
 
-/// The variable at the root of a place.
+/// The variable at the root of an lvalue.
 VarId rootOf(const Expr& place);
 
 ExprPtr clone(const Expr& expr);
@@ -85,7 +85,7 @@ Stmt scope(Block body, Loc loc = {});
 Stmt push(StreamRef stream, ExprPtr value, Loc loc = {});
 Stmt scatter(StreamRef stream, ScatterOp op, ExprPtr index, ExprPtr value, Loc loc = {});
 
-/// Several statements as one block.
+/// Collects statements into a block.
 template <class... S>
 Block block(S... items) {
   Block list;
@@ -102,7 +102,7 @@ Block clone(const Block& block);
 /// Adds a variable. Parameters (every role but Local) come before all locals.
 VarId addVariable(Function& function, std::string name, Type type, VarRole role = VarRole::Local,
                   Loc loc = {});
-/// The array type of this element and length: the module's entry for it, made at need.
+/// The array type with this element and length; adds it to the module if it is not there yet.
 Type arrayOf(Module& module, Type element, std::uint32_t length);
 
 Function clone(const Function& function);

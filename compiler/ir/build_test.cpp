@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: constructors derive types as C++ and GLSL do, a clone is equal and separate, and the walk
+// Promises: constructors derive types as C++ and GLSL do, a clone is equal and independent, and the walk
 // reaches every node.
 #include "ir/build.hpp"
 

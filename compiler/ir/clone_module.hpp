@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A deep copy of a module, for a back end that rewrites it for itself.
+// A deep copy of a module, for a back end that rewrites the module for itself.
 #pragma once
 
 #include "ir/ir.hpp"

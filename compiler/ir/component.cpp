@@ -18,7 +18,7 @@ ExprPtr ofConstruct(const Construct& n, std::uint8_t number) {
   return nullptr;
 }
 
-/// Not of a matrix and a vector.
+/// False for products of a matrix and a vector.
 bool isByComponent(const Binary& n) { return n.lhs->type.isArithmetic() && n.rhs->type.isArithmetic(); }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// One component of a vector as an expression of its own: for transforms that want to know `int2(dx, dy + 1).y` without
-// knowing vectors.
+// One component of a vector as an expression of its own, for transforms that want to inspect `int2(dx, dy +
+// 1).y` without handling vectors.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace skc::ir {
 
-/// The scalar that component `number` of `expr` holds, taken out of constructors, swizzles and operators that work by
-/// component; a swizzle of a copy where it is none of these. A scalar is its own component, whatever the number.
+/// The scalar expression for component `number` of `expr`. Looks through constructors, swizzles and
+/// componentwise operators, and otherwise swizzles a copy. A scalar is its own component, whatever the
+/// number.
 ExprPtr componentOf(const Expr& expr, std::uint8_t number);
 
 }  // namespace skc::ir

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a component is taken out of constructors, swizzles and operators, and keeps its meaning.
+// Promises: a component is extracted from constructors, swizzles and operators, and keeps its meaning.
 #include "ir/component.hpp"
 
 #include <catch2/catch.hpp>
@@ -13,7 +13,7 @@ namespace {
 
 const Type int2 = Type::of(Scalar::Int, 2), int3 = Type::of(Scalar::Int, 3);
 
-/// Component `number` of what `make` builds from variables `v`, an int2, and `s`, an int.
+/// Component `number` of the expression that `make` builds from variables `v`, an int2, and `s`, an int.
 template <class Make>
 std::string component(Make make, std::uint8_t number) {
   Module module = testModule();

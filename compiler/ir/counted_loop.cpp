@@ -36,12 +36,12 @@ std::optional<Head> headOf(const Module& module, const Loop& loop) {
   return Head{init->var, init->init->type, *from, *to, *by, test->op, *step->op};
 }
 
-/// ceil(distance / step), 0 where there is nothing to go.
+/// ceil(distance / step), or 0 if the distance is not positive.
 std::int64_t stepsOver(std::int64_t distance, std::int64_t step) {
   return distance <= 0 ? 0 : (distance + step - 1) / step;
 }
 
-/// The steps of `by` from 0 until `counter op distance` is false; none where it stays true.
+/// The number of steps of `by`, from 0, until `counter op distance` is false; nullopt if it stays true.
 std::optional<std::int64_t> stepsTo(BinaryOp op, std::int64_t distance, std::int64_t by) {
   switch (op) {
     case BinaryOp::Less: return by > 0 ? std::optional(stepsOver(distance, by)) : std::nullopt;
@@ -76,7 +76,7 @@ std::optional<Rounds> roundsIn(const Module& module, const Loop& loop) {
   const std::int64_t from = integer(head->from);
   const std::optional<std::int64_t> count = stepsTo(head->op, integer(head->to) - from, by);
   if (!count) return std::nullopt;
-  // `for (uint i = 3; i >= 0; --i)` wraps around, and goes on.
+  // `for (uint i = 3; i >= 0; --i)` wraps around and does not end.
   const std::int64_t end = from + *count * by;
   const auto [low, high] = isSigned ? std::pair{-(std::int64_t{1} << 31), (std::int64_t{1} << 31) - 1}
                                     : std::pair{std::int64_t{0}, (std::int64_t{1} << 32) - 1};

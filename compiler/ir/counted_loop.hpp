@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Loops whose number of rounds is written in the program: `for (int i = 0; i < 5; ++i)` with constants,
-// i untouched inside.
+// Loops with a constant trip count: `for (int i = 0; i < 5; ++i)`, where the body does not change i.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +10,24 @@
 
 namespace skc::ir {
 
-/// Whether a loop takes as many rounds for any element, unless it is left early.
+/// True if the trip count is the same for every element, unless the loop is left early.
 bool isCounted(const Module& module, const Loop& loop);
 
-/// The counter of a counted loop over integers: `first` in the first of `count` rounds, then `step` more in each.
+/// The counter of a counted loop over integers: `first`, first + step, ..., `count` values in all.
 struct Rounds {
   VarId counter;
   Type type;
   std::int64_t first, step, count;
 
-  /// The counter in round number `round`, as an expression.
+  /// The counter's value in iteration `round`, from 0, as an expression.
   ExprPtr value(std::int64_t round, Loc loc = {}) const;
 };
 
-/// None where a loop is not counted, or does not end.
+/// Returns nullopt if the loop is not counted or does not end.
 std::optional<Rounds> roundsIn(const Module& module, const Loop& loop);
 
-/// How many rounds a counted loop over integers takes, unless it is left early. None where it is no such
-/// loop, or does not end.
+/// The trip count of a counted loop over integers, unless it is left early; nullopt if the loop is not
+/// counted or does not end.
 std::optional<std::int64_t> roundsOf(const Module& module, const Loop& loop);
 
 }  // namespace skc::ir

@@ -58,7 +58,7 @@ Bits binaryFloat(BinaryOp op, float a, float b) {
   return compare(op, a, b);
 }
 
-/// Division and right shift, where int and uint differ.
+/// Division and right shift, which differ between int and uint.
 Bits divideInt(BinaryOp op, std::int32_t a, std::int32_t b) {
   if (b == 0 || (a == std::numeric_limits<std::int32_t>::min() && b == -1)) return std::nullopt;
   return static_cast<std::uint32_t>(op == BinaryOp::Div ? a / b : a % b);
@@ -170,7 +170,7 @@ class Evaluator {
     const std::uint32_t deciding = n.op == BinaryOp::LogicalOr ? 1 : 0;
     if (lhs == deciding) return deciding;
     const Bits rhs = value(*n.rhs);
-    if (rhs == deciding) return deciding;   // the left side has no effect that would be lost
+    if (rhs == deciding) return deciding;   // an operand without effects may be dropped
     return lhs && rhs ? Bits(1 - deciding) : std::nullopt;
   }
 

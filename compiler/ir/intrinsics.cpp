@@ -14,13 +14,13 @@ constexpr IntrinsicRow rows[] = {
 #undef SKC_INTRINSIC
 };
 
-/// One choice for the generic letters of a signature.
+/// One assignment of types to the generic letters of a signature.
 struct Choice {
   int width;
-  Scalar generic;   ///< what N S Q R stand for, and n is a component of
+  Scalar generic;   ///< the type of N, S, Q and R, or of their components; n is this scalar
 };
 
-/// The type that a letter stands for, or nothing if the letter excludes the choice.
+/// The type that a letter stands for; nullopt if the letter excludes the choice.
 std::optional<Type> typeOf(char letter, Choice choice) {
   using enum Scalar;
   const bool isVector = choice.width > 1;
@@ -51,12 +51,12 @@ std::optional<Type> typeOf(char letter, Choice choice) {
                   choice.generic, choice.width);
     case 'Q': return only(isVector && choice.generic != Bool, choice.generic, choice.width);
     case 'R': return only(isVector, choice.generic, choice.width);
-    default: break;   // no letter of the table's
+    default: break;   // not a letter of the table
   }
   return std::nullopt;
 }
 
-/// "F(F,f)" under one choice.
+/// Resolves a signature such as "F(F,f)" under one choice.
 std::optional<IntrinsicOverload> resolve(std::string_view signature, Choice choice) {
   IntrinsicOverload overload;
   for (std::size_t i = 0; i < signature.size(); ++i) {

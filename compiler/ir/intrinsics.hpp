@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The table of intrinsics (intrinsics.def) as an enumeration and rows, and its column of signatures
-// as types: what a call with given arguments gives, and every overload that there is.
+// The table of intrinsics (intrinsics.def) as an enumeration and rows, and its signatures as types: the
+// result type of a call, and every overload.
 #pragma once
 
 #include <cstdint>
@@ -33,10 +33,10 @@ struct IntrinsicOverload {
   std::vector<Type> arguments;
   bool operator==(const IntrinsicOverload&) const = default;
 };
-/// Every overload that the row's signatures stand for, without repetitions.
+/// Every overload that the row's signatures stand for, without duplicates.
 std::vector<IntrinsicOverload> overloads(Intrinsic intrinsic);
 
-/// The type of a call with arguments of exactly these types; nothing if no signature has them.
+/// The type of a call with arguments of exactly these types; nullopt if no signature matches.
 std::optional<Type> resultType(Intrinsic intrinsic, std::span<const Type> arguments);
 
 }  // namespace skc::ir

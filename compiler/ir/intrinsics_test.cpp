@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the column of signatures means what its head comment says.
+// Promises: signatures mean what the opening comment of intrinsics.def says.
 #include "ir/intrinsics.hpp"
 
 #include <initializer_list>

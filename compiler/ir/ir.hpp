@@ -9,33 +9,33 @@
 //     evaluate their right operands only when needed, as in C++.
 //   * No conversion is implicit: the operands of a binary operator have one type, except that one
 //     of them may be a scalar of the other's component type (GLSL's scalar-vector operators; not
-//     for comparisons). Shifts take a count of the same component type's integer family.
+//     for comparisons). A shift count is an integer, or a vector of them.
 //     Comparisons of vectors are componentwise and give a bool vector.
-//   * Narrow scalars (half, char ... snorm16) and their vectors are for keeping values: no operator
+//   * Narrow scalars (half, char ... snorm16) and their vectors are storage types: no operator
 //     takes them but Convert, Select, Construct, Swizzle and Index. A Convert to one quantises, as
-//     quantize.hpp says; one to its carrier (carrierOf) changes no value.
-//   * Matrices have rows: an Index gives a row, Construct takes all of them. They know + - * == !=,
-//     * and / with a scalar, and * with a vector on the right, which is a column.
-//   * A place (left side, or argument of an InOut parameter) is a VarRef of a mutable variable,
-//     or a Member, Index or Swizzle without repeated components of a place.
+//     quantize.hpp says; a Convert to its arithmetic type (carrierOf) changes no value.
+//   * Matrices are lists of rows: an Index gives a row, Construct takes all of them. They support
+//     + - * == !=, * and / with a scalar, and * with a vector on the right, which is a column.
+//   * A place (an lvalue: left side, or argument of an InOut parameter) is a VarRef of a mutable
+//     variable, or a Member, Index or Swizzle without repeated components of a place.
 //   * One loop node keeps the shape that its author wrote. `continue` goes to `step`, then `cond`.
 //   * A function's parameters are its first `parameterCount` variables. `In` is a copy;
 //     `InOut` copies in and out, and no variable is bound to two InOut parameters of one call.
-//     `Gather`, `Element` and `AppendOutput` parameters stand for streams: they may only be used by the stream
-//     expressions (GatherRead, NeighborRead, Sample, IndexOf, ExtentOf) and, an AppendOutput, by the stream
-//     statements (Push, Scatter), or handed to another function; an Element may be read by VarRef too.
+//     `Gather`, `Element` and `AppendOutput` parameters stand for streams. They may only be used by stream
+//     expressions (GatherRead, NeighborRead, Sample, IndexOf, ExtentOf), by stream statements (Push, Scatter)
+//     if they are AppendOutputs, and as arguments; a VarRef may also read an Element.
 //   * Each kernel has an entry function, with one variable per kernel parameter, in order. After
-//     `specialize-gathers`, no function but an entry has Gather or AppendOutput parameters, and every StreamRef
-//     names a kernel parameter; the functions that a kernel reaches are then its own, and
-//     what is in those that no kernel reaches any more does not count.
+//     `specialize-gathers`, only entries have Gather or AppendOutput parameters, every StreamRef
+//     names a kernel parameter, and no two kernels share a function; functions that no kernel reaches
+//     are ignored from then on.
 //   * A reduce has inputs and accumulators. Partial results are combined by a reduce whose inputs have the
 //     types of its accumulators, and which does not ask where an element is.
 //   * A kernel that some target cannot run in one pass has plans after `split-kernels`. The kernels
-//     of their passes stand in the module like all others.
-//   * After `predicate`, which only native code wants, a function computes several elements at once, each in a
-//     lane. Control flow is the same for all lanes: conditions are uniform, or ask AnyLane. What an element does
-//     alone depends on masks, which are bool variables. An entry may take one more parameter than its kernel
-//     has: a bool In, true in the lanes that have an element.
+//     of their passes are in the module like all others.
+//   * After `predicate`, which only native code runs, a function computes several elements at once, one per
+//     lane. Control flow is uniform: conditions are uniform, or ask AnyLane. What a single element does
+//     depends on masks, which are bool variables. An entry may have one more parameter than its kernel:
+//     a bool In that is true in the lanes that have an element.
 //
 // `validate` (validate.hpp) is this text made executable.
 #pragma once
@@ -66,8 +66,8 @@ using TableId = std::uint32_t;
 struct Expr;
 using ExprPtr = std::unique_ptr<Expr>;
 
-/// A scalar; vectors of literals are Constructs. `bits` holds bool 0/1, int32, uint32 or float32
-/// bits; of a narrow scalar, those of its carrier; of a double the lower half, and `high` the upper.
+/// A scalar; vectors of literals are Constructs. `bits` holds bool 0/1, int32, uint32 or float32 bits, for a
+/// narrow scalar the bits of its arithmetic type, for a double the lower half; `high` holds the upper half.
 struct Literal { std::uint32_t bits; std::uint32_t high = 0; };
 struct VarRef { VarId var; };
 struct ConstantRef { ConstantId constant; };
@@ -88,16 +88,16 @@ struct Convert { ExprPtr operand; };
 /// A vector from scalars and vectors whose components add up to its width, or from one scalar
 /// (splat); a matrix from all its rows; a struct from all its members; an array from all its elements.
 struct Construct { std::vector<ExprPtr> args; };
-struct Swizzle { ExprPtr base; std::vector<std::uint8_t> components; };   ///< of a vector; 1 to 4
+struct Swizzle { ExprPtr base; std::vector<std::uint8_t> components; };   ///< base: vector; 1 to 4 components
 struct Member { ExprPtr base; std::uint32_t field; };
-/// Of an array, a vector or a matrix, at an int or uint. Outside an array, it is the nearest element.
+/// base is an array, vector or matrix, index an int or uint. An index outside an array is clamped.
 struct Index { ExprPtr base, index; };
 struct Call { FunctionId callee; std::vector<ExprPtr> args; };   ///< no InOut parameters, not void
 struct IntrinsicCall { Intrinsic intrinsic; std::vector<ExprPtr> args; };
 
-/// A stream: a variable of this function (Gather, Element or AppendOutput role), or, after specialize-gathers,
-/// a parameter of the kernel. Domain (IndexOf and ExtentOf only) is the kernel's domain itself: what
-/// an output, a gather's current index, or an Element without a stream behind it stands for.
+/// A stream: a variable of this function (Gather, Element or AppendOutput role), or, after
+/// specialize-gathers, a parameter of the kernel. Domain (IndexOf and ExtentOf only) is the kernel's domain
+/// itself, used for an output, a gather's current index, or an Element without a stream behind it.
 struct StreamRef {
   enum class Space : std::uint8_t { Variable, KernelParameter, Domain };
   Space space;
@@ -106,8 +106,8 @@ struct StreamRef {
 };
 struct GatherRead { StreamRef stream; ExprPtr index; };       ///< int (rank 1), int2 .. int4; x fastest
 struct NeighborRead { StreamRef stream; ExprPtr offset; };    ///< likewise
-/// Linear interpolation of a gather of floats at a float (rank 1), float2 .. float4; x fastest. Its type is
-/// the carrier of the element's.
+/// Linear interpolation of a gather of floats at a float (rank 1), float2 .. float4; x fastest. The result
+/// has the element's arithmetic type.
 struct Sample { StreamRef stream; ExprPtr position; };
 struct IndexOf { StreamRef stream; };                         ///< int4
 struct ExtentOf { StreamRef stream; };                        ///< int4
@@ -128,9 +128,9 @@ using Block = std::vector<Stmt>;
 
 struct Declare { VarId var; ExprPtr init; };                        ///< init may be null
 struct Assign { ExprPtr place; std::optional<BinaryOp> op; ExprPtr value; };  ///< place (op)= value
-/// Calls a function for its effect; `result` (may be null) is the place that takes its value.
-/// The argument of a Gather parameter, and of an Element parameter that stands for a stream, is a
-/// VarRef of this function's own Gather or Element variable.
+/// Calls a function for its effect; `result` (may be null) is the lvalue that receives its value. The
+/// argument of a Gather parameter, and of an Element parameter that stands for a stream, is a VarRef of this
+/// function's own Gather or Element variable.
 struct CallStmt { FunctionId callee; std::vector<ExprPtr> args; ExprPtr result; };
 struct If { ExprPtr cond; Block then, otherwise; };
 enum class LoopKind : std::uint8_t { For, While, DoWhile };
@@ -138,20 +138,20 @@ enum class LoopKind : std::uint8_t { For, While, DoWhile };
 /// unless For; a null cond is true. `init` declares variables that live as long as the loop.
 struct Loop { LoopKind kind; Block init; ExprPtr cond; Block step; Block body; };
 struct Case { std::vector<std::int64_t> values; bool isDefault = false; Block body; Loc loc; };
-/// Falls through as in C++; its cases are one scope, as in C++.
+/// Cases fall through and share one scope, as in C++.
 struct Switch { ExprPtr value; std::vector<Case> cases; };
 struct Break {};
 struct Continue {};
 struct Return { ExprPtr value; };                                   ///< null in a void function
 struct Scope { Block body; };
 
-/// Appends an element to a variable output. Pushes of one element stay in the order of execution, and
-/// those of an element come before those of every later one. `mask` is a bool that is true in the lanes which
-/// push; null is all of them, and what it is before `predicate`.
+/// Appends an element to a variable output. Pushes by one element keep the order of execution, and precede
+/// the pushes by later elements. `mask` is a bool that is true in the lanes that push; null, as it always is
+/// before `predicate`, means all lanes.
 struct Push { StreamRef stream; ExprPtr value; ExprPtr mask = nullptr; };
 enum class ScatterOp : std::uint8_t { Store, Add, Min, Max };
-/// Element `index` (int, int2 .. int4; x fastest) of a scatter output becomes `value`, or its old value
-/// combined with it; an index outside does nothing. In the order of Push, and with its mask. One op an output.
+/// Sets element `index` (int, int2 .. int4; x fastest) of a scatter output to `value`, or combines it with
+/// `value`; an index outside has no effect. Order and mask are as in Push. Each output has one op.
 struct Scatter { StreamRef stream; ScatterOp op; ExprPtr index, value; ExprPtr mask = nullptr; };
 
 struct Stmt {
@@ -168,9 +168,9 @@ struct Stmt {
 enum class VarRole : std::uint8_t { Local, In, InOut, Element, Gather, AppendOutput };
 struct Variable {
   std::string name;
-  Type type;  ///< Gather, AppendOutput: the element's type
+  Type type;  ///< Gather, AppendOutput: the element type
   VarRole role = VarRole::Local;
-  std::uint8_t rank = 0;  ///< Gather, AppendOutput of a scatter output: 1 to 4
+  std::uint8_t rank = 0;  ///< Gather, and AppendOutput that is a scatter output: 1 to 4
   bool isConst = false;
   Loc loc;
 };
@@ -182,18 +182,18 @@ struct Function {
   std::uint32_t parameterCount = 0;
   Block body;
   Loc loc;
-  std::optional<TableId> table = {};  ///< that may stand for a Call of it
-  bool isLibrary = false;  ///< of the native library: its errors are bounded as it is written
+  std::optional<TableId> table = {};  ///< the table that may replace a Call of it
+  bool isLibrary = false;  ///< from the native library: its error bounds hold for the code as written
 };
 
-/// A table of the values of a function, which takes one float In and gives a float. `kernel`, set by tabulate where
-/// some kernel calls the function, has one Input and one Output, and computes it.
+/// A table of the values of a function that takes one float In and gives a float. tabulate sets `kernel` if a
+/// kernel calls the function; it has one Input and one Output, and computes the function.
 struct Table {
-  std::string name;  ///< the function's, without namespaces
+  std::string name;  ///< the function's name, without namespaces
   std::vector<std::string> scope;  ///< enclosing namespaces, outermost first
   float low, high;
   std::uint32_t intervals;
-  bool isCubic;  ///< else linear
+  bool isCubic;  ///< cubic interpolation, else linear
   std::optional<KernelId> kernel = {};
 };
 
@@ -219,21 +219,21 @@ enum class Boundary : std::uint8_t { Clamp, Wrap, Mirror, Border };
 struct KernelParam {
   std::string name;
   ParamRole role;
-  Type type;  ///< of one element
-  std::optional<Type> held = {};  ///< what the stream holds where that is another type: floats for doubles
+  Type type;  ///< element type
+  std::optional<Type> held = {};  ///< the element type of the stream, if different: floats for doubles
   std::uint8_t rank = 0;  ///< Gather, Scatter
   Boundary boundary = Boundary::Clamp;  ///< Gather
   ExprPtr border;  ///< Gather with Border: constant expression
-  bool filter = false;  ///< Gather: sampled by the device's own filter where it can
+  bool filter = false;  ///< Gather: sampled by the device's own filter where possible
   ExprPtr identity;  ///< Accumulator: constant expression, or null
-  std::uint32_t firstPlane = 0;  ///< Output of a pass that writes only some planes of the element:
-  std::uint32_t planeCount = 0;  ///< the first, and how many; 0 is all of them
+  std::uint32_t firstPlane = 0;  ///< Output of a pass that writes only some planes: the first
+  std::uint32_t planeCount = 0;  ///< and their number; 0 means all planes
   Loc loc;
-  ScatterOp scatter = ScatterOp::Store;  ///< Scatter: what all its statements do
-  std::int32_t pushes = -1;  ///< VariableOutput, Scatter: statements that one element executes
+  ScatterOp scatter = ScatterOp::Store;  ///< Scatter: the op of all its statements
+  std::int32_t pushes = -1;  ///< VariableOutput, Scatter: how many statements one element executes
       ///< at most; -1 if unknown
-  /// Streams, set by guard-streams: an expression of the entry's Spec variables that is false where the
-  /// kernel does without; or null.
+  /// Set by guard-streams: an expression of the entry's Spec variables that is false if the kernel does not
+  /// need the stream, or null.
   ExprPtr neededIf = nullptr;
 };
 
@@ -243,69 +243,69 @@ inline Type heldType(const KernelParam& param) { return param.held.value_or(para
 /// A sum of floats that a reduce folds: an accumulator, or a member of one.
 struct CompensatedSum {
   VarId accumulator;
-  std::vector<std::uint32_t> members;  ///< way from the accumulator
+  std::vector<std::uint32_t> members;  ///< path from the accumulator
 };
 
-/// A second form of a reduce that sums floats, set by compensate-sums: the reduce `fold` has one more accumulator for
-/// each of `sums`, after all others and in that order, for what its sum has lost. `finish` is a kernel that takes the
-/// accumulators which have sums as they are, each once and in their order, then what each of the sums has lost, and gives
-/// these accumulators with both added.
+/// A variant of a reduce that compensates sums of floats, set by compensate-sums. The reduce `fold` has one
+/// more accumulator for each of `sums`, after all others and in that order, which holds the sum's rounding
+/// error. `finish` is a kernel that takes the accumulators that have sums, each once and in order, then the
+/// error of each sum, and returns these accumulators with the errors added.
 struct Compensated {
   KernelId fold, finish;
   std::vector<CompensatedSum> sums;
-  /// Where an element adds one input, or the product of two, and does no more: these.
+  /// The inputs, if each element only adds one input or the product of two.
   std::vector<VarId> term = {};
 };
 
-/// What each element adds to an exact sum, for code that has an accumulator of its own. Empty where an element may add any
-/// number of terms: then only the fold of digits adds them.
+/// What each element adds to an exact sum, for native code with its own accumulator. Empty if an element may
+/// add any number of terms: then only the fold of digits can add them.
 struct ExactTerm {
-  std::vector<VarId> factors = {};  ///< inputs of one float: every element adds it, or the product of two
-  /// Otherwise a kernel that runs natively alone. It has all parameters of the reduce but accumulators, then an output of
-  /// one float for each term; of a sum of products, two: its factors. A term that an element does not add is -0.
+  std::vector<VarId> factors = {};  ///< float inputs: every element adds the one, or the product of the two
+  /// Otherwise a native-only kernel. It has all parameters of the reduce except accumulators, then one float
+  /// output per term, or two for a sum of products: the factors. A term that an element does not add is -0.
   std::optional<KernelId> kernel = {};
   bool isEmpty() const { return factors.empty() && !kernel; }
 };
 
-/// A scalar sum of floats of a reduce, set by sum-exactly: the reduce `fold` has, after all parameters but accumulators, those
-/// that hold the sum as digits of an integer. `finish` is a kernel that takes the accumulator as it is and these, and
-/// gives the accumulator with the rounded sum in its place.
+/// A scalar sum of floats of a reduce, set by sum-exactly. After its parameters other than accumulators, the
+/// reduce `fold` has accumulators that hold the sum as digits of an integer. `finish` is a kernel that takes
+/// the original accumulator and these, and returns the accumulator with the rounded sum in it.
 struct ExactSum {
   KernelId fold, finish;
   VarId accumulator;
-  std::vector<std::uint32_t> members;  ///< way from the accumulator to the float or vector
-  std::uint32_t component;  ///< of that; 0 of a float
+  std::vector<std::uint32_t> members;  ///< path from the accumulator to the float or vector
+  std::uint32_t component;  ///< component of the vector; 0 for a float
   bool ofProducts;  ///< the digits have room for products of two floats
   ExactTerm term;
 };
 
-/// How partial results of a reduce combine; set by derive-combine (frontend: where the user wrote
-/// an overload that folds accumulators).
+/// How partial results of a reduce combine; set by derive-combine (by the frontend if the user wrote an
+/// overload that folds accumulators).
 struct Reduction {
-  std::optional<KernelId> combine = {};  ///< a reduce of accumulators; may be the very kernel
-  std::vector<std::uint32_t> operands = {};  ///< one a parameter of it: see sk::program::Reduction
-  bool seeded = false;  ///< likewise
+  std::optional<KernelId> combine = {};  ///< a reduce of accumulators; may be the same kernel
+  std::vector<std::uint32_t> operands = {};  ///< one per parameter of `combine`: see sk::program::Reduction
+  bool seeded = false;  ///< see sk::program::Reduction
   std::optional<Compensated> compensated = {};
   std::vector<ExactSum> exact = {};
-  /// Of a wide form: a kernel that takes the accumulators, which are doubles, and gives them as floats.
+  /// Wide variant: a kernel that converts the accumulators from doubles to floats.
   std::optional<KernelId> finish = {};
-  /// Elements may be folded in any order: every accumulator is folded by an operator that is known.
+  /// True if elements may be folded in any order, because a known operator folds every accumulator.
   bool commutative = false;
 };
 
-/// A kernel's forms for other precisions, whose parameters are the same: set by widen-floats and round-halves.
+/// Variants of a kernel for other precisions, with the same parameters: set by widen-floats and round-halves.
 struct Forms {
-  std::optional<KernelId> wide;  ///< computing in doubles wherever the kernel says float
-  std::optional<KernelId> half;  ///< rounding every float that it computes to half
-  std::string whyNotWide, whyNotHalf;  ///< where it computes floats, yet has no such form
+  std::optional<KernelId> wide;  ///< computes in double wherever the kernel says float
+  std::optional<KernelId> half;  ///< rounds every float that it computes to half
+  std::string whyNotWide, whyNotHalf;  ///< why a kernel that computes floats has no such variant
 };
 
 // ---- plans ------------------------------------------------------------------------------------
 
 /// What a target can read and write in one pass.
 struct Limits {
-  std::uint32_t drawBuffers = 0;  ///< planes written
-  std::uint32_t textureUnits = 0;  ///< planes read
+  std::uint32_t drawBuffers = 0;  ///< planes that a pass may write
+  std::uint32_t textureUnits = 0;  ///< planes that a pass may read
   bool operator==(const Limits&) const = default;
 };
 
@@ -313,18 +313,18 @@ struct Limits {
 struct Temporary {
   std::string name;
   Type type;
-  double computeCost;  ///< of computing it once, see split/cost.hpp
+  double computeCost;  ///< cost of computing it once, see split/cost.hpp
   std::uint32_t readers;  ///< passes that read it
 };
 
-/// What a parameter of a pass is given: an argument of the whole kernel, or a temporary.
+/// The argument for a parameter of a pass: an argument of the whole kernel, or a temporary.
 struct PassOperand {
   bool isTemporary;
   std::uint32_t index;
 };
 struct Pass {
   KernelId kernel;  ///< Kernel::pass is set there
-  std::vector<PassOperand> operands;  ///< one a parameter
+  std::vector<PassOperand> operands;  ///< one per parameter
   double cost;
 };
 
@@ -333,39 +333,39 @@ struct ArgumentPlane {
   std::uint32_t argument, plane;
   bool operator==(const ArgumentPlane&) const = default;
 };
-/// Planes of one texel format that are copied to the layers of one texture, and read from there.
+/// Planes of one texel format that are copied to the layers of one texture, and so share a texture unit.
 struct Bundle {
   Type type;
   std::vector<ArgumentPlane> layers;
 };
 
-/// How a kernel runs that needs more than a target has: in these passes, one after the other.
+/// The passes, in order, by which a kernel runs that exceeds the limits of a target.
 struct Plan {
   Limits limits;  ///< what its passes need
   std::vector<Temporary> temporaries;
   std::vector<Bundle> bundles;
   std::vector<Pass> passes;
   double cost = 0;
-  double costWithoutTemporaries = 0;  ///< were every value computed wherever it is needed
+  double costWithoutTemporaries = 0;  ///< if every value were computed wherever it is needed
 };
 
-/// The kernel is a pass of another's plan.
+/// Says that the kernel is a pass of another kernel's plan.
 struct PassOf {
   KernelId whole;
   std::uint32_t number, count;  ///< from 1
 };
 
-/// What the author chooses by [[precision(extended)]] and the like, in front of a kernel: numbers of the enumerators of
-/// sk::Precision, sk::Accumulate, sk::Intrinsics, sk::Tables and sk::Contraction; 0 where nothing is said.
+/// The attributes in front of a kernel, such as [[precision(extended)]]: numbers of the enumerators of
+/// sk::Precision, sk::Accumulate, sk::Intrinsics, sk::Tables and sk::Contraction; 0 if unspecified.
 struct Choices {
   std::uint8_t precision = 0, accumulate = 0, intrinsics = 0, tables = 0, contraction = 0;
 };
 
-/// A loop that unroll-loops has looked at.
+/// A loop that unroll-loops has considered.
 struct LoopNote {
   Loc loc;
-  std::optional<std::int64_t> rounds;  ///< where their number is known
-  std::string whyNot = {};  ///< it stays a loop; empty where it was unrolled
+  std::optional<std::int64_t> rounds;  ///< its trip count, if known
+  std::string whyNot = {};  ///< why it stays a loop; empty if it was unrolled
 };
 
 struct Kernel {
@@ -378,28 +378,28 @@ struct Kernel {
       ///< VariableOutput and Scatter AppendOutput
   std::vector<KernelParam> params;
   std::optional<Reduction> reduction;  ///< set for `reduce`
-  bool isMade = false;  ///< made by a transform, for another one: C++ cannot call it
+  bool isMade = false;  ///< synthesized by a transform: C++ cannot call it
   bool isNativeOnly = false;  ///< no GLSL program runs it
-  std::vector<Plan> plans;  ///< for targets that it is too large for, the most generous first
+  std::vector<Plan> plans;  ///< for targets whose limits it exceeds, the most generous first
   std::optional<PassOf> pass;
   Forms forms;
   Choices choices;
-  std::vector<LoopNote> loops = {};  ///< those with neighbours or array elements at their counters
+  std::vector<LoopNote> loops = {};  ///< loops whose counters index neighbours or array elements
   Loc loc;
 };
 
-/// An extent of a declared stream: a constant, or, where it has a name, an argument of the struct that
-/// the stub declares for the streams of a namespace.
+/// An extent of a declared stream: a constant, or, if it has a name, an argument of the struct that the stub
+/// declares for the streams of a namespace.
 struct DeclaredExtent {
   std::string name;
   std::int64_t value = 0;
 };
 
-/// `stream T name<extents>`: no kernel knows it.
+/// `stream T name<extents>`: only C++ uses it, no kernel does.
 struct DeclaredStream {
   std::string name;
   std::vector<std::string> scope;  ///< enclosing namespaces, outermost first
-  Type type;  ///< of one element
+  Type type;  ///< element type
   std::vector<DeclaredExtent> extents;  ///< slowest first
   Loc loc;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// For tests: makes kernels of hand-built IR without naming every table twice.
+// For tests: builds kernels from hand-written IR without naming every table twice.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ inline Module testModule() {
 
 inline Loc atLine(std::uint32_t line) { return {.token = line, .line = line, .file = 0}; }
 
-/// A kernel in the making: its parameters, then its locals, then finish(body).
+/// A kernel builder: declare parameters, then locals, then call finish(body).
 class KernelMaker {
  public:
   KernelMaker(Module& module, std::string name, std::uint32_t line = 1) : module_(module) {
@@ -65,7 +65,7 @@ class KernelMaker {
     function_.variables[var].rank = kernel_.params[var].rank = static_cast<std::uint8_t>(rank);
     return var;
   }
-  /// Makes the kernel a reduce.
+  /// Adds an accumulator, which makes the kernel a reduce.
   VarId accumulator(std::string name, Type type, ExprPtr identity = nullptr) {
     const VarId var = param(std::move(name), ParamRole::Accumulator, type, VarRole::InOut);
     kernel_.params[var].identity = std::move(identity);
@@ -104,7 +104,7 @@ class KernelMaker {
   Function function_;
 };
 
-/// A helper function: parameters and locals by addVariable, then put into the module.
+/// Adds a helper function to the module, after parameters and locals were added by addVariable.
 inline FunctionId addFunction(Module& module, Function function, Block body) {
   function.body = std::move(body);
   module.functions.push_back(std::move(function));

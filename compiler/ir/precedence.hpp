@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How tightly operators bind in C, C++ and GLSL alike: what the printers need to write no more
-// brackets than a person would.
+// Operator precedence, which is the same in C, C++ and GLSL. The printers use it to write no more brackets
+// than a person would.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ enum class Precedence : std::uint8_t {
 
 Precedence precedenceOf(BinaryOp op);
 
-/// True if an operand that is itself a binary operation gets brackets although none are needed,
-/// because few people know who binds tighter: && in ||, arithmetic in shifts and in bit operations.
+/// True if a binary operand gets brackets that are not needed, because few readers know the precedence: && in
+/// ||, arithmetic in shifts and in bit operations.
 bool bracketsForClarity(BinaryOp outer, BinaryOp inner);
 
 }  // namespace skc::ir

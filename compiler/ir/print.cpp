@@ -49,7 +49,7 @@ class StmtPrinter {
         [&](const Scatter& n) { return indent + where(n.mask) + scatter(n) + ";\n"; });
   }
 
-  /// "where (mask) ", which is shorter than an If and unlike one.
+  /// "where (mask) ": shorter than an If, and cannot be mistaken for one.
   std::string where(const ExprPtr& mask) const { return mask ? fmt::format("where ({}) ", expr(mask)) : ""; }
 
   /// "$1[i] += v", "$1[i] = min($1[i], v)".
@@ -60,7 +60,7 @@ class StmtPrinter {
                       : fmt::format("{} {} {}", place, spelling(n.op), expr(n.value));
   }
 
-  /// A statement that fits in the head of a `for`, without its semicolon; others in braces.
+  /// A statement for the head of a `for`, without its semicolon; in braces if it does not fit there.
   std::string simple(const Stmt& stmt) const {
     if (const auto* n = std::get_if<Declare>(&stmt.node)) {
       const Variable& var = function_.variables[n->var];

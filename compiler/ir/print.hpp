@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The IR as text for --emit=ir and --print-after: C-like, complete, the same for the same module.
-// Nothing reads it back.
+// Prints the IR as text for --emit=ir and --print-after: C-like, complete, and deterministic. Nothing parses
+// it.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Expressions of the IR as text, with as few brackets as a person would write.
+// Prints IR expressions, with as few brackets as a person would write.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace skc::ir {
 namespace {
 
-/// The name of a variable; with its number where the function has several of that name.
+/// A variable's name, followed by its number if the function has several variables of that name.
 std::string nameOf(const Function& function, VarId var) {
   if (var >= function.variables.size()) return "var#" + std::to_string(var);
   const std::string& name = function.variables[var].name;
@@ -33,7 +33,7 @@ std::string literalText(Type type, std::uint32_t bits) {
   return shortestFloat(value);
 }
 
-/// As C++ has no suffix for doubles, the letter of theirs that is not taken: "0.1d".
+/// "0.1d": C++ has no suffix for doubles, and no other suffix uses this letter.
 std::string doubleText(const Literal& literal) {
   return shortestDouble(std::bit_cast<double>(std::uint64_t{literal.high} << 32 | literal.bits)) + "d";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promise: the dump shows all of a module, C-like, with no more brackets than needed.
+// Promise: the dump shows the whole module, C-like, with no more brackets than needed.
 #include "ir/print.hpp"
 
 #include <limits>

@@ -14,7 +14,7 @@ float nearestHalf(float x) {
   if (magnitude > 0x7f800000U) return x;
   std::uint32_t rounded = (magnitude + 0xfffU + ((magnitude >> 13) & 1U)) & 0xffffe000U;
   if (rounded > 0x477fe000U) rounded = 0x7f800000U;
-  if (magnitude < 0x38800000U) {   // a multiple of 2^-24
+  if (magnitude < 0x38800000U) {   // half would be subnormal: a multiple of 2^-24
     const float steps = std::bit_cast<float>(magnitude) * 0x1p24F;
     rounded = std::bit_cast<std::uint32_t>(std::nearbyint(steps) * 0x1p-24F);
   }

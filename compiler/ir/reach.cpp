@@ -10,7 +10,7 @@ namespace {
 
 enum class Mark : std::uint8_t { New, Open, Done };
 
-/// Depth first over the calls; false where a call leads back to a function that is not done.
+/// Visits the call graph depth first; returns false if it finds a cycle.
 bool visit(const Module& module, FunctionId id, std::vector<Mark>& marks, std::vector<FunctionId>& order) {
   if (id >= marks.size() || marks[id] == Mark::Done) return true;
   if (marks[id] == Mark::Open) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The call graph: who calls whom, and which functions a kernel needs.
+// The call graph: who calls whom, and which functions a kernel reaches.
 #pragma once
 
 #include <optional>
@@ -10,29 +10,28 @@
 
 namespace skc::ir {
 
-/// The functions that a function calls, each once, in the order in which they are found.
+/// The functions that a function calls, each once, in the order of their first call.
 std::vector<FunctionId> callees(const Function& function);
 
-/// The functions that a kernel needs, each once, callees before their callers: its entry and all that this
-/// reaches.
+/// The functions that a kernel reaches, including its entry, each once, callees before callers.
 std::vector<FunctionId> functionsOf(const Module& module, const Kernel& kernel);
 
-/// Those of them that a table may stand for.
+/// The functions that a kernel reaches and a table may replace.
 std::vector<FunctionId> tabulatedFunctionsOf(const Module& module, const Kernel& kernel);
 
-/// Whether a value of this type is a double or holds one.
+/// True if the type is a double or contains one.
 bool holdsDouble(const Module& module, Type type);
-/// Whether a kernel's parameters or functions have anything to do with doubles.
+/// True if a kernel's parameters or functions use doubles.
 bool usesDoubles(const Module& module, const Kernel& kernel);
 
-/// Whether a kernel computes what additions of floats lose.
+/// True if a kernel computes rounding errors of float additions.
 bool usesExactSums(const Module& module, const Kernel& kernel);
 
-/// Whether a kernel asks where an element is, or for the shape of an input, which a partial result has not:
-/// the place of the first such expression or iterator. After specialize-gathers.
+/// The source location of the first expression or iterator that asks for an element's index or an input's
+/// shape, which a partial result does not have. After specialize-gathers.
 std::optional<Loc> usesPlace(const Module& module, const Kernel& kernel);
 
-/// A function that reaches itself, if there is one.
+/// A function that calls itself, directly or indirectly, if there is one.
 std::optional<FunctionId> findRecursion(const Module& module);
 
 }  // namespace skc::ir

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The words of print.hpp: operators, roles and types as the .sk file writes them.
+// The spellings that print.hpp declares: operators, roles and types as the .sk file writes them.
 #include <array>
 
 #include "ir/print.hpp"

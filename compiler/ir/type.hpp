@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Types of the IR: values that compare by content. Structs and arrays are entries of the module's
-// tables, and a Type names them by index.
+// IR types, compared by value. Structs and arrays are entries of the module's tables; a Type refers to them
+// by index.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace skc::ir {
 
-/// From Half on, the narrow scalars: types of storage, whose values are a part of their carrier's.
+/// From Half on, the narrow scalars: storage types, whose values are a subset of their arithmetic type's.
 enum class Scalar : std::uint8_t {
   Bool,
   Int,
@@ -33,7 +33,7 @@ enum class Scalar : std::uint8_t {
 constexpr bool isNarrow(Scalar scalar) { return scalar >= Scalar::Half; }
 constexpr bool isReal(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Double; }
 
-/// The scalar that a value of this one is computed in: Int or Float for a narrow one, else itself.
+/// The arithmetic type of a scalar: Int or Float for a narrow one, else the scalar itself.
 constexpr Scalar carrierOf(Scalar scalar) {
   switch (scalar) {
     case Scalar::Bool:
@@ -57,7 +57,7 @@ constexpr Scalar carrierOf(Scalar scalar) {
 struct Type {
   enum class Kind : std::uint8_t { Void, Scalar, Vector, Matrix, Struct, Array };
   Kind kind = Kind::Void;
-  Scalar scalar = Scalar::Float;   ///< Scalar, Vector, and Matrix, where it is Float
+  Scalar scalar = Scalar::Float;   ///< Scalar, Vector and Matrix (always Float)
   std::uint8_t width = 1;          ///< Scalar: 1; Vector: 2 to 4; Matrix: its rows and columns, 2 to 4
   std::uint32_t index = 0;         ///< Struct: into Module::structs; Array: into Module::arrays
 
@@ -76,7 +76,7 @@ struct Type {
   bool isVector() const { return kind == Kind::Vector; }
   bool isMatrix() const { return kind == Kind::Matrix; }
   bool isArithmetic() const { return isScalar() || isVector(); }
-  /// A scalar or vector that + - * / and comparisons take.
+  /// True for a scalar or vector that + - * / and comparisons take.
   bool isNumber() const { return isArithmetic() && scalar >= Scalar::Int && scalar <= Scalar::Double; }
   bool isNarrow() const { return isArithmetic() && ir::isNarrow(scalar); }
   bool isFloat() const { return isArithmetic() && scalar == Scalar::Float; }
@@ -85,13 +85,13 @@ struct Type {
   bool isInteger() const { return isArithmetic() && (scalar == Scalar::Int || scalar == Scalar::Uint); }
   Type withScalar(Scalar s) const { return of(s, width); }
   Type component() const { return of(scalar); }
-  /// Of a vector or a matrix: what an index gives.
+  /// The type of an element of a vector, or a row of a matrix.
   Type indexed() const { return isMatrix() ? of(scalar, width) : of(scalar); }
   Type carrier() const { return isNarrow() ? withScalar(carrierOf(scalar)) : *this; }
   bool operator==(const Type&) const = default;
 };
 
-/// The planes of a double or a vector of them: a texel holds two.
+/// The planes of a double or a vector of doubles; a texel holds two doubles.
 inline std::vector<Type> doublePlanes(Type type) {
   std::vector<Type> planes;
   for (int left = type.width; left > 0; left -= 2)
@@ -108,8 +108,8 @@ struct Struct {
   std::vector<std::string> scope;    ///< enclosing namespaces, outermost first
   std::vector<StructField> fields;
   Loc loc;
-  bool isMade = false;               ///< by a transform: C++ has none
-  std::vector<std::string> aliases = {};  ///< other names of it in its scope, by typedef or using
+  bool isMade = false;               ///< synthesized by a transform: it does not exist in C++
+  std::vector<std::string> aliases = {};  ///< other names for it in its scope, by typedef or using
 };
 struct Array {
   Type element;

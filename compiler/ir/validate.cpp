@@ -14,7 +14,7 @@
 namespace skc::ir {
 namespace {
 
-/// Puts the place in front of a violation that comes out of `check`.
+/// Prefixes a violation that `check` throws with its location.
 template <class Fn>
 void within(const std::string& place, Fn&& check) {
   try {
@@ -122,7 +122,7 @@ class FunctionChecker {
     require(n.value->type.isScalar() && n.value->type.isInteger(), "the value of a switch is no int or uint");
     std::vector<std::int64_t> seen;
     int defaults = 0;
-    const std::vector<bool> outside = visible_;   // the cases of a switch are one scope
+    const std::vector<bool> outside = visible_;   // the cases of a switch share one scope
     ++switches_;
     for (const Case& one : n.cases) {
       defaults += one.isDefault ? 1 : 0;
@@ -215,7 +215,7 @@ void checkParam(const Module& module, Stage stage, const KernelParam& param, con
   if (param.identity) checkConstant(module, stage, *param.identity, param.type);
 }
 
-/// A condition names nothing but Spec parameters, and is of a parameter that can be left out.
+/// A neededIf names only Spec parameters, and belongs to a parameter that can be left out.
 void checkNeed(const Module& module, Stage stage, const Kernel& kernel, const KernelParam& param) {
   if (!param.neededIf) return;
   require(
@@ -288,7 +288,7 @@ void checkPlan(const Module& module, const Kernel& kernel, const Plan& plan) {
   }
 }
 
-/// predicate appends a mask to some functions' parameters.
+/// predicate appends a mask to the parameters of some functions.
 void checkParameterCount(Stage stage, const Function& function, std::size_t expected) {
   const bool isLonger = stage == Stage::Predicated && function.parameterCount == expected + 1;
   require(isLonger || function.parameterCount == expected, "it has too many or too few parameters");
@@ -317,7 +317,7 @@ void checkKernel(const Module& module, Stage stage, const Kernel& kernel) {
 
 // ---- module -----------------------------------------------------------------------------------
 
-/// After specialize-gathers: the kernel of each function, at most one.
+/// After specialize-gathers: the kernel that owns each function, at most one.
 std::vector<const Kernel*> owners(const Module& module) {
   std::vector<const Kernel*> owner(module.functions.size(), nullptr);
   for (const Kernel& kernel : module.kernels) {
@@ -385,7 +385,7 @@ std::string validate(const Module& module, Stage stage) {
     if (stage != Stage::Lowered) owner = owners(module);
     for (std::size_t i = 0; i < module.functions.size(); ++i) {
       const Function& function = module.functions[i];
-      // what folding has cut off may name streams, and nobody knows of which kernel
+      // functions cut off by folding may name streams, but have no kernel to check them against
       if (stage != Stage::Lowered && owner[i] == nullptr) continue;
       within(fmt::format("function @{} '{}'", i, function.name), [&] {
         FunctionChecker(module, stage, function, owner[i]).check();

@@ -11,13 +11,13 @@
 namespace skc::ir {
 
 enum class Stage : std::uint8_t {
-  Lowered,      ///< as the frontend gives it
+  Lowered,      ///< as the frontend produces it
   Specialized,  ///< from specialize-gathers on: streams are parameters of kernels
-  Predicated,  ///< after predicate, too: with masks. That control flow is uniform is for validatePredicated to say
+  Predicated,  ///< after predicate: with masks. validatePredicated checks that control flow is uniform
 };
 
-/// The first violation found, with the way to it: "kernel diffuse: function 2 'diffuse': line 7:
-/// operands of '+' are float and int". Empty if the module is valid.
+/// Returns the first violation with its path: "kernel diffuse: function 2 'diffuse': line 7: operands of '+'
+/// are float and int". Empty if the module is valid.
 std::string validate(const Module& module, Stage stage);
 
 }  // namespace skc::ir

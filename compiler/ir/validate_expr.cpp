@@ -32,7 +32,7 @@ namespace {
 
 bool isIndex(Type type) { return type.isScalar() && type.isInteger(); }
 
-/// Equal types, or a scalar beside a vector of the same component.
+/// True for equal types, and for a scalar with a vector of that component type.
 bool fitTogether(Type lhs, Type rhs) {
   return lhs == rhs || (lhs.isArithmetic() && rhs.isArithmetic() && lhs.scalar == rhs.scalar &&
                         (lhs.isScalar() || rhs.isScalar()));
@@ -46,7 +46,7 @@ class ExprChecker {
     checkType(module_, expr.type);
     require(!expr.type.isVoid(), "an expression has no type");
     const bool isCall = std::holds_alternative<Call>(expr.node);
-    if (!isCall) {   // a call's arguments may be streams
+    if (!isCall) {   // arguments of a call may be streams
       forEachOperand(expr, [&](const ExprPtr& operand) {
         require(operand != nullptr, "an operand is missing");
         check(*operand);
@@ -55,7 +55,7 @@ class ExprChecker {
     match(expr.node, [&](const auto& node) { rule(expr.type, node); });
   }
 
-  /// A stream statement writes an append output of this element type; rank 0 is a variable output.
+  /// Checks that `stream` is an append output with this element type; rank 0 is a variable output.
   void appendOutput(StreamRef stream, Type value, std::uint8_t rank) const {
     checkStream(stream);
     const bool isVariable = stream.space == StreamRef::Space::Variable;
@@ -250,7 +250,7 @@ class ExprChecker {
   const Module& module_;
 };
 
-/// A VarRef of this function's own Gather or Element variable, for a parameter that is a stream.
+/// True for a VarRef of this function's own Gather or Element variable, as a stream parameter needs.
 bool isStreamArgument(const ExprContext& context, const Expr& arg, const Variable& parameter) {
   const auto* ref = std::get_if<VarRef>(&arg.node);
   if (ref == nullptr || ref->var >= context.function->variables.size()) return false;
@@ -262,7 +262,7 @@ bool isStreamArgument(const ExprContext& context, const Expr& arg, const Variabl
 
 namespace {
 
-/// What matrices know, with one on either side.
+/// True if the operator accepts these operands, at least one of which is a matrix.
 bool isMatrixOp(BinaryOp op, Type lhs, Type rhs) {
   const Type scalar = Type::of(Scalar::Float);
   switch (op) {

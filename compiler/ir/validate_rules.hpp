@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Private to validate: the rules of expressions, apart from those of statements and declarations.
+// Private to validate: the rules for expressions, separate from those for statements and declarations.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace skc::ir {
 
-/// Thrown by a rule that does not hold; validate() turns it into its result.
+/// Thrown when a rule is violated; validate() turns it into its result.
 struct Violation {
   std::string text;
 };
@@ -22,18 +22,18 @@ struct ExprContext {
   const Module& module;
   Stage stage;
   const Function* function = nullptr;        ///< null: a constant expression
-  const std::vector<bool>* visible = nullptr; ///< per variable of the function
+  const std::vector<bool>* visible = nullptr; ///< one per variable of the function
   const Kernel* kernel = nullptr;            ///< Specialized: the kernel that owns the function
-  std::size_t constantLimit = 0;             ///< constants below this one may be named
+  std::size_t constantLimit = 0;             ///< only constants below this one may be named
 };
 
 void checkType(const Module& module, Type type);
 void checkExpr(const ExprContext& context, const Expr& expr);
-/// What Push (rank 0) and Scatter write to, and the type of what they write.
+/// Checks the target of a Push (rank 0) or a Scatter, and the type of the value.
 void checkAppendOutput(const ExprContext& context, StreamRef stream, Type value, std::uint8_t rank);
-/// An expression that may be assigned to; returns the variable at its root.
+/// Checks that the expression is an lvalue; returns the variable at its root.
 VarId checkPlace(const ExprContext& context, const Expr& expr);
-/// Arguments against the callee's parameters; InOut ones only where `allowInOut`.
+/// Checks arguments against the callee's parameters; InOut parameters need `allowInOut`.
 void checkArguments(const ExprContext& context, FunctionId callee, const std::vector<ExprPtr>& args,
                     bool allowInOut);
 void checkBinary(BinaryOp op, Type lhs, Type rhs, Type result);

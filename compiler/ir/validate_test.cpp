@@ -15,8 +15,8 @@ namespace {
 
 const Type float2 = Type::of(Scalar::Float, 2);
 
-/// What validate says about a kernel `void k(float a, float x<>, float u[], out float r<>)` with a
-/// local float `t`, a local int `i` and this body.
+/// The result of validate for a kernel `void k(float a, float x<>, float u[], out float r<>)` with a local
+/// float `t`, a local int `i` and this body.
 std::string verdict(const std::function<Block(KernelMaker&)>& body) {
   Module module = testModule();
   KernelMaker k(module, "k");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How large a value is: arrays in structs in arrays multiply.
+// The size of a value: nested arrays multiply.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace skc::ir {
 
-/// The numbers (or bools) that a value of the type holds.
+/// The number of scalars that a value of the type holds.
 std::uint64_t numbersIn(const Module& module, Type type);
 
 }  // namespace skc::ir

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Visits every expression or statement below a node, const or not, so that transforms need not
-// repeat the IR's shape. What a node's operands and blocks are is said in one place, walk.cpp.
+// Visits every expression or statement below a node, const or not, so that transforms need not repeat the
+// IR's structure. Only walk.cpp knows the operands and blocks of each node.
 #pragma once
 
 #include <type_traits>
@@ -11,15 +11,15 @@
 
 namespace skc::ir {
 
-/// `Node`, const where `Root` is.
+/// `Node`, const if `Root` is.
 template <class Root, class Node>
 using Like = std::conditional_t<std::is_const_v<Root>, const Node, Node>;
 
-/// A function of each `Node` below a `Root`.
+/// A callback for each `Node` below a `Root`.
 template <class Root, class Node>
 using Visit = std::type_identity_t<FunctionRef<void(Like<Root, Node>&)>>;
 
-/// Each of these is there for a `T` and for a `const T`.
+/// Each function below takes a `T` or a `const T`.
 template <class Root, class T>
 concept MaybeConst = std::is_same_v<std::remove_const_t<Root>, T>;
 
@@ -27,7 +27,7 @@ concept MaybeConst = std::is_same_v<std::remove_const_t<Root>, T>;
 template <MaybeConst<Expr> E>
 void forEachOperand(E& expr, Visit<E, ExprPtr> fn);
 
-/// fn(slot) for every expression that a statement itself holds (not those of its blocks); none is null.
+/// fn(slot) for every expression in the statement itself, not in its blocks; no slot is null.
 template <MaybeConst<Stmt> S>
 void forEachOperand(S& stmt, Visit<S, ExprPtr> fn);
 
@@ -35,11 +35,11 @@ void forEachOperand(S& stmt, Visit<S, ExprPtr> fn);
 template <MaybeConst<Stmt> S>
 void forEachBlock(S& stmt, Visit<S, Block> fn);
 
-/// fn(stmt) for every statement of a block and its inner blocks, outer ones first.
+/// fn(stmt) for every statement of a block and its inner blocks, outer statements first.
 template <MaybeConst<Block> B>
 void walkStmts(B& block, Visit<B, Stmt> fn);
 
-/// fn(expr) for an expression and all below it, outer ones first.
+/// fn(expr) for an expression and all its subexpressions, outer ones first.
 template <MaybeConst<Expr> E>
 void walkExprs(E& expr, Visit<E, Expr> fn);
 
@@ -47,7 +47,7 @@ void walkExprs(E& expr, Visit<E, Expr> fn);
 template <MaybeConst<Block> B>
 void walkExprs(B& block, Visit<B, Expr> fn);
 
-/// fn(slot) for an expression and all below it, inner ones first; it may put another expression there.
+/// fn(slot) for an expression and all its subexpressions, inner ones first; fn may replace the expression.
 void rewriteExprs(ExprPtr& slot, FunctionRef<void(ExprPtr&)> fn);
 
 /// The same for every expression in a block.
