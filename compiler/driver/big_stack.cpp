@@ -31,7 +31,7 @@ int withBigStack(const std::function<int()>& work) {
   const bool started = pthread_attr_setstacksize(&attributes, stackBytes) == 0 &&
                        pthread_create(&thread, &attributes, runJob, &job) == 0;
   pthread_attr_destroy(&attributes);
-  if (!started) return work();   // no address space to spare: the ordinary stack must do
+  if (!started) return work();   // not enough address space: use the ordinary stack
   pthread_join(thread, nullptr);
   return job.status;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs a function on a thread with a large stack: recursion over the tree of a program that nests
-// deeply then ends in a message rather than a crash.
+// Runs a function on a thread with a large stack, so that recursion over a deeply nested program ends in an
+// error message and not in a crash.
 #pragma once
 
 #include <functional>

@@ -33,11 +33,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is compiled, and who hears of it.
+/// The input of a compilation, and the streams for its output and messages.
 struct Job {
   const Options& options;
   std::string file;
-  const std::string* text = nullptr;   ///< of the file, if it is in memory
+  const std::string* text = nullptr;   ///< the file's text, if it is in memory
   std::ostream& output = std::cout;
   std::ostream& messages = std::cerr;
 };
@@ -71,7 +71,7 @@ TransformOptions transformOptions(const Options& options, std::ostream& output) 
 
 std::string qualifiedName(const ir::Kernel& kernel) { return ir::qualifier(kernel.scope) + kernel.name; }
 
-/// Keeps the kernels that --kernel names, with or without their namespaces.
+/// Keeps only the kernels that --kernel names, with or without their namespaces.
 bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& messages) {
   std::string known;
   for (const ir::Kernel& kernel : module.kernels)
@@ -79,7 +79,7 @@ bool selectKernel(ir::Module& module, const std::string& wanted, std::ostream& m
   const auto isWanted = [&](const ir::Kernel& kernel) {
     return kernel.name == wanted || qualifiedName(kernel) == wanted;
   };
-  std::vector<ir::KernelId> numbers;   // of what is kept; overloads that combine have the same name
+  std::vector<ir::KernelId> numbers;   // old ids of the kept kernels; combining overloads share the name
   ir::KernelId next = 0;
   for (const ir::Kernel& kernel : module.kernels) numbers.push_back(isWanted(kernel) ? next++ : next);
   std::erase_if(module.kernels, [&](const ir::Kernel& kernel) { return !isWanted(kernel); });
@@ -105,7 +105,7 @@ bool writeFile(const fs::path& path, const std::string& text, std::ostream& mess
   return false;
 }
 
-/// Spaces and '$' as make wants them.
+/// Escapes spaces and '$' for make.
 std::string makeEscaped(const std::string& path) {
   std::string text;
   for (const char c : path) {
@@ -128,7 +128,7 @@ std::string nativeText(const Options& options, const ir::Module& module, native:
   return native::compile(module, stubOf(options, module).native, compileLibrary, options.native, output);
 }
 
-/// Of each measured device, else of the profile.
+/// Plans for each measured device; without any, for the profile.
 std::string planListings(const Options& options, const ir::Module& module) {
   if (options.devices.empty()) {
     const sk::assemble::Profile& profile = *sk::assemble::findProfile(options.profile);
@@ -143,14 +143,14 @@ std::string planListings(const Options& options, const ir::Module& module) {
   return text;
 }
 
-/// A file to write, and what is in it.
+/// An output file and its contents.
 struct OutputFile {
   std::string path;
   std::string text;
 };
 
-/// FILE.sk.hpp and FILE.sk.cpp, and for the native target FILE.sk.o, also where no kernel has native code: build rules name
-/// their outputs without having read the file.
+/// FILE.sk.hpp and FILE.sk.cpp, and FILE.sk.o for the native target. The last exists even if no kernel has
+/// native code, because build rules name their outputs without reading the file.
 std::vector<OutputFile> outputsOf(const Options& options, const ir::Module& module) {
   emit::Stub stub = stubOf(options, module);
   const std::string base = (fs::path(options.outputDirectory) / fileName(module)).string();
@@ -168,7 +168,7 @@ bool writeStubs(const Job& job, const ir::Module& module, const frontend::Fronte
   const Options& options = job.options;
   const std::vector<OutputFile> files = outputsOf(options, module);
   std::error_code error;
-  fs::create_directories(options.outputDirectory, error);  // a failure shows when the files are written
+  fs::create_directories(options.outputDirectory, error);  // an error here shows when the files are written
   std::string rule;
   for (const OutputFile& file : files) {
     if (!writeFile(file.path, file.text, job.messages)) return false;
@@ -180,7 +180,7 @@ bool writeStubs(const Job& job, const ir::Module& module, const frontend::Fronte
   return writeFile(options.depfile, rule + "\n", job.messages);
 }
 
-/// predicate is no transform for all targets: the native one runs it on a copy of its own.
+/// Prints the result of predicate, which only the native target runs, on a copy of the module.
 void printPredicated(const Job& job, const ir::Module& module) {
   const std::string& wanted = job.options.printAfter;
   if (wanted != predicateName && (wanted != "all" || !job.options.nativeTarget)) return;
@@ -189,7 +189,7 @@ void printPredicated(const Job& job, const ir::Module& module) {
   job.output << "// after " << predicateName << "\n" << ir::print(copy) << "\n";
 }
 
-/// Everything before the emitters; nothing after errors.
+/// Runs everything before the emitters; returns nullopt after errors.
 std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend) {
   const Options& options = job.options;
   std::optional<ir::Module> module =
@@ -197,7 +197,7 @@ std::optional<ir::Module> translate(const Job& job, frontend::Frontend& frontend
   if (!module || options.emit == Emit::Ast) return module;
   if (!options.kernel.empty() && !selectKernel(*module, options.kernel, job.messages)) return std::nullopt;
   checkLimits(*module, frontend.diagnostics());
-  checkOutputs(*module, frontend.diagnostics());  // on what the user wrote, before anything is rewritten
+  checkOutputs(*module, frontend.diagnostics());  // before any transform: it checks the code as written
   if (!frontend.diagnostics().hasErrors()) {
     runTransforms(*module, frontend.diagnostics(), transformOptions(options, job.output));
   }
@@ -213,7 +213,7 @@ int compile(const Job& job) {
   const Options& options = job.options;
   frontend::Frontend frontend(frontendOptions(job));
   const std::optional<ir::Module> module = translate(job, frontend);
-  if (options.emit == Emit::Ast) frontend.dumpAst(job.output);  // of a program with mistakes, too
+  if (options.emit == Emit::Ast) frontend.dumpAst(job.output);  // even if the program has errors
   if (!module) return 1;
   if (options.emit == Emit::Stubs && job.text == nullptr) return writeStubs(job, *module, frontend) ? 0 : 1;
   job.output << emitText(options, *module);
@@ -236,7 +236,7 @@ std::string emitText(const Options& options, const ir::Module& module) {
     }
     case Emit::Llvm: return nativeText(options, module, native::Output::Llvm);
     case Emit::Assembly: return nativeText(options, module, native::Output::Assembly);
-    case Emit::Ast: break;  // the tree is the frontend's
+    case Emit::Ast: break;  // printed from the frontend's tree, in translate()
   }
   return {};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// One .sk file through all phases, in the order that compile() shows; from a file to files, or in memory, so that
-// one process can compile as many programs as it likes.
+// Compiles one .sk file: compile() shows all phases in order. Works from file to files, or in memory, so that
+// one process can compile any number of programs.
 #pragma once
 
 #include <optional>
@@ -12,27 +12,27 @@
 
 namespace skc::driver {
 
-/// Exit status: 0, or 1 after errors, which are on standard error by then.
+/// Returns the exit status: 0, or 1 after errors, which have been written to standard error.
 int compile(const Options& options, const std::string& file);
 
-/// What a compilation in memory has to say.
+/// The result of a compilation in memory.
 struct Outcome {
-  int status;  ///< as compile() gives it
-  std::string output;  ///< what --emit asks for; of stubs the header, then the source
+  int status;  ///< exit status, as compile() returns it
+  std::string output;  ///< what --emit asks for; for stubs the header, then the source
   std::string messages;
 };
 
-/// Compiles `text` as if it was in `file`, which need not exist; its includes are real files.
+/// Compiles `text` as if it were the contents of `file`, which need not exist; its includes are real files.
 Outcome compileText(const Options& options, const std::string& file, const std::string& text);
 
-/// The same up to the transforms: what the emitters take. No module after errors.
+/// The result of all phases before the emitters. Has no module after errors.
 struct Translation {
   std::optional<ir::Module> module;
   std::string messages;
 };
 Translation translateText(const Options& options, const std::string& file, const std::string& text);
 
-/// What the options ask for of a translated module, without the tree of --emit=ast, which it no longer has.
+/// The output that the options ask for, from a translated module; nothing for --emit=ast, whose tree is gone.
 std::string emitText(const Options& options, const ir::Module& module);
 
 }  // namespace skc::driver

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Compiling in memory: the same as from files, as often as one likes.
+// Promise: compiling in memory gives the same output as compiling files, any number of times.
 #include "driver/compile.hpp"
 
 #include <filesystem>
@@ -55,11 +55,11 @@ TEST_CASE("products and sums are fused in entries of their own alone, and never 
   CHECK(contains(fused, ".run.v3.contracted"));
   CHECK(contains(fused, ".run.v4.contracted"));
   CHECK(contains(fused, "fmul contract"));
-  CHECK_FALSE(contains(fused, ".run.contracted"));  // plain x86-64 has no such operation
+  CHECK_FALSE(contains(fused, ".run.contracted"));  // plain x86-64 has no fused multiply-add
   CHECK_FALSE(contains(codeOf("r = x * 3;"), "contract"));
   CHECK_FALSE(contains(codeOf("r = sin(x);"), "contract"));
   CHECK_FALSE(contains(codeOf("r = length(float2(x, 2)) - 1;"), "contract"));
-  const std::string sine = codeOf("r = 3 * sin(x) + 1;");  // the library computes in doubles
+  const std::string sine = codeOf("r = 3 * sin(x) + 1;");  // the library computes it in double
   CHECK(contains(sine, "fmul contract <8 x float>"));
   CHECK_FALSE(contains(sine, "contract <8 x double>"));
   options.emit = Emit::Assembly;

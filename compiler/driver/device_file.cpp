@@ -15,10 +15,10 @@ namespace skc::driver {
 
 namespace {
 
-/// What every device has on which kernels run (ES 3.0).
+/// What every device that runs kernels guarantees (ES 3.0).
 constexpr ir::Limits least{.drawBuffers = 4, .textureUnits = 16};
 
-/// Throws std::out_of_range.
+/// Throws std::out_of_range if the limit is missing or too small.
 std::uint32_t limitOf(const nlohmann::json& limits, const char* name, std::uint32_t atLeast) {
   const auto limit = limits.at(name).get<std::int64_t>();
   if (limit < atLeast || limit > std::numeric_limits<std::int32_t>::max()) {
@@ -42,7 +42,7 @@ std::vector<MeasuredDevice> readDevices(const std::string& file) {
                          {limitOf(limits, "draw_buffers", least.drawBuffers),
                           limitOf(limits, "texture_units", least.textureUnits)}});
     }
-  } catch (const std::exception& error) {   // of the JSON, or a limit
+  } catch (const std::exception& error) {   // a JSON error, or a limit out of range
     throw std::runtime_error(
         fmt::format("'{}' is not what sk info --json={} writes: {}", file, file, error.what()));
   }

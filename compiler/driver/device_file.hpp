@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Devices as `sk info --json` has measured them: what of them is known to the compiler.
+// Reads devices as measured by `sk info --json`, as far as the compiler needs them.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct MeasuredDevice {
   ir::Limits limits;
 };
 
-/// Those of a file that draw: native ones have no limits. Throws std::runtime_error saying what is wrong with the file.
+/// The devices of a file that draw; native ones have no limits. Throws std::runtime_error for a bad file.
 std::vector<MeasuredDevice> readDevices(const std::string& file);
 
 }  // namespace skc::driver

@@ -25,15 +25,15 @@ namespace {
 
 using sk::assemble::Profile;
 
-/// An input whose texels are not those of the domain.
+/// Access to an input whose texels do not correspond to the domain's.
 sk::assemble::StreamAccess foundByIndex(sk::assemble::Domain domain, bool isPacked) {
   using sk::assemble::Addressing;
   const bool isPlane = domain == sk::assemble::Domain::Plane;
   return {.addressing = isPlane ? Addressing::Plane : Addressing::Linear, .packed = isPacked};
 }
 
-/// The variant of streams that share one shape, as most calls have it, and lie as they are where their
-/// rank lets them. Spec parameters are true or 1. `packed`: scalars lie four to a texel.
+/// The variant for the commonest call: all streams share one shape, and lie in plain layout if their
+/// rank allows. Spec parameters are true or 1. `packed`: four scalars per texel.
 sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel, bool packed = true) {
   sk::assemble::Variant variant;
   variant.domainPacked = packed && sk::assemble::mayWritePacked(kernel);
@@ -69,7 +69,7 @@ sk::assemble::Variant plainVariant(const sk::program::Kernel& kernel, bool packe
   return variant;
 }
 
-/// The steps that bring the list of a scatter output to its place (runtime/src/gl_device/append/scatter_points.cpp).
+/// The point passes that apply a scatter output's list (runtime/src/gl_device/append/scatter_points.cpp).
 std::vector<sk::assemble::PointStep> pointSteps(const sk::program::Parameter& appendOutput) {
   using sk::assemble::PointStep;
   const bool isFloat = appendOutput.element->fields.front().scalar == sk::program::Scalar::Float;
@@ -81,7 +81,7 @@ std::vector<sk::assemble::PointStep> pointSteps(const sk::program::Parameter& ap
           PointStep::JoinHalves};
 }
 
-/// Every program of a kernel with append outputs: what counts, the sums of counts, each list, and its points.
+/// All programs of a kernel with append outputs: counting, the sums of counts, each list, and its points.
 std::string appendListing(const Profile& profile, const sk::program::Kernel& kernel) {
   if (profile.stage == sk::assemble::Stage::Compute) {
     return appendListing(*sk::assemble::findProfile("glsl330"), kernel) +
@@ -125,7 +125,7 @@ std::string appendListing(const Profile& profile, const sk::program::Kernel& ker
   return skc::join(programs, "\n");
 }
 
-/// Adds what the arguments decide: that of streams which lie as they are.
+/// Adds the accesses that depend on the arguments, for streams in plain layout.
 void addPlainAccess(const sk::program::Reduction& reduction, sk::assemble::ReduceVariant& variant) {
   const bool isPartial = sk::assemble::isOfPartials(variant.walk);
   const sk::program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
@@ -140,7 +140,7 @@ void addPlainAccess(const sk::program::Reduction& reduction, sk::assemble::Reduc
   variant.specs = plain.specs;
 }
 
-/// A pass, or the several that write as many planes at a time as the profile guarantees to draw to.
+/// One pass, or several that each write as many planes as the profile guarantees draw buffers.
 std::vector<sk::assemble::ReduceVariant> drawnVariants(const Profile& profile,
                                                        const sk::program::Reduction& reduction,
                                                        const sk::assemble::ReduceVariant& whole) {
@@ -159,14 +159,14 @@ std::vector<sk::assemble::ReduceVariant> drawnVariants(const Profile& profile,
   return parts;
 }
 
-/// Whether all that a fold reads, element by element, lies packed.
+/// True if every stream that a fold reads element by element is packed.
 bool readsScalars(const sk::program::Kernel& fold) {
   return std::ranges::all_of(fold.parameters, [](const sk::program::Parameter& parameter) {
     return parameter.role != sk::program::Role::Input || sk::assemble::mayPack(heldBy(parameter));
   });
 }
 
-/// Every program that folds a 1024 x 1024 stream to a value, once; of one form.
+/// Every program that folds a 1024 x 1024 stream to a value, once, for one variant of the reduce.
 std::string formListing(const Profile& profile, const sk::program::Reduction& reduction) {
   sk::assemble::RegionLayout input;
   input.extent = {1024, 1024, 1, 1};
@@ -195,7 +195,7 @@ std::string formListing(const Profile& profile, const sk::program::Reduction& re
   return text;
 }
 
-/// The plain form, and the one that calls take for sums of floats.
+/// The plain variant, and the one that calls use by default for sums of floats.
 std::string reductionListing(const Profile& profile, const sk::program::Reduction& reduction) {
   const std::string plain = formListing(profile, reduction);
   return reduction.compensated == nullptr
@@ -203,7 +203,7 @@ std::string reductionListing(const Profile& profile, const sk::program::Reductio
              : plain + "\n" + formListing(profile, reduction.compensated->reduction);
 }
 
-/// The programs of the passes that a kernel takes within the profile's limits.
+/// The programs of the passes that a kernel needs within the profile's limits.
 std::string kernelListing(const Profile& profile, const sk::program::Kernel& kernel) {
   const sk::assemble::PassLimits limits{profile.drawBuffers, profile.textureUnits};
   const sk::program::Plan* plan = sk::assemble::planWithin(kernel, limits);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// --emit=glsl: the whole programs as the runtime assembles them, for streams that all lie as 2-D
-// textures of one shape.
+// --emit=glsl: prints whole programs as the runtime assembles them, for streams that are all 2-D textures of
+// one shape.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace skc::driver {
 
-/// `precision`: "half", "extended" or "double" for these forms of the kernels; else those that compute in floats.
+/// `precision`: "half", "extended" or "double" for those variants of the kernels; otherwise float.
 std::string glslListing(const emit::Program& program, std::string_view profile, std::string_view precision);
 
 }  // namespace skc::driver

@@ -11,7 +11,7 @@
 
 namespace skc::driver {
 
-/// A mistake in the library is a bug of ours: the tests compile all of it.
+/// An error in the library is a bug of skc: the tests compile all of it.
 ir::Module compileLibrary(std::string_view file, std::string_view text) {
   std::ostringstream messages;
   frontend::Options options;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The library of native code, compiled by the frontend, which compiler/native must not know.
+// Compiles the library of native code with the frontend, on which compiler/native must not depend.
 #pragma once
 
 #include "native/library/link_library.hpp"
@@ -9,7 +9,7 @@ namespace skc::driver {
 
 /// See native::linkLibrary().
 native::LinkedFunctions linkNativeLibrary(ir::Module& module);
-/// What native::compile() compiles the library with.
+/// The function with which native::compile() compiles the library.
 ir::Module compileLibrary(std::string_view file, std::string_view text);
 
 }  // namespace skc::driver

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a module gets the functions of the intrinsics that its kernels call, and no others; it stays valid.
+// Promises: a module gets the library functions that its kernels call, and no others; it stays valid.
 #include "driver/native_library.hpp"
 
 #include <catch2/catch.hpp>
@@ -44,7 +44,7 @@ TEST_CASE("intrinsics of floats get functions, and what these need") {
   CHECK(module.functions[*angle].parameterCount == 2);
   CHECK(*sine >= functions);
   CHECK_FALSE(linked.find(ir::Intrinsic::Cos, ir::Scalar::Float));
-  CHECK(linked.find(ir::Intrinsic::Sin, ir::Scalar::Double));  // of the form in doubles
+  CHECK(linked.find(ir::Intrinsic::Sin, ir::Scalar::Double));  // called by the variant in double
   INFO(ir::print(module));
   CHECK(ir::validate(module, ir::Stage::Specialized).empty());
 }
@@ -57,7 +57,7 @@ TEST_CASE("a module without such intrinsics stays as it is") {
   CHECK(ir::print(module) == before);
 }
 
-/// A row of ir/intrinsics.def as far as this test reads it.
+/// The columns of ir/intrinsics.def that this test needs.
 struct Row {
   std::string spelling, signatures, library;
   bool isIn(const char* files) const { return library.rfind(files, 0) == 0; }

@@ -39,7 +39,7 @@ std::string transformList() {
   return names + std::string(skc::predicateName);
 }
 
-/// A message for a value that is not allowed, or "".
+/// An error message if the value is not allowed, or "".
 std::string checkEmit(const std::string& value) {
   if (emits.contains(value)) return {};
   return fmt::format("'{}' is none of stubs, glsl, ir, plan, ast, llvm, asm", value);
@@ -62,7 +62,7 @@ std::string checkTransform(const std::string& value) {
   return fmt::format("'{}' is no transform; use all, {}", value, transformList());
 }
 
-/// A message where `skc a/x.sk b/x.sk -o out` would write out/x.sk.hpp twice, or "".
+/// An error message if `skc a/x.sk b/x.sk -o out` would write out/x.sk.hpp twice, or "".
 std::string checkStems(const std::vector<std::string>& files) {
   std::map<std::string, std::string> seen;
   for (const std::string& file : files) {
@@ -75,7 +75,7 @@ std::string checkStems(const std::vector<std::string>& files) {
   return {};
 }
 
-/// What the command line says, before it is checked as a whole.
+/// The command line as parsed, before its options are checked against each other.
 struct Words {
   Options options;
   std::string emit = "stubs", color = "auto";
@@ -173,7 +173,7 @@ void addNativeOptions(CLI::App& app, Words& words) {
       "it link libquadmath");
 }
 
-/// Fills in the options that depend on several words, and returns a message for what does not fit together, or "".
+/// Sets the options that depend on several arguments. Returns an error message if they conflict, or "".
 std::string checkTogether(Words& words) {
   Options& options = words.options;
   options.emit = emits.at(words.emit);
@@ -197,7 +197,7 @@ std::string checkTogether(Words& words) {
   return options.emit == Emit::Stubs ? checkStems(options.files) : "";
 }
 
-/// "; did you mean '--emit'?" for the first option that is none, or "".
+/// "; did you mean '--emit'?" for the first unknown option, or "".
 std::string suggestion(const CLI::App& app) {
   std::vector<std::string> known;
   for (const CLI::Option* option : app.get_options()) {

@@ -19,25 +19,25 @@ struct Options {
   std::vector<std::string> files;
   std::string outputDirectory = ".";
   Emit emit = Emit::Stubs;
-  std::string profile = "glsl330";          ///< of --emit=glsl and plan
+  std::string profile = "glsl330";          ///< for --emit=glsl and plan
   std::vector<MeasuredDevice>
-      devices;      ///< to plan for, beside all profiles; of --emit=plan instead of the profile
-  std::string kernel;                       ///< the only one to emit; empty: all
+      devices;      ///< to plan for, besides all profiles; with --emit=plan, in place of the profile
+  std::string kernel;                       ///< the only kernel to emit; empty: all
   std::vector<std::string> includeDirectories, definitions, warnings;
   std::string depfile;                      ///< empty: none
   std::string printAfter;                   ///< a transform, "all", or empty
-  std::string precision;  ///< of what is printed; of stubs: "single" leaves out all other forms
-  bool fragmentTarget = true, computeTarget = true;  ///< what the stubs' GLSL may run as
-  bool nativeTarget = true;  ///< native code is compiled
-  native::Options native;  ///< for which machine, and how
-  bool quad = false;  ///< it computes in __float128, too
-  bool library = false;  ///< the stubs have a list of their descriptors
+  std::string precision;  ///< of printed programs; for stubs, "single" omits all other variants
+  bool fragmentTarget = true, computeTarget = true;  ///< kinds of GLSL programs that the stubs support
+  bool nativeTarget = true;  ///< compile native code
+  native::Options native;  ///< machine and code generation
+  bool quad = false;  ///< native code also computes in __float128
+  bool library = false;  ///< the stubs list their descriptors
   bool color = false;
-  bool fixIts = false;  ///< print fix-its for tools, too
+  bool fixIts = false;  ///< also print fix-its for tools
 };
 
-/// The options, or the exit status where there is nothing to compile: 0 after --help and --version,
-/// 1 after a mistake, which is on standard error by then.
+/// The options, or the exit status if there is nothing to compile: 0 after --help and --version, 1 after an
+/// error, which has been written to standard error.
 struct CommandLine {
   std::optional<Options> options;
   int status = 0;

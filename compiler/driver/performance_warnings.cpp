@@ -18,7 +18,7 @@ namespace {
 
 using namespace ir;
 
-/// Functions of doubles that no instruction computes.
+/// True for functions of doubles that are not a single instruction.
 bool isLibraryFunction(Intrinsic intrinsic) {
   using enum Intrinsic;
   constexpr Intrinsic all[] = {Sin,   Cos,   Tan,   Asin, Acos, Atan, Atan2, Sinh,  Cosh, Tanh,
@@ -40,7 +40,7 @@ class Advisor {
   }
 
  private:
-  // ---- what a body does -------------------------------------------------------------------------
+  // ---- bodies -------------------------------------------------------------------------------------
 
   void block(const Block& statements) {
     for (const Stmt& stmt : statements) {
@@ -71,7 +71,7 @@ class Advisor {
     }
   }
 
-  /// The reason of the innermost loop that unroll-loops would have liked to unroll; "" where there is none.
+  /// Why unroll-loops could not unroll the innermost candidate loop; "" if there is none.
   std::string whyNotUnrolled() const {
     for (auto loop = loops_.rbegin(); loop != loops_.rend(); ++loop) {
       const auto note = std::ranges::find_if(
@@ -81,14 +81,14 @@ class Advisor {
     return {};
   }
 
-  /// The first of each gather; in a reduce, and at an index that is the same for all elements, it does no harm.
+  /// Reports the first of each gather, except in reduces and at indices that are the same for all elements.
   void gather(const GatherRead& n, Loc loc) {
     if (kernel_->reduction || reads_[n.stream.id] || isSame(*n.index)) return;
     reads_[n.stream.id] = true;
     report(Diag::SlowIndex, loc, {kernel_->params[n.stream.id].name});
   }
 
-  /// Whether an index is made of literals, constants and uniforms.
+  /// True if an index consists of literals, constants and uniforms.
   bool isSame(const Expr& index) const {
     bool is = true;
     walkExprs(index, [&](const Expr& expr) {
@@ -112,7 +112,7 @@ class Advisor {
 
   // ---- outputs ----------------------------------------------------------------------------------
 
-  /// Why outputs that could be packed are not.
+  /// Reports why outputs that could be packed are not.
   void outputs(const sk::program::Kernel& program) {
     const auto mayPack = [](const sk::program::Parameter& parameter) {
       return parameter.role == sk::program::Role::Output && sk::assemble::mayPack(*parameter.element);
@@ -142,7 +142,7 @@ class Advisor {
     }
   }
 
-  /// Instances of a template, and helpers of several kernels, share their places.
+  /// Reports once per location, which instances of a template and helpers of several kernels share.
   void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments) {
     if (reported_.emplace(diag, loc.token).second) diagnostics_.report(diag, loc, arguments);
   }
@@ -150,8 +150,8 @@ class Advisor {
   const Module& module_;
   Diagnostics& diagnostics_;
   const Kernel* kernel_ = nullptr;
-  std::vector<bool> reads_;  ///< gathers of which a computed index is reported
-  std::vector<Loc> loops_;  ///< around the current statement, outer ones first
+  std::vector<bool> reads_;  ///< gathers whose computed index has been reported
+  std::vector<Loc> loops_;  ///< the loops around the current statement, outer ones first
   std::set<std::pair<Diag, std::uint32_t>> reported_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// -Wperformance: says of each kernel what keeps it from full speed, and the way out. It asks for the same facts by which the
-// runtime chooses (program::Parameter, assemble::mayWritePacked) and unroll-loops has decided (Kernel::loops).
+// -Wperformance: reports what slows each kernel down, and how to avoid it. The warnings use the same facts as
+// the runtime's choices (program::Parameter, assemble::mayWritePacked) and as unroll-loops.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@
 
 namespace skc::driver {
 
-/// Whether the options of -W, in their order, ask for these warnings.
+/// True if the options of -W, in order, enable these warnings.
 bool wantsPerformanceWarnings(const std::vector<std::string>& warnings);
 
-/// Reports what slows kernels down. Takes the module that runTransforms leaves.
+/// Reports what slows kernels down. Takes the output of runTransforms.
 void warnOfPerformance(const ir::Module& module, Diagnostics& diagnostics);
 
 }  // namespace skc::driver

@@ -117,7 +117,7 @@ class PlanPrinter {
 
   // ---- reduces ----------------------------------------------------------------------------------
 
-  /// How a stream of 1024 x 1024 elements is folded to a value.
+  /// Prints how a stream of 1024 x 1024 elements is folded to a value.
   void printReduce() {
     sk::assemble::RegionLayout input;
     input.extent = {1024, 1024, 1, 1};

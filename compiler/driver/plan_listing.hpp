@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What --emit=plan prints: for each kernel the passes that it takes within a profile's limits, what each
-// reads and writes, and why values are saved or computed again. Whole programs are glsl_listing's.
+// --emit=plan: prints for each kernel the passes that it needs within a profile's limits, what each pass
+// reads and writes, and why values are saved or recomputed. glsl_listing prints whole programs.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace skc::driver {
 
-/// The module is through all transforms; `name` is that of a profile or of a device, whose limits these are.
+/// The module has passed all transforms; `name` is the profile or device that has these limits.
 std::string planListing(const ir::Module& module, std::string_view name, const ir::Limits& limits);
 
 }  // namespace skc::driver

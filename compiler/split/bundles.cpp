@@ -13,7 +13,7 @@ namespace {
 
 using namespace ir;
 
-/// Vectors of three lie in texels of four. (None of doubles is a plane.)
+/// A vector of three takes a texel of four. (No plane is a vector of doubles.)
 Type texelType(Type plane) { return plane.width == 3 ? Type::of(plane.scalar, 4) : plane; }
 
 struct ReadPlane {
@@ -65,8 +65,8 @@ class Chooser {
     return units;
   }
 
-  /// Takes one more plane of the pass into a bundle: into one that there is, since that frees a unit; else
-  /// into a new one, of the format that most planes have.
+  /// Adds one more plane of the pass to a bundle: to an existing one, since that frees a unit, or else to a
+  /// new one in the format that most planes have.
   void bundleOne(const PassReads& pass) {
     std::vector<ReadPlane> free = planesRead(pass);
     std::erase_if(free, [&](const ReadPlane& plane) { return bundleOf(plane.place) != nullptr; });

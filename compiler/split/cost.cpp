@@ -13,10 +13,10 @@ namespace {
 
 using namespace ir;
 
-/// Rounds of a loop whose number only the data know.
+/// Assumed trip count of a data-dependent loop.
 constexpr double unknownRounds = 16;
 constexpr double intrinsicCost = 4;
-constexpr double doubleCost = 6;   // of an operation: 2 in GLSL's own doubles, 9 to 15 in pairs of floats
+constexpr double doubleCost = 6;   // per operation: 2 in native GLSL doubles, 9 to 15 in pairs of floats
 constexpr double addressCost = 4;
 
 void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
@@ -34,7 +34,7 @@ void collectPlanes(const Module& module, Type type, std::vector<Type>& planes) {
   }
 }
 
-/// What a node costs by itself, without its operands.
+/// The cost of a node itself, without its operands.
 double nodeCost(const Module& module, const Expr& expr, const std::vector<double>& functions) {
   const double width = expr.type.width * (expr.type.isDouble() ? doubleCost : 1);
   return match(
@@ -48,7 +48,7 @@ double nodeCost(const Module& module, const Expr& expr, const std::vector<double
       [&](const GatherRead&) { return addressCost + elementCost(module, expr.type); },
       [&](const NeighborRead&) { return addressCost + elementCost(module, expr.type); },
       [&](const Sample& n) {
-        // every neighbour is read, then each pair of them weighted
+        // reads every neighbour, then computes a weighted mean of each pair
         const double neighbours = 1 << n.position->type.width;
         return neighbours * (addressCost + elementCost(module, expr.type) + 3 * width);
       },

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// What a slice costs an element, as a number to compare alternatives by. The unit is one operation on
-// one component. A component read from memory or written to it counts as much as 32 of them: between
-// what llvmpipe (4 operations a byte) and a GPU (12) give. It is a model: docs/architecture.md,
-// "Kernels in several passes", has its rows.
+// The cost model by which alternative slices are compared, per element. The unit is one operation on one
+// component. Reading or writing a component in memory costs as much as 32 operations: between the figures of
+// llvmpipe (4 operations a byte) and of a GPU (12). docs/architecture.md, "Kernels in several passes",
+// tabulates the model.
 #pragma once
 
 #include <vector>
@@ -13,24 +13,24 @@
 
 namespace skc::split {
 
-/// Of reading, or writing, one component of 4 bytes.
+/// Cost of reading or writing one component of 4 bytes.
 inline constexpr double componentCost = 32;
-/// Of one more pass: its fixed cost, spread over the elements of a stream of some size.
+/// Cost of one more pass: its fixed cost, spread over the elements of a typical stream.
 inline constexpr double passCost = 64;
 
-/// Scalars and vectors that an element consists of: what one texel each holds.
+/// The scalars and vectors that an element consists of; each takes one texel.
 std::vector<ir::Type> planesOf(const ir::Module& module, ir::Type type);
-/// Of reading or writing one of these.
+/// Cost of reading or writing one plane.
 double planeCost(ir::Type plane);
-/// Of reading or writing a whole element.
+/// Cost of reading or writing a whole element.
 double elementCost(const ir::Module& module, ir::Type type);
 
 class CostModel {
  public:
   explicit CostModel(const ir::Module& module);
 
-  /// Of running the statements that a slice of this body keeps: arithmetic and gathers, not what is
-  /// read and written for the parameters.
+  /// Cost of running the statements in a slice of this body: arithmetic and gathers, without the reads and
+  /// writes of parameters.
   double run(const ir::Block& body, const Slice& slice) const;
 
  private:
@@ -39,7 +39,7 @@ class CostModel {
   double expression(const ir::Expr& expr) const;
 
   const ir::Module& module_;
-  std::vector<double> functions_;   ///< of one call
+  std::vector<double> functions_;   ///< cost of one call
 };
 
 }  // namespace skc::split

@@ -11,7 +11,7 @@ using namespace ir;
 
 namespace {
 
-/// The kernel parameter whose stream an expression reads or asks about.
+/// The kernel parameter whose stream an expression reads or queries.
 std::optional<std::uint32_t> streamOf(const Expr& expr) {
   std::optional<StreamRef> stream;
   if (const auto* n = std::get_if<GatherRead>(&expr.node)) stream = n->stream;
@@ -56,7 +56,7 @@ VarSet Demand::params(const Slice& slice) const {
   VarSet params(kernel_.params.size(), false);
   for (std::size_t i = 0; i < params.size(); ++i) {
     const ParamRole role = kernel_.params[i].role;
-    // conditions count the Spec parameters of their kernel
+    // conditions (neededIf) may depend on any Spec parameter
     params[i] = role == ParamRole::Spec || (slice.used[i] && role != ParamRole::Output);
   }
   for (const Stmt* stmt : slice.kept) collect(*stmt, params);

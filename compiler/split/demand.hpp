@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Which parameters of a kernel a slice needs, and how many planes that is.
+// Computes which parameters of a kernel a slice needs, and how many planes these have.
 #pragma once
 
 #include <vector>
@@ -12,10 +12,10 @@ namespace skc::split {
 
 class Demand {
  public:
-  /// The kernel is after specialize-gathers: its functions name its parameters.
+  /// The kernel must have passed specialize-gathers, so that its functions name its parameters.
   Demand(const ir::Module& module, const ir::Kernel& kernel);
 
-  /// Every parameter that the slice mentions as a value or as a stream, but for outputs.
+  /// Every parameter except outputs that the slice uses as a value or as a stream.
   VarSet params(const Slice& slice) const;
 
  private:
@@ -24,13 +24,13 @@ class Demand {
 
   const ir::Module& module_;
   const ir::Kernel& kernel_;
-  std::vector<VarSet> functions_;   ///< streams that a call of the function reads; empty until known
+  std::vector<VarSet> functions_;   ///< streams that a call of the function reads; empty until computed
 };
 
-/// Planes that a kernel writes and reads when it runs as one pass.
+/// The planes that a kernel writes and reads as a single pass.
 ir::Limits demandOf(const ir::Module& module, const ir::Kernel& kernel);
 
-/// Whether a parameter is bound to texture units.
+/// True if a parameter is bound to texture units.
 bool isRead(const ir::KernelParam& param);
 
 }  // namespace skc::split

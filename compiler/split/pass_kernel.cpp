@@ -115,7 +115,7 @@ class Maker {
 
   // ---- body -------------------------------------------------------------------------------------
 
-  /// Outputs that the pass computes without writing them are locals of it.
+  /// Declares locals for outputs that the pass computes but does not write.
   void addLocals() {
     for (VarId var = 0; var < newVars_.size(); ++var) {
       if (newVars_[var] != none || !pass_.slice.used[var]) continue;
@@ -128,14 +128,14 @@ class Maker {
     }
   }
 
-  /// Still with the variables of the whole kernel.
+  /// The sliced body, still in terms of the whole kernel's variables.
   Block body() {
     Block made = std::move(declarations_);
     for (Stmt& stmt : slicer_.copy(pass_.slice)) {
       auto* n = std::get_if<Declare>(&stmt.node);
       if (n == nullptr || newVars_[n->var] >= entry_.parameterCount) {
         made.push_back(std::move(stmt));
-      } else if (n->init) {   // a temporary that is written here is declared already
+      } else if (n->init) {   // temporaries written by this pass are outputs, declared already
         made.push_back(assign(varRef(source(), n->var, stmt.loc), std::move(n->init), stmt.loc));
       }
     }
@@ -160,7 +160,7 @@ class Maker {
 
   // ---- functions and streams --------------------------------------------------------------------
 
-  /// Leads the streams of a block to the parameters of the pass, and its calls to copies.
+  /// Redirects the streams of a block to the pass's parameters, and its calls to copies of the functions.
   void bind(Block& block) {
     walkExprs(block, [&](Expr& expr) {
       if (auto* n = std::get_if<GatherRead>(&expr.node)) bind(n->stream);
@@ -198,8 +198,8 @@ class Maker {
   Kernel kernel_;
   Function entry_;
   std::vector<PassOperand> operands_;
-  std::vector<std::uint32_t> newParams_;   ///< of the whole kernel's parameters
-  std::vector<VarId> newVars_;             ///< of its entry's variables
+  std::vector<std::uint32_t> newParams_;   ///< new index of each parameter of the whole kernel
+  std::vector<VarId> newVars_;             ///< new id of each variable of its entry
   Block declarations_;
   std::map<FunctionId, FunctionId> copies_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Makes the kernel of one planned pass: the slice as an entry of its own, with what it loads as
-// inputs and what it saves as outputs, and copies of the functions that it calls.
+// Builds the kernel of one planned pass: the slice becomes its entry, loaded values its inputs, saved values
+// its outputs, and the functions that it calls are copied.
 #pragma once
 
 #include "ir/ir.hpp"
@@ -9,7 +9,7 @@
 
 namespace skc::split {
 
-/// Adds the kernel and its functions to the module. Temporaries are numbered as `plan.saved` is.
+/// Adds the kernel and its functions to the module. Temporaries are numbered as in `plan.saved`.
 ir::Pass makePassKernel(ir::Module& module, ir::KernelId whole, const PlannedSplit& plan,
                         const PlannedPass& pass);
 

@@ -15,7 +15,7 @@ namespace {
 
 using namespace ir;
 
-/// Values that are looked at for saving: those that cost most.
+/// Number of values considered for saving: the most expensive ones.
 constexpr std::size_t mostCandidates = 24;
 
 class Planner {
@@ -44,13 +44,13 @@ class Planner {
   }
 
  private:
-  using TargetId = std::size_t;               ///< into targets_
+  using TargetId = std::size_t;               ///< index into targets_
   using Targets = std::vector<TargetId>;
-  using Passes = std::vector<const PlannedPass*>;   ///< of known_
+  using Passes = std::vector<const PlannedPass*>;   ///< point into known_
 
-  // ---- what may be written ----------------------------------------------------------------------
+  // ---- targets ------------------------------------------------------------------------------------
 
-  /// An output is a target; one with more planes than a pass can write is several.
+  /// Each output is a target; an output with more planes than a pass can write is several.
   void addOutputs() {
     for (VarId var = 0; var < kernel_.params.size(); ++var) {
       if (kernel_.params[var].role != ParamRole::Output) continue;
@@ -62,8 +62,7 @@ class Planner {
     }
   }
 
-  /// Scalars and vectors declared by the body's own statements, if loading one is cheaper than
-  /// computing it.
+  /// Adds the scalars and vectors that the body itself declares and that cost more to compute than to load.
   void addCandidates() {
     std::vector<std::pair<double, VarId>> found;
     for (const Stmt& stmt : entry_.body) {
@@ -89,9 +88,9 @@ class Planner {
     return costs_.run(entry_.body, slice) + inputCost(slice);
   }
 
-  // ---- saving or computing again ----------------------------------------------------------------
+  // ---- saving or recomputing ----------------------------------------------------------------------
 
-  /// The value whose saving makes the plan cheapest, if that is cheaper than `limit`.
+  /// The value that makes the plan cheapest if saved; nullopt if no plan costs less than `limit`.
   std::optional<TargetId> bestAddition(const Targets& saved, double limit) {
     std::optional<TargetId> best;
     for (TargetId candidate : candidates_) {
@@ -112,10 +111,10 @@ class Planner {
     return cost;
   }
 
-  // ---- grouping targets to passes ---------------------------------------------------------------
+  // ---- grouping targets into passes ---------------------------------------------------------------
 
-  /// Targets in the order in which they are final, so that what a pass loads is computed before it.
-  /// Each pass begins with the first that is left and takes those in with which it saves most.
+  /// Takes targets in the order in which they are final, so that a pass loads only what was computed before
+  /// it. Each pass begins with the first target left and adds those with which it saves most.
   Passes passesFor(const Targets& saved) {
     Targets open = outputs_;
     open.insert(open.end(), saved.begin(), saved.end());
@@ -168,10 +167,10 @@ class Planner {
     return true;
   }
 
-  /// The pass that writes these targets, made once.
+  /// The pass that writes these targets, from a cache.
   const PlannedPass& passOf(Targets group, VarSet offered) {
     std::ranges::sort(group);
-    for (TargetId id : group) offered[targets_[id].var] = false;   // computed here
+    for (TargetId id : group) offered[targets_[id].var] = false;  // the pass computes it
     const auto [entry, isNew] = known_.try_emplace({group, offered});
     if (isNew) entry->second = makePass(group, offered);
     return entry->second;
@@ -192,7 +191,7 @@ class Planner {
 
   // ---- costs ------------------------------------------------------------------------------------
 
-  /// Of what is read once: elements of inputs, and temporaries.
+  /// Cost of reading the elements of inputs and the temporaries, each once.
   double inputCost(const Slice& slice) const {
     double cost = 0;
     const VarSet params = demand_.params(slice);
@@ -220,8 +219,8 @@ class Planner {
     return cost;
   }
 
-  /// Of copying planes together where a pass reads more than it has texture units for. A pass that
-  /// loads so many temporaries that nothing helps is out of the question.
+  /// Cost of copying planes to bundles if a pass reads more planes than it has texture units; infinite if the
+  /// pass loads so many temporaries that bundles do not help.
   double unitCost(const Slice& slice) const {
     const auto temporaries = static_cast<std::uint32_t>(std::ranges::count(slice.loaded, true));
     const VarSet params = demand_.params(slice);

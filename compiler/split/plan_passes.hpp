@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Which passes a kernel takes under given limits: which outputs are written together, which values
-// are saved for later passes and which are computed again wherever they are needed, and which
-// inputs share a texture. What each pass does is a slice (slice.hpp) of the kernel.
+// Plans the passes of a kernel under given limits: which outputs are written together, which values are saved
+// for later passes and which are recomputed wherever they are needed, and which inputs share a texture. What
+// each pass does is a slice (slice.hpp) of the kernel.
 //
-// The method is in the spirit of the recursive dominator split (Chan et al., Graphics Hardware 2002), which
-// decides value by value between saving and computing again, with the merging of several outputs
-// into a pass by their cost (Foley, Houston, Hanrahan, Graphics Hardware 2004; Riffel et al., ibid.):
-// those work on trees and graphs without control flow, this on slices, which have it.
+// The method follows the recursive dominator split (Chan et al., Graphics Hardware 2002), which decides value
+// by value between saving and recomputing, combined with merging outputs into passes by their cost (Foley,
+// Houston, Hanrahan, Graphics Hardware 2004; Riffel et al., ibid.). Those work on trees and graphs without
+// control flow; this works on slices, which have it.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@
 
 namespace skc::split {
 
-/// What a pass writes: planes of an output, or a temporary.
+/// Something that a pass writes: planes of an output, or a temporary.
 struct Target {
-  ir::VarId var;                 ///< of the entry
+  ir::VarId var;  ///< a variable of the entry
   bool isOutput;
   std::uint32_t firstPlane;
   std::uint32_t planeCount;
@@ -28,20 +28,20 @@ struct Target {
 
 struct PlannedPass {
   std::vector<Target> targets;
-  Slice slice;                   ///< Slice::loaded are temporaries
+  Slice slice;  ///< its Slice::loaded are the temporaries that it reads
   double cost = 0;
 };
 
 struct PlannedSplit {
-  std::vector<ir::VarId> saved;          ///< the temporaries, in the order in which they are final
-  std::vector<double> computeCosts;      ///< one a temporary
+  std::vector<ir::VarId> saved;  ///< temporaries, in the order in which they are final
+  std::vector<double> computeCosts;  ///< one per temporary
   std::vector<PlannedPass> passes;
   std::vector<ir::Bundle> bundles;
   double cost = 0;
   double costWithoutTemporaries = 0;
 };
 
-/// The kernel is after specialize-gathers, and neither a reduce nor a pass.
+/// The kernel must have passed specialize-gathers, and be neither a reduce nor a pass.
 PlannedSplit planPasses(const ir::Module& module, const ir::Kernel& kernel, const ir::Limits& limits);
 
 }  // namespace skc::split

@@ -13,7 +13,7 @@ namespace {
 
 using namespace ir;
 
-/// fn(var) for each variable that a call writes through its InOut parameters and its result.
+/// fn(var) for each variable that a call writes through InOut parameters or its result.
 template <class Fn>
 void forEachWritten(const Module& module, const CallStmt& call, Fn&& fn) {
   const Function& callee = module.functions[call.callee];
@@ -23,7 +23,7 @@ void forEachWritten(const Module& module, const CallStmt& call, Fn&& fn) {
   if (call.result) fn(rootOf(*call.result));
 }
 
-/// Marks statements until no more are needed.
+/// Marks the statements that a slice needs, up to a fixed point.
 class Marker {
  public:
   Marker(const Module& module, const Function& function, const Slicer& slicer, const VarSet& wanted,
@@ -37,7 +37,7 @@ class Marker {
     end_ = std::min(end_, function.body.size());
   }
 
-  /// The slice, or in `early` a variable that it would have to load before that is final.
+  /// Returns the slice, or sets `early` to a variable that it would have to load before that is final.
   Slice run(std::optional<VarId>& early) {
     do {
       changed_ = false;
@@ -48,7 +48,7 @@ class Marker {
   }
 
  private:
-  /// Whether a `break` or `continue` leaves something that is needed.
+  /// Whether a `break` or a `continue` at this point leaves a statement that is needed.
   struct Jumps {
     bool breaks = false, continues = false;
   };
@@ -129,9 +129,9 @@ class Marker {
   }
   bool step(const Break&, Jumps jumps) { return jumps.breaks; }
   bool step(const Continue&, Jumps jumps) { return jumps.continues; }
-  bool step(const Return&, Jumps) { return true; }   // what follows must not run
+  bool step(const Return&, Jumps) { return true; }   // kept, so that nothing after it runs
   bool step(const Scope& n, Jumps jumps) { return visit(n.body, jumps); }
-  bool step(const Push& n, Jumps) {   // an effect that no variable tells of
+  bool step(const Push& n, Jumps) {   // kept, since it has a side effect
     read(*n.value);
     return true;
   }
@@ -146,7 +146,7 @@ class Marker {
   const Slicer& slicer_;
   const VarSet& loadable_;
   Slice slice_;
-  std::size_t end_ = 0;   ///< what stands after the last write of the wanted is of no use
+  std::size_t end_ = 0;   ///< statements after the last write of a wanted variable are dropped
   std::size_t top_ = 0;
   bool changed_ = false;
   std::optional<VarId> early_;

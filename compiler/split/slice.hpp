@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// Program slicing (Weiser 1981) on structured statements: what of a kernel's entry is needed to
-// compute some of its variables. Of
+// Program slicing (Weiser 1981) on structured statements: the part of a kernel's entry that computes some of
+// its variables. Of
 //
 //   float s = f(x), t = g(x);
 //   for (int i = 0; i < 4; ++i) { s += a[i]; t *= b[i]; }
 //   r = s; q = t;
 //
-// the slice for q is `float t = g(x); for (...) { t *= b[i]; } q = t;`. Variables may be given
-// instead of computed ("loaded"); what only they needed is then no part of the slice. It asks which
-// variables a statement writes, not which of their components, and errs on the side of keeping.
+// the slice for q is `float t = g(x); for (...) { t *= b[i]; } q = t;`. A variable may be loaded instead of
+// computed; statements that only it needed then drop out. The slicer tracks whole variables, not components,
+// and keeps a statement when in doubt.
 #pragma once
 
 #include <cstddef>
@@ -20,27 +20,27 @@
 
 namespace skc::split {
 
-/// A set of variables of one function, by VarId.
+/// A set of a function's variables, indexed by VarId.
 using VarSet = std::vector<bool>;
 
 struct Slice {
-  std::unordered_set<const ir::Stmt*> kept;   ///< statements, those inside others apart from these
-  VarSet used;                                ///< variables that it mentions, loaded ones among them
-  VarSet loaded;                              ///< of those that were offered, the ones that it reads
+  std::unordered_set<const ir::Stmt*> kept;   ///< statements; one inside another is listed by itself
+  VarSet used;                                ///< variables that kept statements use, also loaded ones
+  VarSet loaded;                              ///< offered variables that it reads, not computes
 };
 
 class Slicer {
  public:
   Slicer(const ir::Module& module, const ir::Function& function);
 
-  /// What computes the final values of `wanted`. Of `loadable`, whose final values are at hand, those
-  /// are loaded that the slice reads nowhere before they are final.
+  /// The statements that compute the final values of `wanted`. `loadable` variables, whose final values are
+  /// available, are loaded unless the slice reads them before they are final.
   Slice slice(const VarSet& wanted, VarSet loadable) const;
 
-  /// Number of the last statement of the body that writes a variable: it is final after that.
+  /// Index of the last statement of the body that writes a variable, which is final after it.
   std::size_t lastWrite(ir::VarId var) const { return lastWrites_[var]; }
 
-  /// The statements of the body that are kept, as a body of their own.
+  /// Copies the kept statements of the body.
   ir::Block copy(const Slice& slice) const;
 
  private:

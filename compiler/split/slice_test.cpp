@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a slice keeps what its variables need, with the control flow around it, and nothing else;
-// a loaded variable takes what computes it away, unless somebody reads it before it is final.
+// Promises: a slice keeps what its variables need, with the control flow around it, and nothing else; a
+// loaded variable removes the statements that compute it, unless something reads it before it is final.
 #include "split/slice.hpp"
 
 #include <catch2/catch.hpp>
@@ -15,7 +15,7 @@ namespace {
 using namespace ir;
 using enum BinaryOp;
 
-/// float s, t; two outputs a and b, an input x, an int n; and a body to slice.
+/// A body to slice, with float s and t, outputs a and b, an input x and an int n.
 struct Sample {
   Module module = testModule();
   KernelMaker k{module, "sample"};
@@ -33,7 +33,7 @@ struct Sample {
 
   void finish(Block body) { k.finish(std::move(body)); }
 
-  /// The text of the slice for some variables.
+  /// Prints the slice for some variables.
   std::string slice(std::initializer_list<VarId> wanted, std::initializer_list<VarId> loadable = {}) const {
     const Function& entry = module.functions[0];
     const auto set = [&](std::initializer_list<VarId> list) {
@@ -75,7 +75,7 @@ TEST_CASE("branches, jumps and returns go along") {
       "{\n  float s = 0.0;\n  if (x > 0.0) {\n    a = 0.0;\n    return;\n  }\n"
       "  for (int i = 0; i < n; i += 1) {\n    s += x;\n    if (s > 0.0) {\n      break;\n    }\n    a = x;\n"
       "  }\n}\n");
-  // what follows the last write is of no use, a return before it is
+  // a return before the last write matters, statements after it do not
   CHECK(q.slice({q.s}).find("return") != std::string::npos);
   CHECK(q.slice({q.s}).find("b = s") == std::string::npos);
 }
@@ -103,7 +103,7 @@ TEST_CASE("a call is kept for any of the variables that it writes") {
   q.finish(std::move(calls));
   addFunction(q.module, std::move(both), std::move(body));
   CHECK(q.slice({q.a}) == "{\n  float s;\n  float t;\n  both(s, t);\n  a = s;\n}\n");
-  // t may be loaded only where the call that writes it is not needed
+  // t may be loaded only if the call that writes it is not needed
   CHECK(q.slice({q.a}, {t}).find("both(s, t)") != std::string::npos);
   CHECK(q.slice({q.b}, {t}) == "{\n  b = t;\n}\n");
 }

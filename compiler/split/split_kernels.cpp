@@ -13,14 +13,14 @@ namespace {
 
 using namespace ir;
 
-/// Pushes and scatters take passes of their own (runtime), to which plans do not extend.
+/// Pushes and scatters have passes of their own in the runtime, which plans do not cover.
 bool hasAppendOutputs(const Kernel& kernel) {
   return std::ranges::any_of(kernel.params, [](const KernelParam& param) {
     return param.role == ParamRole::VariableOutput || param.role == ParamRole::Scatter;
   });
 }
 
-/// Planes that the pass with most of them writes.
+/// The largest number of planes that any pass writes.
 std::uint32_t widestOf(const std::vector<PlannedPass>& passes) {
   std::uint32_t widest = 0;
   for (const PlannedPass& pass : passes) {
@@ -65,7 +65,7 @@ void splitKernels(Module& module, std::span<const Limits> limits) {
   std::vector<Limits> generousFirst(limits.begin(), limits.end());
   std::ranges::sort(generousFirst, std::greater(),
                     [](const Limits& one) { return std::pair(one.drawBuffers, one.textureUnits); });
-  const std::size_t count = module.kernels.size();   // passes are added behind
+  const std::size_t count = module.kernels.size();   // passes are appended while the loop runs
   for (KernelId id = 0; id < count; ++id) {
     const Kernel& kernel = module.kernels[id];
     if (kernel.reduction || kernel.isNativeOnly || hasAppendOutputs(kernel)) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the passes of a plan keep to the limits and write every output once; what is costly and
-// needed twice is saved, what is cheap is computed again; planes are bundled where units are short.
+// Promises: the passes of a plan keep to the limits and write every output once; expensive values needed
+// twice are saved, cheap ones recomputed; planes are bundled if texture units run out.
 #include "split/split_kernels.hpp"
 
 #include <catch2/catch.hpp>
@@ -43,7 +43,7 @@ void split(Module& module) {
   REQUIRE(validate(module, Stage::Specialized).empty());
 }
 
-/// How often the passes write each argument of the whole kernel.
+/// The number of times that the passes write each argument of the whole kernel.
 std::vector<int> writes(const Module& module, const Plan& plan) {
   std::vector<int> count(module.kernels[0].params.size(), 0);
   for (const Pass& pass : plan.passes) {
@@ -75,7 +75,7 @@ TEST_CASE("what is costly is saved") {
   CHECK(plan.passes.size() == 2);
   CHECK(plan.cost < plan.costWithoutTemporaries);
   CHECK(writes(module, plan) == std::vector<int>{0, 1, 1, 1, 1, 1, 1});
-  // the pass that loads it does not compute it
+  // the pass that loads it must not compute it
   const Kernel& last = module.kernels[plan.passes[1].kernel];
   CHECK(module.functions[last.entry].body.size() == 3);
 }
@@ -128,7 +128,7 @@ TEST_CASE("planes share a unit where no division helps") {
   CHECK(plan.passes.size() == 1);
   REQUIRE(plan.bundles.size() == 1);
   CHECK(plan.bundles[0].type == floatType);
-  CHECK(plan.bundles[0].layers.size() == 5);   // 20 planes, of which 5 take one unit
+  CHECK(plan.bundles[0].layers.size() == 5);   // 20 planes, 5 of which share one unit
 }
 
 }  // namespace
