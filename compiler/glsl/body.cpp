@@ -18,7 +18,7 @@ namespace {
 
 using namespace ir;
 
-/// Structs and constants that some functions or expressions use.
+/// The structs and constants that functions and expressions use.
 class Used {
  public:
   explicit Used(const Module& module)
@@ -33,7 +33,7 @@ class Used {
     if (expr) walkExprs(*expr, [&](const Expr& inner) { markOne(inner); });
   }
 
-  /// Whether another uses nothing that this does not.
+  /// True if this includes everything that `other` uses.
   bool includes(const Used& other) const {
     return isWithin(other.structs_, structs_) && isWithin(other.constants_, constants_);
   }
@@ -78,7 +78,7 @@ std::string structText(const GlslContext& context, std::uint32_t index) {
   return text + "};\n\n";
 }
 
-/// Structs, those that others contain first.
+/// Adds a struct after the structs that it contains.
 void addStructs(const GlslContext& context, const Used& used, std::uint32_t index, std::vector<bool>& done,
                 std::string& text) {
   if (done[index] || !used.hasStruct(index)) return;
@@ -98,7 +98,7 @@ std::string structsText(const GlslContext& context, const Used& used) {
   return text;
 }
 
-/// All that a kernel uses.
+/// Everything that a kernel uses.
 Used usedBy(const GlslContext& context) {
   Used used(context.module);
   for (const KernelParam& param : context.kernel.params) {
@@ -110,7 +110,7 @@ Used usedBy(const GlslContext& context) {
   return used;
 }
 
-/// Whether a program's intrinsics are among those that another one has.
+/// True if `program` has all intrinsics that `others` needs from the assembler.
 bool hasIntrinsics(const Polyfills& program, const Polyfills& others) {
   return std::ranges::all_of(others.intrinsics(), [&](const sk::program::IntrinsicUse& wanted) {
     return std::ranges::any_of(program.intrinsics(), [&](const sk::program::IntrinsicUse& use) {
@@ -136,7 +136,7 @@ GlslBody glslBody(const GlslContext& context) {
   for (const KernelParam& param : context.kernel.params) {
     for (const ExprPtr* expr : {&param.border, &param.identity}) {
       byParams.mark(*expr);
-      if (*expr) glslExpr(context, std::nullopt, **expr);   // for the polyfills that it asks for
+      if (*expr) glslExpr(context, std::nullopt, **expr);   // collects the polyfills that it needs
     }
   }
   const std::string paramConstants =
@@ -154,7 +154,7 @@ GlslBody glslBody(const GlslContext& context) {
   const std::string constants = constantsText(
       context, [&](ConstantId id) { return used.hasConstant(id) && !byParams.hasConstant(id); });
 
-  // put together at the end, because only printing finds out which polyfills are needed
+  // assembled last, because only printing finds out which polyfills are needed
   GlslBody text{structsText(context, used), ""};
   const std::vector<std::string>& polyfills = context.polyfills.functions();
   for (std::size_t i = 0; i < polyfills.size(); ++i) {

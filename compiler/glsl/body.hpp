@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The GLSL text of one kernel (program::Kernel::declarations and body): structs, constants, polyfills
-// and functions in the subset that GLSL 3.30 and ESSL 3.00 share. Streams are reached through
-// functions that the assembler writes between the two; neither they nor main() are made here.
+// Prints the GLSL of one kernel (program::Kernel::declarations and body): structs, constants, polyfills and
+// functions in the common subset of GLSL 3.30 and ESSL 3.00. Streams are accessed through functions that the
+// assembler writes between the two; this code writes neither them nor main().
 #pragma once
 
 #include <optional>
@@ -13,14 +13,14 @@
 namespace skc::emit {
 
 struct GlslBody {
-  std::string declarations;   ///< structs, and the constants that borders and identities name
+  std::string declarations;   ///< structs, and constants that borders and identities use
   std::string body;
 };
 
 GlslBody glslBody(const GlslContext& context);
 
-/// What a program that holds the body of `first` has to add in order to run `second`, whose bodies glslBody() has made; nothing
-/// where that takes more than functions, or two would have one name.
+/// What a program that contains the body of `first` must add in order to run `second`; both bodies come from
+/// glslBody(). Returns nullopt if that takes more than functions, or if two functions would share a name.
 std::optional<std::string> glslAddition(const GlslContext& first, const GlslContext& second);
 
 }  // namespace skc::emit

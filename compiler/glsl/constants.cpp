@@ -15,7 +15,7 @@ namespace {
 
 using namespace ir;
 
-/// True if the node itself is printed as a call of a function.
+/// True if the node itself prints as a function call.
 bool isCall(const Module& module, const Expr& expr, const std::vector<bool>& isFunction) {
   if (expr.type.isDouble()) return true;
   if (const auto* n = std::get_if<Literal>(&expr.node)) {
@@ -40,7 +40,7 @@ bool isCall(const Module& module, const Expr& expr, const std::vector<bool>& isF
 
 std::vector<bool> functionConstants(const Module& module) {
   std::vector<bool> isFunction(module.constants.size(), false);
-  for (ConstantId id = 0; id < isFunction.size(); ++id) {   // a constant names only earlier ones
+  for (ConstantId id = 0; id < isFunction.size(); ++id) {   // a constant refers only to earlier ones
     walkExprs(static_cast<const Expr&>(*module.constants[id].value), [&](const Expr& expr) {
       if (isCall(module, expr, isFunction)) isFunction[id] = true;
     });

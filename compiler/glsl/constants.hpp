@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Named constants in GLSL. Compilers differ in which functions they fold (glslang not even
-// uintBitsToFloat, which infinities need), so a constant is `const` only where it takes none, and
-// otherwise a function without parameters: its name stays, and every compiler takes it.
+// Named constants in GLSL. Compilers differ in which functions they fold (glslang does not even fold
+// uintBitsToFloat, which infinities need). A constant is therefore `const` only if it calls no function, and
+// otherwise a function without parameters, which keeps its name and compiles everywhere.
 #pragma once
 
 #include <vector>
@@ -12,10 +12,10 @@
 
 namespace skc::emit {
 
-/// For each constant of the module: whether it has to be a function.
+/// For each constant of the module, whether it must be a function.
 std::vector<bool> functionConstants(const ir::Module& module);
 
-/// "const float pi = 3.1415927;" or "float none() { return uintBitsToFloat(0xff800000u); }", and a newline.
+/// "const float pi = 3.1415927;" or "float none() { return uintBitsToFloat(0xff800000u); }", with a newline.
 std::string constantText(const GlslContext& context, ir::ConstantId id);
 
 }  // namespace skc::emit

@@ -36,7 +36,7 @@ std::string parameterList(const std::vector<Type>& types) {
   return join(list, ", ");
 }
 
-/// Defines `function` on vectors by itself on their components.
+/// Defines `function` for vectors by calls for each component.
 void defineByComponent(Polyfills& polyfills, std::string_view function, Type result,
                        const std::vector<Type>& types) {
   const auto widest = std::ranges::max_element(types, {}, [](Type type) { return type.width; });
@@ -55,7 +55,7 @@ void defineByComponent(Polyfills& polyfills, std::string_view function, Type res
                 "\n");
 }
 
-/// Defines the function of a row on the components of these arguments.
+/// Defines a row's function for the component types of these arguments.
 void defineScalar(Polyfills& polyfills, std::string_view function, std::string_view body, Type result,
                   const std::vector<Type>& types) {
   if (body.empty()) return;
@@ -101,7 +101,7 @@ Intrinsic comparison(BinaryOp op) {
   return Intrinsic::EqualTo;
 }
 
-/// The function of an operator that has one type throughout; empty for comparisons.
+/// The function for an operator whose operands and result have one type; empty for comparisons.
 std::string_view arithmetic(BinaryOp op) {
   switch (op) {
     case BinaryOp::Add: return "sk_add";
@@ -126,7 +126,7 @@ std::string_view arithmetic(BinaryOp op) {
   return {};
 }
 
-/// An intrinsic of the table.
+/// Calls an intrinsic of double_functions.def.
 std::string byComponent(Polyfills& polyfills, Intrinsic intrinsic, const std::vector<Type>& types,
                         const Texts& texts) {
   const auto found = std::ranges::find(rows, intrinsic, &Row::intrinsic);
@@ -134,14 +134,14 @@ std::string byComponent(Polyfills& polyfills, Intrinsic intrinsic, const std::ve
   std::vector<Type> components;
   for (const Type type : types) components.push_back(type.component());
   const bool isVector = std::ranges::any_of(types, [](Type type) { return type.isVector(); });
-  // comparisons have no overload of one component among the intrinsics, but are bool like the others
+  // comparisons of scalars are no overload of the intrinsics; their result is bool
   const Type result = resultType(intrinsic, types).value_or(Type::of(Scalar::Bool));
   defineScalar(polyfills, found->function, found->body, result, types);
   if (isVector) defineByComponent(polyfills, found->function, result, types);
   return call(found->function, texts);
 }
 
-/// The sum of the products of the components.
+/// The dot product.
 std::string dot(Polyfills& polyfills, Type type) {
   std::string sum = "sk_mul(a.x, b.x)";
   for (std::size_t c = 1; c < type.width; ++c)
@@ -196,7 +196,7 @@ std::string faceforward(Polyfills& polyfills, Type type) {
   return "sk_faceforward";
 }
 
-/// What both directions of a ray are made of.
+/// Defines the functions that reflect and refract share.
 void defineForRays(Polyfills& polyfills, Type type) {
   dot(polyfills, type);
   defineByComponent(polyfills, "sk_sub", type, {type, type});
@@ -226,7 +226,7 @@ std::string refract(Polyfills& polyfills, Type type) {
   return "sk_refract";
 }
 
-/// What the assembler defines for one double.
+/// Calls a function that the assembler defines for one double.
 std::string defined(Polyfills& polyfills, sk::program::Intrinsic intrinsic, const std::vector<Type>& types,
                     const Texts& texts) {
   const std::string function = polyfills.definedOfDouble(intrinsic);
@@ -293,7 +293,7 @@ std::string doubleVector(Polyfills& polyfills, Type type, const std::vector<Type
                                                : fmt::format("{}.{}", "abcd"[i], letters[c]));
     }
   }
-  components.resize(type.width, components.front());   // one scalar for all
+  components.resize(type.width, components.front());   // broadcast a scalar
   polyfills.add(fmt::format("{} {}({}) {{ return {}; }}\n", nameOf(type), function, join(parameters, ", "),
                             call(nameOf(type), components)));
   return call(function, texts);

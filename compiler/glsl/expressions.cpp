@@ -32,7 +32,7 @@ Parts signedText(std::string text) {
   return {std::move(text), isNegative ? Precedence::Unary : Precedence::Primary};
 }
 
-/// True for large numbers that say more in hexadecimal: 0x7f800000, 0x00ffffff.
+/// True for large numbers that read better in hexadecimal: 0x7f800000, 0x00ffffff.
 bool isBitPattern(std::uint32_t bits) {
   const std::uint32_t low = bits & 0xffffU;
   return bits > 0xffffU && (low == 0 || low == 0xffffU);
@@ -56,7 +56,7 @@ Parts literalText(Type type, std::uint32_t bits) {
   return signedText(shortestFloat(value));
 }
 
-/// The built-in that compares vectors; empty for other operators.
+/// The built-in function that compares vectors; empty for other operators.
 std::string_view comparison(BinaryOp op) {
   switch (op) {
     case BinaryOp::Less: return "lessThan";
@@ -86,15 +86,15 @@ bool isNonNegative(const Expr& expr) {
   return n != nullptr && static_cast<std::int32_t>(n->bits) >= 0;
 }
 
-/// The component of a vector that an index names, if that is known.
+/// The component of a vector that an index selects, if the index is constant.
 std::optional<std::uint32_t> knownComponent(const Index& n) {
   const auto* literal = std::get_if<Literal>(&n.index->node);
   return literal != nullptr && literal->bits < n.base->type.width ? std::optional(literal->bits)
                                                                   : std::nullopt;
 }
 
-/// True if GLSL can assign to the text of a place. Components of a vector of doubles are members of a
-/// struct: one of them that is known is a place, several or a computed one are not.
+/// True if GLSL can assign to the text of this lvalue. Components of double vectors are members of a struct:
+/// one known component is an lvalue, several or a computed one are not.
 bool isGlslPlace(const Expr& place) {
   if (const auto* n = std::get_if<Swizzle>(&place.node)) {
     return (!place.type.isDouble() || place.type.isScalar()) && isGlslPlace(*n->base);
@@ -116,7 +116,7 @@ class GlslExpr {
     return whole.precedence < around ? "(" + whole.text + ")" : whole.text;
   }
 
-  /// Where a place is none in GLSL, what it is a part of becomes that with the part replaced.
+  /// If GLSL cannot assign to `place`, assigns to what contains it a copy with that part replaced.
   std::string assigned(const Expr& place, const std::string& value) const {
     if (isGlslPlace(place)) return text(place) + " = " + value;
     if (const auto* n = std::get_if<Swizzle>(&place.node)) {
@@ -128,7 +128,7 @@ class GlslExpr {
                                                  intText(*n.index), value));
   }
 
-  /// "place += value", where GLSL has that for these operands.
+  /// "place += value", or its expansion if GLSL has no such operator for these operands.
   std::string combined(BinaryOp op, const Expr& place, const Expr& value) const {
     const bool isCall = place.type.isDouble() || takesQuotient(op, place, value);
     if (!isCall && !mayShiftTooFar(context_.module, op, value)) {
@@ -243,7 +243,7 @@ class GlslExpr {
       return {context_.polyfills.quotient(op, lhs.type, rhs.type) + pair(lhs, rhs)};
     }
     const bool isMatrixProduct = op == BinaryOp::Mul && lhs.type.isMatrix() && !rhs.type.isScalar();
-    // GLSL's columns hold our rows: its matrices are the transposes of ours, and so are its products
+    // GLSL's matrices have our rows as columns: they are transposed, so factors change order
     const Expr& left = isMatrixProduct ? rhs : lhs;
     const Expr& right = isMatrixProduct ? lhs : rhs;
     const Precedence precedence = precedenceOf(op);
@@ -253,20 +253,20 @@ class GlslExpr {
     return {fmt::format("{} {} {}", operand(op, left, precedence), spelling(op), second), precedence};
   }
 
-  /// Whether a quotient or remainder is a call. C++'s % of ints is no operator of GLSL's for negative ones.
+  /// True if a quotient or remainder must be a call. C++'s % differs from GLSL's for negative ints.
   bool takesQuotient(BinaryOp op, const Expr& lhs, const Expr& rhs) const {
     const bool isSigned = op == BinaryOp::Rem && lhs.type.scalar == Scalar::Int;
     return mayDivideBadly(context_.module, op, lhs, rhs) ||
            (isSigned && !(isNonNegative(lhs) && isNonNegative(rhs)));
   }
 
-  /// The count modulo 32.
+  /// The shift count modulo 32.
   std::string shiftCount(const Expr& count) const {
     const bool isUint = carrierOf(count.type.scalar) == Scalar::Uint;
     return operand(BinaryOp::BitAnd, count, Precedence::BitAnd) + (isUint ? " & 31u" : " & 31");
   }
 
-  /// A function of the assembler's, which takes arguments of one width.
+  /// Calls a function that the assembler defines, all of whose arguments have one width.
   Parts definedCall(sk::program::Intrinsic intrinsic, const std::vector<ExprPtr>& args) const {
     std::uint8_t width = 1;
     for (const ExprPtr& arg : args) width = std::max(width, arg->type.width);
@@ -278,7 +278,7 @@ class GlslExpr {
     return {fmt::format("{}({})", context_.polyfills.defined(intrinsic, width), join(list, ", "))};
   }
 
-  /// "sk_at_u"; the domain has the shape of the first output, where there is one.
+  /// "sk_at_u"; the domain has the shape of the first output, if there is one.
   std::string call(std::string_view function, StreamRef stream) const {
     const bool isDomain = stream.space == StreamRef::Space::Domain;
     const std::uint32_t param = isDomain ? analysis::domainParam(context_.kernel) : stream.id;
@@ -286,10 +286,10 @@ class GlslExpr {
     return fmt::format("{}_{}", function, context_.names.symbol(param));
   }
 
-  /// An index outside an array takes the nearest element. That must be so in the text even where the index
-  /// cannot be outside: Mesa (22.3, llvmpipe) looks an array's index up only when it loads or stores, from the
-  /// register that it gave to a loop's variable, and by then may have counted that on: `a[i] = a[i + 1]` stores
-  /// to a[i + 1]. A computed index has a register of its own.
+  /// Clamps an index to its array. The text must do so even if the index cannot be outside: Mesa (22.3,
+  /// llvmpipe) reads an array's index only when it loads or stores, from the register that it gave to a
+  /// loop's variable, and may have incremented that register by then: `a[i] = a[i + 1]` stores to a[i + 1]. A
+  /// computed index has a register of its own.
   std::string indexText(const Index& n) const {
     const std::string index = text(*n.index);
     const Type base = n.base->type;
@@ -305,7 +305,7 @@ class GlslExpr {
     return fmt::format("clamp({}, 0, {})", index, last);
   }
 
-  /// A component of a vector of doubles, which is no array.
+  /// A component of a vector of doubles, which GLSL cannot index.
   Parts doubleIndex(const Index& n) const {
     if (const auto component = knownComponent(n)) {
       return {text(*n.base, Precedence::Primary) + "." + "xyzw"[*component]};
@@ -338,7 +338,7 @@ class GlslExpr {
   }
   std::string list(const std::vector<ExprPtr>& items) const { return "(" + join(texts(items), ", ") + ")"; }
 
-  /// "($0 * $1 + $2)" with the arguments put in; the outer brackets go where they are not needed.
+  /// Substitutes arguments in a pattern such as "($0 * $1 + $2)"; drops outer brackets that are not needed.
   Parts fromPattern(std::string_view pattern, const std::vector<ExprPtr>& args) const {
     const bool isBracketed = pattern.front() == '(' && pattern.back() == ')';
     if (isBracketed) pattern = pattern.substr(1, pattern.size() - 2);

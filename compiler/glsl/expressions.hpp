@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Expressions of the IR as GLSL that 3.30 and ESSL 3.00 both accept, with as few brackets as a
-// person would write.
+// Prints IR expressions as GLSL that 3.30 and ESSL 3.00 accept, with as few brackets as a person would write.
 #pragma once
 
 #include <optional>
@@ -15,7 +14,7 @@
 
 namespace skc::emit {
 
-/// What the text of an expression depends on, and the polyfills that it asks for.
+/// The inputs for printing an expression, and the polyfills that it turns out to need.
 struct GlslContext {
   const ir::Module& module;
   const TypeNames& types;
@@ -24,14 +23,14 @@ struct GlslContext {
   Polyfills& polyfills;
 };
 
-/// `function` is the function that the expression stands in; unset for a constant expression.
+/// `function` is the function that contains the expression; unset for a constant expression.
 std::string glslExpr(const GlslContext& context, std::optional<ir::FunctionId> function, const ir::Expr& expr,
                      ir::Precedence around = ir::Precedence::Lowest);
 
 /// "place = value", "place += value".
 std::string glslAssignment(const GlslContext& context, ir::FunctionId function, const ir::Expr& place,
                            std::optional<ir::BinaryOp> op, const ir::Expr& value);
-/// The same for a value that is text.
+/// The same for a value that is text already.
 std::string glslAssignment(const GlslContext& context, ir::FunctionId function, const ir::Expr& place,
                            const std::string& value);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: how each kind of expression is spelled in GLSL's common subset.
+// Promise: each kind of expression is spelled right in GLSL's common subset.
 #include "glsl/expressions.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Intrinsics that bodies leave to the assembler, which defines them as a call asks: accurately, or by the
-// device's own functions; of doubles, those that GLSL does not have.
+// Intrinsics that bodies leave to the assembler. It defines them as each call chooses, accurately or by the
+// device's own functions; for doubles, it defines those that GLSL lacks.
 #pragma once
 
 #include <optional>
@@ -13,10 +13,10 @@
 
 namespace skc::emit {
 
-/// What the runtime calls an intrinsic on these arguments; nothing where GLSL's own function is meant.
+/// The runtime's name for an intrinsic with these arguments; nullopt if GLSL's own function serves.
 std::optional<sk::program::Intrinsic> definedIntrinsic(const ir::IntrinsicCall& call);
 
-/// Likewise of doubles; nothing for what double_functions.def has.
+/// The same for doubles; nullopt for the rows of double_functions.def.
 std::optional<sk::program::Intrinsic> definedOfDoubles(ir::Intrinsic intrinsic);
 
 /// "Sin".

@@ -16,7 +16,7 @@ namespace {
 using namespace ir;
 using Names = std::set<std::string>;
 
-/// Adds the identifiers in a piece of GLSL.
+/// Adds all identifiers in a piece of GLSL.
 void addIdentifiers(std::string_view text, Names& names) {
   const auto isLetter = [](char c) { return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   for (std::size_t i = 0; i < text.size();) {
@@ -42,8 +42,8 @@ Names builtinsOf(const Function& function) {
   return names;
 }
 
-/// Names a function's variables, scope by scope: siblings may share a name, nested scopes may not,
-/// since the inner variable would hide one that the IR can still name.
+/// Names a function's variables scope by scope. Siblings may share a name; nested scopes may not, because the
+/// inner variable would hide one that the IR can still refer to.
 class VariableNamer {
  public:
   VariableNamer(const Function& function, const Names& avoid, bool isEntry)
@@ -58,7 +58,7 @@ class VariableNamer {
   void name(VarId var, bool isSymbol) {
     std::string base = glslSafe(function_.variables[var].name);
     if (base.empty()) base = "unnamed";
-    if (isSymbol && base.front() == '_') base.insert(0, "p");   // `sk_at_` comes in front of it
+    if (isSymbol && base.front() == '_') base.insert(0, "p");  // the name is prefixed with `sk_at_`
     names_[var] =
         uniqueName(base, [&](const std::string& n) { return avoid_.contains(n) || visible_.contains(n); });
     visible_.insert(names_[var]);
@@ -75,7 +75,7 @@ class VariableNamer {
     const bool sharesScope =
         std::holds_alternative<Loop>(stmt.node) || std::holds_alternative<Switch>(stmt.node);
     if (!sharesScope) return forEachBlock(stmt, [&](const Block& inner) { block(inner); });
-    const Names outside = visible_;   // a loop's init, step and body; the cases of a switch
+    const Names outside = visible_;  // a loop's init, step and body; the cases of a switch
     forEachBlock(stmt, [&](const Block& inner) {
       for (const Stmt& one : inner) statement(one);
     });
@@ -88,7 +88,7 @@ class VariableNamer {
   Names visible_;
 };
 
-/// Names of global things in a body, where functions may share a name if their parameters differ.
+/// Names the globals of a body. Functions may share a name if their parameters differ.
 class GlobalNamer {
  public:
   explicit GlobalNamer(const TypeNames& types, const Module& module) : types_(types) {
@@ -124,7 +124,7 @@ class GlobalNamer {
 
   const TypeNames& types_;
   Names taken_;
-  Names overloads_;   ///< "name(float,vec2,"
+  Names overloads_;  ///< "name(float,vec2,"
 };
 
 }  // namespace
@@ -135,7 +135,7 @@ KernelNames::KernelNames(const Module& module, const Kernel& kernel, const TypeN
   std::vector<std::string> constantNames;
   for (const Constant& constant : module.constants) constantNames.push_back(globals.constant(constant));
   const std::vector<FunctionId> functions = functionsOf(module, kernel);
-  functions_[entry_].name = globals.function(module.functions[entry_]);   // first: it keeps its name
+  functions_[entry_].name = globals.function(module.functions[entry_]);  // first: it keeps its name
   for (FunctionId id : functions) {
     if (id != entry_) functions_[id].name = globals.function(module.functions[id]);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The names in one kernel's GLSL body. Those of the .sk file stay wherever GLSL allows them; this is
-// the only place that changes one.
+// Chooses the names in one kernel's GLSL body. Names from the .sk file stay wherever GLSL allows them; no
+// other code renames anything.
 #pragma once
 
 #include <map>
@@ -18,12 +18,12 @@ class KernelNames {
   KernelNames(const ir::Module& module, const ir::Kernel& kernel, const TypeNames& types);
 
   const std::string& function(ir::FunctionId id) const { return functions_.at(id).name; }
-  /// Where a constant is used: its name, or a call where it has to be a function (constants.hpp).
+  /// The text of a use of a constant: its name, or a call if it must be a function (constants.hpp).
   const std::string& constant(ir::ConstantId id) const { return constants_[id]; }
   const std::string& variable(ir::FunctionId id, ir::VarId var) const {
     return functions_.at(id).variables[var];
   }
-  /// program::Parameter::symbol; the name of the entry's variable, too.
+  /// program::Parameter::symbol, which also names the entry's variable.
   const std::string& symbol(std::uint32_t param) const { return variable(entry_, param); }
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: names that GLSL allows stay; the others change as the headers say; things that could be
-// confused get different names.
+// Promises: names that GLSL allows stay; others change as the headers say; no two entities share
+// a name.
 #include "glsl/kernel_names.hpp"
 
 #include <catch2/catch.hpp>
@@ -108,7 +108,7 @@ TEST_CASE("a variable does not hide what its function calls") {
   const KernelNames names = s.names();
   CHECK(names.variable(0, root) == "sqrt_2");
   CHECK(names.variable(0, step) == "step");
-  CHECK(names.variable(0, clamp) == "clamp_2");   // as the index is clamped
+  CHECK(names.variable(0, clamp) == "clamp_2");   // clamping the index calls clamp
 }
 
 FunctionId addFunctionOf(Module& module, const std::string& name, Type type) {
@@ -127,7 +127,7 @@ TEST_CASE("overloads keep their name while their parameters differ; built-ins ar
   s.module.constants.push_back({"mix", floatType, literal(1.0F), {}});
   const FunctionId first = addFunctionOf(s.module, "half_of", floatType);
   const FunctionId second = addFunctionOf(s.module, "half_of", intType);
-  const FunctionId third = addFunctionOf(s.module, "half_of", floatType);   // of another namespace
+  const FunctionId third = addFunctionOf(s.module, "half_of", floatType);   // in another namespace
   const FunctionId noise = addFunctionOf(s.module, "noise1", floatType);
   s.k.finish(block(callStmt(first, exprs(literal(1.0F))), callStmt(second, exprs(literal(1))),
                    callStmt(third, exprs(literal(1.0F))), callStmt(noise, exprs(literal(1.0F)))));

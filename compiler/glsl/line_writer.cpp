@@ -92,8 +92,8 @@ void LineWriter::endLine() {
   current_.clear();
 }
 
-/// Brings the number of the next line to that of `loc`. What did not fit on the line that it stood on
-/// with others is let be: its line is a little too large, as the next place puts right.
+/// Moves the next line to the number of `loc`. A statement wrapped onto further lines is left there: its line
+/// number is a little too large until the next location corrects it.
 void LineWriter::align(Loc loc) {
   if (loc.file == file_ && loc.line == sourceLine_) return;
   const bool isNear = loc.file == file_ && loc.line >= line_ && loc.line - line_ <= largestGap;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Text whose lines keep the numbers that they have in the .sk file, so that a driver's message names
-// the author's line: what stood on one line stays on one line, gaps of a few lines are left blank,
-// and where the two drift further apart a #line directive brings them together again.
+// Writes text whose lines keep their numbers from the .sk file, so that a driver's message names the author's
+// line. Statements that share a line still share it, gaps of a few lines are left blank, and a #line
+// directive corrects larger differences.
 #pragma once
 
 #include <cstdint>
@@ -15,33 +15,33 @@ namespace skc::emit {
 
 class LineWriter {
  public:
-  /// Lines of `text` as they are, before any that has a place.
+  /// Writes `text` unchanged, before any text that has a source location.
   void raw(std::string_view text);
-  /// A #line directive: the next line is that of `loc`.
+  /// Writes a #line directive: the next line has the number of `loc`.
   void restart(Loc loc);
-  /// Puts `text` at its place: on the line at hand if it stood there in the .sk file, too, else on a
-  /// new one. Long text is wrapped.
+  /// Writes `text` for `loc`: on the current line if it shared that line in the .sk file, else on a new one.
+  /// Long text is wrapped.
   void put(int depth, Loc loc, std::string_view text);
-  /// Goes on right after what was put last: " else {".
+  /// Continues the current line, as for " else {".
   void append(std::string_view text);
-  /// A closing bracket for what was put when row() was `openedAt`: on that line if it still goes on,
-  /// else on a line of its own.
+  /// Writes the closing bracket of a block that was opened at row `openedAt`: on that line if it is still the
+  /// current one, else on a line of its own.
   void close(int depth, std::uint32_t openedAt, std::string_view text);
 
-  /// Ends the line at hand, if there is one.
+  /// Ends the current line, if there is one.
   void endLine();
 
-  /// Counts the lines written, however #line numbers them: the same while one line is at hand.
+  /// The number of lines written, whatever their #line numbers; it does not change within a line.
   std::uint32_t row() const { return row_; }
-  /// True if `loc` is where the thing on the line at hand stands in the .sk file.
+  /// True if `loc` is on the source line of the text on the current line.
   bool isAt(Loc loc) const;
-  /// True if a compiler gives the number of `loc` to the line at hand.
+  /// True if a compiler gives the current line the number of `loc`.
   bool isNumbered(Loc loc) const;
-  /// True if no line is at hand, and the next one has the number of `loc`.
+  /// True if there is no current line, and the next one has the number of `loc`.
   bool isNext(Loc loc) const;
-  /// A writer that stands where this one does, for trying something out; it has no earlier lines.
+  /// A copy of this writer's position without its earlier lines, for trial output.
   LineWriter trial() const;
-  /// The text, its last line ended.
+  /// Returns the text, with its last line ended.
   std::string take();
 
  private:
@@ -49,11 +49,11 @@ class LineWriter {
   bool joins(Loc loc, std::string_view text) const;
 
   std::string text_;
-  std::string current_;            ///< the line at hand, not yet in text_
-  std::uint32_t line_ = 0;         ///< the number that a compiler gives to it
+  std::string current_;  ///< the current line, not yet in text_
+  std::uint32_t line_ = 0;  ///< its number, as a compiler counts
   std::uint32_t row_ = 1;
   std::uint32_t file_ = 0;
-  std::uint32_t sourceLine_ = 0;   ///< where the thing that was put last stands in the .sk file
+  std::uint32_t sourceLine_ = 0;  ///< line in the .sk file of what was written last
 };
 
 }  // namespace skc::emit

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promise: lines keep their numbers, and #line says so where they cannot.
+// Promise: lines keep their numbers, and #line corrects them where they cannot.
 #include "glsl/line_writer.hpp"
 
 #include <catch2/catch.hpp>

@@ -12,7 +12,7 @@ namespace {
 
 using namespace ir;
 
-/// Whether each component of a value is known, and is as asked.
+/// True if every component of a value is a known constant that satisfies the predicate.
 template <class Predicate>
 bool isKnown(const Module& module, const Expr& expr, Predicate isGood) {
   if (const auto bits = evaluate(module, expr, Constants::LookThrough)) return isGood(*bits);

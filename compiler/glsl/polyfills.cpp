@@ -18,7 +18,7 @@ namespace {
 
 using namespace ir;
 
-/// "a.x && b.x, a.y && b.y" for a pattern with `@` in place of the component.
+/// "a.x && b.x, a.y && b.y" from a pattern with `@` for the component.
 std::string byComponent(std::string_view pattern, int width) {
   std::vector<std::string> items;
   for (int i = 0; i < width; ++i) {
@@ -29,7 +29,7 @@ std::string byComponent(std::string_view pattern, int width) {
   return join(items, ", ");
 }
 
-/// A narrow scalar's function of its carrier, as quantize.hpp tells it.
+/// The function that rounds a value of the arithmetic type to a narrow scalar, as quantize.hpp specifies.
 std::string quantizing(Scalar narrow) {
   switch (narrow) {
     case Scalar::Char: return "int sk_char(int x) { return (x << 24) >> 24; }\n";

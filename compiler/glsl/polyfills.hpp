@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The functions that a body needs beside the user's because GLSL 3.30 lacks them: collected while
-// expressions are printed, each once, in the order of first use.
+// Collects, while expressions are printed, the functions that a body needs because GLSL 3.30 lacks them: each
+// once, in the order of first use.
 #pragma once
 
 #include <string>
@@ -14,31 +14,31 @@ namespace skc::emit {
 
 class Polyfills {
  public:
-  /// The function of an intrinsic's row, for this type of its first argument.
+  /// Adds the function of an intrinsic's row for this type of its first argument.
   void intrinsic(ir::Intrinsic intrinsic, ir::Type argument);
-  /// && or || of two bool vectors; returns the function's name.
+  /// && or || for two bool vectors; returns the function's name.
   std::string logical(ir::BinaryOp op, int width);
-  /// A choice by component between two vectors of int, uint or bool; returns the function's name.
+  /// Componentwise select between two vectors of int, uint or bool; returns the function's name.
   std::string select(ir::Type type);
-  /// / or % of integers that is defined for all of them; returns the function's name. GLSL's are not where the divisor
-  /// is 0, the quotient too large, or, for %, an operand negative.
+  /// / or % of integers, defined for all operands; returns the function's name. GLSL's are undefined if the
+  /// divisor is 0, the quotient is out of range, or, for %, an operand is negative.
   std::string quotient(ir::BinaryOp op, ir::Type lhs, ir::Type rhs);
-  /// A conversion of reals to the nearest integer toward 0 that the type has, of NaN to 0; returns the function's name.
+  /// Converts reals to int or uint: truncated, clamped, NaN to 0; returns the function's name.
   std::string truncated(ir::Type to);
-  /// An intrinsic that the assembler defines, on arguments of this width; returns the function's name.
+  /// An intrinsic that the assembler defines, for arguments of this width; returns the function's name.
   std::string defined(sk::program::Intrinsic intrinsic, int width);
-  /// Likewise on one double.
+  /// The same for one double.
   std::string definedOfDouble(sk::program::Intrinsic intrinsic);
 
-  /// A Convert of the carrier's value to a narrow type; returns the function's name.
+  /// Converts from the arithmetic type to a narrow type; returns the function's name.
   std::string quantize(ir::Type type);
 
-  /// Any other function, unless this very one is there.
+  /// Adds any other function, unless it has been added.
   void add(std::string function);
 
-  /// Their definitions.
+  /// The definitions of the functions added.
   const std::vector<std::string>& functions() const { return functions_; }
-  /// What is left to the assembler.
+  /// The intrinsics that the assembler must define.
   const std::vector<sk::program::IntrinsicUse>& intrinsics() const { return intrinsics_; }
 
  private:
@@ -48,7 +48,7 @@ class Polyfills {
   std::vector<sk::program::IntrinsicUse> intrinsics_;
 };
 
-/// A pattern of intrinsics.def with $T $I $U $B replaced by the types of the argument's width.
+/// Replaces $T $I $U $B in a pattern of intrinsics.def by the types of the argument's width.
 std::string withTypes(std::string_view pattern, ir::Type argument);
 
 }  // namespace skc::emit

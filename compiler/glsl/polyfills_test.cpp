@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Promise: the polyfills of scalars compute what C++ computes. Their GLSL is C++, too, once the
-// built-ins that they call are declared; so it is compiled and run against <cmath>.
+// Promise: the polyfills of scalars compute what C++ computes. Their GLSL is also C++ once the built-ins that
+// they call are declared, so it is compiled and run against <cmath>.
 //
-// Bounds: frexp, ldexp and modf are exact, so results are compared by their bits (NaN as NaN), all on
-// random bit patterns, denormals among them (the host keeps them).
+// Bounds: frexp, ldexp and modf are exact, so results are compared by their bits (NaN as NaN), all on random
+// bit patterns, denormals among them (the host keeps them).
 #include "glsl/polyfills.hpp"
 
 #include <catch2/catch.hpp>
@@ -85,7 +85,7 @@ TEST_CASE("polyfills compute what C++ computes") {
   int count = 0;
   for (const std::string& function : polyfills.functions()) {
     if (function.find("sk_exact_") != std::string::npos)
-      continue;   // of vectors: tests/numerics/sums and dots
+      continue;  // tests/numerics/sums and dots test vectors
     text += function + "\n";
     ++count;
   }

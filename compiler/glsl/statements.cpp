@@ -35,7 +35,7 @@ class FunctionWriter {
   }
 
  private:
-  /// Right before the body, where the head takes several lines in the .sk file.
+  /// The line before the body, if the head has several lines in the .sk file.
   static Loc headLoc(const Function& function) {
     constexpr std::uint32_t longestHead = 5;
     Loc loc = function.loc;
@@ -47,7 +47,7 @@ class FunctionWriter {
     return loc;
   }
 
-  /// `next` is the line of what follows in the .sk file, 0 if nobody knows.
+  /// `next` is the line of the next statement in the .sk file, 0 if unknown.
   void block(const Block& statements, int depth, std::uint32_t next) {
     for (std::size_t i = 0; i < statements.size();) {
       const bool hasPlace = statements[i].loc.line != 0;
@@ -87,17 +87,17 @@ class FunctionWriter {
 
   // ---- blocks -----------------------------------------------------------------------------------
 
-  /// The rest of a block whose "{" is written. What stands on one line in the .sk file does so here,
-  /// if all of it fits; otherwise each of its statements has a line.
+  /// Prints a block whose "{" is written. Statements on one line of the .sk file stay on one line if they all
+  /// fit, and otherwise take a line each.
   void closeAfter(const Block& body, int depth, std::uint32_t next) {
     const bool wasSplit = std::exchange(isSplit_, !isTrial_ && !fitsOnLine(body, depth));
     const std::uint32_t openedAt = isSplit_ ? 0 : writer_.row();
-    block(body, depth + 1, next == 0 ? 0 : next - 1);   // the bracket takes a line
+    block(body, depth + 1, next == 0 ? 0 : next - 1);  // leave a line for the bracket
     writer_.close(depth, openedAt, "}");
     isSplit_ = wasSplit;
   }
 
-  /// True also for a block that has several lines in the .sk file.
+  /// Also true if the block has several lines in the .sk file.
   bool fitsOnLine(const Block& body, int depth) const {
     if (body.empty() || !writer_.isAt(body[0].loc)) return true;
     const Loc last = body.back().loc;
@@ -107,7 +107,7 @@ class FunctionWriter {
     return trial.row() == writer_.row();
   }
 
-  /// Begins a statement, on the line at hand if it stood there in the .sk file.
+  /// Begins a statement, on the current line if it shared that line in the .sk file.
   void begin(int depth, Loc loc, const std::string& text) {
     if (isSplit_) writer_.endLine();
     writer_.put(depth, loc, text);
@@ -119,13 +119,13 @@ class FunctionWriter {
     closeAfter(body, depth, next);
   }
 
-  /// One simple statement that declares nothing.
+  /// True for one simple statement that is not a declaration.
   bool isSimple(const Block& body) const {
     return body.size() == 1 && !std::holds_alternative<Declare>(body[0].node) &&
            simpleText(context_, id_, body[0]).has_value();
   }
 
-  /// True if the .sk file has no line for a "}" after a simple body.
+  /// True if the .sk file has no line for the "}" after a simple body.
   static bool isBare(const Block& body, Loc head, std::uint32_t next) {
     const std::uint32_t line = body[0].loc.line;
     return line == head.line || (next != 0 && next <= line + 1);
@@ -137,7 +137,7 @@ class FunctionWriter {
   }
 
   void bareBody(const Block& body, int depth, std::uint32_t next) {
-    const bool wasSplit = std::exchange(isSplit_, false);   // it may stand beside its head
+    const bool wasSplit = std::exchange(isSplit_, false);  // the body may stay on its head's line
     statement(body[0], depth + 1, next);
     isSplit_ = wasSplit;
   }
@@ -151,7 +151,7 @@ class FunctionWriter {
     return otherwise.size() == 1 ? std::get_if<If>(&otherwise[0].node) : nullptr;
   }
 
-  /// True if an `if` with an `else` is written without braces, and all that it is chained to.
+  /// True if an `if` with an `else`, and every `if` in its chain, prints without braces.
   bool isBareChain(const If& n, Loc loc, std::uint32_t next) const {
     if (!isSimple(n.then)) return false;
     if (n.otherwise.empty()) return isBare(n.then, loc, next);
@@ -193,7 +193,7 @@ class FunctionWriter {
     } else {
       writer_.endLine();
       const Loc loc =
-          n.otherwise[0].loc;   // where the .sk file has no line for `else` alone, it shares that one
+          n.otherwise[0].loc;  // an `else` without a line of its own in the .sk file shares this one
       writer_.put(depth, inner != nullptr || writer_.isNext(loc) ? loc : nowhere, word);
     }
     if (inner != nullptr) return bareIfElse(*inner, depth, next);
@@ -220,8 +220,8 @@ class FunctionWriter {
     bodyOf(n.body, depth, loc, next);
   }
 
-  /// A loop whose init or step is more than GLSL takes in a head: the step comes first in all rounds
-  /// but the first, so that `continue` still leads to it.
+  /// A loop whose init or step does not fit in a GLSL head. The step comes first in every iteration but the
+  /// first, so that `continue` still runs it.
   void longFor(const Loop& n, int depth, Loc loc, std::uint32_t next) {
     begin(depth, loc, "{");
     const std::uint32_t openedAt = writer_.row();
@@ -250,7 +250,7 @@ class FunctionWriter {
     writer_.close(depth, openedAt, "}");
   }
 
-  /// GLSL wants a statement after the last label, and an empty block is none.
+  /// GLSL needs a statement after the last label, and an empty block does not count.
   static bool isNothing(const Block& body) {
     return std::all_of(body.begin(), body.end(), [](const Stmt& stmt) {
       const auto* n = std::get_if<Scope>(&stmt.node);
@@ -274,11 +274,11 @@ class FunctionWriter {
   const GlslContext& context_;
   FunctionId id_;
   LineWriter& writer_;
-  bool isTrial_;           ///< finds out whether a block fits on its line
-  bool isSplit_ = false;   ///< the block at hand does not fit on the line that it has in the .sk file
+  bool isTrial_;  ///< only tests whether a block fits on its line
+  bool isSplit_ = false;  ///< the current block is too long for its line in the .sk file
 };
 
-/// "inout ", "out " or nothing.
+/// "inout ", "out " or "".
 std::string_view direction(const GlslContext& context, FunctionId id, VarId var) {
   if (context.module.functions[id].variables[var].role != VarRole::InOut) return "";
   const bool isOutput = id == context.kernel.entry && context.kernel.params[var].role == ParamRole::Output;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Statements and functions of the IR as GLSL, laid out like the .sk file.
+// Prints IR statements and functions as GLSL, laid out like the .sk file.
 #pragma once
 
 #include "glsl/expressions.hpp"
@@ -12,7 +12,7 @@ namespace skc::emit {
 /// "float blur(float x, inout vec2 y)".
 std::string glslHead(const GlslContext& context, ir::FunctionId id);
 
-/// The definition of a function, with a #line directive in front of it.
+/// Writes the definition of a function, preceded by a #line directive.
 void writeFunction(const GlslContext& context, ir::FunctionId id, LineWriter& writer);
 
 }  // namespace skc::emit

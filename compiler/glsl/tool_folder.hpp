@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// For tests: a folder of generated files that another program looks at. The files stay, to be looked
-// at by people, too.
+// For tests: a folder of generated files that another program checks. The files stay, so that people can look
+// at them, too.
 #pragma once
 
 #include <cstdlib>
@@ -22,7 +22,7 @@ class ToolFolder {
 
   void write(const std::string& file, std::string_view text) const { std::ofstream(folder_ / file) << text; }
 
-  /// Runs a command there; what it says if it fails, else nothing.
+  /// Runs a command there; returns its output if it fails, else "".
   std::string complaints(const std::string& command) const {
     const std::string whole = "cd '" + folder_.string() + "' && (" + command + ") > complaints.txt 2>&1";
     if (std::system(whole.c_str()) == 0) return {};
@@ -30,7 +30,7 @@ class ToolFolder {
     return "failed: " + std::string(std::istreambuf_iterator<char>(file), {});
   }
 
-  /// What glslang says against the *.frag files.
+  /// glslang's messages about the *.frag files.
   std::string glslang() const { return complaints(std::string(SK_GLSLANG_VALIDATOR) + " *.frag"); }
 
  private:

@@ -16,7 +16,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// The struct's own name; with its namespaces where another has that name already.
+/// The struct's own name, with its namespaces if another struct has that name already.
 std::string nameOf(const Struct& type, const std::vector<std::string>& taken) {
   const auto isTaken = [&](const std::string& name) { return contains(taken, name); };
   const std::string name = glslSafe(type.name) + (isGlslFunction(type.name) ? "_" : "");
@@ -26,7 +26,7 @@ std::string nameOf(const Struct& type, const std::vector<std::string>& taken) {
   return uniqueName(glslSafe(qualified + type.name), isTaken);
 }
 
-/// glslang reads `.length` as the beginning of an array's `.length()` wherever it stands.
+/// Renames `length`: glslang takes `.length` for the beginning of an array's `.length()` everywhere.
 std::string nameOf(const StructField& field, const std::vector<std::string>& taken) {
   const std::string name = glslSafe(field.name) + (field.name == "length" ? "_" : "");
   return uniqueName(name, [&](const std::string& n) { return contains(taken, n); });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How the types of a module are spelled in GLSL. Structs and their members have one name in all
-// kernels of the module, because descriptors of elements are shared.
+// Spells the types of a module in GLSL. Structs and their members have the same names in all kernels of the
+// module, because they share descriptors of elements.
 #pragma once
 
 #include <string>
@@ -30,10 +30,10 @@ class TypeNames {
   std::vector<std::vector<std::string>> fields_;
 };
 
-/// "float", "bvec2"; of a narrow scalar those of its carrier; "sk_double", "sk_double2" (doubles.hpp).
+/// "float", "bvec2"; a narrow scalar's arithmetic type; "sk_double", "sk_double2" (doubles.hpp).
 std::string glslSpelling(ir::Scalar scalar, int width);
 
-/// `base`, or the first of base_2, base_3 ... that `isTaken` lets through.
+/// `base`, or the first of base_2, base_3 ... that is not taken.
 template <class Predicate>
 std::string uniqueName(const std::string& base, Predicate&& isTaken) {
   std::string name = base;

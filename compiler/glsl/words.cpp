@@ -48,8 +48,8 @@ constexpr std::string_view words[] = {
     "utextureCubeArray", "uvec2", "uvec3", "uvec4", "varying", "vec2", "vec3", "vec4", "void", "volatile",
     "while", "writeonly"};
 
-// `average` and the like are of GL_INTEL_shader_integer_functions2: glslang minds them in ESSL 3.00 even
-// where the extension is off.
+// `average` and the like belong to GL_INTEL_shader_integer_functions2: glslang rejects them in ESSL 3.00 even
+// if the extension is off.
 constexpr std::string_view functions[] = {
     "EmitStreamVertex", "EmitVertex", "EndPrimitive", "EndStreamPrimitive", "abs", "absoluteDifference",
     "acos", "acosh", "addSaturate", "all", "allInvocations", "allInvocationsEqual", "any", "anyInvocation",

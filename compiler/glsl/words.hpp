@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Which names GLSL and ESSL keep for themselves, in any version that we emit for or a driver may
-// read the text as.
+// Names that GLSL and ESSL reserve, in any version that we emit for or that a driver may read the text as.
 #pragma once
 
 #include <string>
@@ -9,14 +8,15 @@
 
 namespace skc::emit {
 
-/// Keywords and reserved words of GLSL 1.10 to 4.60 and ESSL 1.00 to 3.20; "main" too.
+/// Keywords and reserved words of GLSL 1.10 to 4.60 and ESSL 1.00 to 3.20, and "main".
 bool isGlslWord(std::string_view name);
 
-/// Built-in functions of these versions, and others that compilers keep to themselves. GLSL lets a program define a function of that name, ESSL does not.
+/// Built-in functions of these versions, and other names that compilers reserve. GLSL lets a program redefine
+/// them, ESSL does not.
 bool isGlslFunction(std::string_view name);
 
-/// The name with what GLSL does not allow in it changed: `sample` gives "sample_", `sk_x` "user_sk_x",
-/// `a__b` "a_b", letters beyond ASCII their code points.
+/// Changes what GLSL does not allow in a name: `sample` gives "sample_", `sk_x` "user_sk_x", `a__b` "a_b",
+/// letters beyond ASCII their code points.
 std::string glslSafe(std::string_view name);
 
 }  // namespace skc::emit
