@@ -13,7 +13,7 @@ namespace {
 
 namespace tok = clang::tok;
 
-/// One attribute: the values that it may have, in the order of the enumerators, of which the first is Default.
+/// An attribute and its allowed values, in the order of the enumerators after the first, Default.
 struct Choice {
   std::string_view name;
   std::uint8_t ir::Choices::* member;
@@ -38,7 +38,7 @@ bool startsAttributes(const TokenCursor& cursor, std::size_t at) {
   return cursor.peek(at).is(tok::l_square) && cursor.peek(at + 1).is(tok::l_square);
 }
 
-/// The place behind the `]]` that closes what starts at `at`; 0 if nothing does.
+/// The index after the `]]` that matches the bracket at `at`; 0 if there is none.
 std::size_t behindBrackets(const TokenCursor& cursor, std::size_t at) {
   int depth = 0;
   for (; !cursor.peek(at).isOneOf(tok::eof, tok::semi, tok::l_brace, tok::r_brace); ++at) {
@@ -48,7 +48,7 @@ std::size_t behindBrackets(const TokenCursor& cursor, std::size_t at) {
   return 0;
 }
 
-/// NAME(VALUE), of which the cursor is left behind what it could take.
+/// Takes NAME(VALUE). After an error, leaves the cursor at the first token that does not fit.
 void takeChoice(TokenCursor& cursor, Diagnostics& diagnostics, ir::Choices& chosen) {
   const clang::Token name = cursor.take();
   const auto choice = std::ranges::find(choices, nameOf(name), &Choice::name);

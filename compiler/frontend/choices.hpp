@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Attributes in front of a kernel: [[precision(extended), accumulate(exact), intrinsics(fast)]].
+// Parses the attributes in front of a kernel: [[precision(extended), accumulate(exact), intrinsics(fast)]].
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace skc::frontend {
 
-/// How many tokens the attributes are that follow, [[...]] [[...]]; 0 where there are none.
+/// The number of tokens in the attributes that follow, [[...]] [[...]]; 0 if there are none.
 std::size_t endOfChoices(const TokenCursor& cursor);
 
-/// Whether the first of them is one of these, and none of C++'s.
+/// True if the first attribute is one of these, not one of C++'s.
 bool namesChoice(const TokenCursor& cursor);
 
-/// Takes all of them, which are so many tokens; tells what is wrong.
+/// Consumes the attributes, `tokens` tokens in all, and reports errors in them.
 ir::Choices takeChoices(TokenCursor& cursor, std::size_t tokens, Diagnostics& diagnostics);
 
 }  // namespace skc::frontend

@@ -16,7 +16,7 @@ clang::DiagnosticIDs::Level levelOf(Severity severity, const clang::DiagnosticsE
     case Severity::Note: return clang::DiagnosticIDs::Note;
     case Severity::Warning: break;
   }
-  // Clang maps only its own rows through -w and -Werror
+  // Clang applies -w and -Werror only to its own diagnostics
   if (engine.getIgnoreAllWarnings()) return clang::DiagnosticIDs::Ignored;
   return engine.getWarningsAsErrors() ? clang::DiagnosticIDs::Error : clang::DiagnosticIDs::Warning;
 }
@@ -43,7 +43,7 @@ void ClangDiagnostics::report(Diag diag, Loc loc, std::initializer_list<std::str
   const DiagRow& entry = row(diag);
   const clang::DiagnosticIDs::Level level = levelOf(entry.severity, engine_);
   if (level == clang::DiagnosticIDs::Ignored) return;
-  // The text is put together here and handed over as an argument, since Clang gives `%` a meaning in formats.
+  // The text is passed as an argument, because `%` has a meaning in Clang's format strings.
   const unsigned id = engine_.getDiagnosticIDs()->getCustomDiagID(level, "%0");
   const clang::DiagnosticBuilder message = engine_.Report(clangLocation(loc), id);
   message << format(diag, arguments);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Our diagnostics through Clang's engine: the same form, carets, colours, limits and -W switches.
+// Reports our diagnostics through Clang's engine: the same form, carets, colours, limits and -W switches.
 #pragma once
 
 #include <clang/Basic/Diagnostic.h>
@@ -18,7 +18,7 @@ class ClangDiagnostics : public Diagnostics {
   }
   void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments,
               const std::vector<Mend>& mends) override;
-  /// DiagnosticPrinter makes errors of some warnings, of which the engine does not know.
+  /// DiagnosticPrinter turns some warnings into errors, which the engine does not count.
   bool hasErrors() const override {
     return engine_.hasErrorOccurred() || engine_.getClient()->getNumErrors() != 0;
   }

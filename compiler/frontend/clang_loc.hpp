@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Between Clang's places and ours: Loc::token is a SourceLocation's raw encoding.
+// Converts between Clang's source locations and ours: Loc::token is a SourceLocation's raw encoding.
 #pragma once
 
 #include <clang/Basic/SourceLocation.h>

@@ -34,7 +34,7 @@ bool isNarrowing(const clang::Diagnostic& diagnostic) {
 bool isBoolOfVector(const clang::Diagnostic& diagnostic) {
   if (diagnostic.getID() != clang::diag::ext_init_list_variable_narrowing) return false;
   const auto type = [&](unsigned argument) {
-    void* pointer = reinterpret_cast<void*>(diagnostic.getRawArg(argument));   // as Clang hands types over
+    void* pointer = reinterpret_cast<void*>(diagnostic.getRawArg(argument));   // how Clang passes types
     return clang::QualType::getFromOpaquePtr(pointer)->getAs<clang::BuiltinType>();
   };
   const clang::BuiltinType *from = type(0), *to = type(1);
@@ -42,7 +42,7 @@ bool isBoolOfVector(const clang::Diagnostic& diagnostic) {
          to->getKind() == clang::BuiltinType::Bool;
 }
 
-/// The text of an argument that is a name.
+/// The text of an argument that is a name or a string.
 std::string nameIn(const clang::Diagnostic& diagnostic, unsigned argument) {
   switch (diagnostic.getArgKind(argument)) {
     case DiagnosticsEngine::ak_identifierinfo: return diagnostic.getArgIdentifier(argument)->getName().str();
@@ -53,7 +53,7 @@ std::string nameIn(const clang::Diagnostic& diagnostic, unsigned argument) {
   }
 }
 
-/// The intrinsic that is one letter away from a name. Clang suggests none where there are two, as `sin` and `sinh` for `sinn`.
+/// An intrinsic whose name differs in one letter. Clang suggests none if two are equally close.
 std::string_view intrinsicLike(llvm::StringRef name) {
   if (name.size() < 4) return {};
   for (const ir::IntrinsicRow& row : ir::intrinsicRows()) {
@@ -62,13 +62,13 @@ std::string_view intrinsicLike(llvm::StringRef name) {
   return {};
 }
 
-/// The word at the place of a message, replaced.
+/// A fix-it that replaces the word at the diagnostic's location.
 std::vector<clang::FixItHint> replaced(const clang::Diagnostic& diagnostic, std::string_view word) {
   if (word.empty() || diagnostic.getLocation().isMacroID()) return {};
   return {clang::FixItHint::CreateReplacement(clang::SourceRange(diagnostic.getLocation()), word)};
 }
 
-/// What stands in for a name of another language, even where Clang knows one that looks alike.
+/// Advice on a name from another language, even if Clang suggests a similar name.
 Advice adviceOnForeignName(const clang::Diagnostic& diagnostic) {
   const std::string name = nameIn(diagnostic, 0);
   const std::optional<Instead> instead = insteadOf(name);
@@ -76,7 +76,7 @@ Advice adviceOnForeignName(const clang::Diagnostic& diagnostic) {
   return {format(Diag::ForeignName, {name, instead->advice}), replaced(diagnostic, instead->word)};
 }
 
-/// What stands in for a name that nobody declared.
+/// Advice on an undeclared name.
 Advice adviceOnName(const clang::Diagnostic& diagnostic) {
   if (Advice advice = adviceOnForeignName(diagnostic); !advice.text.empty()) return advice;
   const std::string name = nameIn(diagnostic, 0);
@@ -86,14 +86,14 @@ Advice adviceOnName(const clang::Diagnostic& diagnostic) {
           replaced(diagnostic, intrinsic)};
 }
 
-/// A header of C++'s library, which has no suffix, or of C's.
+/// True for a header of the C++ library, which has no suffix, or of the C library.
 bool isLibraryHeader(std::string_view file) {
   constexpr std::string_view ofC[] = {"math.h",   "stdio.h",  "stdint.h", "stdlib.h", "string.h",
                                       "stddef.h", "assert.h", "float.h",  "limits.h", "stdbool.h"};
   return file.find_first_of("./") == std::string_view::npos || std::ranges::find(ofC, file) != std::end(ofC);
 }
 
-/// `#version 330`.
+/// Advice on a directive of GLSL's, such as `#version 330`.
 Advice adviceOnDirective(const clang::Diagnostic& diagnostic) {
   clang::SmallString<32> buffer;
   const llvm::StringRef name = clang::Lexer::getSpelling(diagnostic.getLocation(), buffer,
@@ -107,19 +107,19 @@ Advice adviceOnHeader(const clang::Diagnostic& diagnostic) {
   return {isLibraryHeader(file) ? format(Diag::LibraryHeader, {file}) : std::string()};
 }
 
-/// A text that a message is about, in the order in which Clang marks them.
+/// The source text of one of the ranges that Clang marks, in its order.
 llvm::StringRef textOf(const clang::Diagnostic& diagnostic, unsigned range = 0) {
   if (diagnostic.getNumRanges() <= range) return {};
   return clang::Lexer::getSourceText(diagnostic.getRange(range), diagnostic.getSourceManager(),
                                      clang::LangOptions());
 }
 
-/// The name at the beginning of a text.
+/// The identifier at the start of a text.
 llvm::StringRef nameAt(llvm::StringRef text) {
   return text.take_while([](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; });
 }
 
-/// An index of what has none: `x[0]` where x is an element, `a[1][2]` where a is a gather of rank 1.
+/// Advice on an index where there is none: `x[0]` of an element x, `a[1][2]` of a gather a of rank 1.
 Advice adviceOnIndex(const clang::Diagnostic& diagnostic) {
   const llvm::StringRef base = textOf(diagnostic), name = nameAt(base);
   if (name.empty()) return {};
@@ -132,7 +132,7 @@ Advice adviceOnIndex(const clang::Diagnostic& diagnostic) {
                                       fmt::format("{}", taken + 1), brackets})};
 }
 
-/// `x[f]` of an array that has a length, where f is a float.
+/// Advice on `x[f]`, where x is an array with a length and f a float.
 Advice adviceOnArrayIndex(const clang::Diagnostic& diagnostic) {
   const llvm::StringRef index = textOf(diagnostic);
   if (index.empty()) return {};
@@ -149,7 +149,7 @@ bool isMask(clang::QualType type) {
   return vector != nullptr && vector->getElementType()->isIntegerType();
 }
 
-/// The class of a gather parameter.
+/// True for the class of a gather parameter.
 bool isGather(clang::QualType type) {
   const clang::CXXRecordDecl* record = type.isNull() ? nullptr : type->getAsCXXRecordDecl();
   return record != nullptr && record->getIdentifier() != nullptr && record->getName().starts_with("gather_");
@@ -164,20 +164,20 @@ bool namesGather(const clang::Diagnostic& diagnostic) {
   return false;
 }
 
-/// The character at the place of a message.
+/// The character at a diagnostic's location.
 char characterAt(const clang::Diagnostic& diagnostic) {
   bool isInvalid = false;
   const char* text = diagnostic.getSourceManager().getCharacterData(diagnostic.getLocation(), &isInvalid);
   return isInvalid ? '\0' : *text;
 }
 
-/// `x ^ 2` of floats, and operators between a gather and something else.
+/// Advice on `x ^ 2` of floats, and on operators between a gather and something else.
 Advice adviceOnOperands(const clang::Diagnostic& diagnostic) {
   if (namesGather(diagnostic)) return {format(Diag::GatherAsValue, {})};
   return {characterAt(diagnostic) == '^' ? format(Diag::PowerOperator, {"^"}) : std::string()};
 }
 
-/// `x ** 2`: the second star stands before what is no pointer.
+/// Advice on `x ** 2`, where the second star dereferences what is not a pointer.
 Advice adviceOnIndirection(const clang::Diagnostic& diagnostic) {
   bool isInvalid = false;
   const clang::SourceLocation place = diagnostic.getLocation();
@@ -186,7 +186,7 @@ Advice adviceOnIndirection(const clang::Diagnostic& diagnostic) {
   return {!isInvalid && *text == '*' ? format(Diag::PowerOperator, {"**"}) : std::string()};
 }
 
-/// `float2 r = a < b`: two types, one of which is a mask's.
+/// Advice on `float2 r = a < b`, which mixes a type and the type of a mask.
 Advice adviceOnConversion(const clang::Diagnostic& diagnostic) {
   if (namesGather(diagnostic)) return {format(Diag::GatherAsValue, {})};
   clang::QualType mask, wanted;
@@ -197,7 +197,7 @@ Advice adviceOnConversion(const clang::Diagnostic& diagnostic) {
   }
   const auto* vector = wanted.isNull() ? nullptr : wanted->getAs<clang::ExtVectorType>();
   if (mask.isNull() || vector == nullptr) return {};
-  if (vector->getElementType()->isChar32Type()) return {};  // a bool vector is made by bool4(a < b)
+  if (vector->getElementType()->isChar32Type()) return {};  // bool4(a < b) is a bool vector
   const unsigned ranges = diagnostic.getNumRanges();
   const llvm::StringRef text = ranges == 0 ? llvm::StringRef() : textOf(diagnostic, ranges - 1);
   const bool isShown = !text.empty() && !text.contains('?');
@@ -213,14 +213,14 @@ Advice adviceOnCall(const clang::Diagnostic& diagnostic) {
   return {};
 }
 
-/// `a[0] = 1`: what Clang cannot assign to and has an index is an element of a gather, or a row of a matrix that is a parameter.
+/// Advice on `a[0] = 1`: only elements of gathers and rows of parameters are indexed and not assignable.
 Advice adviceOnAssignment(const clang::Diagnostic& diagnostic) {
   const llvm::StringRef place = textOf(diagnostic), name = nameAt(place);
   const bool isIndexed = !name.empty() && place.drop_front(name.size()).ltrim().starts_with("[");
   return {isIndexed ? format(Diag::GatherAssigned, {place.str(), name.str()}) : std::string()};
 }
 
-/// `a.size()`, of an element or a gather: members that containers have.
+/// Advice on `a.size()` of an element or a gather, and other members of containers.
 Advice adviceOnMember(std::string_view member) {
   constexpr std::string_view ofContainers[] = {"size", "length", "begin", "end", "empty", "data"};
   const bool isKnown = std::ranges::find(ofContainers, member) != std::end(ofContainers);
@@ -281,14 +281,14 @@ void DiagnosticPrinter::HandleDiagnostic(DiagnosticsEngine::Level level,
   if (level == DiagnosticsEngine::Warning && isNarrowing(diagnostic)) level = DiagnosticsEngine::Error;
   const Advice advice = level == DiagnosticsEngine::Note ? Advice() : adviceOn(diagnostic);
   if (advice.text.empty()) return TextDiagnosticPrinter::HandleDiagnostic(level, diagnostic);
-  isDropping_ = true;  // the candidates that Clang has seen are no help either
+  isDropping_ = true;  // also drops the list of candidates
   print(level, diagnostic, advice);
 }
 
-/// As Clang prints a message of its own.
+/// Prints as Clang prints its own messages.
 void DiagnosticPrinter::print(DiagnosticsEngine::Level level, const clang::Diagnostic& diagnostic,
                               const Advice& advice) {
-  DiagnosticConsumer::HandleDiagnostic(level, diagnostic);  // which counts
+  DiagnosticConsumer::HandleDiagnostic(level, diagnostic);  // counts errors and warnings
   clang::TextDiagnostic printer(out_, language_, options_.get());
   printer.emitDiagnostic(clang::FullSourceLoc(diagnostic.getLocation(), diagnostic.getSourceManager()), level,
                          advice.text, diagnostic.getRanges(), advice.fixIts);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Clang's printer, with one message less: a component of a bool vector, which Clang takes for a char32_t, is a bool
-// and loses nothing where a list in braces makes one of it. Every other narrowing stays the error that it is in C++.
-// And where Clang's words are about C++ and the mistake is about kernels, such as a name that people bring from elsewhere or an
-// index of an element, it says what to do instead, with a fix-it where one word of ours means the same.
+// Clang's printer with two changes. It drops the narrowing error for a component of a bool vector in a braced
+// list: Clang takes it for a char32_t, but it is a bool and loses nothing. Every other narrowing stays an
+// error, as in C++. Where Clang's message is about C++ and the mistake is about kernels, such as a name from
+// another language or an index of an element, it prints our advice instead, with a fix-it if possible.
 #pragma once
 
 #include <string>
@@ -14,12 +14,12 @@
 
 namespace skc::frontend {
 
-/// The argument of Clang's that has narrowing reported as a warning, which this printer makes an error again.
+/// The Clang argument that makes narrowing a warning, which this printer turns into an error again.
 inline constexpr const char* narrowingArgument = "-Wno-error=c++11-narrowing";
 
-/// Our words for a message of Clang's.
+/// Our replacement for one of Clang's messages.
 struct Advice {
-  std::string text;  ///< "" where Clang's own will do
+  std::string text;  ///< "" keeps Clang's own
   std::vector<clang::FixItHint> fixIts = {};
 };
 
@@ -36,7 +36,7 @@ class DiagnosticPrinter : public clang::TextDiagnosticPrinter {
   llvm::raw_ostream& out_;
   llvm::IntrusiveRefCntPtr<clang::DiagnosticOptions> options_;
   clang::LangOptions language_;
-  bool isDropping_ = false;  ///< the notes of a message that was dropped or replaced
+  bool isDropping_ = false;  ///< dropping the notes of a message that was dropped or replaced
 };
 
 }  // namespace skc::frontend

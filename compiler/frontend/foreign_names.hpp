@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Names that people bring from elsewhere, and that kernels do not have.
+// Names from other languages that kernels do not have.
 #pragma once
 
 #include <optional>
@@ -9,13 +9,13 @@
 
 namespace skc::frontend {
 
-/// What stands in for a name that kernels do not have.
+/// What to use instead of such a name.
 struct Instead {
   std::string advice;             ///< what to do
-  std::string_view word = {};     ///< a word of ours that means the same; "" where there is none
+  std::string_view word = {};     ///< a word of ours that means the same; "" if there is none
 };
 
-/// What to do in place of `name` (foreign_names.def); nothing for one that is not known.
+/// The advice for `name` in foreign_names.def; nullopt if it is not there.
 std::optional<Instead> insteadOf(std::string_view name);
 
 }  // namespace skc::frontend

@@ -27,8 +27,8 @@
 #include "frontend/tokens/token_editor.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
-// LLVM's headers poison what their allocators have not handed out; libclang-cpp, built without the
-// sanitizer, hands it out without lifting the poison.
+// LLVM's headers poison memory that their allocators have not handed out; libclang-cpp, built without the
+// sanitizer, hands it out without removing the poison.
 extern "C" const char* __asan_default_options() {   // NOLINT(bugprone-reserved-identifier)
   return "allow_user_poisoning=0";
 }
@@ -37,9 +37,9 @@ extern "C" const char* __asan_default_options() {   // NOLINT(bugprone-reserved-
 namespace skc::frontend {
 namespace {
 
-/// Larger files are no kernels that somebody wrote; Clang would take minutes over them.
+/// Nobody writes larger kernels by hand; Clang would take minutes for them.
 constexpr std::uintmax_t largestFile = std::uintmax_t{4} << 20;
-/// A few lines of macros that use one another make more than any memory holds.
+/// A few lines of nested macros can expand to more tokens than fit in memory.
 constexpr std::size_t mostTokens = 1'000'000;
 
 std::vector<std::string> compilerArguments(const Options& options, const std::string& path) {
@@ -47,13 +47,13 @@ std::vector<std::string> compilerArguments(const Options& options, const std::st
       "-fsyntax-only", "-triple", "x86_64-unknown-linux-gnu", "-x", "c++", "-std=c++20", "-nostdsysteminc",
       "-nobuiltininc", "-fno-rtti", "-flax-vector-conversions=all", "-fnative-half-arguments-and-returns",
       "-Wno-undefined-internal", "-Wno-undefined-inline", narrowingArgument,
-      "-Wno-literal-range",   // lowering tells, which knows whether a literal is a double
-      // a mistaken -W or a long cascade must not bury the first message
+      "-Wno-literal-range",   // lowering warns, because it knows which literals are doubles
+      // a bad -W or a long cascade must not bury the first message
       "-ferror-limit", "20", "-fmessage-length=0"};
   for (const std::string& directory : options.includeDirectories) arguments.push_back("-I" + directory);
   for (const std::string& definition : options.definitions) arguments.push_back("-D" + definition);
   for (const std::string& warning : options.warnings) {
-    if (!warning.ends_with("performance")) arguments.push_back("-W" + warning);  // the driver's own
+    if (!warning.ends_with("performance")) arguments.push_back("-W" + warning);  // the driver's
   }
   if (options.fixIts) arguments.push_back("-fdiagnostics-parseable-fixits");
   if (options.color) arguments.push_back("-fcolor-diagnostics");
@@ -122,11 +122,11 @@ class Frontend::Unit {
     llvm::raw_ostream* messages = messages_.get();
     if (messages == nullptr) messages = &llvm::errs();
     auto printer = std::make_unique<DiagnosticPrinter>(*messages, &compiler_.getDiagnosticOpts());
-    compiler_.createDiagnostics(printer.release());  // which takes it
+    compiler_.createDiagnostics(printer.release());  // takes ownership
     diagnostics_ = std::make_unique<ClangDiagnostics>(compiler_.getDiagnostics());
   }
 
-  /// Null, and told, where that is not possible.
+  /// Returns null after reporting an error.
   std::unique_ptr<llvm::MemoryBuffer> readFile(const std::string& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
@@ -165,7 +165,7 @@ class Frontend::Unit {
                                                    compiler_.getDiagnostics())) {
       return false;
     }
-    // again, now with the options of the command line
+    // again, with the options of the command line
     createDiagnostics();
     compiler_.setTarget(clang::TargetInfo::CreateTargetInfo(compiler_.getDiagnostics(),
                                                             compiler_.getInvocation().TargetOpts));
@@ -184,16 +184,16 @@ class Frontend::Unit {
     return compiler_.InitializeSourceManager(compiler_.getFrontendOpts().Inputs.front());
   }
 
-  /// The real files, with the main one as it is in memory.
+  /// The real file system, with the main file in memory over it.
   llvm::IntrusiveRefCntPtr<llvm::vfs::FileSystem> filesWithText() {
     auto memory = llvm::makeIntrusiveRefCnt<llvm::vfs::InMemoryFileSystem>();
     auto files = llvm::makeIntrusiveRefCnt<llvm::vfs::OverlayFileSystem>(llvm::vfs::getRealFileSystem());
-    files->pushOverlay(memory);  // which tells it the working directory
+    files->pushOverlay(memory);  // sets its working directory
     memory->addFile(path_, 0, std::move(text_));
     return files;
   }
 
-  /// Nothing, and told, where there are too many.
+  /// Returns no tokens after reporting that there are too many.
   std::vector<clang::Token> lex() {
     clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
     preprocessor.EnterMainSourceFile();
@@ -209,7 +209,7 @@ class Frontend::Unit {
     return tokens;
   }
 
-  /// What clang::ParseAST does, but from tokens instead of the main file.
+  /// Does what clang::ParseAST does, but from tokens instead of the main file.
   void parse(const std::vector<clang::Token>& tokens) {
     clang::Preprocessor& preprocessor = compiler_.getPreprocessor();
     clang::Parser parser(preprocessor, compiler_.getSema(), /*SkipFunctionBodies=*/false);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// From a .sk file to the IR. This header is all that the rest of the compiler sees of Clang's side:
-// no Clang type crosses it.
+// Compiles a .sk file to the IR. The rest of the compiler sees only this header of the code that uses Clang,
+// so it has no Clang types.
 #pragma once
 
 #include <iosfwd>
@@ -20,12 +20,12 @@ struct Options {
   std::vector<std::string> definitions;          ///< -D: NAME or NAME=VALUE
   std::vector<std::string> warnings;             ///< -W, without the -W: "all", "error", "no-unused"
   bool color = false;
-  bool fixIts = false;                           ///< in Clang's parseable form
+  bool fixIts = false;                           ///< print them in Clang's parseable form
   std::ostream* messages = nullptr;              ///< where messages go; null: standard error
-  bool isLibrary = false;                        ///< the file may do without kernels
+  bool isLibrary = false;                        ///< the file need not have kernels
 };
 
-/// One translation unit. It lives until the last diagnostic about it is reported.
+/// One translation unit. It must outlive every report of a diagnostic about it.
 class Frontend {
  public:
   explicit Frontend(const Options& options);
@@ -33,15 +33,15 @@ class Frontend {
   Frontend(const Frontend&) = delete;
   Frontend& operator=(const Frontend&) = delete;
 
-  /// Parses, checks and lowers `path`, which the messages name as given. Empty after errors, which
-  /// are where Options has them by then. With a `text`, the file need not exist: it is compiled as if it held
-  /// that. Called once.
+  /// Parses, checks and lowers `path`; messages name it as given. Returns nullopt after errors, which have
+  /// been written where Options says. If `text` is given, it is compiled as the contents of the file, which
+  /// need not exist. Call it once.
   std::optional<ir::Module> compile(const std::string& path, std::optional<std::string> text = std::nullopt);
 
-  /// Prints the tree of the file's own declarations, as Clang does. After compile().
+  /// Prints Clang's tree of the file's own declarations. Call after compile().
   void dumpAst(std::ostream& out) const;
 
-  /// Files that the result depends on: the main file, then what it includes.
+  /// The files that the result depends on: the main file, then its includes.
   std::vector<std::string> dependencies() const;
 
   Diagnostics& diagnostics();

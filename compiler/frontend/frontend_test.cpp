@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What the frontend makes of bodies: the IR that is printed, mostly about effects and their order.
-// Messages are tests/diagnostics' business.
+// Tests the IR that the frontend produces for function bodies, mostly effects and their order.
+// tests/diagnostics covers messages.
 #include "frontend/frontend.hpp"
 
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using skc::frontend::Frontend;
 
-/// A .sk file that lasts as long as the object.
+/// A temporary .sk file, deleted by the destructor.
 class SourceFile {
  public:
   explicit SourceFile(const std::string& text) {

@@ -17,13 +17,13 @@ namespace skc::frontend {
 namespace {
 
 struct VectorFamily {
-  std::string_view scalar;    ///< as the user writes it
-  std::string_view element;   ///< as Clang holds it
-  std::string_view carrier;   ///< what intrinsics compute it in
+  std::string_view scalar;    ///< in .sk
+  std::string_view element;   ///< Clang's type
+  std::string_view carrier;   ///< arithmetic type of intrinsics
 };
 
-// Vectors of `bool` have no swizzles in Clang, so their components are char32_t, a type that nothing
-// else uses and that has the size of the masks that vector comparisons give.
+// In Clang, vectors of `bool` have no swizzles. Their components are therefore char32_t, which nothing else
+// uses and which has the size of the masks that vector comparisons give.
 constexpr std::array<VectorFamily, 10> families = {{{"float", "float", "float"},
                                                     {"double", "double", "double"},
                                                     {"int", "int", "int"},
@@ -35,15 +35,15 @@ constexpr std::array<VectorFamily, 10> families = {{{"float", "float", "float"},
                                                     {"short", "short", "int"},
                                                     {"ushort", "unsigned short", "int"}}};
 
-// Clang has no such numbers: they are classes that convert to and from float.
+// Clang has no normalized types: they are classes that convert to and from float.
 constexpr std::array<std::string_view, 4> normalized = {"unorm8", "snorm8", "unorm16", "snorm16"};
 
-/// The class of values that a signature letter admits, as far as a result type depends on it.
+/// True if arguments that match this letter of a signature help determine the result type.
 bool countsForResult(char letter) {
   return std::string_view("FfVDdNnSQR").find(letter) != std::string_view::npos;
 }
 
-/// Letters between the parentheses of the first signature, and of every later one, by position.
+/// The letters at each parameter position, over all signatures.
 std::vector<std::string> lettersByPosition(const std::vector<std::string_view>& signatures) {
   std::vector<std::string> positions;
   for (std::string_view text : signatures) {
@@ -57,7 +57,7 @@ std::vector<std::string> lettersByPosition(const std::vector<std::string_view>& 
   return positions;
 }
 
-/// `pow`, F(F,F): "template <class A, class B> __sk_F<A, B> pow(A, B);"
+/// Declares an intrinsic; `pow`, F(F,F): "template <class A, class B> __sk_F<A, B> pow(A, B);"
 std::string declare(std::string_view name, const std::vector<std::string_view>& signatures) {
   const char result = signatures.front().front();
   const std::vector<std::string> positions = lettersByPosition(signatures);
@@ -67,7 +67,7 @@ std::string declare(std::string_view name, const std::vector<std::string_view>& 
     const char type = static_cast<char>('A' + i);
     bool counts = true;
     for (char letter : positions[i]) {
-      // asfloat takes int or uint; mix takes a weight or a mask, which does not shape the result
+      // asfloat takes int or uint; the weight or mask of mix does not affect the result type
       counts = counts && (countsForResult(letter) || (positions.size() == 1));
     }
     parameters += fmt::format("{}class {}", i == 0 ? "" : ", ", type);
@@ -105,7 +105,7 @@ std::string vectorTypes() {
   return text;
 }
 
-/// A class whose values are floats or vectors of them, kept with fewer bits.
+/// A class for values that are floats, or vectors of floats, stored with fewer bits.
 std::string normalizedType(std::string_view name, std::string_view carrier) {
   return fmt::format(
       "struct {0} {{\n"
@@ -127,8 +127,8 @@ std::string normalizedTypes() {
   return text;
 }
 
-/// Classes, because Clang's own matrices have no rows. Lowering knows what their constructors and
-/// operators mean; the empty bodies are for constants. `__sk_row2` is a row in braces or a float2.
+/// Matrices are classes, because Clang's own have no rows. Lowering knows what their constructors and
+/// operators mean; the empty bodies only serve constants. `__sk_row2` is a row in braces or a float2.
 std::string matrixTypes() {
   std::string text;
   for (int size = 2; size <= 4; ++size) {
@@ -158,8 +158,8 @@ std::string matrixTypes() {
   return text;
 }
 
-/// __sk_traits<T>: the floating-point, int, uint and bool types of T's width, as f the former's component, and as
-/// N what T is computed in. What becomes floating-point becomes float, but double stays.
+/// __sk_traits<T>: F, I, U and B are the floating-point, int, uint and bool types of T's width, f is F's
+/// component, and N is T's arithmetic type. F is float, except that double stays double.
 std::string typeTraits() {
   std::string text = "template <class T> struct __sk_traits;\n";
   for (const VectorFamily& family : families) {
@@ -254,7 +254,7 @@ template <class T> T frexp(T x, __sk_I<T>& exponent);
 )";
 
 std::string intrinsics() {
-  // One declaration for each name and number of arguments, over the signatures of all their rows.
+  // One declaration for each name and number of arguments, covering the signatures of all such rows.
   std::map<std::pair<std::string_view, std::size_t>, std::vector<std::string_view>> overloads;
 #define SKC_INTRINSIC(Name, spelling, signatures, library, native, glsl, glslVector, polyfill) \
   {                                                                                            \

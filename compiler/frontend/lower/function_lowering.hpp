@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// Lowers one function's body. C++ expressions have effects, the IR's have none: an expression's
-// effects become statements in front of the one that it stands in, and operands that C++ evaluates
-// earlier are kept in temporaries only where a later operand's effect could change them.
+// Lowers one function's body. C++ expressions have side effects, the IR's do not: an expression's effects
+// become statements in front of its statement. Operands that C++ evaluates earlier are saved in temporaries
+// only if a later operand's effect could change them.
 //
 //   v = u[i++] * 2;     ->     int t = i; i += 1; v = u[t] * 2;
-//   if (a && f(b))      ->     if (a && f(b))              where f has no effects (it takes values)
+//   if (a && f(b))      ->     if (a && f(b))              if f has no effects (it takes values)
 //   while (next(i))     ->     while (true) { bool t; t = next(i); if (!t) break; ... }
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace skc::frontend {
 
-/// Counts one level for as long as it lives.
+/// Counts one level of nesting during its lifetime.
 class Level {
  public:
   explicit Level(int& depth) : depth_(depth) { ++depth_; }
@@ -31,7 +31,7 @@ class Level {
   int& depth_;
 };
 
-/// Deeper nesting than any person writes, and than drivers' own compilers take without harm.
+/// More than anybody nests by hand, and than drivers' compilers reliably accept.
 inline constexpr int deepestNesting = 1000;
 
 class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::ExprPtr> {
@@ -39,13 +39,13 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   explicit FunctionLowering(ModuleLowering& module) : module_(module) {}
 
   ir::Function function(const clang::FunctionDecl* declaration);
-  /// Whether a function gives its own object: a member function of the type `S&`, which can only end with
-  /// `return *this;`. It is void in the IR, and the value of a call is the object's.
+  /// True for a member function that returns `S&`, which can only end with `return *this;`. It is void in the
+  /// IR, and a call's value is the object.
   static bool givesItself(const clang::FunctionDecl* declaration);
-  /// An initialiser outside any function; null where it has effects.
+  /// Lowers an initialiser outside any function; returns null if it has effects.
   ir::ExprPtr constantInitializer(const clang::Expr* init);
 
-  // ---- expressions: one function for each kind that kernels know; the rest is an error ---------
+  // ---- expressions: one function for each kind that kernels support; others are errors ----------
   ir::ExprPtr VisitParenExpr(const clang::ParenExpr* e);
   ir::ExprPtr VisitConstantExpr(const clang::ConstantExpr* e);
   ir::ExprPtr VisitExprWithCleanups(const clang::ExprWithCleanups* e);
@@ -84,7 +84,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   void parameters(const clang::FunctionDecl* declaration);
   void body(const clang::Stmt* statement, ir::Block& into);
   void statement(const clang::Stmt* statement);
-  bool checkedStatement(const clang::Stmt* statement);   ///< whether it was lowered
+  bool checkedStatement(const clang::Stmt* statement);  ///< false after an error
   void declaration(const clang::DeclStmt* statement);
   void variable(const clang::VarDecl* declaration);
   void ifStatement(const clang::IfStmt* statement);
@@ -120,7 +120,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   // ---- values (lower_value.cpp, lower_literal.cpp) ----------------------------------------------
   ir::ExprPtr make(ir::Type type, clang::SourceLocation where, ir::Expr::Node node);
   ir::ExprPtr literal(ir::Type type, std::uint32_t bits, clang::SourceLocation where);
-  /// A formula of nothing but literals (lower_literal.cpp), which takes its precision from its place.
+  /// True for an expression of literals only (lower_literal.cpp), whose precision depends on its context.
   bool isLiterals(const clang::Expr* e) const;
   ir::ExprPtr literalsAsDouble(const clang::Expr* e);
   ir::ExprPtr doubleValue(const clang::Expr* e);
@@ -159,7 +159,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr gatherRead(const clang::CXXOperatorCallExpr* e);
   ir::ExprPtr classOperator(const clang::CXXOperatorCallExpr* e);
   ir::ExprPtr classAssignment(ir::BinaryOp op, const clang::CXXOperatorCallExpr* e);
-  /// What `a[i][j]` names, and the indices as they are written.
+  /// The base of `a[i][j]`, and the indices in source order.
   struct Subscripts {
     const clang::Expr* object;
     std::vector<const clang::Expr*> written;
@@ -175,7 +175,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   // ---- append outputs (lower_append.cpp) --------------------------------------------------------
   ir::VarId appendVariable(const clang::Expr* e);
   ir::ExprPtr push(const clang::CallExpr* e);
-  /// Whether the expression writes an element of a scatter output; if so, it is lowered.
+  /// Lowers the expression if it writes an element of a scatter output; returns whether it does.
   bool scatters(const clang::Expr* e);
   struct ScatterPlace {
     Subscripts subscripts;
@@ -192,8 +192,8 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
   std::optional<ir::VarId> this_;
   bool givesItself_ = false;
-  ir::Block* out_ = nullptr;  ///< where statements go at the moment
-  int depth_ = 0;  ///< of expressions and statements around the present one
+  ir::Block* out_ = nullptr;  ///< receives statements
+  int depth_ = 0;  ///< nesting of expressions and statements
 };
 
 }  // namespace skc::frontend

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Statements that write streams: push(r, v), and what may be done to an element of a scatter output, which
-// is nothing that would read it but to combine it with a value.
+// Statements that write streams: push(r, v), and operations on an element of a scatter output, which cannot
+// be read, only assigned or combined with a value.
 //
 //   r[i] = v;   r[i] += v;   r[i] -= v;   ++r[i];   r[i] = min(r[i], v);   r[i] = max(v, r[i]);
 #include <llvm/ADT/FoldingSet.h>
@@ -30,7 +30,7 @@ ExprPtr FunctionLowering::push(const clang::CallExpr* e) {
   const ir::VarId stream = appendVariable(e->getArg(0));
   ExprPtr pushed = value(e->getArg(1));
   emit(loc, ir::Push{{ir::StreamRef::Space::Variable, stream}, std::move(pushed)});
-  return ir::literal(false, loc);   // nobody can use it: push is void
+  return ir::literal(false, loc);   // never used: push is void
 }
 
 // ---- scatter outputs ----------------------------------------------------------------------------
@@ -58,7 +58,7 @@ bool FunctionLowering::scatters(const clang::Expr* e) {
     return place.has_value();
   }
   if (const auto* call = llvm::dyn_cast<clang::CXXOperatorCallExpr>(e);
-      call && call->getOperator() == clang::OO_Equal) {   // of a struct
+      call && call->getOperator() == clang::OO_Equal) {   // assignment of a struct
     const auto place = at(call->getArg(0));
     if (place) scatterStore(*place, call->getArg(0), call->getArg(1));
     return place.has_value();
@@ -86,7 +86,7 @@ std::optional<ir::ScatterOp> extremeOf(llvm::StringRef name) {
 
 }  // namespace
 
-/// `r[i] = v`, or `r[i] = min(r[i], v)`: then both places must be the same expression.
+/// `r[i] = v`, or `r[i] = min(r[i], v)`, where both lvalues must be the same expression.
 void FunctionLowering::scatterStore(const ScatterPlace& place, const clang::Expr* left,
                                     const clang::Expr* right) {
   const auto isSame = [&](const clang::Expr* e) {
@@ -122,7 +122,7 @@ void FunctionLowering::scatterCompound(const ScatterPlace& place, const clang::C
   scatter(place, ir::ScatterOp::Add, std::move(added));
 }
 
-/// A value that combines with elements: a number of their component type, one for all components or one each.
+/// Checks a value to combine with elements: of their component type, one number for all or one each.
 ExprPtr FunctionLowering::combinedValue(const ScatterPlace& place, ExprPtr value, SourceLocation where) {
   const ir::Variable& appendOutput = function_.variables[place.stream];
   const ir::Type type = appendOutput.type;
@@ -135,7 +135,7 @@ ExprPtr FunctionLowering::combinedValue(const ScatterPlace& place, ExprPtr value
   return splat(std::move(value), type.width);
 }
 
-/// The value is evaluated before the index, as in any assignment.
+/// Evaluates the value before the index, as in any assignment.
 void FunctionLowering::scatter(const ScatterPlace& place, ir::ScatterOp op, ExprPtr value) {
   ir::Block effects;
   ir::Block* outer = std::exchange(out_, &effects);

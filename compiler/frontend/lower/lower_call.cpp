@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Calls: of intrinsics (chosen from the table by their arguments' types), of gathers, of the user's
+// Lowers calls of intrinsics (selected from the table by argument types), of gathers, and of the user's
 // functions and kernels.
 #include <algorithm>
 #include <cassert>
@@ -29,7 +29,7 @@ ExprPtr FunctionLowering::VisitCallExpr(const clang::CallExpr* e) {
   return module_.isPrelude(callee) ? intrinsicCall(e, callee) : userCall(e, callee);
 }
 
-/// a[i] of a gather, or an operator of a struct: assignment copies, others are the user's functions.
+/// a[i] of a gather, or a struct's operator: assignment copies, others are functions of the user.
 ExprPtr FunctionLowering::VisitCXXOperatorCallExpr(const clang::CXXOperatorCallExpr* e) {
   const clang::FunctionDecl* callee = e->getDirectCallee();
   if (!callee) return VisitExpr(e);
@@ -45,7 +45,7 @@ ExprPtr FunctionLowering::VisitCXXOperatorCallExpr(const clang::CXXOperatorCallE
   return userCall(e, callee);
 }
 
-/// An operator that the prelude declares: of gathers, of matrices, and assignments to normalized values.
+/// An operator that the prelude declares: for gathers, matrices, and assignments to normalized values.
 ExprPtr FunctionLowering::classOperator(const clang::CXXOperatorCallExpr* e) {
   const SourceLocation where = e->getOperatorLoc();
   const auto infix = [&](ir::BinaryOp op) {
@@ -70,11 +70,11 @@ ExprPtr FunctionLowering::classOperator(const clang::CXXOperatorCallExpr* e) {
     case clang::OO_MinusEqual: return classAssignment(ir::BinaryOp::Sub, e);
     case clang::OO_StarEqual: return classAssignment(ir::BinaryOp::Mul, e);
     case clang::OO_SlashEqual: return classAssignment(ir::BinaryOp::Div, e);
-    default: return VisitExpr(e);   // the prelude declares no other
+    default: return VisitExpr(e);   // the prelude declares no others
   }
 }
 
-/// `u += x` of a normalized value, `m *= n` of a matrix: computed, then assigned.
+/// `u += x` for a normalized value, `m *= n` for a matrix: the operation, then an assignment.
 ExprPtr FunctionLowering::classAssignment(ir::BinaryOp op, const clang::CXXOperatorCallExpr* e) {
   const Loc loc = module_.loc(e->getBeginLoc());
   ExprPtr right = value(e->getArg(1));
@@ -90,7 +90,7 @@ ExprPtr FunctionLowering::classAssignment(ir::BinaryOp op, const clang::CXXOpera
   ExprPtr left = convert(ir::clone(*target), ir::carrierOf(type.scalar));
   ExprPtr result = ir::binary(op, std::move(left), std::move(right), loc);
   emit(loc, ir::Assign{std::move(target), std::nullopt, convert(std::move(result), type.scalar)});
-  return ir::literal(false, loc);   // it returns nothing
+  return ir::literal(false, loc);   // never used: the call is void
 }
 
 // ---- intrinsics -----------------------------------------------------------------------------------
@@ -121,7 +121,7 @@ ExprPtr FunctionLowering::intrinsicCall(const clang::CallExpr* e, const clang::F
   return tableIntrinsic(e, name);
 }
 
-/// float4(v.xy, 0, 1): components that add up, or one scalar for all.
+/// float4(v.xy, 0, 1): components that add up to the width, or one scalar for all.
 ExprPtr FunctionLowering::vectorConstructor(const clang::CallExpr* e, ir::Type type) {
   const SourceLocation where = e->getBeginLoc();
   Exprs args = valuesInOrder(std::vector<const clang::Expr*>(e->arg_begin(), e->arg_end()), type.isDouble());
@@ -148,7 +148,7 @@ namespace {
 
 constexpr int impossible = 1000;
 
-/// What it costs to hand `from` to a parameter `to`; conversions lose nothing but ulps, as in C++.
+/// The cost of converting an argument; as in C++, a conversion may lose no more than a rounding error.
 int conversionCost(ir::Type from, ir::Type to) {
   from = from.carrier();
   if (from == to) return 0;
@@ -163,7 +163,7 @@ int conversionCost(ir::Type from, ir::Type to) {
   if (to.scalar == Scalar::Double) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
   if (to.scalar == Scalar::Float) return cost + (from.scalar == Scalar::Bool ? 3 : 1);
   if (to.scalar == Scalar::Bool)
-    return from.scalar == Scalar::Int && from.isVector() ? cost : impossible;  // a mask
+    return from.scalar == Scalar::Int && from.isVector() ? cost : impossible;  // int mask to bool vector
   if (from.scalar == Scalar::Float) return impossible;
   if (to.scalar == Scalar::Uint) return cost + 2;
   return cost + (from.scalar == Scalar::Bool ? 1 : 3);
@@ -174,7 +174,7 @@ struct Match {
   ir::IntrinsicOverload overload;
 };
 
-/// The cheapest overload with the result that Clang's prelude declares.
+/// The cheapest overload with the result type that Clang's prelude declares.
 std::optional<Match> bestMatch(llvm::StringRef name, ir::Type result, const std::vector<ExprPtr>& args) {
   std::optional<Match> best;
   int bestCost = impossible;
@@ -228,14 +228,14 @@ ExprPtr FunctionLowering::intrinsic(ir::Intrinsic which, ir::Type result, Source
   return make(result, where, ir::IntrinsicCall{which, std::move(args)});
 }
 
-/// sincos(x, s, c), modf(x, whole), frexp(x, e): assignments of values without effects.
+/// Lowers sincos(x, s, c), modf(x, whole) and frexp(x, e) to assignments of values without effects.
 ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::StringRef name) {
   const SourceLocation where = e->getBeginLoc();
   const Loc loc = module_.loc(where);
   ExprPtr x = value(e->getArg(0));
   if (!x->type.isFloat() && !x->type.isDouble())
     module_.fail(Diag::NoIntrinsic, where, {std::string_view(name), module_.spelling(x->type)});
-  // the argument is read twice, and an out argument may be the very same variable
+  // the argument is read twice, and an out argument may be the same variable
   const ir::VarId kept = temporary(x->type, loc);
   const ir::Type type = x->type;
   emit(loc, ir::Declare{kept, std::move(x)});
@@ -262,7 +262,7 @@ ExprPtr FunctionLowering::outParameterIntrinsic(const clang::CallExpr* e, llvm::
 
 namespace {
 
-/// Looks through the copies that C++ makes of a gather handed over by value.
+/// Skips the copies that C++ makes of a gather passed by value.
 const clang::Expr* withoutCopies(const clang::Expr* e) {
   while (true) {
     e = e->IgnoreParenImpCasts();
@@ -279,7 +279,7 @@ const clang::Expr* withoutCopies(const clang::Expr* e) {
 
 }  // namespace
 
-/// The Gather, Element or output variable that `e` names, if it is no more than that name.
+/// The Gather, Element or output variable that `e` names; nullopt for any other expression.
 std::optional<ir::VarId> FunctionLowering::streamVariable(const clang::Expr* e) const {
   const auto* reference = llvm::dyn_cast<clang::DeclRefExpr>(withoutCopies(e));
   if (!reference) return std::nullopt;
@@ -299,7 +299,7 @@ ir::VarId FunctionLowering::gatherVariable(const clang::Expr* e) {
   return *stream;
 }
 
-/// A parameter that has a current element, of the kernel that `parameter` is one of; or what to declare.
+/// A parameter of the same kernel that has a current element, or what to declare, for a message.
 std::string FunctionLowering::elementBeside(const clang::ValueDecl* parameter) {
   const auto* kernel = llvm::dyn_cast<clang::FunctionDecl>(parameter->getDeclContext());
   if (kernel != nullptr) {
@@ -314,7 +314,7 @@ std::string FunctionLowering::elementBeside(const clang::ValueDecl* parameter) {
   return "an output 'out T r<>' or an input 'T x<>'";
 }
 
-/// indexof(p) and extentof(p): of a stream parameter; an output's and an iterator's are those of the domain.
+/// indexof(p) and extentof(p) of a stream parameter; an output or an iterator gives those of the domain.
 ExprPtr FunctionLowering::indexOrExtent(const clang::CallExpr* e, bool isIndex) {
   const clang::Expr* argument = withoutCopies(e->getArg(0));
   const SourceLocation where = argument->getBeginLoc();
@@ -362,7 +362,7 @@ ExprPtr FunctionLowering::neighbor(const clang::CallExpr* e) {
               ir::NeighborRead{{ir::StreamRef::Space::Variable, stream}, std::move(offset)});
 }
 
-/// sample(a, position): of floats, however they are kept.
+/// sample(a, position), of any gather with a floating-point arithmetic type.
 ExprPtr FunctionLowering::sample(const clang::CallExpr* e) {
   const SourceLocation where = e->getBeginLoc();
   const ir::VarId stream = gatherVariable(e->getArg(0));
@@ -399,7 +399,7 @@ FunctionLowering::Subscripts FunctionLowering::subscriptsOf(const clang::CXXOper
   return result;
 }
 
-/// An int index with x, the fastest, first. Floats name the nearest element.
+/// An int index with x, the fastest dimension, first. A float index selects the nearest element.
 ExprPtr FunctionLowering::indexFrom(const Subscripts& subscripts, ir::VarId stream) {
   const ir::Variable variable = function_.variables[stream];
   for (const clang::Expr* index : subscripts.written) {
@@ -424,7 +424,7 @@ ExprPtr FunctionLowering::indexFrom(const Subscripts& subscripts, ir::VarId stre
     index =
         make(ir::Type::of(Scalar::Int, variable.rank), subscripts.where, ir::Construct{std::move(values)});
   }
-  assert(index->type.width == variable.rank);  // the prelude declares nothing else
+  assert(index->type.width == variable.rank);  // the prelude declares no others
   return index;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Effects of expressions: assignments, increments, temporaries, order of evaluation; and the
+// Lowers the effects of expressions (assignments, increments, temporaries, order of evaluation) and
 // operators. Leaves, casts and initialisers are in lower_value.cpp, calls in lower_call.cpp.
 #include <algorithm>
 #include <cassert>
@@ -53,7 +53,7 @@ std::optional<ir::BinaryOp> binaryOpOf(clang::BinaryOperatorKind kind) {
 
 bool isArithmeticOp(ir::BinaryOp op) { return op <= ir::BinaryOp::Rem; }
 
-/// What an operator of two bool vectors is; nullopt where it would take them for numbers.
+/// The equivalent of an operator on two bool vectors; nullopt for arithmetic operators.
 std::optional<ir::BinaryOp> ofBools(ir::BinaryOp op) {
   if (op == ir::BinaryOp::BitAnd) return ir::BinaryOp::LogicalAnd;
   if (op == ir::BinaryOp::BitOr) return ir::BinaryOp::LogicalOr;
@@ -62,7 +62,7 @@ std::optional<ir::BinaryOp> ofBools(ir::BinaryOp op) {
   return std::nullopt;
 }
 
-/// float4(2.0) in `v * float4(2.0)` where the author wrote `v * 2.0`.
+/// Removes the splat from `v * float4(2.0)`, as Clang represents `v * 2.0`.
 ExprPtr withoutSplat(ExprPtr e) {
   auto* construct = std::get_if<ir::Construct>(&e->node);
   if (!construct || !e->type.isVector() || construct->args.size() != 1 ||
@@ -78,7 +78,7 @@ bool isStable(const ExprPtr& e, const ir::Function& function) {
   return reference && function.variables[reference->var].isConst;
 }
 
-/// The way from a place's variable to it: members and literal indices; -1 stands for any index.
+/// The access path from the root variable to an lvalue: members and constant indices; -1 is any index.
 std::vector<std::int64_t> pathOf(const ir::Expr& place) {
   std::vector<std::int64_t> path;
   const ir::Expr* e = &place;
@@ -91,14 +91,14 @@ std::vector<std::int64_t> pathOf(const ir::Expr& place) {
       path.insert(path.begin(), literal ? std::int64_t{literal->bits} : -1);
       e = index->base.get();
     } else {
-      path.clear();   // components of a vector: as good as the whole
+      path.clear();   // treats components of a vector as the whole
       e = std::get<ir::Swizzle>(e->node).base.get();
     }
   }
   return path;
 }
 
-/// Whether two places have no component in common, for certain.
+/// True if two lvalues certainly have no component in common.
 bool areDisjoint(const ir::Expr& a, const ir::Expr& b) {
   if (ir::rootOf(a) != ir::rootOf(b)) return true;
   const std::vector<std::int64_t> first = pathOf(a), second = pathOf(b);
@@ -131,7 +131,7 @@ void FunctionLowering::checkDepth(SourceLocation where) {
   if (depth_ > deepestNesting) module_.fail(Diag::NestedTooDeep, where, {std::to_string(deepestNesting)});
 }
 
-/// An expression whose value nobody uses: only its effects remain.
+/// Lowers an expression whose value is unused: only its effects remain.
 void FunctionLowering::discarded(const clang::Expr* e) {
   e = e->IgnoreParens();
   if (scatters(e)) return;
@@ -186,7 +186,7 @@ ExprPtr FunctionLowering::valueInto(const clang::Expr* e, ir::Block& block, bool
   return result;
 }
 
-/// `asDoubles`: literals are doubles, since they meet some.
+/// `asDoubles`: literals are doubles, because another operand is one.
 FunctionLowering::Exprs FunctionLowering::valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions,
                                                         bool asDoubles) {
   Exprs values;
@@ -202,7 +202,7 @@ FunctionLowering::Exprs FunctionLowering::valuesInOrder(llvm::ArrayRef<const cla
   return values;
 }
 
-/// Keeps the present value of `e` in a temporary.
+/// Saves the present value of `e` in a temporary.
 void FunctionLowering::spill(ExprPtr& e) {
   if (isStable(e, function_)) return;
   const Loc loc = e->loc;
@@ -211,7 +211,7 @@ void FunctionLowering::spill(ExprPtr& e) {
   e = ir::varRef(function_, kept, loc);
 }
 
-/// Keeps the element that a place names, not its value: only the indices on the way get temporaries.
+/// Fixes which element an lvalue refers to, not its value: only its indices are saved in temporaries.
 void FunctionLowering::keepInPlace(ExprPtr& e) {
   if (!isPlace(*e)) return spill(e);
   if (auto* index = std::get_if<ir::Index>(&e->node)) {
@@ -233,11 +233,10 @@ ir::VarId FunctionLowering::temporary(ir::Type type, Loc loc) {
   return static_cast<ir::VarId>(function_.variables.size() - 1);
 }
 
-/// The place that `e` names. Clang has checked that it may be written.
+/// Lowers `e` as an lvalue. Clang has checked that it is assignable.
 ExprPtr FunctionLowering::place(const clang::Expr* e) {
   ExprPtr result = value(e);
-  if (const auto* read =
-          std::get_if<ir::GatherRead>(&result->node)) {  // of structs, which C++ lets one assign to
+  if (const auto* read = std::get_if<ir::GatherRead>(&result->node)) {  // of structs, which C++ can assign to
     const std::string& gather = function_.variables[read->stream.id].name;
     module_.fail(Diag::GatherAssigned, e->getBeginLoc(), {gather + "[...]", gather});
   }
@@ -245,7 +244,7 @@ ExprPtr FunctionLowering::place(const clang::Expr* e) {
   return result;
 }
 
-/// The sides of an assignment. C++17 evaluates the right one first.
+/// Evaluates both sides of an assignment, the right one first as in C++17.
 FunctionLowering::Sides FunctionLowering::sidesOf(const clang::BinaryOperator* e) {
   ExprPtr right = value(e->getRHS());
   ir::Block effects;
@@ -273,14 +272,14 @@ ExprPtr FunctionLowering::compoundAssign(const clang::CompoundAssignOperator* e,
   ExprPtr result = wantValue ? ir::clone(*target) : nullptr;
   const Loc loc = module_.loc(e->getBeginLoc());
   const bool isSignedRemainder =
-      op == ir::BinaryOp::Rem && computed.scalar == ir::Scalar::Int;   // a function in GLSL
+      op == ir::BinaryOp::Rem && computed.scalar == ir::Scalar::Int;  // is a function in GLSL
   const bool isNumber = computed.isArithmetic() && !computed.isBool() && !computed.isNarrow();
   if (isNumber && computed.scalar == target->type.scalar && !isSignedRemainder) {
     if (isArithmeticOp(op)) right = withoutSplat(std::move(right));
     emit(loc, ir::Assign{std::move(target), op, std::move(right)});
     return result;
   }
-  // `i += 0.5f` computes in float and converts back, and a narrow type computes in its carrier
+  // `i += 0.5f` computes in float and converts back; a storage type computes in its arithmetic type
   const ir::Scalar scalar = target->type.scalar;
   ExprPtr wide =
       binary(op, convert(ir::clone(*target), computed.scalar), std::move(right), e->getOperatorLoc());
@@ -326,7 +325,7 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
       operand = convert(std::move(operand), ir::carrierOf(written.scalar));
       if (const auto* constant = std::get_if<ir::Literal>(&operand->node);
           constant && !operand->type.isBool()) {
-        // -1 is a literal to its reader: change the sign bit of a float, wrap an integer
+        // reads -1 as a literal: flips the sign bit of a float, negates an integer with wrap-around
         if (operand->type.isDouble()) {
           return make(operand->type, where, ir::Literal{constant->bits, constant->high ^ 0x80000000u});
         }
@@ -358,7 +357,7 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
       if (const auto* self = llvm::dyn_cast<clang::CXXThisExpr>(e->getSubExpr()->IgnoreParenImpCasts())) {
         return VisitCXXThisExpr(self);
       }
-      value(e->getSubExpr());   // says what is wrong with it, if it is more than a pointer
+      value(e->getSubExpr());  // reports a more specific error, if there is one
       module_.fail(Diag::Pointer, where, {e->getSubExpr()->getType().getAsString()});
     case clang::UO_AddrOf: module_.fail(Diag::Pointer, where, {e->getType().getAsString()});
     case clang::UO_Extension: return value(e->getSubExpr());
@@ -380,7 +379,7 @@ ExprPtr FunctionLowering::VisitBinaryOperator(const clang::BinaryOperator* e) {
   if (!op) return VisitExpr(e);
   Exprs operands = valuesInOrder({e->getLHS(), e->getRHS()});
   ExprPtr result = binary(*op, std::move(operands[0]), std::move(operands[1]), e->getOperatorLoc());
-  // vectors of a narrow type stay what they are after each operation
+  // vectors of a storage type are rounded to it after each operation
   return convert(std::move(result), module_.type(e->getType(), e->getOperatorLoc()).scalar);
 }
 
@@ -389,11 +388,11 @@ ExprPtr FunctionLowering::VisitCompoundAssignOperator(const clang::CompoundAssig
 }
 
 ExprPtr FunctionLowering::binary(ir::BinaryOp op, ExprPtr lhs, ExprPtr rhs, SourceLocation where) {
-  assert(lhs->type.isArithmetic() && rhs->type.isArithmetic());   // Clang finds no operator otherwise
+  assert(lhs->type.isArithmetic() && rhs->type.isArithmetic());  // otherwise Clang finds no operator
   lhs = convert(std::move(lhs), ir::carrierOf(lhs->type.scalar));
   rhs = convert(std::move(rhs), ir::carrierOf(rhs->type.scalar));
   if (isArithmeticOp(op) && lhs->type.isVector()) {
-    // keep `2 * v` as it was written; two splats stay vectors
+    // keep `2 * v` as written; two splats stay vectors
     ExprPtr bare = withoutSplat(std::move(rhs));
     if (bare->type.isVector()) lhs = withoutSplat(std::move(lhs));
     rhs = std::move(bare);
@@ -408,7 +407,7 @@ ExprPtr FunctionLowering::binary(ir::BinaryOp op, ExprPtr lhs, ExprPtr rhs, Sour
   return compares ? mask(std::move(result)) : std::move(result);
 }
 
-/// && and ||: the right side's effects happen only where its value is needed.
+/// && and ||: the right side's effects happen only if its value is needed.
 ExprPtr FunctionLowering::logical(const clang::BinaryOperator* e) {
   const SourceLocation where = e->getOperatorLoc();
   const bool isAnd = e->getOpcode() == clang::BO_LAnd;
@@ -468,10 +467,10 @@ ExprPtr FunctionLowering::argument(const clang::Expr* e, const ir::Variable& par
                           module_.loc(e->getBeginLoc()));
     }
     case ir::VarRole::InOut: {
-      return place(e);   // Clang binds references only to their own type
+      return place(e);  // Clang binds references only to the same type
     }
     case ir::VarRole::Element:
-      // another type's is a value: it is converted
+      // an argument of another type is a value, and is converted
       if (const auto stream = streamVariable(e);
           stream && function_.variables[*stream].type == parameter.type) {
         return ir::makeExpr(function_.variables[*stream].type, ir::VarRef{*stream},
@@ -484,7 +483,7 @@ ExprPtr FunctionLowering::argument(const clang::Expr* e, const ir::Variable& par
   return value(e);
 }
 
-/// A variable whose declaration was an error already: one message is enough.
+/// Abandons the statement if it uses a variable whose declaration was an error: one message is enough.
 void FunctionLowering::abandonIfUnknown(const clang::Stmt* s) const {
   const auto* expression = llvm::dyn_cast_or_null<clang::Expr>(s);
   if (!expression) return;
@@ -498,7 +497,7 @@ void FunctionLowering::abandonIfUnknown(const clang::Stmt* s) const {
   throw Abandoned{};
 }
 
-/// Calls with reference parameters, or that may push and scatter, are statements; others are values.
+/// Calls with reference parameters, or that may push or scatter, become statements; others stay expressions.
 ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::FunctionDecl* callee) {
   for (const clang::Stmt* part : e->children()) abandonIfUnknown(part);
   const SourceLocation where = e->getBeginLoc();
@@ -554,7 +553,7 @@ ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::Functi
   }
   if (target.result.isVoid()) {
     emit(loc, ir::CallStmt{id, std::move(arguments), nullptr});
-    return ir::literal(false, loc);   // nobody looks at the value of a void call
+    return ir::literal(false, loc);  // never used: the call is void
   }
   const ir::VarId result = temporary(target.result, loc);
   emit(loc, ir::Declare{result, nullptr});

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// Floating-point literals. To Clang, `0.1` is a float (float_literals.hpp), so that `x * 0.1` is float for a
-// float x. A formula of nothing but such literals takes its precision from its place: where it becomes a
-// double, or meets one, it never was float, and is read anew from its text.
+// Floating-point literals. For Clang, `0.1` is a float (float_literals.hpp), so that `x * 0.1` is float for a
+// float x. The precision of an expression of such literals only depends on its context: if it is converted to
+// double, or meets a double, its literals are read as doubles from their text.
 //
 //   double d = 0.1;              the nearest double
 //   d *= 1.0 / 3.0;              divided in double
-//   double e = 0.1f;             a float: its author said so
+//   double e = 0.1f;             a float, as written
 //   float f = 0.1;               rounded once, from the text
 #include <algorithm>
 
@@ -26,7 +26,7 @@ using ir::ExprPtr;
 
 namespace {
 
-/// Looks through what changes nothing, and through the cast that makes a float of an integer or of `0.1L`.
+/// Skips nodes without effect on the value, and the cast to float of an integer or of `0.1L`.
 const clang::Expr* bare(const clang::Expr* e) {
   while (true) {
     e = e->IgnoreParens();
@@ -51,7 +51,7 @@ bool isSign(clang::UnaryOperatorKind kind) { return kind == clang::UO_Plus || ki
 
 }  // namespace
 
-/// As it stands in the source.
+/// The literal as written in the source.
 LiteralParts FunctionLowering::partsOf(const clang::FloatingLiteral* e) const {
   llvm::SmallString<32> buffer;
   const clang::SourceLocation spelled = module_.sources().getSpellingLoc(e->getLocation());
@@ -59,7 +59,7 @@ LiteralParts FunctionLowering::partsOf(const clang::FloatingLiteral* e) const {
       clang::Lexer::getSpelling(spelled, buffer, module_.sources(), module_.context().getLangOpts()).str());
 }
 
-/// From the text where it can be read: through another type, a literal could be rounded twice.
+/// Reads the text if possible, because converting from another type could round twice.
 llvm::APFloat FunctionLowering::literalValue(const clang::FloatingLiteral* e,
                                              const llvm::fltSemantics& semantics, std::string_view type) {
   const std::string digits = partsOf(e).digits;
@@ -111,7 +111,7 @@ bool FunctionLowering::isLiterals(const clang::Expr* e) const {
          isLiterals(choice->getFalseExpr());
 }
 
-/// Of a formula that isLiterals() holds for.
+/// Lowers an expression for which isLiterals() is true.
 ExprPtr FunctionLowering::literalsAsDouble(const clang::Expr* e) {
   const Level level(depth_);
   checkDepth(e->getExprLoc());
@@ -142,10 +142,10 @@ ExprPtr FunctionLowering::literalsAsDouble(const clang::Expr* e) {
     return select(std::move(cond), std::move(yes), literalsAsDouble(choice->getFalseExpr()),
                   choice->getQuestionLoc());
   }
-  return convert(value(e), ir::Scalar::Double);   // an integer
+  return convert(value(e), ir::Scalar::Double);  // an integer
 }
 
-/// What becomes a double.
+/// Lowers an expression that is converted to double.
 ExprPtr FunctionLowering::doubleValue(const clang::Expr* e) {
   return isLiterals(e) ? literalsAsDouble(e) : convert(value(e), ir::Scalar::Double);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// From Clang's checked tree to the IR: collects the declarations of the file, lowers every function
-// of the user's, and makes kernels of those that the token editor marked.
+// Lowers Clang's checked tree to the IR: collects the file's declarations, lowers the user's functions, and
+// turns those that the token editor marked into kernels.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ class Sema;
 
 namespace skc::frontend {
 
-/// The result is only meaningful where `diagnostics` has no errors afterwards.
+/// The result is meaningful only if `diagnostics` has no errors afterwards.
 ir::Module lowerModule(clang::Sema& sema, const DeclarationSyntax& syntax, const std::string& file,
                        Diagnostics& diagnostics);
 

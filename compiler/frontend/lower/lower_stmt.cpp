@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Functions and statements. Loops keep the shape that their author wrote; only a condition or a
-// step with effects, which GLSL's loop heads cannot hold, moves into the body.
+// Lowers functions and statements. Loops keep the form that their author wrote; only conditions and steps
+// with effects, which GLSL's loop heads cannot hold, move into the body.
 #include <clang/AST/ASTContext.h>
 #include <clang/AST/DeclCXX.h>
 #include <clang/AST/ExprCXX.h>
@@ -18,7 +18,7 @@ using clang::SourceLocation;
 
 namespace {
 
-/// The IR's names are words: `operator+=` is `operator_plus_equal`.
+/// The function's name in the IR, an identifier: `operator+=` is `operator_plus_equal`.
 std::string functionName(const clang::FunctionDecl* declaration) {
   if (!declaration->isOverloadedOperator()) return declaration->getNameAsString();
   std::string name = "operator";
@@ -128,7 +128,7 @@ void FunctionLowering::parameters(const clang::FunctionDecl* declaration) {
 
 namespace {
 
-/// What GLSL takes as a constant expression. Intrinsics that are functions of ours are not.
+/// True for constant expressions of GLSL. Calls of intrinsics with polyfills are not constant.
 bool isConstant(const ir::Expr& e) {
   if (const auto* call = std::get_if<ir::IntrinsicCall>(&e.node);
       call && !ir::row(call->intrinsic).polyfill.empty()) {
@@ -153,7 +153,7 @@ ir::ExprPtr FunctionLowering::constantInitializer(const clang::Expr* init) {
   return effects.empty() && isConstant(*result) ? std::move(result) : nullptr;
 }
 
-/// Lowers into a block of its own; after an error the rest is still looked at.
+/// Lowers into a block of its own; continues with the next statement after an error.
 void FunctionLowering::body(const clang::Stmt* statement, ir::Block& into) {
   ir::Block* outer = std::exchange(out_, &into);
   if (const auto* compound = llvm::dyn_cast<clang::CompoundStmt>(statement)) {
@@ -170,7 +170,7 @@ bool FunctionLowering::checkedStatement(const clang::Stmt* s) {
     statement(s);
     return true;
   } catch (const Abandoned&) {
-    out_ = outer;   // the diagnostics hold the error; the module is not used
+    out_ = outer;   // the error is recorded, so the module is not used
     return false;
   }
 }
@@ -216,7 +216,7 @@ void FunctionLowering::declaration(const clang::DeclStmt* s) {
   for (const clang::Decl* declared : s->decls()) {
     const auto* one = llvm::dyn_cast<clang::VarDecl>(declared);
     if (one && !ModuleLowering::isGenerated(one)) variable(one);
-    // types, aliases and static_asserts say all that they have to say to Clang
+    // types, aliases and static_asserts need no code
   }
 }
 
@@ -295,7 +295,7 @@ void FunctionLowering::doStatement(const clang::DoStmt* s) {
 
 namespace {
 
-/// What fits before the first semicolon of GLSL's `for`: declarations of one type, or one assignment.
+/// True for what fits in the init of a GLSL `for`: declarations of one type, or one assignment.
 bool fitsLoopInit(const ir::Block& block, const ir::Function& function) {
   if (block.size() == 1) return !std::holds_alternative<ir::CallStmt>(block.front().node);
   const ir::Type* type = nullptr;
@@ -328,7 +328,7 @@ void FunctionLowering::loop(ir::LoopKind kind, ir::Block init, const clang::Expr
     out_ = outer;
   }
   body(inner, result.body);
-  // what does not fit the head moves in front, in a scope of its own
+  // otherwise it moves in front of the loop, in a scope of its own
   const bool hoistInit = !fitsLoopInit(init, function_);
   ir::Block scope;
   if (hoistInit)
@@ -346,8 +346,8 @@ void FunctionLowering::loop(ir::LoopKind kind, ir::Block init, const clang::Expr
   }
 }
 
-/// A condition with effects: loop { effects; if (!cond) break; body }. Of a do loop the test comes first
-/// in all rounds but the first, so that `continue` still leads to it.
+/// A condition with effects: loop { effects; if (!cond) break; body }. In a do loop, the test comes first in
+/// every iteration but the first, so that `continue` still reaches it.
 void FunctionLowering::testInBody(ir::Loop& loop, ir::Block effects, Loc loc) {
   ir::Block test = std::move(effects);
   test.push_back(ir::ifStmt(ir::unary(ir::UnaryOp::LogicalNot, std::move(loop.cond), loc),
@@ -404,7 +404,7 @@ void FunctionLowering::switchStatement(const clang::SwitchStmt* s) {
 
 namespace {
 
-/// `*this`, or `this`, which stands unseen before a call of a member function.
+/// `*this`, or the implicit `this` of a member function call.
 bool isThisObject(const clang::Expr* e) {
   e = e->IgnoreParenImpCasts();
   const auto* dereference = llvm::dyn_cast<clang::UnaryOperator>(e);
@@ -414,7 +414,7 @@ bool isThisObject(const clang::Expr* e) {
   return llvm::isa<clang::CXXThisExpr>(e);
 }
 
-/// `*this += 1` or `add(1)`, of a function that gives its own object.
+/// `*this += 1` or `add(1)`, calling a function that returns its own object.
 bool isCallOnThisObject(const clang::Expr* e) {
   const auto* call = llvm::dyn_cast<clang::CallExpr>(e->IgnoreParenImpCasts());
   const clang::FunctionDecl* callee = call ? call->getDirectCallee() : nullptr;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// `stream` declarations: the types of their elements, and what their extents are. An extent that is one
-// name is a constant where the name is declared as one before, else an argument of the struct that holds
-// the streams.
+// Lowers `stream` declarations: element types and extents. An extent that is a single name is a constant if
+// the name was declared as one before, and otherwise an argument of the struct that holds the streams.
 #include <clang/AST/APValue.h>
 #include <clang/AST/ASTContext.h>
 #include <clang/AST/DeclCXX.h>
@@ -69,10 +68,10 @@ ir::DeclaredExtent ModuleLowering::streamExtent(const ExtentSyntax& syntax, cons
   return {{}, *value};
 }
 
-/// The variable or enumerator that a name means where a stream is declared; null where it means none.
+/// The variable or enumerator that a name refers to at a stream's declaration; null if there is none.
 const clang::ValueDecl* ModuleLowering::visibleValue(const clang::VarDecl* stream,
                                                      const clang::IdentifierInfo* name) {
-  // Sema looks through using directives, and wants a context that it might complete
+  // Sema follows using directives, but wants a context that it can modify
   for (auto* scope = const_cast<clang::DeclContext*>(stream->getDeclContext()); scope;
        scope = scope->getParent()) {
     clang::LookupResult found(sema_, clang::DeclarationName(name), stream->getLocation(),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// [[table(lo, hi, n, linear)]] in front of a function: its numbers, and whether the function can have one.
+// Lowers [[table(lo, hi, n, linear)]]: checks its numbers, and that its function may have a table.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace skc::frontend {
 
-/// The bits of a constant in front of the declaration.
+/// The bits of one of the constants that the token editor generated.
 std::uint32_t ModuleLowering::generatedNumber(const std::string& name) {
   const clang::VarDecl* variable = generatedGlobals_.at(name);
   const ir::ExprPtr value = constantValue(variable, /*inlined=*/true);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Clang's types as the IR has them, and what kernels have no type for.
+// Converts Clang's types to the IR's, and reports types that kernels do not support.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -57,7 +57,7 @@ ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
   }
   if (const auto* vector = canonical->getAs<clang::ExtVectorType>()) {
     const auto* element = vector->getElementType()->getAs<clang::BuiltinType>();
-    const bool isMask = element && element->getKind() == clang::BuiltinType::Long;  // compared doubles
+    const bool isMask = element && element->getKind() == clang::BuiltinType::Long;  // from comparing doubles
     const auto scalar = isMask ? ir::Scalar::Int : element ? scalarOf(element) : std::nullopt;
     const unsigned width = vector->getNumElements();
     if (scalar && width >= 2 && width <= 4) return ir::Type::of(*scalar, static_cast<int>(width));
@@ -77,7 +77,7 @@ ir::Type ModuleLowering::type(clang::QualType qualified, SourceLocation use) {
 
 namespace {
 
-/// An instance of one of the prelude's class templates.
+/// The specialization of a prelude class template that a type is.
 const clang::ClassTemplateSpecializationDecl* instanceOf(clang::QualType qualified) {
   const clang::CXXRecordDecl* record = qualified.getNonReferenceType()->getAsCXXRecordDecl();
   return llvm::dyn_cast_or_null<clang::ClassTemplateSpecializationDecl>(record);
@@ -108,7 +108,7 @@ std::optional<int> ModuleLowering::appendRank(clang::QualType qualified, SourceL
   return std::nullopt;
 }
 
-/// Its own name; of `typedef struct { ... } A;`, A; of one without any, a name that no other has.
+/// The struct's name; for `typedef struct { ... } A;`, A; for one without a name, an unused name.
 std::string ModuleLowering::structName(const clang::CXXRecordDecl* record) const {
   if (const std::string name = record->getNameAsString(); !name.empty()) return name;
   if (const clang::TypedefNameDecl* name = record->getTypedefNameForAnonDecl())
@@ -119,9 +119,9 @@ std::string ModuleLowering::structName(const clang::CXXRecordDecl* record) const
   return name;
 }
 
-/// `typedef struct Pair_t { ... } Pair;` and `using Pair = Pair_t;` of a struct that kernels use.
+/// Records `typedef struct Pair_t { ... } Pair;` and `using Pair = Pair_t;` for structs that kernels use.
 void ModuleLowering::addAlias(const clang::TypedefNameDecl* alias) {
-  const auto found = structs_.find(alias->getUnderlyingType()->getAsCXXRecordDecl());   // its definition
+  const auto found = structs_.find(alias->getUnderlyingType()->getAsCXXRecordDecl());  // keyed by definition
   if (found == structs_.end() || isPrelude(alias)) return;
   ir::Struct& known = module_.structs[found->second];
   if (known.name == alias->getNameAsString() || known.scope != scopeOf(alias)) return;

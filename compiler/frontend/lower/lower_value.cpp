@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Leaves, casts, members and initialisers: expressions without effects of their own.
+// Lowers leaves, casts, members and initialisers: expressions without effects of their own.
 #include <algorithm>
 #include <bit>
 
@@ -27,7 +27,7 @@ ExprPtr FunctionLowering::literal(ir::Type type, std::uint32_t bits, SourceLocat
   return make(type, where, ir::Literal{bits});
 }
 
-// ---- what stands for its operand ------------------------------------------------------------------
+// ---- wrappers -------------------------------------------------------------------------------------
 
 ExprPtr FunctionLowering::VisitParenExpr(const clang::ParenExpr* e) { return value(e->getSubExpr()); }
 ExprPtr FunctionLowering::VisitConstantExpr(const clang::ConstantExpr* e) { return value(e->getSubExpr()); }
@@ -40,7 +40,7 @@ ExprPtr FunctionLowering::VisitMaterializeTemporaryExpr(const clang::Materialize
 ExprPtr FunctionLowering::VisitSubstNonTypeTemplateParmExpr(const clang::SubstNonTypeTemplateParmExpr* e) {
   return value(e->getReplacement());
 }
-/// `a != b` where only == is declared.
+/// `a != b` if only == is declared.
 ExprPtr FunctionLowering::VisitCXXRewrittenBinaryOperator(const clang::CXXRewrittenBinaryOperator* e) {
   return value(e->getSemanticForm());
 }
@@ -76,7 +76,7 @@ ExprPtr FunctionLowering::VisitDeclRefExpr(const clang::DeclRefExpr* e) {
     return literal(type, static_cast<std::uint32_t>(enumerator->getInitVal().getExtValue()), where);
   }
   if (const auto* variable = llvm::dyn_cast<clang::VarDecl>(declared)) {
-    const bool isOutside = function_.name.empty();   // the value of a border or identity
+    const bool isOutside = function_.name.empty();   // in a border or identity
     if (isOutside && llvm::isa<clang::ParmVarDecl>(variable)) module_.fail(Diag::NotConstant, where);
     abandonIfUnknown(e);
     return module_.constant(variable, where);
@@ -112,8 +112,8 @@ bool isKernelInteger(clang::QualType type) {
 
 }  // namespace
 
-/// An integer constant whose own type kernels may not have, such as sizeof or 'a'; null if `e` is none, or needs
-/// more than 32 bits.
+/// An integer constant of a type that kernels may not have, such as sizeof or 'a'; null if `e` is not one, or
+/// does not fit in 32 bits.
 ExprPtr FunctionLowering::integerConstant(const clang::Expr* e, ir::Type type) {
   clang::Expr::EvalResult result;
   if (e->isValueDependent() || !e->EvaluateAsInt(result, module_.context())) return nullptr;
@@ -168,13 +168,13 @@ ExprPtr FunctionLowering::VisitCastExpr(const clang::CastExpr* e) {
   return VisitExpr(e);
 }
 
-/// Between integer vectors of one width: int and uint keep their bits, masks and bools their truth.
+/// Casts between integer vectors of one width: int and uint keep their bits, masks and bools their truth.
 ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
   const ir::Type from = module_.type(e->getSubExpr()->getType(), e->getBeginLoc());
   const ir::Type to = module_.type(e->getType(), e->getBeginLoc());
   const bool isImplicit = llvm::isa<clang::ImplicitCastExpr>(e);
   const bool mixesSigns =
-      isImplicit && !from.isBool() && !to.isBool();  // int4 / uint4 would follow the left side
+      isImplicit && !from.isBool() && !to.isBool();  // int4 / uint4 would get the left type
   const bool areIntegers =
       !from.carrier().isFloat() && !to.carrier().isFloat() && !from.isDouble() && !to.isDouble();
   if (!from.isVector() || !to.isVector() || from.width != to.width || !areIntegers || mixesSigns) {
@@ -187,7 +187,7 @@ ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
 
 namespace {
 
-/// -int4(b), as comparisons of vectors give it: 0 or -1 in each component, possibly of a narrow type.
+/// -int4(b), the result of comparing vectors: 0 or -1 per component, possibly of a narrow type.
 ExprPtr* maskedBool(ir::Expr& e) {
   if (auto* kept = std::get_if<ir::Convert>(&e.node); kept && e.type.isNarrow())
     return maskedBool(*kept->operand);
@@ -202,7 +202,7 @@ ExprPtr* maskedBool(ir::Expr& e) {
 
 namespace {
 
-/// A literal of 32 bits as a double, which holds it exactly.
+/// A 32-bit literal as a double, which represents it exactly.
 ExprPtr widened(ir::Scalar from, std::uint32_t bits, Loc loc) {
   if (from == ir::Scalar::Float) return ir::literal(double{std::bit_cast<float>(bits)}, loc);
   if (from == ir::Scalar::Int) return ir::literal(static_cast<double>(static_cast<std::int32_t>(bits)), loc);
@@ -225,12 +225,12 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
   }
   if (auto* construct = std::get_if<ir::Construct>(&e->node);
       construct && e->type.isVector() && construct->args.size() == 1 && construct->args[0]->type.isScalar()) {
-    return splat(convert(std::move(construct->args[0]), scalar), e->type.width);  // `2.0` beside a vector
+    return splat(convert(std::move(construct->args[0]), scalar), e->type.width);  // `2.0` with a vector
   }
   if (auto* constant = std::get_if<ir::Literal>(&e->node)) {
     const ir::Scalar carrier = ir::carrierOf(scalar);
     if (scalar == ir::Scalar::Double) return widened(e->type.scalar, constant->bits, loc);
-    if (e->type.isNarrow()) {  // the bits are those of the carrier already
+    if (e->type.isNarrow()) {  // has its arithmetic type's bits
       e->type = e->type.carrier();
       return convert(std::move(e), scalar);
     }
@@ -242,7 +242,7 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
       e->type = ir::Type::of(scalar);
       return e;
     }
-    // `v = 1` reads better as 1.0 than as float(1); every int is rounded as the device would
+    // `v = 1` reads better as 1.0 than as float(1); ints round as on the device
     if (e->type.scalar == ir::Scalar::Int && scalar == ir::Scalar::Float) {
       return ir::literal(static_cast<float>(static_cast<std::int32_t>(constant->bits)), loc);
     }
@@ -314,14 +314,14 @@ ExprPtr FunctionLowering::VisitArraySubscriptExpr(const clang::ArraySubscriptExp
   return indexed(array, e->getIdx(), e->getBeginLoc());
 }
 
-/// array[index], of an array, a vector or a matrix.
+/// array[index] for an array, a vector or a matrix.
 ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* index, SourceLocation where) {
   Exprs parts;
   parts.push_back(value(array));
   ir::Block effects;
   parts.push_back(valueInto(index, effects));
   if (!effects.empty()) {
-    // the element is read or written after the index's effects: the array itself is not copied
+    // the element is accessed after the index's effects; the array itself is not copied
     keepInPlace(parts[0]);
     for (ir::Stmt& s : effects) out_->push_back(std::move(s));
   }
@@ -353,7 +353,7 @@ ExprPtr FunctionLowering::VisitCXXParenListInitExpr(const clang::CXXParenListIni
   return aggregate(module_.type(e->getType(), e->getBeginLoc()), inits, nullptr, e->getBeginLoc());
 }
 
-/// A struct, array or vector from its parts; what no initialiser names is zero (or the filler).
+/// A struct, array or vector from its parts; parts without an initialiser are zero (or the filler).
 ExprPtr FunctionLowering::aggregate(ir::Type type, llvm::ArrayRef<const clang::Expr*> inits,
                                     const clang::Expr*, SourceLocation where) {
   Exprs args = valuesInOrder(inits);
@@ -403,8 +403,8 @@ ExprPtr FunctionLowering::VisitCXXConstructExpr(const clang::CXXConstructExpr* e
   module_.fail(Diag::Constructor, e->getBeginLoc(), {constructor->getParent()->getNameAsString()});
 }
 
-/// A class of the prelude from its constructor's arguments: unorm8(x), the rows or the elements of a
-/// matrix, the elements of a row, or nothing.
+/// A class of the prelude from its constructor's arguments: unorm8(x), the rows or elements of a matrix, the
+/// elements of a row, or none.
 ExprPtr FunctionLowering::classValue(ir::Type type, llvm::ArrayRef<const clang::Expr*> args,
                                      SourceLocation where) {
   if (args.empty()) return zero(type, where);
@@ -413,7 +413,7 @@ ExprPtr FunctionLowering::classValue(ir::Type type, llvm::ArrayRef<const clang::
   return convert(value(args[0]), type.scalar);
 }
 
-/// From its rows, from all its elements row by row, or with one number along the diagonal.
+/// A matrix from its rows, from all elements row by row, or from one number for the diagonal.
 ExprPtr FunctionLowering::matrix(ir::Type type, Exprs parts, SourceLocation where) {
   const std::size_t size = type.width;
   const bool areScalars =
@@ -445,7 +445,7 @@ ExprPtr FunctionLowering::matrix(ir::Type type, Exprs parts, SourceLocation wher
   return make(type, where, ir::Construct{std::move(rows)});
 }
 
-/// `Hit h;` where Hit's members have initialisers, and `Hit()`: the rest is zero.
+/// `Hit h;` if Hit's members have initialisers, and `Hit()`: the other members are zero.
 ExprPtr FunctionLowering::defaultStruct(const clang::CXXRecordDecl* record, SourceLocation where) {
   const ir::Type type = module_.type(module_.context().getRecordType(record), where);
   Exprs args;

@@ -42,7 +42,7 @@ ir::Module ModuleLowering::run(const std::string& file) {
   return std::move(module_);
 }
 
-/// When all structs that kernels use are known.
+/// Call after all structs that kernels use are known.
 void ModuleLowering::addAliases(const clang::DeclContext* scope) {
   for (const clang::Decl* declaration : scope->decls()) {
     if (const auto* inner = llvm::dyn_cast<clang::NamespaceDecl>(declaration)) addAliases(inner);
@@ -50,7 +50,7 @@ void ModuleLowering::addAliases(const clang::DeclContext* scope) {
   }
 }
 
-/// In the order of the file, so that the stub lists kernels as their author did.
+/// Lowers in file order, so that the stub lists kernels as written.
 void ModuleLowering::declarations(const clang::DeclContext* scope) {
   for (const clang::Decl* declaration : scope->decls()) {
     if (declaration->isImplicit() || isPrelude(declaration)) continue;
@@ -78,7 +78,7 @@ void ModuleLowering::declarations(const clang::DeclContext* scope) {
         }
       }
     } catch (const Abandoned&) {
-      // reported; the other declarations may hold errors of their own
+      // already reported; continue with the other declarations
     }
   }
 }
@@ -116,7 +116,7 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   module_.kernels.push_back(std::move(kernel));
 }
 
-/// The instances that `template kernel void f<...>(...);` asks for are kernels.
+/// Turns the instances that `template kernel void f<...>(...);` requests into kernels.
 void ModuleLowering::kernelTemplate(const clang::FunctionTemplateDecl* declaration) {
   if (!declaration->isThisDeclarationADefinition()) return;
   const KernelSyntax* kernelSyntax = syntax_.kernel(declaration->getLocation());
@@ -137,8 +137,8 @@ void ModuleLowering::kernelTemplate(const clang::FunctionTemplateDecl* declarati
   }
 }
 
-/// Where C++ cannot tell an instance from the others by its arguments, the template's arguments become
-/// part of its name: blur<3> is blur_3.
+/// If an instance's parameter types do not distinguish it in C++, appends the template's arguments to its
+/// name: blur<3> is blur_3.
 void ModuleLowering::nameInstance(const clang::FunctionDecl* instance, ir::Kernel& kernel) {
   const SourceLocation where = instance->getLocation();
   const clang::FunctionTemplateDecl* pattern = instance->getPrimaryTemplate();
@@ -195,7 +195,7 @@ ir::KernelParam ModuleLowering::kernelParam(const clang::ParmVarDecl* declaratio
   return param;
 }
 
-/// An element of a stream holds no arrays.
+/// Checks an element type of a stream, which may not contain arrays.
 void ModuleLowering::checkElement(ir::Type type, std::string_view name, SourceLocation where) {
   if (type.kind != ir::Type::Kind::Struct) return;
   for (const ir::StructField& field : module_.structs[type.index].fields) {
@@ -209,7 +209,7 @@ void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation w
                          [&](const ir::KernelParam& param) { return param.role == role; });
   };
   constexpr int mostSpecs =
-      8;   // their values are part of a program's key (runtime/src/gl_device/program/variant.hpp)
+      8;   // the program's key holds their values (runtime/src/gl_device/program/variant.hpp)
   if (count(ir::ParamRole::Spec) > mostSpecs)
     fail(Diag::SpecCount, where, {kernel.name, std::to_string(mostSpecs)});
   if (!kernel.reduction) {
@@ -235,8 +235,8 @@ std::vector<ir::Type> typesOf(const ir::Kernel& kernel, ir::ParamRole role) {
   return types;
 }
 
-/// For each parameter of `combine` that is no element and no accumulator, the same one of `kernel`; nothing
-/// where there is none of that name and kind.
+/// For each parameter of `combine` that is no element and no accumulator, the index of the same one of
+/// `kernel`; nullopt if a name or kind does not match.
 std::optional<std::vector<std::uint32_t>> operandsOf(const ir::Kernel& combine, const ir::Kernel& kernel) {
   std::vector<std::uint32_t> operands;
   for (const ir::KernelParam& param : combine.params) {
@@ -255,8 +255,8 @@ std::optional<std::vector<std::uint32_t>> operandsOf(const ir::Kernel& combine, 
 
 }  // namespace
 
-/// Where the accumulators' types differ from the elements', an overload that folds accumulators says how
-/// partial results combine. It may take uniforms and gathers of the reduce, too.
+/// Pairs a reduce whose accumulators differ in type from its elements with the overload that folds
+/// accumulators, and so combines partial results. That may take uniforms and gathers of the reduce, too.
 void ModuleLowering::pairReductions() {
   for (ir::Kernel& kernel : module_.kernels) {
     if (!kernel.reduction) continue;
@@ -286,8 +286,8 @@ ir::ExprPtr ModuleLowering::generatedConstant(const std::string& name) {
 ir::ExprPtr ModuleLowering::constant(const clang::VarDecl* declaration, SourceLocation use) {
   const clang::VarDecl* definition = declaration->getCanonicalDecl();
   if (failedConstants_.contains(definition)) {
-    if (constantsInProgress_.contains(declaration)) fail(Diag::NotConstant, use);  // its value names itself
-    throw Abandoned{};  // told already
+    if (constantsInProgress_.contains(declaration)) fail(Diag::NotConstant, use);  // refers to itself
+    throw Abandoned{};  // already reported
   }
   if (syntax_.stream(definition->getLocation())) {
     fail(Diag::StreamInBody, use, {definition->getNameAsString()});
@@ -298,7 +298,7 @@ ir::ExprPtr ModuleLowering::constant(const clang::VarDecl* declaration, SourceLo
   }
   auto found = constants_.find(definition);
   if (found == constants_.end()) {
-    failedConstants_.insert(definition);  // until it has succeeded
+    failedConstants_.insert(definition);  // removed on success
     ir::ExprPtr value = constantValue(declaration, inlineConstants_);
     failedConstants_.erase(definition);
     ir::Constant entry{definition->getNameAsString(), value->type, std::move(value),
@@ -315,7 +315,7 @@ ir::ExprPtr ModuleLowering::constant(const clang::VarDecl* declaration, SourceLo
   return reference;
 }
 
-/// `inlined`: the value names no other constant, since it will stand outside the kernel's body.
+/// `inlined`: the value must not name other constants, because it is used outside the kernel's body.
 ir::ExprPtr ModuleLowering::constantValue(const clang::VarDecl* declaration, bool inlined) {
   const clang::Expr* init = declaration->getAnyInitializer();
   constantsInProgress_.insert(declaration);
@@ -336,20 +336,20 @@ ir::ExprPtr ModuleLowering::constantValue(const clang::VarDecl* declaration, boo
   return value;
 }
 
-/// What Clang can compute where GLSL could not, such as a call of a constexpr function.
+/// Values that Clang can compute and GLSL could not, such as calls of constexpr functions.
 ir::ExprPtr ModuleLowering::evaluated(const clang::VarDecl* declaration) {
   const clang::Expr* init = declaration->getAnyInitializer(declaration);
   const clang::APValue* value = declaration->evaluateValue();
   if (!value) return nullptr;
   const ir::Type wanted = type(declaration->getType(), init->getBeginLoc());
-  // Clang has made floats of the literals in the functions that it calls
+  // in the functions called, Clang has read literals as floats
   if (ir::holdsDouble(module_, wanted)) {
     fail(Diag::DoubleConstant, init->getBeginLoc(), {declaration->getNameAsString()});
   }
   return evaluated(*value, wanted, loc(init->getBeginLoc()));
 }
 
-/// Null where the value is of none of the kinds that kernels know.
+/// Returns null if kernels do not support the kind of value.
 ir::ExprPtr ModuleLowering::evaluated(const clang::APValue& value, ir::Type type, Loc loc) const {
   if (value.isFloat()) {
     llvm::APFloat rounded = value.getFloat();
@@ -411,7 +411,7 @@ ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, 
     if (const TableSyntax* declared = syntax_.table(definition->getLocation())) {
       lowered.table = table(definition, *declared);
     }
-    // callees were added meanwhile: the table is in an order in which everything is defined before use
+    // lowering added its callees first, so the table is in order of definition before use
     const auto id = static_cast<ir::FunctionId>(module_.functions.size());
     module_.functions.push_back(std::move(lowered));
     functions_[definition] = {id, Progress::Done};
@@ -422,7 +422,7 @@ ir::FunctionId ModuleLowering::function(const clang::FunctionDecl* declaration, 
   }
 }
 
-// ---- places -------------------------------------------------------------------------------------
+// ---- source locations ---------------------------------------------------------------------------
 
 clang::ASTContext& ModuleLowering::context() const { return sema_.getASTContext(); }
 clang::SourceManager& ModuleLowering::sources() const { return sema_.getSourceManager(); }

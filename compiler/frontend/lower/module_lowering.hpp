@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The state of one translation unit's lowering: types, constants and functions, each lowered when
-// first named and remembered. Function bodies are FunctionLowering's.
+// The state of lowering one translation unit: types, constants and functions, each lowered at its first use
+// and cached. FunctionLowering lowers the bodies.
 #pragma once
 
 #include <optional>
@@ -29,8 +29,8 @@ class SourceManager;
 
 namespace skc::frontend {
 
-/// Thrown after an error was reported: the enclosing statement (or declaration) is abandoned, the
-/// next one is still looked at. It never leaves lowerModule.
+/// Thrown after an error was reported: abandons the enclosing statement or declaration; lowering continues
+/// with the next one. It never leaves lowerModule.
 struct Abandoned {};
 
 class ModuleLowering {
@@ -40,26 +40,26 @@ class ModuleLowering {
 
   ir::Module run(const std::string& file);
 
-  /// The IR's type for a value of Clang's. Reports and throws for types that kernels do not have.
+  /// The IR's type for a Clang type. Reports and throws for types that kernels do not support.
   ir::Type type(clang::QualType type, clang::SourceLocation use);
-  /// Rank of a gather's class, 0 for any other type; `element` gets its element type.
+  /// The rank of a gather class, 0 for any other type; sets `element` to its element type.
   int gatherRank(clang::QualType type, clang::SourceLocation use, ir::Type& element);
-  /// The same for the class of a scatter output, or 0 for that of a variable output.
+  /// The same for the class of a scatter output; 0 for the class of a variable output.
   std::optional<int> appendRank(clang::QualType type, clang::SourceLocation use, ir::Type& element);
 
-  /// Lowers `declaration` (its definition) unless that was done. Reports recursion at `use`.
+  /// Lowers the definition of `declaration` at its first use. Reports recursion at `use`.
   ir::FunctionId function(const clang::FunctionDecl* declaration, clang::SourceLocation use);
   const ir::Function& functionAt(ir::FunctionId id) const { return module_.functions[id]; }
 
-  /// A reference to a namespace-scope constant, lowered at its first use.
+  /// A reference to a namespace-scope constant, which is lowered at its first use.
   ir::ExprPtr constant(const clang::VarDecl* declaration, clang::SourceLocation use);
   const ir::Struct& structAt(std::uint32_t index) const { return module_.structs[index]; }
   const ir::Array& arrayAt(std::uint32_t index) const { return module_.arrays[index]; }
 
   bool isPrelude(const clang::Decl* declaration) const;
-  /// Whether it holds the value of a border or identity (parameter_editor.hpp).
+  /// True if it holds the value of a border or identity (parameter_editor.hpp).
   static bool isGenerated(const clang::VarDecl* declaration);
-  /// Name of a type as the user writes it, for messages.
+  /// The name of a type as the user writes it, for messages.
   std::string spelling(ir::Type type) const;
 
   const DeclarationSyntax& syntax() const { return syntax_; }

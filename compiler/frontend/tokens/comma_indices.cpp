@@ -15,10 +15,10 @@ using Tokens = std::vector<Token>;
 
 struct Subscripts {
   int indices = 0;
-  Tokens commas;   ///< between indices that share their brackets
+  Tokens commas;   ///< between indices in one pair of brackets
 };
 
-/// `[i][j, k]`, from its first bracket on.
+/// Parses `[i][j, k]` from its first bracket.
 Subscripts subscriptsAt(const Tokens& body, std::size_t at) {
   Subscripts result;
   int depth = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// `a[i, j]` of a gather or scatter output with several dimensions: C++20 drops `i`, with a warning, and what is left
-// names a row, of which Clang then says that it is no element. So it is told here, before Clang sees it:
+// Reports `a[i, j]` for a gather or scatter output of several dimensions before Clang sees it. C++20 drops
+// `i` with a warning; Clang would then complain that the remaining row is not an element. The fix-it:
 //
 //   r = a[i, j];              r = a[i][j];
 #pragma once

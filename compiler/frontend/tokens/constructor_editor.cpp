@@ -12,7 +12,7 @@ namespace tok = clang::tok;
 
 namespace {
 
-/// Whether parentheses that begin with `first` hold parameters, not values.
+/// True if parentheses that begin with these tokens hold parameters, not values.
 bool beginsParameters(const Token& first, const Token& second) {
   const bool isType =
       isVectorTypeName(nameOf(first)) || first.isOneOf(tok::kw_const, tok::kw_bool, tok::kw_int,
@@ -46,7 +46,7 @@ void ConstructorEditor::copy(TokenCursor& cursor, Tokens& out) {
   noteDeclaration(cursor, out);
 }
 
-/// `a::b::c`, of which `c` is the last token before `end`.
+/// Parses the qualified name `a::b::c` whose last token is before `end`.
 ConstructorEditor::Name ConstructorEditor::nameEndingAt(const Tokens& tokens, std::size_t end) {
   Name name{end, {}};
   while (name.begin > 0 && tokens[name.begin - 1].is(tok::identifier)) {
@@ -58,7 +58,7 @@ ConstructorEditor::Name ConstructorEditor::nameEndingAt(const Tokens& tokens, st
   return name;
 }
 
-/// "float4", also by an alias; "" for any other name.
+/// The vector type that a name or an alias denotes, such as "float4"; "" for any other name.
 std::string ConstructorEditor::vectorNamed(const Name& name) const {
   std::string scope = name.isGlobal ? "" : openScope();
   for (std::size_t open = name.isGlobal ? 0 : braces_.size();; --open) {
@@ -72,7 +72,7 @@ std::string ConstructorEditor::vectorNamed(const Name& name) const {
   return isVectorTypeName(word) ? word : std::string();
 }
 
-/// `using Color = float4;` or `typedef float4 Color;`, at the end of `out`.
+/// Records `using Color = float4;` or `typedef float4 Color;` at the end of `out`.
 void ConstructorEditor::noteAlias(const Tokens& out) {
   const auto from = [&](std::size_t back) { return out.size() < back ? Token() : out[out.size() - back]; };
   const bool isTypedef = from(2).is(tok::identifier) && from(3).is(tok::identifier);
@@ -87,7 +87,7 @@ void ConstructorEditor::noteAlias(const Tokens& out) {
     aliases_.push_back({openScope() + "::" + nameOf(isTypedef ? from(2) : before(2)), vector});
 }
 
-/// The names of all open braces, from the outermost on.
+/// The names of all open braces, outermost first.
 std::string ConstructorEditor::openScope() const {
   std::string scope;
   for (const Brace& brace : braces_) scope += brace.name;
@@ -115,7 +115,7 @@ void ConstructorEditor::noteBraces(const Tokens& out) {
   }
 }
 
-/// Follows `float2 a = f(x, y), b` to its end.
+/// Tracks a declaration such as `float2 a = f(x, y), b` to its end.
 void ConstructorEditor::noteDeclaration(const TokenCursor& cursor, const Tokens& out) {
   const Token& token = out.back();
   const bool mayDeclare = areStatements() || sawConst_;
@@ -128,8 +128,8 @@ void ConstructorEditor::noteDeclaration(const TokenCursor& cursor, const Tokens&
   }
 }
 
-/// Whether the name at the end of `out` is that of a variable, and the parentheses that follow hold its value: in a
-/// body, where nobody declares functions, or of a constant.
+/// True if the name at the end of `out` is a variable's and the parentheses that follow hold its initial
+/// value: in a body, where functions are not declared, or for a constant.
 bool ConstructorEditor::initialisesVariable(const TokenCursor& cursor, const Tokens& out) const {
   if (declared_.empty() || depth_ != 0 || out.size() < 2) return false;
   const Token& before = out[out.size() - 2];

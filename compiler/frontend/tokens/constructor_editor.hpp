@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Copies tokens, and turns constructors of vectors, which Clang's vectors do not have, into calls:
+// Copies tokens, and turns vector constructors, which Clang's vectors do not have, into calls:
 //
 //   float4(v.xy, 0, 1)        __sk_make_float4(v.xy, 0, 1)
 //   float2 a(3, 4), b(1);     float2 a = __sk_make_float2(3, 4), b = __sk_make_float2(1);
@@ -22,23 +22,23 @@ class ConstructorEditor {
  public:
   explicit ConstructorEditor(TokenMaker maker) : maker_(maker) {}
 
-  /// Takes one token and appends what stands for it.
+  /// Takes one token and appends its replacement.
   void copy(TokenCursor& cursor, std::vector<clang::Token>& out);
 
  private:
   using Tokens = std::vector<clang::Token>;
-  /// A name as it is written: where it begins, and "::a::b::c".
+  /// A name as written: where it begins, and "::a::b::c".
   struct Name {
     std::size_t begin;
     std::string path;
-    bool isGlobal = false;   ///< `::` stands in front of it
+    bool isGlobal = false;   ///< preceded by `::`
   };
   struct Alias {
-    std::string path;    ///< the braces around it, and its name
+    std::string path;    ///< names of the enclosing braces, then its own
     std::string vector;
   };
   struct Brace {
-    std::string name;    ///< "::a" of a namespace, which may be opened again; else of this brace alone
+    std::string name;    ///< "::a" of a namespace, which may be reopened; else unique
     bool holdsStatements;
   };
 
@@ -53,14 +53,14 @@ class ConstructorEditor {
 
   TokenMaker maker_;
   std::vector<Alias> aliases_;
-  std::vector<Brace> braces_;     ///< that are open
+  std::vector<Brace> braces_;     ///< open ones
   int bracesSeen_ = 0;
-  std::string namespace_;         ///< what follows `namespace`, until its brace
+  std::string namespace_;         ///< the name after `namespace`, until its brace
   bool sawNamespace_ = false;
-  bool sawRecord_ = false;        ///< `struct` or the like, since the last statement
-  bool sawConst_ = false;         ///< `const` or `constexpr`, since then
-  std::string declared_;          ///< vector type of the variables that are being declared, or empty
-  int depth_ = 0;                 ///< of parentheses and brackets, since then
+  bool sawRecord_ = false;        ///< `struct` or similar, in this statement
+  bool sawConst_ = false;         ///< `const` or `constexpr`, in this statement
+  std::string declared_;          ///< vector type of the variables being declared, or empty
+  int depth_ = 0;                 ///< of parentheses and brackets, in this declaration
 };
 
 }  // namespace skc::frontend

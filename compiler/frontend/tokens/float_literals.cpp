@@ -12,7 +12,7 @@ namespace {
 
 bool isHex(std::string_view text) { return text.starts_with("0x") || text.starts_with("0X"); }
 
-/// Whether the spelling of a number is that of a double: with a point or an exponent, and without suffix.
+/// True for the spelling of a double: with a point or an exponent, and without a suffix.
 bool isDouble(std::string_view text) {
   const bool hasFraction = text.find_first_of(isHex(text) ? "pP" : ".eE") != std::string_view::npos;
   const char last = text.back();
@@ -26,7 +26,7 @@ void suffixFloats(std::vector<clang::Token>& tokens, clang::Preprocessor& prepro
     if (token.isNot(clang::tok::numeric_constant)) continue;
     const std::string text = preprocessor.getSpelling(token);
     if (!isDouble(text)) continue;
-    // as long as the tokens, and with a zero behind it, beyond which Clang does not read
+    // as long as the token, plus a terminating zero, past which Clang does not read
     auto* spelling = static_cast<char*>(preprocessor.getPreprocessorAllocator().Allocate(text.size() + 2, 1));
     std::memcpy(spelling, text.data(), text.size());
     std::memcpy(spelling + text.size(), "f", 2);

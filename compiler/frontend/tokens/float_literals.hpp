@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Makes floats of floating-point literals without suffix, by giving their tokens one. Clang's own option,
-// -cl-single-precision-constant, casts them instead, and templates forget that cast.
+// Makes floating-point literals without a suffix floats, by adding a suffix to their tokens. Clang's own
+// option, -cl-single-precision-constant, casts them instead, and templates forget that cast.
 //
-//   x * 2.5     ->     x * 2.5f            at the place of `2.5`, where the source still says so
+//   x * 2.5     ->     x * 2.5f            with the source location of `2.5`
 #pragma once
 
 #include <string>
@@ -20,10 +20,10 @@ namespace skc::frontend {
 
 void suffixFloats(std::vector<clang::Token>& tokens, clang::Preprocessor& preprocessor);
 
-/// A floating-point literal without its digit separators and its suffix, and that suffix.
+/// A floating-point literal without digit separators and suffix, and its suffix.
 struct LiteralParts {
   std::string digits;
-  std::string_view suffix;   ///< "", "f", "F", "l" or "L"; static
+  std::string_view suffix;   ///< "", "f", "F", "l" or "L"; static storage
 };
 LiteralParts literalParts(std::string text);
 

@@ -17,23 +17,23 @@ namespace skc::frontend {
 using clang::Token;
 namespace tok = clang::tok;
 
-/// What one parameter's tokens said.
+/// The parts of one parameter's declaration.
 struct ParameterEditor::Parts {
   Token qualifier;                 ///< `out`, `reduce`, `iter` ..., or unset
   bool hasQualifier = false;
   Tokens type;
   Token name;
   bool isElement = false;          ///< `<>`
-  int rank = 0;                    ///< pairs of empty brackets
-  Token open, close;               ///< the first and the last bracket of either kind
-  Tokens length;                   ///< `[9]`, brackets included, of a uniform array
-  int lengths = 0;                 ///< of an array of arrays, which is none, more than one
+  int rank = 0;                    ///< number of empty bracket pairs
+  Token open, close;               ///< the first and last bracket of either kind
+  Tokens length;                   ///< `[9]` of a uniform array, with brackets
+  int lengths = 0;                 ///< more than one is an error: an array of arrays
   Tokens value;                    ///< after `=`
   Token attribute;                 ///< the last word in [[...]]
   bool hasAttribute = false;
   bool hasBoundary = false;
-  Tokens border;                   ///< between the parentheses of border(...)
-  Tokens rest;                     ///< what follows the name of an ordinary parameter
+  Tokens border;                   ///< the argument of border(...)
+  Tokens rest;                     ///< of an ordinary parameter, after its name
   ParamSyntax syntax;
 };
 
@@ -43,7 +43,7 @@ namespace {
 std::vector<std::vector<Token>> splitAtCommas(const std::vector<Token>& declared) {
   std::vector<std::vector<Token>> parts(1);
   int depth = 0;
-  bool isValue = false;   // behind `=`, `<` compares
+  bool isValue = false;   // after `=`, `<` is a comparison
   for (std::size_t i = 1; i + 1 < declared.size(); ++i) {
     const Token& token = declared[i];
     if (token.isOneOf(tok::l_paren, tok::l_square, tok::l_brace)) ++depth;
@@ -70,13 +70,13 @@ bool isKind(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind kin
   return at < tokens.size() && tokens[at].is(kind);
 }
 
-/// `({0, 1})` without its parentheses, which no list of initialisers may have; any other as it is.
+/// `({0, 1})` without its parentheses, which C++ does not allow there; any other value unchanged.
 std::vector<Token> borderValue(const std::vector<Token>& parenthesized) {
   if (parenthesized[1].isNot(tok::l_brace)) return parenthesized;
   return {parenthesized.begin() + 1, parenthesized.end() - 1};
 }
 
-/// Takes out what stands from `at` to the bracket that should have been there.
+/// A fix-it that removes the tokens from `at` to the bracket `close`.
 std::vector<Mend> removal(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind close) {
   for (std::size_t i = at; i < tokens.size(); ++i) {
     if (tokens[i].is(close)) return {Mend::remove(locOf(tokens[at]), locOf(tokens[i - 1]))};
@@ -126,7 +126,7 @@ void ParameterEditor::editParameter(const Tokens& parameter, FunctionKind kind, 
   Parts parts;
   std::size_t at = 0;
   if (kind == FunctionKind::Helper) {
-    // An ordinary parameter goes to Clang as it is, default arguments, templates and all.
+    // An ordinary parameter goes to Clang unchanged, including default arguments and templates.
     bool ours = isNamedWord(parameter.front(), {"out", "inout"}) && parameter.size() > 2;
     for (std::size_t i = 0; i + 1 < parameter.size(); ++i) {
       if (parameter[i].is(tok::l_square)) ours = true;
@@ -168,7 +168,7 @@ bool ParameterEditor::takeAttributes(const Tokens& parameter, std::size_t& at, P
   return true;
 }
 
-/// One name between the brackets.
+/// Takes one name between the brackets.
 bool ParameterEditor::takeAttribute(const Tokens& parameter, std::size_t& at, Parts& parts) {
   if (at >= parameter.size()) {
     diagnostics_.report(Diag::ParameterAttribute, locOf(parameter.back()), {""});
@@ -216,7 +216,7 @@ bool ParameterEditor::takeBorder(const Tokens& parameter, std::size_t& at, Parts
   return true;
 }
 
-/// A qualifier is one only before a type and a name: `out x<>` declares a stream of the type `out`.
+/// Takes a qualifier, which must precede a type and a name: `out x<>` declares a stream of type `out`.
 void ParameterEditor::takeQualifier(const Tokens& parameter, std::size_t& at, Parts& parts) {
   const auto isWordOrScope = [&](std::size_t i) {
     return i < parameter.size() && (parameter[i].getIdentifierInfo() || parameter[i].is(tok::coloncolon));
@@ -228,7 +228,7 @@ void ParameterEditor::takeQualifier(const Tokens& parameter, std::size_t& at, Pa
   }
 }
 
-/// Type tokens and the name: the name is the last identifier before `<>`, `[`, `=` or the end.
+/// Takes the type and the name: the last identifier before `<>`, `[`, `=` or the end.
 bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts) {
   const std::size_t begin = at;
   std::size_t end = parameter.size();
@@ -254,7 +254,7 @@ bool ParameterEditor::takeDeclarator(const Tokens& parameter, std::size_t& at, P
   return true;
 }
 
-/// `float out r<>`, whose type is not called `float out`.
+/// True for `float out r<>`, whose author meant `out float r<>`.
 bool ParameterEditor::hasLateQualifier(const Parts& parts) {
   const Token& last = parts.type.back();
   if (parts.hasQualifier || parts.type.size() < 2 || !isQualifier(last)) return false;
@@ -325,25 +325,25 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
   return true;
 }
 
-/// `<>` behind the name of a parameter without brackets.
+/// A fix-it that adds `<>` after the name of a parameter without brackets.
 std::vector<Mend> ParameterEditor::addedBrackets(const Parts& parts) {
   if (parts.rank > 0 || parts.isElement || !parts.length.empty()) return {};
   return {Mend::insertAfter(locOf(parts.name), "<>")};
 }
 
-/// Without the `<>` of a parameter that has no other brackets.
+/// A fix-it that removes the `<>` of a parameter that has no other brackets.
 std::vector<Mend> ParameterEditor::removedBrackets(const Parts& parts) {
   if (!parts.isElement || parts.rank > 0) return {};
   return {Mend::remove(locOf(parts.open), locOf(parts.close))};
 }
 
-/// `reduce` in place of `out`, of a parameter that is an accumulator but for that.
+/// A fix-it that changes `out` to `reduce`, for a parameter that is an accumulator otherwise.
 std::vector<Mend> ParameterEditor::asAccumulator(const Parts& parts) {
   if (!parts.isElement || parts.rank > 0) return {};
   return {Mend::replace(locOf(parts.qualifier), "reduce")};
 }
 
-/// The table of DESIGN's parameters: qualifier, `<>` and brackets decide together.
+/// Derives the role from qualifier, `<>` and brackets together, as the language's table of parameters says.
 bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
   const Loc place = locOf(parts.name);
@@ -412,7 +412,7 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   return true;
 }
 
-/// `vout T r<>` and `out T r[]`, of kernels and of the functions that they hand theirs to.
+/// `vout T r<>` and `out T r[]`, in kernels and in the functions to which they pass theirs.
 bool ParameterEditor::resolveAppendOutput(Parts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
   const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments,
@@ -446,7 +446,7 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
   const clang::SourceLocation start = parts.type.front().getLocation();
   switch (syntax.role) {
     case ir::ParamRole::Gather:
-      // Three places of their own: Clang finds its way back to a template's name by its location
+      // The three tokens need distinct locations: Clang finds a template's name by its location
       out.push_back(maker_.word(gatherTemplateName(syntax.rank), place));
       out.push_back(maker_.make(tok::less, parts.open.getLocation()));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
@@ -474,7 +474,7 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
   }
   if (parts.length.empty()) {
     out.push_back(parts.name);
-  } else {   // a reference, since C++ passes no arrays
+  } else {   // a reference, since C++ cannot pass arrays by value
     out.push_back(maker_.make(tok::l_paren, place));
     out.push_back(maker_.make(tok::amp, place));
     out.push_back(parts.name);
@@ -488,7 +488,7 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
   }
 }
 
-/// Of a kernel, at the beginning of its body; of a helper, in front of it.
+/// The constant goes to the start of a kernel's body, or in front of a helper function.
 std::string ParameterEditor::generateConstant(const Tokens& type, const Tokens& value,
                                               clang::SourceLocation place) {
   std::string name = fmt::format("__sk_constant{}", constants_++);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Edits one parameter list: finds each parameter's role, takes Brook's spellings out of its tokens
-// and records what they said. Expressions of [[border(v)]] and of a reduce's identity move into
-// generated constants, where Clang checks them like any other.
+// Edits one parameter list: determines each parameter's role, removes Brook's syntax from its tokens and
+// records what it meant. The expressions of [[border(v)]] and of a reduce's identity move into generated
+// constants, where Clang checks them like any other.
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ enum class FunctionKind : std::uint8_t { Kernel, Reduce, Helper };
 
 class ParameterEditor {
  public:
-  /// Generated constants are appended to `before`, numbered by `constants`.
+  /// Appends generated constants to `before`; `constants` numbers them.
   ParameterEditor(clang::Preprocessor& preprocessor, Diagnostics& diagnostics, DeclarationSyntax& syntax,
                   int& constants, std::vector<clang::Token>& before)
       : preprocessor_(preprocessor),
@@ -38,7 +38,7 @@ class ParameterEditor {
   struct Input {
     clang::Token first, name;
   };
-  /// Those of the list that was edited last.
+  /// The inputs in the list edited last.
   const std::vector<Input>& inputs() const { return inputs_; }
   const std::vector<IndexedParameter>& indexed() const { return indexed_; }
 

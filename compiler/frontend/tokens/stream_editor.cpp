@@ -26,7 +26,7 @@ void StreamEditor::edit(TokenCursor& cursor, Tokens& out) {
   if (cursor.at(tok::semi)) cursor.take();
 }
 
-/// `name<extents>` before a comma or a semicolon.
+/// Takes `name<extents>` before a comma or a semicolon.
 bool StreamEditor::takeDeclarator(TokenCursor& cursor, const Tokens& type, Tokens& out) {
   if (!cursor.at(tok::identifier) || cursor.peek(1).isNot(tok::less)) {
     return fail(Diag::StreamDeclaration, cursor.peek());
@@ -52,7 +52,7 @@ bool StreamEditor::takeDeclarator(TokenCursor& cursor, const Tokens& type, Token
   return true;
 }
 
-/// Up to the `>`, which it takes, too.
+/// Takes the extents and the `>`.
 bool StreamEditor::takeExtents(TokenCursor& cursor, std::vector<Tokens>& extents) {
   int depth = 0;
   bool isBegun = false;
@@ -61,7 +61,7 @@ bool StreamEditor::takeExtents(TokenCursor& cursor, std::vector<Tokens>& extents
     if (token.isOneOf(tok::eof, tok::semi, tok::l_brace, tok::r_brace)) break;
     if (depth == 0 && token.isOneOf(tok::comma, tok::greater)) {
       const bool isEmpty = extents.empty() && !isBegun && token.is(tok::greater);
-      if (!isEmpty && !isBegun) break;   // nothing between two commas
+      if (!isEmpty && !isBegun) break;   // an empty extent
       isBegun = false;
       if (cursor.take().is(tok::greater)) return true;
       if (cursor.at(tok::greater)) break;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Edits a declaration of streams. What Clang gets of
+// Edits a declaration of streams. From
 //
 //   stream float u<height, 2 * n>, v<n>;
 //
-// is the type of each stream, and the values of extents that are more than a name, which it checks:
+// Clang gets the type of each stream, and the values of extents that are more than a name, to check them:
 //
 //   static const auto __sk_constant3 __attribute__((unused)) = 2 * n; extern float u; extern float v;
 #pragma once
@@ -22,12 +22,12 @@ namespace skc::frontend {
 
 class StreamEditor {
  public:
-  /// Generated constants are numbered by `constants`.
+  /// `constants` numbers the generated constants.
   StreamEditor(TokenMaker maker, Diagnostics& diagnostics, DeclarationSyntax& syntax, int& constants)
       : maker_(maker), diagnostics_(diagnostics), syntax_(syntax), constants_(constants) {}
 
-  /// Takes the declaration, from `stream` to its `;`, and appends what stands for it. A declaration with
-  /// a mistake is reported, and nothing stands for it.
+  /// Takes the declaration, from `stream` to its `;`, and appends its replacement. Reports a wrong
+  /// declaration, and appends nothing for it.
   void edit(TokenCursor& cursor, std::vector<clang::Token>& out);
 
  private:

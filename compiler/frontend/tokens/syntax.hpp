@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// What the token editor learned from Brook's declarations and Clang cannot say: which functions are
-// kernels, and how each parameter was declared. Keyed by the place of the name's token, which is
-// also the location of the FunctionDecl or ParmVarDecl.
+// What the token editor learned from Brook's declarations and Clang does not know: which functions are
+// kernels, and how each parameter was declared. Keyed by the location of the name's token, which is also the
+// location of the FunctionDecl or ParmVarDecl.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct ParamSyntax {
   std::string identity;              ///< name of the generated constant that holds `= identity`
 };
 
-/// An extent of a `stream` declaration: one name, or the generated constant that holds it.
+/// An extent of a `stream` declaration: a name, or the generated constant that holds the extent.
 struct ExtentSyntax {
   clang::SourceLocation place;
   const clang::IdentifierInfo* name = nullptr;
@@ -48,7 +48,7 @@ struct StreamSyntax {
   std::vector<ExtentSyntax> extents;   ///< slowest first
 };
 
-/// [[table(lo, hi, n, linear)]] in front of a function: the generated constants that hold its numbers.
+/// [[table(lo, hi, n, linear)]] in front of a function: the generated constants that hold the arguments.
 struct TableSyntax {
   std::string low, high, intervals;
   bool isCubic = false;
@@ -71,7 +71,7 @@ class DeclarationSyntax {
     tables_[name.getRawEncoding()] = std::move(table);
   }
 
-  /// `name`: a token before the parameters of `template kernel void f<float>(...);`.
+  /// `name`: any token before the parameters of `template kernel void f<float>(...);`.
   void addInstantiation(clang::SourceLocation name) { instantiations_.insert(name.getRawEncoding()); }
   bool isInstantiation(clang::SourceLocation name) const {
     return instantiations_.contains(name.getRawEncoding());

@@ -15,7 +15,7 @@ namespace tok = clang::tok;
 
 namespace {
 
-/// What stands between the commas of `( ... )`, which are not counted inside brackets of any kind.
+/// Splits `( ... )` at commas outside inner brackets.
 std::vector<std::vector<Token>> argumentsOf(const std::vector<Token>& parenthesized) {
   std::vector<std::vector<Token>> arguments(1);
   int depth = 0;
@@ -36,7 +36,7 @@ bool isInterpolation(const std::vector<Token>& argument) {
   return argument.size() == 1 && (isWord(argument[0], "linear") || isWord(argument[0], "cubic"));
 }
 
-/// low, high, intervals and how it interpolates.
+/// Checks for low, high, intervals and the interpolation.
 bool areRight(const std::vector<std::vector<Token>>& arguments) {
   if (arguments.size() != 4 || !isInterpolation(arguments[3])) return false;
   return !arguments[0].empty() && !arguments[1].empty() && !arguments[2].empty();

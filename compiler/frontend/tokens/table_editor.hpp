@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The attribute [[table(lo, hi, n, linear)]] in front of a helper function. Its numbers, which are any constant expressions,
-// become constants in front of the function.
+// Edits the attribute [[table(lo, hi, n, linear)]] in front of a helper function. Its arguments may be any
+// constant expressions; they become constants in front of the function.
 #pragma once
 
 #include <optional>
@@ -14,11 +14,11 @@
 
 namespace skc::frontend {
 
-/// Whether the attributes that follow begin with one of a table.
+/// True if the attributes that follow begin with a table.
 bool namesTable(const TokenCursor& cursor);
 
-/// Takes the attributes that follow, which are so many tokens, and adds the constants to `out`; nothing, and told, where they
-/// are not one of a table as it should be. `constants` counts those of the file.
+/// Consumes `tokens` attribute tokens and appends the constants to `out`; returns nullopt after reporting an
+/// error. `constants` numbers the file's generated constants.
 std::optional<TableSyntax> takeTable(TokenCursor& cursor, std::size_t tokens, const TokenMaker& maker,
                                      Diagnostics& diagnostics, int& constants,
                                      std::vector<clang::Token>& out);

@@ -34,7 +34,7 @@ std::vector<clang::Token> TokenCursor::peekBraced() const {
 
 std::size_t endOfList(const std::vector<clang::Token>& tokens, std::size_t less) {
   if (tokens[less - 1].isNot(clang::tok::identifier)) return 0;
-  constexpr std::size_t longest = 256;   // tokens, so that many that end nowhere take no time
+  constexpr std::size_t longest = 256;   // tokens; bounds the time for many unclosed `<`
   int depth = 0;
   int parentheses = 0;
   for (std::size_t i = less; i < std::min(tokens.size(), less + longest); ++i) {

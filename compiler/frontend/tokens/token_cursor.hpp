@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A position in a token sequence that ends with eof, and small questions about tokens.
+// A position in a token sequence that ends with eof, and small queries about tokens.
 #pragma once
 
 #include <string>
@@ -22,14 +22,14 @@ inline bool isWord(const clang::Token& token, llvm::StringRef word) {
   return token.is(clang::tok::identifier) && token.getIdentifierInfo()->getName() == word;
 }
 
-/// The place of the `>` that closes a list of values or types behind a name; 0 where `<` is none.
+/// The index of the `>` that closes the list opened at `less`; 0 if that `<` opens no list.
 std::size_t endOfList(const std::vector<clang::Token>& tokens, std::size_t less);
 
 class TokenCursor {
  public:
   explicit TokenCursor(const std::vector<clang::Token>& tokens) : tokens_(tokens) {}
 
-  /// The token `ahead` places on; eof at and past the end.
+  /// The token `ahead` of the current one; eof at and past the end.
   const clang::Token& peek(std::size_t ahead = 0) const {
     return tokens_[std::min(position_ + ahead, tokens_.size() - 1)];
   }
@@ -42,9 +42,9 @@ class TokenCursor {
     if (position_ + 1 < tokens_.size()) ++position_;
     return token;
   }
-  /// `{ ... }`, which follows, to its brace or to the end.
+  /// The tokens of the `{ ... }` that follows, up to its closing brace or the end.
   std::vector<clang::Token> peekBraced() const;
-  /// Takes `( ... )` with its parentheses; empty where no `)` closes it before a brace or the end.
+  /// Takes `( ... )` with its parentheses; empty if no `)` closes it before a brace or the end.
   std::vector<clang::Token> takeParenthesized();
 
  private:

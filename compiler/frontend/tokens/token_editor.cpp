@@ -22,7 +22,7 @@ namespace {
 using clang::Token;
 namespace tok = clang::tok;
 
-/// Walks the declarations of the file; one function for each kind that needs a change.
+/// Walks the file's declarations; one function for each kind that needs a change.
 class Editor {
  public:
   Editor(const std::vector<Token>& tokens, clang::Preprocessor& preprocessor, Diagnostics& diagnostics)
@@ -48,7 +48,7 @@ class Editor {
 
   bool atWord(llvm::StringRef word) const { return isWord(cursor_.peek(), word); }
 
-  /// `kernel` is a word like any other unless a declaration starts with it: `kernel void f`.
+  /// `kernel` is a keyword only where a declaration starts with it: `kernel void f`.
   bool atDeclarationWord(llvm::StringRef word) const { return atWord(word) && startsType(cursor_.peek(1)); }
   static bool startsType(const Token& token) {
     return token.is(tok::identifier) || token.is(tok::coloncolon) || token.getIdentifierInfo() != nullptr;
@@ -65,7 +65,7 @@ class Editor {
     copyDeclaration();
   }
 
-  /// `namespace a {` opens a scope whose declarations follow like any other; its `}` is copied as an
+  /// `namespace a {` opens a scope whose declarations are edited like any others; its `}` is copied as an
   /// empty declaration.
   void copyUntilBodyOrEnd() {
     while (!cursor_.at(tok::eof)) {
@@ -75,7 +75,7 @@ class Editor {
     }
   }
 
-  /// `template <...>` of the declaration that follows, or `template kernel void f<float>(...);`.
+  /// Edits the `template <...>` of the declaration that follows, or `template kernel void f<float>(...);`.
   void editTemplate() {
     copyToken();
     if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) editInstantiation();
@@ -90,7 +90,7 @@ class Editor {
     if (atDeclarationWord("stream")) diagnostics_.report(Diag::StreamTemplate, locOf(cursor_.peek()));
   }
 
-  /// Clang instantiates; that it is the template of a kernel, the lowering sees to.
+  /// Clang instantiates; lowering checks that the template is a kernel's.
   void editInstantiation() {
     const Token start = cursor_.take();
     std::vector<Token> head;
@@ -103,7 +103,7 @@ class Editor {
       return copyDeclaration();
     }
     for (const Token& token : head) syntax_.addInstantiation(token.getLocation());
-    std::vector<Token> constants;   // said by the template, not here
+    std::vector<Token> constants;   // unused: the template declares them
     ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, constants);
     const std::vector<Token> edited =
         parameters.edit(declared, isWord(start, "reduce") ? FunctionKind::Reduce : FunctionKind::Kernel);
@@ -112,8 +112,8 @@ class Editor {
     copyToken();
   }
 
-  /// The place of a function's name in what stands before its parameters, `void f` or, of a
-  /// specialisation, `void f<float>`; 0 where there is none.
+  /// The index of a function's name in the tokens before its parameters, `void f` or, for a specialisation,
+  /// `void f<float>`; 0 if there is none.
   static std::size_t nameAt(const std::vector<Token>& head) {
     if (head.empty()) return 0;
     std::size_t at = head.size() - 1;
@@ -129,21 +129,21 @@ class Editor {
     StreamEditor(TokenMaker(preprocessor_), diagnostics_, syntax_, constants_).edit(cursor_, out_);
   }
 
-  /// Brook's `iter float x<100> = iter(0, 1);`
+  /// Reports Brook's `iter float x<100> = iter(0, 1);`
   void refuseIterator() {
     diagnostics_.report(Diag::IteratorDeclaration, locOf(cursor_.peek()));
     skipDeclaration();
   }
 
-  /// The place of the first `<` in `T name<`, less one; 0 where the declaration has none there.
+  /// The index of `name` in `T name<`; 0 if the declaration does not begin like this.
   std::size_t listedName() const {
     std::size_t at = 0;
     while (startsType(cursor_.peek(at)) && cursor_.peek(at + 1).isNot(tok::less)) ++at;
     return cursor_.peek(at).is(tok::identifier) ? at : 0;
   }
 
-  /// The place of `a` in Brook's `float a<100>;`, where C++ would have arguments of a template but a name
-  /// behind them; 0 where something else is declared.
+  /// The index of `a` in Brook's `float a<100>;`; 0 for other declarations. In C++, a name would follow the
+  /// template arguments.
   std::size_t brookStream() const {
     const std::size_t at = listedName();
     if (at == 0) return 0;
@@ -181,7 +181,7 @@ class Editor {
     }
   }
 
-  /// `[[precision(extended)]] kernel void f...`; what stands before other declarations is C++'s.
+  /// `[[precision(extended)]] kernel void f...`; attributes of other declarations are C++'s.
   void editChoices(std::size_t behind) {
     if (namesTable(cursor_)) return editTable(behind);
     const Token& declared = cursor_.peek(behind);
@@ -200,7 +200,7 @@ class Editor {
     KernelSyntax kernel;
     kernel.choices = choices;
     kernel.isReduce = isWord(start, "reduce");
-    std::vector<Token> head;       // result type and name
+    std::vector<Token> head;  // result type and name
     while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());
     const std::size_t at = nameAt(head);
     if (at == 0 || head[at].isNot(tok::identifier) || !cursor_.at(tok::l_paren)) {
@@ -231,7 +231,7 @@ class Editor {
     copyDeclaration();
   }
 
-  /// An input that the body, which follows, names only to assign to it, was meant to be an output.
+  /// Reports an input that the body only assigns to: an output was meant.
   void refuseIfOnlyAssigned(const ParameterEditor::Input& input) {
     bool isNamed = false;
     int depth = 0;
@@ -252,7 +252,7 @@ class Editor {
                         {Mend::insertBefore(locOf(input.first), "out ")});
   }
 
-  /// `x = ` or `x.y = ` at the beginning of a statement.
+  /// True for `x = ` or `x.y = ` at the start of a statement.
   bool isAssignedAt(std::size_t at) const {
     const Token& before = cursor_.peek(at - 1);
     if (!before.isOneOf(tok::l_brace, tok::r_brace, tok::semi, tok::r_paren, tok::kw_else)) return false;
@@ -262,7 +262,7 @@ class Editor {
 
   void copyDeclaration() { copyNamed(); }
 
-  /// Any other declaration: copied, but for the parameter list of a function, whose name it gives.
+  /// Copies any other declaration, and edits the parameter list of a function, whose name it returns.
   std::optional<Token> copyNamed() {
     bool initializer = false;
     bool record = false;
@@ -300,10 +300,10 @@ class Editor {
     return function;
   }
 
-  /// Behind `const float2 a`, whose parentheses the constructors made a value.
+  /// True after `const float2 a`, if the constructor editor turned its parentheses into a value.
   bool isValueAhead() const { return out_.size() > 1 && out_[out_.size() - 2].is(tok::equal); }
 
-  /// The constants that the parameters gave stand first in the body, where a template's own types are known.
+  /// The parameters' constants go first in the body, where a template's own types are known.
   void copyBody(const std::vector<Token>& constants) {
     copyToken();
     out_.insert(out_.end(), constants.begin(), constants.end());
@@ -324,7 +324,7 @@ class Editor {
     } while (depth > 0 && !cursor_.at(tok::eof));
   }
 
-  /// In a body or a struct, `stream float a<n>` is no word for Clang, and neither is Brook's `indexof a`.
+  /// Reports `stream float a<n>` and Brook's `indexof a` in a body or a struct.
   void checkInner() {
     checkCast();
     checkOperator("indexof");
@@ -336,7 +336,7 @@ class Editor {
     }
   }
 
-  /// OpenCL's `(float4)(1, 2, 3, 4)`, which C++ takes for a cast of the last.
+  /// Reports OpenCL's `(float4)(1, 2, 3, 4)`, which C++ takes for a cast of the last number.
   void checkCast() {
     const Token& type = cursor_.peek(1);
     if (!cursor_.at(tok::l_paren) || type.isNot(tok::identifier)) return;
@@ -385,7 +385,7 @@ class Editor {
   int constants_ = 0;
 };
 
-/// `a<b<c<d`: Clang tries each `<` as a bracket and as an operator, so that each doubles the time.
+/// Reports `a<b<c<d`: Clang tries each `<` as a bracket and as an operator, which doubles the time.
 void refuseDeepAngles(const std::vector<Token>& tokens, Diagnostics& diagnostics) {
   constexpr int deepest = 12;
   int depth = 0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // Turns the preprocessed tokens of a .sk file into C++ that Clang's parser accepts. Only tokens of
-// declarations change, and every token keeps its place, so that diagnostics do too:
+// declarations change, and every token keeps its source location, so that diagnostics keep theirs:
 //
 //   kernel void f(float k, [[wrap]] float u[][], float x<>, out float v<>) { v = x * float2(1, k).y; }
 //   void f(const float k, gather_2d<float> u, const float x, float& v) { v = x * __sk_make_float2(1, k).y; }
 //
-// What this drops stands in DeclarationSyntax. It judges the shape of declarations, never types.
+// What it removes is recorded in DeclarationSyntax. It checks the syntax of declarations, never types.
 #pragma once
 
 #include <vector>
@@ -27,8 +27,8 @@ struct EditedTokens {
   DeclarationSyntax syntax;
 };
 
-/// `tokens` is the whole translation unit, prelude and eof included. Slips are reported at their
-/// tokens; the result is then not worth parsing.
+/// `tokens` is the whole translation unit, including prelude and eof. Errors are reported at their tokens;
+/// after an error, do not parse the result.
 EditedTokens editTokens(const std::vector<clang::Token>& tokens, clang::Preprocessor& preprocessor,
                         Diagnostics& diagnostics);
 

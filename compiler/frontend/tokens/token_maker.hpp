@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Makes tokens that the user did not write, each at a place that he did.
+// Makes tokens that the user did not write, at source locations of tokens that the user wrote.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ class TokenMaker {
   clang::Token make(clang::tok::TokenKind kind, clang::SourceLocation place) const;
   /// An identifier or keyword with this spelling.
   clang::Token word(llvm::StringRef name, clang::SourceLocation place) const;
-  /// `static const T NAME __attribute__((unused)) = value;` at the end of `out`.
+  /// Appends `static const T NAME __attribute__((unused)) = value;` to `out`.
   void constant(const std::string& name, const std::vector<clang::Token>& type,
                 const std::vector<clang::Token>& value, clang::SourceLocation place,
                 std::vector<clang::Token>& out) const;
