@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: bodies look like the .sk file they come from, and every kind of statement is spelled so
-// that GLSL means what C++ meant.
+// Promises: bodies look like their .sk file, and every kind of statement is printed so that its meaning in
+// GLSL is its meaning in C++.
 #include "glsl/body.hpp"
 
 #include <functional>

@@ -36,7 +36,7 @@ ConditionOp opOf(BinaryOp op) {
   return ConditionOp::Or;
 }
 
-/// Which of the Spec parameters it is.
+/// The number of a Spec parameter among the kernel's Spec parameters.
 std::uint32_t numberOf(const Kernel& kernel, VarId param) {
   return static_cast<std::uint32_t>(
       std::count_if(kernel.params.begin(), kernel.params.begin() + param,
@@ -50,7 +50,7 @@ void add(const Kernel& kernel, const Expr& expr, std::vector<ConditionStep>& ste
   } else if (const auto* ref = std::get_if<VarRef>(&expr.node)) {
     steps.push_back({ConditionOp::Spec, scalar, numberOf(kernel, ref->var)});
   } else if (const auto* conversion = std::get_if<Convert>(&expr.node)) {
-    add(kernel, *conversion->operand, steps);   // of bool, int or uint to int or uint: the same bits
+    add(kernel, *conversion->operand, steps);   // bool, int or uint to int or uint keeps the bits
   } else if (const auto* negation = std::get_if<Unary>(&expr.node)) {
     add(kernel, *negation->operand, steps);
     steps.push_back({ConditionOp::Not, scalar});

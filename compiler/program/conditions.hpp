@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// From the condition that guard-streams has found to the steps that the runtime follows.
+// Translates the conditions found by guard-streams to the steps that the runtime evaluates.
 #pragma once
 
 #include <vector>

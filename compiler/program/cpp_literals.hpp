@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Literals of C++.
+// Prints C++ literals.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace skc::emit {
 
-/// Text of many lines as raw string literals, broken after lines: compilers limit the length of one, and those that stand
-/// side by side are one string.
+/// Multi-line text as adjacent raw string literals, divided between lines: compilers limit the length of one
+/// literal, and adjacent literals form one string.
 std::string rawString(std::string_view text);
 
-/// A path or a sentence as a string literal.
+/// A path or a sentence as a quoted string literal.
 std::string quoted(std::string_view text);
 
-/// A float, with all its digits.
+/// A float literal that keeps the exact value.
 std::string floatLiteral(float value);
 
 }  // namespace skc::emit

@@ -59,10 +59,10 @@ std::string pascalCase(std::string_view name) {
 }
 
 std::vector<Callable> callables(const Module& module, const Program& program) {
-  std::set<std::string> taken;   // with their namespaces
+  std::set<std::string> taken;   // qualified names
   for (const Struct& type : module.structs) taken.insert(qualifier(type.scope) + type.name);
   std::vector<Callable> list;
-  std::vector<std::string> names;   // as the .sk file has them, by callable
+  std::vector<std::string> names;   // by callable, as in the .sk file
   for (std::size_t i = 0; i < program.units().size(); ++i) {
     const Kernel& kernel = module.kernels[program.units()[i].id];
     const std::string scope = qualifier(kernel.scope);

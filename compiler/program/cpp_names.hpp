@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Names in the generated C++. Those of the .sk file are C++ already, since Clang has read them; what
-// is left to mind are names that C++ headers put into the global namespace, and our own additions.
+// Chooses names in the generated C++. Names from the .sk file are valid C++, since Clang has parsed them;
+// what remains is to avoid global names of C++ headers and generated names.
 #pragma once
 
 #include <string>
@@ -13,24 +13,24 @@
 
 namespace skc::emit {
 
-/// The kernels that one callable object stands for: overloads of one name in one namespace.
+/// The kernels that one callable object stands for: the overloads of one name in one namespace.
 struct Callable {
   std::vector<std::string> scope;
   std::string object;              ///< "diffuse"
   std::string type;                ///< "DiffuseKernel"
-  std::vector<std::size_t> units;  ///< into Program::units()
+  std::vector<std::size_t> units;  ///< indices into Program::units()
 };
 
-/// In the order of their first kernels.
+/// The callables, in the order of their first kernels.
 std::vector<Callable> callables(const ir::Module& module, const Program& program);
 
-/// A distinct beginning for the names of each unit's descriptors: "diffuse", "grayScott", "sum_2".
+/// A unique prefix for the names of each unit's descriptors: "diffuse", "grayScott", "sum_2".
 std::vector<std::string> descriptorNames(const ir::Module& module, const Program& program);
 
-/// Likewise for each table of the module: "sk_response".
+/// A unique prefix for each table of the module: "sk_response".
 std::vector<std::string> tableNames(const ir::Module& module);
 
-/// "gray_scott" gives "GrayScott": words begin after whatever is no letter or digit.
+/// "gray_scott" gives "GrayScott": every other character than a letter or digit separates words.
 std::string pascalCase(std::string_view name);
 
 /// "float", "sk::float2", "geometry::Hit"; just "Hit" as seen from namespace geometry.

@@ -20,7 +20,7 @@ constexpr std::string_view mathFunctions[] = {
     "remquo",   "rint",   "round",  "scalb",   "scalbln",   "scalbn",    "significand", "sin",   "sincos",
     "sinh",     "sqrt",   "tan",    "tanh",    "tgamma",    "trunc",     "y0",          "y1",    "yn"};
 
-/// <ctype.h> <signal.h> <stdio.h> <stdlib.h> <string.h> <strings.h> <time.h> <unistd.h>, and our own.
+/// <ctype.h> <signal.h> <stdio.h> <stdlib.h> <string.h> <strings.h> <time.h> <unistd.h>, and sk's own.
 constexpr std::string_view otherNames[] = {
     "abort",   "abs",     "access",  "acct",    "alarm",    "atexit",  "atof",    "atoi",     "atol",
     "atoll",   "bcmp",    "bcopy",   "brk",     "bsearch",  "bzero",   "calloc",  "chdir",    "chown",

@@ -20,7 +20,7 @@ namespace skc::emit {
 
 using namespace ir;
 
-/// What the descriptors' views point to. Nothing here moves once it is made.
+/// Owns what the descriptors' views refer to. Nothing in it moves after it is added.
 struct Program::Storage {
   std::deque<std::string> strings;
   std::deque<std::vector<sk::program::Field>> fields;
@@ -140,7 +140,7 @@ class Builder {
     }
   }
 
-  /// A whole kernel, or that of a plan's pass.
+  /// Describes a whole kernel, or the kernel of a plan's pass.
   sk::program::Kernel describe(const Kernel& kernel, const Plan* plan = nullptr, const Pass* pass = nullptr) {
     const KernelNames names(module_, kernel, types_);
     Polyfills polyfills;
@@ -177,7 +177,7 @@ class Builder {
             .dispatched = targets_.compute && !kernel.isNativeOnly};
   }
 
-  /// Reduction::addition.
+  /// The GLSL for Reduction::addition.
   std::string_view addition(const Kernel& fold, const Kernel& combine) {
     const auto isFolded = [](const KernelParam& param) {
       return param.role == ParamRole::Input || param.role == ParamRole::Accumulator;
@@ -213,7 +213,7 @@ class Builder {
             .term = sumInDoubles(*kernel.reduction)};
   }
 
-  /// Reduction::term.
+  /// The value of Reduction::term.
   sk::program::SumTerm sumInDoubles(const Reduction& plain) {
     if (!plain.compensated || plain.compensated->term.empty()) return {};
     return {.factors = parameterNumbers(plain.compensated->term)};
@@ -250,7 +250,7 @@ class Builder {
     return storage_.factors.emplace_back(parameters.begin(), parameters.end());
   }
 
-  /// Null where there is no second form.
+  /// Returns null if the reduction has no compensated variant.
   const sk::program::CompensatedReduction* compensated(const Reduction& plain) {
     if (!plain.compensated) return nullptr;
     const Kernel& fold = module_.kernels[plain.compensated->fold];
@@ -303,7 +303,7 @@ class Builder {
             .passes = passes};
   }
 
-  /// Where the planes of an argument are bundled; empty if none is. Outputs never are.
+  /// The layers that hold the bundled planes of an argument; empty if none is bundled. Outputs never are.
   std::span<const sk::program::Layer> layersOf(const Plan& plan, std::uint32_t argument,
                                                const sk::program::Parameter& parameter) {
     if (parameter.role == sk::program::Role::Output) return {};

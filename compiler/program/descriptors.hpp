@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A compiled module: the descriptors of sk/program.hpp with the strings and arrays behind them.
-// What the stub writes as text and what --emit=glsl hands to the assembler is this one object.
+// A compiled module: the descriptors of sk/program.hpp, and the strings and arrays that they refer to. The
+// stub prints this object, and --emit=glsl passes it to the assembler.
 #pragma once
 
 #include <memory>
@@ -13,20 +13,20 @@
 
 namespace skc::emit {
 
-/// One kernel or reduce of the module. The kernels of passes are in Kernel::plans of the whole one.
+/// One kernel or reduce of the module. The whole kernel's Kernel::plans holds the kernels of passes.
 struct Unit {
   ir::KernelId id;               ///< index into Module::kernels
-  sk::program::Kernel kernel;    ///< of a reduce: its fold
+  sk::program::Kernel kernel;    ///< the fold of a reduce
   const sk::program::Reduction* reduction = nullptr;   ///< set for a reduce; its `fold` equals `kernel`
 };
 
-/// What GLSL programs may be assembled as.
+/// The kinds of GLSL programs that may be assembled.
 struct GlslTargets {
   bool fragment = true;
   bool compute = true;
 };
 
-/// Made from a module that has been through runTransforms. Move-only; views into it stay valid.
+/// Built from a module that has passed runTransforms. Move-only; views into it stay valid.
 class Program {
  public:
   explicit Program(const ir::Module& module, GlslTargets targets = {});
@@ -34,9 +34,9 @@ class Program {
   Program& operator=(Program&&) noexcept;
   ~Program();
 
-  /// In the order of the module's kernels.
+  /// The units, in the order of the module's kernels.
   std::span<const Unit> units() const;
-  /// In the order of the module's tables; null for those that no kernel uses.
+  /// The tables, in the order of the module's; null for those that no kernel uses.
   std::span<const sk::program::Table* const> tables() const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the descriptors say what the body does, and element layouts are those of C++.
+// Promises: descriptors agree with the body, and element layouts agree with C++.
 #include "program/descriptors.hpp"
 
 #include <cstddef>
@@ -56,7 +56,7 @@ TEST_CASE("a reduce's descriptor") {
   CHECK(power.fold.body.find("power_combine") == std::string_view::npos);
   CHECK(power.fold.parameters[1].identity == "0.0");
   CHECK(power.addition.find("void power_combine(") != std::string_view::npos);
-  CHECK(power.addition.find("void power(") == std::string_view::npos);  // which is in the fold's body
+  CHECK(power.addition.find("void power(") == std::string_view::npos);  // it is in the fold's body
   CHECK(nearest.addition.empty());
 }
 

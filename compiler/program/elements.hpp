@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How an element lies in host memory: its planes, each a scalar, a vector or a row of a matrix, with the offsets that C++
-// gives the members of the struct that the stub declares.
+// The layout of an element in host memory: its planes, each a scalar, a vector or a row of a matrix, at the
+// offsets of the members of the C++ struct that the stub declares.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 namespace skc::emit {
 
 struct Plane {
-  std::string path;  ///< in GLSL: "origin.x"; empty where the element is no struct
+  std::string path;  ///< in GLSL: "origin.x"; empty if the element is not a struct
   std::string member;  ///< in C++
   ir::Type type;
   std::uint32_t offset;
@@ -28,11 +28,11 @@ struct ElementLayout {
   std::uint32_t alignment = 1;
 };
 
-/// Of a scalar, a vector, a matrix, or a struct of these and of such structs. Vectors are packed and
-/// aligned like their component, rows of matrices likewise.
+/// The layout of a scalar, a vector, a matrix, or a struct of these, possibly nested. Vectors and rows of
+/// matrices are packed, and aligned like their component.
 ElementLayout elementLayout(const ir::Module& module, const TypeNames& types, ir::Type type);
 
-/// Bytes from an element's start to a member of it that is one plane.
+/// The offset in bytes of a member that is one plane.
 std::uint32_t offsetOf(const ir::Module& module, const TypeNames& types, ir::Type type,
                        std::span<const std::uint32_t> members);
 

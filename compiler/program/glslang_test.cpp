@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promise: glslang accepts what we emit as GLSL 3.30 and as ESSL 3.00: every overload of every
-// intrinsic, every kind of statement and expression, whole programs as the assembler makes them.
+// Promise: glslang accepts what we emit as GLSL 3.30 and as ESSL 3.00: every overload of every intrinsic,
+// every kind of statement and expression, and whole programs as assembled by the runtime.
 #include <limits>
 
 #include <fmt/format.h>
@@ -22,8 +22,8 @@ namespace {
 using namespace ir;
 using enum BinaryOp;
 
-/// The module's kernels and reduces as whole programs, with accurate intrinsics and with the device's own, in a folder that
-/// glslang looks at.
+/// Writes the module's kernels and reduces as whole programs, with accurate intrinsics and the device's, to a
+/// folder, and returns glslang's messages.
 std::string glslangOn(const Module& module, std::string_view folderName) {
   const ToolFolder folder(folderName);
   const Program program(module);
@@ -64,7 +64,7 @@ TEST_CASE("every overload of every intrinsic") {
   k.output("r", floatType);
   Block body;
   for (const IntrinsicRow& entry : intrinsicRows()) {
-    if (entry.id == Intrinsic::AnyLane) continue;  // of native code alone
+    if (entry.id == Intrinsic::AnyLane) continue;  // native code only
     for (const IntrinsicOverload& overload : overloads(entry.id)) {
       std::vector<ExprPtr> args;
       for (Type type : overload.arguments) {
@@ -154,7 +154,7 @@ TEST_CASE("every operator on matrices, and every conversion to a narrow type") {
   CHECK(glslangOn(module, "narrow") == "");
 }
 
-/// void swapBoth(inout float a, inout float b[3]): a local array handed on, and a swap.
+/// void swapBoth(inout float a, inout float b[3]): passes a local array on, and swaps.
 FunctionId addSwap(Module& module, Type array) {
   Function f;
   f.name = "swap";
@@ -166,7 +166,7 @@ FunctionId addSwap(Module& module, Type array) {
   return addFunction(module, std::move(f), std::move(body));
 }
 
-/// float[3] weights(): a function that gives an array.
+/// float[3] weights(): a function that returns an array.
 FunctionId addWeights(Module& module, Type array) {
   Function f;
   f.name = "weights";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What a kernel's declaration chooses, as C++.
+// Prints the options that a kernel's attributes choose as C++.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace skc::emit {
 
-/// The initializer of a CallOptions, within sk::program.
+/// The initializer of a CallOptions in namespace sk::program.
 std::string optionsText(const sk::CallOptions& options);
 
 }  // namespace skc::emit

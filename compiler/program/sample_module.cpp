@@ -57,7 +57,7 @@ void addDiffuse(Module& module) {
            "kernel void diffuse(float k, [[wrap]] float u[][], out float v<>)");
 }
 
-/// For the last kernel.
+/// Makes the last kernel of the module combine its own partial results.
 void combineByItself(Module& module, bool seeded) {
   const auto id = static_cast<KernelId>(module.kernels.size() - 1);
   module.kernels[id].reduction = Reduction{id, {0, 1}, seeded};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// For tests: the IR that the frontend would make of a small .sk file, after all transforms.
+// For tests: the IR that the frontend would produce for a small .sk file, after all transforms.
 #pragma once
 
 #include "ir/ir.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The structs by which a program allocates the streams that a .sk file declares: one for each namespace,
-// named after the file.
+// Structs that allocate the streams that a .sk file declares: one per namespace, named after the file.
 //
 //   // heat.sk                                  // heat.sk.hpp
 //   stream float u<height, width>;              struct HeatStreams {
@@ -23,17 +22,17 @@ namespace skc::emit {
 struct StreamStruct {
   std::vector<std::string> scope;
   std::string name;
-  std::vector<const ir::DeclaredStream*> streams;   ///< in the order of the file
-  std::vector<std::string> arguments;               ///< names of extents, in the order of first appearance
+  std::vector<const ir::DeclaredStream*> streams;   ///< in file order
+  std::vector<std::string> arguments;               ///< names of extents, in order of first use
 };
 
-/// In the order of the file; their names differ from those of structs and callables.
+/// The structs, in file order; their names differ from the names of element structs and callables.
 std::vector<StreamStruct> streamStructs(const ir::Module& module, const std::vector<Callable>& callables,
                                         std::string_view fileName);
 
 /// The declaration, without its namespace.
 std::string declaration(const ir::Module& module, const StreamStruct& streams);
-/// The constructor, outside of any namespace.
+/// The constructor's definition, outside any namespace.
 std::string constructor(const ir::Module& module, const StreamStruct& streams);
 
 }  // namespace skc::emit

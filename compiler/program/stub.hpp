@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The C++ that an application compiles: FILE.sk.hpp with a callable object for each kernel, and
-// FILE.sk.cpp with its descriptors. It must read as if a person had written it.
+// The C++ that an application compiles: FILE.sk.hpp with a callable object per kernel, and FILE.sk.cpp with
+// its descriptors. It must read as if a person had written it.
 #pragma once
 
 #include <string>
@@ -17,13 +17,13 @@ namespace skc::emit {
 struct Stub {
   std::string header;   ///< FILE.sk.hpp
   std::string source;   ///< FILE.sk.cpp
-  std::vector<native::KernelRequest> native;   ///< the code that the source refers to: FILE.sk.o
+  std::vector<native::KernelRequest> native;   ///< the code that the source refers to, for FILE.sk.o
 };
 
 struct StubOptions {
   bool native = true;  ///< the descriptors refer to native code
-  bool quad = false;  ///< which computes in __float128, too
-  bool withLibrary = false;  ///< the source has a list of its descriptors: sk/library.hpp
+  bool quad = false;  ///< the native code also computes in __float128
+  bool withLibrary = false;  ///< the source lists its descriptors: sk/library.hpp
 };
 
 /// `fileName` is the .sk file's name without directories: the source includes "heat.sk.hpp" for "heat.sk".

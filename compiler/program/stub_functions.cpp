@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The callables' functions in FILE.sk.cpp, which hand their arguments to the runtime.
+// The callables' functions in FILE.sk.cpp, which pass their arguments to the runtime.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -49,7 +49,7 @@ class FunctionWriter {
                          arguments(kernel, Form::Run));
   }
 
-  /// Writes the array of arguments, and gives its name.
+  /// Writes the array of arguments, and returns its name.
   std::string arguments(const Kernel& kernel, Form form) {
     std::vector<std::string> items;
     for (const KernelParam& param : kernel.params) {
@@ -89,7 +89,7 @@ class FunctionWriter {
                          names_[unit], list, results, value);
   }
 
-  /// A local beside the parameters.
+  /// A name for a local variable that differs from all parameters.
   static std::string localName(const Kernel& kernel, std::string name) {
     const auto isTaken = [&] {
       return std::any_of(kernel.params.begin(), kernel.params.end(),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// FILE.sk.hpp: the structs that kernels and streams take, registered as element types, the callable objects,
-// and the structs that allocate streams.
+// Prints FILE.sk.hpp: the structs that kernels and streams use, registered as element types, the callable
+// objects, and the structs that allocate streams.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace {
 
 using namespace ir;
 
-/// Structs that kernels and streams take, those that others contain first.
+/// The structs that kernels and streams use, each after the structs that it contains.
 class Structs {
  public:
   explicit Structs(const Module& module) : module_(module) {
@@ -63,7 +63,7 @@ class HeaderWriter {
   }
 
  private:
-  /// Closes and opens namespaces, so that what follows stands in `scope`.
+  /// Closes and opens namespaces until the current one is `scope`.
   void enter(const std::vector<std::string>& scope) {
     if (scope == scope_) return;
     if (!scope_.empty()) text_ += fmt::format("\n}}  // namespace {}\n", namespaceName(scope_));
@@ -73,8 +73,8 @@ class HeaderWriter {
 
   static std::string namespaceName(const std::vector<std::string>& scope) { return join(scope, "::"); }
 
-  /// Structs, then their registrations. Those of included files come with a guard, one by one, since
-  /// another .sk file that includes the same one brings them, too.
+  /// Prints structs, then their registrations. Each struct of an included file has a guard, because other .sk
+  /// files that include the same file define it, too.
   void structs() {
     std::vector<std::uint32_t> own;
     const Structs taken(module_);
@@ -193,13 +193,13 @@ class HeaderWriter {
                          [](const KernelParam& param) { return param.role == ParamRole::Accumulator; });
   }
 
-  /// Whether a reduce gives several values at once.
+  /// True if a reduce returns several values.
   bool usesTuples() const {
     return std::any_of(module_.kernels.begin(), module_.kernels.end(),
                        [](const Kernel& kernel) { return !kernel.isMade && accumulatorsOf(kernel) > 1; });
   }
 
-  /// The declaration in the .sk file, as a comment of lines that start alike.
+  /// The declaration in the .sk file, as a comment whose lines all start alike.
   static std::string comment(const std::string& signature, std::size_t indent) {
     const std::string start = std::string(indent, ' ') + "/// ";
     std::string lines = wrapLine(signature, 100 - start.size());

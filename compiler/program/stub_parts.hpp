@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Private to emitStub: the two files, and what both of them print alike.
+// Private to emitStub: printing the two files, and what both share.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace skc::emit {
 
-/// What a stub declares beside the structs that kernels take.
+/// What a stub declares besides the structs that kernels use.
 struct StubParts {
   std::vector<Callable> callables;
   std::vector<StreamStruct> streams;
@@ -23,28 +23,27 @@ struct StubParts {
 };
 
 std::string stubHeader(const ir::Module& module, const Program& program, const StubParts& parts);
-/// Adds the native code that the descriptors refer to.
+/// Also adds the requests for native code that the descriptors refer to.
 std::string stubSource(const ir::Module& module, const Program& program, const StubParts& parts,
                        NativeSymbols& symbols);
 
-/// The functions of the callable objects, for the source.
+/// The functions of the callable objects, for FILE.sk.cpp.
 std::string stubFunctions(const ir::Module& module, const Program& program,
                           const std::vector<Callable>& callables);
 
-/// Names of the enumerators of sk::program::Scalar, in their order.
+/// The names of the enumerators of sk::program::Scalar, in order.
 inline constexpr std::string_view scalarNames[] = {"Bool",   "Int",    "Uint",    "Float",  "Double",
                                                    "Half",   "Char",   "Uchar",   "Short",  "Ushort",
                                                    "Unorm8", "Snorm8", "Unorm16", "Snorm16"};
 
-/// A function of a callable: a kernel has one, a reduce one that returns a value and one that fills a
-/// stream.
+/// A callable's functions: a kernel has one, a reduce one that returns a value and one that fills a stream.
 enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream };
 std::vector<Form> formsOf(const ir::Kernel& kernel);
 
-/// How the types of a function are written inside namespace `scope`.
+/// A function's result type as written inside namespace `scope`.
 std::string resultType(const ir::Module& module, const ir::Kernel& kernel, Form form,
                        const std::vector<std::string>& scope);
-/// What follows the opening bracket: "float k, const sk::In<float>& u, const sk::Out<float>& v) const".
+/// The text after "(": "float k, const sk::In<float>& u, const sk::Out<float>& v) const".
 std::string parameterList(const ir::Module& module, const ir::Kernel& kernel, Form form,
                           const std::vector<std::string>& scope);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// FILE.sk.cpp: the descriptors as constants, and what else the file defines.
+// Prints FILE.sk.cpp: the descriptors as constants, and the other definitions of the file.
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -62,7 +62,7 @@ class SourceWriter {
     text_ += "}  // namespace\n}  // namespace sk::program\n";
   }
 
-  /// Registers the file before static objects of the application are constructed, devices among them.
+  /// Registers the file before the application's static objects, such as devices, are constructed.
   void linkedFile() {
     const sk::program::Kernel& any = program_.units().front().kernel;
     text_ += fmt::format(
@@ -70,7 +70,7 @@ class SourceWriter {
         any.drawn || any.dispatched, options_.native);
   }
 
-  /// What the descriptors point to and the object file defines.
+  /// Declares the functions in the object file that the descriptors point to.
   std::string nativeDeclarations() const {
     if (symbols_.requests().empty()) return {};
     std::string text = "\nnamespace sk::native {\n\nextern \"C\" {\n";
@@ -89,7 +89,7 @@ class SourceWriter {
 
   // ---- descriptors ------------------------------------------------------------------------------
 
-  /// The constant NAMETable of a table that some kernel uses.
+  /// Prints the constant NAMETable of a table that some kernel uses.
   void table(TableId id) {
     const sk::program::Table* made = program_.tables()[id];
     if (made == nullptr) return;
@@ -101,7 +101,7 @@ class SourceWriter {
         made->range.intervals, made->interpolation == sk::Interpolation::Cubic ? "Cubic" : "Linear");
   }
 
-  /// Those of an overload that combines come before those that name it.
+  /// Prints a unit's descriptors; those of an overload that it combines with come first.
   void descriptors(std::size_t unit) {
     if (isWritten_[unit]) return;
     isWritten_[unit] = true;
@@ -120,14 +120,14 @@ class SourceWriter {
     }
   }
 
-  /// What a kernel's native code is worth.
+  /// How much the speed of a kernel's native code matters.
   enum class Speed : std::uint8_t {
-    Any,  ///< little: it computes a handful of elements, or shows what another device would compute
+    Any,  ///< little: it computes a few elements, or what another device would compute
     Best,
   };
-  /// For kernels that compute in any real type. Null where there is no native code; kernel() fills in kernel and symbol.
+  /// For kernels that compute in any real type; nullopt without native code. kernel() sets kernel and symbol.
   std::optional<native::KernelRequest> inAnyReal(Speed speed) const { return request(true, speed); }
-  /// For kernels that have a meaning in floats alone.
+  /// For kernels that compute in float only.
   std::optional<native::KernelRequest> inFloats(Speed speed) const { return request(false, speed); }
   std::optional<native::KernelRequest> request(bool inDoubles, Speed speed) const {
     if (!options_.native) return std::nullopt;
@@ -138,13 +138,13 @@ class SourceWriter {
                                  .isCold = speed == Speed::Any};
   }
 
-  /// For reduces that combine partial results and that no call runs.
+  /// For reduces that only combine partial results, and that no call runs.
   static std::optional<native::KernelRequest> combining(std::optional<native::KernelRequest> request) {
     if (request) request->onlyCombines = true;
     return request;
   }
 
-  /// Those of a reduction: NAMEHalfReduction and NAMEWide.
+  /// Prints a reduction's variants: NAMEHalfReduction and NAMEWide.
   void forms(const sk::program::Reduction& made, const Kernel& declared, const std::string& name) {
     if (made.half != nullptr)
       reductionForm(*made.half, *declared.forms.half, name + "Half", inFloats(Speed::Any));
@@ -164,7 +164,7 @@ class SourceWriter {
     reduction(made, module_.kernels[id], name, combine == id ? name : name + "Combine");
   }
 
-  /// The constant NAMEKernel, and what it refers to; `code`: the native code that it gets, if any.
+  /// Prints the constant NAMEKernel, and what it refers to; `code` requests its native code, if any.
   void kernel(const sk::program::Kernel& made, KernelId id, const std::string& name,
               std::optional<native::KernelRequest> code) {
     const Kernel& declared = module_.kernels[id];
@@ -178,7 +178,7 @@ class SourceWriter {
     text_ += fmt::format("constexpr Kernel {}Kernel = {};\n\n", name, kernelText(made, name, 4, symbol));
   }
 
-  /// The constant NAMEReduction. `combine` is the name of what combines.
+  /// Prints the constant NAMEReduction; `combine` is the name of its combining kernel's descriptor.
   void reduction(const sk::program::Reduction& made, const Kernel& declared, const std::string& name,
                  const std::string& combine) {
     const Kernel& combining = module_.kernels[*declared.reduction->combine];
@@ -205,13 +205,13 @@ class SourceWriter {
         fmt::format("constexpr Reduction {}Reduction = {{\n    {}}};\n\n", name, join(members, ",\n    "));
   }
 
-  /// The constant NAMECompensated.
+  /// Prints the constant NAMECompensated.
   void compensated(const sk::program::CompensatedReduction& made, const Kernel& declared,
                    const std::string& name) {
     const Compensated& second = *declared.reduction->compensated;
     const Kernel& fold = module_.kernels[second.fold];
     const CompensatedNames names(name);
-    const Speed speed = made.inDoubles ? Speed::Any : Speed::Best;  // seldom run, where doubles serve
+    const Speed speed = made.inDoubles ? Speed::Any : Speed::Best;  // seldom runs: doubles do instead
     kernel(made.reduction.combine, *fold.reduction->combine, names.combine, combining(inAnyReal(speed)));
     kernel(made.reduction.fold, second.fold, names.fold, inAnyReal(speed));
     reduction(made.reduction, fold, names.fold, names.combine);
@@ -226,7 +226,7 @@ class SourceWriter {
         names.fold, names.finish, name, made.inDoubles);
   }
 
-  /// The constant NAMEExact.
+  /// Prints the constant NAMEExact.
   void exactSums(std::span<const sk::program::ExactSum> made, const Kernel& declared,
                  const std::string& name) {
     std::vector<std::string> items;
@@ -237,7 +237,7 @@ class SourceWriter {
     if (!items.empty()) text_ += "\n";
   }
 
-  /// What a sum refers to, and its item in the list. Digits need native code only where there is no term.
+  /// Prints what a sum refers to, and returns its list item. Digits run natively only without a term.
   std::string exactSum(const sk::program::ExactSum& made, const ExactSum& declared, const ExactNames& names) {
     const auto code = declared.term.isEmpty() ? inFloats(Speed::Any) : std::nullopt;
     const Kernel& fold = module_.kernels[declared.fold];
@@ -250,7 +250,7 @@ class SourceWriter {
                        exactTerm(made.term, declared.term, names.term));
   }
 
-  /// The name of what combines digits, which this writes unless it is there.
+  /// The name of the reduce that combines digits, which is printed at its first use.
   std::string exactCombination(const sk::program::Reduction& made, KernelId id) {
     const std::string name = exactCombinationName(module_.kernels[id]);
     if (combinations_.insert(id).second) {
@@ -260,7 +260,7 @@ class SourceWriter {
     return name;
   }
 
-  /// Whether some sum that this combines has no term, so that native code folds its digits.
+  /// True if one of the sums that this combines has no term, so that native code folds its digits.
   bool foldsDigitsNatively(KernelId combine) const {
     return std::ranges::any_of(module_.kernels, [&](const Kernel& reduce) {
       return reduce.reduction && std::ranges::any_of(reduce.reduction->exact, [&](const ExactSum& sum) {
@@ -273,11 +273,11 @@ class SourceWriter {
                         const std::string& name) {
     if (!made.factors.empty()) return factors(made, name);
     if (made.kernel == nullptr || !options_.native) return "{}";
-    kernel(*made.kernel, *declared.kernel, name, inAnyReal(Speed::Any));  // references add doubles
+    kernel(*made.kernel, *declared.kernel, name, inAnyReal(Speed::Any));  // the reference device adds doubles
     return fmt::format("{{{{}}, &{}Kernel}}", name);
   }
 
-  /// A term that is made of inputs, and the constant NAMEFactors that it refers to.
+  /// A term that consists of inputs; prints the constant NAMEFactors to which it refers.
   std::string factors(const sk::program::SumTerm& made, const std::string& name) {
     std::vector<std::string> numbers;
     for (const std::uint8_t parameter : made.factors) numbers.push_back(std::to_string(parameter));
@@ -285,7 +285,7 @@ class SourceWriter {
     return fmt::format("{{{}Factors}}", name);
   }
 
-  /// The descriptor of what combines, which this writes unless it is there: "sum", "squaresCombine".
+  /// The name of the combining descriptor, which is printed at its first use: "sum", "squaresCombine".
   std::string combination(std::size_t unit, const sk::program::Reduction& made) {
     const KernelId id = *kernelOf(unit).reduction->combine;
     for (std::size_t other = 0; other < names_.size(); ++other) {
@@ -298,7 +298,7 @@ class SourceWriter {
     return name;
   }
 
-  /// What the descriptor of a kernel refers to.
+  /// Prints what the descriptor of a kernel refers to.
   void kernelParts(const sk::program::Kernel& kernel, const Kernel& declared, const std::string& name) {
     programText(name + "Declarations", kernel.declarations);
     programText(name + "Body", kernel.body);
@@ -363,7 +363,7 @@ class SourceWriter {
     text_ += fmt::format("constexpr Plan {}Plans[] = {{\n    {}}};\n\n", name, join(rows, ",\n    "));
   }
 
-  /// Writes what a plan refers to, and gives the plan.
+  /// Prints what a plan refers to, and returns the plan's initializer.
   std::string plan(const sk::program::Plan& made, const Plan& declared, const std::string& name) {
     std::vector<std::string> passes;
     for (std::size_t i = 0; i < declared.passes.size(); ++i) {
@@ -403,14 +403,14 @@ class SourceWriter {
                        orNone("Temporaries", temporaries.empty()), orNone("Bundles", bundles.empty()), name);
   }
 
-  /// A constant array; none where it would be empty.
+  /// Prints a constant array, unless it is empty.
   void list(std::string_view type, const std::string& name, const std::vector<std::string>& items) {
     if (items.empty()) return;
     const std::string head = fmt::format("constexpr {} {}[] = {{", type, name);
     text_ += wrapLine(head + join(items, ", ") + "};", 100, 4) + "\n";
   }
 
-  /// One member a line; the first beside the bracket where that stands far in.
+  /// One member per line; the first follows the bracket if that is far to the right.
   static std::string kernelText(const sk::program::Kernel& kernel, const std::string& name,
                                 std::size_t column, const std::string& codeSymbol = {}) {
     const std::string declarations = kernel.declarations.empty() ? "{}" : name + "Declarations";
@@ -442,7 +442,7 @@ class SourceWriter {
     return "{" + (column > 4 ? "" : newLine) + join(members, "," + newLine) + "}";
   }
 
-  /// The name of a parameter's condition.
+  /// The name of the constant that holds a parameter's condition.
   static std::string conditionName(const std::string& unit, const sk::program::Parameter& param) {
     return fmt::format("{}Needs_{}", unit, param.symbol);
   }
@@ -466,7 +466,7 @@ class SourceWriter {
     return fmt::format("{}Element_{}", unit, param.symbol);
   }
 
-  /// A uniform array has no traits, since it is no element of streams.
+  /// Prints the element of a uniform array, which has no traits because it cannot be a stream's element.
   void arrayElement(const std::string& unit, const sk::program::Parameter& param) {
     std::vector<std::string> fields;
     for (const sk::program::Field& field : param.element->fields) {
@@ -482,7 +482,7 @@ class SourceWriter {
                          param.element->name, param.element->glsl, param.element->size);
   }
 
-  /// Of a struct that C++ does not have.
+  /// Prints the element of a struct that does not exist in C++.
   void madeElement(std::uint32_t index) {
     const TypeNames types(module_);
     const ElementLayout layout = elementLayout(module_, types, Type::structType(index));
@@ -505,7 +505,7 @@ class SourceWriter {
     return elementOf(type);
   }
 
-  /// Without the closing bracket.
+  /// A parameter's initializer, without the closing bracket.
   std::string parameter(const std::string& unit, const sk::program::Parameter& param,
                         const KernelParam& declared) const {
     constexpr std::string_view roles[] = {"Uniform",        "Input",   "Output",   "Gather", "Accumulator",
@@ -552,7 +552,7 @@ class SourceWriter {
     return fmt::format("&ElementTraits<{}{}>::element()", scope, name);
   }
 
-  /// The list of all descriptors, which has a name for dlsym().
+  /// Prints the list of all descriptors, under a name that dlsym() can find.
   void library() {
     std::vector<std::string> kernels, reductions;
     for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -576,8 +576,8 @@ class SourceWriter {
   StubOptions options_;
   std::vector<std::string> names_;
   std::vector<std::string> tableNames_;
-  std::vector<bool> isWritten_;  ///< descriptors, by unit
-  std::set<KernelId> combinations_;  ///< of exact sums, whose descriptors are written
+  std::vector<bool> isWritten_;  ///< descriptors printed, by unit
+  std::set<KernelId> combinations_;  ///< exact sums' combining kernels printed
   std::string text_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the stub reads as the text below, a C++ compiler takes it without a warning, and long
-// bodies are cut into pieces that every compiler takes.
+// Promises: the stub equals the text below, a C++ compiler accepts it without warnings, and long bodies are
+// divided into pieces that every compiler accepts.
 #include "program/stub.hpp"
 
 #include <map>
@@ -123,7 +123,7 @@ Hit NearestReduce::operator()(const sk::ElementIn<Hit>& h) const {
 )"));
 }
 
-/// The requests of a stub by what their symbols have after the hash.
+/// The requests of a stub, keyed by the part of their symbols after the hash.
 std::map<std::string, native::KernelRequest> requestsOf(const Stub& stub) {
   std::map<std::string, native::KernelRequest> requests;
   for (const native::KernelRequest& request : stub.native) {
@@ -213,7 +213,7 @@ const Library sk_library{allKernels, allReductions};
 )"));
 }
 
-/// Structs in namespaces and in each other, from an included file, with overloads and awkward names.
+/// A module with structs in namespaces and nested, from an included file, with overloads and awkward names.
 Module awkwardModule() {
   Module module = testModule();
   module.sources.emplace_back("odd \"name\".sk");
@@ -263,7 +263,7 @@ TEST_CASE("awkward names and nested structs") {
   CHECK(contains(stub.source, "\"odd \\\"name\\\".sk\""));
 }
 
-/// Streams in two namespaces, whose file, extents and names are awkward.
+/// A module with streams in two namespaces, and awkward names of file, extents and streams.
 Module streamModule() {
   Module module = sampleModule();
   module.structs.push_back({"Cell", {"grid"}, {{"flow", Type::of(Scalar::Float, 2)}}, {}});

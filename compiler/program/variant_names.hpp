@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the descriptors of the kernels that skc makes of a reduce are called.
+// Names the descriptors of the kernels that skc derives from a reduce.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace skc::emit {
 
-/// The kernels of a reduce's compensated variant.
+/// The names for the kernels of a reduce's compensated variant.
 struct CompensatedNames {
   explicit CompensatedNames(const std::string& reduce)
       : fold(reduce + "CompensatedFold"), combine(reduce + "CompensatedCombine"), finish(reduce + "Finish") {}
   std::string fold, combine, finish;
 };
 
-/// The kernels of exact sum number `sum` of a reduce.
+/// The names for the kernels of exact sum number `sum` of a reduce.
 struct ExactNames {
   ExactNames(const std::string& reduce, std::size_t sum)
       : fold(reduce + "ExactFold" + std::to_string(sum)),
@@ -26,7 +26,7 @@ struct ExactNames {
   std::string fold, finish, term;
 };
 
-/// The reduce that combines the digits of exact sums. A file has one of each kind for all of its sums.
+/// The name of the reduce that combines digits of exact sums. All sums of a kind share it.
 inline std::string exactCombinationName(const ir::Kernel& combine) { return "sk_" + combine.name; }
 
 }  // namespace skc::emit
