@@ -11,7 +11,7 @@ namespace {
 
 using namespace ir;
 
-/// What a place is a part of; null for a variable.
+/// The base of an lvalue that is part of another; null for a variable.
 ExprPtr* baseOf(Expr& place) {
   if (auto* n = std::get_if<Swizzle>(&place.node)) return &n->base;
   if (auto* n = std::get_if<Member>(&place.node)) return &n->base;
@@ -24,7 +24,7 @@ bool isComputedRow(const Expr& place) {
   return n != nullptr && n->base->type.isMatrix() && !std::holds_alternative<Literal>(n->index->node);
 }
 
-/// The computed row that a place is a part of, as the slot that holds it; null if there is none.
+/// The slot of the row at a computed index that contains the lvalue; null if there is none.
 ExprPtr* rowOf(Expr& place) {
   ExprPtr* base = baseOf(place);
   if (base == nullptr) return nullptr;
@@ -56,8 +56,8 @@ class RowWriter {
   }
 
  private:
-  /// Puts a variable in the place of the row that `place` is a part of. The index is kept, too: what the
-  /// statement does may change what it is computed from.
+  /// Replaces the row that contains `place` by a variable. Saves the index, too, because the statement may
+  /// change variables that it depends on.
   void through(Expr& place, Loc loc, Block& before, Block& after) {
     ExprPtr* row = rowOf(place);
     if (row == nullptr) return;

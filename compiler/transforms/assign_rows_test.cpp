@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a part of a row at a computed index is written with its whole row; everything else stays.
+// Promises: part of a row at a computed index is written with its whole row; everything else stays.
 #include "transforms/assign_rows.hpp"
 
 #include <catch2/catch.hpp>
@@ -45,7 +45,7 @@ struct Sample {
                      exprs(construct(row, exprs(literal(0.0F))), construct(row, exprs(literal(0.0F)))));
   }
 
-  /// The statements after the transform, as text without their indentation.
+  /// The statements after the transform, as text without indentation.
   std::string rewritten(Stmt stmt) {
     maker.finish(block(assign(maker.ref(r), zero()), std::move(stmt)));
     DiagnosticLog log;

@@ -9,7 +9,7 @@ namespace skc {
 
 using namespace ir;
 
-/// Sums stop at the limit, so that they do not overflow.
+/// Stops adding at the limit, so that the sum does not overflow.
 std::uint32_t BlendCost::of(std::span<const Stmt> statements) {
   std::uint32_t sum = 0;
   for (const Stmt& stmt : statements) sum = std::min(sum + of(stmt), limit);

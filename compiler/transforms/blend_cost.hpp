@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Private to predicate: whether statements are so short that computing them for nothing costs less than asking whether any
-// lane wants them.
+// Private to predicate: estimates whether statements are so short that executing them under an empty mask
+// costs less than testing whether any lane is active.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@ class BlendCost {
   bool isShort(std::span<const ir::Stmt> statements) { return of(statements) < limit; }
 
  private:
-  /// About the operations that a mispredicted branch costs.
+  /// Roughly the operations that a mispredicted branch costs.
   static constexpr std::uint32_t limit = 12;
-  /// Compared to an addition. Most intrinsics are a handful of operations, and a gather is one for each lane.
+  /// Relative to an addition. Most intrinsics are a few operations; a gather is one per lane.
   static constexpr std::uint32_t intrinsicCost = 4, gatherCost = limit;
 
   std::uint32_t of(std::span<const ir::Stmt> statements);

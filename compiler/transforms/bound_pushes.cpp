@@ -16,10 +16,10 @@ namespace {
 
 using namespace ir;
 
-/// How many statements run; nothing: nobody knows.
+/// How many statements run; nullopt if unknown.
 using Bound = std::optional<std::int64_t>;
 
-/// Beyond this, a bound is of no use to anybody.
+/// Larger bounds are useless, and count as unknown.
 constexpr std::int64_t largestBound = 1 << 20;
 
 Bound limited(std::int64_t count) { return count <= largestBound ? Bound(count) : std::nullopt; }
@@ -30,7 +30,7 @@ Bound product(Bound a, Bound b) {
   return a && b ? limited(*a * *b) : std::nullopt;
 }
 
-/// Counts the statements that write one parameter of a kernel.
+/// Counts executions of the statements that write one parameter of a kernel.
 class Counter {
  public:
   Counter(const Module& module, std::uint32_t param) : module_(module), param_(param) {}
@@ -56,7 +56,7 @@ class Counter {
   Bound count(const Loop& n) {
     return sum(block(n.init), product(roundsOf(module_, n), sum(block(n.body), block(n.step))));
   }
-  /// Falling through, all cases may run.
+  /// All cases may run, by falling through.
   Bound count(const Switch& n) {
     Bound total = 0;
     for (const Case& one : n.cases) total = sum(total, block(one.body));
@@ -74,7 +74,7 @@ class Counter {
   std::map<FunctionId, Bound> functions_;
 };
 
-/// Sets what each scatter output does, from the first of its statements.
+/// Sets each scatter output's operation from its first statement, and reports statements that differ.
 void settleOperations(const Module& module, Kernel& kernel, Diagnostics& diagnostics) {
   std::vector<bool> isKnown(kernel.params.size(), false);
   for (const FunctionId id : functionsOf(module, kernel)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a bound is never below what one element can execute, is known where every loop around a push
-// has a known number of rounds, and scatter outputs take one kind of operation.
+// Promises: a bound is never below what one element can execute; it is known if every loop around a push has
+// a known trip count; a scatter output has one kind of operation.
 #include "transforms/bound_pushes.hpp"
 
 #include <catch2/catch.hpp>

@@ -52,7 +52,7 @@ bool isNonNegative(const IntrinsicCall& n) {
   }
 }
 
-/// As far as the expression alone shows it.
+/// True if the expression alone shows it.
 bool isNonNegative(const Expr& expr) {
   if (expr.type.isArithmetic()) {
     const Scalar s = expr.type.scalar;
@@ -76,7 +76,7 @@ bool isNonNegative(const Expr& expr) {
   return false;
 }
 
-/// Whether all that a reduce folds into a part by max is never negative.
+/// True if every value that a reduce folds into a part by max is known to be non-negative.
 bool foldsNonNegatives(const Module& module, const Kernel& kernel, const FoldPart& part) {
   bool holds = true;
   walkStmts(module.functions[kernel.entry].body, [&](const Stmt& stmt) {
@@ -109,7 +109,7 @@ std::string number(double value, Scalar scalar) {
   return isReal(carrierOf(scalar)) ? fmt::format("{:.7g}", value) : fmt::format("{:.0f}", value);
 }
 
-/// Where a component of an accumulator lies among its numbers.
+/// The position of an accumulator's component among its numbers.
 std::size_t offsetOf(const Module& module, Type type, const std::vector<std::uint32_t>& members) {
   std::uint64_t offset = 0;
   for (const std::uint32_t member : members) {
@@ -120,7 +120,7 @@ std::size_t offsetOf(const Module& module, Type type, const std::vector<std::uin
   return static_cast<std::size_t>(offset);
 }
 
-/// Beyond what people call infinite: `= 1e30`, `= 3.4e38`, `= 1 << 30`.
+/// Accepts what people write for infinity: `= 1e30`, `= 3.4e38`, `= 1 << 30`.
 bool isAsGoodAs(FoldOp op, double given, double neutral) {
   if (given == neutral) return true;
   if (!std::holds_alternative<Intrinsic>(op) || std::signbit(given) != std::signbit(neutral)) return false;
@@ -132,7 +132,7 @@ struct Given {
   const Kernel& kernel;
   Diagnostics& diagnostics;
 
-  /// The first component of a part whose identity is not the operator's.
+  /// Reports the first component of a part whose identity is not the operator's.
   bool check(const FoldPart& part, const Numbers& identity) const {
     const Scalar scalar = part.type.scalar;
     const std::optional<Numbers> neutral = tryConstant(module, *neutralOf(part.op, scalar));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Checks what a reduce's author promises: that the fold is associative, and that what a run starts from is neutral. Part
-// of derive-combine.
+// Checks what the author of a reduce promises: the fold is associative, and the initial value is its
+// identity. Part of derive-combine.
 #pragma once
 
 #include "ir/ir.hpp"
@@ -10,11 +10,11 @@
 
 namespace skc {
 
-/// The identities that the author gives to a fold by known operators; false where one is an error.
+/// Checks the identities that the author gives for known operators; returns false after an error.
 bool checkIdentities(const ir::Module& module, const ir::Kernel& kernel, const FoldPattern& pattern,
                      Diagnostics& diagnostics);
 
-/// A fold by no known operator that combines partial results by itself, tried on numbers; false after an error.
+/// Tries a fold without a known operator that combines its own results on numbers; false after an error.
 bool checkByTrial(const ir::Module& module, const ir::Kernel& kernel, Diagnostics& diagnostics);
 
 }  // namespace skc

@@ -13,10 +13,10 @@ using namespace ir;
 
 constexpr std::size_t mostParameters = 250;   // descriptors number them with 8 bits
 constexpr std::size_t mostPlanes = 250;       // and the planes of bundles
-constexpr std::size_t mostReads = 120;        // a program's key has 4 bits for each stream that is read
-constexpr std::size_t promisedVectors = 200;  // of the 224 of ES 3.0; programs have uniforms of their own
+constexpr std::size_t mostReads = 120;        // a program's key has 4 bits per stream that is read
+constexpr std::size_t promisedVectors = 200;  // of ES 3.0's 224; the programs' own uniforms take some
 
-/// Vectors of four that a uniform takes where nothing is packed.
+/// The vectors of four that a uniform takes without packing.
 std::size_t vectorsOf(const Module& module, Type type) {
   if (type.kind == Type::Kind::Array) {
     const Array& array = module.arrays[type.index];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Refuses kernels with more parameters and planes than their descriptors and the runtime's keys can number
-// (sk/program.hpp, runtime/src/gl_device/program/variant.hpp), and warns of uniforms that some device has no room for. Kernels that exceed what a device can do in a pass are
-// split-kernels' business.
+// Rejects kernels with more parameters or planes than their descriptors and the runtime's keys can number
+// (sk/program.hpp, runtime/src/gl_device/program/variant.hpp), and warns of uniforms that exceed some
+// devices' space. Kernels that exceed what a device can do in one pass are left to split-kernels.
 #pragma once
 
 #include "ir/ir.hpp"

@@ -15,11 +15,11 @@ namespace {
 
 using ir::VarId;
 
-/// Which components of each InOut parameter are written for certain; nothing: no path gets here.
+/// The definitely assigned components of each InOut parameter; nullopt if no path reaches this point.
 using Written = std::map<VarId, std::vector<bool>>;
 using Path = std::optional<Written>;
 
-/// What both paths have written.
+/// The components that both paths have written.
 Path both(const Path& a, const Path& b) {
   if (!a) return b;
   if (!b) return a;
@@ -31,7 +31,7 @@ Path both(const Path& a, const Path& b) {
   return result;
 }
 
-/// What either path has written.
+/// The components that either path has written.
 Path either(const Path& a, const Path& b) {
   if (!a) return b;
   if (!b) return a;
@@ -43,7 +43,7 @@ Path either(const Path& a, const Path& b) {
   return result;
 }
 
-/// Follows one function. `isSpec` marks its variables that are spec parameters; `summaries` holds what its callees write.
+/// Definite assignment in one function. `isSpec` marks spec parameters; `summaries` has what callees write.
 class Follower {
  public:
   Follower(const ir::Module& module, const ir::Function& function, std::vector<bool> isSpec,
@@ -69,12 +69,12 @@ class Follower {
  private:
   struct Exits {
     Path broken, continued;
-    bool isSpec = false;  ///< of a switch on spec parameters: the paths are of different programs
+    bool isSpec = false;  ///< switch on spec parameters: each path is a different program
   };
 
   std::size_t width(ir::Type type) const { return static_cast<std::size_t>(ir::numbersIn(module_, type)); }
 
-  /// Positions of a place's components within its root variable.
+  /// The positions of an lvalue's components within its root variable.
   std::vector<std::size_t> components(const ir::Expr& place) const {
     const auto range = [](std::size_t first, std::size_t count) {
       std::vector<std::size_t> positions(count);
@@ -128,7 +128,7 @@ class Follower {
   Path step(const ir::Push&, Path path) { return path; }
   Path step(const ir::Scatter&, Path path) { return path; }
   Path step(const ir::Assign& assign, Path path) {
-    if (!assign.op) write(path, *assign.place);  // `v += x` alone writes nothing that was not there
+    if (!assign.op) write(path, *assign.place);  // `v += x` does not initialise v
     return path;
   }
   Path step(const ir::CallStmt& call, Path path) {
@@ -143,7 +143,7 @@ class Follower {
   Path step(const ir::If& branch, Path path) {
     const Path otherwise = follow(branch.otherwise, path);
     const Path then = follow(branch.then, std::move(path));
-    // an output that a spec parameter switches off need not be written where it is
+    // an output that spec parameters disable need not be written when disabled
     return join(isSpecOnly(*branch.cond, isSpec_), then, otherwise);
   }
   Path step(const ir::Scope& scope, Path path) { return follow(scope.body, std::move(path)); }
@@ -194,7 +194,7 @@ class Follower {
     return literal && literal->bits != 0;
   }
 
-  /// `for (int i = 0; i < 4; ...)`: the first test holds.
+  /// True for `for (int i = 0; i < 4; ...)`, whose first test succeeds.
   bool entersAtOnce(const ir::Loop& loop) const {
     if (loop.init.size() != 1) return false;
     const auto* declare = std::get_if<ir::Declare>(&loop.init.front().node);
@@ -233,7 +233,7 @@ class Follower {
   bool neverReturns_ = false;
 };
 
-/// For each function: which of its variables are spec parameters of a kernel whose entry it is.
+/// For each function that is an entry, which of its variables are spec parameters.
 std::vector<std::vector<bool>> specVariables(const ir::Module& module) {
   std::vector<std::vector<bool>> marks(module.functions.size());
   for (const ir::Kernel& kernel : module.kernels) {
@@ -247,7 +247,7 @@ std::vector<std::vector<bool>> specVariables(const ir::Module& module) {
 }  // namespace
 
 void checkOutputs(const ir::Module& module, Diagnostics& diagnostics) {
-  // callees stand before their callers in the module
+  // callees precede their callers in the module
   std::vector<Written> summaries;
   std::vector<std::vector<bool>> spec = specVariables(module);
   for (const ir::Function& function : module.functions) {

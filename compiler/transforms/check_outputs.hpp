@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// Warns of outputs that some path through a kernel leaves unwritten, or that are read first. It changes nothing.
+// Warns of outputs that some path through a kernel leaves unwritten or reads before writing. It changes
+// nothing.
 //
 //   kernel void f(float x<>, out float2 v<>) {   // warning: output 'v' is not written on every path
 //     v.x = x;
 //     if (x > 0) v.y = 1;
 //   }
 //
-// Components and members are followed one by one. A loop counts as entered where its first test is
-// known to hold; a write at an index that is not known counts as one of the whole array or vector.
-// A function that no path leaves would hang the device: that is an error.
+// Components and members are tracked one by one. A loop counts as entered if its first test is known to
+// succeed; a write at an unknown index counts as a write of the whole array or vector. A function that never
+// returns would hang the device, and is an error.
 #pragma once
 
 #include "ir/ir.hpp"

@@ -31,7 +31,7 @@ Stmt combinePart(const Module& module, const Function& function, const FoldPart&
   const auto as = [&](Scalar scalar, ExprPtr value) {
     return value->type.isMatrix() ? std::move(value) : convert(scalar, std::move(value), part.loc);
   };
-  const auto read = [&](VarId var) {   // operators know only carriers
+  const auto read = [&](VarId var) {   // operators take arithmetic types only
     return as(carrierOf(part.type.scalar), access(module, function, var, part));
   };
   ExprPtr place = access(module, function, total, part);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The statement that combines two partial results of one part of a fold.
+// Builds the statement that combines two partial results for one part of a fold.
 #pragma once
 
 #include "ir/ir.hpp"
@@ -8,7 +8,7 @@
 
 namespace skc {
 
-/// `total op= partial` for the part's member or components. Both are variables of `function`, of the
+/// `total op= partial` for the part's member or components. Both are variables of `function` with the
 /// accumulator's type.
 ir::Stmt combinePart(const ir::Module& module, const ir::Function& function, const FoldPart& part,
                      ir::VarId partial, ir::VarId total);

@@ -25,7 +25,7 @@ ExprPtr everywhere(Type type, float value) {
   return type.isScalar() ? literal(value) : construct(type, exprs(literal(value)));
 }
 
-/// The same components of the variable that stands for the sum, which a place is of.
+/// The components that `place` selects, taken from `var`.
 ExprPtr inVariable(const Function& function, const Expr& place, VarId var) {
   ExprPtr whole = varRef(function, var);
   const auto* n = std::get_if<Swizzle>(&place.node);
@@ -58,14 +58,14 @@ void addTerm(Block& body, Function& function, const Expr& place, VarId lost, Ter
       assign(clone(place), intrinsic(Intrinsic::RoundedSum, exprs(clone(place), std::move(value)))));
 }
 
-/// The accumulators for what the sums of one reduce lose, and in one that combines the inputs for what those of its parts
-/// have lost; one for each sum.
+/// The accumulators that hold the rounding errors of a reduce's sums, one per sum; a combining reduce also
+/// has inputs with the errors of its parts.
 struct Losses {
   std::vector<FloatSum> sums;
   std::vector<VarId> lost, lostOfPart;
 };
 
-/// Sums what is lost beside what is added.
+/// Adds statements that sum the rounding errors of additions.
 void addLosses(const Kernel& kernel, Function& entry, Block& block, const Losses& losses) {
   Block made;
   for (Stmt& stmt : block) {
@@ -88,7 +88,7 @@ void addLosses(const Kernel& kernel, Function& entry, Block& block, const Losses
   block = std::move(made);
 }
 
-/// Puts -0 in the place of a sum's components of an identity that derive-combine has supplied: struct by struct.
+/// Replaces a sum's components of a synthesized identity, which constructs structs member by member, by -0.
 void startFromNegativeZero(ExprPtr& identity, const FloatSum& sum) {
   ExprPtr* slot = &identity;
   for (const std::uint32_t field : sum.members) slot = &std::get<Construct>((*slot)->node).args[field];
@@ -136,7 +136,7 @@ class Maker {
     FoldCopy copy(module_, id_, "_compensated");
     Losses losses{sums_, {}, {}};
     for (const FloatSum& sum : sums_) {
-      // where the plain form starts with its first element, so does -0 + element
+      // if the plain variant starts with its first element, this one starts with -0 + element
       if (kernel().reduction->seeded) startFromNegativeZero(copy.param(sum.accumulator).identity, sum);
       losses.lost.push_back(copy.addAccumulator(lostName(sum), sum.type, everywhere(sum.type, 0.0F)));
     }
@@ -144,7 +144,7 @@ class Maker {
     return copy.finish(combine);
   }
 
-  /// What combines the plain form adds what parts have lost beside the parts.
+  /// Extends the plain variant's combining reduce, which adds the errors of its parts as well.
   KernelId makeCombination() {
     const KernelId plain = *kernel().reduction->combine;
     FoldCopy copy(module_, plain, plain == id_ ? "_combine" : "_compensated");
@@ -161,7 +161,7 @@ class Maker {
 
   KernelId makeFinish() {
     MadeKernel made(kernel(), "_finish");
-    std::vector<VarId> accumulators;  // of the plain form, each once
+    std::vector<VarId> accumulators;  // of the plain variant, each once
     for (const FloatSum& sum : sums_) {
       if (accumulators.empty() || accumulators.back() != sum.accumulator) {
         accumulators.push_back(sum.accumulator);
@@ -197,7 +197,7 @@ class Maker {
     return accumulator;
   }
 
-  /// The sum and what it has lost. A sum that is not finite has lost NaN; and where nothing is lost, -0 stays.
+  /// Adds a sum's error. Keeps the sum if it is not finite, as its error is NaN; keeps -0 if the error is 0.
   static ExprPtr finished(ExprPtr total, const Function& entry, VarId lostVariable) {
     const auto lost = [&] { return varRef(entry, lostVariable); };
     ExprPtr isNothing = binary(BinaryOp::Equal, lost(), everywhere(total->type, 0.0F));
@@ -211,7 +211,7 @@ class Maker {
   std::vector<FloatSum> sums_;
 };
 
-/// Runs of the second form start from identities, since their first element has no rest beside it.
+/// Needed because runs of this variant start from identities: a first element has no error to start with.
 bool hasIdentities(const Kernel& kernel) {
   return std::ranges::all_of(kernel.params, [](const KernelParam& param) {
     return param.role != ParamRole::Accumulator || param.identity;
@@ -221,7 +221,7 @@ bool hasIdentities(const Kernel& kernel) {
 }  // namespace
 
 void compensateSums(Module& module, Diagnostics&) {
-  const std::size_t declared = module.kernels.size();  // before those that this adds
+  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     const Kernel& kernel = module.kernels[id];
     if (!kernel.reduction || kernel.isMade || !hasIdentities(kernel)) continue;

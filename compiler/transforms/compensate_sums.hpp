@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// compensate-sums: gives each reduce that sums floats a second form, which also sums what the first sum's
-// roundings lose.
+// compensate-sums: gives each reduce that sums floats a variant that also sums the rounding errors of the
+// first sum.
 //
 //   before   reduce void squares(float x<>, reduce float total<> = 0) { total += x * x; }
 //   after    the same, compensated by
@@ -20,12 +20,13 @@
 //              r_total = isfinite(total_lost) ? total + total_lost : total;
 //            }
 //
-// sumError is the error of a float addition, itself a float, and productError that of a multiplication (Dekker, Numer.
-// Math. 18, 1971), so that a sum of n terms (sum_terms.hpp) has one rounding of its own and some (log n)^2 u^2 of the
-// sum of magnitudes: Sum2 and Dot2 of Ogita, Rump and Oishi (SIAM J. Sci. Comput. 26, 2005) over a tree. Which
-// accumulators and members are such sums, float_sums.hpp says; all others are folded and combined as before, be it by the
-// author's own reduce. A reduce that has no identities has no second form. Where an element adds no more than one input or the
-// product of two, doubles hold that, and native code sums in them instead.
+// sumError is the error of a float addition, itself a float, and productError the error of a multiplication
+// (Dekker, Numer. Math. 18, 1971). A sum of n terms (sum_terms.hpp) then has one rounding of its own and an
+// error of about (log n)^2 u^2 times the sum of magnitudes: Sum2 and Dot2 of Ogita, Rump and Oishi (SIAM J.
+// Sci. Comput. 26, 2005) over a tree. float_sums.hpp defines which accumulators and members are such sums;
+// all others are folded and combined as before, possibly by the author's own reduce. A reduce without
+// identities has no variant. If an element adds only one input or the product of two, a double holds that
+// term, and native code sums in doubles.
 #pragma once
 
 #include "ir/ir.hpp"

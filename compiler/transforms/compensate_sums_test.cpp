@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: sums of floats get a second form that is valid IR, with an accumulator more for each; what is no
-// such sum, or is not one in what combines, does not. (What it computes: tests/run/sums_test.cpp.)
+// Promises: sums of floats get a variant that is valid IR, with one more accumulator each; anything that is
+// not such a sum, also in the combining reduce, does not. (tests/run/sums_test.cpp checks values.)
 #include "transforms/compensate_sums.hpp"
 
 #include <string_view>
@@ -80,7 +80,7 @@ TEST_CASE("functions that the fold calls are copied for the second form") {
   const VarId x = maker.input("x", floatType);
   const VarId total = maker.accumulator("total", floatType);
   maker.finish(block(assign(maker.ref(total), BinaryOp::Add, call(module, helper, exprs(maker.ref(x))))));
-  transform(module);   // validates: a function belongs to one kernel
+  transform(module);   // validates that each function belongs to one kernel
   CHECK(second(module) != nullptr);
 }
 
@@ -145,10 +145,10 @@ TEST_CASE("members that are only added to are summed so, others are folded as ev
   CHECK(made->sums[0].members == std::vector<std::uint32_t>{0});
   CHECK(made->sums[1].members == std::vector<std::uint32_t>{1});
   CHECK(module.kernels[made->fold].params.back().name == "total_v_lost");
-  CHECK(module.kernels[made->finish].params.size() == 4);   // the accumulator, both losses, the result
+  CHECK(module.kernels[made->finish].params.size() == 4);   // the accumulator, both errors, the result
 }
 
-/// reduce void r(float x<>, reduce Stats total<> = ...) { total.sum += x; } whose parts `combine` combines.
+/// reduce void r(float x<>, reduce Stats total<> = ...) { total.sum += x; }, combined by `combine`.
 template <class Combine>
 Module combinedBy(Combine&& combine) {
   Module module = testModule();

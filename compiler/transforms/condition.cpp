@@ -12,8 +12,8 @@ namespace {
 
 using namespace ir;
 
-/// More than a person would want to read: the stream is then always needed. So many nodes keep within the
-/// stack that the runtime has (sk::program::deepestCondition).
+/// Longer conditions are unreadable: the stream then counts as always needed. This also bounds the stack that
+/// the runtime needs (sk::program::deepestCondition).
 constexpr int mostNodes = 60;
 
 const Binary* asBinary(const Expr& expr, BinaryOp op) {
@@ -21,7 +21,7 @@ const Binary* asBinary(const Expr& expr, BinaryOp op) {
   return n != nullptr && n->op == op ? n : nullptr;
 }
 
-/// Whether `condition` is `part`, or a conjunction that it is part of.
+/// True if `condition` is `part`, or a conjunction that contains it.
 bool hasConjunct(const Expr& condition, const Expr& part) {
   if (isSame(condition, part)) return true;
   const Binary* n = asBinary(condition, BinaryOp::LogicalAnd);
@@ -80,7 +80,7 @@ ExprPtr orOf(const Expr& a, const Expr& b) {
   return binary(BinaryOp::LogicalOr, clone(a), clone(b));
 }
 
-/// Between int and uint the bits stay, and equality asks for no more.
+/// Drops conversions between int and uint for equality: they keep the bits.
 ExprPtr comparison(BinaryOp op, ExprPtr lhs, ExprPtr rhs) {
   auto* n = std::get_if<Convert>(&lhs->node);
   auto* value = std::get_if<Literal>(&rhs->node);

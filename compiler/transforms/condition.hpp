@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Conditions as guard-streams builds them: bool expressions of a kernel's Spec variables, kept short by
-// rules that need no knowledge of their values.
+// Conditions as guard-streams builds them: bool expressions of a kernel's Spec variables, simplified by rules
+// that need no knowledge of their values.
 #pragma once
 
 #include <vector>
@@ -18,14 +18,14 @@ ir::ExprPtr notOf(const ir::Expr& condition);
 ir::ExprPtr andOf(const ir::Expr& a, const ir::Expr& b);
 ir::ExprPtr orOf(const ir::Expr& a, const ir::Expr& b);
 
-/// A comparison, without conversions that it does not need.
+/// Builds a comparison, dropping conversions that it does not need.
 ir::ExprPtr comparison(ir::BinaryOp op, ir::ExprPtr lhs, ir::ExprPtr rhs);
 
-/// The disjunction of all that is added to it; one that another covers is left out.
+/// Builds a disjunction, leaving out conditions that another one covers.
 class AnyOf {
  public:
   void add(const ir::Expr& condition);
-  /// Null where nothing was added, or where it is always true.
+  /// Returns null if nothing was added, or if it is always true.
   ir::ExprPtr take();
 
  private:

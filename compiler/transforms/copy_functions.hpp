@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Copies of functions for the further forms of a kernel: after specialize-gathers each function belongs to one kernel,
-// so that a form has its own.
+// Copies functions for further variants of a kernel: after specialize-gathers each function belongs to one
+// kernel, so each variant needs its own.
 #pragma once
 
 #include <map>
@@ -10,13 +10,13 @@
 
 namespace skc {
 
-/// What has been copied for one form, and to what.
+/// Maps the functions copied for one variant to their copies.
 using FunctionCopies = std::map<ir::FunctionId, ir::FunctionId>;
 
-/// A copy of a function, made behind copies of those that it calls.
+/// Copies a function after the functions that it calls.
 ir::FunctionId copyFunction(ir::Module& module, ir::FunctionId id, FunctionCopies& copies);
 
-/// Copies compute what a table might stand for: those of forms in other precisions than the table's.
+/// Removes the tables of copied functions, for variants whose precision differs from the tables'.
 void dropTables(ir::Module& module, const FunctionCopies& copies);
 
 }  // namespace skc

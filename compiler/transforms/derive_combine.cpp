@@ -21,7 +21,7 @@ using namespace ir;
 
 // ---- identities -------------------------------------------------------------------------------
 
-/// A value with this in every component.
+/// A value with `component` in every component.
 ExprPtr everywhere(Type type, const Expr& component) {
   if (type.isScalar()) return clone(component);
   if (type.isVector()) return construct(type, exprs(clone(component)));
@@ -30,13 +30,13 @@ ExprPtr everywhere(Type type, const Expr& component) {
   return construct(type, std::move(rows));
 }
 
-/// The way to a member of an accumulator.
+/// The path to a member of an accumulator.
 struct MemberPath {
   VarId accumulator;
   std::vector<std::uint32_t> members;
 };
 
-/// The identity of the scalar, vector or matrix member there; null where a component is not folded.
+/// The identity of a scalar, vector or matrix member; null if one of its components is not folded.
 ExprPtr leafIdentity(const FoldPattern& pattern, const MemberPath& path, Type type) {
   std::vector<ExprPtr> components(type.width);
   for (const FoldPart& part : pattern.parts) {
@@ -68,7 +68,7 @@ ExprPtr identityOf(const Module& module, const FoldPattern& pattern, MemberPath 
 
 // ---- combining kernels ------------------------------------------------------------------------
 
-/// The reduce that combines what `kernel`, of a known pattern, has folded: `total op= total_part` for each part.
+/// Builds the reduce that combines the results of a known pattern: `total op= total_part` for each part.
 KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern) {
   const Kernel& kernel = module.kernels[id];
   MadeKernel made(kernel, "_combine");
@@ -175,7 +175,7 @@ class State {
     needInputs(kernel);
   }
 
-  /// A run that starts from its first elements needs them, whatever the spec parameters are.
+  /// A run that starts from its first elements needs the inputs, whatever the spec parameters.
   static void needInputs(Kernel& kernel) {
     for (KernelParam& param : kernel.params) {
       if (param.role == ParamRole::Input) param.neededIf = nullptr;
@@ -190,7 +190,7 @@ class State {
   }
   bool checkOwnCombination(const Kernel& kernel, KernelId id) {
     const std::optional<Loc> place = usesPlace(module_, kernel);
-    const bool isTold = std::any_of(  // where it is the overload that combines for another
+    const bool isTold = std::any_of(  // it is the overload that combines for another
         module_.kernels.begin(), module_.kernels.end(),
         [&](const Kernel& other) { return other.reduction && other.reduction->combine == id; });
     if (place && !isTold) diagnostics_.report(Diag::ReduceIndexCombine, *place, {kernel.name});
@@ -246,7 +246,7 @@ class State {
 
 void deriveCombine(Module& module, Diagnostics& diagnostics) {
   State state(module, diagnostics);
-  const std::size_t declared = module.kernels.size();  // before those that this adds
+  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     if (module.kernels[id].reduction) state.derive(id);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// derive-combine: says for each reduce how partial results combine, which every parallel fold needs.
+// derive-combine: determines how the partial results of each reduce combine, which every parallel fold needs.
 //
 //   before   reduce void sumSquares(float x<>, reduce float total<>) { total += x * x; }
 //   after    the same, with identity 0 and
@@ -8,22 +8,21 @@
 //
 // Cases, in this order:
 //   * The author wrote an overload that folds accumulators: it stays.
-//   * The body folds by known operators (fold_pattern.hpp). `total += x` on x itself combines by
-//     itself; any other gets a reduce `accumulator op= part`, member by member. Subtraction and
-//     division are errors: partial results of them do not combine.
-//   * The elements' and the accumulators' types are the same, one by one: the reduce combines by itself,
-//     since the language demands that the operation is associative.
+//   * The body folds by known operators (fold_pattern.hpp). `total += x` on x itself combines its own
+//     results; any other gets a reduce `accumulator op= part`, member by member. Subtraction and
+//     division are errors: their partial results do not combine.
+//   * The elements and the accumulators have the same types, one by one: the reduce combines its own
+//     results, since the language requires the operation to be associative.
 //   * Otherwise the author has to write that overload.
-// What combines may not ask where an element is: a partial result is nowhere.
+// A combining reduce must not ask where an element is: a partial result has no index.
 //
-// Identities and -0. Where the author gives an identity, every run of elements starts from it, as the
-// text says: the sum of a stream of -0 with `= 0` is 0 + -0 = +0, as in C++, and `max` with `= -inf`
-// drops NaN where the device's max does. Where he gives none, the fold starts with its first element
-// (`seeded`): the sum of -0 is -0, and one NaN stays NaN. An identity is then supplied for what the
-// operator knows, so that an empty stream has a value; +0 for sums, the value that IEEE 754-2019
-// 9.4 gives an empty sum, although -0 would be the neutral element. Where the fold cannot start with
-// an element (x * x, or another type), runs start with the supplied identity, and a sum of nothing
-// but -0 gives +0.
+// Identities and -0. If the author gives an identity, every run of elements starts from it, as written: the
+// sum of a stream of -0 with `= 0` is 0 + -0 = +0, as in C++, and `max` with `= -inf` drops NaN wherever the
+// device's max does. Otherwise the fold starts with its first element (`seeded`): the sum of -0 is -0, and
+// one NaN stays NaN. An identity is then supplied for known operators, so that an empty stream has a value;
+// for sums it is +0, the value that IEEE 754-2019 9.4 gives an empty sum, although -0 would be the neutral
+// element. If the fold cannot start with an element (x * x, or another type), runs start with the supplied
+// identity, and a sum of only -0 gives +0.
 #pragma once
 
 #include "ir/ir.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the cases of derive_combine.hpp, each with the identity and the start that it names.
+// Promises: each case of derive_combine.hpp, with its identity and its start.
 #include "transforms/derive_combine.hpp"
 
 #include <functional>
@@ -22,7 +22,7 @@ using enum BinaryOp;
 constexpr VarId x = 0, total = 1;
 
 struct Outcome {
-  std::string combine = {};    ///< "entry", the body of a made function, or empty
+  std::string combine = {};    ///< "entry", the body of a synthesized function, or empty
   std::string identity = {};   ///< empty if none
   bool seeded = false;
   std::string error = {};
@@ -180,7 +180,7 @@ TEST_CASE("the same type, member by member: still x itself") {
   const Outcome outcome = derive(stats, stats, nullptr, body);
   CHECK(outcome.combine == "entry");
   CHECK(outcome.seeded);
-  CHECK(outcome.identity.empty());   // nobody knows where to start `count`
+  CHECK(outcome.identity.empty());   // the initial value of `count` is unknown
   const Outcome crossed = derive(stats, stats, nullptr, [](Module& m, KernelMaker& k) {
     return block(assign(member(m, k.ref(total), 0), Add, member(m, k.ref(x), 1)));
   });
@@ -206,7 +206,7 @@ TEST_CASE("vectors, whole and by component") {
   const auto turned = [](Module&, KernelMaker& k) {
     return block(assign(k.ref(total), binary(Add, swizzle(k.ref(total), "yx"), k.ref(x))));
   };
-  CHECK(derive(float2, float2, nullptr, turned).identity.empty());  // what it adds to is not what it assigns
+  CHECK(derive(float2, float2, nullptr, turned).identity.empty());  // it does not assign what it adds to
 }
 
 TEST_CASE("a general body on one type combines by itself; without an identity it starts with an element") {
@@ -268,7 +268,7 @@ TEST_CASE("the author's overload stays, and an identity must be there or follow"
         "...'");
 }
 
-/// The module of a reduce that `make` declares, after derive-combine.
+/// The module after derive-combine, with a reduce that `make` declares.
 Module derived(const std::function<void(Module&)>& make) {
   Module module = testModule();
   make(module);

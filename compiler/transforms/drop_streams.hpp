@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// Functions that are no entries have no parameters that are streams once specialize-gathers has run: GLSL has none.
+// After specialize-gathers, only entries have stream parameters, because GLSL functions cannot have any.
 #pragma once
 
 #include "ir/ir.hpp"
 
 namespace skc {
 
-/// A parameter that goes.
+/// True for a parameter to be removed.
 bool isDropped(const ir::Variable& var);
 
-/// Takes them out of a function whose body does not name them any more; elements become values.
+/// Removes stream parameters from a function whose body no longer uses them; elements become values.
 void dropStreams(ir::Function& function);
 
 }  // namespace skc

@@ -19,13 +19,13 @@ namespace {
 
 using namespace ir;
 
-/// Descriptors number parameters by a byte.
+/// Descriptors number parameters with a byte.
 constexpr std::size_t mostNumberedParameters = std::numeric_limits<std::uint8_t>::max();
 
-/// How many terms an element adds.
+/// The number of terms that an element adds.
 struct TermCount {
   std::size_t terms = 0;
-  bool isInLoop = false;  ///< and any number of others
+  bool isInLoop = false;  ///< adds further terms in a loop
 };
 
 TermCount countTerms(const Kernel& reduce, const Block& block, const ScalarSum& sum) {
@@ -51,7 +51,7 @@ bool mayReturn(const Stmt& stmt) {
   return found;
 }
 
-/// The inputs of a term that every element adds, the only one of its sum; nothing of others.
+/// The inputs of a sum's only term, if every element adds it; otherwise empty.
 std::vector<VarId> factorsOf(const Kernel& reduce, const Block& body, const ScalarSum& sum) {
   for (const Stmt& stmt : body) {
     const std::vector<Term> terms = termsOf(reduce, stmt, sum);
@@ -61,7 +61,7 @@ std::vector<VarId> factorsOf(const Kernel& reduce, const Block& body, const Scal
   return {};
 }
 
-/// The kernel in the making: a copy of the reduce that writes terms where that adds them.
+/// Builds the kernel: a copy of the reduce that writes terms instead of adding them.
 class TermKernel {
  public:
   TermKernel(Module& module, KernelId id, const ScalarSum& sum, bool areProducts)
@@ -99,14 +99,14 @@ class TermKernel {
     ++terms_;
   }
 
-  /// What the output begins with is left where the element does not add the term.
+  /// The output keeps its initial value if the element does not add the term.
   VarId addOutput(const char* name, float beginning) {
     const VarId output = copy_.addOutput(fmt::format("{}_{}", name, terms_), Type::of(Scalar::Float));
     start_.push_back(assign(varRef(copy_.entry(), output), literal(beginning)));
     return output;
   }
 
-  const Kernel& reduce_;  ///< in the module, which gets no kernel before make() ends
+  const Kernel& reduce_;  ///< in the module, to which no kernel is added before make() ends
   const ScalarSum& sum_;
   const bool areProducts_;
   FoldCopy copy_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What an element adds to an exact sum, for native code, where the runtime adds terms without rounding: the inputs that the
-// term is made of, or a kernel that computes it.
+// Determines what an element adds to an exact sum, for native code, whose runtime adds terms without
+// rounding: the inputs that form the term, or a kernel that computes it.
 //
 //   before   reduce void r(float x<>, float y<>, reduce float total<>) { if (y > 0) total += x * (y - 1); }
 //   after    the same, whose term is computed by
@@ -16,8 +16,8 @@
 
 namespace skc {
 
-/// The term of a sum of reduce `id`; empty where an element adds terms in a loop, or more than a kernel has outputs for.
-/// May add a kernel to the module. `areProducts`: the sum is one of products, where other terms have the factor 1.
+/// The term of a sum of reduce `id`; empty if an element adds terms in a loop, or more terms than a kernel
+/// can output. May add a kernel to the module. `areProducts`: other terms get the factor 1.
 ir::ExactTerm exactTerm(ir::Module& module, ir::KernelId id, const ScalarSum& sum, bool areProducts);
 
 }  // namespace skc

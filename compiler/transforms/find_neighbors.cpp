@@ -18,10 +18,10 @@ namespace {
 
 using namespace ir;
 
-/// Beyond this, an index and an offset may overflow an int as they are added.
+/// Adding a larger offset to an index might overflow an int.
 constexpr std::int64_t farthest = 1 << 20;
 
-/// An integer that is component `dimension` of the domain's index, where it has one, plus a constant.
+/// An integer that is a constant, or component `dimension` of the domain's index plus a constant.
 struct Place {
   std::optional<std::uint8_t> dimension;
   std::int64_t offset = 0;
@@ -48,7 +48,7 @@ class Finder {
   }
 
  private:
-  /// Of an index from that of the domain; null where it is not constant.
+  /// The offset of an index from the domain's; null if it is not constant.
   ExprPtr offsetOf(const Expr& index) const {
     std::vector<ExprPtr> offsets;
     for (std::uint8_t d = 0; d < index.type.width; ++d) {
@@ -81,7 +81,7 @@ class Finder {
     return Place{lhs->dimension ? lhs->dimension : rhs->dimension, offset};
   }
 
-  /// Of a vector that componentOf() cannot take apart.
+  /// For a vector that componentOf() cannot decompose.
   std::optional<Place> placeOfComponent(const Expr& vector, std::uint8_t component) const {
     if (const auto* n = std::get_if<IndexOf>(&vector.node)) {
       return isDomain(n->stream) ? std::optional(Place{component}) : std::nullopt;
@@ -91,7 +91,7 @@ class Finder {
                                            : std::nullopt;
   }
 
-  /// An input may have another shape, and its element another index.
+  /// True for the domain and outputs; an input may have another shape, and its element another index.
   bool isDomain(StreamRef stream) const {
     return stream.space == StreamRef::Space::Domain || (stream.space == StreamRef::Space::KernelParameter &&
                                                         kernel_.params[stream.id].role == ParamRole::Output);
@@ -100,7 +100,7 @@ class Finder {
   const Module& module_;
   const Kernel& kernel_;
   Function& function_;
-  std::vector<ExprPtr> values_;  ///< of locals that never change
+  std::vector<ExprPtr> values_;  ///< initial values of locals that are never assigned
 };
 
 }  // namespace

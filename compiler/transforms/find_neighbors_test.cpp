@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a gather at the domain's index plus constants becomes a neighbour, however the index is put together; at any other index, or of another
-// element's, it stays a gather.
+// Promises: a gather at the domain's index plus constants becomes a neighbour, in whatever way the index is
+// computed; at any other index, or the index of another element, it stays a gather.
 #include "transforms/find_neighbors.hpp"
 
 #include <functional>
@@ -25,8 +25,8 @@ constexpr StreamRef domain{StreamRef::Space::Domain, 0};
 ExprPtr here(std::string_view components = "xy") { return swizzle(indexOf(domain), components); }
 ExprPtr pair(ExprPtr x, ExprPtr y) { return construct(int2, exprs(std::move(x), std::move(y))); }
 
-/// The value of `r` after the transform, where `make` gives the index of a gather of rank 2 from locals `p`, which `pValue`
-/// declares, and `x`, an input.
+/// The value of `r` after the transform, where `make` builds the index of a gather of rank 2 from locals `p`,
+/// initialised with `pValue`, and `x`, an input.
 std::string read(const std::function<ExprPtr(KernelMaker&, VarId p, VarId x)>& make, ExprPtr pValue = here(),
                  bool changes = false) {
   Module module = testModule();

@@ -18,7 +18,7 @@ bool isAccumulator(const Kernel& kernel, VarId var) {
   return var < kernel.params.size() && kernel.params[var].role == ParamRole::Accumulator;
 }
 
-/// Whether one of them has something of the other: a struct and its member, say.
+/// True if a sum and an lvalue share components, such as a struct and its member.
 bool overlap(const FloatSum& sum, const StaticPlace& place) {
   if (sum.accumulator != place.root) return false;
   const std::size_t common = std::min(sum.members.size(), place.members.size());
@@ -26,10 +26,10 @@ bool overlap(const FloatSum& sum, const StaticPlace& place) {
   return place.members.size() < sum.members.size() || (sum.components & place.mask()) != 0;
 }
 
-/// What one reduce adds to, and what else of its accumulators it reads and writes.
+/// Collects what one reduce adds to, and which accumulators it reads or writes otherwise.
 class Uses {
  public:
-  /// `ofParts`: it combines, and only what it adds as it comes counts as a sum.
+  /// `ofParts`: it is a combining reduce, where only unchanged parts that are added count as sums.
   Uses(const Kernel& kernel, const Function& entry, bool ofParts) : kernel_(kernel), ofParts_(ofParts) {
     take(entry.body, false);
   }
@@ -78,7 +78,7 @@ class Uses {
     added_.push_back({part.accumulator, part.members, part.type, part.components});
   }
 
-  /// `place += part` with the same place of the input that stands for the accumulator.
+  /// True for `place += part`, where `part` is the same member of the corresponding input.
   bool addsItsPart(const Assign& fold) const {
     const std::vector<Summand> summands = summandsOf(fold);
     if (summands.size() != 1 || summands[0].isNegative) return false;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The sums of floats of a reduce: accumulators, or members of them, that elements are added to, and that partial results
-// are added to as well, whether the compiler or the author says how they combine. What else the reduce does to other
-// members does not matter.
+// Finds the float sums of a reduce: accumulators, or members of them, to which elements are added, and to
+// which partial results are added as well, whether the compiler or the author combines them. Other members
+// may be folded in any way.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +13,23 @@
 
 namespace skc {
 
-/// A float or a vector of them.
+/// A float or a vector of floats.
 struct FloatSum {
   ir::VarId accumulator;
-  std::vector<std::uint32_t> members;  ///< way from the accumulator to it
+  std::vector<std::uint32_t> members;  ///< path from the accumulator
   ir::Type type;
-  unsigned components;  ///< bit i: component i is a sum; the others are not folded by +
+  unsigned components;  ///< bit i: component i is a sum; other components are not folded by +
 
-  /// Whether a part of a fold is of its components.
+  /// True if a part of a fold consists of components of this sum.
   bool holds(const FoldPart& part) const;
 };
 
-/// Those of a reduce, in the order of its parameters and of their members. All that its statements do to them is to add what
-/// is made from no accumulator, outside of the heads of loops, and all that what combines does is to add those of its
-/// inputs.
+/// The sums of a reduce, in the order of its parameters and their members. Outside of loop heads, the
+/// reduce's statements only add values to them that depend on no accumulator, and the combining reduce only
+/// adds the corresponding inputs.
 std::vector<FloatSum> floatSums(const ir::Module& module, ir::KernelId id);
 
-/// The same of one accumulator of a reduce: that of another reduce with the same number.
+/// Maps an accumulator of one reduce to the accumulator of another with the same number.
 ir::VarId sameAccumulator(const ir::Kernel& of, ir::VarId accumulator, const ir::Kernel& in);
 
 }  // namespace skc

@@ -16,7 +16,7 @@ namespace {
 
 using namespace ir;
 
-/// Whether a float holds an integer exactly that is known and small; one that is not known may be large.
+/// True if an integer is known, and small enough for a float to hold it exactly.
 bool isExactAsFloat(const Expr& integer) {
   constexpr std::uint32_t largest = 1U << 24;
   const auto* n = std::get_if<Literal>(&integer.node);
@@ -24,7 +24,7 @@ bool isExactAsFloat(const Expr& integer) {
          (n->bits <= largest || (integer.type.scalar == Scalar::Int && 0 - n->bits <= largest));
 }
 
-/// Whether evaluating an expression may round a float.
+/// True if evaluating an expression may round a float.
 bool roundsFloats(const Expr& expr) {
   bool rounds = false;
   walkExprs(expr, [&](const Expr& inner) {
@@ -66,7 +66,7 @@ class State {
     if (std::holds_alternative<Index>(slot->node)) nameComponent(slot);
   }
 
-  /// `v[1]` of a vector is `v.y`, which later transforms know by its place.
+  /// Rewrites `v[1]` of a vector to `v.y`, which later transforms recognise.
   void nameComponent(ExprPtr& slot) {
     auto& n = std::get<Index>(slot->node);
     const Type vector = n.base->type;
@@ -76,7 +76,7 @@ class State {
     slot = makeExpr(slot->type, Swizzle{std::move(base), {static_cast<std::uint8_t>(*component)}}, slot->loc);
   }
 
-  /// `true && x` and `false || x`, either way round, are x.
+  /// Reduces `true && x` and `false || x` to x, in either order of operands.
   void dropNeutral(ExprPtr& slot, Binary& n) {
     if ((n.op != BinaryOp::LogicalAnd && n.op != BinaryOp::LogicalOr) || !slot->type.isScalar()) return;
     const std::uint32_t neutral = n.op == BinaryOp::LogicalAnd ? 1 : 0;
@@ -89,7 +89,7 @@ class State {
     slot = std::move(kept);
   }
 
-  /// Replaces statements whose condition is known by what they come to.
+  /// Replaces statements with a known condition by the branch taken.
   void decide(Block& block) {
     Block result;
     for (Stmt& stmt : block) {
@@ -114,7 +114,7 @@ class State {
     return loop.kind != LoopKind::DoWhile && loop.cond && known(*loop.cond, Constants::LookThrough) == 0U;
   }
 
-  /// In place where it declares nothing, else as a scope.
+  /// Appends statements, in a scope if they declare anything.
   static void append(Block& block, Block&& inner, Loc loc) {
     const bool declares = std::any_of(inner.begin(), inner.end(), [](const Stmt& stmt) {
       return std::holds_alternative<Declare>(stmt.node);
@@ -145,7 +145,7 @@ bool isLiteral(const Expr& expr) {
          std::ranges::all_of(n->args, [](const ExprPtr& arg) { return isLiteral(*arg); });
 }
 
-/// Puts the values of variables that never change, of vectors and of elements of arrays in their places.
+/// Substitutes the values of variables that never change, of vectors, and of array elements.
 class Propagation {
  public:
   Propagation(const Module& module, Function& function)
@@ -157,7 +157,7 @@ class Propagation {
   void run() { block(function_.body); }
 
  private:
-  /// Declarations come before what they declare is used.
+  /// Declarations precede the uses of their variables.
   void block(Block& statements) {
     for (Stmt& stmt : statements) {
       forEachOperand(stmt, [&](ExprPtr& slot) { expression(slot); });
@@ -168,7 +168,7 @@ class Propagation {
     }
   }
 
-  /// The value of an expression that is known; or null.
+  /// The value of an expression if it is known, or null.
   ExprPtr known(const Expr& expr) const {
     if (isLiteral(expr)) return clone(expr);
     const bool mayBe = isInteger(expr.type) && expr.type.isScalar() && !roundsFloats(expr);
@@ -193,7 +193,7 @@ class Propagation {
     }
   }
 
-  /// An integer vector of which all components are known.
+  /// Replaces an integer vector whose components are all known.
   void vector(ExprPtr& slot) const {
     std::vector<ExprPtr> components;
     for (std::uint8_t i = 0; i < slot->type.width; ++i) {
@@ -203,7 +203,7 @@ class Propagation {
     slot = construct(slot->type, std::move(components), slot->loc);
   }
 
-  /// A known element of a constant array; outside, it is the nearest.
+  /// Replaces a known element of a constant array; an index outside is clamped.
   void element(ExprPtr& slot) const {
     const auto& n = std::get<Index>(slot->node);
     const auto* value = arrayOf(*n.base);
@@ -217,7 +217,7 @@ class Propagation {
     if (isLiteral(found)) slot = clone(found);
   }
 
-  /// The elements of a constant array; null of anything else.
+  /// The elements of a constant array; null for any other expression.
   const Construct* arrayOf(const Expr& expr) const {
     if (expr.type.kind != Type::Kind::Array) return nullptr;
     if (const auto* n = std::get_if<ConstantRef>(&expr.node)) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: values are computed only where every device agrees; names of constants stay; branches
-// that are decided go.
+// Promises: values are computed only if every device agrees; constants keep their names; dead branches go.
 #include "transforms/fold_constants.hpp"
 
 #include <functional>

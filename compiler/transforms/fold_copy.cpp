@@ -28,7 +28,7 @@ KernelParam copyOf(const KernelParam& param) {
   return copy;
 }
 
-/// The stream that an expression asks, or null.
+/// The stream that an expression reads or queries, or null.
 StreamRef* streamOf(Expr& expr) {
   if (auto* n = std::get_if<GatherRead>(&expr.node)) return &n->stream;
   if (auto* n = std::get_if<NeighborRead>(&expr.node)) return &n->stream;
@@ -74,9 +74,9 @@ VarId FoldCopy::addAccumulator(std::string name, Type type, ExprPtr identity) {
 
 void FoldCopy::dropAccumulators() { isDropped_ = true; }
 
-/// Parameters come first among the variables, and streams go by their numbers among the parameters.
+/// Moves parameters to the front of the variables, and renumbers the streams by parameter.
 void FoldCopy::renumber() {
-  std::vector<VarId> order;   // old numbers
+  std::vector<VarId> order;   // old ids in new order
   for (VarId i = 0; i < before_; ++i) {
     if (!isDropped_ || kernel_.params[i].role != ParamRole::Accumulator) order.push_back(i);
   }

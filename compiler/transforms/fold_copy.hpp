@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A reduce in the making that does what another does, with other accumulators, or a kernel with outputs in their place.
+// Builds a copy of a reduce with other accumulators, or as a kernel with outputs in their place.
 #pragma once
 
 #include <string>
@@ -14,25 +14,26 @@ namespace skc {
 
 class FoldCopy {
  public:
-  /// A copy of the kernel and of all its functions, since each belongs to one kernel. The entry's name gets the suffix.
+  /// Copies the kernel and all its functions, since each belongs to one kernel; the entry's name gets
+  /// the suffix.
   FoldCopy(ir::Module& module, ir::KernelId of, std::string_view suffix);
 
-  /// Its body may be changed, and have more locals; its variables keep their numbers until finish().
+  /// The body may be changed and get more locals; variables keep their ids until finish().
   ir::Function& entry() { return entry_; }
   ir::KernelParam& param(ir::VarId var) { return kernel_.params[var]; }
 
-  /// A new input, output or accumulator, of which nobody knows yet, after all other parameters.
+  /// Adds an input, output or accumulator after all other parameters; nothing uses it yet.
   ir::VarId addInput(std::string name, ir::Type type);
   ir::VarId addOutput(std::string name, ir::Type type);
   ir::VarId addAccumulator(std::string name, ir::Type type, ir::ExprPtr identity = nullptr);
-  /// The accumulators that there were go; the body does not name them any more.
+  /// Removes the original accumulators; the body must no longer use them.
   void dropAccumulators();
 
-  /// Puts it into the module, a reduce that `combine` combines, which gets the arguments that the copied reduce gives to
-  /// what combines that; or one that combines by itself and has no identities.
+  /// Adds the copy to the module as a reduce that `combine` combines, with the arguments that the original
+  /// passes to its combining reduce; or as one that combines its own results and has no identities.
   ir::KernelId finish(ir::KernelId combine);
   ir::KernelId finishCombination();
-  /// The same, as a kernel that runs natively alone. It has no accumulators.
+  /// Adds the copy to the module as a native-only kernel. It has no accumulators.
   ir::KernelId finishNativeKernel();
 
  private:
@@ -45,7 +46,7 @@ class FoldCopy {
   ir::Kernel kernel_;
   ir::Function entry_;
   std::vector<std::uint32_t> operands_;
-  std::size_t before_;  ///< parameters that there were
+  std::size_t before_;  ///< number of original parameters
   bool isDropped_ = false;
   FunctionCopies copies_;
   std::vector<ir::VarId> added_;

@@ -11,7 +11,7 @@ using namespace ir;
 
 namespace {
 
-/// A literal of a narrow type, given as its carrier's.
+/// Converts a literal of the arithmetic type to a narrow type.
 ExprPtr narrowed(Scalar scalar, ExprPtr value) {
   value->type = Type::of(scalar);
   return value;
@@ -44,7 +44,7 @@ ExprPtr extreme(Scalar scalar, bool largest) {
   return real(-infinity, infinity);
 }
 
-/// All bits of an integer.
+/// An integer with all bits set.
 ExprPtr allBits(Scalar scalar) {
   const bool isUnsigned = scalar == Scalar::Uchar || scalar == Scalar::Ushort;
   return isUnsigned ? extreme(scalar, true) : literalOf(Type::of(scalar), -1);

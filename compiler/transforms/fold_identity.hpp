@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The identities of the operators by which reduces fold.
+// The identities of the operators that reduces fold by.
 #pragma once
 
 #include "ir/ir.hpp"
@@ -8,11 +8,11 @@
 
 namespace skc {
 
-/// The neutral element of an associative operator of a FoldPattern, for a component of this type.
+/// The identity of an associative operator of a FoldPattern, for a component type.
 ir::ExprPtr neutralOf(FoldOp op, ir::Scalar scalar);
 
-/// Whether folding a value twice is the same as folding it once, as for min: then a value from which runs start bounds
-/// the result, but always gives the same one.
+/// True if folding a value twice equals folding it once, as for min: a given initial value then bounds the
+/// result, but the result is always the same.
 bool isIdempotent(FoldOp op);
 
 }  // namespace skc

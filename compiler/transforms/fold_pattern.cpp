@@ -12,7 +12,7 @@ namespace {
 
 using namespace ir;
 
-/// What a conversion between a narrow type and its carrier converts: operators know only the carrier.
+/// Removes conversions between a narrow type and its arithmetic type, which operators need.
 const Expr& withoutCarrier(const Expr& expr) {
   const auto* n = std::get_if<Convert>(&expr.node);
   const bool isCarried = n != nullptr && (expr.type.isNarrow() || n->operand->type.isNarrow()) &&
@@ -34,12 +34,13 @@ std::optional<FoldOp> minOrMax(Intrinsic intrinsic) {
   return std::nullopt;
 }
 
-/// The operator by which `value` is `place op f`, possibly a chain `place op f op g`; of one of sums and differences, +.
+/// The operator if `value` is `place op f`, or a chain `place op f op g`; + for a chain of sums and
+/// differences.
 std::optional<FoldOp> selfFold(const Expr& value, const StaticPlace& place) {
   if (const auto* n = std::get_if<Binary>(&value.node)) {
     if (isComparison(n->op)) return std::nullopt;
     const bool hasMatrix = n->lhs->type.isMatrix() || n->rhs->type.isMatrix();
-    if (hasMatrix && n->op != BinaryOp::Add) return std::nullopt;  // their products have an order
+    if (hasMatrix && n->op != BinaryOp::Add) return std::nullopt;  // products of matrices do not commute
     const std::optional<FoldOp> left = selfFold(*n->lhs, place);
     if (isSame(*n->lhs, place) || left == FoldOp(n->op)) return n->op;
     if (isCommutative(n->op) && (isSame(*n->rhs, place) || selfFold(*n->rhs, place) == FoldOp(n->op)))
@@ -53,7 +54,7 @@ std::optional<FoldOp> selfFold(const Expr& value, const StaticPlace& place) {
   return std::nullopt;
 }
 
-/// Adds a part; false where one of its components is folded by another operator already.
+/// Adds a part; false if one of its components is folded by another operator already.
 bool add(std::vector<FoldPart>& parts, FoldPart part) {
   for (FoldPart& other : parts) {
     if (other.accumulator != part.accumulator || other.members != part.members) continue;
@@ -71,7 +72,7 @@ class Recogniser {
  public:
   explicit Recogniser(const Kernel& kernel) : kernel_(kernel) {}
 
-  /// A statement that folds into an accumulator.
+  /// The part that a statement folds into an accumulator.
   std::optional<FoldPart> foldOf(const Stmt& stmt) const {
     const auto* n = std::get_if<Assign>(&stmt.node);
     if (n == nullptr) return std::nullopt;
@@ -106,7 +107,7 @@ class Recogniser {
     return var < kernel_.params.size() && kernel_.params[var].role == ParamRole::Accumulator;
   }
 
-  /// How often an expression names an accumulator.
+  /// The number of times that an expression uses an accumulator.
   int reads(const Expr& expr) const {
     int count = 0;
     walkExprs(expr, [&](const Expr& inner) {
@@ -116,13 +117,13 @@ class Recogniser {
     return count;
   }
 
-  /// Of an accumulator; nothing for other expressions.
+  /// The lvalue if it is part of an accumulator; nullopt for other expressions.
   std::optional<StaticPlace> placeOf(const Expr& expr) const {
     std::optional<StaticPlace> place = staticPlace(expr);
     return place && isAccumulator(place->root) ? place : std::nullopt;
   }
 
-  /// `place op= its element`, in any of the forms, with the same place in the element.
+  /// True for `place op= its element`, in any form, with the same member of the element.
   bool isPlain(const Stmt& stmt) const {
     const auto* n = std::get_if<Assign>(&stmt.node);
     if (n == nullptr) return false;
@@ -147,7 +148,7 @@ class Recogniser {
 
 namespace {
 
-/// Those of `place + f - g`, where the place itself is none.
+/// Adds the summands of `place + f - g` except the place itself.
 void addSummands(const Expr& value, const StaticPlace& place, bool isNegative, std::vector<Summand>& all) {
   if (isSame(value, place)) return;
   if (!selfFold(value, place)) return all.push_back({&value, isNegative});

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Recognises reduces whose body only folds into the accumulators, or into members of them, by operators
-// that are known: every statement that names an accumulator is `place op= f`, `place = place op f`
-// or `place = min(place, f)`, and no f reads one. Whatever loops and branches stand around them, the
-// body is then `accumulator op (something made from the elements)`.
+// Recognises reduces whose body only folds into accumulators, or members of them, by known operators: every
+// statement that uses an accumulator is `place op= f`, `place = place op f` or `place = min(place, f)`, and
+// no f reads one. Whatever its loops and branches, the body is then `accumulator op f(elements)`.
 #pragma once
 
 #include <cstdint>
@@ -18,39 +17,39 @@ namespace skc {
 /// An operator of a compound assignment, && or ||; or Min or Max.
 using FoldOp = std::variant<ir::BinaryOp, ir::Intrinsic>;
 
-/// Some components of an accumulator, or of a scalar, vector or matrix member of one, and their operator.
+/// Components of an accumulator, or of a scalar, vector or matrix member, and the operator that folds them.
 struct FoldPart {
   ir::VarId accumulator;
-  std::vector<std::uint32_t> members;   ///< way from the accumulator to the member
-  ir::Type type;                        ///< of the member
+  std::vector<std::uint32_t> members;   ///< path from the accumulator to the member
+  ir::Type type;                        ///< type of the member
   unsigned components;                  ///< bit i: component i
   FoldOp op;
-  Loc loc;                          ///< of the first statement that folds into it
+  Loc loc;                          ///< of the first statement that folds into the part
   bool isWhole() const { return components == (1U << type.width) - 1; }
 };
 
 struct FoldPattern {
-  std::vector<FoldPart> parts;   ///< in the order of the statements; no component in two of them
-  bool isPlain;  ///< the body is `accumulator op= its element`, whole or by member, and nothing else
+  std::vector<FoldPart> parts;   ///< in statement order; each component is in one part only
+  bool isPlain;  ///< the body is only `accumulator op= its element`, whole or by member
 };
 
 /// The pattern of a reduce with this entry function.
 std::optional<FoldPattern> recogniseFold(const ir::Kernel& kernel, const ir::Function& entry);
 
-/// What a statement of a reduce folds into an accumulator, if that is all it does with them.
+/// The part that a statement of a reduce folds into, if the statement uses accumulators in no other way.
 std::optional<FoldPart> foldedBy(const ir::Kernel& kernel, const ir::Stmt& stmt);
 
-/// What such a statement adds: f and g of `place += f`, `place = place + f - g`. It folds by +.
+/// A value that a statement folding by + adds: f or g of `place += f`, `place = place + f - g`.
 struct Summand {
   const ir::Expr* value;
   bool isNegative;
 };
 std::vector<Summand> summandsOf(const ir::Assign& fold);
 
-/// Whether its inputs have the types of its accumulators, one by one, so that each accumulator has an element.
+/// True if inputs and accumulators have the same types in order, so that each accumulator has an element.
 bool foldsAccumulators(const ir::Kernel& kernel);
 
-/// Of such a reduce: the input that stands where an accumulator does among them.
+/// The input of such a reduce that corresponds to an accumulator.
 ir::VarId elementOf(const ir::Kernel& kernel, ir::VarId accumulator);
 
 }  // namespace skc

@@ -15,7 +15,7 @@ class Forwarder {
  public:
   explicit Forwarder(Function& function) : function_(function) {}
 
-  /// `switches`: how many stand around the block inside of its loop.
+  /// `switches`: the number of switches around the block, within its loop.
   void block(Block& statements, int switches) {
     for (Stmt& stmt : statements) {
       if (std::holds_alternative<Loop>(stmt.node)) {
@@ -29,7 +29,7 @@ class Forwarder {
   }
 
  private:
-  /// Inner ones first: they leave a `continue` behind them for the one around them.
+  /// Rewrites inner switches first: each leaves a `continue` behind it for the switch around it.
   void choice(Stmt& stmt, int switches) {
     forEachBlock(stmt, [&](Block& inner) { block(inner, switches + 1); });
     if (switches == 0 || !continues(stmt)) return;
@@ -41,7 +41,7 @@ class Forwarder {
                  loc);
   }
 
-  /// Whether a `continue` of the loop around a statement stands in it.
+  /// True if a statement contains a `continue` of the loop around the statement.
   static bool continues(const Stmt& stmt) {
     if (std::holds_alternative<Continue>(stmt.node)) return true;
     if (std::holds_alternative<Loop>(stmt.node)) return false;
@@ -52,8 +52,8 @@ class Forwarder {
     return found;
   }
 
-  /// Makes each `continue` of the loop around the switch a break of the switch, of which the flag tells. No other
-  /// switch is left in there with one.
+  /// Turns each `continue` of the loop around the switch into a break of the switch that sets the flag. Inner
+  /// switches contain none any more.
   void leave(Block& statements, VarId flag) {
     for (Stmt& stmt : statements) {
       if (std::holds_alternative<Loop>(stmt.node)) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// forward-continues: a `continue` in a switch in a switch leaves one switch after the other. Drivers take it for
+// forward-continues: makes a `continue` in nested switches leave one switch at a time. Drivers take it for
 // the outer switch's break, or run the step of a `for` once too often (Mesa 22.3).
 //
 //   for (int i = 0; i < n; ++i) {            for (int i = 0; i < n; ++i) {

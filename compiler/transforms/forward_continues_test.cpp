@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: no `continue` is left in a switch that stands in another of its loop; all others stay as they are.
+// Promises: no `continue` remains in a switch nested in another switch of its loop; all others stay.
 #include "transforms/forward_continues.hpp"
 
 #include <catch2/catch.hpp>

@@ -15,12 +15,12 @@ namespace {
 
 using namespace ir;
 
-/// For each variable of a function: its value in terms of the kernel's Spec variables, null where it
-/// has another.
+/// For each variable of a function, its value in terms of the kernel's Spec variables; null if it depends on
+/// anything else.
 using Values = std::vector<ExprPtr>;
 
-/// Calls are followed anew from each place that calls; programs that branch out beyond this are told
-/// to need everything.
+/// Each call is analysed separately. If a program has more calls than this along its call tree, all its
+/// streams count as needed.
 constexpr int mostCalls = 2000;
 
 bool isFollowed(BinaryOp op, Type operands) {
@@ -39,7 +39,7 @@ bool isFollowed(BinaryOp op, Type operands) {
     case BinaryOp::NotEqual:
     case BinaryOp::LogicalAnd:
     case BinaryOp::LogicalOr: return !operands.isDouble();
-    case BinaryOp::Div:   // what these give for some operands is the device's choice
+    case BinaryOp::Div:   // for some operands, the result depends on the device
     case BinaryOp::Rem:
     case BinaryOp::ShiftLeft:
     case BinaryOp::ShiftRight: return false;
@@ -47,7 +47,7 @@ bool isFollowed(BinaryOp op, Type operands) {
   return false;
 }
 
-/// Whether control never runs off the end of a block.
+/// True if control never reaches the end of a block.
 bool leaves(const Block& block) {
   if (block.empty()) return false;
   const Stmt::Node& last = block.back().node;
@@ -57,7 +57,7 @@ bool leaves(const Block& block) {
          std::holds_alternative<Continue>(last);
 }
 
-/// Variables that something may change after their declaration.
+/// Variables that may change after their declaration.
 std::vector<bool> changedVariables(const Module& module, const Function& function) {
   std::vector<bool> changed(function.variables.size(), false);
   walkStmts(function.body, [&](const Stmt& stmt) {
@@ -73,7 +73,7 @@ std::vector<bool> changedVariables(const Module& module, const Function& functio
   return changed;
 }
 
-/// Follows one kernel and collects, for each parameter, the conditions of its uses.
+/// Analyses one kernel and collects, for each parameter, the conditions of its uses.
 class Follower {
  public:
   Follower(const Module& module, const Kernel& kernel)
@@ -90,7 +90,7 @@ class Follower {
   }
 
  private:
-  /// The function at hand.
+  /// The function being analysed.
   struct Frame {
     const Function& function;
     bool isEntry;
@@ -113,7 +113,7 @@ class Follower {
 
   // ---- statements -------------------------------------------------------------------------------
 
-  /// `if (!spec) return;` guards what follows it.
+  /// `if (!spec) return;` guards the statements after it.
   void block(Frame& frame, const Block& statements, const Expr& outer) {
     ExprPtr guard = clone(outer);
     for (const Stmt& stmt : statements) {
@@ -152,7 +152,7 @@ class Follower {
     block(frame, n.body, guard);
     block(frame, n.step, guard);
   }
-  /// A case runs for its own values and where the one before falls into it.
+  /// A case runs for its own values, and if the case before falls through.
   void statement(Frame& frame, const Switch& n, const Expr& guard) {
     expression(frame, *n.value, guard);
     const ExprPtr chosen = value(frame, *n.value);
@@ -242,7 +242,7 @@ class Follower {
     follow(callee, std::move(values), guard);
   }
 
-  /// A scalar in terms of the kernel's Spec variables; null where it is none.
+  /// A scalar in terms of the kernel's Spec variables; null if it depends on anything else.
   ExprPtr value(const Frame& frame, const Expr& expr) const {
     if (!expr.type.isScalar()) return nullptr;
     if (const auto bits = evaluate(module_, expr, Constants::LookThrough)) {
@@ -266,7 +266,7 @@ class Follower {
     return comparison(n->op, std::move(lhs), std::move(rhs));
   }
 
-  /// `if (n)` is `n != 0`; between the other types but float, the bits stay.
+  /// `if (n)` is `n != 0`; conversions between the other types, except float, keep the bits.
   ExprPtr converted(const Frame& frame, Type to, const Expr& operand) const {
     const bool rounds = to.isFloat() || to.isDouble() || to.isNarrow() || operand.type.isNarrow();
     ExprPtr from = rounds ? nullptr : value(frame, operand);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// guard-streams: finds for each stream of a kernel the values of its spec parameters under which the
-// kernel uses it, from the branches that stand around its uses. It changes no function.
+// guard-streams: finds for each stream of a kernel the values of the spec parameters for which the kernel
+// uses it, from the branches around its uses. It changes no function.
 //
 //   kernel   f: entry @0                           f: entry @0
 //              $0 bent: spec bool                    $0 bent: spec bool
@@ -9,8 +9,7 @@
 //              $2 r: output float                    $2 r: output float
 //   body     r = bent ? $1[0] : 0.0;
 //
-// What it cannot follow counts as a use: a condition may be true too often, never false where the
-// stream is used.
+// What it cannot analyse counts as a use: a condition may be true too often, never false for a used stream.
 #pragma once
 
 #include "ir/ir.hpp"
@@ -20,7 +19,7 @@ namespace skc {
 
 void guardStreams(ir::Module& module, Diagnostics& diagnostics);
 
-/// Whether `expr` is made of literals, constants and the variables that `isSpec` marks.
+/// True if `expr` consists of literals, constants and variables that `isSpec` marks.
 bool isSpecOnly(const ir::Expr& expr, const std::vector<bool>& isSpec);
 
 }  // namespace skc

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: a stream's condition is the one under which some use of it runs, as far as branches on spec
-// parameters decide that; what cannot be followed counts as a use.
+// parameters decide that; what cannot be analysed counts as a use.
 #include "transforms/guard_streams.hpp"
 
 #include <catch2/catch.hpp>
@@ -18,7 +18,7 @@ using namespace ir;
 
 constexpr Type boolType = Type::of(Scalar::Bool);
 
-/// A kernel of a flag, a number, two inputs and an output, whose body is what a case makes of them.
+/// A kernel with a flag, a number, two inputs and an output; each case builds its own body.
 struct Sample {
   Module module = testModule();
   KernelMaker k{module, "f"};

@@ -50,7 +50,7 @@ class Hoister {
  private:
   bool isLong(const Expr& expr) const { return callsOneOf(functions_, expr); }
 
-  /// Puts statements that compute what cannot stay in the expression in front of it.
+  /// Moves what cannot stay in the expression to statements before it.
   void expression(ExprPtr& slot, Block& before) {
     if (!isLong(*slot)) return;
     if (auto* n = std::get_if<Select>(&slot->node);
@@ -94,7 +94,7 @@ class Hoister {
     slot = varRef(function_, var, loc);
   }
 
-  /// The condition of a loop is evaluated in every round: at the body's start; that of `do` in the step of a `for`.
+  /// Evaluates a loop's condition in each iteration: at the start of its body, or in the step for `do`.
   void condition(Loop& loop, Loc loc) {
     if (!loop.cond) return;
     Block before;

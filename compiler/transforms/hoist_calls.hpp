@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Private to predicate: takes calls that may take long, or forever, out of `&&`, `||` and `?:`, so that these may be
-// evaluated in full.
+// Private to predicate: moves calls that may take long, or may not end, out of `&&`, `||` and `?:`, so that
+// these may evaluate all their operands.
 //
 //   r = x > 0 ? rounds(x) : 1;      int chosen;
 //                                   if (x > 0) chosen = rounds(x); else chosen = 1;
@@ -14,10 +14,10 @@
 
 namespace skc {
 
-/// Functions with a loop whose trip count depends on data, or that call one.
+/// Functions that contain a data-dependent loop, or call a function that does.
 std::set<ir::FunctionId> longFunctions(const ir::Module& module);
 
-/// Whether an expression calls one of these functions.
+/// True if an expression calls one of these functions.
 bool callsOneOf(const std::set<ir::FunctionId>& functions, const ir::Expr& expr);
 
 void hoistCalls(ir::Function& function, const std::set<ir::FunctionId>& functions);

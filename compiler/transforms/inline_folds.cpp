@@ -17,10 +17,10 @@ namespace {
 
 using namespace ir;
 
-/// What stands for a variable of a callee in the reduce.
+/// The caller's expressions for a callee's variables.
 using Substitution = std::map<VarId, ExprPtr>;
 
-/// More calls than this in one body are no fold that somebody wrote.
+/// Nobody writes a fold with more calls in one body.
 constexpr int mostCalls = 64;
 
 void substitute(ExprPtr& slot, const Substitution& values) {
@@ -37,7 +37,7 @@ void substitute(Block& block, const Substitution& values) {
   });
 }
 
-/// Whether all that a block does with control flow, it does in itself: no return but one at its very end.
+/// True if the only return of a block is at its very end.
 bool returnsAtEnd(const Block& block) {
   bool isOutside = false;
   walkStmts(block, [&](const Stmt& stmt) {
@@ -46,7 +46,7 @@ bool returnsAtEnd(const Block& block) {
   return !isOutside;
 }
 
-/// How often an expression names a variable.
+/// The number of times that an expression uses a variable.
 int uses(const Expr& expr, VarId var) {
   int count = 0;
   walkExprs(expr, [&](const Expr& inner) {
@@ -56,13 +56,13 @@ int uses(const Expr& expr, VarId var) {
   return count;
 }
 
-/// The body of one reduce, in which calls are replaced by what they do.
+/// Inlines calls in the body of one reduce.
 class Inliner {
  public:
   Inliner(const Module& module, const Kernel& kernel, Function& function)
       : module_(module), kernel_(kernel), function_(function), assigned_(assignedVariables(function)) {}
 
-  /// Whether it has changed anything.
+  /// Returns true if it changed anything.
   bool run() {
     while (calls_ < mostCalls && block(function_.body)) {
     }
@@ -85,7 +85,7 @@ class Inliner {
     return std::ranges::any_of(args, [&](const ExprPtr& arg) { return namesAccumulator(*arg); });
   }
 
-  /// Replaces the first call that it can.
+  /// Inlines the first call that it can.
   bool block(Block& statements) {
     for (std::size_t i = 0; i < statements.size(); ++i) {
       std::optional<Block> inlined = statement(statements[i]);
@@ -103,7 +103,7 @@ class Inliner {
     return false;
   }
 
-  /// The statements that do the same, with one call less.
+  /// Equivalent statements with one call less.
   std::optional<Block> statement(Stmt& stmt) {
     if (const auto* n = std::get_if<CallStmt>(&stmt.node)) return callStatement(*n, stmt.loc);
     auto* n = std::get_if<Assign>(&stmt.node);
@@ -114,13 +114,13 @@ class Inliner {
     return valueOfCall(stmt, *n);
   }
 
-  /// `f(e, x);` where f takes a reference to e.
+  /// `f(e, x);`, where f takes a reference to e.
   std::optional<Block> callStatement(const CallStmt& call, Loc loc) {
     if (!anyNamesAccumulator(call.args)) return std::nullopt;
     return body(call.callee, call.args, std::nullopt, call.result.get(), loc);
   }
 
-  /// `e = f(x, e);` where f changes its copy of e and returns that.
+  /// `e = f(x, e);`, where f changes its copy of e and returns the copy.
   std::optional<Block> updatingCall(const Assign& assign, const Call& call, Loc loc) {
     const Function& callee = module_.functions[call.callee];
     if (callee.body.empty()) return std::nullopt;
@@ -133,7 +133,7 @@ class Inliner {
     return body(call.callee, call.args, result->var, nullptr, loc);
   }
 
-  /// The callee's statements. `updated` is a copy that stands for its argument, since that is assigned the copy's end.
+  /// The callee's statements. `updated` is a parameter whose final value its argument receives.
   std::optional<Block> body(FunctionId id, const std::vector<ExprPtr>& args, std::optional<VarId> updated,
                             const Expr* result, Loc loc) {
     const Function& callee = module_.functions[id];
@@ -179,13 +179,13 @@ class Inliner {
     return scoped(std::move(all), loc);
   }
 
-  /// Declarations stay among themselves.
+  /// Keeps declarations in a scope of their own.
   static Block scoped(Block statements, Loc loc) {
     if (statements.size() == 1 && !std::holds_alternative<Declare>(statements[0].node)) return statements;
     return ir::block(scope(std::move(statements), loc));
   }
 
-  /// Whether an argument is the same wherever the callee reads it.
+  /// True if an argument has the same value wherever the callee reads it.
   bool keeps(const Expr& arg, bool isShort) const {
     bool changes = false;
     walkExprs(arg, [&](const Expr& inner) {
@@ -195,7 +195,7 @@ class Inliner {
     return isShort || !changes;
   }
 
-  /// `e = e + f(x, e)` and the like, where f is one expression.
+  /// `e = e + f(x, e)` and similar, where f is a single expression.
   std::optional<Block> valueOfCall(const Stmt& stmt, const Assign& assignment) {
     const std::optional<StaticPlace> place = staticPlace(*assignment.place);
     if (!place || !isAccumulator(place->root)) return std::nullopt;
@@ -217,7 +217,7 @@ class Inliner {
     return scoped(std::move(before), stmt.loc);
   }
 
-  /// What a function of constants and one return gives; arguments that it reads twice go to variables.
+  /// The result of a function that has only constants and one return; arguments read twice go to variables.
   ExprPtr returnedBy(const Call& call, Block& before, Loc loc) {
     const Function& callee = module_.functions[call.callee];
     if (callee.table || callee.body.empty()) return nullptr;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// inline-folds: writes the helper functions and kernels by which a reduce folds into its body, where that shows the
-// operator, so that what a fold means does not depend on who wrote it down.
+// inline-folds: inlines the helper functions and kernels through which a reduce folds, if that reveals the
+// operator. The meaning of a fold then does not depend on how its code is divided into functions.
 //
 //   before   float join(float a, float e, float c) { return a + e + c; }
 //            reduce void bar(float a<>, float c, reduce float e<>) { e = join(a, e, c); }
 //   after    reduce void bar(float a<>, float c, reduce float e<>) { e = a + e + c; }
 //
-// A reduce whose fold does not become known stays as it is.
+// A reduce whose operator stays unknown is not changed.
 #pragma once
 
 #include "ir/ir.hpp"

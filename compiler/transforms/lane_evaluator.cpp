@@ -66,7 +66,7 @@ std::vector<LaneEvaluator::Lanes> LaneEvaluator::call(FunctionId id, std::vector
   return std::move(frame.variables);
 }
 
-/// What a variable is before its first assignment: another value in each lane, where the analysis allows it.
+/// A variable's value before its first assignment: different in each lane, if the analysis allows that.
 LaneEvaluator::Lanes LaneEvaluator::unassigned(FunctionId id, VarId var) const {
   const Type type = module_.functions[id].variables[var].type;
   return each([&](std::size_t lane) {
@@ -80,7 +80,7 @@ LaneEvaluator::Lanes LaneEvaluator::unassigned(FunctionId id, VarId var) const {
   });
 }
 
-/// Whether the lanes' values relate as the analysis says; arrays may hold what was never assigned to.
+/// Checks that the lanes' values relate as the analysis says; arrays may contain unassigned elements.
 void LaneEvaluator::check(const Frame& frame, VarId var) const {
   const VarRole role = frame.function.variables[var].role;
   const Type type = frame.function.variables[var].type;
@@ -197,7 +197,7 @@ LaneEvaluator::Flow LaneEvaluator::choice(Frame& frame, const Switch& n) {
   return Flow::Next;
 }
 
-/// The first scalar of a place, and which of those from there on it is.
+/// The first scalar of an lvalue's storage, and the offsets from there of the lvalue's scalars.
 std::int32_t* LaneEvaluator::scalars(Frame& frame, const Expr& place, std::size_t lane,
                                      std::vector<std::size_t>& swizzle) {
   if (const auto* n = std::get_if<Index>(&place.node)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// For tests: runs functions of ints and bools for several elements at once, one in each lane. Control flow is that of lane 0, and
-// has to be the same for all lanes; so a function as the frontend gives it runs with a single lane.
+// For tests: runs functions of ints and bools for several elements at once, one per lane. Control flow
+// follows lane 0 and must be uniform, so functions as the frontend produces them run with a single lane.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ namespace skc {
 
 class LaneEvaluator {
  public:
-  using Value = std::vector<std::int32_t>;  ///< all scalars, one after the other
+  using Value = std::vector<std::int32_t>;  ///< all scalars in order
   using Lanes = std::vector<Value>;
 
-  /// `&&`, `||` and `?:` evaluate all their operands only where `inFull`. Values are checked against `shapes`.
+  /// `inFull`: `&&`, `||` and `?:` evaluate all their operands. Values are checked against `shapes`.
   LaneEvaluator(const ir::Module& module, std::size_t lanes, bool inFull,
                 const analysis::Uniformity* shapes = nullptr)
       : module_(module), count_(lanes), inFull_(inFull), shapes_(shapes), pushed(lanes) {}
 
-  /// Runs a function; returns what its parameters are at the end.
+  /// Runs a function; returns the final values of its parameters.
   std::vector<Lanes> run(ir::FunctionId id, std::vector<Lanes> arguments) {
     Lanes result;
     return call(id, std::move(arguments), result);
@@ -72,8 +72,8 @@ class LaneEvaluator {
   int steps_ = 0;
 
  public:
-  std::vector<Value> pushed;  ///< by each lane
-  std::int32_t firstIndex = 0;  ///< of lane 0
+  std::vector<Value> pushed;  ///< one list per lane
+  std::int32_t firstIndex = 0;  ///< index of lane 0
 };
 
 }  // namespace skc

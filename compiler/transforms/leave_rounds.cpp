@@ -14,7 +14,7 @@ namespace {
 
 using namespace ir;
 
-/// Whether a statement holds a jump of the loop around it: a `break` in a switch is the switch's.
+/// True if a statement contains a jump of the loop around it; a `break` in a switch belongs to the switch.
 bool mayLeave(const Stmt& stmt, bool inSwitch = false) {
   if (std::holds_alternative<Continue>(stmt.node)) return true;
   if (std::holds_alternative<Break>(stmt.node)) return !inSwitch;
@@ -27,14 +27,14 @@ bool mayLeave(const Stmt& stmt, bool inSwitch = false) {
   return may;
 }
 
-/// How a part of a round ends: it goes on to what follows it, or all of it leaves.
+/// How part of an iteration ends: control reaches what follows, or all of it leaves.
 enum class End : std::uint8_t { GoesOn, Continues, Breaks, Unknown };
 
 class Leaver {
  public:
   explicit Leaver(const Module& module) : module_(module) {}
 
-  /// Of a block that ends with the round, where `endsRound`: then some elements may leave it earlier than others.
+  /// `endsRound`: the block ends the iteration, so that some elements may leave it earlier than others.
   End leave(Block& block, bool endsRound) const {
     for (std::size_t i = 0; i < block.size(); ++i) {
       decide(block, i);
@@ -47,7 +47,7 @@ class Leaver {
   }
 
  private:
-  /// Puts the branch that is taken in the place of an `if` that is decided and may leave the round.
+  /// Replaces an `if` that may leave the iteration and whose condition is known by the branch taken.
   void decide(Block& block, std::size_t i) const {
     while (i < block.size() && mayLeave(block[i])) {
       auto* n = std::get_if<If>(&block[i].node);
@@ -59,7 +59,8 @@ class Leaver {
     }
   }
 
-  /// Of statement `i`, which may leave the round. GoesOn where what follows it is still to be looked at.
+  /// Processes statement `i`, which may leave the iteration. GoesOn if the next
+  /// one is still to be processed.
   End leave(Block& block, std::size_t i, bool endsRound) const {
     Stmt& stmt = block[i];
     if (std::holds_alternative<Continue>(stmt.node)) return cut(block, i, End::Continues);
@@ -77,7 +78,7 @@ class Leaver {
     return end;
   }
 
-  /// An `if` of which one branch continues: the rest of the round goes to the other.
+  /// An `if` with one branch that continues: the rest of the iteration moves to the other branch.
   End divide(Block& block, std::size_t i, bool endsRound) const {
     auto& choice = std::get<If>(block[i].node);
     const End then = leave(choice.then, false);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// `continue` and `break` in a round of a loop that is being unrolled, which has no loop around it any more: what leaves the
-// round for certain cuts it off, and the rest of a round becomes the other branch of an `if` that may skip it.
+// Removes `continue` and `break` from an iteration of a loop that is being unrolled, and has no loop around
+// it any more: a certain jump cuts the iteration off, and the rest after a possible one becomes the other
+// branch of its `if`.
 //
 //   before   if (-1 == 0) continue;  if (x > 1.0) { r += 1.0; continue; }  r = 0.0;
 //   after    if (x > 1.0) { r += 1.0; } else { r = 0.0; }
@@ -14,12 +15,12 @@
 namespace skc {
 
 enum class RoundEnd : std::uint8_t {
-  Completes,  ///< the next round follows
-  LeavesLoop,  ///< this is the last round
-  Unknown,  ///< the elements decide: the round is not to be used
+  Completes,  ///< the next iteration follows
+  LeavesLoop,  ///< this is the last iteration
+  Unknown,  ///< depends on the elements: do not use the iteration
 };
 
-/// Takes the jumps of the loop around it out of one round's block.
+/// Removes the jumps of the surrounding loop from the block of one iteration.
 RoundEnd leaveRound(const ir::Module& module, ir::Block& round);
 
 }  // namespace skc

@@ -24,13 +24,13 @@ using namespace ir;
 
 namespace {
 
-/// Whether a statement must not run, or not on and on, in lanes that do not want it.
+/// True if a statement would have side effects, or might not end, in inactive lanes.
 bool wantsMask(const analysis::Uniformity& uniformity, FunctionId id, const Stmt& stmt) {
   if (std::holds_alternative<Push>(stmt.node) || std::holds_alternative<Scatter>(stmt.node)) return true;
   return std::holds_alternative<Loop>(stmt.node) && uniformity.diverges(id, stmt);
 }
 
-/// Whether lanes that do not want it can make a function run a branch that takes long.
+/// True if a mask lets a function skip a long branch that no active lane takes.
 bool gainsByMask(const analysis::Uniformity& uniformity, BlendCost& cost, FunctionId id, const Stmt& stmt) {
   const bool isBranch = std::holds_alternative<If>(stmt.node) || std::holds_alternative<Switch>(stmt.node);
   return isBranch && uniformity.diverges(id, stmt) && !cost.isShort({&stmt, 1});
@@ -43,7 +43,7 @@ bool anyStmt(const Block& block, Fn&& fn) {
   return found;
 }
 
-/// The functions that take a mask. `functions` has callees before their callers.
+/// The functions that take a mask. `functions` lists callees before their callers.
 std::set<FunctionId> maskedFunctions(const Module& module, const Kernel& kernel,
                                      const analysis::Uniformity& uniformity, BlendCost& cost,
                                      const std::vector<FunctionId>& functions) {
@@ -71,7 +71,7 @@ std::set<FunctionId> maskedFunctions(const Module& module, const Kernel& kernel,
   return masked;
 }
 
-/// A violation is a bug of ours: shows the module.
+/// A violation is a bug of skc: prints the module.
 void validateOrAbort([[maybe_unused]] const Module& module) {
 #ifndef NDEBUG
   const std::string violation = analysis::validatePredicated(module);
@@ -93,7 +93,7 @@ void predicate(Module& module) {
     BlendCost cost(module);
     const PredicateContext context{module, uniformity,
                                    maskedFunctions(module, kernel, uniformity, cost, functions), isLong};
-    std::vector<Function> results;   // the analysis knows the statements by their addresses
+    std::vector<Function> results;   // replaced at the end: the analysis identifies statements by address
     for (const FunctionId id : functions) results.push_back(predicated(context, cost, id));
     for (std::size_t i = 0; i < functions.size(); ++i) module.functions[functions[i]] = std::move(results[i]);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// predicate: makes control flow the same for several elements that are computed together, each in a lane. What an element
-// does alone depends on masks, bool variables that are true in the lanes which take part. Only native code wants this, on
-// a copy of the module.
+// predicate: makes control flow uniform for several elements that are computed together, one per lane. What a
+// single element does depends on masks, bool variables that are true in the active lanes. Only native code
+// needs this, on a copy of the module.
 //
 //   float r = 0;                                  float r = 0;
 //   if (x > 0) r = x;                             bool mask = x > 0;
@@ -13,12 +13,12 @@
 //     r += f(r);                                    r = live ? r + f(r) : r;
 //   }                                             }
 //
-//   * Uniform control flow stays as it is. `if (AnyLane(mask))` stands around a branch that takes long.
-//   * An assignment keeps the value of inactive lanes only where they can read it (Uniformity::blends): the counter
-//     of a loop that lanes leave early stays uniform.
-//   * A function whose loops or pushes depend on who calls it takes its first mask as a bool behind its parameters. So does
-//     an entry with such a loop or pushes, because a group of lanes may reach beyond the domain.
-//   * `&&`, `||` and `?:` may be evaluated in full: a call that may take long for some values is not left behind one.
+//   * Uniform control flow stays as it is. `if (AnyLane(mask))` guards a branch that takes long.
+//   * An assignment preserves the value of inactive lanes only if they can read it (Uniformity::blends): the
+//     counter of a loop that lanes leave early stays uniform.
+//   * A function whose loops or pushes depend on its caller's mask takes the mask as a last bool parameter.
+//     So does an entry with such a loop or pushes, because a group of lanes may extend past the domain.
+//   * `&&`, `||` and `?:` may evaluate all operands: calls that may take long are moved out of them.
 #pragma once
 
 #include <optional>
@@ -28,13 +28,13 @@
 
 namespace skc {
 
-/// What --print-after calls it.
+/// Its name for --print-after.
 inline constexpr std::string_view predicateName = "predicate";
 
-/// Takes the module that runTransforms leaves. Debug builds validate the result.
+/// Takes the output of runTransforms. Debug builds validate the result.
 void predicate(ir::Module& module);
 
-/// The variable of a predicated kernel's entry that is true in the lanes that have an element; none where it needs none.
+/// The entry's mask, which is true in the lanes that have an element; nullopt if the kernel needs none.
 std::optional<ir::VarId> entryMask(const ir::Module& module, const ir::Kernel& kernel);
 
 }  // namespace skc

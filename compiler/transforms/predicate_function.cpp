@@ -33,7 +33,7 @@ ExprPtr either(ExprPtr a, ExprPtr b, Loc loc) {
 }
 ExprPtr negated(ExprPtr a, Loc loc) { return unary(UnaryOp::LogicalNot, std::move(a), loc); }
 
-/// Makes a local variable the last parameter, which moves the other locals.
+/// Turns a local variable into the last parameter, which renumbers the other locals.
 void makeParameter(Function& function, VarId var) {
   const VarId place = function.parameterCount;
   const auto moved = [&](VarId old) {
@@ -52,7 +52,7 @@ void makeParameter(Function& function, VarId var) {
   });
 }
 
-/// Whether nothing behind the statement is reached.
+/// True if control never reaches the next statement.
 bool isJump(const Stmt& stmt) {
   return std::holds_alternative<Break>(stmt.node) || std::holds_alternative<Continue>(stmt.node) ||
          std::holds_alternative<Return>(stmt.node);
@@ -115,7 +115,7 @@ class Predicator {
   }
 
  private:
-  /// A variable that is true in the lanes that take part. Each is contained in those around it.
+  /// A variable that is true in the active lanes. Each mask implies the masks around it.
   struct Mask {
     VarId var;
     enum Kind : std::uint8_t { Function, Branch, Loop, Round, Switch } kind;
@@ -127,7 +127,7 @@ class Predicator {
     return addVariable(function_, std::move(name), boolType, VarRole::Local, loc);
   }
   ExprPtr ref(VarId var, Loc loc) const { return varRef(function_, var, loc); }
-  /// The innermost mask; null where all lanes take part.
+  /// The innermost mask; null if all lanes are active.
   ExprPtr mask(Loc loc) const { return masks_.empty() ? nullptr : ref(masks_.back().var, loc); }
   ExprPtr maskOrTrue(Loc loc) const { return masks_.empty() ? literal(true, loc) : mask(loc); }
   ExprPtr anyLane(ExprPtr of, Loc loc) const {
@@ -142,7 +142,7 @@ class Predicator {
     return context_.uniformity.blends(id_, stmt, rootOf(place));
   }
 
-  /// The active lanes leave all masks up to the nearest of these kinds.
+  /// Clears the active lanes in all masks up to the nearest of these kinds.
   void leave(std::initializer_list<Mask::Kind> kinds, Loc loc, Block& out) {
     const auto isLast = [&](const Mask& one) { return std::ranges::find(kinds, one.kind) != kinds.end(); };
     const auto last = std::find_if(masks_.rbegin(), masks_.rend(), isLast);
@@ -160,7 +160,7 @@ class Predicator {
     return out;
   }
 
-  /// Where lanes have left, the others go on alone: behind a question whether there are any, if it takes long.
+  /// Runs the statements after one that lanes may leave under the mask; skips long ones if no lane is active.
   void statements(std::span<const Stmt> list, Block& out) {
     for (std::size_t i = 0; i < list.size(); ++i) {
       match(list[i].node, [&](const auto& node) { write(list[i], node, out); });
@@ -170,17 +170,17 @@ class Predicator {
     }
   }
 
-  /// Statements under the innermost mask.
+  /// Writes statements under the innermost mask.
   void guarded(std::span<const Stmt> list, Loc loc, Block& out) {
     if (cost_.isShort(list)) return statements(list, out);
     out.push_back(ifStmt(anyLane(mask(loc), loc), statements(list), {}, loc));
   }
 
-  /// Which jumps lead out of a statement, beside returns.
+  /// The jumps, besides returns, that leave a statement.
   struct Jumps {
     bool breaks, continues;
   };
-  /// Whether some lanes may go on elsewhere than behind the statement.
+  /// True if some lanes may not reach the next statement.
   bool mayLeave(const Stmt& stmt) const { return mayLeave(stmt, {.breaks = true, .continues = true}); }
   bool mayLeave(const Stmt& stmt, Jumps jumps) const {
     if (std::holds_alternative<Return>(stmt.node)) return diverges(stmt);
@@ -216,7 +216,7 @@ class Predicator {
     return assign(std::move(place), select(mask(loc), std::move(assigned), std::move(old), loc), loc);
   }
 
-  /// What has to be blended goes through copies.
+  /// Arguments and results that need a masked store go through copies.
   void write(const Stmt& stmt, const CallStmt& n, Block& out) {
     const Loc loc = stmt.loc;
     const Function& callee = context_.module.functions[n.callee];
@@ -246,7 +246,7 @@ class Predicator {
     std::ranges::move(after, std::back_inserter(out));
   }
 
-  /// The place stays the same when the call changes what its indices name.
+  /// Saves the indices of an lvalue, because the call may change their variables.
   void keepIndices(Expr& place, Block& out) {
     if (auto* n = std::get_if<Index>(&place.node);
         n != nullptr && !std::holds_alternative<Literal>(n->index->node)) {
@@ -278,7 +278,7 @@ class Predicator {
     masks_.push_back({taken, Mask::Branch});
     guarded(body, loc, out);
     masks_.pop_back();
-    if (!out.empty() && isCleared(out.back(), taken)) out.pop_back();  // nobody asks any more
+    if (!out.empty() && isCleared(out.back(), taken)) out.pop_back();  // the mask is not read again
   }
   static bool isCleared(const Stmt& stmt, VarId var) {
     const auto* n = std::get_if<Assign>(&stmt.node);
@@ -294,8 +294,8 @@ class Predicator {
         {stmt.loc, ir::Loop{n.kind, statements(n.init), value(n.cond), statements(n.step), round(stmt, n)}});
   }
 
-  /// `for (init, live = condition; AnyLane(live); step, live = live && condition) body`, where uniform operands of the
-  /// condition stay the loop's own.
+  /// `for (init, live = condition; AnyLane(live); step, live = live && condition) body`. Uniform operands of
+  /// the condition stay in the loop's condition.
   void divergentLoop(const Stmt& stmt, const ir::Loop& n, Block& out) {
     const Loc loc = stmt.loc;
     ir::Loop loop{LoopKind::For, statements(n.init), nullptr, {}, {}};
@@ -317,7 +317,7 @@ class Predicator {
   };
   Condition split(const ir::Loop& n) const {
     if (!n.cond) return {};
-    if (n.kind == LoopKind::DoWhile) return {{}, {n.cond.get()}};  // not asked before the first round
+    if (n.kind == LoopKind::DoWhile) return {{}, {n.cond.get()}};  // not evaluated before the first iteration
     Condition condition;
     std::vector<const Expr*> operands;
     conjuncts(*n.cond, operands);
@@ -334,7 +334,7 @@ class Predicator {
     return result;
   }
 
-  /// Under the loop's mask. What may take long is not done once more when no lane is left.
+  /// Runs under the loop's mask. Skips what may take long when no lane is left.
   Block step(const ir::Loop& n, const Condition& condition, Loc loc) {
     Block result = statements(n.step);
     if (!condition.varying.empty()) {
@@ -353,7 +353,7 @@ class Predicator {
                   : std::move(result);
   }
 
-  /// The body, whose lanes all take part again in the next round.
+  /// The body; lanes that skip the rest of an iteration are active again in the next.
   Block round(const Stmt& stmt, const ir::Loop& n) {
     if (!context_.uniformity.skips(id_, stmt)) return statements(n.body);
     const VarId active = addMask("round", stmt.loc);
@@ -374,8 +374,8 @@ class Predicator {
     out.push_back({stmt.loc, std::move(copy)});
   }
 
-  /// The lanes that run are those that have come to this case or fallen through from the one before. One that has left has
-  /// had its case, and does not come again.
+  /// The active lanes are those that matched this case or fell through from the one before. A lane that has
+  /// left has had its case, and does not match again.
   void divergentSwitch(const Stmt& stmt, const ir::Switch& n, Block& out) {
     const Loc loc = stmt.loc;
     const VarId chosen = addVariable(function_, "chosen", n.value->type, VarRole::Local, loc);
@@ -399,7 +399,7 @@ class Predicator {
     }
   }
 
-  /// The cases are one scope, but their bodies may get a branch each.
+  /// Moves declarations in front: the cases share one scope, but their bodies may get a branch each.
   void liftDeclarations(const Block& body, Block& out) {
     for (const Stmt& stmt : body) {
       const auto* n = std::get_if<Declare>(&stmt.node);
@@ -448,7 +448,7 @@ class Predicator {
     out.push_back(returnStmt(std::move(returned), loc));
   }
 
-  // ---- others -----------------------------------------------------------------------------------
+  // ---- other statements and expressions -----------------------------------------------------------
 
   void write(const Stmt& stmt, const Scope& n, Block& out) {
     out.push_back(scope(statements(n.body), stmt.loc));
@@ -461,7 +461,7 @@ class Predicator {
   }
 
   ExprPtr value(const ExprPtr& expr) const { return expr ? value(*expr) : nullptr; }
-  /// A copy, whose calls hand down the mask.
+  /// A copy whose calls pass on the mask.
   ExprPtr value(const Expr& expr) const {
     ExprPtr copy = clone(expr);
     walkExprs(*copy, [&](Expr& inner) {

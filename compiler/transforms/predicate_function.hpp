@@ -11,15 +11,15 @@
 
 namespace skc {
 
-/// What is known of the functions of a kernel before any of them is rewritten.
+/// Facts about a kernel's functions before any of them is rewritten.
 struct PredicateContext {
   const ir::Module& module;
   const analysis::Uniformity& uniformity;
-  std::set<ir::FunctionId> masked;  ///< those that take a mask
+  std::set<ir::FunctionId> masked;  ///< functions that take a mask
   std::set<ir::FunctionId> isLong;  ///< see hoist_calls.hpp
 };
 
-/// The function in its new form.
+/// The rewritten function.
 ir::Function predicated(const PredicateContext& context, BlendCost& cost, ir::FunctionId id);
 
 }  // namespace skc

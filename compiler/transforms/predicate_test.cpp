@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: after predicate no control flow varies, and each lane computes what its element computes alone.
+// Promises: after predicate all control flow is uniform, and each lane computes what its element does alone.
 #include "transforms/predicate.hpp"
 
 #include <string>
@@ -29,7 +29,7 @@ struct Outcome {
   bool operator==(const Outcome&) const = default;
 };
 
-/// A kernel of u, x, r and an append output, with a mask where it takes one; the elements from number `first` on.
+/// Runs a kernel of u, x, r and an append output, with its mask if any, for elements from `first` on.
 Outcome run(const Module& module, std::int32_t u, const std::vector<std::int32_t>& x, std::size_t first,
             std::size_t count, bool inFull, const analysis::Uniformity* shapes) {
   LaneEvaluator evaluator(module, count, inFull, shapes);
@@ -71,7 +71,7 @@ void checkLanes(const Module& module) {
   }
 }
 
-/// A kernel of a uniform u, an input x and an output r, which is 0 at first; its body after predicate.
+/// A kernel with a uniform u, an input x and an output r, initially 0; and its body after predicate.
 struct Sample {
   Module module = testModule();
   KernelMaker k{module, "f"};

@@ -16,7 +16,7 @@ namespace {
 
 constexpr Type int2Type = Type::of(Scalar::Int, 2);
 
-/// The body of a function. Every loop of its own has at most three rounds.
+/// Generates the body of a function. Each of its loops has at most three iterations.
 class BodyMaker {
  public:
   BodyMaker(Module& module, Function& function, std::mt19937& random, std::vector<FunctionId> pure,
@@ -87,7 +87,7 @@ class BodyMaker {
     }
     return binary(oneIn(2) ? BinaryOp::Less : BinaryOp::Equal, small(), oneIn(2) ? literal(2) : small());
   }
-  /// The first function takes as many rounds as its argument says, and does not end where that is negative.
+  /// The first function iterates as often as its argument says, and does not end for negative arguments.
   ExprPtr guardedCall(ExprPtr rounds) {
     ExprPtr isAllowed =
         binary(BinaryOp::LogicalAnd, binary(BinaryOp::GreaterEqual, clone(rounds), literal(0)),

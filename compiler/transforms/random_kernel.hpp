@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// For tests: kernels of ints with all kinds of control flow, nested at random, which end for every element. A seed gives
-// another kernel under another C++ compiler, which may evaluate arguments in another order.
+// For tests: random kernels of ints with all kinds of nested control flow, which end for every element. The
+// kernel for a seed depends on the C++ compiler, which chooses the order of evaluation of arguments.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace skc {
 
-/// A kernel with a uniform `u`, an input `x`, an output `r` and a variable output, and functions that it calls.
+/// A kernel of a uniform `u`, an input `x`, an output `r` and a variable output, and the functions it calls.
 ir::Module randomKernel(std::uint32_t seed);
 
 }  // namespace skc

@@ -17,7 +17,7 @@ using namespace ir;
 
 // ---- locals -----------------------------------------------------------------------------------
 
-/// Marks what is read on the way to a place: the indices, not the root.
+/// Marks variables that evaluating an lvalue reads: those in indices, not the root.
 void markPlace(const Expr& place, std::vector<bool>& read);
 
 void markRead(const Expr& expr, std::vector<bool>& read) {
@@ -37,8 +37,8 @@ void markPlace(const Expr& place, std::vector<bool>& read) {
   }
 }
 
-/// Which variables are read; one that is handed to a call counts, since the call may read it, and
-/// one that takes a call's result, since the call stays.
+/// Which variables are read. An argument of a call counts, since the call may read it; so does a variable
+/// that receives a call's result, since the call stays.
 std::vector<bool> readVariables(const Function& function) {
   std::vector<bool> read(function.variables.size(), false);
   walkStmts(function.body, [&](const Stmt& stmt) {
@@ -67,7 +67,7 @@ bool removeWrites(Block& block, const std::vector<bool>& dead) {
 
 void removeDeadLocals(Function& function) {
   bool changed = true;
-  while (changed) {   // what a dead local was made from may be dead now
+  while (changed) {   // the variables that a dead local was computed from may be dead now
     std::vector<bool> dead = readVariables(function);
     dead.flip();
     for (std::size_t i = 0; i < dead.size(); ++i) {
@@ -79,7 +79,7 @@ void removeDeadLocals(Function& function) {
 
 // ---- tables -----------------------------------------------------------------------------------
 
-/// Old index to new, for the entries that stay.
+/// Maps the old index of each entry that stays to its new one.
 std::vector<std::uint32_t> renumber(const std::vector<bool>& used) {
   std::vector<std::uint32_t> numbers;
   std::uint32_t next = 0;
@@ -109,7 +109,7 @@ void forEachExpr(Module& module, Fn&& fn) {
   }
 }
 
-/// fn(type) for every type that an expression or a declaration of a kernel or function has.
+/// fn(type) for the type of every expression and declaration in kernels and functions.
 template <class Fn>
 void forEachType(Module& module, Fn&& fn) {
   forEachExpr(module, [&](Expr& expr) { fn(expr.type); });
@@ -156,7 +156,7 @@ void removeConstants(Module& module) {
       if (param.identity) walkExprs(*param.identity, mark);
     }
   }
-  for (std::size_t i = used.size(); i-- > 0;) {   // a constant names only earlier ones
+  for (std::size_t i = used.size(); i-- > 0;) {   // a constant refers only to earlier ones
     if (used[i]) walkExprs(*module.constants[i].value, mark);
   }
   const std::vector<std::uint32_t> numbers = renumber(used);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// remove-unused: takes out what no kernel needs: functions, constants, types, and locals that are
-// never read, together with what is assigned to them. An expression has no effect, so it may go; a
-// call that writes to other variables stays.
+// remove-unused: removes functions, constants, types and locals that no kernel needs, and assignments to such
+// locals. An expression has no side effect and may go; a call that writes to other variables stays.
 //
 //   before   float twice(float x) { return x + x; }
 //            kernel void f(float x<>, out float r<>) { float a = exp(x); a += 1.0; r = x; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: what no kernel needs goes, what has an effect stays, and references follow their entries.
+// Promises: what no kernel needs is removed, what has an effect stays, and references follow their entries.
 #include "transforms/remove_unused.hpp"
 
 #include <catch2/catch.hpp>

@@ -27,7 +27,7 @@ ExprPtr rounded(ExprPtr value) {
   return convert(Scalar::Float, convert(Scalar::Half, std::move(value), loc), loc);
 }
 
-/// The expression whose parts a place or a read takes.
+/// The expression at the root of an lvalue or of a read's parts.
 const Expr& rootOfRead(const Expr& expr) {
   if (const auto* n = std::get_if<Member>(&expr.node)) return rootOfRead(*n->base);
   if (const auto* n = std::get_if<Index>(&expr.node)) return rootOfRead(*n->base);
@@ -40,10 +40,10 @@ bool isReadOfStream(const Expr& expr) {
          std::holds_alternative<Sample>(expr.node);
 }
 
-/// One function of a half form.
+/// Rewrites one function of a half variant.
 class Rounder {
  public:
-  /// `kernel`: that of an entry, whose arguments are rounded where they are read; else null.
+  /// `kernel`: the kernel if this is its entry, whose arguments are rounded when read; else null.
   Rounder(Module& module, const Kernel* kernel) : module_(module), kernel_(kernel) {}
 
   void run(FunctionId id) {
@@ -83,7 +83,7 @@ class Rounder {
         [](Scope&) {}, [&](Push& n) { value(n.value); }, [&](Scatter& n) { value(n.index), value(n.value); });
   }
 
-  /// Only the indices of a place are computed.
+  /// An lvalue itself is not rounded; its indices are expressions.
   void place(Expr& expr) {
     if (auto* n = std::get_if<Index>(&expr.node)) {
       value(n->index);
@@ -106,7 +106,7 @@ class Rounder {
     if (expr.type.isFloat() && isRounded(expr)) slot = rounded(std::move(slot));
   }
 
-  /// What is taken of a read is rounded, not the read itself, which may be a struct; indices are values.
+  /// Rounds the part taken of a read, not the read itself, which may be a struct; indices are expressions.
   void partOf(Expr& expr) {
     forEachOperand(expr, [&](ExprPtr& operand) {
       const bool isBase =
@@ -117,7 +117,7 @@ class Rounder {
     });
   }
 
-  /// What reaches an expression from outside of the form.
+  /// True if an expression's value comes from outside the half variant.
   bool isUnrounded(const Expr& expr) const {
     const Expr& root = rootOfRead(expr);
     if (const auto* n = std::get_if<VarRef>(&root.node)) return isArgument(n->var);
@@ -179,7 +179,7 @@ bool computesFloats(const Module& module, const Kernel& kernel) {
 }  // namespace
 
 void roundHalves(Module& module, Diagnostics&) {
-  const std::size_t declared = module.kernels.size();   // before those that this adds
+  const std::size_t declared = module.kernels.size();   // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     if (module.kernels[id].isMade || !computesFloats(module, module.kernels[id])) continue;
     const std::optional<KernelId> combine =

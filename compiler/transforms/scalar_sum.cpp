@@ -10,7 +10,7 @@ namespace {
 
 using namespace ir;
 
-/// Which component of the values that the statement adds goes to the sum; nothing if none does.
+/// The component of the added values that goes to the sum; nullopt if none does.
 std::optional<unsigned> componentIn(const Kernel& reduce, const Stmt& stmt, const ScalarSum& sum) {
   const std::optional<FoldPart> part = foldedBy(reduce, stmt);
   const bool isOfSum = part && sum.whole.holds(*part) && (part->components >> sum.component & 1U) != 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// One scalar of a sum of floats, which exact sums go by: each component of a vector is a sum of its own.
+// One scalar of a float sum. Exact sums work on these: each component of a vector is a sum of its own.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ struct ScalarSum {
   unsigned component;
 };
 
-/// The terms that a statement of the reduce adds to the scalar, each of one float; none if it adds nothing to it.
+/// The terms, each one float, that a statement of the reduce adds to the scalar; empty if it adds none.
 std::vector<Term> termsOf(const ir::Kernel& reduce, const ir::Stmt& stmt, const ScalarSum& sum);
 
 }  // namespace skc

@@ -22,7 +22,7 @@ bool isStream(const Variable& var) {
   return var.role == VarRole::Gather || var.role == VarRole::Element || var.role == VarRole::AppendOutput;
 }
 
-/// fn(StreamRef&) where the expression uses a stream.
+/// fn(StreamRef&) if the expression uses a stream.
 template <class Fn>
 void withStream(Expr& expr, Fn&& fn) {
   if (auto* n = std::get_if<GatherRead>(&expr.node)) fn(n->stream);
@@ -32,7 +32,7 @@ void withStream(Expr& expr, Fn&& fn) {
   if (auto* n = std::get_if<ExtentOf>(&expr.node)) fn(n->stream);
 }
 
-/// fn(StreamRef&) where the statement writes a stream.
+/// fn(StreamRef&) if the statement writes a stream.
 template <class Fn>
 void withStream(Stmt& stmt, Fn&& fn) {
   if (auto* n = std::get_if<Push>(&stmt.node)) fn(n->stream);
@@ -60,7 +60,7 @@ class State {
   }
 
  private:
-  /// What each parameter of a function is bound to; `domain` where it is no stream.
+  /// The stream that each parameter of a function is bound to; `domain` for other parameters.
   using Binding = std::vector<StreamRef>;
   struct Instance {
     FunctionId source;
@@ -93,8 +93,8 @@ class State {
     return made;
   }
 
-  /// A copy of a function with its streams bound; an entry keeps its parameters, others lose gathers and
-  /// append outputs.
+  /// Copies a function with its streams bound. An entry keeps its parameters, other functions lose gathers
+  /// and append outputs.
   FunctionId make(FunctionId source, const Binding& binding, bool isEntry) {
     Function function = clone(module_.functions[source]);
     walkExprs(function.body, [&](Expr& expr) {
@@ -115,7 +115,7 @@ class State {
     return static_cast<FunctionId>(made_.size() - 1);
   }
 
-  /// The instance that a call means; takes the gathers and append outputs out of its arguments.
+  /// The instance that a call needs; removes gathers and append outputs from its arguments.
   FunctionId bindCall(const Function& caller, const Binding& binding, FunctionId callee,
                       std::vector<ExprPtr>& args) {
     const Function& function = module_.functions[callee];
@@ -132,7 +132,7 @@ class State {
     return instantiate(callee, std::move(bound));
   }
 
-  /// For each parameter: whether it matters which stream it stands for.
+  /// For each parameter, whether the function depends on which stream it is bound to.
   const std::vector<bool>& usesOf(FunctionId id) {
     if (!uses_[id].empty()) return uses_[id];
     Function& function = module_.functions[id];
@@ -155,7 +155,7 @@ class State {
     return uses_[id];
   }
 
-  /// Where a kernel has several copies of one function, their names say which streams they read.
+  /// If a kernel has several copies of one function, names them after the streams that they read.
   void nameInstances(const Kernel& kernel) {
     for (const Instance& instance : instances_) {
       const auto copies = std::count_if(instances_.begin(), instances_.end(), [&](const Instance& other) {
@@ -174,8 +174,8 @@ class State {
 
   Module& module_;
   std::vector<Function> made_;
-  std::vector<Instance> instances_;        ///< of the kernel at hand, without its entry
-  std::vector<std::vector<bool>> uses_;    ///< per function, empty until asked for
+  std::vector<Instance> instances_;        ///< of the current kernel, without its entry
+  std::vector<std::vector<bool>> uses_;    ///< per function, computed at first use
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// specialize-gathers: makes a copy of each function for each kernel and each choice of streams that
-// it is called with, because GLSL has no parameters that are streams.
+// specialize-gathers: copies each function for each kernel and each choice of streams that it is called with,
+// because GLSL functions cannot take streams.
 //
 //   before   float sum3(float a[], int i) { return a[i - 1] + a[i] + a[i + 1]; }
 //            kernel void f(float u[], float v[], out float r<>) { r = sum3(u, 7) + sum3(v, 7); }
@@ -15,9 +15,9 @@
 
 namespace skc {
 
-/// Afterwards every StreamRef names a parameter of the kernel or its domain, only entries have
-/// stream parameters, functions belong to one kernel, and callees come before their callers.
-/// An element parameter that is given a value other than an element has the domain's index.
+/// Afterwards every StreamRef names a parameter of the kernel or its domain, only entries have stream
+/// parameters, each function belongs to one kernel, and callees precede their callers. An element parameter
+/// whose argument is not an element has the domain's index.
 void specializeGathers(ir::Module& module, Diagnostics& diagnostics);
 
 }  // namespace skc

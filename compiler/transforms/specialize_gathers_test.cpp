@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: what the header's before/after says; one copy for each choice of streams that matters;
-// the index of an element follows its stream through calls.
+// Promises: the header's before and after; one copy for each choice of streams that matters; the index of an
+// element follows its stream through calls.
 #include "transforms/specialize_gathers.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Places that are known before the program runs: those made of members and at most one swizzle.
+// Lvalues that are known at compile time: members and at most one swizzle of a variable.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace skc {
 
 struct StaticPlace {
   ir::VarId root;
-  std::vector<std::uint32_t> members;     ///< way from the variable
-  ir::Type type;                          ///< of the variable or member there
-  std::vector<std::uint8_t> components;   ///< of it, in their order; all where there is no swizzle
+  std::vector<std::uint32_t> members;     ///< path from the variable
+  ir::Type type;                          ///< of the variable or member
+  std::vector<std::uint8_t> components;   ///< selected components, in order; all if there is no swizzle
 
-  /// Bit i: component i.
+  /// Bit i is set for component i.
   unsigned mask() const;
   bool operator==(const StaticPlace&) const = default;
 };

@@ -27,7 +27,7 @@ using namespace ir;
 constexpr Type digitsType = Type::of(Scalar::Int, 4);
 constexpr Type intType = Type::of(Scalar::Int);
 
-/// Groups of digits, and the bit of them that stands for 2^-149, the last of a float.
+/// The number of groups of digits, and the bit that stands for 2^-149, the lowest of a float.
 struct Format {
   std::uint32_t groups;
   std::int32_t base;
@@ -42,7 +42,7 @@ struct Digits {
   VarId flags = 0;
 };
 
-/// Statements that make the digits small, but keep their sum.
+/// Statements that settle the digits: they become small, but keep their sum.
 void settle(Block& block, Function& function, const Digits& digits) {
   ExprPtr carry = literal(0);
   for (std::size_t i = 0; i < digits.groups.size(); ++i) {
@@ -79,7 +79,7 @@ void add(Block& block, const Function& function, const Digits& digits, const For
   block.push_back(assign(varRef(function, digits.flags), BinaryOp::BitOr, intrinsic(which, operands())));
 }
 
-/// Parameters that hold digits.
+/// Adds parameters that hold digits.
 Digits addDigits(MadeKernel& made, const Format& format, ParamRole role, const std::string& suffix = {}) {
   const auto add = [&](const std::string& name, Type type) {
     return made.add(makeParam(name + suffix, role, type, made.kernel.loc));
@@ -139,14 +139,14 @@ class State {
     return copy.finish(combine);
   }
 
-  /// Puts digits in place of accumulators.
+  /// Replaces accumulators by digits.
   struct Rewriting {
     const Kernel& kernel;
     const ScalarSum& sum;
     const Format& format;
     const Digits& digits;
 
-    /// Returns how many terms an element adds without settling.
+    /// Returns the number of terms that an element adds without settling.
     int rewrite(Function& entry, Block& block, bool inLoop) const {
       int terms = 0;
       Block made;
@@ -157,7 +157,7 @@ class State {
           made.push_back(std::move(stmt));
           continue;
         }
-        // this form does not have the other accumulators
+        // this variant does not have the other accumulators
         for (const Term& term : termsOf(kernel, stmt, sum)) {
           if (inLoop) settle(made, entry, digits);
           add(made, entry, digits, format, *term.value, term.factor.get());
@@ -169,7 +169,7 @@ class State {
     }
   };
 
-  /// The reduce that adds digits, made when it is first asked for.
+  /// The reduce that adds digits, built at its first use.
   KernelId combination(const Format& format) {
     std::optional<KernelId>& known = combinations_[format.groups];
     if (known) return *known;
@@ -177,7 +177,7 @@ class State {
     const Digits parts = addDigits(made, format, ParamRole::Input, "_part");
     const Digits totals = addDigits(made, format, ParamRole::Accumulator);
     Block& body = made.entry.body;
-    Digits settled;   // inputs stay as they are
+    Digits settled;   // inputs must not change
     for (const VarId part : parts.groups) {
       settled.groups.push_back(
           addVariable(made.entry, fmt::format("part_{}", settled.groups.size()), digitsType));
@@ -229,7 +229,7 @@ class State {
     return made.finish(module_);
   }
 
-  /// Makes settled digits those of the magnitude; gives the variable that says whether they were of a negative sum.
+  /// Replaces settled digits by their magnitude's; returns the variable that is true if the sum was negative.
   static VarId makePositive(Function& entry, const Digits& total) {
     const VarId isNegative = addVariable(entry, "is_negative", Type::of(Scalar::Bool));
     ExprPtr last = swizzle(varRef(entry, total.groups.back()), "w");
@@ -243,7 +243,7 @@ class State {
     return isNegative;
   }
 
-  /// The scalar of an accumulator's value.
+  /// The scalar's component of an accumulator's value.
   ExprPtr scalarOf(ExprPtr value, const ScalarSum& sum) const {
     for (const std::uint32_t field : sum.whole.members) value = member(module_, std::move(value), field);
     return componentOf(*value, sum.component);
@@ -270,11 +270,11 @@ std::vector<ScalarSum> scalarSums(const Module& module, KernelId id) {
 
 void sumExactly(Module& module, Diagnostics&) {
   State state(module);
-  const std::size_t declared = module.kernels.size();  // before those that this adds
+  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     const Kernel& kernel = module.kernels[id];
     if (!kernel.reduction || kernel.isMade) continue;
-    // else more than folds by operators names the accumulators, which a form with digits does not have
+    // otherwise other statements use the accumulators, which the variant with digits does not have
     if (!recogniseFold(kernel, module.functions[kernel.entry])) continue;
     for (const ScalarSum& sum : scalarSums(module, id)) state.sum(id, sum);
   }

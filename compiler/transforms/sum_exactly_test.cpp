@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: each scalar that is a sum of floats gets an exact form that is valid IR, of twice as many digits where it
-// sums products; what is no such sum does not. Its term is made of inputs, or a kernel with outputs for all terms that an
-// element adds, unless it adds them in a loop. (What they compute: tests/numerics.)
+// Promises: each scalar that is a sum of floats gets an exact variant that is valid IR, with twice as many
+// digits for sums of products; other scalars get none. Its term consists of inputs, or is a kernel with
+// outputs for all terms of an element, unless terms are added in a loop. (tests/numerics checks values.)
 #include "transforms/sum_exactly.hpp"
 
 #include <catch2/catch.hpp>
@@ -30,7 +30,7 @@ const std::vector<ExactSum>& transform(Module& module) {
   return module.kernels[0].reduction->exact;
 }
 
-/// reduce void r(reduce T total<>, T x<>, float weights[]) { total op= value; }, the value made of an element.
+/// reduce void r(reduce T total<>, T x<>, float weights[]) { total op= value; }, value built from an element.
 template <class Value>
 Module reduceModule(Type type, BinaryOp op, Value&& value) {
   Module module = testModule();
@@ -77,7 +77,7 @@ std::size_t outputs(const Module& module, KernelId id) {
   return count;
 }
 
-/// reduce void r(reduce float total<>, float x<>), whose body is made of `total += x`.
+/// reduce void r(reduce float total<>, float x<>), with a body built from `total += x`.
 template <class Body>
 Module moduleAround(Body&& body) {
   Module module = testModule();

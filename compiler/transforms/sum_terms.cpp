@@ -26,7 +26,8 @@ const Unary* negation(const Expr& value) {
 
 std::optional<Term> product(const Expr& value);
 
-/// Products, and 1 times what is none, with first and second factors put together by `make`; nothing where there is none.
+/// One product whose factors `make` combines from those of the values; a value without factors is multiplied
+/// by 1. Returns nullopt if no value is a product.
 template <class Make>
 std::optional<Term> productOf(const std::vector<const Expr*>& values, Make&& make) {
   std::vector<ExprPtr> firsts;
@@ -42,7 +43,7 @@ std::optional<Term> productOf(const std::vector<const Expr*>& values, Make&& mak
   return Term{make(std::move(firsts)), make(std::move(seconds))};
 }
 
-/// A product of floats or vectors of them (those of matrices are sums), a vector made of some, or a choice of some.
+/// A product of floats or vectors (products of matrices are sums), or a vector or a selection of products.
 std::optional<Term> product(const Expr& value) {
   const auto isFactor = [](const ExprPtr& factor) { return factor->type.isFloat(); };
   if (const auto* n = std::get_if<Binary>(&value.node)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What a sum of floats adds, taken apart: `total += a * b - c` adds the product of a and b, and -c. Forms of a sum that keep
-// more than its roundings leave ask for this, since they keep what the products lose, too.
+// Splits what a float sum adds into terms: `total += a * b - c` adds the product of a and b, and -c.
+// Compensated and exact sums need this, since they also keep the rounding errors of the products.
 #pragma once
 
 #include <vector>
@@ -10,23 +10,23 @@
 
 namespace skc {
 
-/// A value, or where `factor` is there, its product with it.
+/// A value, or its product with `factor` if there is one.
 struct Term {
   ir::ExprPtr value, factor;
 };
 
-/// The terms of a statement that folds by +. A value that is no sum of products and others is one term, so that
-/// `total += x - mean` adds a float as it is rounded. A dot product of vectors has a term for each component, fma() two, and
-/// a vector of products, or a choice of some, is a product of what is made of their factors.
+/// The terms of a statement that folds by +. A value that is not a sum with products is a single term, so
+/// that `total += x - mean` adds a rounded float. A dot product of vectors has a term for each component,
+/// fma() two; a vector or a selection of products is one product of combined factors.
 std::vector<Term> termsOf(const ir::Assign& fold);
 
-/// The inputs that a term is, or is the product of; nothing where it is made of others. They are of one float.
+/// The one-float inputs that a term is, or is the product of; empty if it contains anything else.
 std::vector<ir::VarId> inputsOf(const ir::Kernel& reduce, const Term& term);
 
-/// Where all that an element does is to add itself to one float, or the product of two: those inputs. Nothing of others.
+/// The inputs, if each element only adds one input, or the product of two, to one float; otherwise empty.
 std::vector<ir::VarId> onlyTerm(const ir::Module& module, const ir::Kernel& reduce);
 
-/// The value itself, or a vector of this type with a scalar in each component: so scalars are added to vectors.
+/// The value itself, or a scalar as a vector of this type, as when a scalar is added to a vector.
 ir::ExprPtr ofType(ir::Type type, ir::ExprPtr value);
 
 /// Component `component` of a vector; a scalar itself.

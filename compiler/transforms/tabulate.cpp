@@ -14,7 +14,7 @@ namespace {
 
 using namespace ir;
 
-/// A function that each table stands for, of some kernel.
+/// For each table, a function of some kernel that it may replace.
 std::map<TableId, FunctionId> functionsWithTables(const Module& module) {
   std::map<TableId, FunctionId> found;
   for (const Kernel& kernel : module.kernels) {
@@ -25,12 +25,12 @@ std::map<TableId, FunctionId> functionsWithTables(const Module& module) {
   return found;
 }
 
-/// value = f(x), with functions of its own, none of which is looked up.
+/// value = f(x), with functions of its own, none of which a table replaces.
 KernelId makeKernel(Module& module, TableId table, FunctionId function) {
   FunctionCopies copies;
   const FunctionId computed = copyFunction(module, function, copies);
   dropTables(module, copies);
-  MadeKernel made(module.tables[table].name);   // what messages call it
+  MadeKernel made(module.tables[table].name);   // the name in messages
   made.kernel.scope = module.tables[table].scope;
   made.kernel.loc = made.entry.loc = module.functions[function].loc;
   made.entry.name = made.kernel.name + "_values";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Tables of functions: gives each that some kernel may look up a kernel that computes the function, of which the runtime
-// makes the table. Calls stay what they are: it is the assembler that makes look-ups of them.
+// Tables of functions: gives each table that some kernel may use a kernel that computes its function, from
+// which the runtime fills the table. Calls are not changed: the assembler turns them into look-ups.
 #pragma once
 
 #include "ir/ir.hpp"

@@ -42,7 +42,7 @@ void plain(ir::Module& module, Diagnostics& diagnostics, const TransformOptions&
   transform(module, diagnostics);
 }
 
-/// One that makes forms of kernels for other precisions.
+/// A transform that adds variants for other precisions, if the options ask for them.
 template <void (*transform)(ir::Module&, Diagnostics&)>
 void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options) {
   if (options.precisions) return transform(module, diagnostics);
@@ -51,26 +51,27 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
   }
 }
 
-// First the gathers: from then on a function belongs to one kernel, and every later transform may
-// change it without looking at other callers.
-// Tables at any time before forms for other precisions, which do without.
-// Folding before deriving, so that what a branch on a literal switches off does not hide the pattern
-// of a fold.
-// Unrolling after folding, which makes constants of bounds; and before all that look at what a kernel does, because a round
-// whose number is known has decided branches, constant offsets and components with names. It folds what it creates.
-// Finding neighbours after unrolling, which makes constants of their offsets; and before whatever asks how streams are used.
-// Folding before guarding, too: a branch that is gone needs no stream.
-// Bounding the pushes after folding, which makes loops of a known number of rounds and takes out what
-// never runs.
-// Inlining before deriving, which then sees through helper functions.
-// Deriving before removing, because it makes functions that use structs.
-// Forms for other precisions after deriving, so that they combine likewise; and before compensating, which
-// is not for them.
-// Compensating and summing exactly after deriving, which finds identities and how the rest combines.
-// Assigning rows at any time before splitting, which follows variables.
-// Forwarding after bounding and deriving, which know what the author wrote.
-// Removing after these, because all of them leave things without use; and before splitting, so that
-// nobody plans for what is not needed.
+// The reasons for this order:
+//
+// * specialize-gathers is first: from then on a function belongs to one kernel, and later transforms may
+//   change it without looking at other callers.
+// * tabulate precedes the variants for other precisions, which do not use tables.
+// * fold-constants precedes derive-combine, so that a branch that a literal disables does not hide the
+//   pattern of a fold; and guard-streams, because a removed branch needs no stream.
+// * unroll-loops needs the constant bounds that folding finds, and folds what it creates. It precedes
+//   everything that inspects kernels: known iterations have known branches, constant offsets and named
+//   components.
+// * find-neighbors needs the constant offsets of unrolled loops, and precedes the analyses of stream uses.
+// * bound-pushes follows folding, which finds trip counts and removes unreachable pushes.
+// * inline-folds lets derive-combine see through helper functions.
+// * derive-combine precedes remove-unused, because it adds functions that use structs.
+// * widen-floats and round-halves follow derive-combine, so that variants combine in the same way, and
+//   precede compensate-sums, which does not apply to them.
+// * compensate-sums and sum-exactly need derive-combine's identities and combining reduces.
+// * assign-rows precedes split-kernels, which tracks variables.
+// * forward-continues follows bound-pushes and derive-combine, which analyse the code as written.
+// * remove-unused follows these, because all of them leave unused entries, and precedes split-kernels, so
+//   that no pass is planned for unused values.
 constexpr Transform transforms[] = {
     {"specialize-gathers", plain<specializeGathers>},
     {"tabulate", plain<tabulate>},
@@ -92,7 +93,7 @@ constexpr Transform transforms[] = {
                          const TransformOptions& options) { split::splitKernels(module, options.limits); }},
 };
 
-/// A violation is a bug of ours: says after which transform it appeared, and shows the module.
+/// A violation is a bug of skc: names the transform after which it appeared, and prints the module.
 void validateOrAbort(const ir::Module& module, ir::Stage stage, std::string_view after) {
   if (!validatesTransforms()) return;
   const std::string violation = ir::validate(module, stage);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The rewrites of the IR between the frontend and emission, in order. Each is a free function in a
-// file of its own; this one knows their names and why they come in this order.
+// The rewrites of the IR between frontend and emission, in order. Each is a free function in a file of its
+// own; this one lists them and gives the reasons for their order.
 #pragma once
 
 #include <functional>
@@ -15,22 +15,22 @@
 namespace skc {
 
 struct TransformOptions {
-  /// What the targets can read and write in a pass: kernels that need more get plans.
+  /// What the targets can read and write in one pass: kernels that need more get plans.
   std::vector<ir::Limits> limits = {};
-  /// Whether kernels get forms for other precisions.
+  /// Whether kernels get variants for other precisions.
   bool precisions = false;
-  /// Told the name and the module after each transform; may be empty.
+  /// Called with the name and the module after each transform; may be empty.
   std::function<void(std::string_view name, const ir::Module& module)> after = {};
 };
 
-/// Names of the transforms in the order in which they run: what --print-after takes.
+/// Names of the transforms, in execution order: the values that --print-after takes.
 std::span<const std::string_view> transformNames();
 
-/// Whether the module is validated before and after each: in builds with assertions, as those with tests are, unless SKC_VALIDATE
-/// is "off".
+/// True if the module is validated before and after each transform: in builds with assertions (all builds
+/// with tests have them), unless SKC_VALIDATE is "off".
 bool validatesTransforms();
 
-/// Runs them all; stops after one that reports an error.
+/// Runs all transforms; stops after one that reports an error.
 void runTransforms(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options = {});
 
 }  // namespace skc

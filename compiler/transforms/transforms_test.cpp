@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the transforms run in the order that transformNames() gives, and stop at an error.
+// Promises: the transforms run in the order of transformNames(), and stop at an error.
 #include "transforms/transforms.hpp"
 
 #include <cassert>

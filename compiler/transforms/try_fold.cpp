@@ -18,8 +18,8 @@ using namespace ir;
 
 constexpr int samples = 16;
 
-/// Numbers that neither overflow nor vanish, and whose sums and products tell which went into them. The second half
-/// of the samples has negative ones.
+/// Numbers that neither overflow nor vanish, and whose sums and products identify their operands. The second
+/// half of the samples includes negative ones.
 double sampleOf(Scalar scalar, int sample, int number) {
   constexpr std::array<double, 11> reals = {1, 2.5, 4, 0.75, 3.25, 1.5, 6, 0.5, 2.25, 5.5, 1.75};
   constexpr std::array<int, 11> integers = {1, 3, 2, 7, 5, 4, 9, 6, 11, 8, 10};
@@ -60,7 +60,7 @@ void addSample(const Module& module, Type type, int sample, int& number, Numbers
   for (int i = 0; i < count; ++i) all.push_back(sampleOf(type.scalar, sample, number++));
 }
 
-/// What several accumulators hold, or the elements that are folded into them.
+/// The values of several accumulators, or of the elements folded into them.
 using Values = std::vector<Numbers>;
 
 class Trial {
@@ -130,7 +130,7 @@ class Trial {
   const Kernel& kernel_;
 };
 
-/// Beyond what doubles lose by rounding; nothing where a number is none.
+/// True if they differ by more than double rounding explains; nullopt if a value is not a number.
 std::optional<bool> differ(const Values& a, const Values& b) {
   bool differs = false;
   for (std::size_t i = 0; i < a.size(); ++i) {

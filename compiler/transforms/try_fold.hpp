@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Tries a reduce that combines partial results by itself on numbers: whether (a op b) op c is a op (b op c), and whether
-// what an empty run gives is neutral. Partial results combine in a way that depends on the device, so that a fold for
-// which either fails has no one result.
+// Tests a reduce that combines its own results on numbers: whether (a op b) op c equals a op (b op c), and
+// whether the result of an empty run is neutral. The device determines how partial results combine, so a fold
+// that fails either test has no single result.
 #pragma once
 
 #include <optional>
@@ -13,23 +13,23 @@
 namespace skc {
 
 struct FoldTrial {
-  int tried = 0;  ///< samples that have a result
-  int failed = 0;  ///< of these
+  int tried = 0;  ///< samples that gave a result
+  int failed = 0;  ///< samples that failed
   std::string example;  ///< the first failure, in words
   bool fails() const { return tried > 0 && failed == tried; }
   bool mayFail() const { return 2 * failed >= tried && failed > 0; }
 };
 
-/// On elements that are numbers of moderate size.
+/// Tries elements that are numbers of moderate size.
 FoldTrial tryAssociativity(const ir::Module& module, const ir::Kernel& kernel);
 
-/// Folds such elements into the identities, which are given.
+/// Folds such elements into the identities, which the reduce must have.
 struct IdentityTrial : FoldTrial {
-  bool isIdempotent = false;  ///< combining identities changes nothing, however many there are
+  bool isIdempotent = false;  ///< combining any number of identities changes nothing
 };
 IdentityTrial tryIdentity(const ir::Module& module, const ir::Kernel& kernel);
 
-/// Whether what it computes, beside choosing one of the two values, depends on its uniform and specialisation parameters.
+/// True if a result depends on uniform or spec parameters other than by choosing one of the two values.
 bool computesWithOthers(const ir::Module& module, const ir::Kernel& kernel);
 
 }  // namespace skc

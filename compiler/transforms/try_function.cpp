@@ -16,7 +16,7 @@ namespace {
 
 using namespace ir;
 
-/// Thrown where a function cannot be tried; it does not leave this file.
+/// Thrown if a function cannot be tried; it does not leave this file.
 struct CannotTry {};
 
 double wrapped(Scalar scalar, std::int64_t value) {
@@ -265,9 +265,9 @@ class Interpreter {
     return Flow::Next;
   }
 
-  // ---- places -------------------------------------------------------------------------------------
+  // ---- lvalues ------------------------------------------------------------------------------------
 
-  /// A variable, and which of its numbers a place consists of.
+  /// A variable, and the positions of an lvalue's numbers in it.
   struct Slots {
     VarId var;
     std::vector<std::size_t> numbers;
@@ -312,7 +312,7 @@ class Interpreter {
     return sum;
   }
 
-  /// Where the part begins that an index names; outside, the nearest one.
+  /// Where the indexed part begins; an index outside is clamped.
   std::size_t indexed(Frame& frame, const Index& n, std::size_t total) {
     const std::size_t count =
         size(n.base->type.kind == Type::Kind::Array ? module_.arrays[n.base->type.index].element

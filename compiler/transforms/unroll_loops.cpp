@@ -21,16 +21,16 @@ namespace {
 
 using namespace ir;
 
-/// A loop whose rounds come to no more expressions is unrolled whatever it does: its head takes as much.
+/// A loop that unrolls to no more expressions is always unrolled: its head alone takes as many.
 constexpr std::int64_t tinyExpressions = 24;
 
-/// Variables whose values follow from a loop's counter, or from whatever else a loop changes.
+/// Variables whose values depend on a loop's counter, or on anything else that the loop changes.
 class Followers {
  public:
   explicit Followers(const Loop& loop) {
     for (const Stmt& stmt : loop.init) follow(stmt, true);
     walkStmts(loop.step, [&](const Stmt& stmt) { follow(stmt, true); });
-    // a `while` counts in its body
+    // a `while` loop counts in its body
     const bool countsInBody = loop.step.empty();
     walkStmts(loop.body, [&](const Stmt& stmt) { follow(stmt, countsInBody); });
   }
@@ -57,7 +57,7 @@ class Followers {
   std::vector<VarId> variables_;
 };
 
-/// fn(index) for each offset of a neighbour, and each index of a gather, an array, a vector or a scatter output.
+/// fn(index) for each neighbour's offset, and each index of a gather, an array, a vector or a scatter output.
 template <class Fn>
 void forEachIndex(const Block& body, Fn&& fn) {
   walkExprs(body, [&](const Expr& expr) {
@@ -91,13 +91,13 @@ class Unroller {
   }
 
  private:
-  /// Either the rounds of a loop, or why it stays.
+  /// The iterations of a loop, or the reason why it stays.
   struct Attempt {
     Block rounds;
     std::string whyNot;
   };
 
-  /// Whether a loop would be unrolled if its bounds, which may be locals of a known value, were constants.
+  /// True if a loop would be unrolled if its bounds, which may be locals with known values, were constants.
   bool asksForValues(const Block& statements) const {
     bool asks = false;
     walkStmts(statements, [&](const Stmt& stmt) {
@@ -120,7 +120,7 @@ class Unroller {
     statements = std::move(result);
   }
 
-  /// Appends the rounds of a loop and of those in it: all, or none and false.
+  /// Appends all iterations of a loop and of the loops in it; or nothing, and returns false.
   bool unrollNest(const Loop& loop, Loc loc, Block& result) {
     const std::size_t variables = function_->variables.size();
     rounds_ = 0;
@@ -148,7 +148,7 @@ class Unroller {
     return rounds && *rounds * expressionsIn(loop.body) <= tinyExpressions && *rounds <= tinyExpressions;
   }
 
-  /// Whether indices follow from the loop's counter, and from none of a loop around it that stays.
+  /// True if indices depend on the loop's counter, but not on the counter of a surrounding loop that stays.
   bool makesIndices(const Loop& loop) const {
     const Followers followers(loop);
     bool makes = false;
@@ -177,7 +177,7 @@ class Unroller {
     return fmt::format("the bounds of its counter '{}' are not constants", name);
   }
 
-  // ---- rounds -----------------------------------------------------------------------------------
+  // ---- iterations ---------------------------------------------------------------------------------
 
   Attempt written(const Loop& loop, Loc loc) {
     const std::optional<Rounds> rounds = roundsIn(module_, loop);
@@ -204,7 +204,7 @@ class Unroller {
     return result;
   }
 
-  /// Unrolls the loops in a round; says why one of them stays.
+  /// Unrolls the loops in an iteration; returns why one of them stays, or "".
   std::string writeInner(Block& statements) {
     Block result;
     std::string whyNot;
@@ -227,7 +227,7 @@ class Unroller {
     return {};
   }
 
-  /// The body with a literal in the counter's place; all rounds but the first have locals of their own.
+  /// The body with a literal for the counter; all iterations but the first have locals of their own.
   Block bodyOf(const Loop& loop, const Rounds& rounds, std::int64_t round) {
     Block body = clone(loop.body);
     std::map<VarId, VarId> locals;
@@ -254,7 +254,7 @@ class Unroller {
     return static_cast<VarId>(function_->variables.size() - 1);
   }
 
-  /// In place where the round declares nothing, else as a scope.
+  /// Appends an iteration, in a scope if it declares anything.
   static void append(Block& result, Block&& round, Loc loc) {
     const bool declares = std::ranges::any_of(
         round, [](const Stmt& stmt) { return std::holds_alternative<Declare>(stmt.node); });
@@ -265,7 +265,7 @@ class Unroller {
     }
   }
 
-  /// A loop in one that is unrolled is met in each round.
+  /// A loop inside an unrolled loop is seen in each iteration, but noted once.
   void note(LoopNote found) {
     const auto known = std::ranges::find_if(kernel_.loops, [&](const LoopNote& one) {
       return one.loc.file == found.loc.file && one.loc.token == found.loc.token;
@@ -280,11 +280,11 @@ class Unroller {
   const Module& module_;
   Kernel& kernel_;
   Function* function_ = nullptr;
-  std::int64_t written_ = 0;  ///< expressions of all that was unrolled
+  std::int64_t written_ = 0;  ///< expressions in all unrolled code
   bool hasUnrolled_ = false;
-  std::int64_t rounds_ = 0;  ///< of the loop that is being unrolled, and of those in it
+  std::int64_t rounds_ = 0;  ///< of the loop being unrolled and the loops in it
   std::vector<LoopNote> inner_;
-  std::vector<Followers> around_;  ///< of the loops that stay around the current block
+  std::vector<Followers> around_;  ///< of the loops around the current block that stay
 };
 
 }  // namespace

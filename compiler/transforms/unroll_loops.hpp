@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// unroll-loops: writes the rounds of short counted loops one after the other, where that makes offsets of neighbours and
-// indices of arrays constants, or where a loop is hardly longer so. Outputs are packed, and neighbours are fetched once for
-// all of them, only where every offset is known.
+// unroll-loops: unrolls short counted loops if that makes offsets of neighbours and indices of arrays
+// constant, or if the code hardly grows. Only if every offset is known can outputs be packed, and neighbours
+// be fetched once for all of them.
 //
 //   before   for (int dy = -1; dy <= 1; ++dy)
 //              for (int dx = -1; dx <= 1; ++dx) {
@@ -13,9 +13,9 @@
 //   after    { float w = weight[0];  sum += w * neighbor(a, -1, -1); }
 //            { float w = weight[1];  sum += w * neighbor(a, 0, -1); }  ...
 //
-// Elements of constant arrays take the place of `weight[0]`, and integers are computed; arithmetic on floats stays as it is,
-// in its order, so that no result changes. A loop that values of elements may leave stays a loop. What became of a kernel's
-// loops, and why, is written to Kernel::loops.
+// `weight[0]` is replaced by the element of the constant array, and integers are computed; float arithmetic
+// keeps its order, so that no result changes. A loop that elements may leave early stays a loop.
+// Kernel::loops records what became of each loop, and why.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@
 
 namespace skc {
 
-/// The most rounds of a loop, with those of the loops in it, and the most expressions that a kernel's loops become.
+/// Limits: iterations of a loop including the loops in it, and expressions in all unrolled loops of a kernel.
 constexpr std::int64_t mostUnrolledRounds = 64;
 constexpr std::int64_t mostUnrolledExpressions = 1000;
 

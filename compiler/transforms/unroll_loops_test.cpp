@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: short counted loops whose counters are offsets or indices become their rounds, with locals of their own, constant
-// indices and constant elements, and without the jumps that are decided; floats are computed as before; what is too long, not counted
-// or left by elements stays, with a reason.
+// Promises: short counted loops whose counters are offsets or indices are unrolled, with locals of their own,
+// constant indices and elements, and without jumps that are known; float results do not change; loops that
+// are too long, not counted or left by some elements stay, with a reason.
 #include "transforms/unroll_loops.hpp"
 
 #include <functional>
@@ -21,7 +21,7 @@ namespace {
 using namespace ir;
 using enum BinaryOp;
 
-/// A kernel of a gather `a`, a uniform `u` and an output `r`, with some locals.
+/// A kernel with a gather `a`, a uniform `u`, an output `r`, and some locals.
 struct Sample {
   Module module = testModule();
   KernelMaker k{module, "f"};

@@ -12,10 +12,10 @@ namespace {
 
 using namespace ir;
 
-/// Follows one function in the order of its text, which is that of execution but for loops.
+/// Follows one function in source order, which is execution order except for loops.
 class Reader {
  public:
-  /// `callees` has the reads of functions that stand before this one.
+  /// `callees` has the reads of the functions before this one.
   Reader(const Module& module, const Function& function, bool isKernel,
          const std::vector<UnwrittenReads>& callees)
       : module_(module), function_(function), isKernel_(isKernel), callees_(callees) {}
@@ -28,7 +28,7 @@ class Reader {
  private:
   void read(VarId var, Loc loc) {
     if (var >= function_.parameterCount || function_.variables[var].role != VarRole::InOut) return;
-    // What a helper reads under a condition, its caller may know not to happen.
+    // A caller may know that a conditional read in a helper does not happen.
     const bool isCertain = isKernel_ || depth_ == 0;
     if (isCertain && !written_.contains(var)) reads_.try_emplace(var, loc);
   }
@@ -132,7 +132,7 @@ class Reader {
   const std::vector<UnwrittenReads>& callees_;
   std::set<VarId> written_;
   UnwrittenReads reads_;
-  int depth_ = 0;  ///< of branches and loops
+  int depth_ = 0;  ///< number of branches and loops around
 };
 
 }  // namespace
@@ -140,7 +140,7 @@ class Reader {
 std::vector<UnwrittenReads> unwrittenReads(const Module& module) {
   std::set<FunctionId> kernels;
   for (const Kernel& kernel : module.kernels) kernels.insert(kernel.entry);
-  std::vector<UnwrittenReads> reads;  // callees stand before their callers in the module
+  std::vector<UnwrittenReads> reads;  // callees precede their callers in the module
   for (const Function& function : module.functions) {
     const bool isKernel = kernels.contains(static_cast<FunctionId>(reads.size()));
     reads.push_back(Reader(module, function, isKernel, reads).run());

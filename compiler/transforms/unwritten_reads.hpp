@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// Finds reads of outputs that no path has written by then:
+// Finds reads of outputs that no path has written before:
 //
 //   kernel void f(float x<>, out float r<>) { r += 2 * x; }   // reads r, at the '+='
 //
-// A write anywhere above, or in a loop around the read, counts for all of its variable, so that what is found is a mistake
-// for certain. check_outputs.hpp finds what is not written at the end.
+// Any write above the read, or in a loop around it, counts for the whole variable, so that every finding is
+// certainly a mistake. check_outputs.hpp finds outputs that are not written at the end.
 #pragma once
 
 #include <map>
@@ -15,10 +15,10 @@
 
 namespace skc {
 
-/// InOut parameters of a function that it reads first, and where.
+/// The InOut parameters of a function that it reads before writing, and where.
 using UnwrittenReads = std::map<ir::VarId, Loc>;
 
-/// For each function of the module.
+/// The result for each function of the module.
 std::vector<UnwrittenReads> unwrittenReads(const ir::Module& module);
 
 }  // namespace skc

@@ -45,7 +45,7 @@ ExprPtr WideTypes::widened(ExprPtr value) {
 
 ExprPtr WideTypes::narrowed(ExprPtr value, Type to) { return converted(std::move(value), to); }
 
-/// The value is read once for each of its parts: expressions have no side effects.
+/// The value is evaluated once per part, since expressions have no side effects.
 ExprPtr WideTypes::converted(ExprPtr value, Type to) {
   if (value->type == to) return value;
   const Loc loc = value->loc;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Types with double in the place of float, and values from the one to the other.
+// Types with double instead of float, and conversions between the two.
 #pragma once
 
 #include <map>
@@ -13,12 +13,12 @@ class WideTypes {
  public:
   explicit WideTypes(ir::Module& module) : module_(module) {}
 
-  /// Whether the type holds a float or a vector of them; matrices and half do not count.
+  /// True if the type contains a float or a vector of floats; matrices and half do not count.
   bool holdsFloat(ir::Type type) const;
-  /// The type itself where it holds none. Structs get a second one, "Hit_wide".
+  /// The wide type; the type itself if it contains no float. Structs get a second one, "Hit_wide".
   ir::Type of(ir::Type type);
 
-  /// A value of a type as one of of(type), and back.
+  /// Converts a value to its wide type, and back.
   ir::ExprPtr widened(ir::ExprPtr value);
   ir::ExprPtr narrowed(ir::ExprPtr value, ir::Type to);
 
@@ -26,7 +26,7 @@ class WideTypes {
   ir::ExprPtr converted(ir::ExprPtr value, ir::Type to);
 
   ir::Module& module_;
-  std::map<std::uint32_t, std::uint32_t> structs_;   ///< made of which, and which
+  std::map<std::uint32_t, std::uint32_t> structs_;   ///< original to synthesized struct
 };
 
 }  // namespace skc

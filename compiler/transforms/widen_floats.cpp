@@ -32,7 +32,7 @@ bool isAppendOutput(ParamRole role) {
   return role == ParamRole::VariableOutput || role == ParamRole::Scatter;
 }
 
-/// Those of a float's bits: they get a float, or give one.
+/// True for intrinsics that take a float's bits, or produce a float from bits.
 bool isOfBits(Intrinsic intrinsic) {
   switch (intrinsic) {
     case Intrinsic::FloatBitsToInt:
@@ -48,14 +48,14 @@ bool isOfBits(Intrinsic intrinsic) {
   }
 }
 
-// ---- what has no wide form --------------------------------------------------------------------
+// ---- what has no wide variant -------------------------------------------------------------------
 
-/// Looks for what doubles cannot do.
+/// Looks for operations that doubles do not support.
 class Obstacles {
  public:
   Obstacles(const Module& module, WideTypes& types) : module_(module), types_(types) {}
 
-  /// Empty if there is none.
+  /// Returns the first obstacle, or "".
   std::string of(const Kernel& kernel) {
     found_.clear();
     for (const FunctionId id : functionsOf(module_, kernel)) {
@@ -103,19 +103,19 @@ class Obstacles {
   const Module& module_;
   WideTypes& types_;
   const Kernel* kernel_ = nullptr;
-  const Function* function_ = nullptr;  ///< the one that is looked at
+  const Function* function_ = nullptr;  ///< the function being examined
   std::string found_;
 };
 
-// ---- the form ---------------------------------------------------------------------------------
+// ---- the variant --------------------------------------------------------------------------------
 
-/// One kernel's wide form; the kernel has no obstacle.
+/// Builds one kernel's wide variant; the kernel must have no obstacle.
 class Widener {
  public:
   Widener(Module& module, WideTypes& types, std::map<ConstantId, ConstantId>& constants)
       : module_(module), types_(types), constants_(constants) {}
 
-  /// `holdsFloats`: whether its inputs and outputs are streams of floats; those of a combination are partial results.
+  /// `holdsFloats`: its inputs and outputs are streams of floats, not partial results of a reduce.
   KernelId widen(KernelId id, bool holdsFloats) {
     FunctionCopies copies;
     const FunctionId entry = copyFunction(module_, module_.kernels[id].entry, copies);
@@ -134,7 +134,7 @@ class Widener {
     return static_cast<KernelId>(module_.kernels.size() - 1);
   }
 
-  /// Takes doubles and gives them as floats: a reduce's accumulators, in their order.
+  /// A kernel that converts a reduce's accumulators, in order, from doubles to floats.
   KernelId finish(KernelId id) {
     MadeKernel made(module_.kernels[id], "_finish");
     std::vector<VarId> inputs;
@@ -175,7 +175,7 @@ class Widener {
     return made;
   }
 
-  /// A function of `kernel`. The entry's values that are no streams are converted where it begins.
+  /// Rewrites a function of `kernel`. The entry converts its non-stream values at its start.
   void function(FunctionId id, const Kernel& kernel) {
     std::map<VarId, VarId> wideOf;
     Block start;
@@ -202,7 +202,7 @@ class Widener {
     const Function& made = module_.functions[id];
     walkStmts(body, [&](Stmt& stmt) {
       forEachOperand(stmt, [&](ExprPtr& slot) { rewrite(slot, {&made, &wideOf}); });
-      // append outputs hold what they held
+      // append outputs keep their element types
       if (auto* n = std::get_if<Push>(&stmt.node))
         n->value = toAppendOutput(made, n->stream, std::move(n->value), kernel);
       if (auto* n = std::get_if<Scatter>(&stmt.node))
@@ -223,7 +223,7 @@ class Widener {
     const std::map<VarId, VarId>* wideOf = nullptr;
   };
 
-  /// Operands first: a node's type follows from theirs.
+  /// Rewrites operands first: a node's type follows from its operands'.
   void rewrite(ExprPtr& slot, const Within& within) {
     forEachOperand(*slot, [&](ExprPtr& operand) { rewrite(operand, within); });
     Expr& expr = *slot;
@@ -245,7 +245,7 @@ class Widener {
     }
   }
 
-  /// To and from narrow types by way of float, which they are a part of.
+  /// Converts to and from narrow types through float, which represents all their values.
   static void conversion(ExprPtr& slot) {
     ExprPtr& operand = std::get<Convert>(slot->node).operand;
     const Type to = slot->type.isFloat() ? slot->type.withScalar(Scalar::Double) : slot->type;
@@ -285,10 +285,10 @@ class Widener {
 
   Module& module_;
   WideTypes& types_;
-  std::map<ConstantId, ConstantId>& constants_;  ///< made of which, and which
+  std::map<ConstantId, ConstantId>& constants_;  ///< original to synthesized constant
 };
 
-/// Whether anything that a kernel computes is a float.
+/// True if a kernel computes any float.
 bool computesFloats(const Module& module, const WideTypes& types, const Kernel& kernel) {
   for (const FunctionId id : functionsOf(module, kernel)) {
     bool found = std::ranges::any_of(module.functions[id].variables, [&](const Variable& variable) {
@@ -307,7 +307,7 @@ void widenFloats(Module& module, Diagnostics&) {
   WideTypes types(module);
   std::map<ConstantId, ConstantId> constants;
   Widener widener(module, types, constants);
-  const std::size_t declared = module.kernels.size();  // before those that this adds
+  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     if (module.kernels[id].isMade || !computesFloats(module, types, module.kernels[id])) continue;
     Obstacles obstacles(module, types);
@@ -322,7 +322,7 @@ void widenFloats(Module& module, Diagnostics&) {
     const KernelId wide = widener.widen(id, true);
     module.kernels[id].forms.wide = wide;
     if (!combine) continue;
-    // partial results are doubles: even a fold that combines its own has another form for them
+    // partial results are doubles, so even a fold that combines its own results has another variant for them
     const KernelId wideCombine = widener.widen(*combine, false);
     module.kernels[wide].reduction->combine = wideCombine;
     module.kernels[wideCombine].reduction->combine = wideCombine;
