@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 
 #include "native/call.hpp"
 #include "native/entries.hpp"
@@ -27,14 +26,17 @@ struct ChunkHook {
 /// For one thread.
 class ChunkRunner {
  public:
-  /// `run` is an entry of kind Run or RunRows.
+  /// `run` is an entry of kind Run or RunRows. At most so many rows are run at once, or as many as the entry computes together.
   ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame,
-              ChunkHook hook = {});
+              ChunkHook hook = {}, std::size_t rows = 1);
+
+  /// Rows that should be run at once, at most native::mostRows: their ends are laid out one after the other, which costs less than a
+  /// row at a time.
+  static std::size_t rowsAtOnce(const SlotLayout& layout);
 
   /// `count` elements from `first` on.
   void run(const native::Extents& first, std::int64_t count) { run(first, count, 1); }
-  /// `count` elements in each of `rows` rows, at most as many as the entry computes together and, where they are fewer, no more than
-  /// native::mostLanes elements.
+  /// `count` elements in each of `rows` rows. Where the entry computes more rows together, no more than native::mostLanes elements.
   void run(const native::Extents& first, std::int64_t count, std::size_t rows);
 
   /// Likewise at most mostLaidOut of them, as one chunk whose arrays after(arrays) can look at.
@@ -42,24 +44,26 @@ class ChunkRunner {
   void runChunk(const native::Extents& first, std::int64_t count, After&& after) {
     moveTo(first, 1);
     call(first[0], count, roundUp(count, lanes_));
-    after(arrays_.front()->get());
+    after(arrays_.get());
   }
 
  private:
   void moveTo(const native::Extents& first, std::size_t rows);
   void runPart(std::int64_t begin, std::int64_t end, std::int64_t longest);
-  native::Range inside() const;
   /// Whole groups of lanes that lie as the domain does, with the neighbours that gathers read.
   void runInside(std::int64_t begin, std::int64_t end, std::int64_t longest);
   void call(std::int64_t x, std::int64_t count, std::int64_t room);
+  void compute(std::int64_t x, std::int64_t count);
 
   const SlotLayout& layout_;
   native::RunFunction* function_;
   std::int64_t lanes_;
   const native::Frame* frame_;
-  std::size_t rows_;  ///< that the entry computes together
-  std::size_t wanted_ = 1;  ///< of these
-  std::array<std::optional<SlotArrays>, native::mostRows> arrays_;  ///< of each row
+  std::size_t together_;  ///< rows that the entry computes
+  std::size_t wanted_ = 1;  ///< rows
+  std::size_t placed_ = 1;  ///< these, and others that are computed together with them
+  std::int64_t laidOut_;  ///< elements of a row at a time, at most
+  SlotArrays arrays_;
   std::array<native::Chunk, native::mostRows> chunks_;
   ChunkHook hook_;
 };

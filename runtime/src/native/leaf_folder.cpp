@@ -24,7 +24,7 @@ LeafFolder::LeafFolder(const FoldProgram& program)
 }
 
 void LeafFolder::moveToRow(const native::Extents& first) {
-  arrays_.moveToRow(first);
+  arrays_.moveTo(first);
   std::ranges::copy(first, chunk_.first);
 }
 

@@ -24,15 +24,23 @@ class RowPieces {
   std::int64_t count() const { return perRow_ * domain_[1] * domain_[2] * domain_[3]; }
   std::int64_t elementsOfOne() const { return std::min(domain_[0], longest_); }
 
-  /// visit(first, count) for the elements of these pieces in order: those that are in one row together.
+  /// visit(first, count, rows) for the elements of these pieces in order: those that are in one row together, and whole rows below each
+  /// other, at most `mostRows` of them.
   template <class Visit>
-  void forEachRun(native::Range pieces, Visit&& visit) const {
+  void forEachRun(native::Range pieces, std::int64_t mostRows, Visit&& visit) const {
     native::Extents at = firstOf(pieces.begin);
     for (std::int64_t left = pieces.end - pieces.begin; left > 0;) {
-      const std::int64_t end = std::min(domain_[0], at[0] + left * longest_);
-      left -= (end - at[0] + longest_ - 1) / longest_;
-      visit(at, end - at[0]);
+      std::int64_t end = domain_[0], rows = 1;
+      if (at[0] == 0 && left >= perRow_) {
+        rows = std::min({left / perRow_, mostRows, domain_[1] - at[1]});
+        left -= rows * perRow_;
+      } else {
+        end = std::min(end, at[0] + left * longest_);
+        left -= (end - at[0] + longest_ - 1) / longest_;
+      }
+      visit(at, end - at[0], static_cast<std::size_t>(rows));
       at[0] = 0;
+      at[1] += rows - 1;
       for (std::size_t d = 1; d < 4 && ++at[d] == domain_[d]; ++d) at[d] = 0;
     }
   }

@@ -44,7 +44,9 @@ class CodeRun {
     } else if (rowsEntry_ != nullptr) {
       runBlocks();
     } else {
-      inParallel(pieces_.count(), [&](Range range) { runPieces(range, frame_.get()); });
+      const auto rows = static_cast<std::size_t>(call_.domain[1]);
+      const std::size_t atOnce = std::min(ChunkRunner::rowsAtOnce(layout_), rows);
+      inParallel(pieces_.count(), [&](Range range) { runPieces(range, frame_.get(), {}, atOnce); });
     }
   }
 
@@ -62,9 +64,12 @@ class CodeRun {
                                [&](const program::Parameter& p) { return p.role == role; });
   }
 
-  void runPieces(Range range, const native::Frame* frame, const ChunkHook& hook = {}) const {
-    ChunkRunner runner(layout_, entry_, frame, hook);
-    pieces_.forEachRun(range, [&](const Extents& first, std::int64_t count) { runner.run(first, count); });
+  void runPieces(Range range, const native::Frame* frame, const ChunkHook& hook,
+                 std::size_t rowsAtOnce = 1) const {
+    ChunkRunner runner(layout_, entry_, frame, hook, rowsAtOnce);
+    pieces_.forEachRun(
+        range, static_cast<std::int64_t>(rowsAtOnce),
+        [&](const Extents& first, std::int64_t count, std::size_t rows) { runner.run(first, count, rows); });
   }
 
   void runBlocks() const {

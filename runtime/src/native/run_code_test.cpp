@@ -188,7 +188,7 @@ TEST_CASE("the index in an input that is stretched is right for every element") 
 
 constexpr std::uint8_t stencilReach = 2;
 
-/// Neighbours at -2, 0 and 2 along x, and one row to either side in y and z.
+/// Neighbours at -2, 0 and 2 along x, the upper left and the lower right one, and one row to either side in z.
 void stencil(const Frame*, const Chunk* chunk) {
   const auto* u = arrayOf<float>(chunk, 0);
   const float* rows[4];
@@ -196,7 +196,7 @@ void stencil(const Frame*, const Chunk* chunk) {
   auto* r = arrayOf<float>(chunk, 5);
   for (std::int64_t i = 0; i < inGroups(chunk->count); ++i) {
     r[i] = u[i] + 2 * u[i - stencilReach] + 3 * u[i + stencilReach];
-    for (int k = 0; k < 4; ++k) r[i] += static_cast<float>(4 + k) * rows[k][i];
+    r[i] += 4 * rows[0][i - 1] + 5 * rows[1][i + 1] + 6 * rows[2][i] + 7 * rows[3][i];
   }
 }
 
@@ -212,8 +212,8 @@ struct Stencil : TestKernel {
     u.usesNear = true;
     add(Role::Output);
     slot(0, stencilReach);
-    slot(0, 0, -1);
-    slot(0, 0, 1);
+    slot(0, 1, -1);
+    slot(0, 1, 1);
     slot(0, 0, 0, -1);
     slot(0, 0, 0, 1);
     slot(1);
@@ -262,7 +262,7 @@ void checkStencil(Boundary boundary, int rank, const Extents& extent, const Exte
           return gathered(u, extent, boundary, rank, {x + dx, y + dy, z + dz, 0});
         };
         expected.push_back(at(0, 0, 0) + 2 * at(-stencilReach, 0, 0) + 3 * at(stencilReach, 0, 0) +
-                           4 * at(0, -1, 0) + 5 * at(0, 1, 0) + 6 * at(0, 0, -1) + 7 * at(0, 0, 1));
+                           4 * at(-1, -1, 0) + 5 * at(1, 1, 0) + 6 * at(0, 0, -1) + 7 * at(0, 0, 1));
       }
     }
   }
@@ -278,6 +278,10 @@ TEST_CASE("neighbours outside are what the boundary says, in rows of every lengt
       checkStencil(boundary, 2, {width, 4, 1, 1}, {width, 4, 1, 1});
       checkStencil(boundary, 3, {width, 3, 2, 1}, {width, 3, 2, 1});
     }
+    for (const std::int64_t height : {7, 8, 9, 16, 25}) {  // rows are run several at once
+      checkStencil(boundary, 2, {70, height, 1, 1}, {70, height, 1, 1});
+      checkStencil(boundary, 3, {33, height, 3, 1}, {33, height, 3, 1});
+    }
   }
 }
 
@@ -285,6 +289,8 @@ TEST_CASE("a gather may be smaller or larger than the domain") {
   for (const Boundary boundary : {Boundary::Clamp, Boundary::Wrap, Boundary::Mirror, Boundary::Border}) {
     checkStencil(boundary, 2, {5, 3, 1, 1}, {1100, 6, 1, 1});
     checkStencil(boundary, 2, {1100, 6, 1, 1}, {33, 3, 1, 1});
+    checkStencil(boundary, 2, {20, 4, 1, 1}, {300, 30, 1, 1});
+    checkStencil(boundary, 2, {200, 40, 1, 1}, {90, 20, 1, 1});
     checkStencil(boundary, 1, {40, 1, 1, 1}, {40, 3, 1, 1});
   }
 }

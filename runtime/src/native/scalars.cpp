@@ -8,21 +8,11 @@ namespace sk {
 
 namespace {
 
-struct Bytes16 {
-  std::uint64_t words[2];
-};
-
 /// visit<Held, Read>() for the types of these sizes.
 template <class Visit>
 void withTypes(ScalarBytes bytes, Visit&& visit) {
   if (bytes.held != bytes.read) return visit.template operator()<float, double>();
-  switch (bytes.read) {
-    case 1: return visit.template operator()<std::uint8_t, std::uint8_t>();
-    case 2: return visit.template operator()<std::uint16_t, std::uint16_t>();
-    case 4: return visit.template operator()<std::uint32_t, std::uint32_t>();
-    case 8: return visit.template operator()<std::uint64_t, std::uint64_t>();
-    default: return visit.template operator()<Bytes16, Bytes16>();
-  }
+  withScalar(bytes.read, [&]<class T> { visit.template operator()<T, T>(); });
 }
 
 template <class Held, class Read>

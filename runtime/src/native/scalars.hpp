@@ -32,6 +32,22 @@ struct ScalarBytes {
   std::uint8_t read;
 };
 
+struct Bytes16 {
+  std::uint64_t words[2];
+};
+
+/// visit<T>() for a type of this size.
+template <class Visit>
+void withScalar(std::size_t bytes, Visit&& visit) {
+  switch (bytes) {
+    case 1: return visit.template operator()<std::uint8_t>();
+    case 2: return visit.template operator()<std::uint16_t>();
+    case 4: return visit.template operator()<std::uint32_t>();
+    case 8: return visit.template operator()<std::uint64_t>();
+    default: return visit.template operator()<Bytes16>();
+  }
+}
+
 /// Where to read: element `index` of an array, and then one each `stride` elements.
 struct Steps {
   const std::byte* array;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <limits>
 
 namespace sk {
@@ -28,7 +29,9 @@ std::int64_t broughtInside(Boundary boundary, std::int64_t i, std::int64_t n) {
     case Boundary::Mirror: break;
   }
   const std::int64_t period = boundary == Boundary::Mirror ? 2 * n : n;
-  const std::int64_t inside = (i % period + period) % period;
+  // divisions take long, and few neighbours are further away than the extent
+  std::int64_t inside = i < 0 ? i + period : i < period ? i : i - period;
+  if (inside < 0 || inside >= period) inside = (i % period + period) % period;
   return inside < n ? inside : period - 1 - inside;
 }
 
@@ -38,18 +41,46 @@ std::int64_t ownIndex(const Argument& input, std::size_t d, std::int64_t index) 
   return input.divide[d] == 1 ? multiplied : multiplied / input.divide[d];
 }
 
+/// Elements of a gather, the same ones of several rows.
+struct Neighbors {
+  Boundary boundary;
+  const void* border;
+  std::int64_t extent;  ///< of a row
+  std::int64_t first, count;
+};
+
+/// rows[r] is where a row's element at x = 0 is. `Rows` and `To` are indexed by the row.
+template <class T, class Rows, class To>
+void copyNeighbors(const Neighbors what, std::size_t rowCount, const Rows rows, const To to) {
+  constexpr std::int64_t size = sizeof(T);
+  const std::int64_t begin = std::clamp<std::int64_t>(-what.first, 0, what.count);
+  const std::int64_t end = std::clamp<std::int64_t>(what.extent - what.first, begin, what.count);
+  const auto bytes = static_cast<std::size_t>((end - begin) * size);
+  for (std::size_t r = 0; r < rowCount; ++r)
+    std::memcpy(to(r) + begin * size, rows(r) + (what.first + begin) * size, bytes);
+  for (std::int64_t i = begin > 0 ? 0 : end; i < what.count; i = i + 1 == begin ? end : i + 1) {
+    const std::int64_t index = broughtInside(what.boundary, what.first + i, what.extent);
+    for (std::size_t r = 0; r < rowCount; ++r)
+      std::memcpy(to(r) + i * size, index < 0 ? what.border : rows(r) + index * size, sizeof(T));
+  }
+}
+
 }  // namespace
 
 // ---- of a call -------------------------------------------------------------------------------------
 
 SlotLayout::SlotLayout(const program::Kernel& kernel, const native::Call& call, const CodeFrame& frame,
                        const CodeChoice& choice, std::pmr::memory_resource* memory)
-    : width_(call.domain[0]), slots_(memory), arrays_(memory), borders_(memory) {
+    : width_(call.domain[0]), slots_(memory), order_(memory), arrays_(memory), borders_(memory) {
   const std::span<const native::Slot> slots(kernel.code->slots, kernel.code->slotCount);
   slots_.reserve(slots.size());
+  order_.reserve(slots.size());
   arrays_.reserve(slots.size());
   for (const native::Slot& slot : slots) addSlot(kernel, call, frame, slot, choice.real);
-  if (hasGathers_) readBorders(kernel, frame, choice);
+  if (!hasGathers_) return;
+  for (Slot& slot : slots_) slot.below = slotBelow(slot);
+  std::ranges::stable_sort(order_, std::ranges::greater(), [&](std::size_t s) { return slots_[s].row[0]; });
+  readBorders(kernel, frame, choice);
 }
 
 void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call, const CodeFrame& frame,
@@ -70,13 +101,26 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   const bool isFitted = width_ != 1 && (argument.multiply[0] != 1 || argument.divide[0] != 1);
   made.isDirect =
       made.isGiven && !operand.holdsFloats && !isFitted && (width_ == 1 || argument.stride[0] == 1);
+  made.isInPlace = made.kind == Kind::Input ? made.isDirect : made.isGiven;
   if (made.kind == Kind::Gather) {
     hasGathers_ = true;
+    inside_ = {std::max(inside_.begin, made.reach), std::min(inside_.end, argument.extent[0] - made.reach)};
     made.firstBorder = firstBorderOf(kernel, slot.parameter);
   } else {
-    isDirect_ = isDirect_ && (made.kind == Kind::Input ? made.isDirect : made.isGiven);
+    isDirect_ = isDirect_ && made.isInPlace;
     goesByElement_ = goesByElement_ || (made.kind == Kind::Input && parameter.usesIndex && isFitted);
   }
+  constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  if (made.kind == Kind::Gather) {
+    const bool isRow = made.rank == 1;
+    made.rowStep = isRow ? 0 : argument.stride[1];
+    made.evenRows = isRow ? Range{least, most} : Range{1 - made.row[0], argument.extent[1] - made.row[0]};
+  } else {
+    made.rowStep = argument.multiply[1] * argument.stride[1];
+    made.evenRows = argument.divide[1] == 1 ? Range{least, most} : Range{0, 0};
+  }
+  order_.push_back(slots_.size() - 1);
   forEachScalar(*parameter.element, real, [&](std::size_t number, std::size_t bytes, program::Scalar scalar) {
     const auto read = static_cast<std::uint8_t>(bytes);
     const bool isWidened = operand.holdsFloats && scalar == program::Scalar::Float;
@@ -84,6 +128,17 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
                        {isWidened ? static_cast<std::uint8_t>(sizeof(float)) : read, read}});
   });
   made.arrayCount = arrays_.size() - made.firstArray;
+}
+
+std::optional<std::size_t> SlotLayout::slotBelow(const Slot& slot) const {
+  for (std::size_t s = 0; s < slots_.size(); ++s) {
+    const Slot& other = slots_[s];
+    if (slot.kind == Kind::Gather && other.argument == slot.argument && other.row[0] == slot.row[0] + 1 &&
+        other.row[1] == slot.row[1] && other.row[2] == slot.row[2] && other.reach >= slot.reach) {
+      return s;
+    }
+  }
+  return std::nullopt;
 }
 
 /// The code writes all components of one gather after the other.
@@ -110,170 +165,219 @@ void SlotLayout::readBorders(const program::Kernel& kernel, const CodeFrame& fra
 
 // ---- of a thread -----------------------------------------------------------------------------------
 
-SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t mostAtEnds)
+SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t mostAtEnds, std::size_t rows)
     : layout_(layout),
-      rows_(layout.slots().size(), memory_.get()),
-      inRow_(layout.arrays().size(), memory_.get()),
-      arrays_(layout.arrays().size(), memory_.get()),
-      scratch_(memory_.get()) {
-  scratch_.reserve(arrays_.size());
+      slots_(layout.slots().size()),
+      width_(layout.arrays().size()),
+      rows_(rows * layout.slots().size(), memory_.get()),
+      inRow_(rows * width_, memory_.get()),
+      arrays_(rows * width_, memory_.get()),
+      scratch_(rows * width_, memory_.get()) {
   for (const Slot& slot : layout.slots()) {
-    const bool isDirect = slot.kind == SlotLayout::Kind::Output ? slot.isGiven : slot.isDirect;
-    const bool isAtEndsAlone = isDirect && slot.kind != SlotLayout::Kind::Gather;
+    const bool isAtEndsAlone = slot.isInPlace && slot.kind != SlotLayout::Kind::Gather;
     const std::int64_t laidOut = std::min(layout.width(), isAtEndsAlone ? mostAtEnds : most);
     const std::int64_t elements = laidOut + native::mostLanes + 2 * slot.reach;
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
-      const std::size_t bytes = static_cast<std::size_t>(elements) * layout.arrays()[a].bytes.read;
-      scratch_.push_back(static_cast<std::byte*>(memory_.get()->allocate(bytes, cacheLine)));
+      const ScalarBytes bytes = layout.arrays()[a].bytes;
+      const std::size_t ofRow =
+          (static_cast<std::size_t>(elements) * bytes.read + cacheLine - 1) / cacheLine * cacheLine;
+      auto* next = static_cast<std::byte*>(memory_.get()->allocate(rows * ofRow, cacheLine));
+      for (std::size_t row = 0; row < rows; ++row, next += ofRow) {
+        scratch_[placeOf(row, a)] = next;
+        inRow_[placeOf(row, a)] = {next, slot.isInPlace ? bytes.held : 0};
+      }
     }
   }
 }
 
-void SlotArrays::moveToRow(const Extents& first) {
-  for (std::size_t s = 0; s < rows_.size(); ++s) {
+void SlotArrays::moveTo(const Extents& first, std::size_t wanted, std::size_t placed) {
+  wanted_ = wanted;
+  placed_ = placed;
+  isAnyOutside_ = false;
+  const std::size_t slots = slots_, width = width_;
+  for (std::size_t s = 0; s < slots; ++s) {
     const Slot& slot = layout_.slots()[s];
-    Row row{slot.argument->first, false};
-    if (slot.kind == SlotLayout::Kind::Gather) {
-      for (std::size_t d = 1; d < slot.rank; ++d) {
-        const std::int64_t index =
-            broughtInside(slot.boundary, first[d] + slot.row[d - 1], slot.argument->extent[d]);
-        row.isOutside = row.isOutside || index < 0;
-        row.first += index * slot.argument->stride[d];
-      }
-    } else {
-      for (std::size_t d = 1; d < 4; ++d) {
-        row.first += ownIndex(*slot.argument, d, first[d]) * slot.argument->stride[d];
-      }
+    Row* const rows = &rows_[s];
+    findRows(slot, first, rows);
+    if (slot.boundary == Boundary::Border) {
+      for (std::size_t k = 0; k < wanted; ++k) isAnyOutside_ = isAnyOutside_ || rows[k * slots].isOutside;
     }
-    rows_[s] = row;
+    if (!slot.isInPlace) continue;
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
-      const SlotLayout::Array& array = layout_.arrays()[a];
-      if (array.held != nullptr) inRow_[a] = {array.held + row.first * array.bytes.held, array.bytes.held};
+      const SlotLayout::Array array = layout_.arrays()[a];
+      ArrayRow* const to = &inRow_[a];
+      for (std::size_t k = 0; k < placed; ++k)
+        to[k * width].first = array.held + rows[k * slots].first * array.bytes.held;
     }
   }
 }
 
-void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step, bool keeps) {
-  const std::span<const Slot> slots = layout_.slots();
-  for (std::size_t s = 0; s < slots.size(); ++s) {
-    switch (slots[s].kind) {
-      case SlotLayout::Kind::Input: placeInput(s, x, count, room, step); break;
-      case SlotLayout::Kind::Output: placeOutput(s, x, keeps && slots[s].isGiven && count == room); break;
-      case SlotLayout::Kind::Gather: placeGather(s, x, count, room); break;
+/// Of a slot; from one row to the next, `rows` has all slots.
+void SlotArrays::findRows(const Slot& slot, const Extents& first, Row* rows) const {
+  const std::size_t slots = slots_, wanted = wanted_, placed = placed_;
+  const std::int64_t y = first[1], last = y + static_cast<std::int64_t>(wanted) - 1;
+  Row row = rowAt(slot, first, y);
+  if (slot.evenRows.begin <= y + 1 && last < slot.evenRows.end) {
+    const std::int64_t step = slot.rowStep;
+    for (std::size_t k = 0; k < wanted; ++k, row.first += step) rows[k * slots] = row;
+  } else {
+    for (std::size_t k = 0; k < wanted; ++k)
+      rows[k * slots] = rowAt(slot, first, y + static_cast<std::int64_t>(k));
+  }
+  for (std::size_t k = wanted; k < placed; ++k) rows[k * slots] = rows[(wanted - 1) * slots];
+}
+
+/// The row of the domain at `y`, in the plane of `first`.
+SlotArrays::Row SlotArrays::rowAt(const Slot& slot, Extents first, std::int64_t y) {
+  const Argument& argument = *slot.argument;
+  first[1] = y;
+  Row row{argument.first, false};
+  if (slot.kind == SlotLayout::Kind::Gather) {
+    for (std::size_t d = 1; d < slot.rank; ++d) {
+      const std::int64_t index = broughtInside(slot.boundary, first[d] + slot.row[d - 1], argument.extent[d]);
+      row.isOutside = row.isOutside || index < 0;
+      row.first += std::max<std::int64_t>(index, 0) * argument.stride[d];
+    }
+  } else {
+    for (std::size_t d = 1; d < 4; ++d) row.first += ownIndex(argument, d, first[d]) * argument.stride[d];
+  }
+  return row;
+}
+
+void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, std::int64_t step) {
+  placeInside(x);
+  for (const std::size_t s : layout_.order()) {
+    const Slot& slot = layout_.slots()[s];
+    switch (slot.kind) {
+      case SlotLayout::Kind::Input:
+        if (slot.isInPlace && step == 1 && x + room <= layout_.width()) break;
+        for (std::size_t row = 0; row < placed_; ++row) layOutInput(row, s, x, {count, room}, step);
+        break;
+      case SlotLayout::Kind::Output:
+        for (std::size_t row = slot.isInPlace && count == room ? wanted_ : 0; row < placed_; ++row)
+          useScratch(row, slot);
+        break;
+      case SlotLayout::Kind::Gather:
+        if (x < slot.reach || x + room + slot.reach > slot.argument->extent[0]) {
+          layOutGather(s, x, {count, room}, /*areOutsideAlone=*/false);
+        } else if (isAnyOutside_) {
+          layOutGather(s, x, {count, room}, /*areOutsideAlone=*/true);
+        }
+        break;
     }
   }
+}
+
+void SlotArrays::useScratch(std::size_t row, const Slot& slot) {
+  for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a)
+    arrays_[placeOf(row, a)] = scratch_[placeOf(row, a)];
 }
 
 void SlotArrays::storeOutputs(std::int64_t x, std::int64_t count) {
-  for (std::size_t s = 0; s < rows_.size(); ++s) {
-    const Slot& slot = layout_.slots()[s];
-    if (slot.kind != SlotLayout::Kind::Output || !slot.isGiven) continue;
-    for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
-      const SlotLayout::Array& array = layout_.arrays()[a];
-      std::memcpy(array.held + (rows_[s].first + x) * array.bytes.read, scratchOf(a),
-                  static_cast<std::size_t>(count) * array.bytes.read);
+  for (std::size_t row = 0; row < wanted_; ++row) {
+    for (const Slot& slot : layout_.slots()) {
+      if (slot.kind != SlotLayout::Kind::Output || !slot.isInPlace) continue;
+      for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
+        const ArrayRow& to = inRow_[placeOf(row, a)];
+        std::memcpy(to.first + x * to.bytes, scratch_[placeOf(row, a)],
+                    static_cast<std::size_t>(count * to.bytes));
+      }
     }
   }
 }
 
-void SlotArrays::placeInput(std::size_t s, std::int64_t x, std::int64_t count, std::int64_t room,
-                            std::int64_t step) {
-  const Slot& slot = layout_.slots()[s];
-  const bool isDirect = slot.isDirect && step == 1 && x + room <= layout_.width();
-  for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
-    const SlotLayout::Array& array = layout_.arrays()[a];
-    if (isDirect) {
-      arrays_[a] = array.held + (rows_[s].first + x) * array.bytes.read;
-    } else {
-      layOutInput(s, a, x, count, step);
-      padScalars(scratchOf(a), array.bytes.read, count, room);
-      arrays_[a] = scratchOf(a);
-    }
-  }
-}
-
-void SlotArrays::layOutInput(std::size_t s, std::size_t a, std::int64_t x, std::int64_t count,
+void SlotArrays::layOutInput(std::size_t row, std::size_t s, std::int64_t x, const Length& length,
                              std::int64_t step) {
-  const Argument& argument = *layout_.slots()[s].argument;
-  const SlotLayout::Array& array = layout_.arrays()[a];
+  const Slot& slot = layout_.slots()[s];
+  const Argument& argument = *slot.argument;
+  const std::int64_t count = length.count;
   const std::int64_t stride = argument.stride[0];
-  const auto numberAt = [&](std::int64_t at) { return rows_[s].first + ownIndex(argument, 0, at) * stride; };
-  if (array.held == nullptr) {  // nobody looks at what it holds
-    padScalars(scratchOf(a), array.bytes.read, 0, count);
-  } else if (argument.divide[0] == 1) {
-    copyScalars({array.held, numberAt(x), argument.multiply[0] * stride * step}, array.bytes, scratchOf(a),
-                count);
-  } else if (step == 1) {
-    stretchScalars({array.held, numberAt(x), argument.multiply[0] * stride}, array.bytes, argument.divide[0],
-                   x % argument.divide[0], scratchOf(a), count);
-  } else {
-    std::byte* to = scratchOf(a);
-    for (std::int64_t i = 0; i < count; ++i, to += array.bytes.read) {
-      copyScalars({array.held, numberAt(x + i * step), 0}, array.bytes, to, 1);
-    }
-  }
-}
-
-void SlotArrays::placeOutput(std::size_t s, std::int64_t x, bool isDirect) {
-  const Slot& slot = layout_.slots()[s];
-  for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
-    const SlotLayout::Array& array = layout_.arrays()[a];
-    arrays_[a] = isDirect ? array.held + (rows_[s].first + x) * array.bytes.read : scratchOf(a);
-  }
-}
-
-void SlotArrays::placeGather(std::size_t s, std::int64_t x, std::int64_t count, std::int64_t room) {
-  const Slot& slot = layout_.slots()[s];
-  const bool isInside =
-      !rows_[s].isOutside && x >= slot.reach && x + room + slot.reach <= slot.argument->extent[0];
-  for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
-    const SlotLayout::Array& array = layout_.arrays()[a];
-    const std::int64_t bytes = array.bytes.read;
-    if (isInside) {
-      arrays_[a] = array.held + (rows_[s].first + x) * bytes;
-    } else {
-      layOutGather(slot, s, a, x - slot.reach, count + 2 * slot.reach);
-      padScalars(scratchOf(a), array.bytes.read, count + 2 * slot.reach, room + 2 * slot.reach);
-      arrays_[a] = scratchOf(a) + slot.reach * bytes;
-    }
-  }
-}
-
-/// Neighbours from `x` on, of which some may be outside.
-void SlotArrays::layOutGather(const Slot& slot, std::size_t s, std::size_t a, std::int64_t x,
-                              std::int64_t count) {
-  const SlotLayout::Array& array = layout_.arrays()[a];
-  const std::int64_t bytes = array.bytes.read;
-  const std::int64_t extent = slot.argument->extent[0];
-  std::byte* const to = scratchOf(a);
-  const auto border = [&] { return layout_.border(slot.firstBorder + a - slot.firstArray); };
-  if (rows_[s].isOutside) {
-    fillScalars(border(), array.bytes.read, to, count);
-    return;
-  }
-  const auto copyOutside = [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
-      const std::int64_t index = broughtInside(slot.boundary, x + i, extent);
-      const void* from = index < 0 ? border() : array.held + (rows_[s].first + index) * bytes;
-      fillScalars(from, array.bytes.read, to + i * bytes, 1);
-    }
+  const auto numberAt = [&](std::int64_t i) {
+    return rowOf(row, s).first + ownIndex(argument, 0, i) * stride;
   };
-  const std::int64_t begin = std::clamp<std::int64_t>(-x, 0, count);
-  const std::int64_t end = std::clamp<std::int64_t>(extent - x, begin, count);
-  copyOutside(0, begin);
-  copyScalars({array.held, rows_[s].first + x + begin, 1}, array.bytes, to + begin * bytes, end - begin);
-  copyOutside(end, count);
+  for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
+    const SlotLayout::Array& array = layout_.arrays()[a];
+    std::byte* const to = scratch_[placeOf(row, a)];
+    if (array.held == nullptr) {  // nobody looks at what it holds
+      padScalars(to, array.bytes.read, 0, count);
+    } else if (argument.divide[0] == 1) {
+      copyScalars({array.held, numberAt(x), argument.multiply[0] * stride * step}, array.bytes, to, count);
+    } else if (step == 1) {
+      stretchScalars({array.held, numberAt(x), argument.multiply[0] * stride}, array.bytes,
+                     argument.divide[0], x % argument.divide[0], to, count);
+    } else {
+      for (std::int64_t i = 0; i < count; ++i)
+        copyScalars({array.held, numberAt(x + i * step), 0}, array.bytes, to + i * array.bytes.read, 1);
+    }
+    padScalars(to, array.bytes.read, count, length.room);
+  }
+  useScratch(row, slot);
 }
 
-Range SlotArrays::inside() const {
-  Range inside{0, std::numeric_limits<std::int64_t>::max()};
-  for (std::size_t s = 0; s < rows_.size(); ++s) {
-    const Slot& slot = layout_.slots()[s];
-    if (slot.kind != SlotLayout::Kind::Gather) continue;
-    inside.begin = std::max(inside.begin, slot.reach);
-    inside.end = rows_[s].isOutside ? 0 : std::min(inside.end, slot.argument->extent[0] - slot.reach);
+/// With neighbours. What one row has below it, the next one has in the middle, and so on: it is laid out once.
+void SlotArrays::layOutGather(std::size_t s, std::int64_t x, const Length& length, bool areOutsideAlone) {
+  const Slot& slot = layout_.slots()[s];
+  const std::size_t anew = slot.below ? 1 : wanted_;
+  if (isAnyOutside_) {
+    for (std::size_t row = 0; row < anew; ++row) {
+      if (rowOf(row, s).isOutside) {
+        layOutBorder(row, slot, length.room);
+      } else if (!areOutsideAlone) {
+        layOutNeighbors(slot, row, row + 1, x, length);
+      }
+    }
+  } else {
+    layOutNeighbors(slot, 0, anew, x, length);
   }
-  return inside;
+  const std::size_t width = width_, wanted = wanted_, placed = placed_;
+  for (std::size_t c = 0; c < slot.arrayCount; ++c) {
+    void** const arrays = &arrays_[slot.firstArray + c];
+    void* const* const below = slot.below ? &arrays_[layout_.slots()[*slot.below].firstArray + c] : nullptr;
+    for (std::size_t row = anew; row < placed; ++row) {
+      if (areOutsideAlone && !rowOf(row, s).isOutside) continue;
+      arrays[row * width] = (row < wanted ? below : arrays)[(row - 1) * width];
+    }
+  }
+}
+
+/// In rows from `begin` to `end`.
+void SlotArrays::layOutNeighbors(const Slot& slot, std::size_t begin, std::size_t end, std::int64_t x,
+                                 const Length& length) {
+  const std::int64_t around = 2 * slot.reach;
+  const std::size_t width = width_, count = end - begin;
+  for (std::size_t c = 0; c < slot.arrayCount; ++c) {
+    const std::size_t at = placeOf(begin, slot.firstArray + c);
+    const std::size_t bytes = layout_.arrays()[slot.firstArray + c].bytes.read;
+    const Neighbors neighbors{slot.boundary, borderOf(slot, c), slot.argument->extent[0], x - slot.reach,
+                              length.count + around};
+    const ArrayRow* const rows = &inRow_[at];
+    std::byte* const* const scratch = &scratch_[at];
+    withScalar(bytes, [&]<class T> {
+      copyNeighbors<T>(
+          neighbors, count, [=](std::size_t r) { return rows[r * width].first; },
+          [=](std::size_t r) { return scratch[r * width]; });
+    });
+    void** const arrays = &arrays_[at];
+    for (std::size_t r = 0; r < count; ++r) {
+      std::byte* const laidOut = scratch[r * width];
+      if (length.count < length.room) padScalars(laidOut, bytes, neighbors.count, length.room + around);
+      arrays[r * width] = laidOut + slot.reach * static_cast<std::int64_t>(bytes);
+    }
+  }
+}
+
+void SlotArrays::layOutBorder(std::size_t row, const Slot& slot, std::int64_t room) {
+  for (std::size_t c = 0; c < slot.arrayCount; ++c) {
+    const std::size_t at = placeOf(row, slot.firstArray + c);
+    const std::size_t bytes = layout_.arrays()[slot.firstArray + c].bytes.read;
+    fillScalars(borderOf(slot, c), bytes, scratch_[at], room + 2 * slot.reach);
+    arrays_[at] = scratch_[at] + slot.reach * static_cast<std::int64_t>(bytes);
+  }
+}
+
+/// What is outside of a gather's component; null where nothing is.
+const void* SlotArrays::borderOf(const Slot& slot, std::size_t component) const {
+  return slot.boundary == Boundary::Border ? layout_.border(slot.firstBorder + component) : nullptr;
 }
 
 }  // namespace sk

@@ -54,7 +54,7 @@ class FactorAdder {
         arrays_(layout, mostLaidOut, 0) {}
 
   void add(Accumulator<Real>& sum, const Extents& first, std::int64_t count) {
-    arrays_.moveToRow(first);
+    arrays_.moveTo(first);
     for (std::int64_t at = 0; at < count; at += longest_) {
       const std::int64_t now = std::min(longest_, count - at);
       arrays_.place(first[0] + at, now, now);
