@@ -13,5 +13,7 @@ default(OMP_WAIT_POLICY passive)
 # A software renderer compiles programs for longer than tests compute, so that Mesa's leaves out LLVM's optimisations. Tests that
 # are about what compilers make of floats have them all: they set this to nothing.
 default(GALLIVM_PERF nopt)
+# Vectors of half the width take that compiler two thirds of the time. Some tests have those that users have: they set this to nothing.
+default(LP_NATIVE_VECTOR_WIDTH 128)
 # What is kept of such a driver, as the trial of its arithmetic, is not for the programs of whoever runs the tests.
 default(SK_CACHE "@PROJECT_BINARY_DIR@/tests/cache/unoptimised")

@@ -189,9 +189,11 @@ TEST_CASE("later calls do not disturb what was asked for") {
 
 TEST_CASE("neither asking nor writing waits for the device") {
   Device device;
-  auto x = device.stream<float>({512, 512}), r = device.stream<float>({512, 512});
-  x.write(std::vector<float>(512 * 512, 0.5F));
-  r.writeAsync(std::vector<float>(512 * 512, 0.5F));
+  const std::int64_t side = device.isSoftware() ? 32 : 512;  // whose times are not compared
+  const auto count = static_cast<std::size_t>(side * side);
+  auto x = device.stream<float>({side, side}), r = device.stream<float>({side, side});
+  x.write(std::vector<float>(count, 0.5F));
+  r.writeAsync(std::vector<float>(count, 0.5F));
   r.domain({1, 1}, {9, 9}).writeAsync(std::vector<float>(64, 0));
   slow()(x, r);
   r.readAsync().get();
@@ -203,7 +205,7 @@ TEST_CASE("neither asking nor writing waits for the device") {
   slow()(x, r);
   Future<float> future = r.readAsync();
   const auto asked = now();
-  r.writeAsync(std::vector<float>(512 * 512, 0.25F));
+  r.writeAsync(std::vector<float>(count, 0.25F));
   r.domain({1, 1}, {9, 9}).writeAsync(std::vector<float>(64, 0));
   const auto written = now();
   const bool wasReady = future.ready();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Programs' binaries in the cache folder: that another device takes them, and that nothing is worse where they are
-// broken.
+// Programs that are kept. Binaries in the cache folder: another device takes them, and nothing is worse where they are
+// broken. In memory: a kernel has so many variants at most.
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -159,4 +159,29 @@ TEST_CASE("a broken binary, and one that the driver refuses, is made anew") {
   breaks(true, [](std::string& text) {  // whole, but no program
     text = text.substr(0, formatBytes) + std::string(text.size() - formatBytes, 'x');
   });
+}
+
+TEST_CASE("of a kernel's variants, those that were not used for longest are deleted") {
+  static const TestKernel special(
+      "special", "void special(int n, float x, out float r) { r = x + float(n); }\n",
+      {parameter<int>("n", program::Role::Spec), input<float>("x"), output<float>("r")});
+  Device device;
+  auto x = device.stream<float>({4}), r = device.stream<float>({4});
+  x.write(std::vector<float>{1, 2, 3, 4});
+  device.makeCurrent();
+  const auto programs = [] {
+    int count = 0;
+    for (GLuint name = 1; name < 5000; ++name) count += glIsProgram(name) == GL_TRUE ? 1 : 0;
+    return count;
+  };
+  for (int n = 0; n < 270; ++n) {
+    special(n, x, r);
+    special(0, x, r);  // which is used all the time
+  }
+  CHECK(r.read() == std::vector<float>{1, 2, 3, 4});
+  CHECK(programs() >= 256);
+  CHECK(programs() <= 260);
+  for (int n = 265; n < 275; ++n) special(n, x, r);
+  CHECK(r.read() == std::vector<float>{275, 276, 277, 278});
+  CHECK(programs() <= 260);
 }

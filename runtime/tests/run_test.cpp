@@ -6,8 +6,6 @@
 #include <numeric>
 #include <vector>
 
-#include <epoxy/gl.h>
-
 #include <catch2/catch.hpp>
 
 #include "elements.hpp"
@@ -302,31 +300,4 @@ TEST_CASE("elements beside a view never run its kernel") {
   from.write(std::vector<float>(17 * 15, 16.0f));
   halvings(from, to);
   CHECK(to.read() == std::vector<float>(17 * 15, 4.0f));
-}
-
-TEST_CASE("of a kernel's variants, those that were not used for longest are deleted") {
-  static const TestKernel special(
-      "special", "void special(int n, float x, out float r) { r = x + float(n); }\n",
-      {parameter<int>("n", program::Role::Spec), input<float>("x"), output<float>("r")});
-  for (const std::string& profile : profileNames) {
-    Device device(DeviceOptions{.profile = profile});
-    auto x = device.stream<float>({4}), r = device.stream<float>({4});
-    x.write(std::vector<float>{1, 2, 3, 4});
-    device.makeCurrent();
-    const auto programs = [] {
-      int count = 0;
-      for (GLuint name = 1; name < 5000; ++name) count += glIsProgram(name) == GL_TRUE ? 1 : 0;
-      return count;
-    };
-    for (int n = 0; n < 300; ++n) {
-      special(n, x, r);
-      special(0, x, r);  // which is used all the time
-    }
-    CHECK(r.read() == std::vector<float>{1, 2, 3, 4});
-    CHECK(programs() >= 256);
-    CHECK(programs() <= 260);
-    for (int n = 290; n < 310; ++n) special(n, x, r);
-    CHECK(r.read() == std::vector<float>{310, 311, 312, 313});
-    CHECK(programs() <= 260);
-  }
 }
