@@ -8,6 +8,7 @@
 
 #include "analysis/stream_uses.hpp"
 #include "assemble/assemble.hpp"
+#include "assemble/glsl/intrinsics.hpp"
 #include "ir/counted_loop.hpp"
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
@@ -119,11 +120,13 @@ class Advisor {
     };
     if (std::ranges::none_of(program.parameters, mayPack) || sk::assemble::mayWritePacked(program)) return;
     if (program.usesLoops) return loops();
-    if (program.body.size() > sk::assemble::longestPackedBody) {
-      report(Diag::SlowLength, kernel_->loc,
-             {kernel_->name, std::to_string(program.body.size()),
-              std::to_string(sk::assemble::longestPackedBody)});
-    }
+    const std::size_t length = program.body.size(), calls = sk::assemble::lengthOfCalls(program);
+    if (length > sk::assemble::longestPackedBody) return tooLong(length, sk::assemble::longestPackedBody);
+    if (calls > sk::assemble::longestPackedCalls) tooLong(calls, sk::assemble::longestPackedCalls);
+  }
+
+  void tooLong(std::size_t length, std::size_t longest) {
+    report(Diag::SlowLength, kernel_->loc, {kernel_->name, std::to_string(length), std::to_string(longest)});
   }
 
   void loops() {

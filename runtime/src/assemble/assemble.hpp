@@ -101,8 +101,9 @@ bool mayPack(const program::Element& held);
 /// times as long to compile.
 bool mayWritePacked(const program::Kernel& kernel);
 
-/// Characters of the longest body that is worth it.
-constexpr std::size_t longestPackedBody = 4096;
+/// Characters of the longest body that is worth it, and of the functions that it calls, each as often as it is called: a driver
+/// in software takes some 10 s for four times as many.
+constexpr std::size_t longestPackedBody = 4096, longestPackedCalls = 28672;
 
 /// What a program of a kernel computes (append/append_passes.hpp).
 enum class Work : std::uint8_t {

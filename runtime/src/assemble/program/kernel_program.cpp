@@ -15,6 +15,7 @@
 #include "assemble/elements/gather.hpp"
 #include "assemble/elements/planes.hpp"
 #include "assemble/elements/storage.hpp"
+#include "assemble/glsl/intrinsics.hpp"
 #include "assemble/glsl/program_text.hpp"
 
 namespace sk::assemble {
@@ -306,6 +307,7 @@ bool mayPack(const program::Element& held) {
 
 bool mayWritePacked(const Kernel& kernel) {
   return !kernel.usesLoops && kernel.body.size() <= longestPackedBody &&
+         lengthOfCalls(kernel) <= longestPackedCalls &&
          std::ranges::all_of(kernel.parameters, [](const Parameter& parameter) {
            return !isAppendOutput(parameter) &&
                   (parameter.role != Role::Output || mayPack(heldBy(parameter)));

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // What typical programs look like, word for word: they are to be what an expert would write by hand.
+#include <cstdint>
+#include <string>
+#include <string_view>
+
 #include <catch2/catch.hpp>
 
 #include "assemble/assemble.hpp"
@@ -341,4 +345,23 @@ TEST_CASE("a kernel with loops leaves fragments beside its domain before it does
         "sk_domain_stride.w * sk_domain_shape.w) return;\n");
   CHECK(kernelProgram(glsl, looping, {.domain = Domain::LinearBox, .access = {{}, {}, {}, {}}})
             .find("return;") == std::string::npos);
+}
+
+TEST_CASE("a kernel that calls much library code writes no packed texels") {
+  const auto packs = [](std::string_view called, Intrinsic intrinsic, int calls, std::uint8_t widths = 1) {
+    const IntrinsicUse use{intrinsic, widths};
+    std::string body;
+    for (int i = 0; i < calls; ++i) body += std::string(called) + "(x);\n";
+    Kernel kernel = samples::saxpy;
+    kernel.body = body;
+    kernel.intrinsics = {&use, 1};
+    return mayWritePacked(kernel);
+  };
+  CHECK(packs("sk_sin", Intrinsic::Sin, 7));
+  CHECK(!packs("sk_sin", Intrinsic::Sin, 8));
+  CHECK(!packs("sk_sin", Intrinsic::Sin, 2, 0b1000));  // of four components each
+  CHECK(packs("sk_sinh", Intrinsic::Sin, 8));  // another function
+  CHECK(packs("sk_log", Intrinsic::Log, 20));
+  CHECK(!packs("sk_log", Intrinsic::Log, 50));
+  CHECK(packs("sk_saturate", Intrinsic::Saturate, 50));
 }
