@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 
 set(packageFolder "${CMAKE_INSTALL_LIBDIR}/cmake/StreamKernel")
 
-foreach(library runtime gl assemble)
+foreach(library runtime gl assemble toml)
   install(TARGETS sk_${library} EXPORT StreamKernelTargets)
   set_target_properties(sk_${library} PROPERTIES EXPORT_NAME ${library})
 endforeach()

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <numeric>
 #include <set>
@@ -13,8 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#define TOML_HEADER_ONLY 1
-#include <toml++/toml.h>
+#include "toml/read_toml.hpp"
 
 namespace examples {
 
@@ -227,17 +225,15 @@ SceneTable loadScene(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file, ignored)) {
     throw std::runtime_error(fmt::format("the scene '{}' does not exist", name));
   }
-  std::ifstream stream(file, std::ios::binary);
-  if (std::filesystem::is_directory(file, ignored) || !stream) {
-    throw std::runtime_error(fmt::format("the scene '{}' cannot be read; name a TOML file", name));
-  }
   try {
     auto document = std::make_shared<SceneTable::Document>();
     document->name = name;
-    document->root = toml::parse(stream, name);
+    document->root = sk::readToml(name);
     const toml::table* root = &document->root;
     return SceneTable(std::move(document), root);
   } catch (const toml::parse_error& error) {
+    if (error.source().begin.line == 0)
+      throw std::runtime_error(fmt::format("the scene '{}' cannot be read; name a TOML file", name));
     failAt(name, error.source().begin, error.description());
   }
 }

@@ -24,12 +24,13 @@ compiler/driver       support ir analysis split transforms native/native.hpp nat
 runtime/include/sk    sk
 runtime/src/support   sk support
 runtime/src/trace     sk trace
-runtime/src/device    sk trace device call/resolved_call.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp
+runtime/src/device    sk toml trace device call/resolved_call.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp
 runtime/src/call      sk support device call assemble
 runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp
 runtime/src/native    sk support trace device call native assemble probe/copy_bandwidth.hpp
 runtime/src/probe     sk support trace device call gl gl_device probe assemble
 runtime/src/gl        sk assemble gl epoxy EGL GL GLES3
+runtime/src/toml      toml
 runtime/src/gl_device sk support trace device call probe gl gl_device assemble native/rest_threads.hpp
 runtime/src/gl_device/memory sk gl gl_device/memory assemble
 runtime/src/assemble  sk/program.hpp sk/arithmetic.hpp sk/limits.hpp sk/scalar_bytes.hpp assemble
@@ -39,17 +40,17 @@ runtime/src/assemble/append   sk/program.hpp ASSEMBLE assemble/glsl assemble/ele
 runtime/src/assemble/reduce   sk/program.hpp sk/limits.hpp sk/scalar_bytes.hpp ASSEMBLE assemble/glsl assemble/elements assemble/reduce assemble/program/sample_kernels.hpp
 runtime/tools         sk support/cache_folder.hpp native probe/probe.hpp assemble/nearest_word.hpp
 runtime/tests         sk support trace device call gl gl_device native assemble epoxy
-examples              sk epoxy
+examples              sk toml epoxy
 tests                 sk
 tests/bench           sk epoxy
 tests/docs            sk support/diagnostics.def ir/intrinsics.def
 tests/docs            support ir
 tests/faults          sk epoxy
-tests/fuzz            sk ir program driver
+tests/fuzz            sk ir program driver device/configuration.hpp support/cache_folder.hpp support/picture.hpp
 '
 # What all rooms of the assembler share.
 rules=${rules//ASSEMBLE/assemble/assemble.hpp assemble/condition.hpp assemble/region_layout.hpp assemble/relayed_values.hpp}
-guarded='support|ir|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|api|probe|gl|gl_device|assemble|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
+guarded='support|ir|analysis|split|transforms|native|glsl|program|frontend|driver|sk|trace|device|call|api|probe|gl|toml|gl_device|assemble|clang|clang-c|llvm|llvm-c|epoxy|EGL|GL|GLES2|GLES3|KHR'
 longest=600
 
 roots=(compiler runtime examples tests)

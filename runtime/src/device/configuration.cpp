@@ -8,10 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#define TOML_HEADER_ONLY 1
-#include <toml++/toml.h>
-
 #include "sk/error.hpp"
+#include "toml/read_toml.hpp"
 
 namespace sk {
 
@@ -121,7 +119,7 @@ Storage storageOf(const std::string& file, const toml::key& name, const toml::ta
 
 toml::table parsed(const std::string& file) {
   try {
-    return toml::parse_file(file);
+    return readToml(file);
   } catch (const toml::parse_error& error) {
     const auto line = error.source().begin.line;
     throw Error(line == 0 ? fmt::format("{} (option or SK_CONFIG): {}", file, error.description())
