@@ -129,10 +129,17 @@ prints 'essl300: 4 draw buffers'
 refuses "'nowhere.json' cannot be read" --device=nowhere.json large.sk
 echo '{"devices": 3' >broken.json
 refuses "'broken.json' is not what sk info --json=broken.json writes" --device=broken.json large.sk
-for buffers in 0 -1 3; do
+for buffers in 0 -1 3 4.5 1e300 9223372036854775808; do
   echo '{"devices": [{"name": "odd", "limits": {"draw_buffers": '$buffers', "texture_units": 16}}]}' >odd.json
-  refuses "draw_buffers is $buffers, but every device has 4 or more" --device=odd.json large.sk
+  refuses "draw_buffers is ${buffers/300/+300}, but every device has 4 or more" --device=odd.json large.sk
 done
+{
+  printf '{"devices": [{"name": "deep", "limits": '
+  head -c 300000 /dev/zero | tr '\0' '['
+  head -c 300000 /dev/zero | tr '\0' ']'
+  printf '}]}'
+} >deep.json
+refuses "'deep.json' has no device that draws" --device=deep.json large.sk
 echo '{"devices": [{"name": "native"}]}' >native.json
 refuses "'native.json' has no device that draws" --device=native.json large.sk
 
