@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -263,7 +264,7 @@ double CacheFolder::measuredOnce(std::string_view name, std::string_view key,
   if (const std::optional<std::string> text = read(name, key)) {
     std::from_chars(text->data(), text->data() + text->size(), number);
   }
-  if (number > 0) return number;
+  if (number > 0 && std::isfinite(number)) return number;
   number = measure();
   if (number > 0) write(name, key, fmt::format("{:.4g}\n", number));
   return number;

@@ -23,9 +23,6 @@ namespace sk_tool {
 
 namespace {
 
-/// Of the entries; another one makes what was kept worthless.
-constexpr int infoSchema = 2;
-
 struct InfoOptions {
   std::string device;
   std::string profile;
@@ -34,16 +31,10 @@ struct InfoOptions {
   bool refresh = false;
 };
 
-/// What was kept of the device, unless it cannot be read as a report.
+/// What was kept of the device, if anything was.
 Json kept(const std::string& key) {
   const std::optional<std::string> text = sk::CacheFolder().read("info", key);
-  Json info = text ? Json::parse(*text, nullptr, false) : Json();
-  try {
-    if (info.is_object() && info.at("schema") == infoSchema && !report(info).empty()) return info;
-  } catch (const Json::exception&) {
-    return {};  // somebody else wrote it
-  }
-  return {};
+  return text ? readKept(*text) : Json();
 }
 
 Json infoOf(sk::Device& device, bool refresh) {
