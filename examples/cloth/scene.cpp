@@ -144,7 +144,7 @@ Scene readScene(const std::filesystem::path& file, const std::optional<Points>& 
   }
   if (const auto air = t.table("air")) scene.damping = air->number("damping", {0.0, 1e6}).value_or(0.0);
   if (const auto wind = t.table("wind")) scene.wind = windOf(*wind);
-  for (const SceneTable& pin : t.tables("pin")) scene.pins.push_back(pinOf(pin, scene.cloth));
+  scene.pins = pinsOf(t, scene.cloth);
   scene.bodies = bodiesOf(t);
   if (const auto contact = t.table("contact"))
     scene.thickness = contact->number("thickness", {0.0, 1e3}).value_or(0.0);

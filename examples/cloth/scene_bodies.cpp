@@ -83,27 +83,6 @@ void addEdge(std::vector<std::int64_t>& points, std::size_t edge, const Cloth& c
   if (edge == 3) addLine(points, columns - 1, columns, c.rows, every);
 }
 
-}  // namespace
-
-std::optional<Vector> vectorOf(const SceneTable& table, std::string_view key) {
-  const auto v = table.numbers(key, 3, {-1e30, 1e30});
-  if (!v) return std::nullopt;
-  return Vector{(*v)[0], (*v)[1], (*v)[2]};
-}
-
-std::optional<Vector> directionOf(const SceneTable& table, std::string_view key) {
-  const auto v = vectorOf(table, key);
-  if (v && !(examples::length(*v) > 0))
-    table.fail(key, fmt::format("'{}' is a direction and cannot be zero", key));
-  return v ? std::optional(normalized(*v)) : std::nullopt;
-}
-
-std::optional<Vector> colourOf(const SceneTable& table, std::string_view key) {
-  const auto v = table.numbers(key, 3, {0.0, 1.0});
-  if (!v) return std::nullopt;
-  return Vector{(*v)[0], (*v)[1], (*v)[2]};
-}
-
 Pin pinOf(const SceneTable& t, const Cloth& c) {
   Pin pin;
   constexpr std::array<std::string_view, 4> corners = {"top-left", "top-right", "bottom-left",
@@ -133,6 +112,41 @@ Pin pinOf(const SceneTable& t, const Cloth& c) {
     t.fail("carry", "say when, by during = [begin, end] in seconds");
   }
   return pin;
+}
+
+}  // namespace
+
+std::optional<Vector> vectorOf(const SceneTable& table, std::string_view key) {
+  const auto v = table.numbers(key, 3, {-1e30, 1e30});
+  if (!v) return std::nullopt;
+  return Vector{(*v)[0], (*v)[1], (*v)[2]};
+}
+
+std::optional<Vector> directionOf(const SceneTable& table, std::string_view key) {
+  const auto v = vectorOf(table, key);
+  if (v && !(examples::length(*v) > 0))
+    table.fail(key, fmt::format("'{}' is a direction and cannot be zero", key));
+  return v ? std::optional(normalized(*v)) : std::nullopt;
+}
+
+std::optional<Vector> colourOf(const SceneTable& table, std::string_view key) {
+  const auto v = table.numbers(key, 3, {0.0, 1.0});
+  if (!v) return std::nullopt;
+  return Vector{(*v)[0], (*v)[1], (*v)[2]};
+}
+
+std::vector<Pin> pinsOf(const SceneTable& scene, const Cloth& cloth) {
+  std::vector<Pin> pins;
+  std::size_t held = 0;
+  for (const SceneTable& table : scene.tables("pin")) {
+    pins.push_back(pinOf(table, cloth));
+    held += pins.back().points.size();
+    // each point may be that of two edges, a corner, and itself
+    if (held >
+        std::size_t{4} * static_cast<std::size_t>(cloth.columns) * static_cast<std::size_t>(cloth.rows))
+      table.fail("edge", "the pins hold points over and over again; name each edge once");
+  }
+  return pins;
 }
 
 std::vector<Body> bodiesOf(const SceneTable& scene) {

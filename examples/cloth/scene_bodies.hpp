@@ -18,8 +18,8 @@ std::optional<Vector> directionOf(const SceneTable& table, std::string_view key)
 /// Red, green and blue from 0 to 1, sRGB-encoded.
 std::optional<Vector> colourOf(const SceneTable& table, std::string_view key);
 
-/// Of a table [[pin]].
-Pin pinOf(const SceneTable& table, const Cloth& cloth);
+/// Of all tables [[pin]].
+std::vector<Pin> pinsOf(const SceneTable& scene, const Cloth& cloth);
 /// Of all tables [[sphere]], [[plane]], [[capsule]] and [[box]].
 std::vector<Body> bodiesOf(const SceneTable& scene);
 

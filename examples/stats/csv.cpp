@@ -101,6 +101,15 @@ void addRecord(std::vector<Draft>& drafts, const std::vector<std::string>& field
   }
 }
 
+/// Short lines are filled up, which may take far more memory than the text, were there no end to it.
+void checkFilling(std::size_t cells, std::size_t bytes, const std::string& file, std::int64_t line) {
+  constexpr std::size_t free = 1'000'000, cellsPerByte = 16;
+  if (cells <= free || (cells - free) / cellsPerByte <= bytes) return;
+  throw std::runtime_error(
+      fmt::format("{}:{}: nearly all lines lack nearly all columns of the first one; is the separator right?",
+                  file, line));
+}
+
 Data finished(std::vector<Draft> drafts, const std::string& file) {
   Data data;
   for (Draft& draft : drafts) {
@@ -154,6 +163,7 @@ Data readCsv(const std::filesystem::path& file, const CsvOptions& options) {
                                            records.line(), fields.size(), width));
     }
     addRecord(drafts, fields, records.line());
+    checkFilling(drafts.size() * drafts.front().values.size(), text.size(), name, records.line());
   }
   if (drafts.front().values.empty())
     throw std::runtime_error(fmt::format("'{}' has a header but no data", name));

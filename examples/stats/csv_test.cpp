@@ -26,6 +26,14 @@ Data parse(const std::string& text, const CsvOptions& options = {}) {
   return readCsv(file, options);
 }
 
+TEST_CASE("short lines are filled up, but not to many times what the file holds") {
+  std::string lines;
+  for (int i = 0; i < 5000; ++i) lines += "1\n";
+  CHECK(parse("a" + std::string(100, ',') + "\n" + lines).columns.size() == 101);
+  CHECK_THROWS_WITH(parse("a" + std::string(5000, ',') + "\n" + lines),
+                    Catch::Contains("nearly all lines lack nearly all columns of the first one"));
+}
+
 TEST_CASE("fields and records") {
   CHECK(split("a,b\n1,2\n") == Records{{"a", "b"}, {"1", "2"}});
   CHECK(split("a,b\r\n1,2") == Records{{"a", "b"}, {"1", "2"}});

@@ -27,7 +27,7 @@ struct CsvOptions {
 
 /// Reads CSV (RFC 4180: quotes, doubled quotes, line ends of both kinds, line ends within quotes). The first
 /// line names the columns unless it is all numbers. An empty field, NA, NaN or null is a missing number, and
-/// so is what a short line lacks. A column without a single number is text and left out, unless selected.
+/// so is what a short line lacks (but not nearly all columns of nearly all lines). A column without a single number is text and left out, unless selected.
 /// Throws std::runtime_error naming file, line and column for anything else that is no number.
 Data readCsv(const std::filesystem::path& file, const CsvOptions& options);
 

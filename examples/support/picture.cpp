@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <stb/stb_image.h>
@@ -38,6 +42,60 @@ Picture onWhite(Code* codes, int width, int height, int white, const std::string
   return picture;
 }
 
+std::size_t byteAt(std::string_view bytes, std::size_t at) {
+  return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0;
+}
+
+std::size_t wordAt(std::string_view bytes, std::size_t at) {
+  return 256 * byteAt(bytes, at) + byteAt(bytes, at + 1);
+}
+
+/// Whether a segment of a JPEG file, whose length is at `at`, has a Huffman table of more than 256 codes.
+bool hasLongTable(std::string_view jpeg, std::size_t at) {
+  const std::size_t end = at + wordAt(jpeg, at);
+  for (at += 2; at < end;) {
+    std::size_t codes = 0;
+    for (std::size_t length = 1; length <= 16; ++length) codes += byteAt(jpeg, at + length);
+    if (codes > 256) return true;
+    at += 17 + codes;
+  }
+  return false;
+}
+
+/// stb_image (2.27) writes beyond such tables. It takes segments as long as they say they are up to the first scan, behind which
+/// everything counts that may be a table.
+bool hasLongTable(std::string_view jpeg) {
+  constexpr std::size_t startOfImage = 0xd8, startOfScan = 0xda, huffmanTables = 0xc4;
+  bool isBeforeScan = true;
+  for (std::size_t at = 0; at < jpeg.size(); ++at) {
+    const std::size_t marker = byteAt(jpeg, at + 1);
+    if (byteAt(jpeg, at) != 0xff || marker == 0xff) continue;
+    if (marker == huffmanTables && hasLongTable(jpeg, at + 2)) return true;
+    if (marker == startOfScan) isBeforeScan = false;
+    if (isBeforeScan) at += 1 + (marker == startOfImage ? 0 : wordAt(jpeg, at + 2));
+  }
+  return false;
+}
+
+/// Whether a chunk of a PNG file says that it is longer than the file; stb_image takes memory for it.
+bool hasLongChunk(std::string_view png) {
+  constexpr std::size_t signature = 8, frame = 12;
+  for (std::size_t at = signature; at + 4 <= png.size();) {
+    const std::size_t length = (wordAt(png, at) << 16) + wordAt(png, at + 2);
+    if (length > png.size()) return true;
+    at += frame + length;
+  }
+  return false;
+}
+
+std::string bytesOf(const std::string& name) {
+  std::ifstream stream(name, std::ios::binary);
+  std::string bytes(std::istreambuf_iterator<char>(stream), {});
+  if (!stream || bytes.size() > std::numeric_limits<int>::max())
+    throw std::runtime_error(fmt::format("'{}' cannot be read", name));
+  return bytes;
+}
+
 }  // namespace
 
 Picture loadPicture(const std::filesystem::path& file) {
@@ -47,12 +105,25 @@ Picture loadPicture(const std::filesystem::path& file) {
     throw std::runtime_error(fmt::format("'{}' does not exist", name));
   if (!std::filesystem::is_regular_file(file, ignored))
     throw std::runtime_error(fmt::format("'{}' is no file", name));
+  const std::string bytes = bytesOf(name);
+  if ((bytes.starts_with("\xff") && hasLongTable(bytes)) ||
+      (bytes.starts_with("\x89PNG") && hasLongChunk(bytes)))
+    throw std::runtime_error(fmt::format("'{}' is no picture that can be read: it is damaged", name));
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  if (stbi_is_16_bit(name.c_str()) != 0) {
-    stbi_us* codes = stbi_load_16(name.c_str(), &width, &height, &channels, 4);
+  // A few bytes may name any size, and some formats fill up what is missing. A file that has no size is refused below.
+  constexpr std::int64_t most = std::int64_t{1} << 26;
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) != 0 &&
+      std::int64_t{width} * height > most) {
+    throw std::runtime_error(
+        fmt::format("'{}' has {} x {} pixels, which is more than {}", name, width, height, most));
+  }
+  if (stbi_is_16_bit_from_memory(data, size) != 0) {
+    stbi_us* codes = stbi_load_16_from_memory(data, size, &width, &height, &channels, 4);
     return onWhite(codes, width, height, 65535, name);
   }
-  stbi_uc* codes = stbi_load(name.c_str(), &width, &height, &channels, 4);
+  stbi_uc* codes = stbi_load_from_memory(data, size, &width, &height, &channels, 4);
   return onWhite(codes, width, height, 255, name);
 }
 

@@ -22,7 +22,7 @@ struct Picture {
   std::vector<sk::int3> pixels;  ///< width * height
 };
 
-/// Reads a picture. Throws std::runtime_error with the file's name where it is missing or no picture.
+/// Reads a picture. Throws std::runtime_error with the file's name where it is missing, no picture, or larger than 2^26 pixels.
 Picture loadPicture(const std::filesystem::path& file);
 
 /// Writes 8-bit sRGB from components in [0, 1] that are already sRGB-encoded (values outside are clamped,
