@@ -48,9 +48,11 @@ run 1 biuld
 says "no command 'biuld'"
 says 'usage: ./dev COMMAND'
 run 1 build relaese
-says "no preset 'relaese': release, debug or asan"
+says "no preset 'relaese': release, debug, asan or tsan"
 run 1 fuzz runtime
-says 'fuzz what? ./dev fuzz mutate, or ./dev fuzz kernels'
+says 'fuzz what? mutate, kernels or parse_NAME'
+run 1 fuzz parse_nothing
+says 'fuzz what? mutate, kernels or parse_NAME'
 never_called cmake
 
 # All is installed: no apt-get; configure, build, test, whose closing line comes last.

@@ -20,10 +20,11 @@ void Command::addTo(CLI::App& app, const std::string& input) {
   app.add_flag("--show", show, "Print the " + input + "s instead of trying them");
 }
 
-fs::path Command::keep(const std::string& prefix, const Finding& finding, const std::string& text) const {
+fs::path Command::keep(const std::string& prefix, const Finding& finding, const std::string& text,
+                       const std::string& suffix) const {
   fs::create_directories(out);
   const fs::path file =
-      fs::path(out) / (prefix + "-" + std::to_string(seed) + "-" + std::to_string(finding.number) + ".sk");
+      fs::path(out) / (prefix + "-" + std::to_string(seed) + "-" + std::to_string(finding.number) + suffix);
   std::ofstream(file, std::ios::binary) << text;
   return file;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What both programs are asked on their command lines, and how they tell what they found. Exit status 1 after a
+// What all programs are asked on their command lines, and how they tell what they found. Exit status 1 after a
 // finding.
 #pragma once
 
@@ -30,9 +30,9 @@ struct Command {
   /// A campaign over these inputs, without its checks.
   Campaign campaign() const { return {.first = first, .count = count, .seconds = seconds}; }
 
-  /// Writes an input with a finding into `out`, as PREFIX-SEED-NUMBER.sk; where it lies.
-  std::filesystem::path keep(const std::string& prefix, const Finding& finding,
-                             const std::string& text) const;
+  /// Writes an input with a finding into `out`, as PREFIX-SEED-NUMBER and the suffix; where it lies.
+  std::filesystem::path keep(const std::string& prefix, const Finding& finding, const std::string& text,
+                             const std::string& suffix = ".sk") const;
 };
 
 /// `input` as in "mutant 7: died by signal 11"; `again` is the command that makes the finding again.

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -45,10 +46,31 @@ void limitTime(unsigned seconds) {
   alarm(10 * seconds);
 }
 
+#if defined(__has_feature)
+#define SK_FUZZ_HAS(feature) __has_feature(feature)
+#else
+#define SK_FUZZ_HAS(feature) 0
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || SK_FUZZ_HAS(address_sanitizer)
+constexpr bool isSanitized = true;
+#else
+constexpr bool isSanitized = false;
+#endif
+
+void limitMemory(std::uint64_t megabytes) {
+  if (megabytes == 0 || isSanitized) return;
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlim_t most = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + (megabytes << 20);
+  const rlimit limit{.rlim_cur = most, .rlim_max = most};
+  setrlimit(RLIMIT_AS, &limit);
+}
+
 [[noreturn]] void beChild(const Campaign& campaign, std::uint64_t first, std::uint64_t end, int pipe,
                           int log) {
   dup2(log, STDERR_FILENO);
   Reporter reporter(pipe);
+  limitMemory(campaign.memory);
   campaign.begin();
   for (std::uint64_t number = first; number < end; ++number) {
     reporter.tell('b', number);

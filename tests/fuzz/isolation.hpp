@@ -27,6 +27,9 @@ struct Campaign {
   std::uint64_t first = 0, count = 0;
   std::uint64_t batch = 500;  ///< inputs to a process
   unsigned seconds = 10;  ///< of processor time for one input; more is a hang
+  /// MiB that a process may take beyond what it begins with, or 0 for no limit; further allocations fail. Sanitizers, which
+  /// reserve address space for themselves, have limits of their own (max_allocation_size_mb).
+  std::uint64_t memory = 0;
   /// In the child, once before the first of a batch.
   std::function<void()> begin = [] {};
   /// In the child.

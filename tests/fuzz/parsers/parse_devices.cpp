@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+//
+// The JSON file of `skc --device=FILE`. The driver makes a message and status 1 of every std::runtime_error.
+#include <cstdlib>
+#include <stdexcept>
+
+#include "driver/device_file.hpp"
+#include "parsers/entry.hpp"
+#include "parsers/memory_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const fuzz::MemoryFile file;
+  file.hold({data, size});
+  try {
+    for (const skc::driver::MeasuredDevice& device : skc::driver::readDevices(file.path())) {
+      if (device.limits.drawBuffers < 4 || device.limits.textureUnits < 16) std::abort();
+    }
+  } catch (const std::runtime_error&) {
+    return 0;
+  }
+  return 0;
+}
