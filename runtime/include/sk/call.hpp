@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// What generated stubs call: arguments with their static types checked and then erased, and the
-// two entry points that run a kernel or a reduction. Applications use it only through the stubs.
-// Descriptors are known by their addresses: they must be constants that outlive every device.
+// The interface of generated stubs: arguments whose static types are checked and then erased, and the entry
+// points that run a kernel or a reduction. Applications use the stubs instead. Descriptors are identified by
+// their addresses: they must be constants that outlive every device.
 #pragma once
 
 #include <concepts>
@@ -17,49 +17,51 @@
 
 namespace sk {
 
-/// One argument of a call, in the order of the declaration: a host value or a region of a stream.
+/// An argument of a call, in order of declaration: a host value or a region of a stream.
 struct Argument {
-  const void* value = nullptr;     ///< uniforms and spec: the value, laid out as Element says; iterators:
-                                   ///< the two ends, one after the other
-  StreamRegion region = {};        ///< everything else; of an iterator just the shape, or none
-  bool isNone = false;             ///< sk::none
-  program::Fit fit = program::Fit::Same;             ///< element inputs
+  /// Uniforms and spec parameters: the value, laid out as Element says. Iterators: both ends, one after the
+  /// other.
+  const void* value = nullptr;
+  StreamRegion region = {};  ///< all other arguments; of an iterator only the shape, if any
+  bool isNone = false;  ///< sk::none
+  program::Fit fit = program::Fit::Same;  ///< element inputs
 };
 
-/// In place of a stream that the values of a kernel's spec parameters switch off.
+/// Passed for a stream that the values of a kernel's spec parameters switch off.
 struct None {};
 inline constexpr None none{};
 
-/// A stream or view whose elements are T. A constraint and no assertion, because it is also what
-/// chooses between overloads of a kernel.
+/// A stream or view with elements of type T. A constraint rather than an assertion, so that it also selects
+/// among overloads of a kernel.
 template <class S, class T>
 concept StreamOf = requires { typename std::remove_cvref_t<S>::value_type; } &&
                    std::same_as<typename std::remove_cvref_t<S>::value_type, T>;
 
-/// An element input that fits itself to the domain. Made by stretch() and stride().
+/// An element input that is fitted to the domain. Created by stretch() and stride().
 template <class T>
 struct Fitted {
   StreamRegion region;
   program::Fit fit;
 };
 
-/// A stream or view whose extents divide the domain's: along a dimension where it has n elements and the domain n * k,
-/// each serves k of these in a row. A call throws sk::Error where they do not divide.
+/// Repeats elements of a stream or view. In a dimension with n elements and a domain of n * k, each element
+/// serves k consecutive indices. A call throws sk::Error unless the extents divide the domain's.
 template <class S>
   requires requires { typename S::value_type; }
 Fitted<typename S::value_type> stretch(const S& stream) {
   return {regionOf(stream), program::Fit::Stretched};
 }
 
-/// A stream or view whose extents are multiples of the domain's: along a dimension where it has n * k elements and
-/// the domain n, every k-th is read, from the first on. A call throws sk::Error where they are none.
+/// Skips elements of a stream or view. In a dimension with n * k elements and a domain of n, every k-th
+/// element is read, starting with the first. A call throws sk::Error unless the extents are multiples of the
+/// domain's.
 template <class S>
   requires requires { typename S::value_type; }
 Fitted<typename S::value_type> stride(const S& stream) {
   return {regionOf(stream), program::Fit::Strided};
 }
 
-/// Parameter types of the stubs: any stream or view of T. They last for one call.
+/// The parameter types of stubs: any stream or view of T. They are valid for one call.
 template <class T>
 class In {
  public:
@@ -71,7 +73,7 @@ class In {
   StreamRegion region_;
 };
 
-/// In that may be fitted to the domain.
+/// Like In, but also accepts stretch() and stride().
 template <class T>
 class ElementIn {
  public:
@@ -98,7 +100,7 @@ class Out {
   StreamRegion region_;
 };
 
-/// In or Out of a stream that some values of the spec parameters switch off: takes sk::none, too.
+/// An In or Out of a stream that some values of the spec parameters switch off: also accepts sk::none.
 template <class Parameter>
 class Optional {
  public:
@@ -117,7 +119,7 @@ Argument argumentOf(const Iter<T>& iterator) {
   return {.value = iterator.ends, .region = {.shape = iterator.shape}};
 }
 
-/// A variable output: a stream that gets as many elements as are pushed. Views have a size of their own.
+/// A variable output: a stream that is resized to the number of pushed elements. Views have a fixed size.
 template <class T>
 class VariableOut {
  public:
@@ -128,8 +130,8 @@ class VariableOut {
   StreamRegion region_;
 };
 
-/// The callable objects of kernels and reduces: with(options) is the same with these, and what was chosen before stays where they
-/// say nothing.
+/// Base of the callable objects of kernels and reductions. with(options) returns a copy in which `options`
+/// override the options chosen before, except where they are Default.
 template <class Derived>
 struct WithOptions {
   CallOptions options = {};
@@ -141,22 +143,22 @@ struct WithOptions {
   }
 };
 
-/// Runs a kernel over the domain that its outputs fix, or, where all of them are variable or scatter outputs,
-/// its inputs. Throws sk::Error naming the kernel and the parameter where the arguments do not fit, and where
-/// the kernel or the device has not what the options ask for.
+/// Runs a kernel over the domain that its outputs define, or its inputs if all outputs are variable or
+/// scatter outputs. Throws sk::Error, which names the kernel and the parameter, if the arguments do not
+/// match, or if the kernel or the device does not support the options.
 void run(const program::Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options = {});
 
-/// Folds the inputs, which together are the domain, to one value for each accumulator, in their order,
-/// written to `results` (laid out as the accumulators' Elements say). `arguments` are one a parameter of the
-/// fold; nobody looks at those of the accumulators. Where there is no element, a result is the identity;
-/// throws sk::Error where there is none, and where the arguments do not fit.
+/// Folds the inputs, whose common shape is the domain, to one value for each accumulator. The values are
+/// written to `results` in order, laid out as the accumulators' Elements say. `arguments` has one entry for
+/// each parameter of the fold; entries of accumulators are ignored. For an empty domain, the result is the
+/// identity. Throws sk::Error if there is no identity, or if the arguments do not match.
 void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
             std::span<void* const> results, const CallOptions& options = {});
 
-/// Folds the inputs to smaller streams, the arguments of the accumulators, all of one shape. Its extents
-/// divide those of the inputs, and each of its elements folds one block of them in row-major order. Of
-/// fewer dimensions, it is what remains of such a shape without some extents of 1; where that does not
-/// tell which, the call throws sk::Error.
+/// Folds the inputs to smaller streams: the arguments of the accumulators, all of one shape. Their extents
+/// divide those of the inputs; each element folds one block of the inputs in row-major order. A stream of
+/// lower rank stands for a shape with additional extents of 1; if several such shapes are possible, the call
+/// throws sk::Error.
 void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
             const CallOptions& options = {});
 

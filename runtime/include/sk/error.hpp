@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The one exception of the runtime. Its text names the kernel, the parameter and the shapes that do
-// not fit, and says what to do; the library itself never prints.
+// The runtime's only exception. Its text names the kernel, the parameter and the shapes that do not match,
+// and says what to do. The library never prints.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@ namespace sk {
 
 class Error : public std::runtime_error {
  public:
-  /// What went wrong, for programs that handle some errors differently from others.
+  /// The cause, for programs that handle some errors differently from others.
   enum class Kind : std::uint8_t {
-    Device,   ///< there is no such device, or it cannot do what is asked of it
-    Shape,    ///< shapes, extents or ranks that do not go together, or that are too large
-    Type,     ///< a stream of other elements than a parameter is declared with
-    Memory,   ///< no memory for it, on the host or on the device
-    Compile,  ///< the driver refuses a program, or the .sk file was compiled without what a call needs
-    Lost,     ///< a device, context or stream that is no more, or that a driver has reset
-    File,     ///< a file that cannot be read or written, or does not hold what it should
-    Misuse,   ///< anything else that a program should not ask for
+    Device,  ///< there is no such device, or it cannot do what is requested
+    Shape,  ///< shapes, extents or ranks that do not match or are too large
+    Type,  ///< a stream whose element type is not the parameter's
+    Memory,  ///< out of memory, on the host or on the device
+    Compile,  ///< the driver rejects a program, or the .sk file was compiled without what a call needs
+    Lost,  ///< a device, context or stream that has ended, or that a driver has reset
+    File,  ///< a file that cannot be read or written, or has unexpected contents
+    Misuse,  ///< any other misuse of the API
   };
 
   explicit Error(const std::string& what, Kind kind = Kind::Misuse) : std::runtime_error(what), kind_(kind) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Elements on their way from a device: what Stream::readAsync and View::readAsync give.
+// The result of an asynchronous read: what Stream::readAsync and View::readAsync return.
 #pragma once
 
 #include <cstddef>
@@ -28,24 +28,25 @@ void take(TransferOwner transfer, void* elements);
 
 }  // namespace detail
 
-/// The elements that a stream or view had when they were asked for: whatever is written to the stream since, and also
-/// where the stream or the device has ended. E is the stream's type, or std::uint8_t for bool. Move-only. It uses
-/// the device: everything but destroying it is for the thread that does. Where nobody asks for the elements, nobody waits for them.
+/// The elements that a stream or view had when readAsync() was called, even if the stream was written or
+/// destroyed since, or the device has ended. E is the stream's type, or std::uint8_t for bool. Move-only.
+/// Only the thread that uses the device may call its functions; any thread may destroy it, which does not
+/// wait.
 template <class E>
 class Future {
  public:
-  /// Of nothing.
+  /// Creates an invalid future.
   Future() = default;
   Future(detail::TransferOwner transfer, std::size_t size) : transfer_(std::move(transfer)), size_(size) {}
 
   /// Whether there are elements to get.
   bool valid() const noexcept { return static_cast<bool>(transfer_); }
-  /// Whether get() would return without waiting for the device. This and what follows throw sk::Error where the future is
-  /// not valid, or the driver has failed.
+  /// Whether get() would return without waiting for the device. Like wait() and get(), throws sk::Error if
+  /// the future is not valid or the driver has failed.
   bool ready() const { return detail::isReady(transfer_); }
-  /// Waits for these elements, and for nothing that was called later.
+  /// Waits for these elements, not for later calls.
   void wait() const { detail::wait(transfer_); }
-  /// The elements, row-major; waits for them. The future is no longer valid then, also where this throws.
+  /// Waits for the elements and returns them, row-major. Invalidates the future, even if it throws.
   std::vector<E> get() {
     std::vector<E> elements = detail::hostVector<E>(size_);
     detail::take(std::move(transfer_), elements.data());

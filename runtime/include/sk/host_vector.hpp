@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Host memory for the elements that functions of the API return.
+// Allocates host memory for elements that API functions return.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace sk::detail {
 
 [[noreturn]] void failForElements(std::size_t count, std::size_t elementBytes);
 
-/// `count` elements. Throws sk::Error where the host has no memory for them.
+/// Allocates `count` elements. Throws sk::Error if the host is out of memory.
 template <class E>
 std::vector<E> hostVector(std::size_t count) {
   try {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What an `iter` parameter of a kernel takes: the two ends of an arithmetic ramp over the domain.
+// The argument of an `iter` parameter: the two ends of an arithmetic ramp over the domain.
 #pragma once
 
 #include <concepts>
@@ -12,7 +12,7 @@
 
 namespace sk {
 
-/// A float, int or uint, or a vector of them.
+/// float, int or uint, or a vector of them.
 template <class T>
 concept IterableType = ElementType<T> && requires {
   requires ElementTraits<T>::value.fields.size() == 1;
@@ -20,30 +20,30 @@ concept IterableType = ElementType<T> && requires {
   requires ElementTraits<T>::value.fields[0].scalar != program::Scalar::Bool;
 };
 
-/// A ramp from `ends[0]` at the first element towards `ends[1]`, which the element after the last
-/// would have. Made by iter().
+/// A ramp over the domain. The first element is `ends[0]`; `ends[1]` is one step after the last element.
+/// Created by iter().
 template <IterableType T>
 struct Iter {
   T ends[2];
-  Shape shape = {};   ///< of the domain, or of rank 0: any
+  Shape shape = {};  ///< shape of the domain; rank 0: any
 };
 
 /// The ramp from `begin` (inclusive) to `end` (exclusive) in as many equal steps as the domain has
 /// elements: sk::iter(0, 100) is 0, 1, ... 99 over 100 elements.
 ///
-/// A scalar runs over all elements, row-major. A vector has one component for each dimension of the
-/// domain, x running along the last extent; in a domain of one dimension all components run along it.
+/// A scalar runs over all elements, row-major. A vector has one component for each dimension of the domain,
+/// with x along the last extent; in a one-dimensional domain, all components run along that dimension.
 ///
-/// Element k of n is begin + k * step with step = (end - begin) / n, which is computed in double
-/// precision and rounded once. Integers take whole steps: n must divide end - begin. A call throws
-/// sk::Error where it does not, or where the components are not as many as the dimensions.
+/// Element k of n is begin + k * step with step = (end - begin) / n, computed in double precision and rounded
+/// once. Integers take whole steps: a call throws sk::Error unless n divides end - begin. It also throws
+/// unless the number of components matches the domain's dimensions.
 template <IterableType T>
 Iter<T> iter(const T& begin, const std::type_identity_t<T>& end) {
   return {{begin, end}, {}};
 }
 
-/// The same over a domain of this shape, rows first; a call over another throws sk::Error. A kernel
-/// without element outputs takes its domain from it.
+/// A ramp over a domain of this shape, rows first; a call over a domain of another shape throws sk::Error. A
+/// kernel without element outputs takes its domain from the ramp.
 template <IterableType T>
 Iter<T> iter(const T& begin, const std::type_identity_t<T>& end, const Shape& shape) {
   return {{begin, end}, shape};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What `skc --library` adds to FILE.sk.cpp: a list of its descriptors, by which a program that loads them as a shared
-// object finds them. Nothing that an application needs, whose stubs name theirs.
+// What `skc --library` adds to FILE.sk.cpp: a list of its descriptors for programs that load the file as a
+// shared object. Applications do not need it, because their stubs name the descriptors.
 #pragma once
 
 #include <span>
@@ -10,13 +10,14 @@
 
 namespace sk::program {
 
-/// All kernels and reductions of a .sk file, in the order of their declaration. They live as long as the object is loaded.
+/// All kernels and reductions of a .sk file, in order of declaration. Valid as long as the shared object is
+/// loaded.
 struct Library {
   std::span<const Kernel* const> kernels = {};
   std::span<const Reduction* const> reductions = {};
 };
 
-/// The list of a shared object, which also one that hides its symbols shows, and its name for dlsym().
+/// The shared object's list, exported even if the object hides its symbols, and its name for dlsym().
 extern "C" [[gnu::visibility("default")]] const Library sk_library;
 inline constexpr const char* librarySymbol = "sk_library";
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// What a program is made of, known before any kernel runs: each FILE.sk.cpp registers which code its kernels have. The
-// best device is one that has code of every file (sk::Device, docs/runtime.md).
+// Which code a program has, before any kernel runs: each FILE.sk.cpp registers the kinds of code that its
+// kernels have. The best device can run the code of every file (sk::Device, docs/runtime.md).
 #pragma once
 
 namespace sk::program {
 
-/// A .sk file that is linked into the program, from its stub's initialization on until the stub is unloaded. Stubs
-/// initialize theirs before all objects of applications, among which devices may be.
+/// A .sk file that is linked into the program, registered from its stub's initialization until the stub is
+/// unloaded. Stubs are initialized before all objects of applications, which may include devices.
 class LinkedFile {
  public:
   struct Code {
-    bool glsl;  ///< programs for devices with GL, drawn or dispatched
+    bool glsl;  ///< drawn or dispatched programs for GL devices
     bool native;  ///< native code
   };
 
@@ -20,7 +20,8 @@ class LinkedFile {
   LinkedFile(const LinkedFile&) = delete;
   LinkedFile& operator=(const LinkedFile&) = delete;
 
-  /// What every file of the program has. A program without .sk files, whose kernels are written by hand, has GLSL.
+  /// The kinds of code that every file of the program has. A program without .sk files, whose kernels are
+  /// written by hand, has GLSL.
   static Code ofAll() noexcept;
 
  private:

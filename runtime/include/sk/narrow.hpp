@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The host's side of the language's types that only keep values: half, and integers that stand for
-// numbers from 0 or -1 to 1. They convert to and from float exactly as kernels do, and have no
-// arithmetic of their own. (char, uchar, short and ushort are std::int8_t to std::uint16_t.)
+// Host versions of the language's storage-only types: half, and integers that represent numbers from 0 or -1
+// to 1. They convert to and from float exactly as in kernels and have no arithmetic of their own. (char,
+// uchar, short and ushort are std::int8_t to std::uint16_t.)
 #pragma once
 
 #include <bit>
@@ -12,8 +12,8 @@
 
 namespace sk {
 
-/// IEEE 754's binary16. A float becomes the nearest half, of two the even one; what rounds beyond
-/// 65504 becomes infinity, and NaN stays NaN.
+/// IEEE 754's binary16. Conversion from float rounds to nearest, ties to even; values that round beyond 65504
+/// become infinity, and NaN stays NaN.
 class half {
  public:
   half() = default;
@@ -22,7 +22,7 @@ class half {
     const std::uint32_t sign = (bits_ & 0x8000u) << 16;
     const std::uint32_t magnitude = bits_ & 0x7fffu;
     if (magnitude >= 0x7c00u) return std::bit_cast<float>(sign | 0x7f800000u | (magnitude & 0x3ffu) << 13);
-    if (magnitude < 0x400u) {   // a denormal
+    if (magnitude < 0x400u) {  // a denormal
       const float value = static_cast<float>(magnitude) * 0x1p-24f;
       return sign != 0 ? -value : value;
     }
@@ -47,10 +47,10 @@ class half {
     const std::uint32_t half = rounded - (112u << 10);
     return static_cast<std::uint16_t>(sign | (half > 0x7c00u ? 0x7c00u : half));
   }
-  /// The multiple of 2^-24 nearest to a float below 2^-14.
+  /// The multiple of 2^-24 nearest to a float of magnitude below 2^-14.
   static constexpr std::uint32_t denormal(std::uint32_t magnitude) {
     const std::uint32_t exponent = magnitude >> 23;
-    if (exponent < 102) return 0;   // below 2^-25
+    if (exponent < 102) return 0;  // below 2^-25
     const std::uint32_t mantissa = (magnitude & 0x7fffffu) | 0x800000u;
     const std::uint32_t shift = 126 - exponent;
     const std::uint32_t whole = mantissa >> shift;
@@ -62,9 +62,9 @@ class half {
   std::uint16_t bits_;
 };
 
-/// k / max for an integer k from 0 (unsigned Integer) or -max (signed) to max. A float x becomes the k
-/// nearest to the float product x * max, of two the even one; what is beyond an end becomes that end,
-/// and NaN 0.
+/// Represents k / max by an integer k from 0 (unsigned Integer) or -max (signed) to max. Conversion from
+/// float x rounds the float product x * max to the nearest k, ties to even; values out of range are clamped,
+/// and NaN becomes 0.
 template <class Integer>
 class Normalized {
  public:
@@ -74,7 +74,7 @@ class Normalized {
   constexpr Normalized(float value) : integer_(nearest(value)) {}
   constexpr operator float() const {
     const float value = static_cast<float>(integer_) / scale;
-    return value < -1.0f ? -1.0f : value;   // the integer below -max, too
+    return value < -1.0f ? -1.0f : value;  // the integer -max - 1, too
   }
 
   static constexpr Normalized fromInteger(Integer integer) {

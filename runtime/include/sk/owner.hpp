@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// The owner of an object whose type only the runtime knows: std::unique_ptr without <memory>, which takes a compiler longer
-// than all headers of StreamKernel together, in every file that includes them.
+// Owns an object of a type that only the runtime defines. Replaces std::unique_ptr, because <memory> takes a
+// compiler longer than all headers of StreamKernel together, in every file that includes them.
 #pragma once
 
 namespace sk::detail {
 
-/// Move-only. Delete is called with the object when the owner ends, unless it owns none.
+/// Move-only. The destructor calls Delete with the object, if there is one.
 template <class State, class Delete>
 class Owner {
  public:
@@ -24,7 +24,7 @@ class Owner {
   State* operator->() const noexcept { return state_; }
   explicit operator bool() const noexcept { return state_ != nullptr; }
 
-  /// The object, which the caller then owns.
+  /// Gives up ownership of the object and returns it.
   State* release() noexcept {
     State* const state = state_;
     state_ = nullptr;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How much of host memory a component takes.
+// The size of a component in host memory.
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// How many elements a stream has in each dimension, and where one of them is. Both are written rows
-// first, {height, width}, with 64-bit extents: the last one is the fastest in memory. Inside kernels
-// the order is the other way round (x is the last extent); the runtime does the turning.
+// The extents of a stream and the index of an element. Both are written rows first, {height, width}, with
+// 64-bit extents; the last dimension is contiguous in memory. Kernels use the opposite order (x is the last
+// extent), and the runtime converts.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ constexpr std::int64_t toExtent(I value) {
 
 }  // namespace detail
 
-/// The position of an element, rows first: {row, column}. Any values; streams check them.
+/// The index of an element, rows first: {row, column}. Any values are allowed; streams check them.
 class Index {
  public:
   constexpr Index() = default;
@@ -46,7 +46,7 @@ class Index {
   constexpr std::int64_t& operator[](int dimension) { return values_[static_cast<std::size_t>(dimension)]; }
   friend constexpr bool operator==(const Index&, const Index&) = default;
 
-  /// The position `{0, 0, ...}`.
+  /// The index `{0, 0, ...}`.
   static constexpr Index origin(int rank) {
     Index index;
     index.rank_ = rank;
@@ -58,8 +58,8 @@ class Index {
   std::array<std::int64_t, maxRank> values_{};
 };
 
-/// The extents of a stream, rows first: {height, width}. Rank 1 to 4 (0 only where default-made).
-/// Throws sk::Error where an extent is negative or the number of elements passes 63 bits.
+/// The extents of a stream, rows first: {height, width}. The rank is 1 to 4, or 0 if default-constructed.
+/// Throws sk::Error if an extent is negative or the number of elements does not fit in 63 bits.
 class Shape {
  public:
   constexpr Shape() = default;
@@ -76,7 +76,7 @@ class Shape {
   }
   friend constexpr bool operator==(const Shape&, const Shape&) = default;
 
-  /// The number of elements; 0 where an extent is 0 or the rank is 0.
+  /// The number of elements; 0 if an extent or the rank is 0.
   constexpr std::int64_t size() const {
     std::int64_t product = rank_ == 0 ? 0 : 1;
     for (int d = 0; d < rank_; ++d) {
@@ -85,7 +85,7 @@ class Shape {
     return product;
   }
 
-  /// The same shape with another extent in one dimension.
+  /// The same shape with a different extent in one dimension.
   constexpr Shape with(int dimension, std::int64_t extent) const {
     Shape shape = *this;
     shape.extents_[static_cast<std::size_t>(dimension)] = extent;
@@ -113,7 +113,7 @@ class Shape {
   std::array<std::int64_t, maxRank> extents_{};
 };
 
-/// "{512, 512}", as messages show it.
+/// Formats as in messages: "{512, 512}".
 std::string toString(const Shape& shape);
 std::string toString(const Index& index);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The public face of StreamKernel: devices, streams, element types, errors. Kernels come from the
-// headers that `skc` writes.
+// The public API of StreamKernel: devices, streams, element types and errors. Kernels are declared in the
+// headers that `skc` generates.
 #pragma once
 
 #include "sk/arithmetic.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Tables that stand for functions: a .sk file declares one with [[table(lo, hi, n, linear)]] in front of a function of one
-// float (docs/language.md), a configuration file may give it another range.
+// Tables that replace functions. A .sk file declares one with [[table(lo, hi, n, linear)]] in front of a
+// function of one float (docs/language.md); a configuration file may give it another range.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 namespace sk {
 
 enum class Interpolation : std::uint8_t {
-  Linear,  ///< between the values at an interval's ends
-  Cubic,  ///< the polynomial with the values and the slopes at both ends (Hermite's)
+  Linear,  ///< between the values at the ends of an interval
+  Cubic,  ///< cubic Hermite: matches values and slopes at both ends
 };
 
-/// The range of a table. An argument outside is taken for the nearer end.
+/// The range of a table. Arguments outside are clamped to it.
 struct TableRange {
   float low = 0;
   float high = 1;
@@ -24,15 +24,15 @@ struct TableRange {
 };
 inline constexpr std::int32_t mostIntervals = 1 << 20;
 
-/// A table as it was built, and what it costs in accuracy.
+/// A table as built, with its error.
 struct TableReport {
   std::string function;  ///< qualified, as in the .sk file
   TableRange range;
   Interpolation interpolation;
-  /// Largest error over the range, absolute: from the largest differences of the function's values, with what floats
-  /// lose of the argument and the result.
+  /// Bound on the absolute error over the range, from the largest differences of the function's values plus
+  /// the rounding of the argument and the result.
   double predicted;
-  /// Likewise, found by looking up eight arguments in each interval with float arithmetic.
+  /// Largest absolute error found by looking up eight arguments per interval in float arithmetic.
   double measured;
   float worst;  ///< the argument of the largest error found
 };

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The host's side of the language's vector and matrix types, and the trait that tells the runtime how
-// an element type lies in memory. Vectors are tightly packed plain structs: sk::float3 takes 12 bytes,
-// sk::bool2 takes 2. Matrices are their rows, one after the other. No arithmetic is defined on them:
-// that is what kernels are for.
+// Host versions of the language's vector and matrix types, and the trait that describes an element type's
+// layout to the runtime. Vectors are tightly packed structs: sk::float3 takes 12 bytes, sk::bool2 takes 2.
+// Matrices are stored row by row. They have no arithmetic: kernels compute.
 #pragma once
 
 #include <array>
@@ -36,7 +35,7 @@ struct Vector4 {
   friend constexpr bool operator==(const Vector4&, const Vector4&) = default;
 };
 
-/// A square matrix of floats: `m[i]` is row i and `m[i][j]` its element in column j, as in kernels.
+/// A square matrix of floats: `m[i]` is row i and `m[i][j]` is its element in column j, as in kernels.
 template <class Row, std::size_t Size>
 struct Matrix {
   Row rows[Size];
@@ -91,9 +90,9 @@ using float2x2 = Matrix<float2, 2>;
 using float3x3 = Matrix<float3, 3>;
 using float4x4 = Matrix<float4, 4>;
 
-/// Registers T as an element type: `static ... const program::Element& element()` describes its
-/// layout. Scalars and vectors are registered here. The header that `skc` writes registers a struct
-/// of the .sk file like this, outside of any namespace:
+/// Registers T as an element type: `static ... const program::Element& element()` describes its layout. This
+/// header registers scalars and vectors. The header that `skc` generates registers a struct of the .sk file
+/// like this, outside of any namespace:
 ///
 ///   template <>
 ///   struct sk::ElementTraits<Hit> {
@@ -106,7 +105,7 @@ using float4x4 = Matrix<float4, 4>;
 template <class T>
 struct ElementTraits;
 
-/// What a Stream can hold: a registered type that may be copied byte by byte.
+/// An element type of a Stream: registered and trivially copyable.
 template <class T>
 concept ElementType = std::is_trivially_copyable_v<T> && requires {
   { ElementTraits<T>::element() } -> std::same_as<const program::Element&>;
@@ -143,7 +142,7 @@ inline constexpr program::Scalar scalarOf<unorm16> = program::Scalar::Unorm16;
 template <>
 inline constexpr program::Scalar scalarOf<snorm16> = program::Scalar::Snorm16;
 
-/// Spellings of a component type by width - 1: in a .sk file, and in GLSL.
+/// The spellings of a component type, by width - 1, in .sk files and in GLSL.
 struct Spellings {
   std::string_view names[4];
   const std::string_view* glsl;
@@ -154,7 +153,7 @@ inline constexpr std::string_view uintGlsl[] = {"uint", "uvec2", "uvec3", "uvec4
 inline constexpr std::string_view floatGlsl[] = {"float", "vec2", "vec3", "vec4"};
 inline constexpr std::string_view doubleGlsl[] = {"sk_double", "sk_double2", "sk_double3", "sk_double4"};
 
-/// By program::Scalar.
+/// Indexed by program::Scalar.
 inline constexpr Spellings spellings[] = {
     {{"bool", "bool2", "bool3", "bool4"}, boolGlsl},
     {{"int", "int2", "int3", "int4"}, intGlsl},
@@ -172,7 +171,7 @@ inline constexpr Spellings spellings[] = {
     {{"snorm16", "snorm16x2", "snorm16x3", "snorm16x4"}, floatGlsl},
 };
 
-/// The traits of a scalar (Width 1) or vector T of components of type C.
+/// The traits of a scalar (Width 1) or vector T with components of type C.
 template <class T, class C, std::uint8_t Width>
 struct VectorElement {
   static_assert(sizeof(T) == sizeof(C) * Width, "StreamKernel: vectors are tightly packed");
@@ -183,7 +182,7 @@ struct VectorElement {
   static constexpr const program::Element& element() { return value; }
 };
 
-/// `Count` fields of one value, one after the other.
+/// Divides a value into `Count` consecutive fields.
 template <std::size_t Count>
 constexpr std::array<program::Field, Count> partsOf(program::Scalar scalar, std::size_t width,
                                                     std::size_t bytes) {
@@ -195,7 +194,7 @@ constexpr std::array<program::Field, Count> partsOf(program::Scalar scalar, std:
   return parts;
 }
 
-/// A vector of three or four doubles has a field for its first two components and one for the rest.
+/// A vector of three or four doubles has one field for its first two components and one for the rest.
 template <class T, std::uint8_t Width>
 struct DoubleVectorElement {
   static_assert(sizeof(T) == sizeof(double) * Width, "StreamKernel: vectors are tightly packed");
@@ -221,7 +220,7 @@ struct MatrixElement {
 
 }  // namespace detail
 
-/// Scalars.
+/// The traits of scalars.
 template <class C>
   requires(detail::scalarOf<C> != program::Scalar::Float || std::is_same_v<C, float>)
 struct ElementTraits<C> : detail::VectorElement<C, C, 1> {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Loops on the threads of the machine. The runtime has them, so that a program with kernels needs no option of its compiler for it.
+// Parallel loops. The runtime implements them, so that a program with kernels needs no compiler option for
+// threads.
 #pragma once
 
 #include <cstdint>
@@ -8,23 +9,25 @@
 
 namespace sk::native {
 
-/// Numbers from `begin` to `end`.
+/// The numbers from `begin` (inclusive) to `end` (exclusive).
 struct Range {
   std::int64_t begin = 0;
   std::int64_t end = 0;
 };
 
-/// How work is dealt out.
+/// How a loop is divided among threads.
 enum class Deal : std::uint8_t {
-  Evenly,  ///< each thread gets one run of neighbours, the same ones each time
-  AsTheyCome,  ///< small runs, to whoever is free
+  Evenly,  ///< each thread gets one contiguous range, the same one each time
+  AsTheyCome,  ///< small ranges, to the next free thread
 };
 
-/// Threads that inParallel would run such a loop on: one where it is small, or where another loop of ours runs it.
+/// The number of threads that inParallel would use: one if the loop is small or runs inside another of our
+/// loops.
 std::int64_t threadsFor(std::int64_t count, std::int64_t cost);
 
-/// work(context, range) for ranges that together are all numbers below `count`, on several threads where there is enough to do.
-/// `cost` is what a number takes, in elements or their like. What a call throws is thrown here, after all have ended.
+/// Calls work(context, range) for ranges that partition the numbers below `count`, on several threads if
+/// there is enough work. `cost` is the work per number, in elements or similar units. Rethrows an exception
+/// of `work` after all calls end.
 void inParallel(std::int64_t count, std::int64_t cost, Deal deal, void (*work)(void*, Range), void* context);
 
 template <class Work>

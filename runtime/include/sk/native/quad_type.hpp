@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The type behind quad.hpp, for those that only keep such numbers: compilers convert and add them without a library.
+// The type behind quad.hpp, for code that only stores such numbers: compilers convert and add them without a
+// library.
 #pragma once
 
 namespace sk::native {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A table that stands for a function of one float (sk/table.hpp), and how it is looked up: the arithmetic of the GLSL
-// that the runtime's assembler writes (assemble/glsl/tables.hpp).
+// A table that replaces a function of one float (sk/table.hpp), and its lookup, with the same arithmetic as
+// the GLSL that the assembler writes (assemble/glsl/tables.hpp).
 #pragma once
 
 #include <algorithm>
@@ -9,15 +9,15 @@
 
 namespace sk::native {
 
-/// The polynomials of its intervals: two coefficients each, or four of a cubic one, lowest first.
+/// The polynomials of the intervals, lowest coefficient first: two coefficients each, or four if cubic.
 struct Table {
   const float* coefficients = nullptr;
   float low = 0;
-  float perUnit = 0;  ///< intervals for each unit of the argument
+  float perUnit = 0;  ///< intervals per unit of the argument
   int intervals = 0;
   bool isCubic = false;
 
-  /// Arguments outside the range count as its ends; NaN gives NaN.
+  /// Clamps arguments to the range; NaN gives NaN.
   float at(float x) const {
     if (x != x) return x;
     const float place = std::clamp((x - low) * perUnit, 0.0F, static_cast<float>(intervals));
