@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Devices: what the user and the environment ask for, and the public face of DeviceState.
+// Implements sk::Device: resolves options with the environment, opens a DeviceState and forwards calls to it.
 #include "sk/device.hpp"
 
 #include <array>
@@ -26,7 +26,7 @@ namespace sk {
 
 namespace {
 
-/// What the option says, else what the environment says.
+/// The option if it is set, else the environment variable.
 std::string chosen(const std::string& option, const char* variable) {
   const char* value = std::getenv(variable);
   return !option.empty() || value == nullptr ? option : value;
@@ -48,14 +48,14 @@ std::optional<gl::Api> apiOf(const std::string& profile) {
       Error::Kind::Device);
 }
 
-/// What programs of a profile run as; where none is named, what is faster.
+/// The target of a profile's programs; Default if no profile is named.
 Target targetOf(const std::string& profile) {
   const assemble::Profile* found = assemble::findProfile(profile);
   if (found == nullptr) return Target::Default;
   return found->stage == assemble::Stage::Compute ? Target::Compute : Target::Fragment;
 }
 
-/// Whether the device is to keep to what its profile guarantees.
+/// Whether the device must keep to the limits that its profile guarantees.
 bool wantsGuaranteed(const std::string& limits) {
   if (!limits.empty() && limits != "device" && limits != "guaranteed") {
     throw Error(
@@ -64,7 +64,8 @@ bool wantsGuaranteed(const std::string& limits) {
   return limits == "guaranteed";
 }
 
-/// The option, else what the environment says. Too few texels would not hold the results of a device's own passes.
+/// The option if it is set, else the environment variable. A smaller limit could not hold the results of a
+/// device's own passes.
 std::int32_t textureLimitOf(std::int32_t option) {
   constexpr int least = 4;
   const std::string text = option != 0 ? std::to_string(option) : chosen({}, "SK_TEXTURE_LIMIT");
@@ -79,7 +80,7 @@ std::int32_t textureLimitOf(std::int32_t option) {
   return limit;
 }
 
-/// What doubles are to be. Where limits are what the profile guarantees, it guarantees no double either.
+/// Whether doubles are pairs of floats. Guaranteed limits imply pairs, because profiles guarantee no doubles.
 bool wantsPairs(const std::string& doubles, bool guaranteedLimits) {
   if (!doubles.empty() && doubles != "native" && doubles != "pairs") {
     throw Error(
@@ -88,7 +89,7 @@ bool wantsPairs(const std::string& doubles, bool guaranteedLimits) {
   return doubles.empty() ? guaranteedLimits : doubles == "pairs";
 }
 
-/// The barrier that is asked for, if any.
+/// The requested barrier; nullopt if the name is empty.
 std::optional<Barrier> barrierOf(const std::string& name) {
   if (name.empty()) {
     return std::nullopt;
@@ -109,7 +110,7 @@ DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, co
           barrierOf(barrier),           targetOf(profile), sharesContext};
 }
 
-/// A device with the choices of a file and with a trace, if they are named.
+/// Gives a device the configuration file and the trace that are named, if any.
 detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const std::string& file) {
   const std::string name = chosen(file, "SK_CONFIG");
   if (!name.empty()) state->configuration = Configuration(name);
@@ -121,7 +122,7 @@ detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const std::st
 constexpr std::array<std::pair<std::string_view, RealType>, 3> nativeDevices = {
     {{"native", RealType::Float}, {"reference", RealType::Double}, {"reference:quad", RealType::Quad}}};
 
-/// The options, with what the environment says where they say nothing.
+/// Fills in unset options from the environment.
 DeviceOptions withEnvironment(DeviceOptions options) {
   options.device = chosen(options.device, "SK_DEVICE");
   options.profile = chosen(options.profile, "SK_PROFILE");
@@ -132,7 +133,7 @@ DeviceOptions withEnvironment(DeviceOptions options) {
   return options;
 }
 
-/// Whether no device is named and nothing is asked for that devices with GL alone have.
+/// Whether the options leave any device possible: none is named, and none of the options needs GL.
 bool mayBeAny(const DeviceOptions& options) {
   return options.device.empty() && options.profile.empty() && options.textureLimit == 0 &&
          options.limits.empty() && options.doubles.empty() && options.barrier.empty() &&
@@ -145,7 +146,8 @@ std::unique_ptr<DeviceState> openGl(const DeviceOptions& options, gl::OpenedCont
   return std::make_unique<GlDevice>(std::move(context), choices);
 }
 
-/// The fastest device that has code of every .sk file: a GPU, else native code, else a software renderer.
+/// Opens the fastest device that has code of every .sk file: a GPU, else native code, else a software
+/// renderer.
 std::unique_ptr<DeviceState> openBest(const DeviceOptions& options) {
   const program::LinkedFile::Code code = program::LinkedFile::ofAll();
   if (!code.native) return openGl(options, gl::openContext({}));

@@ -16,13 +16,13 @@ using program::Parameter;
 using program::Reduction;
 using program::Role;
 
-/// One sum: rounded by the device, or its digits, a stream for each accumulator of its fold.
+/// One sum: either rounded by the device, or as digits, with one stream per accumulator of its fold.
 struct Sum {
   std::unique_ptr<RoundedSums> rounded;
   std::unique_ptr<TemporaryResults> digits;
 };
 
-/// Folds to floats or to digits, one element for each of the stream results.
+/// Folds to rounded floats or to digits, with one element for each element of the result.
 Sum fold(const ExactSum& sum, const ResolvedReduction& call) {
   Sum made;
   made.rounded = call.device.sumExactly(call, sum);
@@ -64,7 +64,7 @@ bool sumsEverything(const Reduction& reduction) {
 
 void reduceToStreams(const ResolvedReduction& call) {
   const Reduction& reduction = call.reduction;
-  std::vector<Sum> sums;   // all of them first: a result may be an input
+  std::vector<Sum> sums;  // compute all sums before storing any: a result may be an input
   for (const ExactSum& sum : reduction.exact) sums.push_back(fold(sum, call));
   bool hasBegun = false;
   writeInSteps(reduction, call.arguments, hasBegun, [&] {

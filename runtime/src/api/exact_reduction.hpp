@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// Reductions with Accumulate::Exact: each scalar that is a sum of floats is folded by a form of its own, which adds without
-// rounding, and put in its place; whatever else there is, the plain form folds. It knows no device.
+// Reductions with Accumulate::Exact. A variant of the reduction folds each scalar that is a sum of floats
+// without rounding; the plain reduction folds all others. Must not depend on the kind of device.
 #pragma once
 
 #include "call/resolved_reduction.hpp"
 
 namespace sk {
 
-/// The domain has elements, and the reduction sums of floats.
+/// Requires a nonempty domain and a reduction that sums floats.
 void reduceExactly(const ResolvedReduction& call);
 
 }  // namespace sk

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The count of linked .sk files. It is the only state that belongs to the whole program: linking is what it records.
+// Counts the linked .sk files. This is the program's only global state, because it records what was linked.
 #include "sk/linked_file.hpp"
 
 #include <atomic>
@@ -9,7 +9,7 @@ namespace sk::program {
 
 namespace {
 
-// Constant initialization: they are ready before the first stub is. Libraries may be loaded on any thread.
+// Constant initialization makes these ready before the first stub. Libraries may be loaded on any thread.
 constinit std::atomic<int> files = 0;
 constinit std::atomic<int> filesWithGlsl = 0;
 constinit std::atomic<int> filesWithNative = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// sk::reduce: which form of a reduction a call takes, and how the compensated one's two accumulators become one
-// result (api/exact_reduction.hpp has the exact one). It knows no device.
+// sk::reduce: chooses a variant of a reduction, and carries out compensated ones, which add a sum and its
+// rounding error (api/exact_reduction.hpp has the exact ones). Must not depend on the kind of device.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -25,7 +25,8 @@ using program::Parameter;
 using program::Reduction;
 using program::Role;
 
-/// The compensated form, where the call takes it; else null. Of no element, the plain form's identity is the result.
+/// The compensated variant if the call uses it, else null. An empty domain gives the plain reduction's
+/// identity.
 const CompensatedReduction* compensated(const ResolvedReduction& call) {
   const Reduction& reduction = call.reduction;
   const Accumulate asked = call.options.accumulate;
@@ -55,32 +56,32 @@ const CompensatedReduction* compensated(const ResolvedReduction& call) {
   return fits || asked == Accumulate::Compensated ? second : nullptr;
 }
 
-/// Adds what floats have lost to them, in memory.
+/// Adds rounding errors to floats in host memory.
 void addFloats(void* to, const void* from, std::size_t bytes) {
   for (std::size_t at = 0; at < bytes; at += sizeof(float)) {
     float a;
     float b;
     std::memcpy(&a, static_cast<std::byte*>(to) + at, sizeof a);
     std::memcpy(&b, static_cast<const std::byte*>(from) + at, sizeof b);
-    // a sum that is not finite has lost NaN; and where nothing is lost, -0 stays
+    // the error of a sum that is not finite is NaN; an error of 0 must not change -0
     a = b == 0 || !std::isfinite(b) ? a : a + b;
     std::memcpy(static_cast<std::byte*>(to) + at, &a, sizeof a);
   }
 }
 
-/// The accumulators for what sums have lost, in the order of the sums.
+/// The accumulators of rounding errors, in the order of the sums.
 std::span<const Parameter> accumulatorsOfLosses(const CompensatedReduction& second) {
   return second.reduction.fold.parameters.last(second.sums.size());
 }
 
-/// Where the result of parameter `accumulator` stands among all results.
+/// The index among the results of parameter `accumulator`.
 std::size_t resultOf(const Kernel& fold, std::size_t accumulator) {
   return static_cast<std::size_t>(std::count_if(
       fold.parameters.begin(), fold.parameters.begin() + static_cast<std::ptrdiff_t>(accumulator),
       [](const Parameter& parameter) { return parameter.role == Role::Accumulator; }));
 }
 
-/// The arguments that have sums, each once.
+/// The arguments of accumulators that have sums, each once.
 std::vector<Argument> resultsWithSums(const CompensatedReduction& second,
                                       std::span<const Argument> arguments) {
   std::vector<Argument> results;
@@ -94,13 +95,14 @@ std::vector<Argument> resultsWithSums(const CompensatedReduction& second,
   return results;
 }
 
-/// Whether the call takes the exact form. Of no element, the plain form's identity is the result.
+/// Whether the call uses the exact variant. An empty domain gives the plain reduction's identity.
 bool isExact(const ResolvedReduction& call) {
   return call.options.accumulate == Accumulate::Exact && call.domain.size() != 0 &&
          call.device.sumsExactly(call.reduction);
 }
 
-/// Whether the plain form in doubles serves for the compensated one: a kernel of floats sees no bits that a stream has beyond them.
+/// Whether the plain variant in doubles can replace the compensated one: not if a stream has bits that floats
+/// drop.
 bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& second) {
   return second.inDoubles && call.device.sumsInDoubles() &&
          std::ranges::none_of(call.arguments, [](const Argument& argument) {
@@ -108,7 +110,8 @@ bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& seco
          });
 }
 
-/// With what a file or the declaration chooses; a file's choice for all reduces is one for those that sum floats.
+/// Adds the choices of the configuration file and the declaration. A file's choice for all reductions applies
+/// only to those that sum floats.
 CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions& call) {
   const Reduction& reduction = checked.reduction;
   CallOptions options = checked.device.configuration.resolve(reduction.fold, call);
@@ -123,7 +126,7 @@ CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions&
   return options;
 }
 
-/// Whether a result stream holds halves or doubles for floats.
+/// Whether a result stream stores its floats as halves or doubles.
 bool isHeldOtherwise(const ResolvedReduction& call) {
   if (call.isToValues()) return false;
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
@@ -137,7 +140,7 @@ bool isHeldOtherwise(const ResolvedReduction& call) {
 
 void reduceResolved(const ResolvedReduction& call);
 
-/// Reduces to streams of floats, and copies these.
+/// Reduces to temporary streams of floats and copies these to the results.
 void reduceByFloats(const ResolvedReduction& call) {
   TemporaryResults floats(call);
   std::vector<Argument> all(call.arguments.begin(), call.arguments.end());
@@ -161,7 +164,7 @@ void reduceByFloats(const ResolvedReduction& call) {
   });
 }
 
-/// The sums go where the results will be, what they lose beside them; then both are added.
+/// Computes the sums in the results and the rounding errors in temporaries, then adds both.
 void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction& second) {
   TemporaryResults lost(call);
   std::vector<Argument> all(call.arguments.begin(), call.arguments.end());
@@ -189,7 +192,7 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
   });
 }
 
-/// In the form that the options, the device and the results ask for.
+/// Reduces with the variant that the options, the device and the results require.
 void reduceResolved(const ResolvedReduction& call) {
   if (isHeldOtherwise(call)) return reduceByFloats(call);
   if (takesForm(call.options)) return reduceInForm(call);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// sk::run: a call of a kernel, from its arguments to the device that runs it. It knows no device.
+// sk::run: checks and resolves a call of a kernel and passes it to its device. Must not depend on the kind of
+// device.
 #include "call/check_argument.hpp"
 #include "call/check_call.hpp"
 #include "call/precision.hpp"

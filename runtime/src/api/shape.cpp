@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Shapes in words.
+// Error messages and text of shapes.
 #include "sk/shape.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What streams and views do: life, regions, reading, writing.
+// Implements streams and views: lifetime, regions, reading and writing.
 #include "sk/stream.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ StreamState* checkTransfer(const StreamRegion& region, std::size_t count, bool i
   return size == 0 ? nullptr : &stream;
 }
 
-/// A transfer of the elements of a region in the trace of its device.
+/// Records a transfer of a region's elements in its device's trace.
 class TransferScope {
  public:
   TransferScope(const StreamState& stream, std::string_view what, const StreamRegion& region)
@@ -44,7 +44,7 @@ class TransferScope {
   TraceScope traced_;
 };
 
-/// No form of a scalar takes more than four times its bytes in host memory: __float128 for a float.
+/// In host memory, a scalar takes at most four times its size: __float128 for a float.
 void checkSize(const program::Element& type, const Shape& extents) {
   if (!checkedProduct(extents.size(), 4 * std::int64_t{type.size})) {
     throw Error(
@@ -247,7 +247,7 @@ void detail::take(TransferOwner transfer, void* elements) {
 
 namespace {
 
-/// Floats in the elements of a region, which have nothing else.
+/// The number of floats in a region. Throws unless its elements consist of floats.
 std::size_t realsIn(const StreamRegion& region, const program::Element& element, std::string_view what) {
   std::size_t components = 0;
   for (const program::Field& field : element.fields) {
@@ -304,7 +304,7 @@ void detail::fill(const StreamRegion& region, const void* element) {
 
 namespace {
 
-/// Through host memory, in double where the elements are floats, so that a reference loses nothing.
+/// Copies through host memory: floats as doubles, so that copies from a reference device lose nothing.
 void copyByHost(const StreamRegion& from, const StreamRegion& to) {
   const program::Element& element = *from.stream->element;
   const bool isOfFloats = std::ranges::all_of(
