@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Trying every way.
+// Enumerates the block grids that are compatible with the result's shape.
 #include "call/block_grid.hpp"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ bool divides(const Shape& grid, const Shape& domain) {
 std::vector<Shape> blockGrids(const Shape& domain, const Shape& result) {
   std::vector<Shape> grids;
   const int rank = domain.rank();
-  for (unsigned kept = 0; kept < 1u << rank; ++kept) {   // bit d: dimension d is one of the result's
+  for (unsigned kept = 0; kept < 1u << rank; ++kept) {  // bit d: dimension d belongs to the result
     std::array<std::int64_t, maxRank> extents{1, 1, 1, 1};
     int next = 0;
     for (int d = 0; d < rank; ++d) {

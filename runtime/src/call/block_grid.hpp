@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How the shape of a reduction's result divides the shape that is folded. Plain arithmetic.
+// Computes how the shape of a reduction's result divides its domain. Pure arithmetic.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace sk {
 
-/// The numbers of blocks in each dimension of `domain` for a result of shape `result`: every way to put
-/// extents of 1 into `result`, up to the rank of `domain`, so that its extents divide those of `domain`
-/// (0 divides 0). None where it does not fit, several where it could mean several things.
+/// Returns the grids of blocks, in each dimension of `domain`, for a result of shape `result`: inserts
+/// extents of 1 into `result` in every possible way, up to the rank of `domain`, such that its extents divide
+/// those of `domain` (0 divides 0). Empty if `result` does not fit; several grids if it is ambiguous.
 std::vector<Shape> blockGrids(const Shape& domain, const Shape& result);
 
-/// One block that is all of the domain.
+/// The grid of a single block that covers the domain.
 Shape oneBlock(Shape domain);
 
 }  // namespace sk

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// One argument at a time.
+// Implements the checks of single arguments.
 #include "call/check_argument.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ bool isSameField(const Field& a, const Field& b) {
   return a.scalar == b.scalar && a.width == b.width && a.offset == b.offset && a.part == b.part;
 }
 
-/// Descriptors of one type may exist several times: in the headers of the runtime and in each .sk.cpp.
+/// One type may have several descriptors: in the runtime's headers and in each .sk.cpp.
 bool isSameElement(const Element& a, const Element& b) {
   return &a == &b || (a.size == b.size && a.fields.size() == b.fields.size() &&
                       std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), isSameField));
@@ -66,7 +66,7 @@ StreamState& checkStream(const Kernel& kernel, const Parameter& parameter, const
   }
   StreamState& stream = *region.stream;
   if (parameter.role == Role::VariableOutput) {
-    return stream;   // its size is about to change
+    return stream;  // the call will resize it
   }
   stream.settle();
   if (!isInside(region)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Checks of one argument, which kernels and reductions share. Each throws sk::Error naming the kernel and
+// Checks of one argument, shared by kernels and reductions. Each throws sk::Error, which names the kernel and
 // the parameter.
 #pragma once
 
@@ -28,38 +28,38 @@ template <class... Values>
   fail(Error::Kind::Misuse, kernel, format, std::forward<Values>(values)...);
 }
 
-/// A stream that lives, of the type that the parameter declares.
+/// Returns the argument's stream after checking that it is live and has the parameter's element type.
 StreamState& checkStream(const program::Kernel& kernel, const program::Parameter& parameter,
                          const StreamRegion& region);
 
 void checkSameDevice(const program::Kernel& kernel, const program::Parameter& a, const StreamState& first,
                      const program::Parameter& b, const StreamState& second);
 
-/// `first`: the parameter that the domain is told by: an output, or any other where the inputs make it.
+/// `first` is the parameter that defines the domain: an output, or an input if there are no outputs.
 void checkInputShape(const program::Kernel& kernel, const program::Parameter& input, const Argument& argument,
                      const program::Parameter& first, const Shape& domain);
 
 void checkGatherShape(const program::Kernel& kernel, const program::Parameter& gather, const Shape& shape,
                       const Shape& domain);
 
-/// Whether two regions have an element in common.
+/// Whether two regions share an element.
 bool overlap(const StreamRegion& a, const StreamRegion& b);
 
-/// Whether the parameter takes a value and no stream.
+/// Whether the parameter takes a value instead of a stream.
 bool isValue(const program::Parameter& parameter);
 
-/// Everything but streams: that there is a value, and that iterators go over the domain.
+/// Checks arguments that are not streams: values must exist, and iterators must fit the domain.
 void checkValue(const program::Kernel& kernel, const program::Parameter& parameter, const Argument& argument,
                 const Shape& domain);
 
-/// That a stream which the kernel needs is not sk::none.
+/// Checks that a stream which the kernel needs is not sk::none.
 void checkGiven(const program::Kernel& kernel, const program::Parameter& parameter, const Argument& argument);
 
-/// That the device can number the elements of a domain (sk/limits.hpp), which may have more of them than any stream.
+/// Checks that the device can number the elements of a domain (sk/limits.hpp), which may exceed any stream.
 void checkElements(const program::Kernel& kernel, const DeviceState& device, const Shape& domain);
 
-/// That the device has room for the kernel's uniforms. A driver may need more than the components that are counted
-/// here, and says so in its own words then.
+/// Checks that the device has room for the kernel's uniforms. A driver may need more than the components
+/// counted here; it then reports an error of its own.
 void checkUniforms(const program::Kernel& kernel, const DeviceState& device);
 
 }  // namespace sk

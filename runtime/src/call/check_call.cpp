@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The checks, in the order in which their messages help most.
+// Implements the checks of calls, in the order in which their messages are most helpful.
 #include "call/check_call.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ void checkOutputShape(const Kernel& kernel, const Parameter& first, const Shape&
   }
 }
 
-/// The stream of a variable output is taken whole, and has one dimension afterwards.
+/// A variable output must be a whole stream; the call makes it one-dimensional.
 void checkVariableOutput(const Kernel& kernel, const Parameter& output, const StreamState& stream) {
   if (stream.shape.rank() != 1) {
     fail(Error::Kind::Shape, kernel,
@@ -87,8 +87,9 @@ void checkPlanes(const Kernel& kernel, const DeviceState& device, std::size_t wr
   }
 }
 
-/// Planes of the passes that an append output adds: of its list, and, where it is counted, one of counts to the pass that
-/// writes the other outputs, and two of the tree to what its list's pass reads.
+/// The planes that an append output adds to passes: those of its list and, if its elements are counted, one
+/// of counts for the pass that writes the other outputs, and two of the histogram pyramid for the inputs of
+/// the list's pass.
 struct AppendPlanes {
   std::size_t counts = 0;
   std::size_t list = 0;
@@ -103,8 +104,8 @@ struct AppendPlanes {
   }
 };
 
-/// The parameter whose stream says what device a kernel runs on: the first output that the spec parameters leave,
-/// or the first append output; where there is none, the number of parameters.
+/// The parameter whose stream determines the device: the first output that the spec parameters keep, else the
+/// first append output, else the number of parameters.
 std::size_t firstWritten(const Kernel& kernel, const assemble::SpecValues& specs) {
   const auto isOutput = [&](const Parameter& p) { return p.role == Role::Output && isNeeded(p, specs); };
   auto found = std::find_if(kernel.parameters.begin(), kernel.parameters.end(), isOutput);
@@ -189,7 +190,7 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
     checkPlanes(kernel, device, std::max(written + appendOutputs.counts, appendOutputs.list),
                 read + appendOutputs.tree);
   }
-  const bool hasAppendOutputs = appendOutputs.list > 0;  // which are emptied where there is no element
+  const bool hasAppendOutputs = appendOutputs.list > 0;  // these are emptied if the domain is empty
   if (domain.size() == 0 && !hasAppendOutputs) return std::nullopt;
   return CheckedCall{device, call};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Everything that can be wrong with the arguments of a call, found before any of it runs. Each check
-// throws sk::Error naming the kernel, the parameters and the shapes.
+// Finds all errors in the arguments of a call before any of it runs. Each check throws sk::Error, which names
+// the kernel, the parameters and the shapes.
 #pragma once
 
 #include <optional>
@@ -21,9 +21,9 @@ struct CheckedCall {
 };
 
 /// Checks the arguments of a kernel: number, streams, device, element types, ranks, shapes, planes,
-/// outputs that overlap. Returns the device of all of them and the call, without options; nothing where the call has
-/// nothing to do: no element output that the spec parameters leave, and no variable or scatter output, or an empty
-/// domain without the latter.
+/// overlapping outputs. Returns their device and the call, without options. Returns nullopt if there is
+/// nothing to do: there is no variable or scatter output, and either spec parameters switch off all element
+/// outputs or the domain is empty.
 std::optional<CheckedCall> checkCall(const program::Kernel& kernel, std::span<const Argument> arguments);
 
 }  // namespace sk

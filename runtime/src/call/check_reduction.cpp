@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The checks of reductions, in the order in which their messages help most.
+// Implements the checks of reductions, in the order in which their messages are most helpful.
 #include "call/check_reduction.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using program::Parameter;
 using program::Reduction;
 using program::Role;
 
-/// The streams that a reduction reads, or also those that it writes.
+/// The streams that a reduction reads or writes.
 class Arguments {
  public:
   Arguments(const Reduction& reduction, std::span<const Argument> arguments)
@@ -110,7 +110,7 @@ class Arguments {
     }
   }
 
-  /// Returns the numbers of blocks.
+  /// Returns the grid of blocks.
   Shape checkResults(const Shape& domain) const {
     const Parameter* first = nullptr;
     Shape shape;
@@ -161,7 +161,7 @@ class Arguments {
          inputs(), toString(domain), result.name, toString(shape), toString(grids[0]), toString(grids[1]));
   }
 
-  /// "'x' has shape", or of several "the inputs together have".
+  /// "'x' has shape" for one input, "the inputs together have" for several.
   std::string inputs() const {
     const auto isInput = [](const Parameter& parameter) { return parameter.role == Role::Input; };
     if (std::ranges::count_if(fold_.parameters, isInput) > 1) {
@@ -183,7 +183,7 @@ class Arguments {
   const Kernel& fold_;
   std::span<const Argument> arguments_;
   assemble::SpecValues specs_{};
-  std::size_t first_ = SIZE_MAX;   ///< argument that says what device it is
+  std::size_t first_ = SIZE_MAX;  ///< the argument that determines the device
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Everything that can be wrong with the arguments of a reduction, found before any of it runs. Each check
-// throws sk::Error naming the reduce, the parameters and the shapes.
+// Finds all errors in the arguments of a reduction before any of it runs. Each check throws sk::Error, which
+// names the reduction, the parameters and the shapes.
 #pragma once
 
 #include <span>
@@ -13,12 +13,12 @@
 
 namespace sk {
 
-/// Planes that a kernel of a reduction reads; an input of what combines has those of an accumulator.
+/// The planes that a kernel of a reduction reads. An input of `combine` has the planes of an accumulator.
 std::size_t planesRead(const program::Kernel& kernel, const assemble::SpecValues& specs);
 
-/// Checks the arguments of a reduction: streams, devices, element types, shapes, planes, that there are identities where there
-/// is no element, and, without values, that the shape of the results divides the inputs' in one way. The options are the
-/// default ones.
+/// Checks the arguments of a reduction: streams, devices, element types, shapes, planes; that identities
+/// exist if the domain is empty; and, without `values`, that the shape of the results divides the inputs'
+/// shape in exactly one way. The options of the returned reduction are the defaults.
 ResolvedReduction checkReduction(const program::Reduction& reduction, std::span<const Argument> arguments,
                                  std::span<void* const> values);
 

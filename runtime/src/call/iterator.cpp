@@ -20,7 +20,7 @@ std::uint32_t componentOf(const void* ends, int width, int end, int component) {
   return bits;
 }
 
-/// Steps that a component takes from one end to the other.
+/// The number of steps that a component takes between the ends.
 std::int64_t stepsOf(const program::Parameter& parameter, const Shape& domain, int component) {
   return countsElements(parameter, domain.rank()) ? domain.size() : domain[domain.rank() - 1 - component];
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Iterators on the host's side: whether one fits a domain, and its step.
+// Iterators on the host: whether one fits a domain, and its step.
 #pragma once
 
 #include <array>
@@ -12,18 +12,18 @@
 
 namespace sk {
 
-/// Bits of the components of an iterator's step.
+/// The bits of an iterator's step, by component.
 using IteratorStep = std::array<std::uint32_t, 4>;
 
-/// Throws sk::Error, naming kernel and parameter, unless an iterator with these ends (two elements, one
-/// after the other) goes over a domain of this shape, which is not empty.
+/// Throws sk::Error, which names the kernel and the parameter, unless an iterator with these ends (two
+/// consecutive elements) fits a nonempty domain of this shape.
 void checkIterator(const program::Kernel& kernel, const program::Parameter& parameter, const void* ends,
                    const Shape& domain);
 
-/// The step of an iterator that fits.
+/// The step of an iterator that has been checked.
 IteratorStep stepOf(const program::Parameter& parameter, const void* ends, const Shape& domain);
 
-/// Whether its components count the elements instead of each following a dimension of its own.
+/// Whether all components advance with the element number, instead of each along its own dimension.
 bool countsElements(const program::Parameter& parameter, int rank);
 
 }  // namespace sk

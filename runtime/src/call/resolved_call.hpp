@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What every step of a kernel's call needs to know beside its arguments, found once after these have been checked.
+// A kernel's call after its arguments have been checked: what every later step needs, computed once.
 #pragma once
 
 #include <cstdint>
@@ -20,29 +20,30 @@ struct ResolvedCall {
   CallOptions options;
   assemble::SpecValues specs;
   Shape domain;
-  const program::Plan* plan;  ///< its passes; null where one will do
+  const program::Plan* plan;  ///< its passes; null if one pass is enough
 
   /// The same call of a variant of the kernel, which has the same parameters in another precision.
   ResolvedCall of(const program::Kernel& variant, const DeviceLimits& limits) const;
 };
 
-/// The arguments have been checked, or are right by construction.
+/// `arguments` must have been checked, or be correct by construction.
 ResolvedCall resolveCall(const program::Kernel& kernel, std::span<const Argument> arguments,
                          const DeviceLimits& limits, const CallOptions& options = {});
 
 /// The 32 bits of a Spec parameter's value, as assemble::SpecValues holds them.
 std::uint32_t specBits(const program::Parameter& parameter, const void* value);
 
-/// The values of the Spec parameters. Only their arguments are looked at, which are not null.
+/// The values of the Spec parameters. Ignores all other arguments, which may be missing; values must not be
+/// null.
 assemble::SpecValues specsOf(const program::Kernel& kernel, std::span<const Argument> arguments);
 
-/// The shape that a kernel runs over: that of its outputs, or, where it has only variable and scatter outputs,
-/// of its inputs without those that repeat, and iterators that have one.
+/// The shape of a kernel's domain: the shape of its outputs or, if it has only variable and scatter outputs,
+/// of its inputs that are not broadcast and of iterators that have a shape.
 Shape domainOf(const program::Kernel& kernel, std::span<const Argument> arguments,
                const assemble::SpecValues& specs);
 
-/// The plan by which a kernel runs on a device with these limits; null where one pass will do, and where there is no
-/// plan within the limits.
+/// The plan for running a kernel on a device with these limits; null if one pass is enough, or if no plan
+/// fits the limits.
 const program::Plan* planFor(const program::Kernel& kernel, const DeviceLimits& limits);
 
 }  // namespace sk

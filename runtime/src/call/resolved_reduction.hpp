@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What every step of a reduction needs to know, found once after its arguments have been checked. Values and streams take the
-// same way: values are one block, and go to host memory.
+// A reduction after its arguments have been checked: what every later step needs, computed once. Reductions
+// to values are reductions to streams with one block, whose results go to host memory.
 #pragma once
 
 #include <cstddef>
@@ -20,30 +20,30 @@ class DeviceState;
 struct ResolvedReduction {
   DeviceState& device;
   const program::Reduction& reduction;
-  std::span<const Argument> arguments;  ///< to values, those of accumulators are empty
-  Shape domain;  ///< of the inputs together
-  Shape blocks;  ///< their numbers in each dimension of the domain
-  std::span<void* const> values = {};  ///< where the results go, one for each accumulator; none: to streams
+  std::span<const Argument> arguments;  ///< in a reduction to values, those of accumulators are empty
+  Shape domain;  ///< the common shape of the inputs
+  Shape blocks;  ///< the number of blocks in each dimension of the domain
+  std::span<void* const> values = {};  ///< one destination per accumulator; empty if the results are streams
   CallOptions options = {};
 
   bool isToValues() const { return !values.empty(); }
-  /// The stream results' shape, which may have fewer dimensions than `blocks`.
+  /// The shape of stream results, which may have fewer dimensions than `blocks`.
   const Shape& shapeOfResults() const;
-  /// The same elements folded by another reduction.
+  /// The same elements, folded by another reduction.
   ResolvedReduction of(const program::Reduction& other, std::span<const Argument> otherArguments,
                        std::span<void* const> otherValues) const;
 };
 
-/// Room for accumulators that are not results yet: in host memory or in streams, as the results of the reduction are.
+/// Temporaries for accumulators that are not results, in host memory or in streams like the results.
 class TemporaryResults {
  public:
   explicit TemporaryResults(const ResolvedReduction& call) : call_(call) {}
 
-  /// Returns the argument for the accumulator.
+  /// Allocates an accumulator and returns its argument.
   Argument add(const program::Element& element);
 
   std::vector<Argument> arguments;
-  std::vector<void*> values;  ///< none where they are streams
+  std::vector<void*> values;  ///< empty if they are streams
 
  private:
   const ResolvedReduction& call_;
