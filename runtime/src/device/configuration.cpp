@@ -23,7 +23,7 @@ constexpr std::string_view tableUses[] = {"off", "on"};
 constexpr std::string_view targets[] = {"fragment", "compute", "native"};
 constexpr std::string_view contractions[] = {"exact", "fast"};
 
-/// The enumerator of a name: they follow Default in this order.
+/// The enumerator of a name: the names are in the enumerators' order, without Default.
 template <class Choice>
 Choice choiceOf(std::span<const std::string_view> names, const std::string& file, std::string_view key,
                 const toml::node& node) {
@@ -64,7 +64,7 @@ CallOptions optionsOf(const std::string& file, const toml::table& table) {
   return options;
 }
 
-/// A number of the file, which is finite.
+/// A number of the file. Throws unless it is finite.
 float numberOf(const std::string& file, const toml::key& key, const toml::node& node) {
   const std::optional<double> value = node.value<double>();
   if (!value || !std::isfinite(static_cast<float>(*value))) {
@@ -128,7 +128,7 @@ toml::table parsed(const std::string& file) {
   }
 }
 
-/// What `first` leaves open is as in `second`.
+/// Replaces the defaults in `first` by the choices of `second`.
 CallOptions merged(CallOptions first, const CallOptions& second) {
   if (first.accumulate == Accumulate::Default) first.accumulate = second.accumulate;
   if (first.precision == Precision::Default) first.precision = second.precision;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Choices of accuracy and speed from a file, so that an application need not be compiled again (docs/accuracy.md):
+// A file of choices of accuracy and speed, for changing them without recompiling an application
+// (docs/accuracy.md):
 //
 //   [kernels."heat::diffuse"]
 //   precision = "extended"
@@ -33,16 +34,17 @@ namespace sk {
 class Configuration {
  public:
   Configuration() = default;
-  /// Throws sk::Error naming the file, the line and what would be right.
+  /// Throws sk::Error, which names the file, the line and the valid choices.
   explicit Configuration(const std::string& file);
 
-  /// What a call computes with: its own choices, then those of the file for the kernel, then for "*", then the
-  /// declaration's.
+  /// The options of a call: the call's own choices override the file's for the kernel, which override the
+  /// file's for "*", which override the declaration's.
   CallOptions resolve(const program::Kernel& kernel, const CallOptions& call) const;
-  /// What a stream of this name holds its floats as: the file's choice for it, then for "*", then Single.
+  /// The storage of a stream of this name: the file's choice for it, else for "*", else Single.
   Storage storageOf(std::string_view stream) const;
 
-  /// The range of a table: the file's, or what the declaration says. Throws sk::Error where both together make none.
+  /// The range of a table: the file's, else the declaration's. Throws sk::Error if the combination is not a
+  /// valid range.
   TableRange rangeOf(const program::Table& table) const;
 
   struct RangeChoice {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What every kind of device is to the public face: a place for streams that runs kernels on them, GL
-// (gl_device/gl_device.hpp) or native code (native/native_device.hpp). Arguments have been checked before they get here.
+// The interface of every kind of device, GL (gl_device/gl_device.hpp) or native (native/native_device.hpp):
+// it creates streams and runs kernels on them. All arguments have been checked before.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,8 @@ namespace sk {
 struct ResolvedCall;
 struct ResolvedReduction;
 
-/// Exact sums, one for each element of the results, which get them once all are known: a result may be an input.
+/// Exact sums, one per element of the results. They are stored only after all are known: a result may be an
+/// input.
 class RoundedSums {
  public:
   RoundedSums() = default;
@@ -33,7 +34,8 @@ class RoundedSums {
   RoundedSums(const RoundedSums&) = delete;
   RoundedSums& operator=(const RoundedSums&) = delete;
 
-  /// Puts them in the scalar that is `offset` bytes from the start of each element of a region in host memory.
+  /// Stores them to the scalar that is `offset` bytes from the start of each element of a region in host
+  /// memory.
   virtual void store(const StreamRegion& results, std::size_t offset) const = 0;
 };
 
@@ -48,38 +50,39 @@ class DeviceState {
   virtual const std::string& shadingLanguage() const = 0;
   virtual std::string_view profileName() const = 0;
   virtual bool isSoftware() const = 0;
-  /// Tries the device out, unless that is known.
+  /// Tests the device's arithmetic on first use.
   virtual const Arithmetic& arithmetic() = 0;
-  /// Of all classes of kernels; none where there is no choice.
+  /// The trials of all classes of kernels; empty if the device has only one kind of program.
   virtual std::vector<TargetTrial> trialTargets() { return {}; }
-  /// Whether scatter outputs may combine what comes with what they hold.
+  /// Whether scatter outputs may combine a new value with the stored one.
   virtual bool combinesScattered() const = 0;
-  /// Whether precisions other than float's are forms of a kernel: native code computes in any real type.
+  /// Whether other precisions than float need variants of a kernel: native code computes in any real type.
   virtual bool takesForms() const = 0;
-  /// Whether doubles are cheaper to sum in than floats with what they lose.
+  /// Whether summing in doubles is cheaper than compensated sums of floats.
   virtual bool sumsInDoubles() const { return false; }
-  /// Whether it computes in double where kernels say float.
+  /// Whether it computes in double wherever kernels say float.
   virtual bool isReference() const { return false; }
-  /// Throws sk::Error where this device has no program for the kernel.
+  /// Throws sk::Error if this device has no program for the kernel.
   virtual void checkProgram(const program::Kernel& kernel) = 0;
   virtual void checkProgram(const program::Reduction& reduction) = 0;
 
-  /// Throws sk::Error where there is no room. A storage other than Single is for elements with floats.
+  /// Throws sk::Error if memory is exhausted. A storage other than Single requires elements with floats.
   virtual std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
                                                     Storage storage) = 0;
-  /// Traces everything from now on. Throws sk::Error where the file cannot be written.
+  /// Traces all later work. Throws sk::Error if the file cannot be written.
   virtual void startTrace(const std::string& file) = 0;
   virtual void finish() = 0;
   virtual void release() = 0;
   virtual void makeCurrent() = 0;
 
-  /// Only variable outputs may lack elements: they become empty.
+  /// The domain may be empty only if there are variable outputs: they become empty.
   virtual void run(const ResolvedCall& call) = 0;
-  /// There is one block at least. Of a domain without elements, the results are the identities, which then exist.
+  /// There is at least one block. For an empty domain, the results are the identities, which then exist.
   virtual void reduce(const ResolvedReduction& call) = 0;
-  /// Whether it adds sums of floats without rounding. Else it compensates them, in a precision of its own.
+  /// Whether it adds sums of floats without rounding; otherwise it compensates them in its own precision.
   virtual bool sumsExactly(const program::Reduction&) const { return true; }
-  /// The rounded sums of all blocks where the device adds them itself; else null, and the sum is folded to digits.
+  /// The rounded sums of all blocks if the device computes them itself; null if the sum must be folded to
+  /// digits.
   virtual std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction&, const program::ExactSum&) {
     return nullptr;
   }
@@ -87,8 +90,8 @@ class DeviceState {
   DeviceLimits limits;
   Configuration configuration;
   FunctionTables tables;
-  std::optional<PassCount> passCount;  ///< none where nobody counts
-  std::unique_ptr<Trace> trace;  ///< null where SK_TRACE names no file
+  std::optional<PassCount> passCount;  ///< empty unless counting is on
+  std::unique_ptr<Trace> trace;  ///< null unless SK_TRACE names a file
 
  protected:
   DeviceState() = default;
@@ -98,7 +101,7 @@ class DeviceState {
  private:
   friend class StreamState;
 
-  StreamState* firstStream_ = nullptr;  ///< list of those that must be told of the device's end
+  StreamState* firstStream_ = nullptr;  ///< list of the streams to notify when the device ends
 };
 
 }  // namespace sk

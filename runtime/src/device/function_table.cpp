@@ -22,7 +22,7 @@ namespace {
 
 using program::Table;
 
-/// Samples of the function to an interval: enough for its fourth derivative, and for slopes that are as good as exact.
+/// Samples per interval: enough for the function's fourth derivative and for nearly exact slopes.
 constexpr int parts = 8;
 
 constexpr double roundoff = 0x1p-24;
@@ -31,7 +31,7 @@ std::string named(const Table& table, const TableRange& range) {
   return fmt::format("the table of '{}' over [{}, {}]", table.function, range.low, range.high);
 }
 
-/// The function's values in double.
+/// The function's values, computed in double.
 std::vector<double> valuesAt(const Table& table, const std::vector<double>& arguments) {
   const auto count = static_cast<std::int64_t>(arguments.size());
   NativeDevice device(RealType::Double);
@@ -48,7 +48,7 @@ std::vector<double> valuesAt(const Table& table, const std::vector<double>& argu
   return values;
 }
 
-/// The function over its range, `parts` samples to an interval.
+/// The function over its range, with `parts` samples per interval.
 class Samples {
  public:
   Samples(const Table& table, const TableRange& range)
@@ -65,10 +65,10 @@ class Samples {
     }
   }
 
-  /// At the lower end of an interval.
+  /// The value at the lower end of an interval.
   double value(std::size_t interval) const { return values_[interval * parts]; }
 
-  /// Likewise, for an interval's length: by five samples, on one side at the ends of the range.
+  /// The slope there, per interval length: from five samples, one-sided at the ends of the range.
   double slope(std::size_t interval) const {
     const auto f = [&](std::size_t j) { return values_[j]; };
     const std::size_t j = interval * parts;
@@ -83,7 +83,8 @@ class Samples {
   double largestValue() const {
     return std::abs(*std::ranges::max_element(values_, {}, [](double v) { return std::abs(v); }));
   }
-  /// The largest difference of this order, 1 to 4, between neighbouring samples, as a derivative for an interval's length.
+  /// The largest difference of this order (1 to 4) of neighbouring samples, as a derivative per interval
+  /// length.
   double largestDerivative(int order) const {
     constexpr std::array<std::array<int, 5>, 5> weights = {
         {{1}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}, {1, -4, 6, -4, 1}}};
@@ -102,7 +103,7 @@ class Samples {
   std::vector<double> values_;
 };
 
-/// Intervals for each unit of the argument. Throws sk::Error where look-ups would leave the range of floats.
+/// Intervals per unit of the argument. Throws sk::Error if lookups would exceed the range of floats.
 float perUnit(const Table& table, const TableRange& range) {
   const double width = double{range.high} - range.low;
   const double intervals = range.intervals / width;
@@ -137,8 +138,8 @@ std::vector<float> coefficientsFor(const Samples& samples, std::int32_t interval
   return coefficients;
 }
 
-/// What interpolation leaves out, h^2/8 of the second derivative or h^4/384 of the fourth; three roundings of the argument's place; and
-/// those of the polynomial.
+/// Interpolation error (h^2/8 of the second derivative, or h^4/384 of the fourth), three roundings of the
+/// position in the interval, and the rounding of the polynomial.
 double predictedError(const Samples& samples, const TableRange& range, bool isCubic) {
   const double truncation = isCubic ? samples.largestDerivative(4) / 384 : samples.largestDerivative(2) / 8;
   const double place = 3 * roundoff * range.intervals * samples.largestDerivative(1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Tables of functions (sk/table.hpp): built in double on the host from the native code of the function, each when a
-// device first needs it, with the error that it makes. It knows no GL.
+// Tables of functions (sk/table.hpp), built in double on the host from the function's native code when a
+// device first needs them, with their errors. Must not depend on GL.
 #pragma once
 
 #include <map>
@@ -17,20 +17,20 @@ namespace sk {
 
 struct FunctionTable {
   TableReport report;
-  std::vector<float> coefficients;  ///< of each interval, as assemble/glsl/tables.hpp has them
-  float perUnit;  ///< intervals for each unit of the argument
+  std::vector<float> coefficients;  ///< of each interval, laid out as in assemble/glsl/tables.hpp
+  float perUnit;  ///< intervals per unit of the argument
 
   native::Table native() const;
 };
 
-/// Throws sk::Error where the function has no native code, or a value in the range that is not finite, and where floats
-/// cannot tell the intervals of the range.
+/// Throws sk::Error if the function has no native code, if a value in the range is not finite, or if floats
+/// cannot distinguish the range's intervals.
 FunctionTable buildTable(const program::Table& table, const TableRange& range);
 
-/// Those of a device.
+/// The tables of a device.
 class FunctionTables {
  public:
-  /// Builds it at first, over the range that the configuration gives.
+  /// Builds the table on first use, over the range that the configuration gives.
   const FunctionTable& of(const program::Table& table, const Configuration& configuration);
   std::vector<TableReport> reports() const;
 

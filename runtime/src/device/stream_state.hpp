@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What is behind a Stream on any device: its type and shape, and the device that it is on, as long as there
-// is one.
+// The implementation of a Stream on any device: its type, its shape, and its device as long as that exists.
 #pragma once
 
 #include <cstddef>
@@ -27,47 +26,49 @@ class StreamState {
   StreamState(const StreamState&) = delete;
   StreamState& operator=(const StreamState&) = delete;
 
-  /// Finds out how many elements there are, if that is not known, which waits for the device. No scope of the
-  /// device is open.
+  /// Determines the number of elements if it is not known, which waits for the device. No scope of the device
+  /// may be open.
   virtual void settle() = 0;
-  /// The region is inside, and has an element; `elements` are as many, laid out as the Element says.
+  /// The region is in bounds and not empty; `elements` has as many elements, laid out as the Element says.
   virtual void write(const StreamRegion& region, const std::byte* elements) = 0;
   virtual void read(const StreamRegion& region, std::byte* elements) = 0;
-  /// Begins to read. The default reads at once, which is as fast where elements are in host memory.
+  /// Starts reading. The default reads immediately, which is as fast if elements are in host memory.
   virtual std::unique_ptr<TransferState> readAsync(const StreamRegion& region);
-  /// As write(), without waiting for what the device has to do; the elements may be changed at once.
+  /// Like write(), but does not wait for earlier work; the caller may change the elements afterwards.
   virtual void writeAsync(const StreamRegion& region, const std::byte* elements) { write(region, elements); }
   /// `values` has room for every component of every element; all are floats.
   virtual void readReals(const StreamRegion& region, double* values) = 0;
   virtual void writeReals(const StreamRegion& region, const double* values) = 0;
   /// `value` is laid out as the Element says.
   virtual void fill(const StreamRegion& region, const std::byte* value) = 0;
-  /// From a region of the same shape in a stream of the same element on the same device, which may be this stream. False where the
-  /// device cannot copy the elements as they are stored; nothing has happened then.
+  /// Copies a region of the same shape from a stream of the same element type on the same device, which may
+  /// be this stream. Returns false, without any effect, if the device cannot copy the elements as they are
+  /// stored.
   virtual bool copyFrom(const StreamRegion& from, const StreamRegion& to) = 0;
-  /// Throws sk::Error where the device has no textures.
+  /// Throws sk::Error if the device has no textures.
   virtual StreamTexture texture(int plane) = 0;
-  /// The plane exists, the offset is good for it, and the stream has an element. Throws sk::Error where the device has no buffers.
+  /// The plane exists, the offset is valid for it, and the stream is not empty. Throws sk::Error if the
+  /// device has no buffers.
   virtual void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) = 0;
 
-  /// What debuggers and the trace call it.
+  /// The name shown by debuggers and in the trace.
   virtual void setName(std::string_view given) { name = given; }
 
-  /// In the device's list.
+  /// The next stream in the device's list.
   StreamState* next() const { return next_; }
-  /// Takes the stream off its device's list, and forgets the device.
+  /// Removes the stream from its device's list and clears `device`.
   void leave() noexcept;
 
-  DeviceState* device;  ///< null once the device is gone
+  DeviceState* device;  ///< null after the device has ended
   const program::Element* const element;
   const Storage storage;
-  Shape shape;  ///< holds once the stream is settled
+  Shape shape;  ///< valid once the stream is settled
   std::string name;  ///< may be empty
   /// Its elements are lost: what wrote them has failed halfway. It must be written as a whole before anything else.
   bool isBroken = false;
 
  protected:
-  /// Puts the stream on its device's list.
+  /// Adds the stream to its device's list.
   StreamState(DeviceState& owner, const program::Element& type, const Shape& extents, Storage as);
 
  private:
@@ -75,8 +76,8 @@ class StreamState {
   StreamState* next_ = nullptr;
 };
 
-/// The stream of a region, settled. Throws sk::Error, its text after `context`, where it was moved from, its
-/// device is gone, or a kernel has left it less elements than the region has.
+/// The settled stream of a region. Throws sk::Error, with `context` in front, if it was moved from, if its
+/// device has ended, or if a kernel has left it fewer elements than the region has.
 StreamState& liveStream(const StreamRegion& region, std::string_view context);
 
 /// steps(), which write the streams of a reduction's results one after the other: where an exception comes between, these are broken.

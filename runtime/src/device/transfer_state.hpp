@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What is behind a Future on any device.
+// The implementation of a Future on any device.
 #pragma once
 
 #include <cstddef>
@@ -18,11 +18,11 @@ class TransferState {
 
   virtual bool isReady() = 0;
   virtual void wait() = 0;
-  /// Copies the elements to host memory, once. Throws sk::Error where the driver has failed.
+  /// Copies the elements to host memory; called once. Throws sk::Error if the driver has failed.
   virtual void take(std::byte* elements) = 0;
 };
 
-/// Elements that are there.
+/// A transfer of elements that are already in host memory.
 class ReadyTransfer final : public TransferState {
  public:
   explicit ReadyTransfer(std::vector<std::byte>&& elements) : elements_(std::move(elements)) {}
