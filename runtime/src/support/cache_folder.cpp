@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Everything happens relative to a folder that is open and has been looked at, so that nobody puts another in its place
-// meanwhile.
+// All operations are relative to an open folder that has been checked, so that nobody can replace it in the
+// meantime.
 #include "support/cache_folder.hpp"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ class Descriptor {
 
 constexpr mode_t othersMayWrite = S_IWGRP | S_IWOTH;
 
-/// Whether what is open belongs to the user and nobody else may write to it.
+/// Whether the open file belongs to the user and nobody else may write to it.
 bool isPrivate(const struct stat& status) {
   return status.st_uid == ::geteuid() && (status.st_mode & othersMayWrite) == 0;
 }
@@ -63,7 +63,7 @@ std::optional<struct stat> statusOf(const Descriptor& file) {
   return status;
 }
 
-/// The user's own folder: this one, or one in it where others may write.
+/// Opens the user's own folder: this one, or a subfolder of it if others may write to it.
 Descriptor openFolder(const fs::path& path) {
   constexpr int flags = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
   Descriptor folder(::open(path.c_str(), flags));
@@ -77,14 +77,14 @@ Descriptor openFolder(const fs::path& path) {
   return status && isPrivate(*status) ? std::move(inner) : Descriptor();
 }
 
-/// The folders above have the modes that they would have anyway.
+/// Parent folders get their default modes.
 void makeFolder(const fs::path& path) {
   std::error_code ignored;
   fs::create_directories(path.parent_path(), ignored);
   ::mkdir(path.c_str(), S_IRWXU);
 }
 
-/// A line of the key, one of the checksum.
+/// The file's header: a line with the key and a line with the checksum.
 std::string headOf(std::string_view key, std::string_view text) {
   std::string head(key);
   for (char& c : head) {
@@ -97,7 +97,8 @@ std::string nameOf(std::string_view name, std::string_view key) {
   return fmt::format("{}-{:016x}", name, hashOf(key));
 }
 
-/// Whether the cache folder makes files of such names: no others are ever deleted. Drafts have something after a dot.
+/// Whether the name is one that the cache uses: no other files are ever deleted. Drafts have a suffix after a
+/// dot.
 bool isOurs(std::string_view name) {
   constexpr std::size_t digits = 16;
   const std::string_view stem = name.substr(0, name.find('.'));
@@ -116,7 +117,7 @@ bool writeAll(int file, std::string_view text) {
 }
 
 std::optional<std::string> contentsOf(int folder, const std::string& name, std::uintmax_t mostBytes) {
-  // nothing that waits, nothing that is elsewhere
+  // must neither block nor follow links
   Descriptor file(::openat(folder, name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   const std::optional<struct stat> status = statusOf(file);
   if (!status || !S_ISREG(status->st_mode) || !isPrivate(*status)) return std::nullopt;
@@ -131,7 +132,7 @@ std::optional<std::string> contentsOf(int folder, const std::string& name, std::
   return text;
 }
 
-/// Notes that a file is in use, once an hour.
+/// Marks a file as used, once an hour.
 void touch(int folder, const std::string& name) {
   struct stat status{};
   if (::fstatat(folder, name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) return;
@@ -140,14 +141,14 @@ void touch(int folder, const std::string& name) {
     ::utimensat(folder, name.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);
 }
 
-/// No other draft has this name, of whatever process, thread, machine or container.
+/// A draft's name that is unique among processes, threads, machines and containers.
 std::string draftOf(const std::string& name) {
   static std::atomic<unsigned> number = 0;
   const auto now = std::chrono::system_clock::now().time_since_epoch().count();
   return fmt::format("{}.{}.{}.{}.{:x}", name, ::getpid(), ::gettid(), number++, now);
 }
 
-/// Under another name first, so that nobody sees a part.
+/// Writes to a draft first, so that nobody reads a partial file.
 void replace(int folder, const std::string& name, std::string_view head, std::string_view text) {
   const std::string draft = draftOf(name);
   constexpr int flags = O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW;
@@ -169,7 +170,7 @@ std::vector<File> filesIn(Descriptor folder) {
   std::vector<File> files;
   const std::unique_ptr<DIR, int (*)(DIR*)> list(::fdopendir(folder.get()), ::closedir);
   if (!list) return files;
-  const int number = folder.release();  // which the list closes
+  const int number = folder.release();  // the list closes it
   while (const dirent* entry = ::readdir(list.get())) {
     struct stat status{};
     if (!isOurs(entry->d_name) || ::fstatat(number, entry->d_name, &status, AT_SYMLINK_NOFOLLOW) != 0)
@@ -180,8 +181,8 @@ std::vector<File> filesIn(Descriptor folder) {
   return files;
 }
 
-/// Deletes the files that were not used for longest until the others take three quarters of `bytes` or less; none where
-/// they take no more than `bytes`. Other processes may delete the same files.
+/// If the files take more than `bytes`, deletes the least recently used ones until the rest take at most
+/// three quarters of it. Other processes may delete the same files.
 void bound(const fs::path& path, std::uintmax_t bytes) {
   const Descriptor folder = openFolder(path);
   std::vector<File> files = filesIn(openFolder(path));
@@ -206,7 +207,7 @@ fs::path chosenFolder() {
   if (const fs::path chosen = variable("SK_CACHE"); !chosen.empty()) {
     return chosen == "off" ? fs::path() : chosen;
   }
-  // a relative one is to be ignored: XDG Base Directory Specification
+  // relative paths must be ignored: XDG Base Directory Specification
   if (const fs::path caches = variable("XDG_CACHE_HOME"); caches.is_absolute()) {
     return caches / "streamkernel";
   }
@@ -234,7 +235,7 @@ std::optional<std::string> CacheFolder::read(std::string_view name, std::string_
     touch(folder.get(), file);
     return std::string(text);
   } catch (const std::exception&) {
-    return std::nullopt;  // no memory
+    return std::nullopt;  // out of memory
   }
 }
 
@@ -248,13 +249,13 @@ void CacheFolder::write(std::string_view name, std::string_view key, std::string
     const Descriptor folder = openFolder(path_);
     if (!folder) return;
     replace(folder.get(), nameOf(name, key), head, text);
-    // all files are looked at for the first one, and after each sixteenth of what they may take
+    // files are counted before the first write, and after each sixteenth of the limit
     if ((unchecked_ += bytes) > mostBytes_ / 16) {
       unchecked_ = 0;
       bound(path_, mostBytes_);
     }
   } catch (const std::exception&) {
-    return;  // it is measured again, then
+    return;  // it is measured again
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Sizes that users choose, in 64 bits and without overflow: the one place where elements become bytes, and what is
-// thrown where there is no host memory for them.
+// Sizes that users choose, in 64 bits and without overflow: the only place that converts elements to bytes,
+// and the errors for exhausted host memory.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@
 
 namespace sk {
 
-/// The product of two numbers that are not negative; nullopt where it does not fit in 63 bits.
+/// The product of two nonnegative numbers; nullopt if it does not fit in 63 bits.
 constexpr std::optional<std::int64_t> checkedProduct(std::int64_t a, std::int64_t b) {
   if (b != 0 && a > std::numeric_limits<std::int64_t>::max() / b) return std::nullopt;
   return a * b;
 }
 
-/// What `allocated` (native/memory.hpp) throws, with the number of bytes that it was asked for.
+/// The exception of `allocated` (native/memory.hpp), with the number of bytes that was requested.
 class NoMemory : public std::bad_alloc {
  public:
   explicit NoMemory(std::size_t bytes) : bytes_(bytes) {}
@@ -30,17 +30,18 @@ class NoMemory : public std::bad_alloc {
   std::size_t bytes_;
 };
 
-/// The bytes of `count` elements. Throws NoMemory, of as many bytes as there can be, where they do not fit in 63 bits.
+/// The bytes of `count` elements. Throws NoMemory, with the largest number of bytes, if they do not fit in 63
+/// bits.
 inline std::size_t bytesOf(std::int64_t count, std::size_t elementBytes) {
   const std::optional<std::int64_t> bytes = checkedProduct(count, static_cast<std::int64_t>(elementBytes));
   if (!bytes) throw NoMemory(std::numeric_limits<std::size_t>::max());
   return static_cast<std::size_t>(*bytes);
 }
 
-/// Throws sk::Error: the host has no memory for what a kernel or a function of the API needs.
+/// Throws sk::Error: the host is out of memory for `what`.
 [[noreturn]] void failForHostMemory(std::string_view what, const std::bad_alloc& error);
 
-/// fn(); where it lacks host memory, throws sk::Error in its place.
+/// Calls fn(). Throws sk::Error instead if it runs out of host memory.
 template <class Fn>
 decltype(auto) withHostMemory(std::string_view what, Fn&& fn) {
   try {

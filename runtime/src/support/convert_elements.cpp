@@ -46,12 +46,12 @@ double loadReal(Scalar scalar, const std::byte* place) {
   return scalar == Scalar::Half ? float{load<half>(place)} : load<float>(place);
 }
 
-/// A float on the way to a half: rounded to odd, so that the second rounding is as if it were the only one.
+/// Rounds a double to float, to odd, so that a second rounding to half gives the correctly rounded result.
 float toOdd(double value) {
   const auto nearest = static_cast<float>(value);
   if (static_cast<double>(nearest) == value || value != value) return nearest;
   auto bits = load<std::uint32_t>(reinterpret_cast<const std::byte*>(&nearest));
-  const bool isBeyond = (nearest > value) == (value > 0);   // in magnitude
+  const bool isBeyond = (nearest > value) == (value > 0);  // its magnitude is too large
   if (isBeyond) --bits;
   bits |= 1u;
   float odd;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Elements in host memory with their floats in another precision: halves, floats or doubles.
+// Converts elements in host memory between halves, floats and doubles.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,12 @@
 
 namespace sk {
 
-/// Elements of as many components, in the same order; each is rounded to nearest, of two the even one.
+/// Converts elements with the same number of components in the same order, rounding to nearest, ties to even.
 void convertElements(const program::Element& from, const std::byte* source, const program::Element& to,
                      std::byte* target, std::size_t count);
 
-/// Every component of elements of nothing but halves, floats and doubles, as doubles, one element after the other; and back.
+/// Reads all components, which are halves, floats or doubles, as doubles, element by element; and writes
+/// them.
 void readComponents(const program::Element& element, const std::byte* elements, std::size_t count,
                     double* values);
 void writeComponents(const program::Element& element, std::byte* elements, std::size_t count,
