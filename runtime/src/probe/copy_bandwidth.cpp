@@ -24,16 +24,16 @@ namespace sk {
 
 namespace {
 
-/// Of each of both streams: more than caches hold.
+/// The size of each of the two streams, which exceeds caches.
 constexpr std::int64_t rows = 4096, columns = 2048;
 constexpr std::int64_t streamBytes = rows * columns * static_cast<std::int64_t>(sizeof(float4));
 constexpr int rounds = 4;
-/// What is shorter is repeated, so that waiting for its end does not count.
+/// Shorter copies are repeated, so that waiting for the end does not matter.
 constexpr Trace::Time leastTime = 10'000'000;
-/// A GPU that had nothing to do takes so long to get to its full speed (an H200: 0.2 s).
+/// The time in which an idle GPU reaches its full clock rate (an H200: 0.2 s).
 constexpr Trace::Time wakingTime = 300'000'000;
 
-/// The best of some rounds; copy(times) returns when all of it is done.
+/// The best of several rounds; copy(times) returns when all copies are done.
 template <class Copy>
 double measure(Copy&& copy) {
   double best = 0;
@@ -67,7 +67,7 @@ double measureDevice(GlDevice& device) {
     runKernel(device, copyKernel(element.fields[0]), operands, layout.whole, layout.draws, targets);
   };
   draw(from.planes, to.planes);
-  draw(to.planes, from.planes);  // both have been written, so that the memory is there
+  draw(to.planes, from.planes);  // both have been written before, so that their memory is allocated
   if (!device.isSoftware()) {
     for (const Trace::Time start = Trace::now(); Trace::now() - start < wakingTime; gl::finish()) {
       draw(from.planes, to.planes);
@@ -100,16 +100,16 @@ double measureHost() {
       }
     });
   } catch (const std::exception&) {
-    return 0;  // no memory, or no threads
+    return 0;  // no memory or no threads
   }
 }
 
 }  // namespace
 
 double copyBandwidth(GlDevice& device) {
-  if (std::int64_t{device.limits.textureSize} < rows) return 0;  // textures made small, to try layers out
+  if (std::int64_t{device.limits.textureSize} < rows) return 0;  // textures are limited for tests
   const std::string key = driverKey(device.name(), device.driver(), device.profileName());
-  // software has the bandwidth of the processor that it runs on
+  // a software renderer has the bandwidth of its processor
   return device.cache.measuredOnce("bandwidth", device.isSoftware() ? key + ", " + processorKey() : key,
                                    [&] { return measureDevice(device); });
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How fast a device copies a large stream: what the trace measures passes by. It is measured once for each driver, in
-// some tenths of a second, and kept in the cache folder.
+// Measures how fast a device copies a large stream, with which the trace compares passes. The measurement
+// takes some tenths of a second, once per driver, and is kept in the cache folder.
 #pragma once
 
 #include <string_view>
@@ -10,11 +10,11 @@ namespace sk {
 
 class GlDevice;
 
-/// Bytes in a nanosecond (GB/s), read and written ones together, by the fastest of the ways to copy; 0 where there is no
-/// memory to measure it with. No DeviceScope may be open.
+/// Bytes read and written per nanosecond (GB/s), with the fastest way to copy; 0 if there is no memory to
+/// measure it. No DeviceScope may be open.
 double copyBandwidth(GlDevice& device);
 
-/// The same for arrays in host memory, copied by a thread for each processor.
+/// The same for arrays in host memory, copied by one thread per processor.
 double hostCopyBandwidth();
 
 }  // namespace sk

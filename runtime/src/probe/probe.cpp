@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The pairs of floats, the kernel that adds and multiplies them, and what should come of it.
+// The trial of a device's arithmetic: pairs of floats, a kernel that adds and multiplies them, and the
+// expected results.
 #include "probe/probe.hpp"
 
 #include <bit>
@@ -23,7 +24,7 @@ namespace {
 
 constexpr std::size_t pairCount = 1024;
 
-/// The functions are those that pairs of floats are made of (assemble/glsl/doubles.cpp).
+/// The kernel calls the functions that implement pairs of floats (assemble/glsl/doubles.cpp).
 const program::Kernel& exactSums() {
   using program::Role;
   static constexpr std::array<program::Parameter, 2> parameters{
@@ -83,7 +84,7 @@ std::vector<float2> trialPairs(std::size_t count) {
   return made;
 }
 
-// A double holds every product of two floats.
+// A double represents every product of two floats exactly.
 float4 exactSumAndProduct(const float2& x) {
   const float sum = x.x + x.y;
   const float back = sum - x.x;
@@ -130,7 +131,7 @@ std::string_view nameOf(Barrier barrier) {
   return {};
 }
 
-/// What an earlier process has found out; none where that is unknown, or cannot be.
+/// The result of an earlier process; nullopt if there is none.
 std::optional<Barrier> kept(const GlDevice& device, std::string_view key) {
   const std::optional<std::string> text = device.cache.read("barrier", key);
   if (text == "precise\n" && device.capabilities.hasPrecise) return Barrier::Precise;
@@ -147,10 +148,10 @@ Arithmetic probeArithmetic(GlDevice& device) {
     try {
       found = firstThatHolds(device);
     } catch (...) {
-      device.barrier = strongest;  // it was changed for the trial
+      device.barrier = strongest;  // the trial has changed it
       throw;
     }
-    // failures are not kept: they may be for want of memory
+    // failures are not cached, because they may be due to exhausted memory
     if (found) device.cache.write("barrier", key, std::string(nameOf(*found)) + '\n');
   }
   device.barrier = found.value_or(strongest);

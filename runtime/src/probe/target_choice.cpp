@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The kernels that devices are tried out with, as skc would write them, and their race.
+// The kernels of the trials, written as skc would generate them, and the measurement.
 #include "probe/target_choice.hpp"
 
 #include <algorithm>
@@ -124,7 +124,8 @@ class Trial {
     detail::write(detail::wholeRegion(y_.get()), values.data(), values.size());
   }
 
-  /// The shortest of some runs of each, in turns, after some more: the first one compiles, and memory and clocks warm up.
+  /// Compares the shortest of several alternating runs. Warm-up runs come first: they compile and raise clock
+  /// rates.
   double computeOverFragment() {
     constexpr int warm = 3, rounds = 5;
     std::array<double, 2> best;

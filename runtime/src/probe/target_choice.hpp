@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Which programs are faster on a device, drawn or dispatched ones: tried out once for each class of kernels and kept for
-// the driver, on disk, too. Kernels of a class ask much the same of a device.
+// Determines whether drawn or dispatched programs are faster on a device: measured once for each class of
+// kernels, and cached on disk for the driver. Kernels of a class make similar demands on a device.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace sk {
 class GlDevice;
 
 enum class KernelClass : std::uint8_t {
-  Elements,  ///< reads and writes elements, and no more
+  Elements,  ///< only reads and writes elements
   Neighbours,  ///< reads neighbours
   Gathers,  ///< reads at computed indices
   Loops,  ///< has loops
@@ -29,14 +29,16 @@ inline constexpr std::size_t kernelClasses = 5;
 
 std::string_view nameOf(KernelClass kernels);
 
-/// The class of a kernel that is no fold of a reduction.
+/// The class of a kernel that is not the fold of a reduction.
 KernelClass classOf(const program::Kernel& kernel);
 
-/// What a trial's result depends on, in words: streams lie otherwise in smaller textures, and software is as fast as the processor.
+/// Identifies what a trial's result depends on: texture limits change layouts, and software depends on the
+/// processor.
 std::string trialKey(std::string_view driver, const DeviceLimits& limits, bool isSoftware);
 
-/// The time of compute programs over that of fragment programs for a kernel of the class; below 1, dispatches are faster.
-/// No scope of the device is open. None where the device could not be tried out: for want of memory, say.
+/// Time of compute programs divided by time of fragment programs, for a kernel of the class; below 1,
+/// dispatching is faster. No scope of the device may be open. Nullopt if the trial fails, for example because
+/// memory is exhausted.
 std::optional<double> computeOverFragment(GlDevice& device, KernelClass kernels);
 
 }  // namespace sk

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Events as text. Times are microseconds with three decimals, as the format wants them.
+// Formats events as text. Times are microseconds with three decimals, as the format requires.
 #include "trace/trace.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace sk {
 
 namespace {
 
-/// Events wait for the end of the outermost slice no longer than for so many bytes.
+/// Events are written before the end of the outermost slice if they exceed this many bytes.
 constexpr std::size_t mostWaiting = std::size_t{64} << 10;
 
 std::string microseconds(Trace::Time nanoseconds) {
@@ -28,7 +28,7 @@ std::string nameOf(const PassRecord& pass) {
   return pass.step.empty() ? pass.kernel : fmt::format("{}: {}", pass.kernel, pass.step);
 }
 
-/// What both slices of a pass say.
+/// The arguments of both slices of a pass.
 std::string argumentsOf(const PassRecord& pass) {
   return fmt::format(R"(,"kernel":{},"pass":"{}","domain":{},"bytes read":{},"bytes written":{})",
                      quoted(pass.kernel), pass.kind, quoted(pass.domain), pass.bytesRead, pass.bytesWritten);
@@ -74,7 +74,7 @@ void Trace::countBytes(std::int64_t used, std::int64_t kept) noexcept {
     addEvent(fmt::format(R"({{"name":{},"ph":"C","pid":{},"ts":{},"args":{{"in use":{},"kept":{}}}}})",
                          counter_, ::getpid(), microseconds(now()), used, kept));
   } catch (const std::exception&) {
-    return;  // one value less, for want of memory
+    return;  // out of memory: one value is lost
   }
   if (open_.empty()) write();
 }
@@ -97,7 +97,7 @@ void Trace::close() noexcept {
     if (std::uncaught_exceptions() > slice.exceptions) slice.arguments += R"(,"threw":true)";
     addSlice(hostTrack(), slice.category, slice.name, slice.begin, now(), slice.arguments);
   } catch (const std::exception&) {
-    events_.clear();  // no memory
+    events_.clear();  // out of memory
   }
   open_.pop_back();
   if (open_.empty()) write();
@@ -118,7 +118,7 @@ void Trace::addEvent(std::string_view event) {
   if (events_.size() > mostWaiting) write();
 }
 
-/// The calling thread's, named when the device first meets it.
+/// The calling thread's track, which is named on first use.
 std::int64_t Trace::hostTrack() {
   const std::int64_t thread = ::gettid();
   if (std::ranges::find(threads_, thread) == threads_.end()) {

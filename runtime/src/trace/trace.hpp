@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// What a device does, as slices and counters of the file that SK_TRACE names. A device has a Trace, or null: then
-// nothing costs more than the test for it. It times by the host's clock alone; the time of passes on a GPU is
-// gl_device/pass/pass_trace.hpp's business.
+// Records what a device does as slices and counters in the file that SK_TRACE names. A device's Trace is null
+// if there is none, so that tracing then costs only a test. Times come from the host's clock;
+// gl_device/pass/pass_trace.hpp measures passes on a GPU.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@
 
 namespace sk {
 
-/// What the trace tells of a pass.
+/// Describes a pass.
 struct PassRecord {
   std::string kernel;
-  std::string step;  ///< of a kernel's passes: "fold", "tree" ...; empty where there is just one
+  std::string step;  ///< step of a reduction or plan: "fold", "tree" ...; empty if there is one pass
   std::string_view kind;  ///< "draw", "copy", "native"
-  std::string domain;  ///< how many elements, or texels, in each direction
-  std::int64_t bytesRead = 0;  ///< each texel of the inputs once
+  std::string domain;  ///< number of elements, or texels, in each dimension
+  std::int64_t bytesRead = 0;  ///< counts each texel of the inputs once
   std::int64_t bytesWritten = 0;
 
   void addTo(PassCount& count) const;
@@ -35,21 +35,22 @@ class Trace {
   using Time = std::int64_t;
   static Time now();
 
-  /// Throws sk::Error where the file cannot be written.
+  /// Throws sk::Error if the file cannot be written.
   Trace(const std::string& file, std::string_view device);
   ~Trace();
   Trace(const Trace&) = delete;
   Trace& operator=(const Trace&) = delete;
 
-  /// What passes are measured by: bytes that the device copies in a nanosecond, read and written ones; 0: nothing.
+  /// The copy bandwidth to compare passes with: bytes read and written per nanosecond; 0 disables the
+  /// comparison.
   void setBandwidth(double bandwidth) { bandwidth_ = bandwidth; }
-  /// A pass on the tracks of the host and of the device. `clock`: what told the device's times.
+  /// Record a pass on the track of the host or of the device. `clock` names the source of the device's times.
   void hostPass(const PassRecord& pass, Time begin, Time end);
   void devicePass(const PassRecord& pass, Time begin, Time end, std::string_view clock);
-  /// The bytes of the device's streams and temporaries from now on, and those kept for new ones.
+  /// Records the current bytes of the device's streams and temporaries, and of the memory kept for reuse.
   void countBytes(std::int64_t used, std::int64_t kept) noexcept;
 
-  /// Throws sk::Error where the file could not be written lately; once.
+  /// Throws sk::Error, once, if the file could not be written since the last call.
   void throwFailure();
 
  private:
@@ -57,7 +58,7 @@ class Trace {
   struct Open {
     std::string_view category;
     std::string name;
-    std::string arguments;  ///< JSON, each with a comma before it
+    std::string arguments;  ///< JSON members, each preceded by a comma
     Time begin;
     int exceptions;
   };
@@ -73,15 +74,15 @@ class Trace {
   TraceFile file_;
   double bandwidth_ = 0;
   std::int64_t deviceTrack_;
-  std::string counter_;  ///< its name
-  std::vector<std::int64_t> threads_;  ///< that have a name in the file
+  std::string counter_;  ///< the counter's name
+  std::vector<std::int64_t> threads_;  ///< threads that have a name in the file
   std::vector<Open> open_;
   std::string events_;  ///< not yet written
-  bool isTold_ = false;  ///< of the file's failure
+  bool isTold_ = false;  ///< a failure of the file has been reported
 };
 
-/// A slice of the calling thread's track for as long as this lives; nothing where `trace` is null. At the end of the
-/// outermost one everything is written.
+/// A slice of the calling thread's track that lasts as long as this object; does nothing if `trace` is null.
+/// The end of the outermost slice writes all events.
 class TraceScope {
  public:
   TraceScope(Trace* trace, std::string_view category, std::string_view name) : trace_(trace) {

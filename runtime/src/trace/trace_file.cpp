@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Each write begins over the brackets that close the file, and ends with them. The head tells which process has begun it.
+// Each write overwrites the closing brackets and appends them again. The head identifies the process that
+// began the file.
 #include "trace/trace_file.hpp"
 
 #include <algorithm>
@@ -25,10 +26,10 @@ namespace {
 
 constexpr std::string_view tail = "\n]}\n";
 
-/// Numbers of tracks begin where those of threads end (PID_MAX_LIMIT of Linux).
+/// The first track number: above all thread ids (PID_MAX_LIMIT of Linux).
 constexpr std::int64_t firstTrack = 1 << 22;
 
-/// When this process began, in ticks since the machine did: the 20th word after its name in brackets.
+/// The start time of this process, in ticks since boot: the 20th word after the process name in parentheses.
 std::string startOfProcess() {
   std::ifstream in("/proc/self/stat");
   const std::string line(std::istreambuf_iterator<char>(in), {});
@@ -45,7 +46,7 @@ std::string headOfProcess() {
       ::getpid(), startOfProcess(), ::getpid(), quoted(program_invocation_short_name));
 }
 
-/// Keeps other threads and processes from the file for as long as it lives, where the file system can.
+/// Locks the file against other threads and processes, if the file system supports it.
 class Lock {
  public:
   explicit Lock(int file) : file_(file) { ::flock(file_, LOCK_EX); }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// The file of a trace: JSON in the trace event format, which Perfetto and chrome://tracing open. It is whole after each
-// write, so that a process may end at any time. All devices of a process write to one file, each by an object of its
-// own; the file itself is all that they share. What events mean is trace/trace.hpp's business.
+// The file of a trace: JSON in the trace event format, which Perfetto and chrome://tracing open. It is
+// complete after every write, because a process may end at any time. All devices of a process write to the
+// same file, each through its own object; they share nothing else. Must not know what events mean
+// (trace/trace.hpp does).
 #pragma once
 
 #include <cstdint>
@@ -11,24 +12,24 @@
 
 namespace sk {
 
-/// A text as a JSON string, with its quotes.
+/// Quotes a text as a JSON string.
 std::string quoted(std::string_view text);
 
 class TraceFile {
  public:
-  /// Begins the file, or joins in where this process has begun it; "%p" in the name stands for the number of the
-  /// process. Throws sk::Error where it cannot be written.
+  /// Begins the file, or continues it if this process has begun it; "%p" in the name stands for the process
+  /// id. Throws sk::Error if the file cannot be written.
   explicit TraceFile(const std::string& name);
   ~TraceFile();
   TraceFile(const TraceFile&) = delete;
   TraceFile& operator=(const TraceFile&) = delete;
 
-  /// Names a new track. Its number is no thread's, and no other track's in this file.
+  /// Names a new track. Its number differs from all thread ids and from all other tracks of this file.
   std::int64_t openTrack(std::string_view name);
-  /// Adds events, one or more, with commas between them. What cannot be written is lost, and failure() says why.
+  /// Appends one or more events, separated by commas. What cannot be written is lost, and failure() says why.
   void append(std::string_view events) noexcept;
 
-  /// Empty as long as everything could be written.
+  /// Empty unless a write has failed.
   const std::string& failure() const { return failure_; }
 
  private:
