@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The less frequent half of the tracked bindings.
+// Implements the less frequent of the tracked bindings.
 #include "gl/bound_state.hpp"
 
 #include <algorithm>
@@ -60,7 +60,7 @@ void BoundState::bindImage(int unit, GLuint name, GLenum format) {
   images_[slot] = name;
 }
 
-/// In an application's context.
+/// Saves the application's image binding before its first change.
 void BoundState::keepImage(std::size_t unit) {
   KeptImage& kept = keptImages_[unit];
   if (!isApplications_ || kept.kept) {
@@ -82,7 +82,7 @@ void BoundState::bindStorage(GLuint name) {
   storage_ = name;
 }
 
-/// In an application's context: what binding 0 is, and the buffer that calls without a binding's number mean.
+/// Saves the application's buffer at binding 0 and at the generic binding before their first change.
 void BoundState::keepStorage() {
   if (!isApplications_ || keptStorage_.kept) {
     return;
@@ -94,7 +94,7 @@ void BoundState::keepStorage() {
   keptStorage_.kept = true;
 }
 
-/// A size of 0 is that of a whole buffer.
+/// A size of 0 stands for the whole buffer.
 void BoundState::restoreStorage() {
   if (!keptStorage_.kept) {
     return;
@@ -125,7 +125,7 @@ void BoundState::activateUnit(int unit) {
   }
 }
 
-/// In an application's context; the unit is the active one.
+/// Saves the application's texture and sampler of the active unit before their first change.
 void BoundState::keepUnit(std::size_t unit) {
   KeptUnit& kept = keptUnits_[unit];
   if (!isApplications_ || kept.kept) {

@@ -14,9 +14,9 @@
 
 namespace sk::gl {
 
-/// Texture units that may be used: no context that we know has more for a fragment program.
+/// The number of texture units that may be used: no known context has more for a fragment program.
 inline constexpr int maxTextureUnits = 32;
-/// Images that a compute program may write: as many as a draw has targets.
+/// The number of images that a compute program may write: the number of a draw's targets.
 inline constexpr int maxImageUnits = 16;
 
 class BoundState {
@@ -37,36 +37,38 @@ class BoundState {
       vertexArray_ = name;
     }
   }
-  /// Array textures have a binding of their own on each unit.
+  /// Array textures have a separate binding on each unit.
   void texture(int unit, GLuint name, bool isArray) {
     if ((isArray ? arrayTextures_ : textures_)[static_cast<std::size_t>(unit)] != name) {
       bindTexture(unit, name, isArray);
     }
   }
-  /// 0: the settings of the unit's texture itself. The texture is bound first.
+  /// Binds a sampler; 0 uses the texture's own settings. The texture must be bound first.
   void sampler(int unit, GLuint name) {
     if (samplers_[static_cast<std::size_t>(unit)] != name) {
       bindSampler(unit, name);
     }
   }
-  /// An image that programs write, all layers of it.
+  /// Binds all layers of a texture as an image that programs write.
   void image(int unit, GLuint name, GLenum format) {
     if (images_[static_cast<std::size_t>(unit)] != name) {
       bindImage(unit, name, format);
     }
   }
-  /// The buffer that programs write, at binding 0; also where its bytes are read.
+  /// Binds the buffer that programs write, at binding 0 and at the generic binding, through which its bytes
+  /// are read.
   void storage(GLuint name) {
     if (storage_ != name) {
       bindStorage(name);
     }
   }
-  /// Binds a texture where glTexImage2D and the like change it: to unit 0, which is then the active one.
+  /// Binds a texture for changes by glTexImage2D and similar functions: on unit 0, which becomes the active
+  /// one.
   void textureToChange(GLuint name, bool isArray) {
     activateUnit(0);
     texture(0, name, isArray);
   }
-  /// For drawing and for reading.
+  /// Binds a framebuffer for drawing and reading.
   void framebuffer(GLuint name) {
     if (drawFramebuffer_ != name || readFramebuffer_ != name) {
       glBindFramebuffer(GL_FRAMEBUFFER, name);
@@ -83,7 +85,7 @@ class BoundState {
     }
   }
 
-  /// Nothing is known of what is bound.
+  /// Invalidates everything that is known about bindings.
   void forget();
   /// Objects that are deleted are bound nowhere any more, and the driver may give out their names again.
   void forgetProgram(GLuint name);
@@ -94,10 +96,10 @@ class BoundState {
   /// Deletes the objects whose owners have ended. The context is current.
   void deleteQueued() noexcept { deletions.run(*this); }
 
-  /// From here on this is the application's context: the texture and sampler of a unit are kept as the
-  /// unit is first used, and of several viewports only the first is set.
+  /// Begins work in an application's context: saves a unit's texture and sampler when it is first used, and
+  /// sets only the first of several viewports.
   void enterApplication(bool hasManyViewports);
-  /// Gives back what was kept, and the active unit `activeUnit`.
+  /// Restores what was saved, and the active unit `activeUnit`.
   void leaveApplication(GLint activeUnit);
 
   Errors errors;
@@ -130,7 +132,7 @@ class BoundState {
     GLint name = 0, selected = 0;
     GLint64 start = 0, size = 0;
   };
-  // No object has this name, so that whatever is bound next is bound.
+  // No object has this name, so that the next binding is never skipped.
   static constexpr GLuint unknown = ~GLuint{0};
   template <std::size_t count = maxTextureUnits>
   static constexpr std::array<GLuint, count> unknownUnits() {

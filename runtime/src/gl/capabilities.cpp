@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Asking a context for its limits, and trying the formats.
+// Queries a context's limits and tests the formats.
 #include "gl/capabilities.hpp"
 
 #include <algorithm>
@@ -43,7 +43,8 @@ int largestTexture() {
   return std::min({integerOf(GL_MAX_TEXTURE_SIZE), viewport[0], viewport[1]});
 }
 
-/// Whether compute programs can stand for fragment programs, as wide as these; then uniforms find room in both.
+/// Whether compute programs can replace fragment programs of the same limits; uniform limits are then those
+/// of both.
 void readCompute(Capabilities& found) {
   if (found.api != Api::Gl || found.version < 43) return;
   found.hasCompute = integerOf(GL_MAX_COMPUTE_IMAGE_UNIFORMS) >= found.drawBuffers &&

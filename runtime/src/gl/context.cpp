@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Life of a context, and who is current.
+// Lifetime of a context, and which one is current.
 #include "gl/context.hpp"
 
 #include <dlfcn.h>
@@ -15,7 +15,7 @@ namespace {
 
 using GetCurrent = void* (*)();
 
-/// A function of a library that the process has already loaded; null where it has not.
+/// A function of a library that the process has already loaded, else null.
 GetCurrent loadedFunction(const char* library, const char* function) {
   void* handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD);
   if (handle == nullptr) {
@@ -67,8 +67,8 @@ Context::Context(Context&& other) noexcept
       handle_(std::exchange(other.handle_, nullptr)),
       getCurrent_(other.getCurrent_) {}
 
-// The display is left initialised: every user of it in the process has the same one, and EGL counts
-// none of them, so that terminating it would end other devices and the application's own contexts.
+// The display stays initialised: all of the process shares it, and EGL does not count users, so that
+// terminating it would destroy other devices' contexts and the application's own.
 Context::~Context() {
   if (handle_ != nullptr && !isAdopted()) {
     release();

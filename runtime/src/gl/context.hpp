@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A GL or GL ES context: one of our own that needs no window, or the application's. A CurrentScope
-// makes it current for as long as it lives. Which context to take is open_context.hpp's business.
+// A GL or GL ES context: either our own, without a window, or the application's. A CurrentScope makes it
+// current as long as the scope lives. open_context.hpp selects contexts.
 #pragma once
 
 #include <optional>
@@ -14,9 +14,9 @@ enum class Api { Gl, Es };
 
 class Context {
  public:
-  /// Takes over a context of our own, and its pbuffer where it needs one (else EGL_NO_SURFACE).
+  /// Takes ownership of a context, and of its pbuffer if it needs one (else EGL_NO_SURFACE).
   Context(EGLDisplay display, EGLContext context, EGLSurface surface);
-  /// The context that is current on this thread, by EGL or GLX; none where there is none.
+  /// The context that is current on this thread through EGL or GLX, if there is one.
   static std::optional<Context> current();
   Context(Context&& other) noexcept;
   Context& operator=(Context&&) = delete;
@@ -24,9 +24,9 @@ class Context {
 
   bool isAdopted() const { return display_ == EGL_NO_DISPLAY; }
   bool isCurrent() const { return getCurrent_() == handle_; }
-  /// Makes it current, for longer than a CurrentScope does. Throws as that.
+  /// Makes the context current permanently. Throws like CurrentScope.
   void makeCurrent() const;
-  /// Makes no context current where this one is.
+  /// Makes no context current if this one is.
   void release() const noexcept;
 
  private:
@@ -42,11 +42,11 @@ class Context {
   void* (*getCurrent_)() = nullptr;
 };
 
-/// Makes a context current. At its end the one that was current before is so again; where there was
-/// none, the context stays, so that the next scope costs nothing.
+/// Makes a context current, and finally restores the previous one. If there was none, the context stays
+/// current, so that the next scope costs nothing.
 class CurrentScope {
  public:
-  /// Throws sk::Error where the context cannot be made current on this thread, or is an adopted one
+  /// Throws sk::Error if the context cannot be made current on this thread, or if it is an adopted context
   /// that is not current.
   explicit CurrentScope(const Context& context) {
     if (!context.isCurrent()) {
@@ -70,7 +70,7 @@ class CurrentScope {
   EGLContext previous_ = EGL_NO_CONTEXT;
 };
 
-/// "EGL_BAD_ACCESS", of eglGetError().
+/// The name of an eglGetError() code: "EGL_BAD_ACCESS".
 const char* eglErrorName(EGLint error);
 
 }  // namespace sk::gl

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// EGL's way from a display to a context: API, configuration, version.
+// Creates a context on a display: selects the API, the configuration and the version.
 #include "gl/create_context.hpp"
 
 #include <span>
@@ -20,7 +20,7 @@ using Version = std::pair<EGLint, EGLint>;
 constexpr Version glVersions[] = {{4, 6}, {4, 5}, {4, 4}, {4, 3}, {4, 2}, {4, 1}, {4, 0}, {3, 3}};
 constexpr Version esVersions[] = {{3, 2}, {3, 1}, {3, 0}};
 
-/// Binds an API for the making of contexts; what the application had is bound again at the end.
+/// Binds an API for creating contexts, and finally restores the application's.
 class ApiScope {
  public:
   explicit ApiScope(Api api) : previous_(eglQueryAPI()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Making a context without a window on one EGL display.
+// Creates contexts without windows on an EGL display.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace sk::gl {
 
-/// A context of the highest version that an initialised display gives: core GL from 3.3, or ES from
-/// 3.0. Where there is none, `why` says so. It is not made current.
+/// Creates a context of the highest version that an initialised display supports: core GL from 3.3, or ES
+/// from 3.0. If it fails, `why` gives the reason. Does not make the context current.
 std::optional<Context> createContext(EGLDisplay display, Api api, std::string& why);
 
 }  // namespace sk::gl

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Listing and opening EGL displays.
+// Lists and opens EGL displays.
 #include "gl/displays.hpp"
 
 #include <dlfcn.h>
@@ -15,7 +15,7 @@ Function eglFunction(const char* name) {
   return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
-/// The first of `names` that can be loaded makes the answer empty; else what the loader says.
+/// Empty if one of `names` can be loaded, else the loader's message.
 std::string whyUnloadable(std::initializer_list<const char*> names) {
   std::string why;
   for (const char* name : names) {

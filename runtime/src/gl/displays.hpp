@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The EGL displays through which a context without a window may be had, in the order in which they
-// are worth a try: the surfaceless platform, each EGL device, the default display.
+// The EGL displays that may support contexts without windows, in order of preference: the surfaceless
+// platform, each EGL device, the default display.
 #pragma once
 
 #include <string>
@@ -18,21 +18,21 @@ struct DisplayCandidate {
   Kind kind;
   std::string name;              ///< "EGL device 0", for reports
   EGLDeviceEXT device = nullptr; ///< Kind::Device
-  bool isSoftware = false;       ///< Kind::Device: known to be a program on the CPU
+  bool isSoftware = false;  ///< Kind::Device: known to render on the CPU
 };
 
-/// libEGL must be loadable (whyNoEglLibrary).
+/// Requires that libEGL can be loaded (whyNoEglLibrary).
 std::vector<DisplayCandidate> displayCandidates();
 
-/// EGL_NO_DISPLAY where there is none.
+/// EGL_NO_DISPLAY if the display cannot be opened.
 EGLDisplay openDisplay(const DisplayCandidate& candidate);
 
-/// libepoxy ends the process where it cannot load a library, so that these must be asked before EGL,
-/// and before a context of an API, is touched: the loader's message, or empty where all is well.
+/// The loader's message if a library cannot be loaded, else empty. These must be called before EGL, or a
+/// context of an API, is used: libepoxy ends the process if it cannot load a library.
 std::string whyNoEglLibrary();
 std::string whyNoLibrary(Api api);
 
-/// Whether a space-separated list of extensions (null: none) has `extension`.
+/// Whether a space-separated list of extensions (null if empty) contains `extension`.
 bool hasExtension(const char* list, const char* extension);
 
 }  // namespace sk::gl

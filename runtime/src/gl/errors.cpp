@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Reading GL's error flags.
+// Reads GL's error flags.
 #include "gl/errors.hpp"
 
 namespace sk::gl {

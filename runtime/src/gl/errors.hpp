@@ -39,7 +39,7 @@ class Errors {
   bool isLost_ = false;
 };
 
-/// "GL_OUT_OF_MEMORY"
+/// The name of an error: "GL_OUT_OF_MEMORY".
 const char* errorName(GLenum error);
 
 }  // namespace sk::gl

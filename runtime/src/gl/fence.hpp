@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A place in the device's queue that one can wait for.
+// A point in the device's command queue that the host can wait for.
 #pragma once
 
 #include <utility>
@@ -25,7 +25,7 @@ class Fence {
   ~Fence();
   explicit operator bool() const { return sync_ != nullptr; }
 
-  /// Also where the driver cannot tell, as on a lost context: what comes next reports it.
+  /// True also if the driver fails, as on a lost context: the next operation reports the failure.
   bool isReached() const;
   void wait() const;
 

@@ -16,7 +16,7 @@ constexpr Transfer wideInt{GL_RGBA_INTEGER, GL_INT, 4, 4};
 constexpr Transfer wideUint{GL_RGBA_INTEGER, GL_UNSIGNED_INT, 4, 4};
 constexpr Transfer bytes{GL_RGBA, GL_UNSIGNED_BYTE, 4, 1};
 
-// Three rows a family: of 1, 2 and 4 components.
+// Each family has three rows: for 1, 2 and 4 components.
 constexpr std::array<Format, formatCount> table{{
     {GL_R8UI, "R8UI", {GL_RED_INTEGER, GL_UNSIGNED_BYTE, 1, 1}, wideUint, 0},
     {GL_RG8UI, "RG8UI", {GL_RG_INTEGER, GL_UNSIGNED_BYTE, 2, 1}, wideUint, 1},
@@ -50,7 +50,8 @@ constexpr std::array<Format, formatCount> table{{
 constexpr std::size_t rowOfWidth[] = {0, 1, 2, 2};
 constexpr std::size_t formatsPerFamily = 3;
 
-/// ES renders to no normalized format but those of 8 bits without sign: the others are integers here.
+/// The only normalized formats that ES can render to are unsigned ones of 8 bits; the others are stored as
+/// integers.
 std::size_t familyOf(program::Scalar scalar) {
   switch (scalar) {
     case program::Scalar::Bool:
@@ -74,7 +75,7 @@ std::size_t familyOf(program::Scalar scalar) {
 }  // namespace
 
 const Format& formatOf(program::Scalar scalar, int width) {
-  const int channels = scalar == program::Scalar::Double ? 2 * width : width;   // a double has two halves
+  const int channels = scalar == program::Scalar::Double ? 2 * width : width;  // a double takes two channels
   return table[familyOf(scalar) * formatsPerFamily + rowOfWidth[channels - 1]];
 }
 

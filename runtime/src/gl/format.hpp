@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The texture formats of stream planes, with the pairs in which texels travel to and from host memory.
+// The texture formats of stream planes, and the format and type pairs that transfer texels to and from host
+// memory.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +13,7 @@
 
 namespace sk::gl {
 
-/// How texels lie in host memory.
+/// The layout of texels in host memory.
 struct Transfer {
   GLenum format;       ///< GL_RED, GL_RGBA_INTEGER ...
   GLenum type;         ///< GL_FLOAT, GL_UNSIGNED_BYTE ...
@@ -28,19 +29,19 @@ struct Transfer {
 struct Format {
   GLenum internalFormat;
   const char* name;    ///< "R32F", for messages
-  Transfer tight;      ///< as many channels as the format has; every GL and ES uploads it
-  Transfer wide;       ///< what ES promises to read: four channels of 32 bits, of R8 and its like of 8
+  Transfer tight;  ///< the format's own channels; every GL and ES can upload it
+  Transfer wide;  ///< what ES guarantees to read: four channels of 32 bits, or of 8 for R8 and similar
   std::size_t index;   ///< of this row in formats()
 
   std::size_t texelBytes() const { return tight.texelBytes(); }
 };
 
-/// Planes of 3 components have a format of 4. Both the scalar and the width are those of texels.
+/// Planes of 3 components use a format of 4. The scalar and the width are those of the texels.
 const Format& formatOf(program::Scalar scalar, int width);
-/// Of a field's plane.
+/// The format of a field's plane.
 const Format& formatOf(const program::Field& field);
 
-/// How many bytes a field takes in host memory.
+/// The size of a field in host memory.
 std::size_t hostBytes(const program::Field& field);
 
 std::span<const Format> formats();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Making a framebuffer.
+// Creates framebuffers and reads from them.
 #include "gl/framebuffer.hpp"
 
 #include <vector>

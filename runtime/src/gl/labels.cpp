@@ -7,7 +7,8 @@ namespace sk::gl {
 
 namespace {
 
-/// What every implementation takes (GL_MAX_LABEL_LENGTH is 256 at least, with the zero at the end); a group's message too.
+/// The length that every implementation supports (GL_MAX_LABEL_LENGTH is at least 256 with the terminator),
+/// also for groups.
 constexpr std::size_t longest = 255;
 
 GLsizei lengthOf(std::string_view label) { return static_cast<GLsizei>(std::min(label.size(), longest)); }

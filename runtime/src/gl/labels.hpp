@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Names for GL's objects and groups of commands, which debuggers show (KHR_debug). Nothing is named where nobody looks.
+// Names of GL objects and of groups of commands, for debuggers (KHR_debug). Does nothing unless a debugger is
+// attached.
 #pragma once
 
 #include <string_view>
@@ -17,7 +18,7 @@ class Labels {
   void program(GLuint name, std::string_view label) const {
     if (isOn_) set(GL_PROGRAM, name, label);
   }
-  /// A texture that has been bound.
+  /// Names a texture, which must have been bound before.
   void texture(GLuint name, std::string_view label) const {
     if (isOn_) set(GL_TEXTURE, name, label);
   }
@@ -28,7 +29,7 @@ class Labels {
   bool isOn_ = false;
 };
 
-/// A group of all commands for as long as this lives.
+/// Groups all commands issued as long as this object lives.
 class LabelGroup {
  public:
   LabelGroup(const Labels& labels, std::string_view label) : isOn_(labels.isOn()) {

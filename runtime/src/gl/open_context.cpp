@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The search for a context that serves. Every failure is kept for the report; nothing is printed.
+// Searches for a usable context. Collects every failure for the report and prints nothing.
 #include "gl/open_context.hpp"
 
 #include <utility>
@@ -18,13 +18,13 @@ namespace sk::gl {
 
 namespace {
 
-/// The attempts of one search, and what came of them.
+/// A search, with all attempts and their results.
 class Search {
  public:
   explicit Search(const OpenRequest& request)
       : request_(request), wanted_(WantedDevice::parse(request.device)) {}
 
-  /// The context that is asked for, if any.
+  /// Returns the requested context, if there is one.
   std::optional<OpenedContext> find() {
     if (const std::string why = whyNoEglLibrary(); !why.empty()) {
       failed("EGL", why);
@@ -45,7 +45,7 @@ class Search {
     return std::move(software_);
   }
 
-  /// Throws sk::Error with all attempts.
+  /// Throws sk::Error, which lists all attempts.
   [[noreturn]] void report() const {
     const std::string what = wanted_.kind == WantedDevice::Kind::Best
                                  ? "no device was found"
@@ -62,8 +62,8 @@ class Search {
   }
 
  private:
-  /// Software that was found serves unless a GPU turns up, and that is not looked for on the default
-  /// display, which may be somebody's screen.
+  /// A software renderer is used only if no GPU is found. The default display is not searched for GPUs,
+  /// because it may be somebody's screen.
   bool isWorthTrying(const DisplayCandidate& candidate) {
     using Kind = DisplayCandidate::Kind;
     if (software_ && (candidate.isSoftware || candidate.kind == Kind::Default)) {
@@ -104,7 +104,7 @@ class Search {
     return std::nullopt;
   }
 
-  /// A context that serves, whether it is the one that is wanted or not.
+  /// Returns a usable context, whether or not it is the requested one.
   std::optional<OpenedContext> tryApi(const std::string& name, EGLDisplay display, Api api) {
     std::string why = whyNoLibrary(api);
     if (std::optional<Context> context = why.empty() ? createContext(display, api, why) : std::nullopt) {
@@ -118,7 +118,7 @@ class Search {
     return std::nullopt;
   }
 
-  /// Reads what the context can do; why that is not enough, or empty.
+  /// Reads the context's capabilities. Returns why they are not sufficient, or an empty string.
   static std::string examine(OpenedContext& opened) {
     try {
       const CurrentScope scope(opened.context);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Finding a device: tries every EGL display until a context serves, and says why each other did not.
+// Finds a device: tries every EGL display until a context is usable, and reports why the others are not.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@
 namespace sk::gl {
 
 struct OpenRequest {
-  std::string device;        ///< as DeviceOptions::device; empty: the best one with GL
-  std::optional<Api> api;    ///< none: GL, or where that cannot be had ES
+  std::string device;  ///< as DeviceOptions::device; empty: the best one with GL
+  std::optional<Api> api;  ///< nullopt: GL if it is available, else ES
 };
 
 struct OpenedContext {
@@ -21,14 +21,14 @@ struct OpenedContext {
   Capabilities capabilities;
 };
 
-/// Throws sk::Error with every attempt, why it failed, and what can be done.
+/// Throws sk::Error, which lists every attempt, its failure, and possible remedies.
 OpenedContext openContext(const OpenRequest& request);
 
-/// The best context without a window, if it is that of a GPU.
+/// The best context without a window, if it belongs to a GPU.
 std::optional<OpenedContext> findGpu();
 
-/// The context that is current on this thread, if it serves; else throws sk::Error. An application's
-/// state is put back.
+/// The context that is current on this thread; throws sk::Error if it is not sufficient. Restores the
+/// application's state.
 OpenedContext adoptContext(std::optional<Api> api);
 
 }  // namespace sk::gl

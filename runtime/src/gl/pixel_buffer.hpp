@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A buffer of the driver's that texels go through on their way to or from host memory, so that nobody waits for them.
+// A driver's buffer for transferring texels to or from host memory without waiting.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ class PixelBuffer {
   ObjectName<deleteBuffer> name_;
 };
 
-/// A buffer as what texels are read to or written from, for as long as this lives: addresses of texels are offsets in
-/// it then.
+/// Binds a buffer as the source or target of texel transfers as long as this object lives: addresses of
+/// texels are then offsets in the buffer.
 class BoundPixels {
  public:
   enum class Way : GLenum { Read = GL_PIXEL_PACK_BUFFER, Write = GL_PIXEL_UNPACK_BUFFER };

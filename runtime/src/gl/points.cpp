@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Blending, and an application's own.
+// Sets up blending and saves the application's settings.
 #include "gl/points.hpp"
 
 namespace sk::gl {
@@ -10,7 +10,7 @@ namespace {
 constexpr std::array<GLenum, 6> names = {GL_BLEND_EQUATION_RGB, GL_BLEND_EQUATION_ALPHA, GL_BLEND_SRC_RGB,
                                          GL_BLEND_DST_RGB,      GL_BLEND_SRC_ALPHA,      GL_BLEND_DST_ALPHA};
 
-/// Whether equations and factors are kept for each draw buffer.
+/// Whether each draw buffer has its own equations and factors.
 bool hasIndexedBlending(const Capabilities& c) { return c.version >= (c.api == Api::Gl ? 40 : 32); }
 
 GLenum equationOf(Blend blend) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Points, one a texel, and how what they write combines with what is there. Points are drawn in order.
+// Points of one texel, and how they blend with stored texels. Points are drawn in order.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace sk::gl {
 
 enum class Blend { None, Add, Min, Max };
 
-/// Blending of floats for as long as this lives. In an adopted context the application's equations and
-/// factors are put back; in our own nobody else blends.
+/// Blends floats as long as this object lives. Restores the application's equations and factors in an adopted
+/// context; in our own, nothing else blends.
 class Blending {
  public:
   Blending(const Capabilities& capabilities, Blend blend, bool isApplications);
@@ -23,7 +23,7 @@ class Blending {
   Blending& operator=(const Blending&) = delete;
 
  private:
-  /// Equations of colour and alpha; factors of the source's colour, the target's, and both of alpha.
+  /// Equations for colour and alpha; source and target factors for colour, then for alpha.
   using Settings = std::array<GLint, 6>;
 
   const Capabilities& capabilities_;
@@ -32,7 +32,7 @@ class Blending {
   std::array<Settings, maxDrawBuffers> kept_{};
 };
 
-/// Draws `count` points with what is bound; the vertex program places them by gl_VertexID.
+/// Draws `count` points with the current bindings; the vertex program computes positions from gl_VertexID.
 inline void drawPoints(GLsizei count) { glDrawArrays(GL_POINTS, 0, count); }
 
 }  // namespace sk::gl

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Compiling and linking. The driver is asked nothing before the end, since every question waits for the answer.
+// Compiles and links. Queries the driver only at the end, because every query waits for the compiler.
 #include "gl/program.hpp"
 
 #include "gl/bound_state.hpp"
@@ -9,7 +9,7 @@ namespace sk::gl {
 
 namespace {
 
-/// Adds the driver's log of a shader or program to `log`.
+/// Appends the driver's log of a shader or program to `log`.
 template <class GetParameter, class GetLog>
 void appendLog(GLuint object, GetParameter getParameter, GetLog getLog, std::string& log) {
   GLint length = 0;
@@ -26,7 +26,7 @@ ObjectName<deleteShader> newShader(BoundState& bound, GLenum stage) {
   return {bound.deletions, [&] { return glCreateShader(stage); }};
 }
 
-/// Adds the log of a shader that does not compile.
+/// Appends the log of a shader that fails to compile.
 bool isCompiled(GLuint shader, std::string& log) {
   GLint status = GL_FALSE;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &status);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A linked program of a vertex and a fragment shader, or of a compute shader, from their sources or in the driver's own form.
+// A linked program: a vertex and a fragment shader, or a compute shader, from source or from a driver's
+// binary.
 #pragma once
 
 #include <array>
@@ -16,13 +17,13 @@ namespace sk::gl {
 void deleteProgram(BoundState& bound, GLuint name);
 void deleteShader(BoundState& bound, GLuint name);
 
-/// A program as a driver has made it. Another driver, or another version, may refuse it.
+/// A driver's program binary. Another driver, or another version, may reject it.
 struct ProgramBinary {
   GLenum format = 0;
-  std::vector<std::byte> bytes;  ///< none where the driver gives none
+  std::vector<std::byte> bytes;  ///< empty if the driver returns none
 };
 
-/// What a program is compiled of.
+/// The sources of a program.
 struct ProgramSources {
   std::string vertex;  ///< empty: it is a compute program
   std::string main;  ///< the fragment shader, or the compute shader
@@ -38,16 +39,16 @@ class Program {
   /// Empty where the driver refuses. The format is one that it knows.
   static Program load(BoundState& bound, GLenum format, std::span<const std::byte> bytes);
 
-  /// Of a program that was started to be kept.
+  /// Requires a program that was started with `isKept`.
   ProgramBinary binary() const;
 
   GLuint name() const { return name_.get(); }
   explicit operator bool() const { return static_cast<bool>(name_); }
-  /// -1 where the program does not use the uniform.
+  /// -1 if the program does not use the uniform.
   GLint location(const std::string& uniform) const { return glGetUniformLocation(name(), uniform.c_str()); }
-  /// Gives a sampler its texture unit; the program must be bound.
+  /// Assigns a texture unit to a sampler; the program must be bound.
   void setSampler(const std::string& sampler, int unit) const { glUniform1i(location(sampler), unit); }
-  /// Of a compute program: invocations in x and y.
+  /// The size of a compute program's work groups in x and y.
   std::array<GLint, 3> workGroup() const;
 
  private:
@@ -57,15 +58,15 @@ class Program {
   ObjectName<deleteProgram> name_;
 };
 
-/// A program that the driver has been told to compile. Drivers that compile on threads of their own
-/// (KHR_parallel_shader_compile, and others without a word) work at several at a time.
+/// A program that the driver is compiling. Drivers with compiler threads (KHR_parallel_shader_compile, or
+/// without any announcement) compile several at a time.
 class PendingProgram {
  public:
   PendingProgram() = default;
   /// Waits for nothing. `isKept`: somebody will ask for the binary.
   PendingProgram(BoundState& bound, const ProgramSources& sources, bool isKept);
 
-  /// Waits. Where the driver refuses, the result is empty and `log` has its words.
+  /// Waits. If the driver rejects the program, the result is empty and `log` has its messages.
   Program finish(std::string& log);
 
  private:
@@ -74,7 +75,7 @@ class PendingProgram {
   void addShader(GLuint shader, const std::string& source) const;
 
   Program program_;
-  Shader vertex_;  ///< none of a compute program
+  Shader vertex_;  ///< empty for a compute program
   Shader main_;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The samplers through which programs read streams, made when first needed: a nearest one and, for gathers that are
-// declared [[filter]], a linear one for each boundary mode that samplers have. Where one is bound to a unit, the settings
-// of the texture there do not count, which an application may have changed to draw with it.
+// The samplers through which programs read streams, created on first use: a nearest one and, for gathers
+// declared [[filter]], a linear one per boundary mode that samplers support. A bound sampler overrides the
+// texture's settings, which an application may have changed for drawing.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ class Samplers {
     return nearest_.get();
   }
 
-  /// Not for Boundary::Border, which programs compute. The context must be current.
+  /// Not for Boundary::Border, which programs implement. The context must be current.
   GLuint linear(program::Boundary boundary) {
     constexpr std::array<GLint, 3> wraps = {GL_CLAMP_TO_EDGE, GL_REPEAT, GL_MIRRORED_REPEAT};
     const auto mode = static_cast<std::size_t>(boundary);

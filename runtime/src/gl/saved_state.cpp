@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Tables of the state that we set, and what saving and putting back each kind takes.
+// Tables of the state that passes set, and functions that save and restore each kind.
 #include "gl/saved_state.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace sk::gl {
 
 namespace {
 
-/// Which contexts know a piece of state.
+/// The contexts that have a piece of state.
 enum class Needs { Nothing, Gl, Compatibility, Gl32OrEs31 };
 
 bool has(Needs needs, const Capabilities& capabilities) {
@@ -28,35 +28,24 @@ struct Toggle {
   Needs needs;
 };
 
-// All of them are off in a pass.
+// Passes disable all of them.
 constexpr std::array<Toggle, SavedState::toggleCount> toggles{{
-    {GL_DEPTH_TEST, Needs::Nothing},
-    {GL_STENCIL_TEST, Needs::Nothing},
-    {GL_CULL_FACE, Needs::Nothing},
-    {GL_DITHER, Needs::Nothing},
-    {GL_RASTERIZER_DISCARD, Needs::Nothing},
-    {GL_SAMPLE_ALPHA_TO_COVERAGE, Needs::Nothing},
-    {GL_SAMPLE_COVERAGE, Needs::Nothing},
-    {GL_SAMPLE_MASK, Needs::Gl32OrEs31},
-    {GL_COLOR_LOGIC_OP, Needs::Gl},
-    {GL_POLYGON_SMOOTH, Needs::Gl},
-    {GL_CLIP_DISTANCE0, Needs::Gl},
-    {GL_CLIP_DISTANCE1, Needs::Gl},
-    {GL_CLIP_DISTANCE2, Needs::Gl},
-    {GL_CLIP_DISTANCE3, Needs::Gl},
-    {GL_CLIP_DISTANCE4, Needs::Gl},
-    {GL_CLIP_DISTANCE5, Needs::Gl},
-    {GL_CLIP_DISTANCE6, Needs::Gl},
-    {GL_CLIP_DISTANCE7, Needs::Gl},
-    {GL_PROGRAM_POINT_SIZE, Needs::Gl},
-    {GL_POINT_SMOOTH, Needs::Compatibility},
-    {GL_ALPHA_TEST, Needs::Compatibility},
-    {GL_POLYGON_STIPPLE, Needs::Compatibility},
+    {GL_DEPTH_TEST, Needs::Nothing},         {GL_STENCIL_TEST, Needs::Nothing},
+    {GL_CULL_FACE, Needs::Nothing},          {GL_DITHER, Needs::Nothing},
+    {GL_RASTERIZER_DISCARD, Needs::Nothing}, {GL_SAMPLE_ALPHA_TO_COVERAGE, Needs::Nothing},
+    {GL_SAMPLE_COVERAGE, Needs::Nothing},    {GL_SAMPLE_MASK, Needs::Gl32OrEs31},
+    {GL_COLOR_LOGIC_OP, Needs::Gl},          {GL_POLYGON_SMOOTH, Needs::Gl},
+    {GL_CLIP_DISTANCE0, Needs::Gl},          {GL_CLIP_DISTANCE1, Needs::Gl},
+    {GL_CLIP_DISTANCE2, Needs::Gl},          {GL_CLIP_DISTANCE3, Needs::Gl},
+    {GL_CLIP_DISTANCE4, Needs::Gl},          {GL_CLIP_DISTANCE5, Needs::Gl},
+    {GL_CLIP_DISTANCE6, Needs::Gl},          {GL_CLIP_DISTANCE7, Needs::Gl},
+    {GL_PROGRAM_POINT_SIZE, Needs::Gl},      {GL_POINT_SMOOTH, Needs::Compatibility},
+    {GL_ALPHA_TEST, Needs::Compatibility},   {GL_POLYGON_STIPPLE, Needs::Compatibility},
 }};
 
 struct PixelParameter {
   GLenum name;
-  GLint value;   ///< in a pass
+  GLint value;  ///< during a pass
   Needs needs;
 };
 
@@ -81,10 +70,10 @@ constexpr std::array<PixelParameter, SavedState::pixelStoreCount> pixelParameter
 
 struct PixelTransfer {
   GLenum name;
-  GLfloat value;   ///< in a pass
+  GLfloat value;  ///< during a pass
 };
 
-/// What the fixed functions do to texels on their way, in compatibility contexts.
+/// How the fixed-function pipeline transforms texels in transfers, in compatibility contexts.
 constexpr std::array<PixelTransfer, SavedState::pixelTransferCount> pixelTransfers{{
     {GL_MAP_COLOR, 0},
     {GL_RED_SCALE, 1},
@@ -97,10 +86,10 @@ constexpr std::array<PixelTransfer, SavedState::pixelTransferCount> pixelTransfe
     {GL_ALPHA_BIAS, 0},
 }};
 
-/// Whether blending and colour masks are kept for each draw buffer.
+/// Whether each draw buffer has its own blending and colour masks.
 bool hasIndexedDrawBuffers(const Capabilities& c) { return c.api == Api::Gl || c.version >= 32; }
 
-/// Whether there are several viewports, of which glViewport sets all.
+/// Whether there are several viewports, all of which glViewport sets.
 bool hasIndexedViewports(const Capabilities& c) { return c.api == Api::Gl && c.version >= 41; }
 
 bool hasFeedbackPause(const Capabilities& c) { return c.api == Api::Es || c.version >= 40; }
@@ -111,7 +100,7 @@ GLint integerOf(GLenum name) {
   return value;
 }
 
-/// Desktop and ES have functions of their own; the values are the same.
+/// GL and ES have different functions with the same values.
 void setClipControl(const Capabilities& c, GLint origin, GLint depth) {
   const auto set = c.api == Api::Gl ? glClipControl : glClipControlEXT;
   set(static_cast<GLenum>(origin), static_cast<GLenum>(depth));
@@ -191,7 +180,7 @@ SavedState::~SavedState() {
   }
 }
 
-// GL_POLYGON_MODE answers with two values in compatibility contexts and one in core ones.
+// GL_POLYGON_MODE returns two values in compatibility contexts and one in core contexts.
 void SavedState::saveViewport() {
   isScissored_ = glIsEnabled(GL_SCISSOR_TEST) == GL_TRUE;
   if (hasIndexedViewports(capabilities_)) {
@@ -299,7 +288,7 @@ void SavedState::restoreTransfer() const {
   }
 }
 
-// A draw while transform feedback runs would be captured by it, and the program cannot change.
+// Active transform feedback would capture a draw, and forbids changing the program.
 void SavedState::pauseFeedback() {
   if (hasFeedbackPause(capabilities_) && integerOf(GL_TRANSFORM_FEEDBACK_ACTIVE) != 0 &&
       integerOf(GL_TRANSFORM_FEEDBACK_PAUSED) == 0) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The GL state that a pass depends on beside its bindings: set once in a context of our own; in an
-// adopted context saved, set, and put back by each call.
+// The GL state that passes depend on, besides bindings. It is set once in a context of our own; in an adopted
+// context, each call saves, sets and restores it.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace sk::gl {
 
-/// Sets everything that would change what a pass writes or where it writes it, and how texels travel:
-/// tests, blending, masks, pixel storage.
+/// Sets all state that affects what a pass writes, or where, and how texels are transferred: tests, blending,
+/// masks, pixel storage.
 void setPassState(const Capabilities& capabilities);
 
-/// Saves the application's state and calls setPassState; puts the state back at its end. `bound` is
-/// the tracker of bindings in between. For GL 3.0 and ES 3.0 or later.
+/// Saves the application's state and calls setPassState; the destructor restores the state. `bound` tracks
+/// the bindings in between. Requires GL 3.0, ES 3.0 or later.
 class SavedState {
  public:
   SavedState(const Capabilities& capabilities, BoundState& bound);
@@ -41,8 +41,8 @@ class SavedState {
 
   const Capabilities& capabilities_;
   BoundState& bound_;
-  std::array<bool, toggleCount> toggles_{};                ///< in the order of the table of toggles
-  std::array<GLint, pixelStoreCount> pixelStore_{};        ///< in the order of the table of parameters
+  std::array<bool, toggleCount> toggles_{};  ///< in the order of the table of toggles
+  std::array<GLint, pixelStoreCount> pixelStore_{};  ///< in the order of the table of parameters
   std::array<GLfloat, 4> viewport_{};
   std::array<bool, maxDrawBuffers> blend_{};
   std::array<std::array<GLboolean, 4>, maxDrawBuffers> colorMask_{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Making a texture, and finding out whether there was memory for it.
+// Creates textures and detects exhausted memory.
 #include "gl/texture.hpp"
 
 #include "gl/bound_state.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A texture of one of our formats, without filtering, without mipmaps: a 2-D one, or an array of layers.
+// A texture in one of our formats, without filtering and mipmaps: a 2-D texture or an array of layers.
 #pragma once
 
 #include "assemble/region_layout.hpp"
@@ -16,21 +16,21 @@ void setNearest(GLenum target);
 class Texture {
  public:
   Texture() = default;
-  /// Undefined texels. Afterwards name() is 0 where the driver had no memory.
+  /// Creates a texture with undefined texels. name() is 0 afterwards if the driver is out of memory.
   Texture(BoundState& bound, const Format& format, const assemble::TextureShape& shape);
 
   /// Writes a rectangle of texels (format().tight) of a layer, row by row without gaps.
   void write(BoundState& bound, const assemble::Rect& rect, GLint layer, const void* texels);
 
-  /// Copies the first width x height texels of a framebuffer, whose texture has the same format, to a
-  /// layer, bit for bit.
+  /// Copies the first width x height texels of a framebuffer, whose texture has the same format, to a layer,
+  /// bit for bit.
   void copyLayer(BoundState& bound, GLuint framebuffer, GLint layer, GLsizei width, GLsizei height);
 
   GLuint name() const { return name_.get(); }
   const Format& format() const { return *format_; }
   const assemble::TextureShape& shape() const { return shape_; }
   bool isLayered() const { return shape_.layers > 0; }
-  /// Rows of all layers together.
+  /// The rows of all layers.
   GLsizei rows() const { return shape_.height * (isLayered() ? shape_.layers : 1); }
   std::size_t bytes() const;
 

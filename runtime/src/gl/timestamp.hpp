@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Moments of the device: a query that takes the time when everything before it is done, asked for later.
+// Timestamps of the device: a query records the time when all earlier commands are done; the host reads it
+// later.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +14,11 @@ namespace sk::gl {
 
 inline void deleteQuery(BoundState&, GLuint name) { glDeleteQueries(1, &name); }
 
-/// Whether the current context takes timestamps: OpenGL does, unless its clock has no bits.
+/// Whether the current context supports timestamps: OpenGL does, unless its clock has no bits.
 bool hasTimestamps(const Capabilities& capabilities);
 
-/// The device's clock now, in nanoseconds since some moment. It may wait for the driver, not for the device's work.
+/// The device's current time in nanoseconds, from an arbitrary origin. May wait for the driver, but not for
+/// queued work.
 std::int64_t timestampNow();
 
 class Timestamp {
@@ -25,9 +27,9 @@ class Timestamp {
   explicit Timestamp(Deletions& deletions) : name_(deletions, [] { return generated(glGenQueries); }) {}
 
   explicit operator bool() const { return static_cast<bool>(name_); }
-  /// Queues the taking of the time.
+  /// Queues the query.
   void take() const { glQueryCounter(name_.get(), GL_TIMESTAMP); }
-  /// Nanoseconds of the device's clock; none where the device has not come so far.
+  /// The recorded time in nanoseconds; nullopt if the device has not reached it yet.
   std::optional<std::int64_t> result() const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Sending uniforms whose values have changed.
+// Sets uniforms whose values have changed.
 #include "gl/uniform.hpp"
 
 #include <bit>
@@ -55,7 +55,7 @@ void sendMatrix(GLint location, int width, const GLfloat* v) {
   }
 }
 
-/// `count` components of type T in host memory, each as a component of the array's type.
+/// Converts `count` components of type T in host memory to the components of an array.
 template <class T, class Components>
 Components componentsOf(const std::byte* bytes, std::size_t count) {
   Components components{};
@@ -100,7 +100,7 @@ void sendField(GLint location, const Field& field, const std::byte* bytes) {
     case Scalar::Snorm8: return sendAsFloats<snorm8>(location, field, bytes);
     case Scalar::Unorm16: return sendAsFloats<unorm16>(location, field, bytes);
     case Scalar::Snorm16: return sendAsFloats<snorm16>(location, field, bytes);
-    case Scalar::Double: break;   // a DoubleUniform's
+    case Scalar::Double: break;  // DoubleUniform sets them
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Uniforms of a program that remember what they hold, so that a call sets only those that change.
-// Their program must be bound when they are set. A location of -1 is skipped, as in GL.
+// Uniforms that remember their values, so that a call sets only those that change. Their program must be
+// bound when they are set. As in GL, a location of -1 is ignored.
 #pragma once
 
 #include <array>
@@ -39,13 +39,13 @@ class IntUniform {
   Int4 value_{};
 };
 
-/// A double in the value of a uniform parameter: as its bits, or as a pair of floats.
+/// A double in the value of a uniform parameter, sent as its bits or as a pair of floats.
 class DoubleUniform {
  public:
   static DoubleUniform bits(GLint bits, std::uint32_t offset) { return {bits, -1, -1, offset}; }
   static DoubleUniform pair(GLint head, GLint tail, std::uint32_t offset) { return {-1, head, tail, offset}; }
 
-  /// `value`: of the whole parameter, in which the double lies `offset` bytes from the start.
+  /// `value` is the whole parameter, with the double at byte `offset`.
   void set(const void* value);
 
  private:
@@ -58,20 +58,20 @@ class DoubleUniform {
   double last_ = 0;
 };
 
-/// A scalar, vector or matrix in the value of a uniform parameter, of anything but doubles.
+/// A scalar, vector or matrix in the value of a uniform parameter, except doubles.
 class FieldUniform {
  public:
-  /// `parts`: its one field, or the rows of a matrix in order.
+  /// `parts` is a single field, or a matrix's rows in order.
   FieldUniform(GLint location, std::span<const program::Field> parts);
 
-  /// `value`: of the whole parameter, laid out as its Element says.
+  /// `value` is the whole parameter, laid out as its Element says.
   void set(const void* value);
 
  private:
   GLint location_;
   const program::Field* field_;   ///< the first part
   int parts_;
-  std::size_t size_ = 0;          ///< in host memory
+  std::size_t size_ = 0;  ///< bytes in host memory
   bool isKnown_ = false;
   std::array<std::byte, 64> last_{};
 };

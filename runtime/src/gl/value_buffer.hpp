@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The buffer in which a dispatch leaves a value that the host waits for. A GPU hands over bytes of a buffer in a fraction of the time
-// that a texel takes, which is read by the half of it that draws.
+// The buffer in which a dispatch leaves a value for the host. A GPU transfers bytes of a buffer in a fraction
+// of the time that reading a texel takes, because texels go through its graphics pipeline.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace sk::gl {
 
 class ValueBuffer {
  public:
-  /// Of a plane: four components of 32 bits.
+  /// The bytes of a plane: four components of 32 bits.
   static constexpr std::size_t planeBytes = 16;
   static constexpr std::size_t bytes = planeBytes * maxImageUnits;
 
@@ -25,7 +25,7 @@ class ValueBuffer {
   void read(BoundState& bound, std::span<std::byte> values) const;
 
  private:
-  ObjectName<deleteBuffer> name_;  ///< made when first needed
+  ObjectName<deleteBuffer> name_;  ///< created on first use
 };
 
 }  // namespace sk::gl

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The vertex array without attributes that every draw needs and none reads.
+// The vertex array without attributes, which every draw requires and none reads.
 #pragma once
 
 #include "gl/object_name.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Reading the name of a device.
+// Parses the name of a device.
 #include "gl/wanted_device.hpp"
 
 #include <algorithm>

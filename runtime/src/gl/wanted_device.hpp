@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What a user may say of the device that they want, and whether a context is it.
+// A user's request for a device, and whether a context satisfies it.
 #pragma once
 
 #include <string>
@@ -13,14 +13,14 @@ struct WantedDevice {
   enum class Kind { Best, Gpu, NumberedGpu, Software, Renderer };
   Kind kind = Kind::Best;
   int number = 0;             ///< NumberedGpu
-  std::string renderer;       ///< Renderer: a part of its name, lower-case
+  std::string renderer;  ///< Renderer: a part of its name, in lower case
 
-  /// "" and "gl" for the best, "gpu", "gpu:N", "software", or a part of a renderer's name. Throws sk::Error where N is no
-  /// number.
+  /// Parses "" or "gl" (the best), "gpu", "gpu:N", "software", or a part of a renderer's name. Throws
+  /// sk::Error if N is not a number.
   static WantedDevice parse(const std::string& text);
 
   bool mayBeSoftware() const { return kind != Kind::Gpu && kind != Kind::NumberedGpu; }
-  /// Why a context that serves is not the one; empty where it is.
+  /// Why a usable context is not the requested one; empty if it is.
   std::string whyNot(const Capabilities& capabilities) const;
 };
 
