@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The machine that sk/program.hpp describes at ConditionStep.
+// The stack machine that sk/program.hpp describes at ConditionStep.
 #include "assemble/condition.hpp"
 
 #include <bit>
@@ -47,7 +47,7 @@ bool compareAs(Scalar scalar, ConditionOp op, std::uint32_t a, std::uint32_t b) 
     return compare(op, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
   }
   if (scalar == Scalar::Float) return compare(op, std::bit_cast<float>(a), std::bit_cast<float>(b));
-  return compare(op, a, b);   // Bool and Uint: skc takes no others
+  return compare(op, a, b);  // Bool and Uint: skc emits no others
 }
 
 std::uint32_t combine(const ConditionStep& step, std::uint32_t a, std::uint32_t b) {

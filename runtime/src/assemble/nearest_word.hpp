@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The word that somebody meant who typed another: for messages of skc's and sk's command lines.
+// The known word that is most similar to a mistyped one: for messages of the command lines of skc and sk.
 #pragma once
 
 #include <span>
@@ -9,8 +9,9 @@
 
 namespace sk::assemble {
 
-/// The one of `known` that takes the fewest insertions, removals, replacements and exchanges of neighbours to make of
-/// `word` (the optimal string alignment distance); "" where more than one and more than a third of its letters would change.
+/// The word of `known` that needs the fewest insertions, deletions, replacements and swaps of neighbours (the
+/// optimal string alignment distance); "" if more than one letter and more than a third of `word` would
+/// change.
 std::string_view nearestWord(std::string_view word, std::span<const std::string> known);
 
 }  // namespace sk::assemble

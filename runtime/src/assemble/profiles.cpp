@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The table of profiles: one row a version of a target.
+// The table of profiles: one row per version of a target.
 #include <algorithm>
 #include <array>
 

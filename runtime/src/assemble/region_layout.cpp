@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Arithmetic of layouts.
+// Implements the arithmetic of layouts.
 #include "assemble/region_layout.hpp"
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace sk::assemble {
 namespace {
 
-/// The rectangles that hold elements [begin, end) of a linearised stream: the rest of a row that is
-/// begun, whole rows, and the beginning of a last one.
+/// The rectangles that hold elements [begin, end) of a linearised stream: the rest of the first row, whole
+/// rows, and the beginning of the last row.
 std::vector<Rect> consecutiveTexels(std::int32_t begin, std::int32_t end, std::int32_t shift) {
   const std::int32_t width = 1 << shift;
   std::vector<Rect> rects;

@@ -12,7 +12,7 @@ namespace {
 /// OpenGL 3.3 and OpenGL ES 3.0 guarantee 60 components, and a location has four.
 constexpr int mostLocations = 15;
 
-/// That a value of this type takes; 0 where it cannot be handed on.
+/// The locations that a value of this type takes; 0 if it cannot be relayed.
 int locationsOf(std::string_view type) {
   static constexpr std::array<std::string_view, 12> vectors = {
       "float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "uint", "uvec2", "uvec3", "uvec4"};

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Uniforms that reach a fragment program through its vertex program, the same for every fragment:
+// Uniforms that the vertex program passes to the fragment program as flat inputs:
 //
 //   uniform float sk_arg_k;           // vertex         flat in float sk_flat_arg_k;   // fragment
 //   flat out float sk_flat_arg_k;
 //
-// A renderer in software copies all of its state where a uniform of the fragment program changes, and next to nothing for
-// one of the vertex program. It also reads uniforms wherever they are mentioned, in loops again and again, but inputs once.
+// A software renderer copies all of its state when a uniform of the fragment program changes, but almost none
+// for a uniform of the vertex program. It also reads uniforms at every use, even in loops, but inputs only
+// once.
 #pragma once
 
 #include <string>
@@ -17,13 +18,13 @@ namespace sk::assemble {
 
 struct RelayedValue {
   std::string type;
-  std::string name;  ///< of the uniform
+  std::string name;  ///< the uniform's
 };
 
 class RelayedValues {
  public:
-  /// Whether the vertex program hands this uniform on. Each that is asked for does, as long as every device has room for it;
-  /// but never samplers, structs, arrays, doubles and bools.
+  /// Relays a uniform and returns true, if every device has room for it. Never relays samplers, structs,
+  /// arrays, doubles and bools.
   bool take(std::string_view type, std::string_view name);
 
   const std::vector<RelayedValue>& all() const { return values_; }
@@ -33,7 +34,7 @@ class RelayedValues {
   int locations_ = 0;
 };
 
-/// What the fragment program calls a relayed uniform.
+/// The name of a relayed uniform in the fragment program.
 std::string relayedName(std::string_view uniform);
 
 }  // namespace sk::assemble

@@ -15,7 +15,7 @@ namespace {
 using program::Parameter;
 using program::Role;
 
-/// Up to so many pushes an element, slots are cheaper than counting.
+/// Up to this many pushes per element, slots are cheaper than counting.
 constexpr int mostSlots = 4;
 
 std::string_view indexType(const Parameter& scatter) {
@@ -23,7 +23,7 @@ std::string_view indexType(const Parameter& scatter) {
   return types[scatter.rank];
 }
 
-/// What the body calls: "void sk_push_r(float sk_v)" or "void sk_put_r(ivec2 sk_i, float sk_v)".
+/// The function that the body calls: "void sk_push_r(float sk_v)" or "void sk_put_r(ivec2 sk_i, float sk_v)".
 std::string signatureOf(const Parameter& appendOutput) {
   if (appendOutput.role == Role::VariableOutput) {
     return fmt::format("void sk_push_{}({} sk_v)", appendOutput.symbol, appendOutput.element->glsl);
@@ -36,7 +36,7 @@ std::string named(std::string_view kind, const Parameter& appendOutput) {
   return fmt::format("sk_{}_{}", kind, appendOutput.symbol);
 }
 
-/// The texel of index `sk_i` of a scatter output. Streams of more than two dimensions never lie as they are.
+/// The texel of index `sk_i` of a scatter output. Streams of more than two dimensions are always linearised.
 std::string targetTexel(ProgramText& program, const Parameter& appendOutput, const StreamAccess& access) {
   static constexpr std::array<std::string_view, 5> swizzles = {"", ".x", ".xy", ".xyz", ""};
   const auto origin = [&](int rank) {
@@ -59,7 +59,7 @@ std::string targetTexel(ProgramText& program, const Parameter& appendOutput, con
   return fmt::format("sk_texel({}, {})", number, shift);
 }
 
-/// Negative indices are large unsigned ones.
+/// As unsigned integers, negative indices are too large.
 std::string isInside(ProgramText& program, const Parameter& appendOutput) {
   const std::string shape = program.uniform("ivec4", named("shape", appendOutput));
   if (appendOutput.rank == 1) return fmt::format("uint(sk_i) < uint({}.x)", shape);

@@ -13,12 +13,12 @@ namespace sk::assemble {
 
 namespace {
 
-/// The width of a tree's textures: about that of a square of its lowest nodes, or, where these take layers, so
-/// that all odd levels find room in as many.
+/// The shape of the pyramid's textures: nearly square for the lowest nodes or, if these need layers, such
+/// that all odd levels fit into the same number of layers.
 TextureShape lowestNodes(std::int64_t count, const TextureLimits& limits) {
   std::optional<TextureShape> texture = linearTexture((count + 3) / 4, limits);
   if (texture && texture->layers > 0) texture = linearTexture((count + 1) / 2, limits);
-  assert(texture);  // there is one for the counts
+  assert(texture);  // the counts have such a texture
   return *texture;
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// The sums by which an entry of an append output's list finds the element that it comes from: a tree over the counts
-// of all elements, in row-major order, each of whose nodes holds the sums of its first one, two, three and four
-// children. Going down from the root takes one fetch a level. (Horn 2005 searches a scanned stream by halves;
-// trees of sums: Ziegler, Tevs, Theobalt, Seidel 2006, "On-the-fly Point Clouds through Histogram Pyramids".)
+// A histogram pyramid, with which an entry of an append output's list finds its element: a tree over the
+// counts of all elements, in row-major order, whose nodes hold the sums of their first one, two, three and
+// four children. Descending from the root takes one fetch per level. (Ziegler, Tevs, Theobalt, Seidel 2006,
+// "On-the-fly Point Clouds through Histogram Pyramids"; Horn 2005 uses a binary search in a scanned stream
+// instead.)
 //
-// Level 1 has a node for four counts, level l + 1 one for four nodes of level l, and the last one node. Odd
-// levels lie below each other in one texture, even ones in another, so that each is drawn from the other.
+// Level 1 has a node for four counts, level l + 1 a node for four nodes of level l, and the last level a
+// single node. Odd levels are stacked in one texture and even levels in another, so that each level is drawn
+// from the other texture.
 #pragma once
 
 #include <cstdint>
@@ -18,41 +20,42 @@
 
 namespace sk::assemble {
 
-/// Counts and sums above this are this, and mean that there are too many: four of them fit an int.
+/// Counts and sums saturate here, which means that there are too many pushes: the sum of four is still an
+/// int.
 inline constexpr std::int32_t countLimit = static_cast<std::int32_t>(mostPushes) + 1;
 
-/// The most levels that a tree has, over 2^31 elements; `sk_rows` of a list's program has one more.
+/// The most levels of a pyramid, over 2^31 elements; `sk_rows` in a list's program has one more entry.
 inline constexpr int mostPyramidLevels = 16;
 
 struct PyramidLevel {
-  std::int32_t children;  ///< nodes, or counts, that it sums
-  std::int32_t row;  ///< first row of texels of its texture
+  std::int32_t children;  ///< nodes, or counts, of the level below
+  std::int32_t row;  ///< first row of texels in its texture
   std::vector<Rect> draws;
 };
 
 struct PyramidPlan {
   std::int32_t shift = 0;  ///< log2 of the width of both textures
-  TextureShape odd, even;  ///< layers in both, or in none; there may be no even one
-  std::vector<PyramidLevel> levels;  ///< from level 1 on
+  TextureShape odd, even;  ///< both have layers, or neither; `even` may be empty
+  std::vector<PyramidLevel> levels;  ///< beginning with level 1
 
   bool isLayered() const { return odd.layers > 0; }
 };
 
-/// The tree over `count` elements, 1 or more.
+/// Plans the pyramid over `count` elements, at least 1.
 PyramidPlan planTree(std::int32_t count, const TextureLimits& limits);
 
 /// Which textures are array textures.
 struct PyramidTextures {
-  bool ofCounts = false;  ///< a first level
+  bool ofCounts = false;  ///< level 1, which reads the counts
   bool belowLayered = false;
-  bool layered = false;  ///< what is drawn to
+  bool layered = false;  ///< the texture that is drawn to
   auto operator<=>(const PyramidTextures&) const = default;
 };
 
-/// The program of a level. Uniforms, all `int` but the sampler:
+/// The program of a level. All uniforms are `int`, except the sampler:
 ///   sk_below                  the counts, or the level below
-///   sk_children               how many there are of them
-///   sk_below_width            of the texture of counts, for their numbers (`ofCounts`)
+///   sk_children               the number of children
+///   sk_below_width            width of the texture of counts, for their numbers (`ofCounts`)
 ///   sk_below_shift            log2 of the rows of its layers     (`belowLayered`)
 ///   sk_below_row              first row of the level below       (otherwise)
 ///   sk_tree_shift sk_row      of this level

@@ -73,12 +73,12 @@ class PointText {
     }
   }
 
-  /// `sk_at`, in the list or in the output.
+  /// The texel `sk_at`, in the list or in the output.
   Texel texel() {
     if (hasPoints(step_)) return {"sk_at", textures_.list ? "sk_list_shift" : ""};
     return {"sk_at", domain_.texel().shift};
   }
-  /// A texel of what an earlier step has drawn.
+  /// A texel that an earlier step has drawn.
   std::string drawn(const std::string& sampler) {
     program_.uniform(samplerType("sampler2D", textures_.elements), sampler);
     return fmt::format("texelFetch({}, {}, 0)", sampler, place(program_, domain_.texel()));
@@ -94,7 +94,7 @@ class PointText {
   std::string component(std::string_view value, int c) const {
     return width() == 1 ? std::string(value) : fmt::format("{}.{}", value, "xyzw"[c]);
   }
-  /// Float targets have 4 channels where there are 3 components.
+  /// Float render targets have 4 channels for 3 components.
   std::string target(const std::string& value) const {
     return width() == 3 ? fmt::format("vec4({}, 0.0)", value) : value;
   }
@@ -102,21 +102,21 @@ class PointText {
     program_.output(vectorOf("float", "vec", width() == 3 ? 4 : width()), output);
   }
 
-  /// `sk_bits`, the bits of the list's value or of the element.
+  /// Declares `sk_bits`: the bits of the list's value or of the element.
   void readBits() {
     declareSamplers(program_, appendOutput_, !texel().shift.empty());
     program_.statement(
         fmt::format("{0} sk_bits = {0}({1});", uvec(), fetch(program_, appendOutput_, texel())));
   }
 
-  /// The same in the order in which the largest is wanted.
+  /// Declares `sk_bits` so that the largest integer is the wanted value.
   void readOrdered() {
     readBits();
     if (const std::string flip = flipped(); !flip.empty())
       program_.statement(fmt::format("sk_bits {};", flip));
   }
 
-  /// Changes bits to the wanted order, or back.
+  /// Converts bits to that order, or back.
   std::string flipped() const {
     const bool isSigned = field_.scalar == Scalar::Int;
     const bool isMin = appendOutput_.scatter == ScatterOp::Min;
@@ -133,7 +133,7 @@ class PointText {
     }
   }
 
-  /// The limbs overlap once they have grown: the sum wraps, as that of the elements does.
+  /// After additions, the limbs overlap: the sum wraps, as the elements' sum does.
   void joinLimbs() {
     declareOutputs(program_, appendOutput_);
     program_.function(
@@ -152,7 +152,7 @@ class PointText {
     program_.statement(fmt::format("sk_half = {};", target(vec() + "(sk_bits >> 16)")));
   }
 
-  /// Each component of those that lost by their upper half is below every lower half.
+  /// -1 in components whose upper half is not the result, which is less than every lower half.
   void lower() {
     readOrdered();
     declareHalf("sk_half");
@@ -188,7 +188,7 @@ class PointText {
   const PointTextures& textures_;
   const program::Field& field_;
   ProgramText program_;
-  DomainText domain_;      ///< texels of the output
+  DomainText domain_;  ///< the output's texels
 };
 
 }  // namespace

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// The programs that bring the list of a scatter output to where it belongs: each entry is a point that covers
-// its texel, and the device draws points in order. A plain store is the last point's; sums, smallest and
-// largest floats are the device's own blending (Krueger and Westermann 2003). Devices do not blend
-// integers, so these travel in floats that hold them exactly:
+// The programs that scatter a list: each entry is a point that covers its target texel, and the device draws
+// points in order. For a plain store, the last point wins. Sums, minima and maxima of floats use the device's
+// blending (Krueger and Westermann 2003). Devices do not blend integers, so integers are represented exactly
+// in floats:
 //
 //   sums    each component as four limbs of 8 bits, in four channels: 65,536 points add up without rounding.
-//           Split the old elements into limbs, draw the points, join the limbs; and again for the next points.
-//   min max the upper 16 bits of each component first; then the lower ones of those that have the upper ones
-//           that have come out. What is smallest is largest with all bits changed, so that one order serves.
+//           Split the stored elements into limbs, draw points, join the limbs; repeat for the next points.
+//   min max first the upper 16 bits of each component, then the lower 16 bits of those whose upper bits are
+//           the result. A minimum is a maximum with all bits inverted, so that one order serves both.
 #pragma once
 
 #include <cstdint>
@@ -19,41 +19,42 @@
 
 namespace sk::assemble {
 
-/// Points that one draw of limbs may have, the old element being one more.
+/// The most points in one draw of limbs; the stored element counts as one more.
 inline constexpr std::int32_t mostLimbPoints = (1 << 16) - 1;
 
-/// The passes of a scatter output. Those but Points are drawn over its region.
+/// The passes of a scatter output. The steps that do not draw points draw the output's region.
 enum class PointStep : std::uint8_t {
-  Store,  ///< points: the values, to the planes; with blending for floats that are combined
-  SplitLimbs,  ///< the element's limbs, a target a component
-  AddLimbs,  ///< points, blended by addition: the limbs of the values
-  JoinLimbs,  ///< the elements of the limbs
+  Store,  ///< points: stores the values to the planes; blends floats that are combined
+  SplitLimbs,  ///< the element's limbs, one render target per component
+  AddLimbs,  ///< points, with additive blending: the limbs of the values
+  JoinLimbs,  ///< joins limbs to elements
   SplitUpper,  ///< upper halves of the elements
-  Upper,  ///< points, blended by maximum
-  SplitLower,  ///< lower halves of the elements whose upper half came out, -1 of others
-  Lower,  ///< points, blended by maximum: likewise of the values
+  Upper,  ///< points, with maximum blending
+  SplitLower,  ///< lower halves of elements whose upper half is the result, else -1
+  Lower,  ///< points, with maximum blending: the lower halves of values, likewise
   JoinHalves,
 };
 
-/// Whether the step draws the list, else the region.
+/// Whether the step draws the list's points, rather than the region.
 bool hasPoints(PointStep step);
 
 /// Which textures are array textures.
 struct PointTextures {
   bool list = false;
-  bool elements = false;  ///< of the output, and what other steps draw
+  bool elements = false;  ///< of the output, and of what steps draw
   auto operator<=>(const PointTextures&) const = default;
 };
 
-/// The vertex program of points. Uniforms: `sk_targets`, the texels of the entries (sampler), `sk_list_shift`,
-/// log2 of its width, `sk_first`, the entry of the first point, `sk_size` (ivec4), width and height of
-/// the target, and `sk_domain_row`, the first row of its layer. A texel with negative coordinates is nowhere.
+/// The vertex program of points. Uniforms: `sk_targets`, the target texels of the entries (sampler);
+/// `sk_list_shift`, log2 of its width; `sk_first`, the entry of the first point; `sk_size` (ivec4), width and
+/// height of the render target; `sk_domain_row`, the first row of its layer. A texel with negative
+/// coordinates is not drawn.
 std::string pointVertexProgram(const Profile& profile, const PointTextures& textures);
 
-/// The fragment program of a step for scatter output `append output`. Samplers, as far as the step reads them:
-/// samplerName() the values of the list, or the elements where it is no step of points; `sk_limbs0` ...,
-/// `sk_upper`, `sk_lower`: what earlier steps have drawn. Where the elements have layers, `sk_domain_row` and
-/// `sk_domain_shift` are the first row of the one that is drawn, and log2 of its rows.
+/// The fragment program of a step for a scatter output. Samplers, if the step reads them: samplerName() for
+/// the list's values, or for the elements in steps without points; `sk_limbs0` ..., `sk_upper` and `sk_lower`
+/// for the results of earlier steps. If the elements have layers, `sk_domain_row` is the first row of the
+/// drawn layer, and `sk_domain_shift` is log2 of the layer's rows.
 std::string pointProgram(const Profile& profile, const program::Parameter& appendOutput, PointStep step,
                          const PointTextures& textures);
 

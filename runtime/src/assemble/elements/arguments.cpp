@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Arguments of the entry function.
+// Generates the arguments of the entry function.
 #include "assemble/elements/arguments.hpp"
 
 #include <array>
@@ -103,7 +103,7 @@ void defineAbsent(ProgramText& program, const Parameter& parameter) {
   } else {
     program.statement(fmt::format("{} {};", type, none));
   }
-  if (parameter.role == program::Role::Output) return;   // it has the domain's index and shape
+  if (parameter.role == program::Role::Output) return;  // outputs have the domain's index and shape
   if (parameter.usesIndex) defineGetter(program, "index", parameter, "ivec4(0)");
   if (parameter.usesExtent) defineGetter(program, "extent", parameter, "ivec4(0)");
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// What main() hands to a kernel's entry function, and what it defines for the body, for parameters that
-// are read: the same in programs of kernels and of reductions. `index` is an expression for the index of
-// the current element in the domain, an ivec4.
+// GLSL for parameters that are read: the arguments that main() passes to a kernel's entry function, and the
+// definitions that the body needs. Shared by programs of kernels and of reductions. `index` is an ivec4
+// expression for the index of the current element in the domain.
 #pragma once
 
 #include <cstdint>
@@ -15,34 +15,34 @@
 
 namespace sk::assemble {
 
-/// Declares `sk_KIND_P` of a parameter, and gives its name.
+/// Declares `sk_KIND_P` for a parameter and returns its name.
 std::string parameterUniform(ProgramText& program, std::string_view type, std::string_view kind,
                              const program::Parameter& parameter);
 
-/// Defines what the body calls as `sk_index_p` or `sk_extent_p`.
+/// Defines the function `sk_index_p` or `sk_extent_p` for the body.
 void defineGetter(ProgramText& program, std::string_view kind, const program::Parameter& parameter,
                   std::string_view value);
 
-/// Defines sk_extent_p where the body calls it.
+/// Defines sk_extent_p if the body calls it.
 void defineExtent(ProgramText& program, const program::Parameter& parameter);
 
-/// Defines sk_index_p of an input, fitted or not. One of extent 1 in a dimension repeats its only element there.
+/// Defines sk_index_p of an input, fitted or not. In a dimension of extent 1, the input is broadcast.
 void defineInputIndex(ProgramText& program, const program::Parameter& input, const StreamAccess& access,
                       const std::string& index);
 
-/// The texel of the current element of an input that is not aligned, by its sk_index_p.
+/// The texel of the current element of an input that is not aligned, from its sk_index_p.
 Texel inputTexel(ProgramText& program, const program::Parameter& input, const StreamAccess& access);
 
-/// The current value of an iterator: a multiplication and an addition; integers wrap.
+/// The current value of an iterator: one multiplication and one addition; integers wrap.
 std::string iteratorValue(ProgramText& program, const program::Parameter& iterator,
                           const StreamAccess& access, std::string index);
 
-/// Declares the constant for the value of a Spec parameter, and gives its name.
+/// Declares the constant for a Spec parameter's value and returns its name.
 std::string specConstant(ProgramText& program, const program::Parameter& parameter, std::uint32_t bits);
 
-/// Defines what the body names of a stream that the values of spec parameters never let it use.
+/// Defines what the body uses of a stream that the spec parameters' values switch off.
 void defineAbsent(ProgramText& program, const program::Parameter& parameter);
-/// The variable that stands for the element of such a stream, which is no gather.
+/// The variable that replaces the element of such a stream, which is not a gather.
 std::string absentElement(const program::Parameter& parameter);
 
 }  // namespace sk::assemble

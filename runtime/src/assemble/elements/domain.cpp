@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Index and number from the texel that is computed. In a plane the index is a swizzle away, so it is a function;
-// in a linearised stream it takes divisions, so main() computes it once.
+// Index and number of the element, from the texel. In a plane the index is only a swizzle, so it is a
+// function; in a linearised stream it takes divisions, so main() computes it once.
 #include "assemble/elements/domain.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ std::string DomainText::lane() {
   return "sk_lane";
 }
 
-/// The index of the element that is computed, given that of the first one in its texel.
+/// The index of the current element, from the index of the first element in its texel.
 std::string DomainText::plus(std::string index, int components) {
   if (!layout_.packed) return index;
   if (components == 1) return fmt::format("({} + {})", index, lane());
@@ -60,7 +60,7 @@ std::string DomainText::number() {
 }
 
 void DomainText::leaveOutside() {
-  if (!isDrawn()) return;  // nothing runs there
+  if (!isDrawn()) return;  // dispatches have no such invocations
   const std::string shape = program_.uniform("ivec4", "sk_domain_shape");
   switch (layout_.domain) {
     case Domain::Plane: {
@@ -75,7 +75,7 @@ void DomainText::leaveOutside() {
       program_.prologue(fmt::format("if (({}) >= {}.w * {}.w) return;", firstElement(), stride, shape));
       return;
     }
-    case Domain::LinearBox: return;  // these are discarded
+    case Domain::LinearBox: return;  // main() discards these
     case Domain::Entry: {
       const std::string stride = program_.uniform("ivec4", "sk_domain_stride");
       program_.prologue(fmt::format("if (sk_element >= {}.w * {}.w) return;", stride, shape));

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Where an invocation is in its domain: the index and the number of the element that it computes, as
-// GLSL expressions. Declares what they need when they are first asked for; ends invocations
-// outside a box before main() does anything else.
+// The position of an invocation in its domain: index and number of its element, as GLSL expressions. Adds the
+// declarations they need on first use; ends invocations outside a box before main() does anything else.
 #pragma once
 
 #include <string>
@@ -14,38 +13,38 @@
 
 namespace sk::assemble {
 
-/// How the texels of a domain lie.
+/// The layout of a domain's texels.
 struct DomainLayout {
   Domain domain = Domain::Plane;
   bool view = false;
-  int rank = 2;  ///< of the domain's stream, where that is linearised
+  int rank = 2;  ///< of the domain's stream, if that is linearised
   bool layered = false;
-  bool packed = false;  ///< an invocation computes the four elements of a texel, one after the other
+  bool packed = false;  ///< an invocation computes the four elements of a texel in sequence
 };
 
 class DomainText {
  public:
-  /// `function`: what index() calls.
+  /// `function` is the name of the function that index() calls.
   DomainText(ProgramText& program, const DomainLayout& layout, std::string_view function = "sk_index");
 
-  /// Which of the four elements of a packed texel is computed, an int expression: main() has to set it.
+  /// The current one of the four elements of a packed texel, an int expression that main() must set.
   std::string lane();
   bool usesLane() const { return usesLane_; }
-  /// A call of the function, which gives an ivec4.
+  /// A call of the function, which returns an ivec4.
   std::string index();
   /// The first components of the index: an int or an ivec2 to ivec4 expression.
   std::string position(int components);
-  /// The texel that is computed.
+  /// The invocation's texel.
   Texel texel();
-  /// That texel's number, linearised: an int expression that wants brackets.
+  /// The number of that texel in a linearised stream: an int expression that needs parentheses.
   std::string texelNumber();
-  /// The element's row-major number in the domain: an int expression without the need of brackets
-  /// as an operand of `=`. A box of a linearised stream is numbered by `sk_domain_step`, the strides
-  /// that a whole stream of its shape has.
+  /// The element's row-major number in the domain: an int expression that needs no parentheses as the right
+  /// side of `=`. A box of a linearised stream is numbered with `sk_domain_step`, the strides of a whole
+  /// stream of its shape.
   std::string number();
-  /// Makes main() end at once for fragments outside the domain. GPUs shade whole quads of 2 x 2, so that
-  /// such fragments run, as helper invocations, wherever a drawn rectangle has an odd edge. They write
-  /// nothing, but a loop may never end on what they read.
+  /// Makes main() return immediately in fragments outside the domain. GPUs shade quads of 2 x 2, so that such
+  /// fragments run as helper invocations along odd edges of a drawn rectangle. They write nothing, but
+  /// undefined inputs might keep a loop from ending.
   void leaveOutside();
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// sk_at_p, sk_near_p and sk_sample_p. An index that the body computes may be any int at all; the current index is
-// not negative and, like every extent, at most sk::mostExtent.
+// Generates sk_at_p, sk_near_p and sk_sample_p. An index that the body computes may be any int; the current
+// index is not negative, and like every extent it is at most sk::mostExtent.
 #include "assemble/elements/gather.hpp"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ class GatherText {
     finish(fmt::format("{} sk_at_{}({} sk_i)", parameter_.element->glsl, parameter_.symbol, vector()), lines);
   }
 
-  /// Weights the neighbours pair by pair, x first. From 2^24 on floats are whole, so that only NaN leaves
-  /// the weights anything but numbers.
+  /// Interpolates neighbours pair by pair, x first. Floats from 2^24 on are integers, so that weights are
+  /// numbers unless the position is NaN.
   void defineSample() {
     if (holdsDoubles()) return defineSampleOfDoubles();
     const std::string floats = rank_ == 1 ? "float" : fmt::format("vec{}", rank_);
@@ -55,7 +55,7 @@ class GatherText {
          fmt::format("return {};", weighted(rank_, {}))});
   }
 
-  /// The same in doubles.
+  /// Like defineSample, in doubles.
   void defineSampleOfDoubles() {
     const std::string place = rank_ == 1 ? "sk_double" : fmt::format("sk_double{}", rank_);
     std::vector<std::string> lines, wholes;
@@ -74,7 +74,7 @@ class GatherText {
         fmt::format("{} sk_sample_{}({} sk_x)", parameter_.element->glsl, parameter_.symbol, place), lines);
   }
 
-  /// The device's own filter, its boundary mode the sampler's.
+  /// Uses the device's filter, with the boundary mode in the sampler.
   void defineFiltered() {
     static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
     const std::string place = rank_ == 1 ? fmt::format("vec2((sk_x + 0.5) / float({}), 0.5)", shape())
@@ -85,9 +85,9 @@ class GatherText {
                                    swizzles[parameter_.element->fields.front().width - 1u])});
   }
 
-  /// A neighbour in the texel of the current element has no boundary, nor has one above or below it in x. All that depends
-  /// on the offset alone is known to the driver's compiler. main() fetches each texel in reach once for all four elements;
-  /// those that no neighbour is in are never used, and compilers drop them.
+  /// A neighbour in the current element's texel, or one above or below it, has no boundary in x. What depends
+  /// only on the offset is a constant for the driver's compiler. main() fetches each texel in reach once for
+  /// all four elements; compilers remove unused ones.
   void defineNearByTexels(DomainText& domain) {
     const bool isRow = rank_ == 1;
     const std::string extents = isRow
@@ -133,7 +133,7 @@ class GatherText {
   }
   std::string shape() { return fmt::format("{}{}", uniform("shape"), swizzle()); }
 
-  /// A neighbour of no weight is not looked at, whatever it holds.
+  /// Ignores a neighbour of weight 0, whatever its value.
   void defineLerp() {
     const std::string signature =
         fmt::format("{0} sk_lerp({0} sk_a, {0} sk_b, float sk_t)", parameter_.element->glsl);
@@ -168,7 +168,7 @@ class GatherText {
     return rank_ == 1 ? "sk_t" : fmt::format("sk_t.{}", "xyzw"[dimension]);
   }
 
-  /// What the first `dimensions` interpolate to, at `ahead` (0 or 1) of sk_i in each of the others.
+  /// The interpolation in the first `dimensions`, at offset `ahead` (0 or 1) from sk_i in each of the others.
   std::string weighted(int dimensions, std::array<int, 4> ahead) const {
     if (dimensions == 0) return fmt::format("sk_at_{}({})", parameter_.symbol, stepped(ahead));
     const auto last = static_cast<std::size_t>(dimensions - 1);
@@ -177,14 +177,14 @@ class GatherText {
     return fmt::format("sk_lerp({}, {}, {})", low, weighted(dimensions - 1, ahead), weight(last));
   }
 
-  /// "sk_i + ivec2(1, 0)"
+  /// For example "sk_i + ivec2(1, 0)".
   std::string stepped(const std::array<int, 4>& ahead) const {
     const std::span steps(ahead.data(), static_cast<std::size_t>(rank_));
     if (std::count(steps.begin(), steps.end(), 0) == rank_) return "sk_i";
     return rank_ == 1 ? "sk_i + 1" : fmt::format("sk_i + {}({})", vector(), fmt::join(steps, ", "));
   }
 
-  /// `function` of each component of the operands; "0" and the like have none.
+  /// Applies `function` to each component of the operands; "0" and other constants have none.
   std::string componentwise(std::string_view function, const std::vector<std::string>& operands) const {
     std::vector<std::string> components;
     for (int c = 0; c < rank_; ++c) {
@@ -198,10 +198,10 @@ class GatherText {
     return rank_ == 1 ? components.front() : call(vector(), components, "      ");
   }
 
-  /// The operand of componentwise() for the shape.
+  /// The shape, as an operand of componentwise().
   std::string shapeOperand() { return rank_ == 1 ? shape() : uniform("shape"); }
 
-  /// From any index `sk_i` to an index `sk_p` inside, or a return of the border.
+  /// Maps any index `sk_i` to an index `sk_p` in bounds, or returns the border.
   void bringInside(std::vector<std::string>& lines) {
     switch (parameter_.boundary) {
       case Boundary::Clamp:
@@ -222,7 +222,7 @@ class GatherText {
     }
   }
 
-  /// From any offset `sk_d` to the index `sk_p`, inside, of the current element's neighbour there.
+  /// Maps any offset `sk_d` to the index `sk_p` of that neighbour of the current element, in bounds.
   void bringNeighbourInside(std::vector<std::string>& lines) {
     const std::string here = here_(rank_);
     switch (parameter_.boundary) {
@@ -237,7 +237,7 @@ class GatherText {
       case Boundary::Wrap: fold(lines, here, "sk_wrap", Function::WrapOnce, Function::Wrap); return;
       case Boundary::Mirror: fold(lines, here, "sk_mirror", Function::MirrorOnce, Function::Mirror); return;
       case Boundary::Border:
-        // A sum that overflows is negative, hence outside like the sum itself.
+        // A sum that overflows is negative, hence out of bounds like the exact sum.
         define(lines, fmt::format("{} + sk_d", here));
         returnBorderOutside(lines);
         return;
@@ -260,7 +260,7 @@ class GatherText {
     lines.push_back(fmt::format("{} sk_p = {};", vector(), value));
   }
 
-  /// Negative indices are large unsigned ones.
+  /// As unsigned integers, negative indices are too large.
   void returnBorderOutside(std::vector<std::string>& lines) {
     const std::string outside =
         rank_ == 1 ? fmt::format("uint(sk_p) >= uint({})", shape())
@@ -268,13 +268,13 @@ class GatherText {
     lines.push_back(fmt::format("if ({}) return {};", outside, parameter_.border));
   }
 
-  /// The number of the current texel in its row, or among all of a linearised stream.
+  /// The number of the current texel in its row, or in a linearised stream.
   std::string rowOfTexels(DomainText& domain) const {
     return access_.addressing == Addressing::Plane ? std::string(program_.column())
                                                    : fmt::format("({})", domain.texelNumber());
   }
 
-  /// Texels that neighbours may be in, left and right of the current one, and above and below.
+  /// How many texels away neighbours may be: left and right, and above and below.
   int reachInX() const { return (parameter_.reach + lanes - 1) / lanes; }
   int reachInY() const { return rank_ == 1 ? 0 : parameter_.reach; }
   std::string texelName(int x, int y) const {
@@ -282,8 +282,8 @@ class GatherText {
     return fmt::format("sk_texel_{}_{}_{}", part(x), part(y), parameter_.symbol);
   }
 
-  /// Whether the work group fetches all texels that its invocations reach, into memory that they share. A GPU fetches a
-  /// few texels a clock, and each is wanted by as many invocations as there are neighbours.
+  /// Whether the work group fetches all texels in reach of its invocations into shared memory. A GPU fetches
+  /// only a few texels per clock, and each is needed by as many invocations as it has neighbours.
   bool sharesTile() {
     return program_.sharesTexels() && rank_ == 2 && access_.addressing == Addressing::Plane &&
            mayFillTile() && program_.takeShared(tileTexels() * 4 * sizeof(float));
@@ -295,16 +295,17 @@ class GatherText {
   int texelsAround() const {
     return static_cast<int>(tileTexels()) - groupOfWideTexels.first * groupOfWideTexels.second;
   }
-  /// Whether fillTile can: one column on either side, and not more texels around than invocations.
+  /// Whether fillTile can be used: one column on either side, and no more surrounding texels than
+  /// invocations.
   bool mayFillTile() const {
     return reachInX() == 1 && texelsAround() <= groupOfWideTexels.first * groupOfWideTexels.second;
   }
 
-  /// Each invocation fetches the texel of its own, and the first ones another of those around, before it waits for either. `at`
-  /// is the function that fetches one.
+  /// Each invocation fetches its own texel, and the first ones also a surrounding one, before waiting for
+  /// either. `at` is the function that fetches a texel.
   void fillTile(std::string_view at) {
     const auto [width, height] = groupOfWideTexels;
-    const int inRows = tileWidth() * 2 * reachInY();  // of those around, above and below
+    const int inRows = tileWidth() * 2 * reachInY();  // surrounding texels above and below
     const int around = texelsAround();
     assert(mayFillTile());
     const std::string_view symbol = parameter_.symbol;
@@ -334,7 +335,8 @@ class GatherText {
                        x + reachInX());
   }
 
-  /// Variables that main() fills with these texels; those beyond a border hold what nobody looks at.
+  /// Declares variables that main() fills with these texels; the values of those beyond a border are never
+  /// used.
   void defineTexels(const std::string& extents, const std::string& here) {
     const bool isRow = rank_ == 1;
     const bool isTiled = sharesTile();
@@ -345,7 +347,7 @@ class GatherText {
     if (endsRows) lines.emplace_back(isRow ? "int sk_x = sk_p;" : "int sk_x = sk_p.x;");
     if (isRow) {
       lines.push_back(fmt::format("if (sk_d != 0) sk_p = {};", broughtOnce("sk_p", "sk_n")));
-    } else if (isTiled) {  // for invocations beside the domain, too, whose texels are neighbours
+    } else if (isTiled) {  // also for invocations outside of the domain, whose texels are neighbours
       lines.push_back(fmt::format("sk_p = ivec2({}, {});", broughtOnce("sk_p.x", "sk_n.x"),
                                   broughtOnce("sk_p.y", "sk_n.y")));
     } else {
@@ -364,7 +366,7 @@ class GatherText {
     for (int y = -reachInY(); y <= reachInY(); ++y) {
       for (int x = -reachInX(); x <= reachInX(); ++x) {
         program_.variable(packedType(parameter_), texelName(x, y));
-        if (isTiled && x == 0 && y == 0) continue;  // which fillTile() keeps
+        if (isTiled && x == 0 && y == 0) continue;  // fillTile() stores it
         program_.prologue(isTiled ? fmt::format("{} = {};", texelName(x, y), texelOfTile(x, y))
                           : isRow ? fmt::format("{} = {}({});", texelName(x, y), name, x)
                                   : fmt::format("{} = {}(ivec2({}, {}));", texelName(x, y), name, x, y));
@@ -373,8 +375,9 @@ class GatherText {
     if (isTiled) fillTile(name);
   }
 
-  /// Of Clamp or Mirror: sk_v, fetched for a texel at sk_x, which may be beside its row; then with the elements that the boundary
-  /// gives there. In a column none is, but for a tile's, which has texels of invocations beside the domain.
+  /// Clamp or Mirror: arranges sk_v, the texel fetched for column sk_x, which may be out of bounds, as the
+  /// boundary mode requires. With an x offset of 0, sk_x is in bounds, except in a tile, which also covers
+  /// invocations outside of the domain.
   std::string arranged(bool isRow, bool isTiled) const {
     const std::string_view inColumn = isTiled ? "" : isRow ? "sk_d == 0 || " : "sk_d.x == 0 || ";
     const std::string isInside = fmt::format("{}uint(sk_x) < uint({})", inColumn, isRow ? "sk_n" : "sk_n.x");
@@ -383,7 +386,7 @@ class GatherText {
                : fmt::format("{} ? sk_v : sk_v.wzyx", isInside);
   }
 
-  /// Makes sk_v that of them which is sk_c texels to the right and sk_d.y below.
+  /// Sets sk_v to the texel that is sk_c texels to the right and sk_d.y below.
   void chooseTexel(std::vector<std::string>& lines) const {
     for (int y = -reachInY(); y <= reachInY(); ++y) {
       std::string row;
@@ -395,7 +398,7 @@ class GatherText {
     }
   }
 
-  /// An index of texels, less than an extent outside, brought inside.
+  /// Maps a texel index that is less than an extent out of bounds into bounds.
   std::string broughtOnce(std::string_view index, std::string_view extent) {
     switch (parameter_.boundary) {
       case Boundary::Clamp: return fmt::format("clamp({}, 0, {} - 1)", index, extent);
@@ -410,7 +413,7 @@ class GatherText {
     return std::string(index);
   }
 
-  /// The texel of an index of texels.
+  /// The texel with a texel index.
   Texel texelAt(const std::string& index) {
     if (access_.addressing == Addressing::Plane)
       return {rank_ == 1 ? fmt::format("ivec2({}, 0)", index) : index};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Spellings of planes.
+// Spells planes in GLSL.
 #include "assemble/elements/planes.hpp"
 
 #include <algorithm>
@@ -20,12 +20,12 @@ using program::Field;
 using program::Parameter;
 using program::Scalar;
 
-/// How a plane of a component type is spelled. `load` makes a value of its texel, `store` a texel of a
-/// value; `{0}` is the operand, `{1}` the type of the result. Empty: they are the same.
+/// The spelling of a plane by component type. `load` converts a texel to a value, `store` a value to a texel;
+/// `{0}` is the operand, `{1}` the result's type. Empty: no conversion.
 struct Spelling {
   std::string_view sampler;
   std::string_view texelScalar;
-  std::string_view texelVector;   ///< without its width
+  std::string_view texelVector;  ///< without its width
   std::string_view zero;
   std::string_view valueScalar;
   std::string_view valueVector;
@@ -33,7 +33,8 @@ struct Spelling {
   std::string_view store;
 };
 
-// A normalized value is made anew of its integer even where the device makes one: that is exact.
+// Normalized values are always recomputed from their integers, even if the device converts them, because that
+// is exact.
 constexpr std::array<Spelling, 14> spellings = {{
     /* Bool    */ {"usampler2D", "uint", "uvec", "0u", "bool", "bvec", "{1}({0})", "{1}({0})"},
     /* Int     */ {"isampler2D", "int", "ivec", "0", "int", "ivec", "", ""},
@@ -65,7 +66,7 @@ const program::Layer& layerOf(const Parameter& parameter, std::size_t plane) {
   return parameter.layers.empty() ? ownTexture : parameter.layers[plane];
 }
 
-/// The first plane that a parameter writes, and the one after the last.
+/// The first plane that a parameter writes, and the end of the range.
 std::pair<std::size_t, std::size_t> writtenPlanes(const Parameter& parameter) {
   if (parameter.planeCount == 0) return {0, heldBy(parameter).fields.size()};
   return {parameter.firstPlane, std::size_t{parameter.firstPlane} + parameter.planeCount};
@@ -85,13 +86,13 @@ std::string valueType(const Field& field) {
   return sized(spelling(field).valueScalar, spelling(field).valueVector, field.width);
 }
 
-/// `pattern` with the operand and the type of the result; the operand where there is no pattern.
+/// Substitutes the operand and the result's type in `pattern`; an empty pattern gives the operand.
 std::string converted(std::string_view pattern, std::string operand, const std::string& type) {
   if (pattern.empty()) return operand;
   return fmt::format(fmt::runtime(pattern), operand, type);
 }
 
-/// Components of a texel: a double takes two.
+/// Components of a texel. A double takes two.
 int texelWidth(const Field& field) { return field.scalar == Scalar::Double ? 2 * field.width : field.width; }
 
 std::string memberOf(std::string_view variable, const Field& field) {
@@ -100,11 +101,11 @@ std::string memberOf(std::string_view variable, const Field& field) {
   return text;
 }
 
-/// The first component in a part of a vector of doubles.
+/// The components in a part of a vector of doubles.
 char firstComponent(const Field& field) { return "xz"[field.part]; }
 char secondComponent(const Field& field) { return "yw"[field.part]; }
 
-/// The value of a field of the element that `variable` holds.
+/// The value of a field of the element in `variable`.
 std::string valueOf(std::string_view variable, const Field& field) {
   const std::string member = memberOf(variable, field);
   if (field.part < 0) return member;
@@ -113,14 +114,14 @@ std::string valueOf(std::string_view variable, const Field& field) {
   return fmt::format("sk_double2({0}.{1}, {0}.{2})", member, firstComponent(field), secondComponent(field));
 }
 
-/// Statements that make `value` the field of the element that `variable` holds.
+/// Adds statements that assign `value` to a field of the element in `variable`.
 void assignField(std::vector<std::string>& statements, std::string_view variable, const Field& field,
                  std::string_view value) {
   if (field.scalar != Scalar::Double || field.part < 0 || field.width == 1) {
     statements.push_back(fmt::format("{} = {};", valueOf(variable, field), value));
     return;
   }
-  // a name of its own in a struct of several such vectors
+  // a unique name, because a struct may have several such vectors
   const std::string two = fmt::format("sk_two{}", statements.size());
   const std::string member = memberOf(variable, field);
   statements.push_back(fmt::format("sk_double2 {} = {};", two, value));
@@ -128,7 +129,7 @@ void assignField(std::vector<std::string>& statements, std::string_view variable
   statements.push_back(fmt::format("{}.{} = {}.y;", member, secondComponent(field), two));
 }
 
-/// Textures of 3 components are not renderable: those planes have 4.
+/// Textures of 3 components cannot be rendered to: such planes have 4.
 int outputWidth(const Field& field) { return field.width == 3 ? 4 : texelWidth(field); }
 
 std::string planeName(std::string_view prefix, const Parameter& parameter, std::size_t plane) {
@@ -140,7 +141,7 @@ std::string outputName(const Parameter& parameter, std::size_t plane) {
   return planeName("sk_out", parameter, plane);
 }
 
-/// In a bundle, the first layers of all planes come first, then the second ones.
+/// In a bundle, the first layers of all planes precede their second layers.
 std::string placeOfPlane(ProgramText& program, const Parameter& parameter, std::size_t plane,
                          const Texel& texel) {
   const program::Layer& layer = layerOf(parameter, plane);
@@ -150,7 +151,7 @@ std::string placeOfPlane(ProgramText& program, const Parameter& parameter, std::
                      layer.layer);
 }
 
-/// The scalar that the program has where a field of what the stream holds is.
+/// The scalar of the program's value for a field of the stream.
 Scalar valueScalar(const Parameter& parameter, const Field& field) {
   if (parameter.held == nullptr) return field.scalar;
   const auto same = std::ranges::find(parameter.element->fields, field.path, &Field::path);
@@ -159,17 +160,18 @@ Scalar valueScalar(const Parameter& parameter, const Field& field) {
 
 bool isFloating(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Half; }
 
-/// Whether the planes of a field hold floats or halves of which the program makes doubles.
+/// Whether the stream holds floats or halves that the program converts to doubles.
 bool isWidened(const Parameter& parameter, const Field& field) {
   return isFloating(field.scalar) && valueScalar(parameter, field) == Scalar::Double;
 }
 
-/// Whether they hold doubles of which it makes floats.
+/// Whether the stream holds doubles that the program converts to floats.
 bool isNarrowed(const Parameter& parameter, const Field& field) {
   return field.scalar == Scalar::Double && valueScalar(parameter, field) == Scalar::Float;
 }
 
-/// The components of a vector of floats that a plane of doubles holds: the program keeps such vectors whole.
+/// The components of a vector of floats that a plane of doubles holds: the program has such vectors in one
+/// piece.
 std::string partOf(std::string_view variable, const Field& field) {
   static constexpr std::array<std::array<std::string_view, 2>, 2> swizzles = {{{".x", ".xy"}, {".z", ".zw"}}};
   std::string member = memberOf(variable, field);
@@ -177,7 +179,7 @@ std::string partOf(std::string_view variable, const Field& field) {
   return member;
 }
 
-/// The nearest half, of two the even one: drivers round by rules of their own.
+/// Rounds to half, to nearest, ties to even, because drivers round differently.
 std::string halved(ProgramText& program, const Field& field, const std::string& value) {
   program.require(Function::ToHalf);
   if (field.width == 1) return fmt::format("sk_to_half({})", value);
@@ -190,7 +192,7 @@ std::string halved(ProgramText& program, const Field& field, const std::string& 
   return fmt::format("sk_to_half{}({})", field.width, value);
 }
 
-/// A float or a vector of them as doubles.
+/// Converts a float or a vector of floats to doubles.
 std::string widened(ProgramText& program, const Field& field, const std::string& value) {
   if (field.width == 1) return fmt::format("sk_to_double({})", value);
   const std::string signature = fmt::format("sk_double{0} sk_widen{0}(vec{0} sk_v)", field.width);
@@ -203,7 +205,7 @@ std::string widened(ProgramText& program, const Field& field, const std::string&
   return fmt::format("sk_widen{}({})", field.width, value);
 }
 
-/// And back.
+/// Converts doubles to a float or a vector of floats.
 std::string narrowed(ProgramText& program, const Field& field, const std::string& value) {
   if (field.width == 1) return fmt::format("sk_to_float({})", value);
   const std::string signature = fmt::format("vec{0} sk_narrow{0}(sk_double{0} sk_v)", field.width);
@@ -215,7 +217,7 @@ std::string narrowed(ProgramText& program, const Field& field, const std::string
   return fmt::format("sk_narrow{}({})", field.width, value);
 }
 
-/// The program's value of what a plane's texel holds.
+/// Converts the contents of a plane's texel to the program's value.
 std::string fetchedValue(ProgramText& program, const Parameter& parameter, const Field& field,
                          std::string value) {
   if (field.scalar == Scalar::Bool) {
@@ -226,7 +228,7 @@ std::string fetchedValue(ProgramText& program, const Parameter& parameter, const
   return isNarrowed(parameter, field) ? narrowed(program, field, value) : value;
 }
 
-/// Four of each scalar.
+/// Elements of four components, one for each scalar.
 class FourElements {
  public:
   FourElements() {
@@ -248,7 +250,7 @@ class FourElements {
   std::array<Element, spellings.size()> elements_;
 };
 
-/// All that a texel of a plane holds.
+/// Fetches the whole texel of a plane.
 std::string fetchWhole(ProgramText& program, const Parameter& parameter, std::size_t plane,
                        const Texel& texel) {
   const std::string name = samplerName(parameter, plane);
@@ -267,7 +269,7 @@ std::string fetchPlane(ProgramText& program, const Parameter& parameter, std::si
                           std::string(swizzles[static_cast<std::size_t>(texelWidth(field) - 1)]));
 }
 
-/// `value`, of the field's type, as its output's type.
+/// Converts `value` from the field's type to its output's type.
 std::string toOutput(const Field& field, std::string value) {
   value = converted(spelling(field).store, std::move(value), texelType(field, texelWidth(field)));
   if (field.width == 3) value = fmt::format("{}({}, {})", texelType(field, 4), value, spelling(field).zero);
@@ -330,7 +332,7 @@ void declareOutputs(ProgramText& program, const Parameter& parameter) {
 std::vector<Parameter> withPlanes(const std::vector<const Parameter*>& outputs, std::size_t first,
                                   std::size_t count) {
   std::vector<Parameter> written;
-  std::size_t before = 0;  // planes of the outputs so far
+  std::size_t before = 0;  // planes of the previous outputs
   const std::size_t end = count == 0 ? SIZE_MAX : first + count;
   for (const Parameter* output : outputs) {
     const std::size_t after = before + output->element->fields.size();

@@ -15,9 +15,9 @@ using program::Scalar;
 
 namespace {
 
-/// The planes of a float field: as many halves, or doubles, of which a texel holds two.
+/// Adds the planes of a float field: one of halves, or several of doubles, with two doubles per texel.
 void addFields(const Field& field, Storage storage, std::vector<Field>& fields) {
-  const bool isRow = field.part >= 0;   // of a matrix
+  const bool isRow = field.part >= 0;  // of a matrix
   if (field.scalar != Scalar::Float || isRow) {
     fields.push_back(field);
     return;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Streams whose planes hold floats in another precision than the kernel declares (sk::Storage): what an element is
-// then, and kernels that read and write such streams.
+// Streams whose planes hold floats in another precision than the kernel declares (sk::Storage): their
+// elements, and the kernels that read and write them.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@
 
 namespace sk::assemble {
 
-/// An element as a stream holds it, with halves or doubles in the place of floats: laid out in host memory in the same
-/// order, without gaps. Never moved, because `element` refers to `fields`.
+/// A stream's element, with halves or doubles instead of floats: the same order in host memory, without gaps.
+/// Not movable, because `element` refers to `fields`.
 struct HeldElement {
   HeldElement(const program::Element& declared, Storage storage);
   HeldElement(const HeldElement&) = delete;
@@ -24,10 +24,11 @@ struct HeldElement {
   program::Element element;
 };
 
-/// Whether an element has floats that a stream may hold otherwise.
+/// Whether an element has floats, which a stream may store differently.
 bool holdsFloats(const program::Element& element);
 
-/// A kernel whose streams hold what `access` says, one entry a parameter; the kernel itself where that is what it declares.
+/// A kernel for streams with the storage in `access`, one entry per parameter; the kernel itself if that is
+/// as declared.
 class HeldKernel {
  public:
   HeldKernel(const program::Kernel& kernel, std::span<const StreamAccess> access);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The table of functions, over the functions of doubles.hpp and the pieces of double_pieces.hpp alone, so that a text serves both
-// forms. `D(x)` is a constant (double_polynomials.hpp). NaN is looked for first, since comparisons of it are not the same everywhere.
+// The table of functions, which use only functions of doubles.hpp and double_pieces.hpp, so that one text
+// serves both representations. `D(x)` is a constant (double_polynomials.hpp). NaN is tested first, because
+// devices compare it differently.
 #include "assemble/glsl/double_intrinsics.hpp"
 
 #include <algorithm>

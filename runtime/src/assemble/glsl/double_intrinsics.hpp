@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The functions of doubles that GLSL does not have: sines, exponentials and the like of one sk_double, for GLSL's own doubles
-// and for pairs of floats. Only those that a kernel calls are defined; those of vectors are in its body.
+// Functions of doubles that GLSL lacks: sines, exponentials and others of one sk_double, for native doubles
+// and for pairs of floats. Only functions that a kernel calls are defined; the kernel's body has the
+// functions of vectors.
 #pragma once
 
 #include <span>
@@ -11,12 +12,12 @@
 
 namespace sk::assemble {
 
-/// Whether any of them is called with a double.
+/// Whether a kernel calls any of them with a double.
 bool callDoubleIntrinsics(std::span<const program::IntrinsicUse> uses);
 
-/// Their definitions, which stand behind those of doubles.hpp and of exact_sums.hpp for the same barrier. Of native
-/// doubles within a few 2^-53, of pairs within 2^-45, with the special cases of C99 (annex F); docs/accuracy.md says of each what
-/// holds.
+/// Their definitions, which must follow those of doubles.hpp and of exact_sums.hpp for the same barrier.
+/// Errors are a few 2^-53 for native doubles, below 2^-45 for pairs, with the special cases of C99 (annex F);
+/// docs/accuracy.md has the details of each.
 std::string doubleIntrinsicDefinitions(std::span<const program::IntrinsicUse> uses, Doubles form,
                                        Barrier barrier);
 

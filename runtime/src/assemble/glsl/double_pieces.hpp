@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the functions of double_intrinsics.hpp are made of, each with what it needs.
+// The building blocks of the functions in double_intrinsics.hpp, with their dependencies.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace sk::assemble {
 
-/// In the order of their definitions: each needs only earlier ones.
+/// In order of definition: each needs only earlier ones.
 enum class Piece : std::uint8_t {
   ExpTail,
   ExpReduced,
@@ -28,7 +28,8 @@ constexpr Pieces pieces(P... all) {
   return (Pieces{0} | ... | (Pieces{1} << static_cast<unsigned>(all)));
 }
 
-/// The pieces of a set, and all that they need, behind the few functions that look at bits, which are always there.
+/// The pieces of a set and their dependencies, after the few functions that use bits, which are always
+/// included.
 std::string doublePieces(Pieces set, Doubles form, Barrier barrier);
 
 }  // namespace sk::assemble

@@ -11,10 +11,10 @@
 namespace sk::assemble {
 namespace {
 
-/// With a point, which makes it a float.
+/// Formats with a decimal point, which makes it a float.
 std::string floatText(double value) { return fmt::format("{:#.9g}", static_cast<float>(value)); }
 
-/// A coefficient, or the choice between two, each by `text`.
+/// A coefficient, or the choice between two, each formatted by `text`.
 template <class Text>
 std::string chosen(const Polynomial& polynomial, std::size_t i, const Text& text) {
   const std::string one = text(polynomial.coefficients[i]);

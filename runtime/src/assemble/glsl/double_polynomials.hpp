@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Numbers and polynomials of doubles as text for either form: what the functions of double_intrinsics.hpp are made of. It
-// knows no function but by its polynomial.
+// Constants and polynomials of doubles as text for either representation. Must not depend on the functions
+// that they approximate.
 #pragma once
 
 #include <span>
@@ -12,21 +12,21 @@
 
 namespace sk::assemble {
 
-/// `sk_double(...)` of a finite number: of a pair, the nearest.
+/// `sk_double(...)` for a finite number; the nearest pair.
 std::string doubleConstant(Doubles form, double value);
-/// A text in which each `D(number)` is replaced by that.
+/// The text with each `D(number)` replaced by its doubleConstant.
 std::string withConstants(Doubles form, std::string_view text);
 
-/// `sk_double name(sk_double x)`, or `sk_double name(sk_double x, bool other)` where there are two lists, which
-/// are equally long. Lowest powers first. Of pairs, only the first `exact` coefficients are such; what the
-/// others add is so small that floats will do.
+/// Defines `sk_double name(sk_double x)`, or `sk_double name(sk_double x, bool other)` if there are two
+/// lists, of equal length. Lowest powers first. In pairs, only the first `exact` coefficients are pairs; the
+/// terms of the others are so small that floats suffice.
 struct Polynomial {
   std::string_view name;
   std::size_t exact;
   std::span<const double> coefficients, others = {};
 };
-/// Its definition, by Horner's rule; of pairs by way of sk_step() (double_intrinsics.cpp), to which each coefficient must
-/// be larger than what stands for those above it.
+/// Its definition, by Horner's rule; for pairs with sk_step() (double_pieces.cpp), for which each coefficient
+/// must exceed the sum of the higher terms.
 std::string polynomialText(Doubles form, const Polynomial& polynomial);
 
 }  // namespace sk::assemble

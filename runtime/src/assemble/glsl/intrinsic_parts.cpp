@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Coefficients of sin, cos, tan, exp, log, sinh, tanh, acosh and atanh are those of Cephes (Moshier, 1992); the others are
-// minimax polynomials of their own. What the range reduction of an argument subtracts, and the logarithm of a
-// power, must stay as it is written (exact_sums.hpp); all else may be contracted or reordered a little without harm.
+// Coefficients of sin, cos, tan, exp, log, sinh, tanh, acosh and atanh are from Cephes (Moshier, 1992); the
+// others are our own minimax polynomials. Range reductions, and the logarithm of a power, must subtract
+// exactly as written (exact_sums.hpp); everything else may be contracted or slightly reordered.
 #include "assemble/glsl/intrinsic_parts.hpp"
 
 #include <array>

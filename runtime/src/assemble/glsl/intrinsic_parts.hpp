@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The functions of one float that accurate intrinsics are made of, each with those that it needs.
+// The building blocks of accurate intrinsics, functions of one float, with their dependencies.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace sk::assemble {
 
-/// In the order of their definitions: each needs only earlier ones.
+/// In order of definition: each needs only earlier ones.
 enum class Part : std::uint8_t {
   WithSign,
   Scale,
@@ -34,16 +34,16 @@ enum class Part : std::uint8_t {
   LengthScale,
 };
 
-/// A set of parts, one bit each.
+/// A set of parts, one bit per part.
 using Parts = std::uint32_t;
 template <class... P>
 constexpr Parts parts(P... all) {
   return (Parts{0} | ... | (Parts{1} << static_cast<unsigned>(all)));
 }
 
-/// The parts of a set, and all that they need.
+/// The parts of a set with their dependencies.
 Parts withNeeded(Parts set);
-/// Whether one of them calls sk_keep().
+/// Whether any of them calls sk_keep().
 bool useExactFloats(Parts set);
 std::string_view text(Part part);
 inline constexpr unsigned partCount = static_cast<unsigned>(Part::LengthScale) + 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The table of intrinsics, and the definitions of those that a kernel uses: their parts first, then the functions of
-// one float, then those of vectors.
+// The table of intrinsics, and the definitions of those that a kernel uses: their parts, then functions of
+// one float, then functions of vectors.
 #include "assemble/glsl/intrinsics.hpp"
 
 #include <algorithm>
@@ -20,7 +20,8 @@ namespace {
 using program::Intrinsic;
 using program::IntrinsicUse;
 
-/// `fast`: the device's own function of x, y and z, whose type is $T. `text`: ours, of one float; empty where it is a part.
+/// `fast` is the device's own function of x, y and z, of type $T. `text` is ours, of one float; empty if it
+/// is a part.
 struct Row {
   std::string_view name;
   int arguments;
@@ -74,7 +75,7 @@ const Row& rowOf(Intrinsic intrinsic) { return rows[static_cast<std::size_t>(int
 
 bool isTest(Intrinsic intrinsic) { return intrinsic == Intrinsic::Isnan || intrinsic == Intrinsic::Isinf; }
 
-/// Of all components together, and so without a function of one float.
+/// Whether it combines all components, and so has no function of one float.
 bool isOfVectors(Intrinsic intrinsic) {
   return intrinsic == Intrinsic::Length || intrinsic == Intrinsic::Distance ||
          intrinsic == Intrinsic::Normalize;
@@ -88,7 +89,7 @@ std::string resultType(Intrinsic intrinsic, int width) {
   return intrinsic == Intrinsic::Length || intrinsic == Intrinsic::Distance ? "float" : floatType(width);
 }
 
-/// "vec2 sk_pow(vec2 x, vec2 y) { return ".
+/// For example "vec2 sk_pow(vec2 x, vec2 y) { return ".
 std::string head(Intrinsic intrinsic, int width) {
   std::vector<std::string> parameters;
   for (int i = 0; i < rowOf(intrinsic).arguments; ++i) {
@@ -108,7 +109,7 @@ std::string fastDefinition(Intrinsic intrinsic, int width) {
   return fmt::format("{} return {}; }}\n", head(intrinsic, width), withType(rowOf(intrinsic).fast, width));
 }
 
-/// By the function of one float.
+/// Calls the function of one float for each component.
 std::string byComponent(Intrinsic intrinsic, int width) {
   std::vector<std::string> components;
   for (int c = 0; c < width; ++c) {
@@ -122,7 +123,7 @@ std::string byComponent(Intrinsic intrinsic, int width) {
                      fmt::join(components, ", "));
 }
 
-/// The length of `v`, or v / length, of a vector multiplied by a power of 2.
+/// The length of `v`, or v / length, where `v` is scaled by a power of 2.
 std::string ofVector(Intrinsic intrinsic, int width) {
   if (width == 1) {
     if (intrinsic == Intrinsic::Length) return "float sk_length(float x) { return abs(x); }\n";
@@ -207,7 +208,7 @@ std::size_t lengthOfCalls(const program::Kernel& kernel) {
 }
 
 IntrinsicTexts intrinsicTexts(std::span<const IntrinsicUse> uses, bool accurate) {
-  if (std::ranges::none_of(uses, &IntrinsicUse::widths)) return {};  // or of doubles alone
+  if (std::ranges::none_of(uses, &IntrinsicUse::widths)) return {};  // or only of doubles
   if (!accurate) return fastTexts(uses);
   Parts used = 0;
   IntrinsicTexts texts;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Sections in, program out.
+// Joins the sections of a program.
 #include "assemble/glsl/program_text.hpp"
 
 #include <algorithm>
@@ -25,8 +25,7 @@ void addOnce(std::vector<std::string>& lines, std::string line) {
   if (std::ranges::find(lines, line) == lines.end()) lines.push_back(std::move(line));
 }
 
-/// Adds text of the kernel's, which numbers its own lines, and goes back to numbering the lines of
-/// the program.
+/// Adds text with line numbers of its own, and then resumes the numbering of the program.
 void addForeign(std::string& program, std::string_view text) {
   if (text.empty()) return;
   program += '\n';
@@ -40,7 +39,7 @@ void addLines(std::string& program, const std::vector<std::string>& lines) {
   for (const std::string& line : lines) program += line + '\n';
 }
 
-/// The functions of the set in their order, but of the unravelling ones the highest.
+/// Adds the functions of the set in order; of the unravelling functions, only the highest.
 void addFunctions(std::string& program, std::uint32_t set) {
   if (set & bit(Function::Unravel4)) set &= ~(bit(Function::Unravel2) | bit(Function::Unravel3));
   if (set & bit(Function::Unravel3)) set &= ~bit(Function::Unravel2);
@@ -49,7 +48,7 @@ void addFunctions(std::string& program, std::uint32_t set) {
   }
 }
 
-/// Of a texel's type: "vec2", "uint" ...
+/// Components of a texel's type: "vec2", "uint" ...
 int componentsOf(std::string_view type) {
   const char last = type.back();
   return last >= '2' && last <= '4' ? last - '0' : 1;
@@ -67,7 +66,7 @@ std::string_view vectorOf(std::string_view texel) {
   return texel.front() == 'i' ? "ivec4" : texel.front() == 'u' ? "uvec4" : "vec4";
 }
 
-/// Four components, as imageStore() takes them; those that the image has not are ignored.
+/// A value of four components, as imageStore() requires; it ignores those that the image lacks.
 std::string wholeTexel(std::string_view type, std::string_view value) {
   const int components = componentsOf(type);
   if (components == 4) return std::string(value);
@@ -77,7 +76,7 @@ std::string wholeTexel(std::string_view type, std::string_view value) {
   return fmt::format("{}({}, {}, {})", vector, value, zero, zero);
 }
 
-/// Invocations of a work group.
+/// The size of a work group.
 std::pair<int, int> groupForTexels(int components) {
   return components == 4 ? groupOfWideTexels : std::pair(16, 16);
 }
@@ -189,7 +188,7 @@ std::string ProgramText::finish(const Profile& profile, std::string_view comment
   return program + mainOf(prologue_ + main_);
 }
 
-/// Outputs are variables in either stage; those of a compute program are copied to images, or to a buffer.
+/// Outputs are variables in both stages; compute programs then copy them to images or to a buffer.
 std::string ProgramText::declarationOfOutputs() const {
   std::string text = isInBuffer_ ? declarationOfBuffer() : std::string();
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
@@ -214,7 +213,7 @@ std::string ProgramText::declarationOfBuffer() const {
   return text + "};\n";
 }
 
-/// Invocations beside the rectangle, which fill its last work groups, leave at once.
+/// Invocations outside the rectangle, which fill the last work groups, return immediately.
 std::string ProgramText::mainOf(const std::string& body) const {
   if (isDrawn()) return "\nvoid main() {\n" + body + "}\n";
   const bool isGrouped = group_.first > 0;

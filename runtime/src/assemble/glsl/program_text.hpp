@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A program in the making: sections that grow while parameters are laid out, each
-// declaration made by whoever mentions it first, then put in order around the kernel's own text.
+// Builds a program: sections to which declarations are added on first use, and which finally surround the
+// kernel's own text.
 #pragma once
 
 #include <cstdint>
@@ -15,33 +15,34 @@
 
 namespace sk::assemble {
 
-/// Invocations of a work group where each stores a texel of 16 bytes. Texels lie in squares in memory, and groups that cover some
-/// of these whole are fastest, in columns; smaller groups take a large GPU longer to start than to run.
+/// The work group for texels of 16 bytes. Texels are stored in square tiles, and groups that cover whole
+/// tiles, in columns, are fastest; smaller groups take a large GPU longer to start than to run.
 inline constexpr std::pair<int, int> groupOfWideTexels{8, 16};
-/// Bytes that a work group may share, on any device.
+/// The shared memory that a work group may use on any device.
 inline constexpr std::size_t groupBytes = 32768;
 
-/// Functions of the assembler's own that programs share; their text is in functions.cpp.
+/// The assembler's own shared functions; functions.cpp has their text.
 enum class Function : std::uint8_t {
-  Unravel2,  ///< index of an element number in 2, 3 or 4 dimensions; the highest that is
-  Unravel3,  ///< required serves for all
+  /// The index of an element number in 2, 3 or 4 dimensions; the highest one required serves for all.
+  Unravel2,
+  Unravel3,
   Unravel4,
   Ravel,  ///< element number of an index
   Texel,  ///< texel of an element number
   Layered,  ///< texel of a layered texture
   Wrap,  ///< wrapped sum of an index and an offset
-  WrapOnce,  ///< wrapped index that is less than an extent away
+  WrapOnce,  ///< wrapped index that is less than an extent out of bounds
   Mirror,
   MirrorOnce,
-  ToHalf,  ///< the nearest half of a float, as a float
-  Local,  ///< where an invocation is in its group, groupOfWideTexels
+  ToHalf,  ///< rounds a float to half, as a float
+  Local,  ///< position of an invocation in its work group, groupOfWideTexels
   Sampled,  ///< texel of a 2-D texture, sampled at its centre
 };
 std::string_view text(Function function);
 
 class ProgramText {
  public:
-  ProgramText() = default;  ///< of what is drawn
+  ProgramText() = default;  ///< of a draw
   explicit ProgramText(const Profile& profile)
       : stage_(profile.stage), sharesTexels_(profile.sharesTexels), samples_(profile.samples) {}
 
@@ -49,47 +50,50 @@ class ProgramText {
   bool sharesTexels() const { return sharesTexels_ && stage_ == Stage::Compute; }
   /// Profile::samples
   bool samples() const { return samples_; }
-  /// The texel that an invocation computes, an ivec2, and its coordinates: expressions.
+  /// The texel of the invocation, an ivec2, and its coordinates, as expressions.
   std::string_view texel() const { return isDrawn() ? "ivec2(gl_FragCoord.xy)" : "sk_pixel"; }
   std::string_view column() const { return isDrawn() ? "int(gl_FragCoord.x)" : "sk_pixel.x"; }
   std::string_view row() const { return isDrawn() ? "int(gl_FragCoord.y)" : "sk_pixel.y"; }
-  /// From here on, uniforms come from the vertex program as far as there is room.
+  /// Lets the vertex program relay all further uniforms that fit.
   void relayUniforms() { relaysUniforms_ = true; }
   const std::vector<RelayedValue>& relayed() const { return relayed_.all(); }
-  /// Declares a uniform unless it is declared, and gives the name by which the program reads it.
+  /// Declares a uniform on first use, and returns the name by which the program reads it.
   std::string uniform(std::string_view type, std::string_view name);
-  /// Declares an input that is the same for the whole point or triangle.
+  /// Declares an input that is constant over a point or triangle.
   void flatInput(std::string_view type, std::string_view name);
-  /// Declares the output of the next location: a variable of the type of a texel.
+  /// Declares the output of the next location: a variable of a texel type.
   void output(std::string_view type, std::string_view name);
-  /// Where a compute program stores its outputs at the end of main(): an ivec2, or in array textures an ivec3.
+  /// Sets where a compute program stores its outputs at the end of main(): an ivec2, or an ivec3 in array
+  /// textures.
   void storeAt(std::string_view place, bool isArray);
-  /// It stores them in the buffer of binding 0 instead: each in 16 bytes, as four components.
+  /// Stores the outputs in the buffer at binding 0 instead: 16 bytes each, as four components.
   void storeInBuffer();
-  /// Of a compute program: a work group of so many invocations computes a texel, and the first of them stores it.
+  /// For compute programs: a work group of this size computes one texel, which its first invocation stores.
   void dispatchGroups(std::int32_t width, std::int32_t height);
   /// Declares a global variable.
   void variable(std::string_view type, std::string_view name);
-  /// Defines one of the shared functions unless it is defined.
+  /// Defines a shared function on first use.
   void require(Function function);
-  /// Defines a function unless one of this signature is defined.
+  /// Defines a function, unless this signature has been defined.
   void function(std::string_view signature, const std::vector<std::string>& statements);
   bool isDefined(std::string_view signature) const;
   /// Adds a line to main().
   void statement(std::string_view line);
-  /// Adds a line to main() before every line that statement() has added and adds.
+  /// Adds a line to main() that precedes all lines of statement().
   void prologue(std::string_view line);
-  /// Adds a line to main() of a compute program before all of these, which every invocation of a work group runs, those
-  /// beside the domain, too. All have run these lines before any goes on. Then invocations are where Function::Local says.
+  /// Adds a line to main() of a compute program that precedes all of these, and that all invocations of a
+  /// work group run, including those outside the domain. A
+  /// barrier follows these lines and those of keepTogether(). Function::Local then
+  /// gives the position of invocations.
   void together(std::string_view line);
-  /// Adds a line behind all of together(): so that a group has everything fetched on its way before it keeps what has come.
+  /// Adds a line after all of together(), so that a group starts all fetches before it stores their results.
   void keepTogether(std::string_view line);
-  /// Takes bytes of the memory that a work group shares; false where there are not as many left.
+  /// Allocates shared memory of a work group; false if there is not enough left.
   bool takeShared(std::size_t bytes);
-  /// Adds text of skc's behind the kernel's own.
+  /// Adds text of skc after the kernel's own.
   void foreign(std::string_view text);
 
-  /// The whole program. `comment` is its first comment line, without the slashes.
+  /// The whole program. `comment` is its first line, without the slashes.
   std::string finish(const Profile& profile, std::string_view comment, const program::Kernel& kernel) const;
 
  private:
@@ -105,10 +109,10 @@ class ProgramText {
   Stage stage_ = Stage::Fragment;
   bool sharesTexels_ = false;
   bool samples_ = false;
-  std::string place_;  ///< storeAt()'s
+  std::string place_;  ///< of storeAt()
   bool isArray_ = false;
   bool isInBuffer_ = false;  ///< storeInBuffer()
-  std::pair<std::int32_t, std::int32_t> group_{};  ///< for each texel; none: there is an invocation for each
+  std::pair<std::int32_t, std::int32_t> group_{};  ///< the size for each texel; 0: one invocation per texel
   bool relaysUniforms_ = false;
   RelayedValues relayed_;
   std::vector<std::string> uniforms_;
@@ -125,7 +129,7 @@ class ProgramText {
   std::size_t shared_ = 0;  ///< bytes
 };
 
-/// `name(arguments)`, on one line or, where that is too long, with a line for each argument.
+/// `name(arguments)` on one line, or with one line per argument if that is too long.
 std::string call(std::string_view name, const std::vector<std::string>& arguments, std::string_view indent);
 
 }  // namespace sk::assemble

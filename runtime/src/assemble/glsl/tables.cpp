@@ -6,7 +6,7 @@
 namespace sk::assemble {
 namespace {
 
-/// Arguments outside the range count as its ends; NaN gives NaN, whatever clamp() makes of it.
+/// Clamps arguments to the range; NaN gives NaN, whatever clamp() does with it.
 std::string lookUpText(const program::TableUse& use) {
   const bool isLinear = use.table->interpolation == Interpolation::Linear;
   return fmt::format(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Functions that a table may stand for (program::Table): what a kernel's body means by sk_table_NAME(x). A texel of
-// the table's texture has the polynomial of one interval, of which there are tableWidth to a row.
+// Functions that tables may replace (program::Table): the meaning of sk_table_NAME(x) in a kernel's body.
+// Each texel of the table's texture holds the polynomial of one interval; a row has tableWidth intervals.
 #pragma once
 
 #include <span>
@@ -12,22 +12,23 @@
 
 namespace sk::assemble {
 
-/// log2 of the texels of a row of a table's texture.
+/// log2 of the texels in a row of a table's texture.
 inline constexpr int tableShift = 10;
 inline constexpr int tableWidth = 1 << tableShift;
 
-/// Coefficients of an interval's polynomial, lowest first, in the distance from its lower end, which is 0 to 1: the
-/// components of its texel.
+/// The number of coefficients of an interval's polynomial in the distance from its lower end, from 0 to 1.
+/// They are the components of its texel, lowest first.
 constexpr int coefficientsOf(Interpolation interpolation) {
   return interpolation == Interpolation::Linear ? 2 : 4;
 }
 
-/// The sampler of a table, for the function of this name in the body.
+/// The name of the sampler of a function's table.
 std::string tableName(std::string_view function);
-/// A vec3: the lower end of the range, intervals for each unit of the argument, and the number of intervals.
+/// The name of a vec3: the lower end of the range, intervals per unit of the argument, and the number of
+/// intervals.
 std::string rangeName(std::string_view function);
 
-/// Definitions with the uniforms that they need, to stand before the body.
+/// Definitions and uniforms, which precede the body.
 std::string tableDefinitions(std::span<const program::TableUse> uses, bool lookUp);
 
 }  // namespace sk::assemble

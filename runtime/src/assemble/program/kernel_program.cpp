@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The program of a kernel for one variant. Sections are filled parameter by parameter; main() is one
-// call of the kernel's entry function between fetches and stores.
+// Assembles the program of a kernel for one variant. Fills the sections parameter by parameter; main() calls
+// the kernel's entry function between fetches and stores.
 #include <algorithm>
 #include <cassert>
 #include <deque>
@@ -66,7 +66,7 @@ std::string_view name(Fit fit) {
   return {};
 }
 
-/// "diffuse for glsl330: plane domain; u plane view nearby".
+/// For example "diffuse for glsl330: plane domain; u plane view nearby".
 std::string describe(const Profile& profile, const Kernel& kernel, const Variant& variant) {
   std::string text = fmt::format(
       "{} for {}: {}{}{}{} domain", kernel.name, profile.name, variant.domainLayered ? "layered " : "",
@@ -135,13 +135,13 @@ class KernelText {
     const Parameter* parameter;
     std::string variable;
   };
-  /// Of the entry function. `isLanes`: a vector of the values for the elements of a packed texel.
+  /// An argument of the entry function. `isLanes`: a vector of the values for the elements of a packed texel.
   struct Value {
     std::string text;
     bool isLanes = false;
   };
 
-  /// Once, or for each element of a packed texel.
+  /// Calls the entry once, or for each element of a packed texel.
   void callEntry() {
     const auto callWith = [&](std::string_view component) {
       std::vector<std::string> arguments;
@@ -157,7 +157,7 @@ class KernelText {
     }
   }
 
-  /// What calls change most often first, since there is room for so many.
+  /// Relays the uniforms that change most often first, because room is limited.
   void relayUniforms() {
     program_.relayUniforms();
     for (const Parameter& parameter : kernel_.parameters) {
@@ -225,7 +225,7 @@ class KernelText {
     defineExtent(program_, parameter);
   }
 
-  /// The four elements of the texel, by one fetch.
+  /// Fetches the four elements of a texel at once.
   void fetchLanes(const Parameter& parameter) {
     const Parameter four = fourOf(parameter);
     const std::string name = fmt::format("sk_in_{}", parameter.symbol);
@@ -234,9 +234,9 @@ class KernelText {
     arguments_.push_back({name, true});
   }
 
-  /// Whether a gather's texels lie as those of the domain do, so that neighbours are found by texels.
+  /// Whether a gather has the domain's texel layout, so that neighbours are found by texels.
   bool sharesTexels(const Parameter& gather, const StreamAccess& access) const {
-    constexpr int farthest = 4;  // a gather of rank 2 has 27 texels in reach then
+    constexpr int farthest = 4;  // a gather of rank 2 then reaches 27 texels
     if (gather.reach > farthest || !variant_.domainPacked || !access.packed || !access.nearby ||
         access.view || variant_.domainView) {
       return false;
@@ -261,7 +261,7 @@ class KernelText {
   }
 
   void defineOutput(const Parameter& parameter) {
-    if (isList()) {   // written by another pass
+    if (isList()) {  // another pass writes it
       arguments_.push_back({fmt::format("sk_unused_{}", parameter.symbol)});
       program_.statement(fmt::format("{} {};", parameter.element->glsl, arguments_.back().text));
     } else {
@@ -289,7 +289,7 @@ class KernelText {
   std::vector<Value> arguments_;
   std::deque<Parameter> written_;  ///< of packed texels
   std::vector<Result> results_;
-  std::size_t specs_ = 0;   ///< whose constants are declared
+  std::size_t specs_ = 0;  ///< number of spec constants declared
 };
 
 }  // namespace

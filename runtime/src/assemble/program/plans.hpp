@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// Which plan a kernel needs where a pass writes and reads only so many planes.
+// Selects a kernel's plan for the number of planes that a pass may write and read.
 #pragma once
 
 #include "sk/program.hpp"
 
 namespace sk::assemble {
 
-/// Planes that one pass may write and read.
+/// The planes that one pass may write and read.
 struct PassLimits {
   int drawBuffers;
   int textureUnits;
 };
 
-/// Whether the whole kernel is one pass.
+/// Whether the whole kernel fits in one pass.
 bool fitsOnePass(const program::Kernel& kernel, const PassLimits& limits);
 
 /// The first plan within the limits; null if there is none.

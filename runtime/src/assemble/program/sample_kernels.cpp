@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The sample descriptors.
+// Implements the sample descriptors.
 #include "assemble/program/sample_kernels.hpp"
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Descriptors as the compiler would write them, for the tests of this folder.
+// Descriptors like those that the compiler writes, for the tests of this folder.
 #pragma once
 
 #include <string>
@@ -16,14 +16,14 @@ extern const program::Element floatElement, float3Element, intElement, int3Eleme
 
 /// v = a * x + y.
 extern const program::Kernel saxpy;
-/// Five-point stencil.
+/// A five-point stencil.
 extern const program::Kernel diffuse;
-/// Sum and an associative operation on structs that does not commute; a fold that another kernel combines; one of
-/// two inputs to two accumulators, with a uniform, a gather and indices.
+/// A sum; an associative, noncommutative operation on structs; a fold with a separate combining kernel; and a
+/// fold of two inputs into two accumulators, with a uniform, a gather and indices.
 extern const program::Reduction sum, firstHit, countTrue, weigh;
 
-/// A kernel that reads and writes elements of a type in every way that there is: an input, a gather
-/// of a rank and boundary by sk_at and sk_near, and an output, with all the index functions.
+/// A kernel that reads and writes elements of a type in all possible ways: an input, a gather of a given rank
+/// and boundary with sk_at and sk_near, and an output, with all index functions.
 class EveryAccess {
  public:
   EveryAccess(const program::Element& element, std::string_view border, int rank, program::Boundary boundary,

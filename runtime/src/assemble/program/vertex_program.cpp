@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The vertex program of every pass: a strip of two triangles with the corners of the viewport, without vertex data. One
-// triangle that covers it would have corners far outside, where software renderers clip it, which takes a good part of a small draw's time.
+// The vertex program of every pass: a strip of two triangles with the viewport's corners, without vertex
+// data. A single larger triangle would be clipped by software renderers, which takes a good part of a small
+// draw's time.
 #include <iterator>
 #include <span>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the first comment of a reduction's program calls its walk and its runs.
+// Names of walks and runs, for the first comment of a reduction's program.
 #pragma once
 
 #include <string_view>

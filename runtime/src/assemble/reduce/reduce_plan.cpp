@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The schedule. Elements of a block are numbered row-major, whatever the layout; a first pass folds
-// runs of consecutive ones, and each later pass runs of consecutive partial results, so order is kept
-// and the number of passes is that of a tree over a block's elements.
+// Plans the passes. Elements of a block are numbered row-major, whatever the layout. The first pass folds
+// runs of consecutive elements, and each later pass runs of consecutive partial results, so that order is
+// kept and the number of passes is the depth of a tree over a block's elements.
 #include "assemble/reduce/reduce_plan.hpp"
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace sk::assemble {
 namespace {
 
-/// A linearised region seen with few axes, x fastest: neighbouring axes are joined where elements and
-/// blocks allow it. Blocks, and the elements of a block, keep their row-major numbers.
+/// A linearised region with dimensions coalesced where elements and blocks allow it, x fastest. Blocks, and
+/// the elements of a block, keep their row-major numbers.
 struct Axes {
   std::uint8_t count = 0;
   Index4 extent = {1, 1, 1, 1};   ///< of a block
@@ -47,10 +47,10 @@ Axes coalesce(const RegionLayout& input, const Index4& division) {
   return axes;
 }
 
-/// Divides a positive number and rounds up, without a sum that could overflow.
+/// Divides a positive number, rounding up, without overflow.
 std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a - 1) / b + 1; }
 
-/// Tells a pass where it writes. `usesIndex`: its program asks for more than the number of a result.
+/// Sets where a pass writes. `usesIndex`: its program needs more than the number of a result.
 void addDomain(ReducePass& pass, const RegionLayout& domain, bool usesIndex) {
   pass.variant.domain = domainOf(domain);
   pass.variant.domainView = !domain.linear && domain.origin != Index4{};
@@ -106,8 +106,9 @@ class Planner {
     std::int32_t width, height;
   };
 
-  /// Whether the elements, of one block, are rows of texels: those of a plane, or of a linearised stream from the beginning
-  /// of a row on. The last of these may be shorter, if there is one above it and order does not count.
+  /// Whether the elements of the only block are rows of texels: in a plane, or in a linearised stream if they
+  /// begin at the start of a row. The last row may be shorter if there is another row and order does not
+  /// matter.
   bool findRows() {
     if (division_.byIndex || input_.layered || blocks_ > 1) return false;
     if (!input_.linear) {
@@ -125,16 +126,17 @@ class Planner {
 
   static bool isLine(const Axes& axes) { return axes.count == 1 && axes.stride[0] == 1; }
 
-  /// Of a linearised stream: the number of the first element.
+  /// In a linearised stream, the number of the first element.
   std::int32_t firstNumber() const {
     std::int32_t number = 0;
     for (std::size_t d = 0; d < input_.origin.size(); ++d) number += input_.origin[d] * input_.stride[d];
     return number;
   }
 
-  /// How many texels of a width x height rectangle a run has, `most` at most. In order: a part of a row that divides it,
-  /// where there is one, or whole rows. Where order does not count, a part of a column of elements, since neighbouring
-  /// invocations then read neighbouring texels, and of partial results a square, which leaves invocations side by side.
+  /// The run, of at most `most` texels, for a width x height rectangle. If order matters: a part of a row
+  /// that divides it, if there is one, or whole rows. Otherwise, for elements: a part of a column, so that
+  /// neighbouring invocations read neighbouring texels; for partial results: a square, which keeps
+  /// invocations side by side.
   Extent2 runOf(std::int32_t width, std::int32_t height, std::int32_t most, bool ofPartials) const {
     constexpr std::int32_t side = 8;
     if (division_.inAnyOrder && ofPartials && most >= side && width >= side && height >= most / side)
@@ -144,7 +146,7 @@ class Planner {
     return {dividing(width, std::min(width, most)), 1};
   }
 
-  /// That of the first pass. A texel below the rows makes the last run of its column longer by one.
+  /// The run of the first pass. A texel of the partial row below extends the last run of its column.
   Extent2 firstRun() const {
     const auto [width, height] = left2_;
     const std::int32_t most = division_.byTexel ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
@@ -156,8 +158,8 @@ class Planner {
 
   bool hasParts() const { return limits_.longRun > 0 && division_.inAnyOrder && division_.inGroups; }
 
-  /// Whether the program that folds these runs first may know their length, which makes it a program of its own: where
-  /// all have it and there is enough to fold.
+  /// Whether a specialised program for this length should fold the first runs: if all have it and there is
+  /// enough work.
   bool hasKnownRun(const Extent2& run) const {
     constexpr std::int32_t unit = 4;
     const auto [width, height] = left2_;
@@ -167,7 +169,7 @@ class Planner {
            run.width * run.height % unit == 0;
   }
 
-  /// A length near `most` of which `extent` is a multiple; `most` where there is none.
+  /// A divisor of `extent` near `most`; `most` if there is none.
   static std::int32_t dividing(std::int32_t extent, std::int32_t most) {
     for (std::int32_t length = most; 2 * length > most; --length) {
       if (extent % length == 0) return length;
@@ -175,7 +177,7 @@ class Planner {
     return most;
   }
 
-  /// A pass over the rectangle of texels or partial results that is left, to a smaller one.
+  /// Adds a pass from the remaining rectangle of texels or partial results to a smaller one.
   void addRows(Walk walk) {
     const bool isFirst = walk == Walk::Rows;
     const auto [width, height] = left2_;  // before the pass
@@ -204,7 +206,7 @@ class Planner {
     passes_.push_back(std::move(pass));
   }
 
-  /// Makes a program for such runs: one that knows their length, where that is worth it.
+  /// Selects a program for such runs: a specialised one for their length if that is worthwhile.
   void setRun(ReduceVariant& variant, const Extent2& run) const {
     const bool isKnown = hasKnownRun(run);
     const bool isLong = hasParts() && run.width == 1 && run.height >= longestPart;
@@ -216,7 +218,8 @@ class Planner {
     }
   }
 
-  /// Where a pass by rows or groups writes first. Its program knows of no other domain, so that passes share it.
+  /// Sets where a pass by rows or groups writes. Its program has no other domain uniforms, so that passes
+  /// share it.
   static void addTarget(ReducePass& pass) {
     const Rect& drawn = pass.draws.front();
     pass.uniforms.push_back({"sk_target", true, {drawn.x, drawn.y, 0, 0}});
@@ -225,14 +228,14 @@ class Planner {
     pass.variant.domainRank = 1;
   }
 
-  /// Whether work groups combine what their invocations have folded of the elements.
+  /// Whether work groups combine what their invocations have folded from elements.
   bool foldsInGroups() const { return limits_.grouped && division_.inAnyOrder && division_.inGroups; }
 
-  /// Whether work groups fold the partial results that are left: of one block, in no layers.
+  /// Whether work groups fold the remaining partial results: of a single block, without layers.
   bool mayGroup() const { return limits_.grouped && blocks_ == 1 && !partialsLayered_; }
 
   void addGroups() {
-    constexpr std::int32_t shortFan = 16;  // which leaves enough groups for all of a GPU
+    constexpr std::int32_t shortFan = 16;  // leaves enough groups for a whole GPU
     const bool isLast = left_ <= groupSize * limits_.fanIn;
     const std::int32_t fan =
         isLast ? std::max(divideUp(left_, groupSize), 2) : std::min(limits_.fanIn, shortFan);
@@ -252,7 +255,7 @@ class Planner {
     passes_.push_back(std::move(pass));
   }
 
-  /// A pass over the `left_` elements, texels or partial results that each block has.
+  /// Adds a pass over the `left_` elements, texels or partial results of each block.
   void addPass(Walk walk) {
     const bool isOfTexels = division_.byTexel && walk != Walk::Partials;
     const std::int32_t most = isOfTexels ? std::max(limits_.fanIn / lanes, 1) : limits_.fanIn;
@@ -272,8 +275,8 @@ class Planner {
     passes_.push_back(std::move(pass));
   }
 
-  /// Where a pass puts `runs` partial results of each block: fewer than there are elements, for which there
-  /// is a texture.
+  /// Sets the texture for `runs` partial results per block. There are fewer of them than elements, so that it
+  /// exists.
   RegionLayout partials(ReducePass& pass, std::int32_t runs) const {
     const std::int64_t count = std::int64_t{runs} * blocks_;
     const std::optional<TextureShape> texture = linearTexture(count, limits_.texture);
@@ -334,18 +337,18 @@ class Planner {
   }
 
   const Index4 elements_;
-  const RegionLayout input_;  ///< of elements, or of texels
+  const RegionLayout input_;  ///< of elements or of texels
   const RegionLayout& result_;
   const ReduceLimits& limits_;
   const Division& division_;
   std::int32_t blocks_;
-  std::int32_t left_;  ///< elements, texels or partial results of each block
-  Extent2 left2_{};  ///< as a rectangle, of passes by rows
+  std::int32_t left_;  ///< elements, texels or partial results per block
+  Extent2 left2_{};  ///< the same as a rectangle, in passes by rows
   Index4 corner_{};  ///< its first texel, before the first pass
-  std::int32_t tail_ = 0;  ///< texels of one more row, before the first pass
-  std::int32_t sourceShift_ = 0;  ///< of the partial results' texture
-  std::int32_t sourceWidth_ = 0;  ///< of that in passes by rows or groups
-  bool partialsLayered_ = false;  ///< whether it is
+  std::int32_t tail_ = 0;  ///< texels in the partial last row, before the first pass
+  std::int32_t sourceShift_ = 0;  ///< of the texture of partial results
+  std::int32_t sourceWidth_ = 0;  ///< its width, in passes by rows or groups
+  bool partialsLayered_ = false;  ///< whether it has layers
   std::vector<ReducePass> passes_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The passes of a reduction as a pure schedule. To run one:
+// The passes of a reduction, as a pure schedule. To run it:
 //
 //   source = the inputs' planes
 //   for each pass: target = pass.toResult ? the results' planes
@@ -8,12 +8,12 @@
 //                  use reduceProgram(pass.variant), set pass.uniforms, bind source and target,
 //                  draw each rectangle of pass.draws (viewport = rectangle);  source = target
 //
-// Where the targets are more than the device draws to at once, a pass is drawn for a part of them at a
-// time (ReduceVariant::firstPlane). What only the arguments decide (access, specs) is the caller's to add.
+// If a device cannot draw to all targets at once, a pass is drawn for a part of them at a time
+// (ReduceVariant::firstPlane). The caller adds what depends on the arguments (access, specs).
 //
-// A first pass folds elements in runs of up to `fanIn`; the later ones fold its partial results in
-// the same way until one is left for each block. Order is row-major throughout. Partial result r of
-// block b has number r * blocks + b in a linearised texture.
+// The first pass folds elements in runs of up to `fanIn`; later passes fold its partial results in the same
+// way until one is left for each block. The order is row-major throughout. Partial result r of block b has
+// number r * blocks + b in a linearised texture.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@
 
 namespace sk::assemble {
 
-/// Value of an `int` or `ivec4` uniform. A name that the program turned out not to use (location -1)
-/// is to be skipped.
+/// The value of an `int` or `ivec4` uniform. Names that the program does not use (location -1) must be
+/// skipped.
 struct UniformValue {
   std::string_view name;  ///< static
   bool isVector;
@@ -35,58 +35,60 @@ struct UniformValue {
 
 struct ReducePass {
   ReduceVariant variant;
-  bool toResult;  ///< renders into the result, else into a temporary
-  TextureShape texture;  ///< of the temporary; of no size where toResult
+  bool toResult;  ///< writes the result rather than a temporary
+  TextureShape texture;  ///< of the temporary; empty if toResult
   std::vector<Rect> draws;
   std::vector<UniformValue> uniforms;
 };
 
 struct ReduceLimits {
   TextureLimits texture;
-  std::int32_t fanIn = program::longestRun;  ///< elements a run, 2 or more
-  bool grouped = false;  ///< passes are dispatches, of which a work group may fold partial results together
-  std::int32_t knownRuns = 1 << 16;  ///< elements or texels from which on programs know how long runs are
-  /// Texels or elements of a run of parts, where order does not count and a program can combine them: a multiple of
-  /// longestPart. 0: there are no such runs.
+  std::int32_t fanIn = program::longestRun;  ///< elements per run, at least 2
+  bool grouped = false;  ///< passes are dispatches, whose work groups may fold partial results together
+  /// From this many elements or texels on, programs are specialised for the length of runs.
+  std::int32_t knownRuns = 1 << 16;
+  /// Texels or elements of a run that consists of parts, if order does not matter and a program can combine
+  /// them: a multiple of longestPart. 0: no such runs.
   std::int32_t longRun = 0;
-  bool toBuffer = false;  ///< the result is a value, and goes to a buffer (ReduceVariant::toBuffer)
+  bool toBuffer = false;  ///< the result is a value and goes to a buffer (ReduceVariant::toBuffer)
 };
 
-/// Texels or elements of a part of a long run: few, so that an error grows with the parts, and compilers unroll them.
+/// Texels or elements per part of a long run: few, so that errors grow with the number of parts and compilers
+/// unroll it.
 inline constexpr std::int32_t longestPart = 8;
 
-/// Whether a program that folds elements can also combine what it has folded, by parts or by invocations, each starting from
-/// an identity.
+/// Whether a program that folds elements can also combine its results, of parts or of invocations, each of
+/// which starts from an identity.
 bool foldsInGroups(const program::Reduction& reduction);
 
-/// Whether a dispatch may leave a value of this reduction in a buffer: components of 32 bits, of as many planes as any device
-/// writes at once.
+/// Whether a dispatch may leave a value of this reduction in a buffer: 32-bit components, and no more planes
+/// than every device can write at once.
 bool mayEndInBuffer(const program::Reduction& reduction);
 
-/// Whether a fold asks where its elements are, so that it has to find them by their index.
+/// Whether a fold needs the index of its elements.
 bool asksForPlace(const program::Kernel& fold);
 
-/// How the elements are divided into blocks, and found.
+/// How the elements are divided into blocks and addressed.
 struct Division {
   Index4 blocks;  ///< in each dimension of the elements: divisors of their extents
-  bool byIndex = false;  ///< Walk::Index; of the elements' region layout only the extent counts then
-  bool byTexel = false;  ///< the elements are packed, and blocks made of whole texels
+  bool byIndex = false;  ///< Walk::Index; only the extent of the elements' region layout matters then
+  bool byTexel = false;  ///< the elements are packed, and blocks consist of whole texels
   bool inAnyOrder = false;  ///< Reduction::commutative
   bool inGroups = false;  ///< foldsInGroups()
 };
 
-/// The passes that fold elements into `result`, whose elements are the blocks, in their order. There are
-/// some of both. No pass that writes the result may read a texture of its planes.
+/// Plans the passes that fold elements into `result`, whose elements are the blocks, in order. Neither is
+/// empty. A pass that writes the result must not read a texture of its planes.
 std::vector<ReducePass> planReduction(const RegionLayout& elements, const RegionLayout& result,
                                       const ReduceLimits& limits, const Division& division);
-/// The same where result's extents are the numbers of blocks.
+/// Like the other planReduction, with the result's extents as the number of blocks.
 std::vector<ReducePass> planReduction(const RegionLayout& elements, const RegionLayout& result,
                                       const ReduceLimits& limits);
 
-/// The pass that writes the identities to `result`, which has elements.
+/// Plans the pass that writes the identities to `result`, which is not empty.
 ReducePass planIdentities(const RegionLayout& result);
 
-/// The result of a reduction to a value: a 1 x 1 texture.
+/// The layout of a reduction to a value: a 1 x 1 texture.
 RegionLayout valueLayout();
 
 }  // namespace sk::assemble

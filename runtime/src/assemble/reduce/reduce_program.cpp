@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The program of one pass of a reduction. main() finds its run, that is, a block and the place in it
-// where the run starts, and folds the run's elements with one loop.
+// Assembles the program of one pass of a reduction. main() determines its run, that is, a block and the
+// position in it where the run starts, and folds the run's elements in one loop.
 #include "assemble/reduce/reduce_program.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ using program::Parameter;
 using program::Reduction;
 using program::Role;
 
-/// The kernel that a walk calls: none, but for the identities, where there is no element.
+/// The kernel that a walk calls: none for the identities, which have no elements.
 Kernel kernelOf(const Reduction& reduction, Walk walk) {
   if (isOfPartials(walk)) return reduction.combine;
   Kernel kernel = reduction.fold;
@@ -97,7 +97,7 @@ class ReductionText {
     return accumulators_.size() == 1 ? std::string(name) : fmt::format("{}_{}", name, accumulator.symbol);
   }
 
-  /// The index of the element that is folded, among all elements.
+  /// The index of the current element in the domain.
   std::string item() {
     program_.variable("ivec4", "sk_item");
     return "sk_item";
@@ -154,8 +154,8 @@ class ReductionText {
 
   // ---- the walk ---------------------------------------------------------------------------------
 
-  /// Defines sk_block (its number), sk_first (the run's first element in it) and sk_count, as far as
-  /// they are not constants.
+  /// Defines sk_block (its number), sk_first (the run's first element in it) and sk_count, unless they are
+  /// constants.
   void findRun() {
     if (isByRows()) return;
     const bool isByBlock = variant_.runs == Runs::WholeBlocks && variant_.walk == Walk::Plane;
@@ -222,7 +222,7 @@ class ReductionText {
     next_ = numberedTexel(fmt::format("{} + {}", start, distance));
   }
 
-  /// sk_corner is the block's first texel, sk_p the texel of the element.
+  /// Sets sk_corner to the block's first texel and sk_p to the element's texel.
   void startPlane() {
     vectors({"sk_origin", "sk_block_shape"});
     const std::string block = manyBlocks() ? " + " + blockIndex() + ".xy * sk_block_shape.xy" : "";
@@ -238,7 +238,7 @@ class ReductionText {
     first_ = next_ = {"sk_p"};
   }
 
-  /// sk_corner is the run's first texel, sk_p the texel of the element.
+  /// Sets sk_corner to the run's first texel and sk_p to the element's texel.
   void startRows() {
     vectors({"sk_origin", "sk_target"});
     if (variant_.grouped) program_.dispatchGroups(groupSide, groupSide);
@@ -253,7 +253,7 @@ class ReductionText {
     if (variant_.grouped) {
       vectors({"sk_source"});
       statement("bool sk_isInside = all(lessThan(sk_corner, sk_source.xy));");
-    } else if (kernel_.usesLoops) {  // as DomainText::leaveOutside()
+    } else if (kernel_.usesLoops) {  // see DomainText::leaveOutside()
       vectors({"sk_source"});
       statement("if (any(greaterThanEqual(uvec2(sk_corner), uvec2(sk_source.xy)))) return;");
     }
@@ -282,7 +282,8 @@ class ReductionText {
     first_ = next_ = {"sk_p"};
   }
 
-  /// An invocation folds some partial results, in a last group maybe none, and then the group what these have, in their order.
+  /// Each invocation folds some partial results, maybe none in the last group; the group then folds their
+  /// results in order.
   void foldGroup() {
     integers({"sk_fan", "sk_block_length", "sk_source_width"});
     declareShared();
@@ -330,7 +331,7 @@ class ReductionText {
     }
   }
 
-  /// Invocations without elements have the identities.
+  /// Invocations without elements contribute identities.
   void combineInGroup() {
     declareShared();
     statement(fmt::format("int sk_i = int(gl_LocalInvocationIndex), sk_runs = {};", groupSize));
@@ -367,7 +368,7 @@ class ReductionText {
     return "sk_unravel(sk_block, sk_blocks_step)";
   }
 
-  /// sk_at is the number of the block's first element, sk_p the element's index in the block.
+  /// Sets sk_at to the number of the block's first element and sk_p to the element's index in the block.
   void startBox() {
     program_.require(Function::Ravel);
     integers({"sk_start"});
@@ -382,7 +383,7 @@ class ReductionText {
     first_ = next_ = numberedTexel("sk_at + sk_ravel(sk_p, sk_stride)");
   }
 
-  /// sk_p steps through the indices in a block.
+  /// Advances sk_p through the indices in a block.
   void walkBox() {
     vectors({"sk_block_shape"});
     statement("ivec4 sk_p = " + (startsInside() ? unravel("sk_first", "sk_block_step") : "ivec4(0)") + ";");
@@ -393,7 +394,7 @@ class ReductionText {
     }
   }
 
-  /// sk_item is the index of the element, sk_corner that of the block's first one.
+  /// Sets sk_item to the element's index and sk_corner to the index of the block's first element.
   void startIndex() {
     std::string place = "sk_p";
     if (manyBlocks()) {
@@ -418,7 +419,7 @@ class ReductionText {
 
   // ---- the fold ---------------------------------------------------------------------------------
 
-  /// The element of an input at a texel of the walk, or at a place of its own.
+  /// The element of an input, at a texel of the walk or at its own address.
   std::string element(std::size_t i, const Texel& texel) {
     const Parameter& input = kernel_.parameters[i];
     if (!isNeeded(input, variant_.specs)) return absentElement(input);
@@ -441,7 +442,7 @@ class ReductionText {
     }
   }
 
-  /// An element, or from component `first` on those of a packed texel.
+  /// Folds an element, or the elements of a packed texel from component `first` on.
   void foldTexel(std::string_view indent, int first = 0) {
     if (!variant_.packed) return statement(fmt::format("{}{}", indent, foldingNext()));
     for (int lane = first; lane < lanes; ++lane) {
@@ -460,8 +461,8 @@ class ReductionText {
     return calling(kernel_, inputElement);
   }
 
-  /// A call of the entry of this kernel, or of one that combines, with the arguments in its order. inputElement(i, k): of
-  /// parameter i, the k-th input.
+  /// A call of the entry of this kernel, or of a combining one, with its arguments in order. inputElement(i,
+  /// k) is the argument for parameter i, the k-th input.
   template <class ElementOf>
   std::string calling(const Kernel& kernel, const ElementOf& inputElement) {
     std::vector<std::string> arguments;
@@ -497,7 +498,8 @@ class ReductionText {
     }
   }
 
-  /// visit(accumulator, first value): an accumulator begins as the input that stands where it does among them.
+  /// Calls visit(accumulator, first value): an accumulator starts as the input at its position among the
+  /// accumulators.
   template <class Visit>
   void forEachStart(const Visit& visit) {
     for (std::size_t k = 0; k < accumulators_.size(); ++k) {
@@ -513,7 +515,7 @@ class ReductionText {
     });
   }
 
-  /// A run starts from its first element, or else from the identity.
+  /// Starts a run from its first element or from the identity.
   void foldRun() {
     const bool isSeeded = isOfPartials(variant_.walk) || reduction_.seeded;
     const std::string count = variant_.run > 0 ? fmt::format("{}", variant_.run) : "sk_count";
@@ -537,7 +539,7 @@ class ReductionText {
     statement("}");
   }
 
-  /// As many parts as a run has. What is left of it is sk_count elements or texels from sk_p on.
+  /// Folds the parts of a run. What remains are sk_count elements or texels from sk_p on.
   void foldParts() {
     const int part = variant_.part;
     const std::string loop =
@@ -587,8 +589,8 @@ class ReductionText {
   DomainText domain_;
   Texel first_;  ///< of the run's first element
   Texel next_;  ///< of its element sk_k
-  bool isInPart_ = false;  ///< whether accumulators are those of a part of the run
-  std::vector<std::string> step_;  ///< statements that go from one element to the next
+  bool isInPart_ = false;  ///< accumulators are those of a part of the run
+  std::vector<std::string> step_;  ///< statements that advance to the next element
 };
 
 }  // namespace

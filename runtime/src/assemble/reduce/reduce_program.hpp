@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The program of one pass of a reduction: each fragment folds a run of elements, or of the partial
-// results of the pass before, in row-major order, from its first one or from the identity. Which
-// passes a reduction takes, and the values of their uniforms, is reduce_plan.hpp's business.
+// The program of one pass of a reduction: each fragment folds a run of elements, or of the previous pass's
+// partial results, in row-major order, starting from the first one or from the identity. reduce_plan.hpp
+// plans passes and computes the values of their uniforms.
 #pragma once
 
 #include <cstdint>
@@ -14,37 +14,40 @@
 
 namespace sk::assemble {
 
-/// What a run steps through.
+/// What a run iterates over.
 enum class Walk : std::uint8_t {
   Line,      ///< a linearised stream whose blocks are consecutive elements
-  Plane,     ///< a 2-D texture, a block being a rectangle of it
-  Box,       ///< a linearised stream, a block being a box of up to 4 axes
-  Index,     ///< elements by their index, wherever each input has its own
-  Rows,  ///< rows of a 2-D texture, of which a run is a rectangle, in order a part of a row or whole rows; to one block
-  Partials,  ///< the partial results of the pass before
-  PartialRows,  ///< those that lie as Rows has left them
-  GroupedPartials,  ///< those again, of any pass to one block, by a work group for each result
-  Nothing,  ///< no element at all: the identities
+  Plane,  ///< a 2-D texture whose blocks are rectangles
+  Box,  ///< a linearised stream whose blocks are boxes of up to 4 axes
+  Index,  ///< elements by index, with any layout of each input
+  /// Rows of a 2-D texture, in one block. A run is a rectangle; if order matters, a part of a row or whole
+  /// rows.
+  Rows,
+  Partials,  ///< partial results of the previous pass
+  PartialRows,  ///< partial results in the layout of Rows
+  GroupedPartials,  ///< partial results of any pass over one block; a work group computes each result
+  Nothing,  ///< no elements: the identities
 };
 
-/// Whether what is folded are partial results, by the combining kernel.
+/// Whether it folds partial results, with the combining kernel.
 constexpr bool isOfPartials(Walk walk) {
   return walk == Walk::Partials || walk == Walk::PartialRows || walk == Walk::GroupedPartials;
 }
 
-/// Invocations of a work group that folds partial results together, as a row or a square.
+/// The invocations of a work group that folds partial results together, as a row or a square.
 inline constexpr std::int32_t groupSize = 256;
 inline constexpr std::int32_t groupSide = 16;
 
-/// How many runs and blocks there are; a block is what one element of the result folds.
+/// The numbers of runs and blocks. A block is folded to one element of the result.
 enum class Runs : std::uint8_t {
-  OneBlock,  ///< any number of runs over a single block (a reduction to a value)
-  WholeBlocks,  ///< one run a block: the run of the output element under the fragment
-  Split,  ///< several runs a block
+  OneBlock,  ///< any number of runs in a single block (a reduction to a value)
+  WholeBlocks,  ///< one run per block: the run of the fragment's output element
+  Split,  ///< several runs per block
 };
 
-/// One program of a reduction. Passes with equal variants share it. Where the walk is one of partial results or Nothing,
-/// `access` says nothing of inputs; where it is Index, none is aligned; else all are, and lie alike.
+/// One program of a reduction, which passes with equal variants share. For walks of partial results and for
+/// Nothing, `access` does not describe inputs. For Index, no input is aligned; for other walks, all are
+/// aligned and have one layout.
 struct ReduceVariant {
   Walk walk = Walk::Line;
   Runs runs = Runs::OneBlock;
@@ -52,32 +55,33 @@ struct ReduceVariant {
   bool domainView = false;  ///< Domain::Plane: the domain's origin is not (0, 0)
   std::uint8_t domainRank = 1;  ///< Domain::LinearBox: rank of its stream
   std::uint8_t axes = 1;  ///< Walk::Box and Walk::Index
-  std::uint8_t run =
-      0;  ///< Walk::Rows: texels of a run, where all have as many, of one row or column; else 0
-  bool column = false;  ///< Walk::Rows: runs are parts of columns, the last of which may have a texel more
-  std::uint8_t part = 0;  ///< Walk::Rows, columns: texels that are folded by themselves, and then combined;
-  ///< a run that is known has a multiple. 0: a run has no parts
-  bool grouped = false;  ///< Walk::Rows: a work group combines what its invocations have
-  bool strided =
-      false;  ///< Walk::GroupedPartials: an invocation takes every groupSize-th, not one after the other
-  bool toBuffer = false;  ///< the result is one element, and goes to a buffer (ProgramText::storeInBuffer())
-  bool packed = false;  ///< walks of elements: the inputs are packed, and a step is one of whole texels
-  bool sourceLayered = false;  ///< what is read, but for Walk::Index
+  /// Walk::Rows: texels of a run, if all runs have the same number, of one row or column; else 0.
+  std::uint8_t run = 0;
+  bool column = false;  ///< Walk::Rows: runs are parts of columns; the last may be longer by one texel
+  /// Walk::Rows, columns: texels that are folded separately and then combined; a known run is a multiple of
+  /// it. 0: runs have no parts.
+  std::uint8_t part = 0;
+  bool grouped = false;  ///< Walk::Rows: a work group combines the results of its invocations
+  /// Walk::GroupedPartials: an invocation folds every groupSize-th partial result, not consecutive ones.
+  bool strided = false;
+  bool toBuffer = false;  ///< the only element of the result goes to a buffer (ProgramText::storeInBuffer())
+  bool packed = false;  ///< walks of elements: the inputs are packed, and a step is a whole texel
+  bool sourceLayered = false;  ///< of what is read, except for Walk::Index
   bool domainLayered = false;
-  bool reshaped = false;  ///< the result's dimensions are not those of the blocks
-  std::uint8_t firstPlane = 0;  ///< of those of all accumulators: the first that is written,
-  std::uint8_t planeCount = 0;  ///< and how many; 0 is all of them
-  std::vector<StreamAccess> access = {};  ///< one a parameter of `fold`, for partial results of `combine`;
-      ///< or none, where there are no gathers, iterators and indices
-  SpecValues specs{};  ///< of the same
+  bool reshaped = false;  ///< the result has other dimensions than the grid of blocks
+  std::uint8_t firstPlane = 0;  ///< among the planes of all accumulators: the first one written,
+  std::uint8_t planeCount = 0;  ///< and how many; 0 means all
+  /// One per parameter of `fold`, or of `combine` for partial results; empty if there are no gathers,
+  /// iterators and indices.
+  std::vector<StreamAccess> access = {};
+  SpecValues specs{};  ///< of the same kernel
   auto operator<=>(const ReduceVariant&) const = default;
 };
 
-/// The fragment program. Its samplers are samplerName() of the inputs of `fold`, for partial results of
-/// `combine`, and of gathers; its outputs the accumulators' planes, in their order, from location 0, or from the beginning of the
-/// buffer of binding 0, 16 bytes each. The
-/// names of its integer uniforms are those that the plan gives values for; all that belong to a parameter
-/// are those of a kernel's program (assemble.hpp).
+/// The fragment program. Its samplers are samplerName() of the inputs of `fold`, or of `combine` for partial
+/// results, and of gathers. Its outputs are the accumulators' planes, in order, from location 0 or from the
+/// beginning of the buffer at binding 0, 16 bytes each. The plan gives values for its integer uniforms, by
+/// name; a parameter's own uniforms are those of a kernel's program (assemble.hpp).
 std::string reduceProgram(const Profile& profile, const program::Reduction& reduction,
                           const ReduceVariant& variant);
 
