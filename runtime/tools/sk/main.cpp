@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// sk, the companion tool: each command is a folder of its own, and adds itself here.
+// sk, the companion tool: each command has its own folder and registers itself here.
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
@@ -18,11 +18,11 @@
 
 namespace {
 
-/// "; did you mean '--json'?" for the first word that is no command or option, or "".
+/// Returns "; did you mean '--json'?" for the first word that is not a command or an option, or "".
 std::string suggestion(const CLI::App& app) {
   std::vector<std::string> known;
   const CLI::App* command = &app;
-  for (const CLI::App* inner : app.get_subcommands()) command = inner;   // that was called
+  for (const CLI::App* inner : app.get_subcommands()) command = inner;  // the command that was called
   for (const CLI::App* inner : command->get_subcommands({})) known.push_back(inner->get_name());
   for (const CLI::Option* option : command->get_options()) {
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
@@ -34,7 +34,7 @@ std::string suggestion(const CLI::App& app) {
   return {};
 }
 
-/// What is wrong with a command line.
+/// The error message for an invalid command line.
 std::string mistake(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> rest = app.remaining();
   const bool isCommand = app.get_subcommands().empty() && !rest.empty() && !rest.front().starts_with("-");
@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
   sk_tool::addAccuracy(app);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ParseError& stop) {  // --help and --version among them
+  } catch (const CLI::ParseError& stop) {  // also --help and --version
     if (stop.get_exit_code() == 0) return app.exit(stop);
     fmt::print(stderr, "sk: {}\nsee 'sk --help'\n", mistake(app, stop));
     return 1;

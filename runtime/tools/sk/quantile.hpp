@@ -10,7 +10,7 @@
 
 namespace sk_tool {
 
-/// The quantile `q`, 0 to 1, of sorted values, of which there is at least one; interpolated linearly between neighbours.
+/// The quantile `q`, from 0 to 1, of nonempty sorted values, with linear interpolation.
 inline double quantile(const std::vector<double>& sorted, double q) {
   const double at = q * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);
@@ -18,7 +18,7 @@ inline double quantile(const std::vector<double>& sorted, double q) {
   return sorted[below] + (at - std::floor(at)) * (sorted[above] - sorted[below]);
 }
 
-/// The median of values in any order, of which there is at least one.
+/// The median of nonempty values in any order.
 inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return quantile(values, 0.5);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Options, and where results go.
+// Parses the options of `sk accuracy`, runs the programs and writes their results.
 #include "accuracy/accuracy.hpp"
 
 #include <algorithm>
@@ -28,13 +28,13 @@ namespace sk_tool {
 
 namespace {
 
-constexpr int schema = 1;  ///< of the JSON
+constexpr int schema = 1;  ///< version of the JSON format
 
 struct Options {
   std::vector<std::string> programs;
   std::string device;
   std::string profile;
-  std::string size;  ///< as --size has it
+  std::string size;  ///< as in --size
   Measurement measurement{.size = std::size_t{1} << 20, .rounds = 15};
   FileOptions file;
   std::optional<double> tolerance;
@@ -49,7 +49,7 @@ std::string listOfPrograms() {
   return list;
 }
 
-/// Those that are named, in the order of the list; all where none is.
+/// The named programs, in the order of the list; all programs if none is named.
 std::vector<const Program*> chosenPrograms(const std::vector<std::string>& names) {
   std::vector<const Program*> chosen;
   for (const Program& program : programs()) {
@@ -68,7 +68,7 @@ std::vector<const Program*> chosenPrograms(const std::vector<std::string>& names
 
 bool isFile(const std::string& program) { return program.ends_with(".sk"); }
 
-/// "N" or "HxW", up to four extents; none where it is no such thing.
+/// Parses "N" or "HxW", up to four extents; empty if the text has another form.
 std::vector<std::int64_t> extentsIn(const std::string& text) {
   std::vector<std::int64_t> extents;
   std::istringstream words(text);
@@ -81,7 +81,7 @@ std::vector<std::int64_t> extentsIn(const std::string& text) {
   return extents.size() > 4 || text.ends_with('x') ? std::vector<std::int64_t>{} : extents;
 }
 
-/// A message for a size that is not allowed, or "".
+/// An error message for an invalid size, or "".
 std::string checkSize(const std::string& text) {
   constexpr std::int64_t least = 16, most = std::int64_t{1} << 26;
   std::int64_t size = 1;
@@ -128,7 +128,7 @@ void runFile(const Options& options) {
     throw std::runtime_error("--data is of the built-in sums; draw from --range here");
   const FileMeasurement measurement =
       options.file.measurement(extentsIn(options.size), options.measurement.rounds);
-  const KernelLibrary library(options.programs.front(), options.file.build);  // outlives the device
+  const KernelLibrary library(options.programs.front(), options.file.build);  // must outlive the device
   sk::Device device(sk::DeviceOptions{.device = options.device, .profile = options.profile});
   printHead(options, device);
   const auto [all, skipped] =

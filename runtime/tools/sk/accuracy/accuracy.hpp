@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The command `sk accuracy`: what each choice of precision, storage, accumulation and functions costs on a device, and how
-// exact it is there, in one run; as a table, as JSON and as a chart.
+// The command `sk accuracy`: measures time and error of each choice of precision, storage, accumulation and
+// functions on a device, in one run, and writes a table, JSON and a chart.
 #pragma once
 
 namespace CLI {

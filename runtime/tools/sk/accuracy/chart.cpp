@@ -18,7 +18,7 @@ namespace sk_tool {
 
 namespace {
 
-/// As gnuplot quotes.
+/// Quotes as gnuplot does.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
@@ -27,7 +27,7 @@ std::string quoted(const std::string& text) {
 
 bool isPicture(const std::string& file) { return file.ends_with(".png"); }
 
-/// An error of 0 has no logarithm: it is drawn a decade below the smallest of the others.
+/// An error of 0 has no logarithm: it is drawn a decade below the smallest other error.
 double floorOf(const Experiment& experiment) {
   double least = 0x1p-24;
   for (const Row& row : experiment.rows) {
@@ -53,12 +53,12 @@ std::vector<Point> pointsOf(const Experiment& experiment) {
   return points;
 }
 
-/// What an axis shows.
+/// The range of an axis.
 struct Span {
   double low, high;
 
   double size() const { return high - low; }
-  /// All values, `least` at least, with parts of that beyond the ends.
+  /// Covers all values and at least `least`, with margins as fractions of the range.
   static Span around(const std::vector<Point>& points, double Point::* value, double least, double below,
                      double above) {
     const auto less = [value](const Point& a, const Point& b) { return a.*value < b.*value; };
@@ -69,17 +69,17 @@ struct Span {
   }
 };
 
-// Pixels of a panel, and of the part of it that the axes enclose.
+// Sizes in pixels: a panel, and the part of it inside the axes.
 constexpr double panelWidth = 520, panelHeight = 360;
 constexpr double leftMargin = 70, rightMargin = 20, bottomMargin = 60, topMargin = 40;
 constexpr double plotWidth = panelWidth - leftMargin - rightMargin;
 constexpr double plotHeight = panelHeight - bottomMargin - topMargin;
-constexpr double headHeight = 40;  ///< above all panels
-constexpr double letterWidth = 7.6;  ///< of the font, generously
+constexpr double headHeight = 40;  ///< of the head above all panels
+constexpr double letterWidth = 7.6;  ///< of a letter, generously
 
 const char* colorOf(const Point& point) { return point.isPareto ? "#1b5e9b" : "#888888"; }
 
-/// Names beside their points, with lines to those that had to be put further away.
+/// The names of points, with lines to names that are further away.
 std::string labelsOf(const std::vector<Point>& points, const Span& times, const Span& errors) {
   std::vector<LabelledPoint> places;
   for (const Point& point : points) {
@@ -124,7 +124,7 @@ std::string panelOf(const Experiment& experiment, std::size_t number) {
                      plot);
 }
 
-/// Where a panel's axes are in the whole picture, in which gnuplot wants fractions.
+/// The margins of a panel, as fractions of the whole picture, as gnuplot requires.
 std::string marginsOf(std::size_t number, std::size_t columns, std::size_t rows) {
   const double width = static_cast<double>(columns) * panelWidth;
   const double height = static_cast<double>(rows) * panelHeight + headHeight;
@@ -148,7 +148,7 @@ std::string scriptOf(const std::string& file, const std::string& device,
       "set multiplot title {} noenhanced\n",
       isPicture(file) ? "pngcairo noenhanced" : "svg noenhanced", static_cast<double>(columns) * panelWidth,
       static_cast<double>(rows) * panelHeight + headHeight,
-      isPicture(file) ? 9 : 12,  // points, or pixels: the same
+      isPicture(file) ? 9 : 12,  // points or pixels: the same size
       quoted(file), quoted("sk accuracy on " + device));
   for (std::size_t i = 0; i < experiments.size(); ++i) {
     script += marginsOf(i, columns, rows) + panelOf(experiments[i], i);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Experiments as a chart, time against error, drawn by gnuplot.
+// Draws experiments as a chart of time against error, with gnuplot.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace sk_tool {
 /// Throws std::runtime_error unless the file's name ends in .svg or .png.
 void checkChartName(const std::string& file);
 
-/// One panel an experiment. Throws std::runtime_error where there is no gnuplot, or it fails.
+/// Draws one panel per experiment. Throws std::runtime_error if gnuplot is missing or fails.
 void drawChart(const std::string& file, const std::string& device,
                const std::vector<Experiment>& experiments);
 

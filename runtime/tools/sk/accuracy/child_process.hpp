@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Other programs that this one runs and waits for.
+// Runs other programs and waits for them.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace sk_tool {
 
-/// Runs words[0], looked for in PATH unless it has a slash, with the other words as its arguments; it reads and prints where
-/// this process does. Its exit status, or 128 and the number of the signal that ended it; none where there is no
-/// such program.
+/// Runs words[0], searched for in PATH unless it contains a slash, with the other words as its arguments and
+/// with this process's standard streams. Returns its exit status, 128 plus the number of the signal that
+/// ended it, or nullopt if there is no such program.
 std::optional<int> runProgram(std::vector<std::string> words);
 
 }  // namespace sk_tool

@@ -44,7 +44,7 @@ std::vector<Row> compareModes(sk::Device& device, const std::vector<Mode>& modes
     std::optional<Trial> trial;
     try {
       trial = mode.prepare();
-      trial->run();  // compiles, so that it is not timed
+      trial->run();  // compiles, so that compilation is not timed
       row.grade = trial->grade();
     } catch (const sk::Error& error) {
       if (rows.empty()) throw;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs the modes of a program in turns, A B C A B C ..., so that a busy machine disturbs all of them alike, and takes
-// times by the wall clock around Device::finish() (GL's own timers are wrong on llvmpipe).
+// Runs the modes of a program alternately, A B C A B C ..., so that a busy machine affects all modes equally.
+// Times are wall-clock times around Device::finish(), because GL's own timers are wrong on llvmpipe.
 #pragma once
 
 #include <functional>
@@ -15,16 +15,17 @@ namespace sk_tool {
 
 /// A mode that is ready to run.
 struct Trial {
-  std::function<void()> run;  ///< what is timed
-  std::function<Grade()> grade;  ///< of the results of one run, which is the first
+  std::function<void()> run;  ///< the timed part
+  std::function<Grade()> grade;  ///< of the results of the first run
 };
 
 struct Mode {
   std::string name;
-  std::function<Trial()> prepare;  ///< throws sk::Error where the device refuses, as the trial's run may
+  std::function<Trial()> prepare;  ///< throws sk::Error if the device rejects the mode, as `run` may
 };
 
-/// One row a mode. The first mode is the baseline, which no device refuses: its sk::Error passes through.
+/// Returns one row per mode. The first mode is the baseline, which every device supports: its sk::Error is
+/// not caught.
 std::vector<Row> compareModes(sk::Device& device, const std::vector<Mode>& modes, int rounds);
 
 }  // namespace sk_tool

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Diffusion on a torus, in which each step starts from what the one before has rounded: what the precision of
-// arithmetic and that of storage do to a simulation. What should stay as it is, the sum, is told as drift.
+// Diffusion on a torus, in which each step starts from the rounded result of the previous one: shows how the
+// precision of arithmetic and of storage affects a simulation. The sum should be constant; its change is
+// reported as drift.
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -22,7 +23,7 @@ using sk::Storage;
 
 constexpr float rate = 0.2F;
 constexpr int steps = 200;
-constexpr int timedSteps = 4;  ///< both even: results are where the start was
+constexpr int timedSteps = 4;  ///< both even, so that results are in the first stream
 
 struct DiffusionMode {
   const char* name;
@@ -42,7 +43,7 @@ constexpr DiffusionMode modes[] = {
     {"double storage", Precision::Double, Storage::Double},
 };
 
-/// A field in two streams that take turns.
+/// A field in two streams that alternate.
 class Field {
  public:
   Field(sk::Device& device, const sk::Shape& shape, const DiffusionMode& mode,
@@ -82,7 +83,7 @@ Grade gradeField(const std::vector<double>& field, const std::vector<double>& re
                       {"mass drift", (massOf(field) - mass) / mass}}};
 }
 
-/// Multiples of 1/1024, which halves hold: what is measured is what the steps do.
+/// Multiples of 1/1024, which halves represent exactly, so that only the steps contribute errors.
 std::vector<float> startField(std::size_t count) {
   Numbers numbers(inputSeed);
   std::vector<float> field(count);
@@ -106,8 +107,7 @@ std::vector<Experiment> measureDiffusion(sk::Device& device, const Measurement& 
   std::vector<Mode> candidates;
   for (const DiffusionMode& mode : modes) {
     const bool isContracted = mode.contraction == sk::Contraction::Fast;
-    if (isContracted && !device.shadingLanguage().empty())
-      continue;  // GL devices would only repeat their results
+    if (isContracted && !device.shadingLanguage().empty()) continue;  // GL devices ignore the option
     candidates.push_back({mode.name, [&] {
                             auto field = std::make_shared<Field>(device, shape, mode, start);
                             return Trial{[field] { field->advance(timedSteps); },

@@ -25,7 +25,7 @@ Json inputsAt(const std::vector<NamedInput>& inputs, std::size_t at) {
   return json;
 }
 
-/// What a float can be of it.
+/// The reference, or infinity if it is out of the range of floats.
 double inRangeOfFloats(double reference) {
   constexpr double largest = std::numeric_limits<float>::max();
   return std::fabs(reference) > largest ? std::copysign(HUGE_VAL, reference) : reference;

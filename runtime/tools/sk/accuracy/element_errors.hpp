@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Errors of kernels that compute each element by itself.
+// Errors of kernels that compute each element independently.
 #pragma once
 
 #include <functional>
@@ -11,16 +11,16 @@
 
 namespace sk_tool {
 
-/// An input stream by name, so that the element with the largest error can be told.
+/// A named input stream, for reporting the element with the largest error.
 struct NamedInput {
   std::string name;
   const std::vector<float>* values;
 };
 
-/// The largest relative error, the largest and the mean error in ulp, how many results are infinite or no numbers where they
-/// should not be, or the other way round ("wrong class", in none of the others, but the relative error is infinite then),
-/// and the inputs of the largest error, also as bits. Numbers of which the reference has fewer than floats can hold count from
-/// the smallest normal one on.
+/// Computes the largest relative error, the largest and the mean error in ulp, and how many results are
+/// infinite or NaN where the reference is not, or vice versa ("wrong class": these make the relative error
+/// infinite and are in no other figure); also the inputs of the largest error, with their bits. References
+/// below the smallest normal float count as that number in relative errors.
 Grade gradeElements(const std::vector<float>& results, const std::vector<double>& reference,
                     const std::vector<NamedInput>& inputs);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Sums of doubles on the host that lose nothing until they are read: expansions (Shewchuk, Discrete & Computational
+// Exact sums of doubles on the host, rounded only when read: expansions (Shewchuk, Discrete & Computational
 // Geometry 18, 1997, section 2.4).
 #pragma once
 
@@ -12,7 +12,7 @@ namespace sk_tool {
 
 class ExactSum {
  public:
-  /// A number that is finite, as all partial sums must be. The product of two floats is such a number without rounding.
+  /// Adds a number. All partial sums must be finite. A double represents the product of two floats exactly.
   void add(double x) {
     std::size_t kept = 0;
     for (double part : parts_) {
@@ -26,14 +26,14 @@ class ExactSum {
     parts_.push_back(x);
   }
 
-  /// The sum, off by an ulp at most.
+  /// The sum, with an error of at most one ulp.
   double value() const {
     double sum = 0;
     for (const double part : parts_) sum += part;
     return sum;
   }
 
-  /// |x - sum|, likewise.
+  /// x - sum|, with the same error.
   double distance(double x) const {
     ExactSum difference = *this;
     difference.add(-x);
@@ -41,7 +41,7 @@ class ExactSum {
   }
 
  private:
-  std::vector<double> parts_;  // from the smallest on, none overlapping another
+  std::vector<double> parts_;  // in increasing order, without overlap
 };
 
 }  // namespace sk_tool

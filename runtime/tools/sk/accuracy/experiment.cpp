@@ -13,7 +13,7 @@ bool dominates(const Row& a, const Row& b) {
   return isNoWorse && (a.time.median < b.time.median || a.grade.error() < b.grade.error());
 }
 
-/// JSON has no infinity.
+/// A number, or null if it is not finite, because JSON has no infinity.
 Json numberOf(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json recordOf(const Experiment& experiment, const Row& row) {

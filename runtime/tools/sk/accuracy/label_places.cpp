@@ -7,10 +7,10 @@ namespace sk_tool {
 
 namespace {
 
-constexpr double gap = 9;  ///< from the middle of a point to its text
-constexpr double radius = 5;  ///< of a point, and some room
-constexpr double farGap = 20;  ///< to a text that a line joins
-constexpr int halfLines = 24;  ///< up and down, by half a line
+constexpr double gap = 9;  ///< from the centre of a point to its text
+constexpr double radius = 5;  ///< of a point, with a margin
+constexpr double farGap = 20;  ///< to a text connected by a line
+constexpr int halfLines = 24;  ///< up and down, in half lines
 
 struct Box {
   double left, bottom, right, top;
@@ -24,9 +24,10 @@ Box boxOf(const LabelPlace& place, double textWidth) {
   return {place.x, place.y - labelHeight / 2, place.x + textWidth, place.y + labelHeight / 2};
 }
 
-/// The best first: beside the point, then further and further above and below, to the left only where that is much nearer.
+/// In order of preference: beside the point, then further above and below; to the left only if that is much
+/// nearer.
 std::vector<LabelPlace> candidatesFor(const LabelledPoint& point) {
-  constexpr int leftIsWorse = 4;  // than the right, in half lines
+  constexpr int leftIsWorse = 4;  // half lines by which the left is worse
   std::vector<LabelPlace> places{{point.x + gap, point.y}};
   const auto add = [&](int step, bool isLeft) {
     const double away = step * labelHeight / 2;
@@ -41,13 +42,13 @@ std::vector<LabelPlace> candidatesFor(const LabelledPoint& point) {
   return places;
 }
 
-/// The line that joins a point to a text apart, as a row of dots; the text is beyond its end.
+/// The line between a point and a distant text, as a row of dots; the text begins at its end.
 std::vector<Box> lineOf(const LabelledPoint& point, const LabelPlace& place) {
   std::vector<Box> dots;
   if (!place.isApart) return dots;
   const double end = place.x > point.x ? place.x : place.x + point.textWidth;
   constexpr int count = 8;
-  for (int i = 2; i < count; ++i) {  // not the first, among the points
+  for (int i = 2; i < count; ++i) {  // the first dots are among the points
     const double x = point.x + (end - point.x) * i / count;
     const double y = point.y + (place.y - point.y) * i / count;
     dots.push_back({x - 1, y - 1, x + 1, y + 1});
@@ -55,7 +56,7 @@ std::vector<Box> lineOf(const LabelledPoint& point, const LabelPlace& place) {
   return dots;
 }
 
-/// A text and its line must not meet other texts and lines, and the text no point.
+/// Occupied areas: texts and lines must not overlap other texts and lines, and texts no points.
 class Taken {
  public:
   explicit Taken(std::span<const LabelledPoint> points) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Where the names of points go in a chart, so that none covers another or a point. Geometry in pixels, y upwards; the chart
-// draws.
+// Places the names of points in a chart, so that no name overlaps another or a point. Pure geometry in
+// pixels, with y upwards; it draws nothing.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@ struct LabelledPoint {
   double textWidth = 0;
 };
 
-/// The middle of a text's left edge, and whether it is apart from its point, so that a line must join them.
+/// The middle of a text's left edge, and whether a line must connect the text to its point.
 struct LabelPlace {
   double x = 0, y = 0;
   bool isApart = false;
@@ -22,7 +22,8 @@ struct LabelPlace {
 
 inline constexpr double labelHeight = 14;
 
-/// One place a point, inside a chart of that size wherever there is room: as near as those of the points before leave.
+/// Returns one place per point, inside a chart of that size if there is room: as near as the previous labels
+/// allow.
 std::vector<LabelPlace> placeLabels(std::span<const LabelledPoint> points, double width, double height);
 
 }  // namespace sk_tool

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A function, computed and looked up in tables of several sizes. What bounds a table's error is what the runtime predicts
-// of it.
+// A function that is computed, and looked up in tables of several sizes. The bound of a table's error is the
+// runtime's prediction.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr float low = -8, high = 8;  // of lookup_tables.sk
 
-/// The function takes values in [0, 1], by whose largest errors are relative.
+/// The function's values are in [0, 1], so that its largest absolute errors are relative to 1.
 Grade gradeOf(const std::vector<float>& results, const std::vector<double>& reference) {
   double largest = 0;
   double sum = 0;
@@ -30,7 +30,7 @@ Grade gradeOf(const std::vector<float>& results, const std::vector<double>& refe
   return {.metrics = {{"max err", largest}, {"mean err", sum / static_cast<double>(results.size())}}};
 }
 
-/// What the device tells of the table that has run last, by its function's name.
+/// The runtime's prediction for the function's table that was used last.
 double predictedError(const sk::Device& device, const std::string& kernel) {
   const std::string function = "tables::" + kernel + "_";
   for (const sk::TableReport& report : device.tables()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A polynomial of degree 9 in each precision, natively also with fused multiply-adds: where it is harmless, and near a root of multiplicity 9, where what is
-// left of its terms is far below their roundings.
+// A polynomial of degree 9 in each precision, and natively with fused multiply-adds: at harmless arguments,
+// and near a root of multiplicity 9, where the result is far below the rounding errors of its terms.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,13 +56,14 @@ constexpr PolynomialMode polynomialModes[] = {
     {"half", sk::Precision::Half, 0x1p-11},
 };
 
-/// GL devices would only repeat their results.
+/// GL devices ignore contraction.
 bool isOf(const sk::Device& device, const PolynomialMode& mode) {
   return mode.contraction == sk::Contraction::Exact || device.shadingLanguage().empty();
 }
 
-/// In ulp of the results, the most that Horner's rule is off by: 2 n + 1 roundings of the terms' magnitudes (Higham,
-/// Accuracy and Stability of Numerical Algorithms, section 5.1), and that of the result to float.
+/// Bound of the error of Horner's rule in ulp of the results: 2 n + 1 roundings of the terms' magnitudes
+/// (Higham, Accuracy and Stability of Numerical Algorithms, section 5.1), and the rounding of the result to
+/// float.
 double boundOf(const PolynomialMode& mode, const Case& polynomial, const std::vector<float>& x,
                const std::vector<double>& reference) {
   double bound = 0;
@@ -104,7 +105,7 @@ Experiment measureCase(sk::Device& device, const Measurement& measurement, const
                                          [&] {
                                            Grade grade = gradeElements(rs.read(), reference, {{"x", &x}});
                                            if (mode.precision == sk::Precision::Half)
-                                             return grade;  // its range is another
+                                             return grade;  // it has another range
                                            grade.bound = boundOf(mode, polynomial, x, reference);
                                            grade.isWithinBound = grade.metrics[1].value <= *grade.bound;
                                            return grade;

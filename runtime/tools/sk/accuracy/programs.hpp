@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The programs that `sk accuracy` measures, each in a file of its own (sums.cpp has three).
+// The programs that `sk accuracy` measures, each in its own file (sums.cpp has three).
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@
 
 namespace sk_tool {
 
-/// Of all inputs.
+/// The seed of all inputs.
 inline constexpr unsigned inputSeed = 2004;
 
 struct Measurement {
   std::size_t size = 0;  ///< elements
-  int rounds = 0;  ///< timed ones, 1 or more
-  std::optional<SumData> data = {};  ///< of sums; else all kinds
+  int rounds = 0;  ///< timed rounds, at least 1
+  std::optional<SumData> data = {};  ///< for sums; nullopt: all kinds
 };
 
 struct Program {

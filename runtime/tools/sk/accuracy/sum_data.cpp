@@ -20,8 +20,9 @@ float draw(SumData data, Numbers& numbers) {
   return numbers.anySign(numbers.logarithmic(std::exp(-10), std::exp(10)));
 }
 
-/// As GenDot (Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26, 2005, algorithm 6.1): the first half is random, and each of the
-/// second brings the sum to a random number of a size that falls from that of the first half to a small part of it.
+/// Like GenDot (Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26, 2005, algorithm 6.1): the first half is
+/// random, and each number of the second half brings the sum to a random number whose magnitude falls from
+/// the first half's to a small part.
 void cancel(Pairs& pairs, bool hasFactors, Numbers& numbers) {
   const std::size_t count = pairs.x.size();
   const std::size_t half = count / 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Numbers to add, from a fixed seed: easy ones, and ones whose sum is small beside them.
+// Draws numbers to add, from a fixed seed: easy ones, and ones that cancel.
 #pragma once
 
 #include <array>
@@ -30,7 +30,8 @@ struct Pairs {
   std::vector<float> x, y;
 };
 
-/// Numbers x and factors y, of which the products x * y are to be added; all factors are 1 unless `hasFactors`.
+/// Returns numbers x and factors y, whose products x * y are to be added; all factors are 1 unless
+/// `hasFactors`.
 Pairs drawPairs(SumData data, std::size_t count, bool hasFactors, unsigned seed);
 
 }  // namespace sk_tool

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Reduces that add: what each Accumulate costs, and how far it is from the true sum. Errors are also told in units of
-// u S, S being the sum of magnitudes and u = 2^-24: 1 is what rounding each summand once would do.
+// Reductions that add: the time of each Accumulate and its distance from the exact sum. Errors are also
+// reported in units of u S, where S is the sum of magnitudes and u = 2^-24: rounding each summand once would
+// give an error of 1.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -23,7 +24,7 @@ using sk::Accumulate;
 
 constexpr double u = 0x1p-24;
 
-/// A true sum and what the error of a computed one is measured by.
+/// An exact sum, and the quantities that errors of computed sums are relative to.
 struct Truth {
   ExactSum sum;
   double magnitude = 0;
@@ -35,18 +36,19 @@ struct Truth {
   double condition() const { return magnitude / std::fabs(sum.value()); }
 };
 
-/// Of each result, in the order of the reduce.
+/// One per result, in the order of the reduction.
 using Truths = std::vector<Truth>;
 
 struct SumMode {
   const char* name;
   sk::CallOptions options;
-  /// Relative error at most, of a sum with a condition, in a tree in which a summand meets `depth` additions.
+  /// Bound of the relative error of a sum with a condition, in a tree in which a summand takes part in
+  /// `depth` additions.
   double (*bound)(double condition, double depth);
 };
 
-/// Bounds as sk/call.hpp has them (Higham, Accuracy and Stability of Numerical Algorithms, section 4.2; Ogita, Rump and
-/// Oishi 2005, for sums and products with what they lose). One rounding to float is in each.
+/// Bounds of sk/options.hpp (Higham, Accuracy and Stability of Numerical Algorithms, section 4.2; Ogita, Rump
+/// and Oishi 2005 for compensated sums and dot products). Each includes one rounding to float.
 constexpr SumMode sumModes[] = {
     {"tree",
      {.accumulate = Accumulate::Tree},
@@ -64,8 +66,8 @@ constexpr SumMode sumModes[] = {
     {"half", {.precision = sk::Precision::Half}, nullptr},
 };
 
-/// Additions that a summand meets at most: each pass of a reduction folds runs of 32, natively fewer, and the first may
-/// combine 8 of them.
+/// The most additions in which a summand takes part: each pass of a reduction folds runs of 32, or fewer
+/// natively, and the first may combine 8 of them.
 double depthOf(std::size_t count) {
   double depth = 7;
   for (std::size_t left = count; left > 1; left = (left + 31) / 32) {
@@ -96,7 +98,7 @@ Grade gradeOf(const SumMode& mode, const Truths& truths, const std::vector<float
   return grade;
 }
 
-/// A sum as it is called: gives its results.
+/// Calls a sum and returns its results.
 using Call = std::function<std::vector<float>(const sk::CallOptions&)>;
 
 std::vector<Row> compareSums(sk::Device& device, const Measurement& measurement, const Truths& truths,
@@ -114,7 +116,7 @@ std::vector<Row> compareSums(sk::Device& device, const Measurement& measurement,
   return compareModes(device, candidates, measurement.rounds);
 }
 
-/// One experiment for each kind of data that is asked for; `measure` also fills in the truths.
+/// Runs one experiment for each requested kind of data; `measure` also computes the truths.
 std::vector<Experiment> onAllData(const Measurement& measurement, const char* program, bool hasFactors,
                                   const std::function<std::vector<Row>(const Pairs&, Truths&)>& measure) {
   std::vector<Experiment> experiments;

@@ -17,7 +17,7 @@ std::string timeOf(const Ratios& time) {
   return fmt::format("{:5.2f} [{:.2f} {:.2f}]", time.median, time.lower, time.upper);
 }
 
-/// Of a column.
+/// The width of a metric's column.
 std::size_t widthOf(const Metric& metric) { return std::max<std::size_t>(11, metric.name.size() + 2); }
 
 std::string lineOf(const Row& row, bool hasBounds) {
@@ -41,7 +41,7 @@ std::string headsOf(const Experiment& experiment) {
   return line + '\n';
 }
 
-/// "x = 0x1p-12, y = 0x1p+0: r is 0x0p+0, not 0x1p-1", with a few of many inputs.
+/// For example "x = 0x1p-12, y = 0x1p+0: r is 0x0p+0, not 0x1p-1"; only a few of many inputs.
 std::string caseText(const Json& one) {
   constexpr std::size_t most = 6;
   std::vector<std::string> inputs;
@@ -64,7 +64,7 @@ std::string caseText(const Json& one) {
                      one["wanted"]["hex"].get<std::string>());
 }
 
-/// Where the kernels of a file are most wrong.
+/// The largest errors of a file's kernels.
 std::string worstOf(const Experiment& experiment) {
   std::string text;
   for (const Row& row : experiment.rows) {

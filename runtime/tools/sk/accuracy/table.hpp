@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Experiments as a table for people.
+// Formats experiments as a table for people.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace sk_tool {
 
-/// Several lines, with the heads of its columns where `hasHeads`; says which mode is the cheapest within `tolerance`.
+/// Returns several lines, with column heads if `hasHeads`, and names the cheapest mode within `tolerance`.
 std::string tableOf(const Experiment& experiment, bool hasHeads, std::optional<double> tolerance);
 
 }  // namespace sk_tool

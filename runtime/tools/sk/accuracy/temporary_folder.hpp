@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A folder for files that other programs read or write, gone at the end with all that is in it.
+// A folder for files of other programs. The destructor deletes it with its contents.
 #pragma once
 
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Functions, the device's own and ours, over ranges of arguments: those of `sk info`, by the same kernel, which the
-// reference device runs in doubles.
+// The device's own functions and ours over ranges of arguments, with the kernel of `sk info`. The reference
+// device runs it in double.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ struct FunctionCase {
   Function function;
   double low, high;
   double low2 = 1, high2 = 1;  ///< of the second argument
-  double fastBound = 0;  ///< ulp that ARB_shader_precision grants the device; 0: anything
+  double fastBound = 0;  ///< ulp that ARB_shader_precision guarantees for the device's own; 0: none
 };
 
 constexpr FunctionCase functionCases[] = {
@@ -39,7 +39,7 @@ constexpr FunctionCase functionCases[] = {
     {.name = "pow", .function = f_pow, .low = 0.001, .high = 1000, .low2 = -10, .high2 = 10, .fastBound = 16},
 };
 
-constexpr double accurateBound = 3;  ///< ulp, sk/call.hpp
+constexpr double accurateBound = 3;  ///< ulp, sk/options.hpp
 
 std::string aboutOf(const FunctionCase& function, std::size_t count) {
   std::string about = fmt::format("{} numbers in [{:g}, {:g}]", count, function.low, function.high);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What a driver gives, beside what it promises: the largest stream is made, its last element written and read. Each
-// attempt has a device of its own, so that nothing stays taken.
+// The memory that a driver provides, beyond what it guarantees: creates the largest possible stream, then
+// writes and reads its last element. Each attempt has its own device, so that all memory is released.
 #include <cstdint>
 #include <vector>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What things cost, by the wall clock around finish(): GL's own timers are wrong by a factor of 100 on llvmpipe. The things
-// take turns, and medians are told, so that a busy machine disturbs all of them alike.
+// Measures wall-clock times around finish(), because GL's own timers are wrong by a factor of 100 on
+// llvmpipe. Runs alternate, and medians are reported, so that a busy machine affects all of them equally.
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -19,7 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int rounds = 7;
-constexpr std::int64_t side = 1024;  ///< of the streams that are moved
+constexpr std::int64_t side = 1024;  ///< of the streams that are copied
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -30,7 +30,7 @@ struct Timed {
   std::vector<double> taken = {};
 };
 
-/// Each once unseen, then all in turn.
+/// Runs each once without timing, then all alternately.
 void takeTurns(std::vector<Timed>& things) {
   for (Timed& thing : things) thing.seconds();
   for (int round = 0; round < rounds; ++round) {
@@ -38,7 +38,8 @@ void takeTurns(std::vector<Timed>& things) {
   }
 }
 
-/// Gigabytes (10^9) a second of elements that are written, read and copied; of a copy, both ways count.
+/// Gigabytes (10^9 bytes) per second of writing, reading and copying elements; a copy counts bytes read and
+/// written.
 template <class T, class CopyKernel>
 Json bandwidth(sk::Device& device, const CopyKernel& copy) {
   auto x = device.stream<T>({side, side});
@@ -66,7 +67,7 @@ Json bandwidth(sk::Device& device, const CopyKernel& copy) {
   return {{"upload", rate(0, bytes)}, {"readback", rate(1, bytes)}, {"copy", rate(2, 2 * copies * bytes)}};
 }
 
-/// Microseconds of passes over few elements, each of which needs the one before.
+/// Microseconds per pass over few elements, when each pass depends on the previous one.
 void passes(sk::Device& device, Json& json) {
   constexpr int count = 64;
   auto x = device.stream<float>({16, 16});
@@ -101,7 +102,7 @@ void passes(sk::Device& device, Json& json) {
   json["pass_and_readback_us"] = each(things[1].taken);
 }
 
-/// Milliseconds of the first call of a program.
+/// Milliseconds of a program's first call.
 double compile(sk::Device& device) {
   auto x = device.stream<float>({4, 4});
   auto salt = static_cast<std::uint32_t>(Clock::now().time_since_epoch().count());

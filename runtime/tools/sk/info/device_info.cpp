@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The order of the entries, which is that of the report.
+// Lists the entries in the order of the report.
 #include "info/device_info.hpp"
 
 #include <chrono>

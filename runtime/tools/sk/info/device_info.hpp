@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// All that is found out about a device, as one JSON object: what is kept, printed for programs, and told to people.
-// docs/accuracy.md says what its entries mean.
+// All information about a device as one JSON object, which is cached, printed for programs, and formatted for
+// people. docs/accuracy.md explains its entries.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,16 +12,16 @@ namespace sk_tool {
 
 using Json = nlohmann::ordered_json;
 
-/// What a device says of itself: "name", "driver" ..., and its "limits". Measures nothing.
+/// The properties that a device reports: "name", "driver" ..., and its "limits". Measures nothing.
 Json describe(const sk::Device& device);
 
-/// Adds what has to be measured, in some seconds.
+/// Adds what must be measured, which takes some seconds.
 void measure(sk::Device& device, Json& info);
 
-/// What measurements depend on, in words.
+/// Identifies what measurements depend on.
 std::string keyOf(const sk::Device& device);
 
-/// The same device once more, for what leaves traces in one.
+/// Options that open the same device again, for probes that change a device's state.
 sk::DeviceOptions optionsOf(const sk::Device& device);
 
 }  // namespace sk_tool

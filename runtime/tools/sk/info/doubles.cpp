@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How many bits of a double's results are right. 53 are all; pairs of floats have 44 to 48.
+// The number of correct bits in results of doubles: 53 for native doubles, 44 to 48 for pairs of floats.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t count = 1 << 12;
 
-/// Doubles that pairs of floats hold to 48 bits, too.
+/// Doubles that pairs of floats also represent, to 48 bits.
 std::vector<double> operands(unsigned seed) {
   Numbers numbers(seed);
   std::vector<double> made(count);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Errors in units in the last place, as the GPU floating-point paranoia tells them (Hillesland and Lastra, 2004): the
-// signed interval, beside the largest and the mean magnitude.
+// Errors in units in the last place, reported as in the GPU floating-point paranoia (Hillesland and Lastra,
+// 2004): the signed interval, and the largest and the mean magnitude.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +10,19 @@
 
 namespace sk_tool {
 
-/// The distance between floats around a number: 2^-149 below the normal ones.
+/// The distance between floats at a number: 2^-149 for subnormal numbers.
 double ulpOf(double number);
 
-/// `value` with three significant digits, so that figures of the same run read the same.
+/// `value` rounded to three significant digits, so that figures of one run have one format.
 double rounded(double value);
 
 class ErrorStatistics {
  public:
-  /// `reference` is a number that floats reach.
+  /// `reference` must be in the range of floats.
   void add(float got, double reference, double argument);
 
-  /// "max", "mean", "min_signed" and "max_signed" in ulp, "max_absolute", "worst_at" (the argument) and "not_finite" (how
-  /// many results were no numbers; they are in none of the others).
+  /// "max", "mean", "min_signed" and "max_signed" in ulp, "max_absolute", "worst_at" (the argument) and
+  /// "not_finite" (the number of results that are not finite, which are excluded from the others).
   Json json() const;
   double max() const { return max_; }
   std::size_t notFinite() const { return notFinite_; }

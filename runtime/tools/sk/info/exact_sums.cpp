@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How many error-free sums and products come out wrong behind each barrier that a kernel can put between the compiler
-// and its operations (sk/arithmetic.hpp), and behind none.
+// Counts wrong results of error-free sums and products, with each barrier between the compiler and these
+// operations (sk/arithmetic.hpp), and without one.
 #include <string>
 #include <vector>
 
@@ -47,7 +47,7 @@ const RawKernel& twoSumAndProduct() {
   return kernel;
 }
 
-/// The shares of wrong sums and products; "not in the language" where the device does not know the barrier.
+/// The fractions of wrong sums and products; "not in the language" if the device does not have the barrier.
 Json trial(const sk::Device& like, const std::string& barrier) {
   sk::DeviceOptions options = optionsOf(like);
   options.barrier = barrier;

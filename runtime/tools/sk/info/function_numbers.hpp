@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The functions of functions.def, as functions.sk numbers them.
+// The functions of functions.def, numbered as in functions.sk.
 #pragma once
 
 namespace sk_tool {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Functions by range. What a float argument is, the device and the host agree on; the host computes in double, whose own
-// error (1 ulp of double) does not count.
+// Errors of functions, by range. The device and the host use the same float arguments; the host computes in
+// double, whose own error (1 ulp of double) is negligible.
 #include <cmath>
 #include <cstdint>
 #include <vector>

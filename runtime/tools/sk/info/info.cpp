@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Options, which devices, and what is kept of them.
+// Parses the options of `sk info`, selects devices and caches their reports.
 #include "info/info.hpp"
 
 #include <cstdio>
@@ -50,7 +50,7 @@ Json infoOf(sk::Device& device, bool refresh) {
   return info;
 }
 
-/// With its profile's programs alone: what a device chooses for itself may be computed by others.
+/// Opens the device with programs of its profile only, because its own choice may mix in others.
 sk::Device openPlain(sk::DeviceOptions options) {
   sk::Device device(options);
   if (!options.profile.empty()) return device;
@@ -58,7 +58,8 @@ sk::Device openPlain(sk::DeviceOptions options) {
   return sk::Device(options);
 }
 
-/// The device that is asked for; else native code and the best device with GL, if any, the better one first.
+/// The requested device; by default native code and the best GL device, if there is one, the better one
+/// first.
 Json infoOfAll(const InfoOptions& options) {
   Json all, devices = Json::array();
   const char* chosen = std::getenv("SK_DEVICE");
@@ -81,7 +82,7 @@ Json infoOfAll(const InfoOptions& options) {
   return all;
 }
 
-/// What is measured is kept for the driver: no wish of this process may bend it.
+/// Clears options of this process that would distort measurements, because these are cached for the driver.
 void dropWishes() {
   for (const char* wish : {"SK_BARRIER", "SK_DOUBLES", "SK_LIMITS", "SK_TEXTURE_LIMIT"}) ::unsetenv(wish);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The command `sk info`: what the devices of this machine are, what they can hold, how they compute and what things
-// cost on them, as a table for people or as JSON for programs. Measured once for each driver.
+// The command `sk info`: the devices of this machine, their capacity, arithmetic and speed, as a table for
+// people or as JSON for programs. Measured once per driver.
 #pragma once
 
 namespace CLI {

@@ -23,7 +23,7 @@ std::string firstLine(const fs::path& file) {
   return line;
 }
 
-/// The files of a folder whose names start so, in order.
+/// The files of a folder whose names begin with `start`, sorted.
 std::vector<fs::path> filesNamed(const fs::path& folder, std::string_view start) {
   std::vector<fs::path> found;
   std::error_code error;
@@ -34,7 +34,7 @@ std::vector<fs::path> filesNamed(const fs::path& folder, std::string_view start)
   return found;
 }
 
-/// PCI vendors of display controllers (class 03), which virtual ones of a screen without 3D are, too.
+/// The PCI vendors of display controllers (class 03), which include virtual ones without 3D.
 std::vector<std::string> displayVendors(const fs::path& root) {
   std::vector<std::string> vendors;
   for (const fs::path& device : filesNamed(root / "sys/bus/pci/devices", "")) {
@@ -54,7 +54,7 @@ std::string withoutAccess(const Machine& machine, const std::vector<fs::path>& f
   return {};
 }
 
-/// NVIDIA's driver brings its own library for EGL.
+/// NVIDIA's driver has its own EGL library.
 std::string whyNoNvidia(const Machine& machine, const std::vector<fs::path>& files) {
   if (files.empty()) {
     return "there is a GPU of NVIDIA, but no /dev/nvidia0: its kernel driver is not loaded (nvidia-smi says "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Why a machine shows no GPU to OpenGL, from what its kernel and its libraries say.
+// Diagnoses why OpenGL finds no GPU on a machine, from information of its kernel and libraries.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,17 @@
 
 namespace sk_tool {
 
-/// What is looked at; tests have their own.
+/// The inspected machine; tests provide their own.
 struct Machine {
   std::filesystem::path root = "/";
   std::function<bool(const std::string&)> canLoad;  ///< a shared library
   std::function<bool(const std::filesystem::path&)> mayUse;  ///< a device file: read and write it
 };
 
-/// This one.
+/// The machine that this process runs on.
 Machine thisMachine();
 
-/// One sentence or several: what is missing, and what to do about it.
+/// One or more sentences: what is missing, and how to fix it.
 std::string whyNoGpu(const Machine& machine);
 
 }  // namespace sk_tool

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Machines of some files each, and what is said of them.
+// Describes machines by a few files each, and tests the diagnosis for them.
 #include "info/missing_gpu.hpp"
 
 #include <fstream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Inputs of probes, the same in every process, and streams of them.
+// Inputs of probes, which are the same in every process, and streams of them.
 #pragma once
 
 #include <cmath>
@@ -21,18 +21,18 @@ class Numbers {
   double unit() { return random_() * 0x1p-32; }
   /// In [low, high].
   float linear(double low, double high) { return static_cast<float>(low + (high - low) * unit()); }
-  /// In [low, high], both above 0: as many between 1 and 2 as between 100 and 200.
+  /// In [low, high], both positive, distributed logarithmically: as many in [1, 2] as in [100, 200].
   float logarithmic(double low, double high) {
     return static_cast<float>(low * std::exp2(unit() * std::log2(high / low)));
   }
-  /// Of either sign.
+  /// With a random sign.
   float anySign(float number) { return (random_() & 1U) != 0 ? -number : number; }
 
  private:
   std::mt19937 random_;
 };
 
-/// A square that holds as many numbers as there are; the rest of it is 1.
+/// A square stream that holds the numbers, padded with 1.
 inline sk::Shape squareOf(std::size_t count) {
   const auto side = static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(count))));
   return {side, side};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The operations that IEEE 754 rounds correctly, as the device does them; and what it makes of a * b + c.
+// The device's results for operations that IEEE 754 rounds correctly, and for a * b + c.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t operandCount = 1 << 16;
 constexpr sk::CallOptions fast{.intrinsics = sk::Intrinsics::Fast};
 
-/// Numbers of all magnitudes whose products, quotients and sums are normal ones.
+/// Numbers of all magnitudes whose products, quotients and sums are normal.
 std::vector<float> floatOperands(unsigned seed) {
   Numbers numbers(seed);
   std::vector<float> made(operandCount);
@@ -27,7 +27,7 @@ std::vector<float> floatOperands(unsigned seed) {
   return made;
 }
 
-/// How results of an operation differ from `reference(i)`, which the host computes in double.
+/// The errors of an operation's results relative to `reference(i)`, which the host computes in double.
 template <class Reference>
 Json errorsOf(const char* name, const std::vector<float>& got, const std::vector<float>& first,
               const Reference& reference) {
@@ -44,8 +44,8 @@ Json errorsOf(const char* name, const std::vector<float>& got, const std::vector
   return json;
 }
 
-/// Factors whose product is not a float, and its nearest float with the sign turned: what is left of
-/// a * b + c is 0, or, where the product is not rounded, what rounding would have lost.
+/// Factors whose product is not a float, and its nearest float, negated: a * b + c is 0 or, if the product is
+/// not rounded, the rounding error of the product.
 struct Products {
   std::vector<float> a, b, c;
 
@@ -57,7 +57,7 @@ struct Products {
       c.push_back(-(a.back() * b.back()));
     }
   }
-  /// "fused", "rounded twice" or how many are what.
+  /// "fused", "rounded twice", or the counts of each.
   std::string judge(const std::vector<float>& got) const {
     std::size_t fused = 0;
     std::size_t twice = 0;
@@ -72,7 +72,7 @@ struct Products {
   }
 };
 
-/// GLSL's own fma, where the language has it; skc writes a * b + c for it.
+/// Tests GLSL's own fma, if the language has it; skc generates a * b + c for it.
 std::string judgeOwnFma(sk::Device& device, const Products& given) {
   static const RawKernel fma =
       RawKernel::of<sk::float3, float>("fma", "void f(vec3 x, out float r) { r = fma(x.x, x.y, x.z); }\n");
@@ -95,7 +95,7 @@ std::string judgeOwnFma(sk::Device& device, const Products& given) {
 Json probeOperations(sk::Device& device) {
   const std::vector<float> a = floatOperands(1);
   const std::vector<float> b = floatOperands(2);
-  std::vector<float> p = a;  // without a sign, hence without cancellation
+  std::vector<float> p = a;  // without the sign, hence without cancellation
   std::vector<float> q = b;
   for (float& x : p) x = std::fabs(x);
   for (float& x : q) x = std::fabs(x);

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// What is measured, one function an entry of the JSON object. Each runs kernels on the device and compares with what
-// the host computes in double. All use fixed seeds, and take medians of times, so that figures agree between runs.
+// The measurements, one function per entry of the JSON object. Each runs kernels on the device and compares
+// the results with the host's in double. All use fixed seeds and medians of times, so that figures of
+// different runs agree.
 #pragma once
 
 #include "info/device_info.hpp"
 
 namespace sk_tool {
 
-/// Whether the device has no GL: some questions make sense for GL alone.
+/// Whether the device does not use GL, to which some questions do not apply.
 bool isNative(const sk::Device& device);
 
-Json probeProcessor();  ///< "processor": of native devices
+Json probeProcessor();  ///< "processor": for native devices
 Json probeAllocations(sk::Device& device);  ///< "allocates"
 Json probeOperations(sk::Device& device);  ///< "operations": + - * / sqrt fma
 Json probeContraction(sk::Device& device);  ///< "contraction": of a * b + c, and what fma is

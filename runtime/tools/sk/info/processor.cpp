@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What native code runs on.
+// Describes the processor that runs native code.
 #include <fstream>
 #include <string>
 #include <thread>
@@ -11,7 +11,7 @@ namespace sk_tool {
 
 namespace {
 
-/// As Linux calls the processor; empty elsewhere.
+/// Linux's name of the processor; empty on other systems.
 std::string processorName() {
   std::ifstream in("/proc/cpuinfo");
   for (std::string line; std::getline(in, line);) {
@@ -21,7 +21,7 @@ std::string processorName() {
   return {};
 }
 
-/// The widest instructions for several floats at once that the processor has.
+/// The processor's widest SIMD instructions for floats.
 std::string simd() {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_cpu_init();

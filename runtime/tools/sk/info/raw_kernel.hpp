@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A kernel of one input and one output whose GLSL is written by hand, for what skc does not say: it rounds before it
-// stores halves, and takes no `fma` for granted. GL devices only.
+// A kernel with one input and one output and hand-written GLSL, for what skc does not generate: it rounds
+// before it stores halves, and does not rely on `fma`. GL devices only.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace sk_tool {
 
 class RawKernel {
  public:
-  /// `body` defines void f(In x, out Out r), in GLSL. It may speak of sk_precise and sk_keep().
+  /// `body` defines void f(In x, out Out r) in GLSL. It may use sk_precise and sk_keep().
   template <class In, class Out>
   static RawKernel of(std::string_view name, std::string_view body) {
     return {name, body, sk::ElementTraits<In>::element(), sk::ElementTraits<Out>::element()};

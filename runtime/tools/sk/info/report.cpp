@@ -41,7 +41,7 @@ class Report {
   void add(fmt::format_string<Values...> format, Values&&... values) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
   }
-  /// A subject, which may be empty, and what is told of it.
+  /// Writes a subject, which may be empty, and its values.
   template <class... Values>
   void line(std::string_view subject, fmt::format_string<Values...> format, Values&&... values) {
     add("  {:<16}", subject);

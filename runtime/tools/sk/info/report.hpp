@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What is known of a device as a table for people.
+// Formats the information about a device as a table for people.
 #pragma once
 
 #include <string>

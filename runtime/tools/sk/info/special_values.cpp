@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A table of what IEEE 754 says of numbers that are none, of zeros with a sign, and of denormal ones, beside what the
-// device makes of them. Operands are data: a compiler that folds constants is asked nothing.
+// A table of IEEE 754's results for NaN, infinities, signed zeros and subnormal numbers, compared with the
+// device's. Operands are data, so that a compiler cannot fold them.
 #include <cmath>
 #include <limits>
 #include <span>
@@ -21,11 +21,11 @@ namespace {
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float tiny = 0x1p-130F;  // a denormal number
+constexpr float tiny = 0x1p-130F;  // a subnormal number
 
 enum Operation {
   Transfer,  // written and read back
-  Copy,  // by a kernel
+  Copy,  // copied by a kernel
   Sum,
   Difference,
   Product,
@@ -49,7 +49,7 @@ struct Fact {
   std::string_view ieee;
 };
 
-// "d" is 2^-130; min and max as minNum and maxNum of IEEE 754-2008
+// "d" is 2^-130; min and max are minNum and maxNum of IEEE 754-2008
 constexpr Fact facts[] = {
     {"NaN written and read", Transfer, nan, 1, "NaN"},
     {"NaN copied", Copy, nan, 1, "NaN"},
@@ -102,7 +102,7 @@ std::string text(float value) {
   return fmt::format("{:.4g}", value);
 }
 
-/// The results of all operations with the operands of all facts.
+/// The results of all operations on the operands of all facts.
 class SpecialResults {
  public:
   explicit SpecialResults(sk::Device& device) {

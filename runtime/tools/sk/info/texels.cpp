@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What textures do to numbers: stores to halves, linear filters, and the places of elements.
+// How textures change numbers: stores to halves, linear filters, and the addresses of elements.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -15,9 +15,9 @@ namespace sk_tool {
 
 namespace {
 
-constexpr int bits = 16;  ///< of the positions that filters are asked for
+constexpr int bits = 16;  ///< of the positions at which filters are sampled
 
-/// Whether every element of a shape finds its own number.
+/// Whether every element of a shape reads its own number.
 bool countsRight(sk::Device& device, const sk::Shape& shape) {
   auto r = device.stream<int>(shape);
   probes::number(r);
@@ -28,7 +28,7 @@ bool countsRight(sk::Device& device, const sk::Shape& shape) {
   return true;
 }
 
-/// The largest n up to which all of 0 ... n are floats, seen around 2^24.
+/// The largest n such that 0 ... n are all exact as floats, tested around 2^24.
 Json exactFloats(sk::Device& device) {
   constexpr int middle = 1 << 24;
   std::vector<int> n;
@@ -45,7 +45,7 @@ Json exactFloats(sk::Device& device) {
 
 }  // namespace
 
-// 1 + 2^-11 is in the middle between halves, of which 1 is even; 1 + 3 * 2^-11 likewise, of which the upper one is
+// 1 + 2^-11 is halfway between halves, and ties to even gives 1; for 1 + 3 * 2^-11, it gives the upper one
 Json probeHalfStores(sk::Device& device) {
   static const RawKernel store =
       RawKernel::of<float, sk::half>("store a half", "void f(float x, out float r) { r = x; }\n");
@@ -67,7 +67,7 @@ Json probeHalfStores(sk::Device& device) {
           {"denormals", got[6] == 0x1p-24F ? "kept" : "taken as 0"}};
 }
 
-// Between the elements 0 and 1, what comes is the weight.
+// Between elements 0 and 1, the result is the weight.
 Json probeFilter(sk::Device& device) {
   auto a = device.stream<float>({2, 2});
   a.write(std::vector<float>{0, 1, 0, 1});

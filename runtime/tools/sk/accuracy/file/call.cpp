@@ -13,7 +13,7 @@ namespace {
 using sk::program::Parameter;
 using sk::program::Scalar;
 
-/// `count` scalars that lie `stride` bytes apart.
+/// Loads `count` scalars with a stride of `stride` bytes.
 std::vector<double> loadAll(Scalar scalar, const std::byte* from, std::size_t stride, std::size_t count) {
   std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i) values[i] = load(scalar, from + i * stride);
@@ -65,7 +65,7 @@ void Call::run(const sk::CallOptions& options, int draw) {
       arguments.push_back({.region = sk::detail::wholeRegion(streams_[p].get())});
       continue;
     }
-    const bool isSame = parameter.role == sk::program::Role::Iterator;  // in all draws
+    const bool isSame = parameter.role == sk::program::Role::Iterator;  // the same in all draws
     const std::size_t at = isSame ? 0 : static_cast<std::size_t>(draw);
     arguments.push_back({.value = inputs_.parameters[p].bytes.data() + at * parameter.element->size});
   }

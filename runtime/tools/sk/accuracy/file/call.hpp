@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A kernel or reduce with its arguments on a device, ready to be called. Nothing is drawn or judged here.
+// A kernel or reduction with its arguments on a device, ready to be called. It neither draws inputs nor
+// judges results.
 #pragma once
 
 #include <vector>
@@ -10,32 +11,33 @@
 
 namespace sk_tool {
 
-/// A scalar of a result.
+/// A scalar component of a result.
 struct ResultScalar {
   std::string name;  ///< "r.x"
   sk::program::Scalar scalar;
 };
 std::vector<ResultScalar> resultScalars(const Subject& subject);
 
-/// Results of a call: for each of resultScalars(), that of each result, row-major.
+/// The results of a call: for each of resultScalars(), its values in all results, row-major.
 using Results = std::vector<std::vector<double>>;
 
 class Call {
  public:
-  /// Makes the streams and writes the inputs. Throws sk::Error where the device has no room. The inputs must outlive it.
+  /// Creates the streams and writes the inputs, which must outlive this object. Throws sk::Error if memory is
+  /// exhausted.
   Call(sk::Device& device, const Subject& subject, const Inputs& inputs);
 
-  /// With the host values of one draw. Throws sk::Error.
+  /// Runs with the host values of one draw. Throws sk::Error.
   void run(const sk::CallOptions& options, int draw);
-  /// Of the last run.
+  /// The results of the last run.
   Results results() const;
-  /// The same of a reference device in __float128, whose reals are rounded to doubles.
+  /// The results of a __float128 reference device, with reals rounded to double.
   Results exactResults() const;
 
  private:
   const Subject& subject_;
   const Inputs& inputs_;
-  std::vector<sk::detail::StreamOwner> streams_;  ///< one a parameter, null for host values
+  std::vector<sk::detail::StreamOwner> streams_;  ///< one per parameter, null for host values
 };
 
 }  // namespace sk_tool

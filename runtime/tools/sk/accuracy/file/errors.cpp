@@ -11,9 +11,9 @@ namespace {
 
 using sk::program::Scalar;
 
-constexpr double tolerated = 0.01;  ///< relative
+constexpr double tolerated = 0.01;  ///< relative error
 
-/// NaN, each infinity, 0 and what is between, as a number that tells them apart.
+/// A number for the class of a value: NaN, each infinity, 0 and the rest.
 int classOf(double value) {
   if (std::isnan(value)) return 3;
   if (std::isinf(value)) return value > 0 ? 2 : -2;

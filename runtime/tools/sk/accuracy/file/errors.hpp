@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// How far results are from the reference: sizes of errors for ordinary inputs, and counts for extreme ones, among
-// which errors have no size. Numbers only: what inputs belong to a place, measure.cpp knows.
+// Distances of results from the reference: sizes of errors for ordinary inputs, and counts for extreme
+// inputs, for which sizes are not meaningful. Only computes numbers; measure.cpp maps an ErrorPlace to its
+// inputs.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 
 namespace sk_tool {
 
-/// Of the results of one call.
+/// The location of an error among the results of one call.
 struct ErrorPlace {
   std::size_t inputs = 0;  ///< number of the Inputs
   int draw = 0;
@@ -20,16 +21,17 @@ struct ErrorPlace {
   double got = 0, wanted = 0;
 };
 
-/// Errors of ordinary results. Those that are no finite numbers, or should be none, count as of the wrong class, and
-/// integers as right or wrong.
+/// Errors of ordinary results. Results that are not finite, or should not be, count as of the wrong class;
+/// integers count as right or wrong.
 class ErrorSizes {
  public:
   explicit ErrorSizes(std::span<const ResultScalar> scalars) : scalars_(scalars) {}
 
   void add(const Results& got, const Results& wanted, std::size_t inputs, int draw);
-  /// "rel err" (infinite where a class is wrong), "max ulp", "mean ulp", "wrong class", and where there are integers "wrong int".
+  /// "rel err" (infinite if a class is wrong), "max ulp", "mean ulp", "wrong class"; "wrong int" if there are
+  /// integers.
   std::vector<Metric> metrics() const;
-  /// Of the first result of a wrong class, else of the largest error in ulp.
+  /// The first result of a wrong class, else the largest error in ulp.
   const ErrorPlace& worst() const { return worst_; }
 
  private:
@@ -39,8 +41,8 @@ class ErrorSizes {
   std::size_t numbers_ = 0, wrongClass_ = 0, wrongInteger_ = 0;
 };
 
-/// Results of extreme inputs: how many have a scalar of another class than the reference's, and of the others, how many one
-/// that is off by more than 1 %. Classes are NaN, each infinity, 0 and the finite.
+/// Results of extreme inputs: counts results with a scalar of another class than the reference's, and other
+/// results with a scalar that is off by more than 1 %. Classes are NaN, each infinity, 0 and finite numbers.
 class ErrorCounts {
  public:
   explicit ErrorCounts(std::span<const ResultScalar> scalars) : scalars_(scalars) {}
@@ -50,7 +52,7 @@ class ErrorCounts {
   std::size_t tried() const { return tried_; }
   std::size_t otherClass() const { return otherClass_; }
   std::size_t otherValue() const { return otherValue_; }
-  /// The first of another class, else the first of another value.
+  /// The first result of another class, else the first of another value.
   const ErrorPlace& example() const { return otherClass_ > 0 ? classExample_ : valueExample_; }
 
  private:

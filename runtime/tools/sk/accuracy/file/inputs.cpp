@@ -18,10 +18,11 @@ using sk::program::Parameter;
 using sk::program::Role;
 using sk::program::Scalar;
 
-constexpr double wideLeast = 1e-4, wideMost = 1e4;  ///< magnitudes of half of all reals; halves hold them
+constexpr double wideLeast = 1e-4, wideMost = 1e4;  ///< of half of all reals; halves hold them
 constexpr double integerMost = 8;
 
-/// Half of the numbers as many between 1 and 2 as between 100 and 200, the others evenly.
+/// Half of the numbers are distributed logarithmically (as many in [1, 2] as in [100, 200]), the others
+/// uniformly.
 double drawReal(const std::optional<Range>& range, Numbers& numbers) {
   const bool isLinear = numbers.unit() < 0.5;
   const auto linear = [&](double low, double high) { return low + (high - low) * numbers.unit(); };
@@ -51,12 +52,12 @@ double drawScalar(Scalar scalar, const std::optional<Range>& range, Numbers& num
   return std::min(from.low + std::floor(numbers.unit() * (from.high - from.low + 1)), from.high);
 }
 
-/// Whether a scalar may be extreme: a real that is not set.
+/// Whether a scalar may be extreme: a real that the options do not set.
 bool isDrawnReal(Scalar scalar, const std::optional<Range>& range) {
   return isReal(scalar) && !(range && range->isValue());
 }
 
-/// At most `mostExtremes`.
+/// Returns at most `mostExtremes` numbers.
 std::vector<double> extremesOf(Scalar scalar, const std::optional<Range>& range) {
   std::vector<double> values{0.0, -0.0, 1, -1};
   const auto add = [&](double normal, double denormal, double most, int digits) {
@@ -80,13 +81,13 @@ std::vector<double> extremesOf(Scalar scalar, const std::optional<Range>& range)
   return values;
 }
 
-/// How often a component of an iterator steps.
+/// The number of steps of an iterator's component.
 std::int64_t stepsOf(const Parameter& parameter, const sk::Shape& domain, std::size_t component) {
   const bool countsElements = domain.rank() == 1 || parameter.element->fields[0].width == 1;
   return countsElements ? domain.size() : domain[domain.rank() - 1 - static_cast<int>(component)];
 }
 
-/// Begin and end of an iterator's scalar; integers go in whole steps.
+/// The ends of an iterator's scalar; integers have whole steps.
 Range endsOf(const Parameter& parameter, Scalar scalar, const std::optional<Range>& range,
              const sk::Shape& domain, std::size_t component) {
   if (isReal(scalar)) return range.value_or(Range{-1, 1});
@@ -111,7 +112,7 @@ class Drawing {
   }
 
  private:
-  /// Of the elements that a reduce folds to one, a first one, another for each result.
+  /// The element that identifies a result: one of its block, at a position that varies with the result.
   std::int64_t elementOf(std::int64_t result) const {
     const std::int64_t block = extent_.domain.size() / std::max<std::int64_t>(extent_.results.size(), 1);
     return result * block + (block > 1 ? result * 7 % block : 0);
@@ -155,8 +156,8 @@ class Drawing {
     return values;
   }
 
-  /// First each scalar that may by itself, with each of its extremes; later several at once. Gathers, whose neighbours
-  /// others read, have few.
+  /// First makes each scalar extreme alone, with each of its extremes; later several at once. Gathers have
+  /// few extremes, because other elements read their neighbours.
   bool takesExtreme(const Parameter& parameter, std::size_t element, std::size_t place) {
     if (!isTold(element)) return false;
     const std::size_t number = numberOf(element);
@@ -169,7 +170,7 @@ class Drawing {
     return extremes[number < places_ * mostExtremes ? number / places_ % extremes.size() : any];
   }
 
-  /// Of the elements of a block, only the one by which its result is told is extreme.
+  /// Only the element that identifies its block's result is extreme.
   std::int64_t block() const { return extent_.domain.size() / extent_.results.size(); }
   bool isTold(std::size_t element) const {
     if (extremes_ == Extremes::InValues || block() == 1) return true;
@@ -198,11 +199,11 @@ class Drawing {
   const Extent& extent_;
   Extremes extremes_;
   Numbers numbers_;
-  std::size_t places_ = 0;  ///< scalars that may be extreme
-  std::size_t place_ = 0;  ///< number of the next of them
+  std::size_t places_ = 0;  ///< number of scalars that may be extreme
+  std::size_t place_ = 0;  ///< number of the next one
 };
 
-/// The index of an element, rows first: "3, 5".
+/// The index of an element as text, rows first: "3, 5".
 std::string indexText(const sk::Shape& shape, std::int64_t element) {
   std::vector<std::int64_t> index(static_cast<std::size_t>(shape.rank()));
   for (int d = shape.rank() - 1; d >= 0; --d) {

@@ -31,7 +31,7 @@ std::string variable(const char* name) {
 
 fs::path ownFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
-/// What skc writes for a file.
+/// The files that skc generates.
 struct Compiled {
   fs::path header, source, object;
 
@@ -59,7 +59,7 @@ void runSkc(const fs::path& file, const BuildOptions& options, const fs::path& f
   if (*status != 0) throw std::runtime_error(fmt::format("skc does not take '{}'", file.string()));
 }
 
-/// Where sk/sk.hpp is: the place that SK_INCLUDE names, else that of an installation or of the build folder.
+/// The folder that contains sk/sk.hpp: SK_INCLUDE, else the installation's or the build folder's.
 fs::path headerFolder() {
   std::vector<fs::path> folders{ownFolder() / SK_INCLUDE_FROM_BIN, ownFolder().parent_path() / "include"};
   if (const std::string chosen = variable("SK_INCLUDE"); !chosen.empty()) folders = {chosen};
@@ -71,8 +71,8 @@ fs::path headerFolder() {
       folders.front().lexically_normal().string()));
 }
 
-/// Links stubs and object to a library, by the compiler that CXX names, which may be several words, else by the first that there
-/// is. The stubs are constants and a few calls, which no optimization serves.
+/// Links stubs and object to a library, using the compiler named by CXX, which may be several words, else the
+/// first one found. The stubs are constants and a few calls and need no optimization.
 void runCompiler(const Compiled& compiled, const fs::path& library) {
   std::vector<Words> compilers{{"c++"}, {"g++"}};
   if (std::istringstream chosen(variable("CXX")); !chosen.str().empty()) {
@@ -81,11 +81,11 @@ void runCompiler(const Compiled& compiled, const fs::path& library) {
   }
   Words options{
       "-std=c++20", "-O0", "-w", "-fPIC", "-shared",
-      // only descriptors and what they point to stay, not the stubs, which call the runtime that nobody links here
+      // keeps only descriptors and what they refer to: the stubs call the runtime, which is not linked here
       "-fvisibility=hidden", "-ffunction-sections", "-Wl,--gc-sections", "-I" + headerFolder().string(),
       compiled.source.string(), compiled.object.string(), "-o", library.string()};
 #if defined(__x86_64__) || defined(__i386__) || defined(__powerpc64__)
-  options.emplace_back("-lquadmath");  // where __float128 is another type than long double
+  options.emplace_back("-lquadmath");  // __float128 is not long double there
 #endif
   for (Words words : compilers) {
     words.insert(words.end(), options.begin(), options.end());
@@ -106,7 +106,7 @@ std::string textOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// What the library depends on: the compiler, the headers and what skc has written.
+/// What the library depends on: the compiler, the headers and skc's output.
 std::string keyOf(const Compiled& compiled) {
   const fs::path headers = headerFolder();
   fs::file_time_type newest = fs::file_time_type::min();
@@ -118,7 +118,7 @@ std::string keyOf(const Compiled& compiled) {
                      textOf(compiled.source), textOf(compiled.object));
 }
 
-/// A compilation takes a second or more, so that its result is kept.
+/// Caches the library, because a compilation takes a second or more.
 void linkKept(const Compiled& compiled, const fs::path& library) {
   const std::string key = keyOf(compiled);
   const sk::CacheFolder cache;

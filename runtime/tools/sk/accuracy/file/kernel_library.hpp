@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The kernels of a .sk file, brought into this process: skc writes stubs and native code, a C++ compiler links them to a
-// shared library, which is loaded. Messages of the two go to standard error.
+// Loads the kernels of a .sk file into this process: skc generates stubs and native code, a C++ compiler
+// links them to a shared library, and the library is loaded. Messages of both go to standard error.
 #pragma once
 
 #include <filesystem>
@@ -13,15 +13,15 @@
 namespace sk_tool {
 
 struct BuildOptions {
-  std::string skc =
-      {};  ///< empty: environment variable SK_SKC, else the one beside this program, else in PATH
-  std::vector<std::string> includes = {}, definitions = {};  ///< -I and -D of skc
+  /// Empty: the environment variable SK_SKC, else skc beside this program, else in PATH.
+  std::string skc = {};
+  std::vector<std::string> includes = {}, definitions = {};  ///< -I and -D options of skc
 };
 
-/// Must outlive every device that runs its kernels, which knows them by their addresses.
+/// Must outlive every device that runs its kernels, because devices identify kernels by their addresses.
 class KernelLibrary {
  public:
-  /// Throws std::runtime_error where there is no skc, no C++ compiler, or one of them fails, saying what to do.
+  /// Throws std::runtime_error, which says what to do, if skc or a C++ compiler is missing or fails.
   KernelLibrary(const std::filesystem::path& file, const BuildOptions& options);
   ~KernelLibrary();
   KernelLibrary(const KernelLibrary&) = delete;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A kernel is called on several sets of inputs: ordinary elements, which are also what is timed; where it has
-// uniforms, fewer elements with several draws of these; elements with extremes among them; uniforms that are extreme.
+// Calls a kernel on several sets of inputs: ordinary elements, which are also timed; if it has uniforms,
+// fewer elements with several draws of the uniforms; elements with extremes among them; and extreme uniforms.
 #include "accuracy/file/measure.hpp"
 
 #include <algorithm>
@@ -32,12 +32,12 @@ using sk::program::Role;
 
 constexpr std::int64_t usualSize = std::int64_t{1} << 20;
 constexpr int draws = 16;  ///< of uniforms
-constexpr std::int64_t extremeMixes = 512;  ///< elements beyond those in which one scalar alone is extreme
-constexpr std::int64_t extremeBlock = 64;  ///< elements of a reduce, of which one is extreme
+constexpr std::int64_t extremeMixes = 512;  ///< elements beyond those with a single extreme scalar
+constexpr std::int64_t extremeBlock = 64;  ///< elements of a reduction, one of which is extreme
 
 // ---- what is measured -----------------------------------------------------------------------------
 
-/// Why a kernel cannot be measured; empty where it can.
+/// Why a kernel cannot be measured; empty if it can.
 std::string obstacleTo(const Subject& subject) {
   for (const Parameter& parameter : subject.parameters()) {
     if (parameter.role == Role::VariableOutput || parameter.role == Role::Scatter) {
@@ -97,14 +97,14 @@ struct CallMode {
   sk::CallOptions options;
 };
 
-/// Whether products and sums of a kernel may be fused; the native code of others has no such entries.
+/// Whether products and sums of a kernel may be fused; native code of other kernels has no such entries.
 bool hasContractedCode(const sk::program::Kernel& kernel) {
   if (kernel.code == nullptr) return false;
   const std::span<const sk::native::Entry> entries(kernel.code->entries, kernel.code->entryCount);
   return std::ranges::any_of(entries, [](const sk::native::Entry& entry) { return entry.isContracted != 0; });
 }
 
-/// Everything is said, so that nothing that the kernel's declaration chooses counts.
+/// Sets every option, so that choices of the kernel's declaration have no effect.
 std::vector<CallMode> modesOf(const Subject& subject, const sk::Device& device) {
   const sk::program::Kernel& kernel = subject.signature();
   const bool isNative = device.shadingLanguage().empty();
@@ -150,7 +150,7 @@ Extent ordinaryExtent(const Subject& subject, const sk::Shape& domain, int drawn
   return {.domain = domain, .results = subject.isReduce() ? ones(domain.rank()) : domain, .draws = drawn};
 }
 
-/// Of a reduce, a result for each of `count` blocks.
+/// For a reduction: `count` blocks with one result each.
 Extent extremeExtent(const Subject& subject, std::int64_t count, int drawn) {
   const int rank = rankOf(subject);
   if (!subject.isReduce()) return ordinaryExtent(subject, cubeOf(rank, count), drawn);
@@ -160,13 +160,13 @@ Extent extremeExtent(const Subject& subject, std::int64_t count, int drawn) {
           .draws = drawn};
 }
 
-/// Inputs, and what comes of them: on the device, and in the reference.
+/// Inputs with their results, on the device and on the reference.
 struct Set {
   Set(sk::Device& device, sk::Device& reference, const Subject& subject, Inputs drawn, Extremes kind)
       : inputs(std::move(drawn)), extremes(kind), call(device, subject, inputs) {
     Call exact(reference, subject, inputs);
     for (int draw = 0; draw < inputs.extent.draws; ++draw) {
-      exact.run({.precision = Precision::Single}, draw);  // whatever the kernel declares
+      exact.run({.precision = Precision::Single}, draw);  // overrides the kernel's declaration
       truths.push_back(exact.exactResults());
     }
   }
@@ -176,7 +176,7 @@ struct Set {
   Inputs inputs;
   Extremes extremes;
   Call call;
-  std::vector<Results> truths;  ///< one a draw
+  std::vector<Results> truths;  ///< one per draw
 };
 
 // ---- results --------------------------------------------------------------------------------------
@@ -273,7 +273,7 @@ class Measured {
     return extremes;
   }
 
-  /// Inputs of a result, which one of a whole reduce has not, and what it is and should be.
+  /// Describes a result with its expected value and its inputs, which a reduction to one value lacks.
   Json caseOf(const ErrorPlace& place, bool hasInputs) const {
     const ResultScalar& scalar = scalars_[place.scalar];
     Json json = Json::object();
@@ -294,7 +294,7 @@ class Measured {
   const FileMeasurement& measurement_;
   std::vector<ResultScalar> scalars_;
   std::int64_t size_ = 0;
-  std::vector<std::unique_ptr<Set>> sets_;  ///< the first is what is timed
+  std::vector<std::unique_ptr<Set>> sets_;  ///< the first one is timed
 };
 
 }  // namespace
@@ -309,7 +309,7 @@ FileResults measureFile(sk::Device& device, const sk::program::Library& library,
   for (const Subject& subject : subjects) {
     try {
       results.experiments.push_back(Measured(device, reference, subject, measurement).experiment());
-    } catch (const sk::Error& error) {  // not even in its plainest mode
+    } catch (const sk::Error& error) {  // even the plainest mode fails
       results.skipped.emplace_back(error.what());
       continue;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// `sk accuracy FILE.sk`: each kernel and reduce of a file in every mode, with inputs drawn for it, against the reference.
+// `sk accuracy FILE.sk`: measures each kernel and reduction of a file in every mode, with drawn inputs,
+// against the reference.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +17,21 @@
 namespace sk_tool {
 
 struct FileMeasurement {
-  std::string kernel = {};  ///< with or without its namespaces; empty: all that can be measured
-  std::vector<std::int64_t> extents = {};  ///< of the domain, or one number of elements; empty: 2^20 of them
+  std::string kernel = {};  ///< with or without namespaces; empty: all that can be measured
+  std::vector<std::int64_t> extents = {};  ///< of the domain, or one number of elements; empty: 2^20 elements
   int rounds = 0;
   bool hasExtremes = true;
   Ranges ranges = {};
 };
 
-/// What came of a file, and a line for each kernel that was not measured, and why.
+/// The results of a file, and for each kernel that was not measured a line that says why.
 struct FileResults {
-  std::vector<Experiment> experiments;  ///< one a kernel
+  std::vector<Experiment> experiments;  ///< one per kernel
   std::vector<std::string> skipped;
 };
 
-/// `report` gets each experiment as soon as it is there. Throws std::runtime_error where no kernel can be measured, or none
-/// is of the name, and where parameters are named that are not there.
+/// Passes each experiment to `report` as soon as it is finished. Throws std::runtime_error if no kernel can
+/// be measured or has the name, or if options name parameters that do not exist.
 FileResults measureFile(sk::Device& device, const sk::program::Library& library,
                         const FileMeasurement& measurement,
                         const std::function<void(const Experiment&)>& report);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The options of `sk accuracy FILE.sk` that built-in programs have not.
+// Options of `sk accuracy FILE.sk` that do not apply to built-in programs.
 #pragma once
 
 #include <string>
@@ -23,9 +23,9 @@ struct FileOptions {
   BuildOptions build = {};
 
   void addTo(CLI::App& command);
-  /// Throws std::runtime_error where a range or a value makes no sense.
+  /// Throws std::runtime_error if a range or a value is invalid.
   FileMeasurement measurement(const std::vector<std::int64_t>& extents, int rounds) const;
-  /// The name of an option that is used; empty where none is.
+  /// The name of an option that was used; empty if there is none.
   std::string_view used() const;
 };
 

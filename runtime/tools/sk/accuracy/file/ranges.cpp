@@ -19,14 +19,14 @@ using sk::program::Parameter;
   throw std::runtime_error(fmt::format("{} '{}' says nothing; write {}", option, text, wanted));
 }
 
-/// A number, "true" or "false".
+/// Parses a number, "true" or "false".
 std::optional<double> numberIn(const std::string& text) {
   if (text == "true" || text == "false") return text == "true" ? 1 : 0;
   std::size_t read = 0;
   try {
     const double number = std::stod(text, &read);
     return read == text.size() && std::isfinite(number) ? std::optional(number) : std::nullopt;
-  } catch (const std::logic_error&) {  // no number, or none that doubles reach
+  } catch (const std::logic_error&) {  // not a number, or out of the range of doubles
     return std::nullopt;
   }
 }
@@ -35,7 +35,7 @@ bool isNamed(const Parameter& parameter, const ScalarPlace& place, const std::st
   return name == parameter.name || name == std::string(parameter.name) + place.member;
 }
 
-/// How many scalars of a parameter have that name.
+/// The number of scalars of a parameter with that name.
 std::size_t scalarsNamed(const Parameter& parameter, const std::string& name) {
   const std::vector<ScalarPlace> places = scalarsOf(*parameter.element);
   return static_cast<std::size_t>(std::count_if(places.begin(), places.end(), [&](const ScalarPlace& place) {
@@ -43,7 +43,7 @@ std::size_t scalarsNamed(const Parameter& parameter, const std::string& name) {
   }));
 }
 
-/// Of all that can be named.
+/// All names that options may use.
 std::string namesOf(std::span<const Subject> subjects) {
   std::vector<std::string> names;
   for (const Subject& subject : subjects) {
@@ -111,7 +111,7 @@ std::vector<std::optional<Range>> Ranges::of(const Parameter& parameter) const {
   for (const ScalarPlace& place : scalarsOf(*parameter.element)) {
     std::optional<Range> range;
     for (const auto& [name, given] :
-         byName_) {  // in the order of names: a member's comes after the whole one's
+         byName_) {  // sorted: a member's name follows that of the whole parameter
       if (!isNamed(parameter, place, name)) continue;
       range = given.size() == 1 ? given.front() : given[std::min(next[name]++, given.size() - 1)];
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What --range and --set say of parameters: where their scalars are drawn from, or what they are.
+// The options --range and --set: the range of a parameter's scalars, or their values.
 #pragma once
 
 #include <map>
@@ -22,19 +22,19 @@ struct Range {
 
 class Ranges {
  public:
-  /// "x=-1:1", also of a member: "body.mass=1:2". Throws std::runtime_error.
+  /// Parses "x=-1:1", or for a member "body.mass=1:2". Throws std::runtime_error.
   void addRange(const std::string& text);
-  /// "n=3", or a value for each scalar: "light=0,1,0".
+  /// Parses "n=3", or one value per scalar: "light=0,1,0".
   void addValues(const std::string& text);
 
-  /// Throws std::runtime_error where none of the subjects has a parameter or member that is named, or as many scalars as
-  /// there are values.
+  /// Throws std::runtime_error if no subject has a parameter or member of a given name, or if its number of
+  /// scalars differs from the number of values.
   void check(std::span<const Subject> subjects) const;
 
-  /// Of each scalar of the parameter's element, in order; none where nothing is said.
+  /// The range of each scalar of the parameter's element, in order; nullopt where no option applies.
   std::vector<std::optional<Range>> of(const sk::program::Parameter& parameter) const;
 
-  /// As the options said it.
+  /// The options as given.
   std::string text() const;
 
  private:

@@ -19,7 +19,7 @@ namespace {
 
 using sk::program::Scalar;
 
-/// visit(T()) with the C++ type of a scalar; a bool is a byte.
+/// Calls visit(T()) with the C++ type of a scalar; a bool is a byte.
 template <class Visit>
 auto withType(Scalar scalar, Visit&& visit) {
   switch (scalar) {
@@ -64,7 +64,7 @@ FloatFormat formatOf(Scalar scalar) {
   return {24, -126};
 }
 
-/// The distance between values from -1 or 0 to 1; 0 of a type whose numbers have exponents.
+/// The distance between values of a fixed-point type from -1 or 0 to 1; 0 for floating-point types.
 double stepOf(Scalar scalar) {
   if (scalar == Scalar::Unorm8) return 1.0 / 255;
   if (scalar == Scalar::Snorm8) return 1.0 / 127;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Elements whose type is known at run time, as the scalars that they are made of, each of which a double can hold.
+// Access to the scalars of elements whose type is known only at run time. A double can represent each of
+// them.
 #pragma once
 
 #include <cstddef>
@@ -13,31 +14,31 @@
 namespace sk_tool {
 
 struct ScalarPlace {
-  std::string member;  ///< ".position" of a struct, "[2]" of an array, else empty
-  std::string component;  ///< ".x" of a vector, "[0].x" of a matrix, else empty
+  std::string member;  ///< ".position" in a struct, "[2]" in an array, else empty
+  std::string component;  ///< ".x" in a vector, "[0].x" in a matrix, else empty
   sk::program::Scalar scalar;
   std::size_t offset;  ///< bytes from the element's start
 };
 
-/// In the order of the element's fields.
+/// Returns the scalars in the order of the element's fields.
 std::vector<ScalarPlace> scalarsOf(const sk::program::Element& element);
 
-/// Whether it stands for a real number.
+/// Whether it represents a real number.
 bool isReal(sk::program::Scalar scalar);
 
 double load(sk::program::Scalar scalar, const std::byte* from);
-/// The nearest that the type has.
+/// Stores the nearest value of the type.
 void store(sk::program::Scalar scalar, double value, std::byte* to);
-/// What is left of a real number in the type.
+/// The nearest value of the type to a real number.
 double roundedTo(sk::program::Scalar scalar, double value);
-/// The distance between numbers of a real type around `value`.
+/// The distance between neighbouring numbers of a real type at `value`.
 double ulpOf(sk::program::Scalar scalar, double value);
-/// The smallest normal number of a real type: below it, errors are relative to this.
+/// The smallest normal number of a real type; errors below it are relative to it.
 double smallestOf(sk::program::Scalar scalar);
 
-/// Reals in hexadecimal, which loses no bit.
+/// Formats reals in hexadecimal, without rounding.
 std::string hexOf(sk::program::Scalar scalar, double value);
-/// "value" (null where it is no number), "hex", and of a float its "bits".
+/// "value" (null if not finite), "hex", and for floats "bits".
 Json jsonOf(sk::program::Scalar scalar, double value);
 
 }  // namespace sk_tool

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What is measured: a kernel or a reduce of a file, which are called alike, a reduce with streams of one element for its
-// results.
+// The kernel or reduction of a file that is measured. Both are called in the same way: a reduction's results
+// are streams of one element.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ namespace sk_tool {
 
 struct Subject {
   const sk::program::Kernel* kernel = nullptr;
-  const sk::program::Reduction* reduction = nullptr;  ///< one of the two
+  const sk::program::Reduction* reduction = nullptr;  ///< exactly one of the two is set
 
   bool isReduce() const { return reduction != nullptr; }
   const sk::program::Kernel& signature() const { return isReduce() ? reduction->fold : *kernel; }
@@ -35,7 +35,7 @@ inline bool isResult(const sk::program::Parameter& parameter) {
   return parameter.role == sk::program::Role::Output || parameter.role == sk::program::Role::Accumulator;
 }
 
-/// Whether its argument is one host value a call.
+/// Whether its argument is a host value.
 inline bool isValue(const sk::program::Parameter& parameter) {
   using sk::program::Role;
   return parameter.role == Role::Uniform || parameter.role == Role::Spec || parameter.role == Role::Iterator;
