@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: conditions follow C++ by the type of their operands, and literals keep every bit.
+// Promises: conditions follow C++'s rules for the type of their operands, and literals keep every bit.
 #include "assemble/condition.hpp"
 
 #include <bit>

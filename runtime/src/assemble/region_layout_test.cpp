@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Which texels a pass draws: all elements of the region, each once, and nothing but elements.
+// Promises: a pass draws every element of the region exactly once, and only elements.
 #include "assemble/region_layout.hpp"
 
 #include <map>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Which uniforms go through the vertex program, and how the two programs name them.
+// Tests which uniforms the vertex program relays, and their names in both programs.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +27,7 @@ bool has(const std::string& program, std::string_view text) {
   return program.find(text) != std::string::npos;
 }
 
-/// For each uniform of such a type, whether it is relayed.
+/// Whether a uniform of each of these types is relayed.
 std::vector<bool> taken(const std::vector<std::string_view>& types) {
   RelayedValues values;
   std::vector<bool> all;
@@ -72,7 +72,7 @@ TEST_CASE("shapes and the origins of views are relayed, too") {
 TEST_CASE("what cannot be handed on stays, and so does what finds no room") {
   CHECK(taken({"bool", "Hit", "float[3]", "sk_double", "sampler2D", "ivec3"}) ==
         std::vector<bool>{false, false, false, false, false, true});
-  // 15 locations are guaranteed: a matrix takes one for each column
+  // 15 locations are guaranteed; a matrix takes one per column
   CHECK(taken({"mat4", "mat4", "mat4", "mat4", "mat2", "vec3", "float"}) ==
         std::vector<bool>{true, true, true, false, true, true, false});
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Which shapes fold to which.
+// Tests which shapes can be folded to which.
 #include "call/block_grid.hpp"
 
 #include <catch2/catch.hpp>

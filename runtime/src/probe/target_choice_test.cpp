@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a trial of one device decides for no other that would have come out otherwise.
+// Promises: the trial of one device is not used for another whose result could differ.
 #include "probe/target_choice.hpp"
 
 #include <catch2/catch.hpp>

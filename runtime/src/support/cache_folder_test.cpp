@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A variable of the environment for as long as this lives.
+/// Sets an environment variable as long as this object lives.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
@@ -35,7 +35,7 @@ class Variable {
   std::optional<std::string> old_;
 };
 
-/// A folder of this test's own that does not exist yet.
+/// A folder of this test's own, which does not exist yet.
 class Folder {
  public:
   Folder() : path(fs::temp_directory_path() / ("sk_cache_" + std::to_string(::getpid()))) {}
@@ -199,7 +199,7 @@ TEST_CASE("files are deleted when they are too many, the longest unused first") 
   const CacheFolder roomy(folder.path);
   const auto now = fs::file_time_type::clock::now();
   int hoursAgo = 200;
-  for (int i : {3, 4, 5, 6, 7, 8, 9, 0, 1, 2}) {  // from the longest unused on
+  for (int i : {3, 4, 5, 6, 7, 8, 9, 0, 1, 2}) {  // beginning with the least recently used
     roomy.write("program", std::to_string(i), std::string(1000, 'x'));
     for (const auto& entry : fs::directory_iterator(folder.path)) {
       if (fs::last_write_time(entry.path()) > now - std::chrono::hours(1)) {
@@ -207,10 +207,10 @@ TEST_CASE("files are deleted when they are too many, the longest unused first") 
       }
     }
   }
-  std::ofstream(folder.path / "notes.txt") << std::string(5000, 'x');  // nobody's but the user's
+  std::ofstream(folder.path / "notes.txt") << std::string(5000, 'x');  // the user's own file
   std::ofstream(folder.path / "program-0123456789abcdef.1.2.3") << "a draft of a process that has ended";
   fs::last_write_time(folder.path / "program-0123456789abcdef.1.2.3", now - std::chrono::hours(999));
-  CHECK(roomy.read("program", "3").has_value());  // which is used thereby
+  CHECK(roomy.read("program", "3").has_value());  // which counts as use
   CHECK(filesIn(folder.path) == 12);
   const CacheFolder tight(folder.path, 10'000);
   tight.write("barrier", "a driver",
@@ -221,7 +221,7 @@ TEST_CASE("files are deleted when they are too many, the longest unused first") 
   CHECK_FALSE(tight.read("program", "4").has_value());
   CHECK(tight.read("barrier", "a driver").has_value());
   CHECK(fs::exists(folder.path / "notes.txt"));
-  // they stay few, also where one process writes all of them
+  // their number stays bounded even if a single process writes all of them
   for (int i = 0; i < 100; ++i) tight.write("program", std::to_string(i), std::string(1000, 'y'));
   CHECK(filesIn(folder.path) < 14);
   tight.write("program", "huge", std::string(20'000, 'z'));

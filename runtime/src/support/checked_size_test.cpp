@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: no size overflows, and want of host memory is an sk::Error that says how much was asked for.
+// Promises: no size overflows, and exhausted host memory is an sk::Error that reports the requested size.
 #include "support/checked_size.hpp"
 
 #include <cstdint>
@@ -53,7 +53,7 @@ TEST_CASE("streams of more bytes than there are addresses are refused") {
       CHECK_THAT(errorOf([&] { device->stream<std::int8_t>(shape); }),
                  Contains("too large") || Contains("an extent above"));
     }
-    // not so large that a size would overflow, and more than any machine has
+    // small enough that no size overflows, but more than any machine has
     CHECK_THAT(errorOf([&] { device->stream<float>({1 << 28, 1 << 28}); }),
                Contains("no memory") && Contains(" bytes"));
     CHECK_THAT(errorOf([&] { device->stream<float>({mostExtent + 1}); }),

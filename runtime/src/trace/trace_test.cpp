@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The file of a trace by itself; what devices write to it is runtime/tests/trace_test.py's.
+// Tests the trace file alone; runtime/tests/trace_test.py tests what devices write to it.
 #include "trace/trace.hpp"
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a tree has one root, its levels follow each other in their textures without overlap, and each is
-// drawn whole, node for node.
+// Promises: a pyramid has one root, its levels are stacked in their textures without overlap, and each is
+// drawn completely, node by node.
 #include "assemble/append/histo_pyramid.hpp"
 
 #include <catch2/catch.hpp>

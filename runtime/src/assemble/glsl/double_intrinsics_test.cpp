@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a program has those functions of doubles that its kernel calls, each once and behind what it needs; glslang takes
-// all of them in every form. (tests/numerics measures them.)
+// Promises: a program defines exactly the functions of doubles that its kernel calls, each once and after
+// what it needs; glslang accepts all of them in every representation. (tests/numerics measures them.)
 #include "assemble/glsl/double_intrinsics.hpp"
 
 #include <array>
@@ -27,7 +27,7 @@ std::string definitions(const std::vector<IntrinsicUse>& uses, Doubles form = Do
 
 TEST_CASE("functions of doubles come with what they need, once") {
   CHECK(definitions({}).empty());
-  CHECK(definitions({{Intrinsic::Sin, 0b1111}}).empty());  // of floats
+  CHECK(definitions({{Intrinsic::Sin, 0b1111}}).empty());  // functions of floats
   const std::string text = definitions({{Intrinsic::Log, 1, true}, {Intrinsic::Asinh, 0, true}});
   CHECK(occurrences(text, "sk_double sk_log(sk_double x) {") == 1);
   CHECK(occurrences(text, "sk_double sk_asinh(sk_double x) {") == 1);

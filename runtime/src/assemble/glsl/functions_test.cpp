@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The shared GLSL functions, run here as the C++ that they also are: TRANSLITERATED defines the code
-// and its text, and the text must be what the assembler emits, so that what is tested is what runs.
+// Tests the shared GLSL functions by running them as C++: TRANSLITERATED defines both the code and its text,
+// and the text must equal what the assembler emits, so that the tested code is what runs.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -103,7 +103,7 @@ namespace {
 
 using sk::assemble::Function;
 
-/// Without comment lines and white space.
+/// The text without comment lines and white space.
 std::string essence(std::string_view text) {
   std::string result;
   while (!text.empty()) {
@@ -122,7 +122,7 @@ constexpr int largestExtent = 1 << 30;   // one more than sk::mostExtent
 const std::vector<int> extents = {
     1, 2, 3, 5, 7, 64, 100, 8191, 8192, 16384, largestExtent - 1, largestExtent};
 
-/// Offsets near every multiple of the extent that matters, and near the ends of the type.
+/// Offsets near every multiple of the extent that matters, and near the limits of the type.
 std::vector<int> offsets(std::int64_t i, std::int64_t n) {
   std::vector<int> result;
   for (const std::int64_t centre :
@@ -136,7 +136,7 @@ std::vector<int> offsets(std::int64_t i, std::int64_t n) {
 
 std::int64_t wrapped(std::int64_t p, std::int64_t n) { return ((p % n) + n) % n; }
 
-/// GL_MIRRORED_REPEAT on integers.
+/// GL_MIRRORED_REPEAT for integers.
 std::int64_t mirrored(std::int64_t p, std::int64_t n) {
   const std::int64_t q = wrapped(p, 2 * n);
   return q < n ? q : 2 * n - 1 - q;
@@ -179,7 +179,7 @@ TEST_CASE("wrapping and mirroring are right for every int, and for sums that ove
   });
 }
 
-// The formulas that gather.cpp writes in place, for one component; gather_test has their text.
+// The formulas that gather.cpp emits inline, for one component; gather_test checks their text.
 TEST_CASE("clamping and the border test are right for every int, and for sums that overflow") {
   forExtremes([](int i, int d, int n) {
     const std::int64_t sum = std::int64_t{i} + d;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: only what a kernel uses is defined, each once and after what it needs; every intrinsic has both forms, of every
-// width. (glslang_test.cpp shows all of them to glslang, tests/numerics measures them.)
+// Promises: only what a kernel uses is defined, each once and after what it needs; every intrinsic has both
+// variants for every width. (glslang_test.cpp compiles all of them with glslang, tests/numerics measures
+// them.)
 #include "assemble/glsl/intrinsics.hpp"
 
 #include <array>

@@ -82,9 +82,8 @@ class ProgramText {
   /// Adds a line to main() that precedes all lines of statement().
   void prologue(std::string_view line);
   /// Adds a line to main() of a compute program that precedes all of these, and that all invocations of a
-  /// work group run, including those outside the domain. A
-  /// barrier follows these lines and those of keepTogether(). Function::Local then
-  /// gives the position of invocations.
+  /// work group run, including those outside the domain. A barrier follows these lines and those of
+  /// keepTogether(). Function::Local then gives the position of invocations.
   void together(std::string_view line);
   /// Adds a line after all of together(), so that a group starts all fetches before it stores their results.
   void keepTogether(std::string_view line);

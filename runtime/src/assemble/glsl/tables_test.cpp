@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a function of a table is looked up or called, by one name. (glslang_test.cpp shows both to glslang, tests/run
-// what they give.)
+// Promises: a function with a table is either looked up or called, under the same name. (glslang_test.cpp
+// compiles both with glslang, tests/run checks their results.)
 #include "assemble/glsl/tables.hpp"
 
 #include <array>

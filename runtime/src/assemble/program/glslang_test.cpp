@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// glslang accepts every kind of program: profiles x domains x addressing x boundaries x ranks x types,
-// and every pass of a reduction. The programs stay in SK_TEST_FOLDER to be looked at.
+// Promises: glslang accepts every kind of program: profiles x domains x addressing x boundaries x ranks x
+// types, and every pass of a reduction. The programs stay in SK_TEST_FOLDER for inspection.
 #include <array>
 #include <cstdlib>
 #include <filesystem>
@@ -39,7 +39,7 @@ class Programs {
     add(text, profile.stage == Stage::Compute ? "comp" : "frag");
   }
 
-  /// What glslang complains of.
+  /// The errors that glslang reports.
   std::string complaints() const {
     const std::string command =
         fmt::format("cd '{}' && '{}' *.* > complaints.txt 2>&1", folder_.string(), SK_GLSLANG_VALIDATOR);
@@ -96,7 +96,8 @@ constexpr std::array inputs = {StreamAccess{Addressing::Aligned}, StreamAccess{A
 
 constexpr std::array boundaries = {Boundary::Clamp, Boundary::Wrap, Boundary::Mirror, Boundary::Border};
 
-/// Offsets that are not constant, that are but may pass an extent, and that stay below each.
+/// Offsets that are not constant, constant offsets that may exceed an extent, and ones that are below every
+/// extent.
 struct Neighbours {
   int reach;
   bool nearby;
@@ -208,7 +209,7 @@ TEST_CASE("glslang accepts the points of a scatter output, in layers or not") {
   checkAccepted(programs);
 }
 
-// `precise` is left to the device tests: glslang does not take it from GL_ARB_gpu_shader5.
+// Only device tests cover `precise`: glslang does not accept it with GL_ARB_gpu_shader5.
 TEST_CASE(
     "glslang accepts doubles and their functions in either form, behind other barriers than `precise`") {
   Programs programs("doubles");

@@ -18,7 +18,7 @@ namespace {
 const Profile& glsl = *findProfile("glsl330");
 const Profile& es = *findProfile("essl300");
 
-/// The text from `begin` to `end`, both included.
+/// The text from `begin` to `end`, inclusive.
 std::string part(const std::string& program, std::string_view begin, std::string_view end) {
   const std::size_t first = program.find(begin);
   REQUIRE(first != std::string::npos);
@@ -27,7 +27,7 @@ std::string part(const std::string& program, std::string_view begin, std::string
   return program.substr(first, last + end.size() - first);
 }
 
-/// The definition of the function that begins so.
+/// The definition of the function that begins with `begin`.
 std::string definition(const std::string& program, std::string_view begin) {
   return part(program, begin, "\n}\n");
 }
@@ -315,7 +315,7 @@ TEST_CASE("a dispatched stencil fetches each texel once for its work group") {
   const std::string program = kernelProgram(*findProfile("glsl430"), sample.kernel(), variant);
   CHECK(program.find("shared vec4 sk_tile_a[18][10];") != std::string::npos);
   const std::string main = part(program, "void main() {", "return;");
-  CHECK(main.find("barrier();") != std::string::npos);  // which all invocations reach, those outside, too
+  CHECK(main.find("barrier();") != std::string::npos);  // all invocations reach it, including those outside
   CHECK(main.find("if (any(greaterThanEqual(") > main.find("barrier();"));
   CHECK(kernelProgram(glsl, sample.kernel(), variant).find("sk_tile_a") == std::string::npos);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Which programs and passes reductions are planned to take.
+// Tests which programs and passes are planned for reductions.
 #include "assemble/reduce/reduce_plan.hpp"
 
 #include <utility>
@@ -112,7 +112,7 @@ TEST_CASE("of a dispatched reduction to a value, the last pass alone writes to a
 
 TEST_CASE("values of components of 32 bits may end in a buffer") {
   CHECK(mayEndInBuffer(samples::sum));
-  CHECK_FALSE(mayEndInBuffer(samples::weigh));  // its best has a bool
+  CHECK_FALSE(mayEndInBuffer(samples::weigh));  // its `best` has a bool
 }
 
 TEST_CASE("as many elements as there may be are folded to one") {

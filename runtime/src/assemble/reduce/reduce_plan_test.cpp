@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs schedules in C++ over strings, whose concatenation does not commute: a block's result is its elements' names in
-// row-major order. Fragment is the transliteration of what reduceProgram writes; unwritten texels may not be read.
+// Runs schedules in C++ on strings, whose concatenation does not commute: a block's result must be its
+// elements' names in row-major order. Fragment transliterates what reduceProgram emits; reading an unwritten
+// texel is an error.
 #include "assemble/reduce/reduce_plan.hpp"
 
 #include <algorithm>
@@ -68,7 +69,7 @@ bool inside(const Index4& index, const Index4& extent) {
   return true;
 }
 
-/// A region of a stream: a whole one, or a part with margins around it.
+/// A region of a stream: a whole stream, or a part with margins around it.
 struct Region {
   RegionLayout regionLayout;
   int width, height;  ///< of its texture
@@ -88,7 +89,7 @@ class Fragment {
   Fragment(const ReducePass& pass, Texture& source, const Region& input, int x, int y)
       : pass_(pass), source_(source), input_(input), x_(x), y_(y) {}
 
-  /// Nothing where the fragment is discarded.
+  /// Nullopt if the fragment is discarded.
   std::optional<Name> run() {
     if (pass_.variant.walk == Walk::Rows || pass_.variant.walk == Walk::PartialRows) return runRows();
     if (pass_.variant.walk == Walk::GroupedPartials) return runGroup();
@@ -134,7 +135,7 @@ class Fragment {
     return rectangle(left, top, width, height);
   }
 
-  /// What is of it in the source, row by row.
+  /// The part of a rectangle that is inside the source, row by row.
   Name rectangle(int left, int top, int width, int height) {
     Name total;
     const Index4& end = vector("sk_source");
@@ -143,12 +144,12 @@ class Fragment {
         total += element(vector("sk_origin")[0] + x, vector("sk_origin")[1] + y);
       }
     }
-    if (top < end[1] && top + height >= end[1] && left < end[2])  // a texel more, below the rows
+    if (top < end[1] && top + height >= end[1] && left < end[2])  // one more texel, below the rows
       total += element(vector("sk_origin")[0] + left, vector("sk_origin")[1] + end[1]);
     return total;
   }
 
-  /// What a work group leaves in its first invocation.
+  /// The value that a work group leaves in its first invocation.
   Name runGroup() {
     const Index4& target = vector("sk_target");
     const int group = (y_ - target[1]) << integer("sk_domain_shift") | (x_ - target[0]);
@@ -291,12 +292,12 @@ class Fragment {
 
 constexpr std::int32_t mostLayers = 8;
 
-/// Layers are as good as one tall texture.
+/// Layers are equivalent to one tall texture.
 std::pair<int, int> sizeOf(const TextureShape& texture) {
   return {texture.width, texture.height * std::max(texture.layers, 1)};
 }
 
-/// As the runtime lays streams out; nothing where the stream does not fit in one texture.
+/// Lays a stream out as the runtime does; nullopt if it does not fit in one texture.
 std::optional<Region> layOut(const Index4& extent, int rank, const Index4& before, const Index4& after,
                              int limit) {
   const Index4 whole = before + extent + after;
@@ -338,7 +339,7 @@ void draw(const ReducePass& pass, Texture& source, const Region& input, Texture&
   }
 }
 
-/// What the runtime's executor does.
+/// Executes passes as the runtime does.
 Texture execute(const std::vector<ReducePass>& passes, Texture source, const Region& input,
                 const Region& result) {
   for (const ReducePass& pass : passes) {
@@ -351,7 +352,8 @@ Texture execute(const std::vector<ReducePass>& passes, Texture source, const Reg
   return source;
 }
 
-/// `length`: of a block. Passes by rows may be one more than the fewest, as a run ends with its row; groups fold more.
+/// `length` is that of a block. Passes by rows may exceed the minimum by one, because runs end with their
+/// row; groups fold more.
 void checkSchedule(const std::vector<ReducePass>& passes, const ReduceLimits& limits, std::int64_t length) {
   std::size_t needed = 1;
   for (std::int64_t left = length; left > limits.fanIn; left = (left + limits.fanIn - 1) / limits.fanIn)
@@ -419,7 +421,7 @@ std::vector<std::int32_t> divisors(std::int32_t n) {
 
 constexpr Index4 none{};
 
-/// Every block shape, between whole streams, views, and both; and to a value.
+/// Tests every block shape, between whole streams, views and both; and reductions to a value.
 void checkShape(const Index4& extent, int rank, const ReduceLimits& limits) {
   CAPTURE(extent[0], extent[1], extent[2], extent[3], rank, limits.texture.size, limits.fanIn);
   Index4 before{}, after{};

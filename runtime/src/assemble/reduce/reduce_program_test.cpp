@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the passes of reductions look like. That they fold in order is reduce_plan_test's business.
+// Tests the text of reduction passes. reduce_plan_test tests the order in which they fold.
 #include "assemble/reduce/reduce_program.hpp"
 
 #include <catch2/catch.hpp>
