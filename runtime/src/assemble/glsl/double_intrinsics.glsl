@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Intrinsics of one double, in both forms. D(x) is a constant.
-// A section begins with `////` and its name in C++; glsl_text/double_intrinsics.hpp has them as constants.
+// Intrinsics of one double, in both representations. D(x) is a constant.
+// A section begins with `////` and its name in C++; glsl_text/double_intrinsics.hpp defines it as a constant.
 
 //// sin
 sk_double sk_sin(sk_double x) { return sk_toggle(sk_wave(sk_abs(x), 0), x); }

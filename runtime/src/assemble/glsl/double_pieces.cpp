@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// One text over the functions of doubles.hpp for both forms, but for the few that look at bits. Coefficients are those of minimax
-// polynomials, in the error of the function that they are a part of (Remez' exchange in 60 digits, then rounded to double), which
-// is 2^-57 and less. `D(x)` is a constant (double_polynomials.hpp). What a reduction subtracts must stay as it is written:
-// sk_sum() is sk_add(), kept by a barrier.
+// One text over the functions of doubles.hpp for both representations, except for the few functions that use
+// bits. Coefficients are of minimax polynomials for the error of the final function (Remez' exchange in 60
+// digits, then rounded to double), which is at most 2^-57. `D(x)` is a constant (double_polynomials.hpp).
+// Range reductions must subtract exactly as written: sk_sum() is sk_add() with a barrier.
 #include "assemble/glsl/double_pieces.hpp"
 
 #include <array>
@@ -44,7 +44,7 @@ constexpr double atanCoefficients[] = {-0.3333333333333301,  0.19999999999809875
 
 struct PieceRow {
   Pieces needs;
-  Polynomial polynomial;  ///< stands first; without coefficients where there is none
+  Polynomial polynomial;  ///< precedes the text; may have no coefficients
   std::string_view text;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// What several intrinsics of doubles share, in both forms, which share all but the few functions that look at bits. D(x) is a
-// constant. sk_exponent: e of x = m * 2^e with m in [sqrt(1/2), sqrt(2)). sk_cut: so few of the upper bits that products of two of
-// them are exact.
-// A section begins with `////` and its name in C++; glsl_text/double_pieces.hpp has them as constants.
+// Functions that several intrinsics of doubles share. Both representations have the same text, except for the
+// few functions that use bits. D(x) is a constant. sk_exponent: e of x = m * 2^e with m in [sqrt(1/2),
+// sqrt(2)). sk_cut: the upper bits, few enough that products of two are exact.
+// A section begins with `////` and its name in C++; glsl_text/double_pieces.hpp defines it as a constant.
 
 //// nativeBasics
 sk_double sk_sum(sk_double a, sk_double b) {

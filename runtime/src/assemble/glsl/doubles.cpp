@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+//
+// Selects the definitions of doubles for a representation (doubles.glsl).
 #include "assemble/glsl/doubles.hpp"
 
 #include "glsl_text/doubles.hpp"

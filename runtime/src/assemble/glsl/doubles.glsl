@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// Doubles, in two forms: GLSL's own, and pairs of floats.
+// Doubles in two representations: GLSL's own, and pairs of floats.
 //
-// A native double is kept as its bits, and is a double only within these functions, where it costs nothing:
-// NVIDIA's GLSL compiler (seen on an H100, at every version) rounds doubles to floats that it keeps in an array
-// with a computed index, alone or in structs.
+// A native double is stored as its bits, and is a double only within these functions, which costs nothing.
+// NVIDIA's GLSL compiler (seen on an H100, at every version) rounds doubles to floats in arrays with a
+// computed index, alone or in structs.
 //
-// A pair is the sum of two floats, of which the second is at most half a unit in the last place of the
-// first: 48 bits of precision in the range of float. Its arithmetic is made of error-free steps, each of which
-// has to stay as it is written (exact_sums.hpp).
+// A pair is the sum of two floats, the second at most half a unit in the last place of the first: 48 bits of
+// precision in the range of float. Its arithmetic consists of error-free steps, which compilers must not
+// change (exact_sums.hpp).
 //
 //   sum, product    Joldes, Muller, Popescu, ACM TOMS 44 (2017): algorithms 6 and 10
-//   product's error Dekker, Numerische Mathematik 18 (1971), with halves of 12 bits cut by a mask: no fma,
+//   product's error Dekker, Numerische Mathematik 18 (1971), splitting into 12 bits with a mask: no fma,
 //                   which need not be fused, and no overflow
-//   quotient, root  long division: what is left of the dividend is divided again, so that the device's own
+//   quotient, root  long division: the remainder is divided again, so that the device's own
 //                   division and root may be off by some units in the last place
 //
-// A section begins with `////` and its name in C++; glsl_text/doubles.hpp has them as constants.
+// A section begins with `////` and its name in C++; glsl_text/doubles.hpp defines it as a constant.
 
 //// native
 struct sk_double { uvec2 bits; };

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+//
+// Selects the definitions for a barrier (exact_sums.glsl).
 #include "assemble/glsl/exact_sums.hpp"
 
 #include "glsl_text/exact_sums.hpp"

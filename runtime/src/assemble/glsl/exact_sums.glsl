@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How a result is kept from being simplified away, one section for each Barrier.
-// A section begins with `////` and its name in C++; glsl_text/exact_sums.hpp has them as constants.
+// Keeps compilers from simplifying rounding errors away; one section for each Barrier.
+// A section begins with `////` and its name in C++; glsl_text/exact_sums.hpp defines it as a constant.
 
 //// withoutBarrier
 #define sk_precise

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The GLSL functions that assembled programs share. Indices are integers only, no negative operand of / or %, and
-// no overflow for any index or offset, since indices are not negative and extents at most sk::mostExtent.
-// A section begins with `////` and its name in C++; glsl_text/functions.hpp has them as constants.
+// The GLSL functions that assembled programs share. They use only integers for indices, no negative operands
+// of / or %, and never overflow, because indices are not negative and extents are at most sk::mostExtent.
+// A section begins with `////` and its name in C++; glsl_text/functions.hpp defines it as a constant.
 
 //// unravel2
 // Index of element number n, given the strides.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// What several intrinsics of floats share. Coefficients of sin, cos, tan, exp, log, sinh, tanh, acosh and atanh are those of
-// Cephes (Moshier, 1992); the others are minimax polynomials of their own.
-// A section begins with `////` and its name in C++; glsl_text/intrinsic_parts.hpp has them as constants.
+// Functions that several intrinsics of floats share. Coefficients of sin, cos, tan, exp, log, sinh, tanh,
+// acosh and atanh are from Cephes (Moshier, 1992); the others are our own minimax polynomials.
+// A section begins with `////` and its name in C++; glsl_text/intrinsic_parts.hpp defines it as a constant.
 
 //// toggleSign
 // |x| with the sign of y.

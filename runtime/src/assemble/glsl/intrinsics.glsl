@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Intrinsics of one float. Each is within 3 ulp and has the special cases of C.
-// A section begins with `////` and its name in C++; glsl_text/intrinsics.hpp has them as constants.
+// A section begins with `////` and its name in C++; glsl_text/intrinsics.hpp defines it as a constant.
 
 //// sin
 float sk_sin(float x) { return sk_toggle_sign(sk_wave(abs(x), 0), x); }
