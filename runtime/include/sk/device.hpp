@@ -34,8 +34,9 @@ struct DeviceOptions {
   /// double wherever a kernel says float), "reference:quad" (in __float128), "gpu" or "gpu:N" (hardware
   /// device N, counted from 0), "software", "gl" (the first GPU, or "software" if there is none), or a part
   /// of the renderer's name in any case ("llvmpipe", "nvidia"). If empty, the environment variable SK_DEVICE
-  /// decides, and without it the best device: the first GPU; without a GPU native code; "software" if a .sk
-  /// file of the program has no native code or an option below needs GL (docs/runtime.md, The best device).
+  /// decides, and without it the best device: the first GPU; without a GPU, native code, or "software" if a
+  /// .sk file of the program has no native code or an option below needs GL (docs/runtime.md, The best
+  /// device).
   std::string device = {};
   /// "glsl330" (fragment programs), "glsl430" (compute programs for every kernel that can use them) or
   /// "essl300". If empty, the environment variable SK_PROFILE decides, and without it: OpenGL with the faster
@@ -82,8 +83,7 @@ struct TargetTrial {
 
 /// Counts what kernels and reductions have done on a device.
 struct PassCount {
-  std::int64_t passes =
-      0;  ///< draws, dispatches and native loop nests, including those of reductions and copies
+  std::int64_t passes = 0;  ///< draws, dispatches and native loop nests, also of reductions and copies
   std::int64_t bytesRead = 0;  ///< by operands: each texel of an input or gather counts once per pass
   std::int64_t bytesWritten = 0;
 };
@@ -147,8 +147,8 @@ class Device {
   /// floats, which takes some ms; the result is cached on disk for the driver (docs/runtime.md).
   const Arithmetic& arithmetic();
 
-  /// Measures whether compute or fragment programs are faster, for each class of kernels that has not been
-  /// measured on this driver. Empty if the device does not have both.
+  /// Returns whether compute or fragment programs are faster for each class of kernels. Measures the classes
+  /// that have not been measured on this driver. Empty if the device does not have both.
   std::vector<TargetTrial> trialTargets();
 
   /// The tables that have replaced functions of kernels on this device, sorted by function name.

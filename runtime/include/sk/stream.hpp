@@ -191,7 +191,7 @@ class Stream {
  public:
   using value_type = T;
 
-  /// Creates no stream on any device: assign the result of Device::stream to it.
+  /// Holds no stream: assign the result of Device::stream to it.
   Stream() = default;
   /// False if default-constructed or moved from.
   explicit operator bool() const noexcept { return state_.get() != nullptr; }

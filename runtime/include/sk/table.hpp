@@ -29,8 +29,8 @@ struct TableReport {
   std::string function;  ///< qualified, as in the .sk file
   TableRange range;
   Interpolation interpolation;
-  /// Bound on the absolute error over the range, from the largest differences of the function's values plus
-  /// the rounding of the argument and the result.
+  /// Predicted largest absolute error over the range: from the largest differences of the function's values
+  /// plus the rounding of the argument and the result.
   double predicted;
   /// Largest absolute error found by looking up eight arguments per interval in float arithmetic.
   double measured;

@@ -85,12 +85,13 @@ struct Slot {
 using RunFunction = void(const Frame*, const Chunk*);
 /// Computes Entry::rows chunks in consecutive rows, which have the same x and `count`.
 using RunRowsFunction = void(const Frame*, const Chunk* chunks);
-/// Folds a chunk of `leaves` leaves, a power of 2, into `columns` accumulators each. Element
-/// k + (r + l * rounds) * columns is folded into column k of leaf l, in order of r. `state` has one array for each scalar
+/// Folds a chunk of `leaves` leaves, a power of 2, into `columns` accumulators each. Element k + (r + l *
+/// rounds) * columns is folded into column k of leaf l, in order of r. `state` has one array for each scalar
 /// of the accumulators, with the columns of leaf l from number columns * l' on, where l' is l with its bits
-/// reversed: the second half of all columns then holds the leaves that follow those of the first half. If `starts` is 1,
-/// columns begin with the identity, or with their first element in a seeded reduction; else with the contents
-/// of `state`. If `leaves` is above 1, `starts` is 1 and `columns` is a multiple of Entry::lanes.
+/// reversed: the second half of all columns then holds the leaves that follow those of the first half. If
+/// `starts` is 1, columns begin with the identity, or with their first element in a seeded reduction; else
+/// with the contents of `state`. If `leaves` is above 1, `starts` is 1 and `columns` is a multiple of
+/// Entry::lanes.
 using FoldFunction = void(const Frame*, const Chunk*, void* const* state, std::int64_t columns,
                           std::int64_t rounds, std::int64_t leaves, std::int64_t starts);
 /// Folds `later` into `state`, column by column.

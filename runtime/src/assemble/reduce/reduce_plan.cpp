@@ -275,8 +275,8 @@ class Planner {
     passes_.push_back(std::move(pass));
   }
 
-  /// Sets the texture for `runs` partial results per block. There are fewer of them than elements, so that it
-  /// exists.
+  /// Sets the texture for `runs` partial results per block. There are fewer of them than elements, so that a
+  /// texture can hold them.
   RegionLayout partials(ReducePass& pass, std::int32_t runs) const {
     const std::int64_t count = std::int64_t{runs} * blocks_;
     const std::optional<TextureShape> texture = linearTexture(count, limits_.texture);
