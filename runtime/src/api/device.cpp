@@ -166,7 +166,7 @@ std::unique_ptr<DeviceState> openState(const DeviceOptions& options) {
 
 constexpr std::string_view aDevice = "a new device";
 
-/// `options()`: what is asked for.
+/// `options()` returns the requested options.
 template <class Options>
 detail::DeviceOwner open(Options&& options) {
   return withHostMemory(aDevice, [&] {

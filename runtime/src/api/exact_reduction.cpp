@@ -39,7 +39,7 @@ Sum fold(const ExactSum& sum, const ResolvedReduction& call) {
   return made;
 }
 
-/// Puts a sum in its place.
+/// Stores a sum in its result.
 void finish(const Sum& sum, const ExactSum& exact, std::span<const Argument> arguments) {
   const StreamRegion& result = arguments[exact.accumulator].region;
   if (sum.rounded) {
@@ -52,7 +52,7 @@ void finish(const Sum& sum, const ExactSum& exact, std::span<const Argument> arg
   run(exact.finish, all, {.precision = Precision::Single});
 }
 
-/// Whether nothing is left for the plain form: every scalar of every accumulator is a sum.
+/// Whether every scalar of every accumulator is an exact sum, so that the plain fold is not needed.
 bool sumsEverything(const Reduction& reduction) {
   std::size_t scalars = 0;
   for (const Parameter& parameter : reduction.fold.parameters) {

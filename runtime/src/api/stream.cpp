@@ -17,7 +17,7 @@ namespace sk {
 
 namespace {
 
-/// Checks a transfer of `count` elements; the stream, or null where there is nothing to transfer.
+/// Checks a transfer of `count` elements. Returns the stream, or null if there is nothing to transfer.
 StreamState* checkTransfer(const StreamRegion& region, std::size_t count, bool isWritten, const char* what) {
   StreamState& stream = liveStream(region, what);
   checkElementsOf(region, isWritten, what);

@@ -105,8 +105,8 @@ bool mayPack(const program::Element& held);
 /// take four times as long to compile.
 bool mayWritePacked(const program::Kernel& kernel);
 
-/// Characters of the longest body that is worth it, and of the functions that it calls, each as often as it is called: a driver
-/// in software takes some 10 s for four times as many.
+/// The longest body, in characters, for which this is worthwhile, and the total length of the functions that
+/// it calls, counted per call: software drivers take some 10 s for four times as many.
 constexpr std::size_t longestPackedBody = 4096, longestPackedCalls = 28672;
 
 /// What a kernel's program computes (append/append_passes.hpp).

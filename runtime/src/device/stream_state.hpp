@@ -64,7 +64,8 @@ class StreamState {
   const Storage storage;
   Shape shape;  ///< valid once the stream is settled
   std::string name;  ///< may be empty
-  /// Its elements are lost: what wrote them has failed halfway. It must be written as a whole before anything else.
+  /// Its elements are lost, because an operation failed while writing them. The next operation must overwrite
+  /// all of them.
   bool isBroken = false;
 
  protected:
@@ -80,8 +81,9 @@ class StreamState {
 /// device has ended, or if a kernel has left it fewer elements than the region has.
 StreamState& liveStream(const StreamRegion& region, std::string_view context);
 
-/// steps(), which write the streams of a reduction's results one after the other: where an exception comes between, these are broken.
-/// `hasBegun` is true from the first step that has written something.
+/// Calls steps(), which write the result streams of a reduction one after the other. If an exception
+/// interrupts them, these streams are marked as broken. `hasBegun` must be true as soon as a step has written
+/// something.
 template <class Steps>
 void writeInSteps(const program::Reduction& reduction, std::span<const Argument> arguments,
                   const bool& hasBegun, Steps&& steps) {
@@ -96,11 +98,11 @@ void writeInSteps(const program::Reduction& reduction, std::span<const Argument>
   }
 }
 
-/// Throws sk::Error, its text after `context`, where the elements of a stream are lost and `isWritten` does not say that all of them are
-/// about to be written.
+/// Throws sk::Error, with `context` in front, if the elements of a stream are lost, unless the operation
+/// writes (`isWritten`) all of them.
 void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_view context);
 
-/// Whether a region is inside its stream, which is settled: a kernel that pushes to a stream changes its size.
+/// Whether a region is in bounds of its stream, which must be settled: a kernel that pushes changes the size.
 bool isInside(const StreamRegion& region);
 
 }  // namespace sk

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// What is bound in a context, so that nothing is bound twice; its errors, and its objects that are to be deleted. The one place that
-// binds: whoever binds past it must call forget(). In an adopted context it also remembers what
-// the application had on the texture units that it takes, and gives it back.
+// Tracks a context's bindings, so that nothing is bound twice, its errors, and its objects to be deleted. All
+// bindings go through this class: code that binds directly must call forget(). In an adopted context, it also
+// saves the application's bindings on the texture units that it uses, and restores them.
 #pragma once
 
 #include <array>
@@ -87,13 +87,13 @@ class BoundState {
 
   /// Invalidates everything that is known about bindings.
   void forget();
-  /// Objects that are deleted are bound nowhere any more, and the driver may give out their names again.
+  /// Must be called for deleted objects: their bindings end, and the driver may reuse their names.
   void forgetProgram(GLuint name);
   void forgetTexture(GLuint name);
   void forgetFramebuffer(GLuint name);
   void forgetStorage(GLuint name);
 
-  /// Deletes the objects whose owners have ended. The context is current.
+  /// Deletes the objects whose owners have been destroyed. The context must be current.
   void deleteQueued() noexcept { deletions.run(*this); }
 
   /// Begins work in an application's context: saves a unit's texture and sampler when it is first used, and
@@ -159,7 +159,7 @@ class BoundState {
   KeptStorage keptStorage_;
 };
 
-/// What owners in this scope leave is deleted at its end. The context is current.
+/// Deletes, at its end, the objects whose owners were destroyed in this scope. The context must be current.
 class DeletionScope {
  public:
   explicit DeletionScope(BoundState& bound) : bound_(bound) {}

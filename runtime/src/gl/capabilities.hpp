@@ -22,13 +22,13 @@ struct Capabilities {
   bool blendsFloats = false;  ///< can blend 32-bit floats
   bool hasDoubles = false;       ///< GLSL has double (GL_ARB_gpu_shader_fp64)
   bool hasPrecise = false;       ///< GLSL 3.30 has `precise` (GL_ARB_gpu_shader5)
-  bool filtersFloats = false;    ///< of 32 bits, linearly
-  bool hasCompute = false;       ///< compute programs of GLSL 4.30, within the limits below
-  bool hasClipControl = false;   ///< where y is 0 may be chosen
-  bool hasLabels = false;        ///< objects may have names for debuggers (KHR_debug)
-  bool tellsResets = false;      ///< glGetGraphicsResetStatus
-  bool isDebugged = false;       ///< a debugger is there, or the context is one for debugging
-  std::vector<GLenum> binaryFormats;  ///< of programs that the driver gives and takes; none where it does not
+  bool filtersFloats = false;  ///< can filter 32-bit floats linearly
+  bool hasCompute = false;  ///< has compute programs of GLSL 4.30, within the limits below
+  bool hasClipControl = false;  ///< the origin of y can be chosen
+  bool hasLabels = false;  ///< has names of objects for debuggers (KHR_debug)
+  bool tellsResets = false;  ///< has glGetGraphicsResetStatus
+  bool isDebugged = false;  ///< a debugger is attached, or the context is a debug context
+  std::vector<GLenum> binaryFormats;  ///< formats of program binaries that the driver supports; may be empty
   std::string renderer;
   std::string driver;  ///< GL_VERSION, as reported by the driver
   std::string shadingLanguage;  ///< GL_SHADING_LANGUAGE_VERSION, likewise

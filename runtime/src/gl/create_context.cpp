@@ -40,7 +40,7 @@ class ApiScope {
   bool isBound_;
 };
 
-/// Whether contexts of both APIs can tell of resets, without an extension.
+/// Whether contexts of both APIs report resets, without an extension.
 bool isEgl15(EGLDisplay display) {
   const char* version = eglQueryString(display, EGL_VERSION);
   return version != nullptr && std::string_view(version) >= "1.5";
@@ -59,7 +59,7 @@ EGLConfig chooseConfig(EGLDisplay display, Api api) {
   return EGL_NO_CONFIG_KHR;
 }
 
-/// `tellsResets`: of the contexts that a driver loses when it resets a GPU, and says so.
+/// `tellsResets`: creates a context that a GPU reset makes lost, which the driver reports.
 EGLContext createHighest(EGLDisplay display, EGLConfig config, Api api, bool tellsResets) {
   const std::span<const Version> versions =
       api == Api::Gl ? std::span<const Version>(glVersions) : std::span<const Version>(esVersions);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// GL objects whose owners have ended. They wait here until their context is current, so that an owner may end anywhere, also while another
-// context is current, or while none is. Where the context never is again, its objects die with it.
+// A queue of GL objects whose owners have been destroyed. They are deleted when their context is current, so
+// that owners may be destroyed anywhere, even while another context or none is current. If the context is
+// never current again, its objects are deleted with it.
 #pragma once
 
 #include <algorithm>
@@ -17,20 +18,21 @@ class Deletions {
  public:
   using Delete = void (*)(BoundState& bound, std::uintptr_t object);
 
-  /// Makes room for one more object, which is about to be made, so that add() never allocates. Throws std::bad_alloc.
+  /// Reserves room for one more object, before it is created, so that add() never allocates. Throws
+  /// std::bad_alloc.
   void makeRoom() {
     const std::size_t needed = queued_.size() + living_ + 1;
     if (queued_.capacity() < needed) queued_.reserve(2 * needed);
   }
-  /// An object has an owner from now on; there is room for it.
+  /// Registers an object that has an owner from now on; there is room for it.
   void expect() noexcept { ++living_; }
-  /// Its owner ends.
+  /// Queues an object whose owner is destroyed.
   void add(Delete how, std::uintptr_t object) noexcept {
     queued_.push_back({how, object});
     --living_;
   }
 
-  /// Deletes them. Their context is current.
+  /// Deletes the queued objects. Their context must be current.
   void run(BoundState& bound) noexcept {
     for (const Queued& one : queued_) one.how(bound, one.object);
     queued_.clear();

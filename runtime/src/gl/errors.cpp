@@ -5,7 +5,7 @@
 
 namespace sk::gl {
 
-// It ends even on a lost context, whose flags never run dry.
+// Terminates even on a lost context, which reports errors forever.
 GLenum Errors::takeNew() {
   const GLenum first = glGetError();
   bool isLost = first == GL_CONTEXT_LOST;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// GL's error flags of a context. They are read where something can fail for want of memory and where results
-// arrive, never on the path of a call.
+// A context's GL error flags. They are read only after operations that can run out of memory and when results
+// arrive, never during a call.
 #pragma once
 
 #include <utility>
@@ -12,22 +12,22 @@ namespace sk::gl {
 
 class Errors {
  public:
-  /// Keeps the pending error for take(), so that takeNew() tells what comes after.
+  /// Saves the pending error for take(), so that takeNew() returns only later errors.
   void setAside() {
     const GLenum error = takeNew();
     if (earlier_ == GL_NO_ERROR) earlier_ = error;
   }
-  /// The first error since setAside(); clears all of these.
+  /// Returns the first error since setAside(), and clears all of them.
   GLenum takeNew();
-  /// The first error that nobody has taken yet.
+  /// Returns the first error that has not been taken yet.
   GLenum take() {
     setAside();
     return std::exchange(earlier_, GL_NO_ERROR);
   }
 
-  /// Whether the context was found to be lost, as it then stays.
+  /// Whether the context is known to be lost; it then stays lost.
   bool isLost() const { return isLost_; }
-  /// Asks the driver. The context is current and has a reset status (Capabilities::tellsResets).
+  /// Queries the driver. The context must be current and have a reset status (Capabilities::tellsResets).
   bool askIfLost() {
     isLost_ = isLost_ || glGetGraphicsResetStatus() != GL_NO_ERROR;
     return isLost_;

@@ -14,7 +14,7 @@ namespace sk::gl {
 class Fence {
  public:
   Fence() = default;
-  /// After everything that was queued so far, which the device begins with now. Empty where the driver gives none.
+  /// Inserts a fence after all commands queued so far, and flushes them. Empty if the driver returns none.
   static Fence insert(Deletions& deletions);
   Fence(Fence&& other) noexcept : deletions_(other.deletions_), sync_(std::exchange(other.sync_, nullptr)) {}
   Fence& operator=(Fence&& other) noexcept {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The name of a GL object that is deleted after its owner has ended: what the classes of this folder, one for each kind of GL
-// object, are built on. The context need not be current when an owner ends (deletions.hpp); it must not end before its owners.
+// Owns the name of a GL object, which is deleted after its owner: the base of this folder's classes for GL
+// objects. The context need not be current when an owner is destroyed (deletions.hpp), but it must outlive
+// its owners.
 #pragma once
 
 #include <utility>
@@ -12,12 +13,12 @@
 
 namespace sk::gl {
 
-/// `Delete` also tells `bound` that the object is bound nowhere any more.
+/// `Delete` must also inform `bound` that the object is no longer bound.
 template <void (*Delete)(BoundState& bound, GLuint name)>
 class ObjectName {
  public:
   ObjectName() = default;
-  /// Owns what make() gives, if that is not 0. Throws std::bad_alloc before anything is made.
+  /// Owns the result of make(), unless it is 0. Throws std::bad_alloc before anything is created.
   template <class Make>
   ObjectName(Deletions& deletions, Make&& make) : deletions_(&deletions) {
     deletions.makeRoom();
@@ -47,7 +48,7 @@ class ObjectName {
   GLuint name_ = 0;
 };
 
-/// A name of glGenTextures and its like.
+/// Creates a name with glGenTextures or a similar function.
 template <class Generate>
 GLuint generated(Generate generate) {
   GLuint name = 0;

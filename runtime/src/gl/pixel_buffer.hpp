@@ -36,14 +36,14 @@ class BoundPixels {
   BoundPixels(const BoundPixels&) = delete;
   BoundPixels& operator=(const BoundPixels&) = delete;
 
-  /// New, undefined bytes; what still uses the old ones keeps them. False where there is no memory.
+  /// Allocates new, undefined bytes; pending commands keep the old ones. False if memory is exhausted.
   bool allocate(Errors& errors, std::size_t bytes) const;
-  /// The address of all of them, until unmap(): after a read for reading, else for writing everything. Null where the
+  /// Maps all bytes until unmap(): for reading after a read, else for overwriting everything. Null if the
   /// driver fails.
   std::byte* map(std::size_t bytes) const;
-  /// Bytes that it has; 0 where there is no such buffer.
+  /// Its size in bytes; 0 if there is no buffer.
   std::size_t size(Errors& errors) const;
-  /// False where the driver has lost what was written.
+  /// False if the driver has lost the written data.
   bool unmap() const { return glUnmapBuffer(target_) == GL_TRUE; }
 
  private:

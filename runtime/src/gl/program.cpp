@@ -61,7 +61,7 @@ Program Program::load(BoundState& bound, GLenum format, std::span<const std::byt
   Program program(bound);
   glProgramBinary(program.name(), format, bytes.data(), static_cast<GLsizei>(bytes.size()));
   if (isLinked(program.name())) return program;
-  static_cast<void>(bound.errors.takeNew());  // it is compiled instead
+  static_cast<void>(bound.errors.takeNew());  // it is compiled from source instead
   return {};
 }
 
@@ -83,7 +83,7 @@ PendingProgram::PendingProgram(BoundState& bound, const ProgramSources& sources,
   main_ = newShader(bound, sources.isCompute() ? GL_COMPUTE_SHADER : GL_FRAGMENT_SHADER);
   if (!sources.isCompute()) vertex_ = newShader(bound, GL_VERTEX_SHADER);
   if (!program_ || !main_ || (!vertex_ && !sources.isCompute())) {
-    static_cast<void>(bound.errors.takeNew());  // finish() tells of it
+    static_cast<void>(bound.errors.takeNew());  // finish() reports it
     program_ = {};
     return;
   }

@@ -34,9 +34,9 @@ struct ProgramSources {
 class Program {
  public:
   Program() = default;
-  /// Compiles and links. Where the driver refuses, the result is empty and `log` has its words.
+  /// Compiles and links. If the driver rejects the program, the result is empty and `log` has its messages.
   static Program build(BoundState& bound, const ProgramSources& sources, std::string& log);
-  /// Empty where the driver refuses. The format is one that it knows.
+  /// Empty if the driver rejects the binary. The driver must know the format.
   static Program load(BoundState& bound, GLenum format, std::span<const std::byte> bytes);
 
   /// Requires a program that was started with `isKept`.
@@ -63,7 +63,7 @@ class Program {
 class PendingProgram {
  public:
   PendingProgram() = default;
-  /// Waits for nothing. `isKept`: somebody will ask for the binary.
+  /// Returns without waiting. `isKept`: binary() will be called.
   PendingProgram(BoundState& bound, const ProgramSources& sources, bool isKept);
 
   /// Waits. If the driver rejects the program, the result is empty and `log` has its messages.

@@ -10,7 +10,7 @@
 namespace sk::gl {
 
 void deleteTexture(BoundState& bound, GLuint name);
-/// One level, no filter, for the texture that is bound to a target.
+/// Sets one level and no filter for the texture bound to a target.
 void setNearest(GLenum target);
 
 class Texture {

@@ -19,9 +19,10 @@ class ValueBuffer {
   static constexpr std::size_t planeBytes = 16;
   static constexpr std::size_t bytes = planeBytes * maxImageUnits;
 
-  /// Makes it what programs write, its binding 0; false where there is no memory for it. The context must be current.
+  /// Binds it as the buffer that programs write (binding 0); false if memory is exhausted. The context must
+  /// be current.
   bool bind(BoundState& bound);
-  /// What programs have left at its beginning, of its bytes at most; waits for them.
+  /// Reads what programs have written to its beginning, at most `bytes` bytes; waits for them.
   void read(BoundState& bound, std::span<std::byte> values) const;
 
  private:

@@ -109,7 +109,7 @@ bool holds(GlDevice& device, Barrier barrier) {
     device.runUnchecked(exactSums(), arguments, {.precision = Precision::Extended});
   } catch (const Error& error) {
     if (barrier != Barrier::Precise || error.kind() != Error::Kind::Compile) throw;
-    return false;  // a compiler that claims to know `precise`, and does not
+    return false;  // the compiler claims to support `precise`, but rejects it
   }
   detail::read(arguments[1].region, found.data(), found.size());
   for (std::size_t i = 0; i < given.size(); ++i) {

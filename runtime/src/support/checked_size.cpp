@@ -10,10 +10,10 @@ namespace sk {
 
 namespace {
 
-/// Made while there is memory: copying an Error allocates nothing.
+/// Created while there is memory: copying an Error does not allocate.
 const Error noMemory("there is not enough host memory", Error::Kind::Memory);
 
-/// Throws an Error with the text that `text` makes, or, if there is no memory for that either, without.
+/// Throws an Error with the result of `text`, or without it if there is no memory for it either.
 template <class Text>
 [[noreturn]] void failWith(Text&& text) {
   try {

@@ -112,7 +112,7 @@ void Trace::addSlice(std::int64_t track, std::string_view category, std::string_
 }
 
 void Trace::addEvent(std::string_view event) {
-  events_.reserve(events_.size() + event.size() + 2);  // all of it or nothing
+  events_.reserve(events_.size() + event.size() + 2);  // appends either the whole event or nothing
   if (!events_.empty()) events_ += ",\n";
   events_ += event;
   if (events_.size() > mostWaiting) write();

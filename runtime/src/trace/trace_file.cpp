@@ -132,7 +132,7 @@ void TraceFile::append(std::string_view events) noexcept {
   try {
     put(events);
   } catch (const std::bad_alloc&) {
-    return;  // these events are missing in the file
+    return;  // these events are lost
   }
 }
 

@@ -25,8 +25,8 @@ struct IntrinsicTexts {
 /// and maxima, of IEEE 754; docs/accuracy.md has the details of each. Otherwise the device's own.
 IntrinsicTexts intrinsicTexts(std::span<const program::IntrinsicUse> uses, bool accurate);
 
-/// Characters of the accurate functions that a kernel's body calls, with all that they need, each as often as it is called: drivers
-/// put a copy wherever there is a call.
+/// The length, in characters, of the accurate functions that a kernel's body calls, with their dependencies,
+/// counted per call: drivers inline each call.
 std::size_t lengthOfCalls(const program::Kernel& kernel);
 
 }  // namespace sk::assemble

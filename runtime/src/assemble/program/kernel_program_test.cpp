@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What typical programs look like, word for word: they are to be what an expert would write by hand.
+// Tests the exact text of typical programs, which should be what an expert would write by hand.
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -359,8 +359,8 @@ TEST_CASE("a kernel that calls much library code writes no packed texels") {
   };
   CHECK(packs("sk_sin", Intrinsic::Sin, 7));
   CHECK(!packs("sk_sin", Intrinsic::Sin, 8));
-  CHECK(!packs("sk_sin", Intrinsic::Sin, 2, 0b1000));  // of four components each
-  CHECK(packs("sk_sinh", Intrinsic::Sin, 8));  // another function
+  CHECK(!packs("sk_sin", Intrinsic::Sin, 2, 0b1000));  // calls with four components
+  CHECK(packs("sk_sinh", Intrinsic::Sin, 8));  // a different function
   CHECK(packs("sk_log", Intrinsic::Log, 20));
   CHECK(!packs("sk_log", Intrinsic::Log, 50));
   CHECK(packs("sk_saturate", Intrinsic::Saturate, 50));
