@@ -31,7 +31,7 @@ struct InfoOptions {
   bool refresh = false;
 };
 
-/// What was kept of the device, if anything was.
+/// The cached report of the device, if there is one.
 Json kept(const std::string& key) {
   const std::optional<std::string> text = sk::CacheFolder().read("info", key);
   return text ? readKept(*text) : Json();

@@ -189,7 +189,7 @@ class Report {
 std::string report(const Json& info) { return Report(info).text(); }
 
 Json readKept(std::string_view text) {
-  constexpr int deepest = 16;  // printing it takes stack for every level
+  constexpr int deepest = 16;  // printing takes stack space for every level
   bool isDeep = false;
   const auto look = [&](int depth, Json::parse_event_t, const Json&) { return !(isDeep |= depth > deepest); };
   const Json info = Json::parse(text, look, false);
@@ -197,7 +197,7 @@ Json readKept(std::string_view text) {
   try {
     if (info.is_object() && info.at("schema") == infoSchema && !report(info).empty()) return info;
   } catch (const Json::exception&) {
-    return {};  // somebody else wrote it
+    return {};  // not written by this program
   }
   return {};
 }

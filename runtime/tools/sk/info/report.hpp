@@ -10,13 +10,13 @@
 
 namespace sk_tool {
 
-/// Of the entries; another one makes what was kept worthless.
+/// The version of the entries; cached reports of other versions are ignored.
 inline constexpr int infoSchema = 2;
 
-/// Several lines. Throws Json::exception where an entry is missing or not what it should be.
+/// Returns several lines. Throws Json::exception if an entry is missing or has an unexpected type.
 std::string report(const Json& info);
 
-/// What an earlier run has kept; null where it cannot be reported.
+/// Parses a cached report; null if it is not a valid report.
 Json readKept(std::string_view text);
 
 }  // namespace sk_tool
