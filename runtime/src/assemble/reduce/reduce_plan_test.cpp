@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs schedules in C++ on strings, whose concatenation does not commute: a block's result must be its
-// elements' names in row-major order. Fragment transliterates what reduceProgram emits; reading an unwritten
-// texel is an error.
+// Runs schedules in C++ on strings, whose concatenation does not commute: a block's result must be its elements'
+// names in row-major order. Fragment does what reduceProgram emits; reading an unwritten texel is an error.
 #include "assemble/reduce/reduce_plan.hpp"
 
 #include <algorithm>

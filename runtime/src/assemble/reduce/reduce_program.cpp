@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Assembles the program of one pass of a reduction. main() determines its run, that is, a block and the
-// position in it where the run starts, and folds the run's elements in one loop.
+// Assembles the program of one pass of a reduction: main() finds its run in a block and folds it in one loop.
 #include "assemble/reduce/reduce_program.hpp"
 
 #include <algorithm>
@@ -154,8 +153,7 @@ class ReductionText {
 
   // ---- the walk ---------------------------------------------------------------------------------
 
-  /// Defines sk_block (its number), sk_first (the run's first element in it) and sk_count, unless they are
-  /// constants.
+  /// Defines sk_block (its number), sk_first (the run's first element in it) and sk_count, unless constant.
   void findRun() {
     if (isByRows()) return;
     const bool isByBlock = variant_.runs == Runs::WholeBlocks && variant_.walk == Walk::Plane;

@@ -72,7 +72,8 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
     const std::size_t part = read.add(*what.element, stream.planes, what.place);
     const std::size_t again = read.add(*what.element, stream.planes, what.place);
     read.begin();
-    upload(device, *what.element, stream.planes, what.place, bitsOf(element, count).data());
+    upload(device, *what.element, stream.planes, what.place, bitsOf(element, count).data(), stream.isBroken);
+    stream.isBroken = false;
     read.wait();
     CHECK(read.isReady());
     read.take(again, found.data());
@@ -85,7 +86,8 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
   {
     const DeviceScope scope(device);
     const GlStream::Travelling what = stream.travelling(region);
-    writeBuffered(device, *what.element, stream.planes, what.place, given.data());
+    writeBuffered(device, *what.element, stream.planes, what.place, given.data(), stream.isBroken);
+    stream.isBroken = false;
   }
   stream.read(region, found.data());
   CHECK(areEqual(element, given, found));
