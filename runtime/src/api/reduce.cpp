@@ -11,6 +11,7 @@
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
 #include "call/precision.hpp"
+#include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "sk/call.hpp"
 #include "support/checked_size.hpp"

@@ -7,6 +7,7 @@
 
 #include "call/block_grid.hpp"
 #include "call/check_argument.hpp"
+#include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "device/stream_state.hpp"
 

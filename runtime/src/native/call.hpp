@@ -20,7 +20,7 @@ using Extents = std::array<std::int64_t, 4>;
 
 /// Elements pushed to a variable output: an array for each component; none where the domain was empty.
 struct Pushed {
-  std::vector<Memory> arrays;
+  std::vector<ArrayMemory> arrays;
   std::int64_t count = 0;
 };
 

@@ -96,9 +96,9 @@ Components::Components(const program::Element& element, RealType real, std::int6
   allocate(count);
 }
 
-Components::Components(const program::Element& element, RealType real, std::vector<Memory> arrays)
+Components::Components(const program::Element& element, RealType real, std::vector<ArrayMemory> arrays)
     : real_(real), types_(componentsOf(element, real)), arrays_(std::move(arrays)) {
-  for (const Memory& array : arrays_) pointers_.push_back(array.get());
+  for (const ArrayMemory& array : arrays_) pointers_.push_back(array.get());
 }
 
 void Components::allocate(std::int64_t count) {

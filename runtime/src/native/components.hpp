@@ -42,7 +42,7 @@ class Components {
   Components() = default;
   Components(const program::Element& element, RealType real, std::int64_t count);
   /// Takes arrays that hold floats as `real`.
-  Components(const program::Element& element, RealType real, std::vector<Memory> arrays);
+  Components(const program::Element& element, RealType real, std::vector<ArrayMemory> arrays);
 
   RealType real() const { return real_; }
   std::span<const ComponentType> types() const { return types_; }
@@ -75,7 +75,7 @@ class Components {
 
   RealType real_ = RealType::Float;
   std::vector<ComponentType> types_;
-  std::vector<Memory> arrays_;
+  std::vector<ArrayMemory> arrays_;
   std::vector<void*> pointers_;
 };
 

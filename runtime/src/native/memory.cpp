@@ -36,9 +36,9 @@ std::byte* aligned(std::size_t alignment, std::size_t bytes, std::size_t asked) 
 
 void Freeing::operator()(std::byte* memory) const { std::free(memory - before); }
 
-Memory allocated(std::size_t bytes) {
-  if (bytes < cacheLine) return Memory(aligned(alignof(std::max_align_t), cacheLine, bytes));
-  if (bytes < largePage) return Memory(aligned(cacheLine, bytes, bytes));
+ArrayMemory allocated(std::size_t bytes) {
+  if (bytes < cacheLine) return ArrayMemory(aligned(alignof(std::max_align_t), cacheLine, bytes));
+  if (bytes < largePage) return ArrayMemory(aligned(cacheLine, bytes, bytes));
   const std::size_t place = nextPlace();
   const std::size_t whole = bytes + place;
   if (whole < bytes) throw NoMemory(bytes);

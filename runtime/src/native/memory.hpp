@@ -16,9 +16,9 @@ struct Freeing {
   std::size_t before = 0;
   void operator()(std::byte* memory) const;
 };
-using Memory = std::unique_ptr<std::byte[], Freeing>;
+using ArrayMemory = std::unique_ptr<std::byte[], Freeing>;
 
 /// Uninitialised. Throws NoMemory (support/checked_size.hpp).
-Memory allocated(std::size_t bytes);
+ArrayMemory allocated(std::size_t bytes);
 
 }  // namespace sk

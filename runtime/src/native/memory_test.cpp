@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::size_t large = std::size_t{1} << 21;
 
-std::uintptr_t addressOf(const Memory& memory) { return reinterpret_cast<std::uintptr_t>(memory.get()); }
+std::uintptr_t addressOf(const ArrayMemory& memory) { return reinterpret_cast<std::uintptr_t>(memory.get()); }
 
 TEST_CASE("memory of any size is there, and begins where a cache line does if it is as long") {
   for (const std::size_t bytes :
        {std::size_t{0}, std::size_t{1}, std::size_t{63}, std::size_t{65}, large - 1, large, 2 * large + 5}) {
-    const Memory memory = allocated(bytes);
+    const ArrayMemory memory = allocated(bytes);
     INFO(bytes << " bytes");
     REQUIRE(memory != nullptr);
     CHECK(addressOf(memory) % (bytes < 64 ? alignof(std::max_align_t) : 64) == 0);
@@ -32,10 +32,10 @@ TEST_CASE("memory of any size is there, and begins where a cache line does if it
 
 TEST_CASE("large arrays begin at different places in their pages, well behind those before them") {
   constexpr std::uintptr_t page = 4096;
-  std::vector<Memory> arrays;
+  std::vector<ArrayMemory> arrays;
   for (int i = 0; i < 16; ++i) {
     arrays.push_back(allocated(large));
-    for (const Memory& before : arrays) {
+    for (const ArrayMemory& before : arrays) {
       if (before == arrays.back()) continue;
       CHECK((addressOf(arrays.back()) - addressOf(before)) % page >= 1024);
     }

@@ -45,7 +45,7 @@ RecordBuffer::RecordBuffer(const RecordShape& shape)
 void RecordBuffer::reserve(std::int64_t count) {
   if (count <= appendBuffer_.capacity) return;
   const std::int64_t capacity = std::max({firstCapacity, appendBuffer_.capacity * 2, count});
-  std::vector<Memory> larger;
+  std::vector<ArrayMemory> larger;
   for (const std::size_t bytes : bytes_) {
     // whole groups of lanes are stored beyond the last record
     larger.push_back(allocated(bytesOf(capacity + native::mostLanes, bytes)));

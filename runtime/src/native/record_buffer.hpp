@@ -62,7 +62,7 @@ class RecordBuffer {
   std::size_t sortedColumns_;  ///< all but the elements
   bool hasTarget_;
   bool hasElement_;
-  std::vector<Memory> arrays_;
+  std::vector<ArrayMemory> arrays_;
   std::vector<std::byte*> pointers_;
   std::int64_t sorted_ = 0;  ///< records that are in order
   std::vector<std::size_t> starts_, positions_;
