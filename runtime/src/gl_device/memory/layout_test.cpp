@@ -4,11 +4,14 @@
 #include <catch2/catch.hpp>
 
 #include "sk/error.hpp"
+#include "sk/limits.hpp"
 
+using sk::Error;
 using sk::haveSameTexels;
 using sk::Index;
 using sk::Layout;
 using sk::layoutOf;
+using sk::mostElements;
 using sk::Shape;
 using sk::StreamRegion;
 using sk::assemble::Index4;
