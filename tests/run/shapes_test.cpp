@@ -145,6 +145,24 @@ TEST_CASE("inputs stretch and stride to the domain by whole ratios") {
   });
 }
 
+TEST_CASE("inputs stretch along one dimension and stride along another") {
+  onEveryLayout([&](sk::Device& device) {
+    const HostArray<int> u({2, 15}, [](std::size_t i) { return static_cast<int>(i); });
+    const HostArray<int> zero({1, 1}, [](std::size_t) { return 0; });
+    auto x = u.on(device), z = zero.on(device);
+    auto r = device.stream<int>({4, 5});
+    auto at = device.stream<sk::int4>({4, 5});
+    const auto fitted = [&](Position p) { return Position{p[0] / 2, p[1] * 3}; };
+    streams::repeat(sk::stretch(sk::stride(x)), sk::stride(sk::stretch(x)), z, r, at);
+    CHECK(difference(r.read(), [&](std::size_t i) { return 1001 * u[fitted(positionOf({4, 5}, i))]; }) == "");
+    CHECK(difference(at.read(), [&](std::size_t i) {
+            const Position p = fitted(positionOf({4, 5}, i));
+            return sk::int4{static_cast<int>(p[1]), static_cast<int>(p[1]), static_cast<int>(p[0]),
+                            static_cast<int>(p[0])};
+          }) == "");
+  });
+}
+
 TEST_CASE("what does not stretch or stride is an error, and nothing is written") {
   sk::Device& device = run_tests::device("glsl330");
   auto x = device.stream<int>({4, 6}), y = device.stream<int>({3, 6}), r = device.stream<int>({4, 6});
@@ -156,6 +174,12 @@ TEST_CASE("what does not stretch or stride is an error, and nothing is written")
       "must divide the domain's");
   CHECK_THROWS_WITH(streams::repeat(sk::stride(y), x, x, r, at),
                     Catch::Contains("to stride through it, each of its extents must be a multiple"));
+  CHECK_THROWS_WITH(
+      streams::repeat(sk::stretch(sk::stride(y)), x, x, r, at),
+      Catch::Contains("each of its extents must divide the domain's or be a multiple of it"));
+  auto none = device.stream<int>({0, 6});
+  CHECK_THROWS_AS(streams::repeat(x, sk::stride(none), x, r, at), sk::Error);
+  CHECK_THROWS_AS(streams::repeat(x, sk::stretch(sk::stride(none)), x, r, at), sk::Error);
   auto flat = device.stream<int>(24);
   CHECK_THROWS_AS(streams::repeat(x, x, sk::stretch(flat), r, at), sk::Error);
   CHECK(r.read() == std::vector<int>(24, 7));

@@ -61,6 +61,20 @@ Fitted<typename S::value_type> stride(const S& stream) {
   return {regionOf(stream), program::Fit::Strided};
 }
 
+/// stretch(stride(stream)) and stride(stretch(stream)) fit each dimension on its own: an extent that divides
+/// the domain's is stretched, a multiple of it is strided. A call throws sk::Error if it is neither.
+template <class T>
+Fitted<T> stretch(const Fitted<T>& input) {
+  const bool isStretched = input.fit == program::Fit::Stretched;
+  return {input.region, isStretched ? input.fit : program::Fit::StretchedOrStrided};
+}
+
+template <class T>
+Fitted<T> stride(const Fitted<T>& input) {
+  const bool isStrided = input.fit == program::Fit::Strided;
+  return {input.region, isStrided ? input.fit : program::Fit::StretchedOrStrided};
+}
+
 /// The parameter types of stubs: any stream or view of T. They are valid for one call.
 template <class T>
 class In {

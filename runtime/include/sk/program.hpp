@@ -99,6 +99,7 @@ enum class Fit : std::uint8_t {
   Same,  ///< has the domain's extents, or extent 1, which is broadcast
   Stretched,  ///< its extents divide the domain's: each element serves several consecutive indices
   Strided,  ///< its extents are multiples of the domain's: the first element of each group is read
+  StretchedOrStrided,  ///< each dimension on its own: Stretched if its extent divides the domain's, else Strided
 };
 
 /// How a scatter output combines a stored element with a new value.

@@ -86,7 +86,7 @@ struct StreamAccess {
   /// the gather's, so that a neighbour's index wraps or mirrors at most once.
   bool nearby = false;
   bool filtered = false;  ///< gathers: sk_sample_p() uses the sampler's linear filter (mayFilter())
-  program::Fit fit = program::Fit::Same;  ///< inputs
+  bool fitted = false;  ///< inputs with another program::Fit than Same
   Storage storage = Storage::Single;  ///< inputs, outputs and gathers: how the stream stores floats
   bool packed = false;  ///< four elements per texel
   auto operator<=>(const StreamAccess&) const = default;

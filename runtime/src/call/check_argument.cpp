@@ -31,18 +31,33 @@ bool isSameElement(const Element& a, const Element& b) {
                       std::equal(a.fields.begin(), a.fields.end(), b.fields.begin(), isSameField));
 }
 
-bool isMultiple(std::int64_t extent, std::int64_t of) { return of > 0 ? extent % of == 0 : extent == 0; }
+bool isMultiple(std::int64_t extent, std::int64_t of) { return extent > 0 && of > 0 && extent % of == 0; }
 
 bool fitsDomain(const Shape& shape, Fit fit, const Shape& domain) {
   bool fits = shape.rank() == domain.rank();
+  const bool isEmpty = domain.size() == 0;
   for (int d = 0; fits && d < shape.rank(); ++d) {
     switch (fit) {
       case Fit::Same: fits = shape[d] == domain[d] || shape[d] == 1; break;
-      case Fit::Stretched: fits = isMultiple(domain[d], shape[d]); break;
-      case Fit::Strided: fits = domain.size() == 0 || isMultiple(shape[d], domain[d]); break;
+      case Fit::Stretched: fits = isEmpty || isMultiple(domain[d], shape[d]); break;
+      case Fit::Strided: fits = isEmpty || isMultiple(shape[d], domain[d]); break;
+      case Fit::StretchedOrStrided:
+        fits = isEmpty || isMultiple(domain[d], shape[d]) || isMultiple(shape[d], domain[d]);
+        break;
     }
   }
   return fits;
+}
+
+std::string_view requirementOf(Fit fit) {
+  switch (fit) {
+    case Fit::Same: break;
+    case Fit::Stretched: return "to stretch it, each of its extents must divide the domain's";
+    case Fit::Strided: return "to stride through it, each of its extents must be a multiple of the domain's";
+    case Fit::StretchedOrStrided:
+      return "to stretch and stride it, each of its extents must divide the domain's or be a multiple of it";
+  }
+  return {};
 }
 
 }  // namespace
@@ -100,11 +115,8 @@ void checkInputShape(const Kernel& kernel, const Parameter& input, const Argumen
     return;
   }
   if (argument.fit != Fit::Same) {
-    const bool isStretched = argument.fit == Fit::Stretched;
     fail(Error::Kind::Shape, kernel, "'{}' has shape {}, and the domain {}; {}", input.name, toString(shape),
-         toString(domain),
-         isStretched ? "to stretch it, each of its extents must divide the domain's"
-                     : "to stride through it, each of its extents must be a multiple of the domain's");
+         toString(domain), requirementOf(argument.fit));
   }
   if (first.role != Role::Output) {
     fail(

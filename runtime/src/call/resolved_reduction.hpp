@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "device/stream_state.hpp"
 #include "sk/call.hpp"
 #include "sk/program.hpp"
 #include "sk/shape.hpp"
@@ -33,6 +34,23 @@ struct ResolvedReduction {
   ResolvedReduction of(const program::Reduction& other, std::span<const Argument> otherArguments,
                        std::span<void* const> otherValues) const;
 };
+
+/// Calls steps(), which write the result streams of a reduction one after the other. If an exception
+/// interrupts them, these streams are marked as broken. `hasBegun` must be true as soon as a step has written
+/// something.
+template <class Steps>
+void writeInSteps(const program::Reduction& reduction, std::span<const Argument> arguments,
+                  const bool& hasBegun, Steps&& steps) {
+  try {
+    steps();
+  } catch (...) {
+    for (std::size_t i = 0; hasBegun && i < arguments.size(); ++i) {
+      const bool isResult = reduction.fold.parameters[i].role == program::Role::Accumulator;
+      if (isResult) arguments[i].region.stream->isBroken = true;
+    }
+    throw;
+  }
+}
 
 /// Temporaries for accumulators that are not results, in host memory or in streams like the results.
 class TemporaryResults {

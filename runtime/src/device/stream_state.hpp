@@ -81,23 +81,6 @@ class StreamState {
 /// device has ended, or if a kernel has left it fewer elements than the region has.
 StreamState& liveStream(const StreamRegion& region, std::string_view context);
 
-/// Calls steps(), which write the result streams of a reduction one after the other. If an exception
-/// interrupts them, these streams are marked as broken. `hasBegun` must be true as soon as a step has written
-/// something.
-template <class Steps>
-void writeInSteps(const program::Reduction& reduction, std::span<const Argument> arguments,
-                  const bool& hasBegun, Steps&& steps) {
-  try {
-    steps();
-  } catch (...) {
-    for (std::size_t i = 0; hasBegun && i < arguments.size(); ++i) {
-      const bool isResult = reduction.fold.parameters[i].role == program::Role::Accumulator;
-      if (isResult) arguments[i].region.stream->isBroken = true;
-    }
-    throw;
-  }
-}
-
 /// Throws sk::Error, with `context` in front, if the elements of a stream are lost, unless the operation
 /// writes (`isWritten`) all of them.
 void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_view context);

@@ -3,8 +3,8 @@
 // Creates a context on a display: selects the API, the configuration and the version.
 #include "gl/create_context.hpp"
 
+#include <cstdio>
 #include <span>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -43,7 +43,9 @@ class ApiScope {
 /// Whether contexts of both APIs report resets, without an extension.
 bool isEgl15(EGLDisplay display) {
   const char* version = eglQueryString(display, EGL_VERSION);
-  return version != nullptr && std::string_view(version) >= "1.5";
+  int major = 0, minor = 0;
+  return version != nullptr && std::sscanf(version, "%d.%d", &major, &minor) == 2 &&
+         std::pair(major, minor) >= std::pair(1, 5);
 }
 
 EGLConfig chooseConfig(EGLDisplay display, Api api) {

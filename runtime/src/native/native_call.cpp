@@ -48,10 +48,11 @@ Extents fastestFirst(const Shape& shape) {
 void fit(Operand& operand, Fit way, const Extents& domain) {
   for (std::size_t d = 0; d < domain.size(); ++d) {
     const std::int64_t extent = operand.extent[d];
-    switch (way) {
-      case Fit::Same: operand.multiply[d] = extent == 1 ? 0 : 1; break;
-      case Fit::Stretched: operand.divide[d] = std::max<std::int64_t>(domain[d] / extent, 1); break;
-      case Fit::Strided: operand.multiply[d] = extent / domain[d]; break;
+    if (way == Fit::Same) {
+      operand.multiply[d] = extent == 1 ? 0 : 1;
+    } else {  // one of the two is 1
+      operand.divide[d] = std::max<std::int64_t>(domain[d] / extent, 1);
+      operand.multiply[d] = std::max<std::int64_t>(extent / domain[d], 1);
     }
   }
 }

@@ -34,13 +34,11 @@ void defineInputIndex(ProgramText& program, const Parameter& input, const Stream
                       const std::string& index) {
   const auto uniform = [&](std::string_view kind) { return parameterUniform(program, "ivec4", kind, input); };
   std::string own = index;
-  switch (access.fit) {
-    case program::Fit::Same:
-      if (access.addressing == Addressing::Aligned) break;
-      own = fmt::format("min({}, {} - 1)", index, uniform("shape"));
-      break;
-    case program::Fit::Stretched: own = fmt::format("{} / {}", index, uniform("ratio")); break;
-    case program::Fit::Strided: own = fmt::format("{} * {}", index, uniform("ratio")); break;
+  if (access.fitted) {
+    const std::string ratio = uniform("ratio");
+    own = fmt::format("{} / max({}, 1) * max(-{}, 1)", index, ratio, ratio);
+  } else if (access.addressing != Addressing::Aligned) {
+    own = fmt::format("min({}, {} - 1)", index, uniform("shape"));
   }
   defineGetter(program, "index", input, own);
 }

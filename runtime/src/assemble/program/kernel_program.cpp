@@ -21,7 +21,6 @@
 namespace sk::assemble {
 namespace {
 
-using program::Fit;
 using program::Kernel;
 using program::Parameter;
 using program::Role;
@@ -57,15 +56,6 @@ std::string_view name(Storage storage) {
   return {};
 }
 
-std::string_view name(Fit fit) {
-  switch (fit) {
-    case Fit::Same: return "";
-    case Fit::Stretched: return " stretched";
-    case Fit::Strided: return " strided";
-  }
-  return {};
-}
-
 /// For example "diffuse for glsl330: plane domain; u plane view nearby".
 std::string describe(const Profile& profile, const Kernel& kernel, const Variant& variant) {
   std::string text = fmt::format(
@@ -84,9 +74,9 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
         text += fmt::format("; {}{}", parameter.name, name(access.storage));
       continue;
     }
-    text += fmt::format("; {} {}{}{}{}{}{}", parameter.name, access.packed ? "packed " : "",
+    text += fmt::format("; {} {}{}{}{}{}{}{}", parameter.name, access.packed ? "packed " : "",
                         name(access.addressing), access.view ? " view" : "", access.nearby ? " nearby" : "",
-                        access.filtered ? " filtered" : name(access.fit), name(access.storage));
+                        access.filtered ? " filtered" : "", access.fitted ? " fitted" : "", name(access.storage));
   }
   return text;
 }

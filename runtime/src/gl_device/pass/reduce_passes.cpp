@@ -291,7 +291,7 @@ void ReducePasses::addAccess(assemble::ReduceVariant& variant, const Kernel& ker
     if (variant.walk == Walk::Index && kernel.parameters[i].role == Role::Input) {
       const RegionLayout& regionLayout = operands[i].regionLayout;
       access.addressing = addressingOf(regionLayout);
-      access.fit = operands[i].fit;
+      access.fitted = operands[i].fitted;
       access.view = regionLayout.origin != Index4{};
     }
   }

@@ -22,7 +22,6 @@ using assemble::RegionLayout;
 using assemble::StreamAccess;
 using assemble::Task;
 using assemble::Work;
-using program::Fit;
 using program::Parameter;
 using program::Role;
 
@@ -67,8 +66,8 @@ StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, co
   }
   access.addressing = addressingOf(regionLayout);
   access.packed = regionLayout.packed;
-  access.fit = operand.fit;
-  access.view = access.fit != Fit::Same || regionLayout.origin != assemble::Index4{};
+  access.fitted = operand.fitted;
+  access.view = access.fitted || regionLayout.origin != assemble::Index4{};
   access.nearby = parameter.role == Role::Gather && isNearby(parameter, regionLayout, domain);
   access.filtered = parameter.role == Role::Gather && operand.storage < Storage::Extended &&
                     isFiltered(parameter, regionLayout, filtersFloats);
@@ -101,11 +100,7 @@ bool isDomainView(const RegionLayout& domain) {
 
 /// A fitted input is taken as a view, and no input is nearby, so that two bits tell all choices apart.
 std::uint64_t choiceBits(const StreamAccess& access) {
-  switch (access.fit) {
-    case Fit::Same: break;
-    case Fit::Stretched: return 2;
-    case Fit::Strided: return 3;
-  }
+  if (access.fitted) return 2;
   return std::uint64_t{access.view} | std::uint64_t{access.nearby} << 1;
 }
 
@@ -162,20 +157,12 @@ Operand regionOperand(const Argument& argument, const Shape& domain) {
   GlStream& stream = glStream(argument.region);
   Operand operand{.regionLayout = regionLayoutOf(argument.region, stream.layout), .planes = stream.planes};
   operand.storage = stream.storage;
-  if (argument.fit == Fit::Same) return operand;
+  operand.fitted = argument.fit != program::Fit::Same;
+  if (!operand.fitted) return operand;
   const assemble::Index4 whole = xFirst(domain);
   for (std::size_t d = 0; d < whole.size(); ++d) {
-    switch (argument.fit) {
-      case Fit::Same: break;
-      case Fit::Stretched:
-        operand.fit = Fit::Stretched;
-        operand.ratio[d] = whole[d] / operand.regionLayout.extent[d];
-        break;
-      case Fit::Strided:
-        operand.fit = Fit::Strided;
-        operand.ratio[d] = operand.regionLayout.extent[d] / whole[d];
-        break;
-    }
+    const std::int32_t extent = operand.regionLayout.extent[d];
+    operand.ratio[d] = extent <= whole[d] ? whole[d] / extent : -(extent / whole[d]);
   }
   return operand;
 }

@@ -27,8 +27,9 @@ struct Operand {
   std::span<RenderTarget> planes = {};
   IteratorStep step = {};
   int rank = 0;                      ///< iterators: of the domain's shape
-  program::Fit fit = program::Fit::Same;      ///< inputs
-  assemble::Index4 ratio = {1, 1, 1, 1};        ///< fitted inputs: the stretch or stride
+  bool fitted = false;                        ///< inputs with another program::Fit than Same
+  /// Fitted inputs: k > 0 if each element serves k consecutive indices, -k if every k-th element is read.
+  assemble::Index4 ratio = {1, 1, 1, 1};
   Storage storage = Storage::Single;
 };
 
