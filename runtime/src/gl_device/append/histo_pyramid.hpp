@@ -12,7 +12,6 @@
 
 namespace sk {
 
-
 class HistoPyramid {
  public:
   /// Draws all levels. `counts` has the layout `layout`. Throws sk::Error if memory is exhausted or the
