@@ -164,8 +164,8 @@ class GlDevice final : public DeviceState {
   const CacheFolder cache;
   ProgramBinaries binaries;
   std::unique_ptr<PassTrace> passes;  ///< null if there is no trace
-  std::vector<std::byte> staging;  ///< of texels in transfer/transfer.cpp, kept between calls
-  std::vector<Operand> operands;  ///< of the current call in pass/run_kernel.cpp
+  std::vector<std::byte> staging;  ///< staging buffer of transfer/transfer.cpp, kept between calls
+  std::vector<Operand> operands;  ///< operands of the current call (pass/run_kernel.cpp)
   bool hasDrawn = false;  ///< something was drawn since the last dispatch
 
  private:

@@ -112,7 +112,7 @@ class KernelCall {
     return isOutput(i) && (isPart(arguments_[i].region) || isPart(arguments_[first_].region));
   }
 
-  /// Whether the outputs may lie packed.
+  /// Whether the outputs can be written packed.
   bool mayWritePacked() const {
     bool may = plan_ == nullptr && assemble::mayWritePacked(kernel_);
     for (std::size_t i = 0; may && i < arguments_.size(); ++i) {

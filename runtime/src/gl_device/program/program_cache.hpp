@@ -94,8 +94,8 @@ class ProgramCache {
   ProgramCache& operator=(const ProgramCache&) = delete;
 
   /// Return the program, which is compiled on first use. The reference is valid until mostVariants other
-  /// programs of the kernel have been used. Throw sk::Error, with the driver's messages, if the driver rejects
-  /// the program.
+  /// programs of the kernel have been used. Throw sk::Error, with the driver's messages, if the driver
+  /// rejects the program.
   KernelProgram& kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                const assemble::RegionLayout& domain, const assemble::Task& task = {});
   ReduceProgram& reduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
