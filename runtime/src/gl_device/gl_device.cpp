@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A device's beginning and end.
+// Construction and destruction of a device, its checks of calls, and how it reports the driver's errors.
 #include "gl_device/gl_device.hpp"
 
 #include <algorithm>
@@ -27,7 +27,8 @@ namespace sk {
 
 namespace {
 
-/// A trial is off by as much at times, in software by more, and what is drawn runs on more devices.
+/// The largest ratio of dispatching time to drawing time at which dispatching is chosen. It is below 1
+/// because trials are inaccurate, especially in software, and fragment programs run on more devices.
 constexpr double worthDispatching = 0.9, worthDispatchingInSoftware = 0.7;
 
 assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capabilities,
@@ -42,7 +43,7 @@ assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capab
   return profile;
 }
 
-/// The one that is asked for, else the strongest that the language has.
+/// The requested barrier, else the strongest one that the language has.
 Barrier barrierOf(const gl::Capabilities& capabilities, const DeviceChoices& choices) {
   if (choices.barrier == Barrier::Precise && !capabilities.hasPrecise) {
     throw Error(
@@ -106,7 +107,7 @@ GlDevice::~GlDevice() {
   try {
     current.emplace(context);
   } catch (const std::exception&) {
-    current.reset();  // another thread has it, or the application has ended it
+    current.reset();  // it is current on another thread, or the application has destroyed it
   }
   {
     const std::lock_guard lock(pendingReads->mutex);
@@ -124,7 +125,7 @@ GlDevice::~GlDevice() {
   }
 }
 
-// Where the context is out of reach, its objects die with it.
+// If the context cannot be made current, its objects are deleted with it.
 GlDevice::LastDeletions::~LastDeletions() {
   try {
     const gl::CurrentScope current(device.context);
@@ -140,7 +141,8 @@ std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& elem
   return std::make_unique<GlStream>(*this, element, shape, storage);
 }
 
-// Accumulate::Extended asks for bits: a program on the CPU has more of them in doubles, and in less time.
+// Accumulate::Extended leaves the representation open: in software, doubles are more precise than pairs of
+// floats, and faster.
 bool GlDevice::takesPairs(const CallOptions& options) const {
   const bool asksForPairs = options.precision == Precision::Extended;
   return isExtended(options) &&
@@ -161,7 +163,7 @@ assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, KernelClass ker
   return fasterFor(kernels);
 }
 
-// Drawing reaches but a part of some GPUs, and dispatches all of it; on others, and in software, it is the other way.
+// On some GPUs only compute programs reach every core; on others, and in software, drawing is faster.
 assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
   std::optional<assemble::Stage>& known = faster_[static_cast<std::size_t>(kernels)];
   if (!known) {
@@ -305,8 +307,8 @@ void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& op
   }
 }
 
-// Lists of append outputs, and bundles of planes, are made of what the kernel declares; a vector of doubles has more planes than
-// one of floats.
+// Lists of append outputs, bundles and temporaries of plans have the element types that the kernel declares.
+// Other storages may exceed the device's limits: a vector of doubles may have more planes than one of floats.
 void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments,
                              const program::Plan* plan) const {
   std::size_t written = 0;
@@ -384,7 +386,7 @@ void GlDevice::givePlanes(std::vector<RenderTarget>& planes) noexcept {
   countBytes();
 }
 
-// An adopted context is current already, or cannot be made so.
+// An adopted context is either current already, or cannot be made current.
 void GlDevice::makeCurrent() {
   if (!context.isCurrent()) context.makeCurrent();
 }
@@ -400,7 +402,8 @@ void GlDevice::throwIfLost() {
   if (bound.errors.isLost() || (capabilities.tellsResets && bound.errors.askIfLost())) failAsLost();
 }
 
-// An application's own mistakes in a context that it draws in are not ours to report.
+// In a shared context, errors other than exhausted memory and a lost context may be the application's own and
+// are not reported.
 void GlDevice::throwPendingError() {
   if (passes) passes->collect();
   const GLenum error = bound.errors.take();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A GL device: its context, the tracked bindings, the pool of render targets, the programs; and the
-// list of the streams that live on it. A DeviceScope is open wherever GL is called.
+// A GL device: its context, the tracked bindings, the pool of render targets, the programs, and the list of
+// the streams that live on it. Code that calls GL must be inside a DeviceScope.
 #pragma once
 
 #include <array>
@@ -37,18 +37,18 @@ namespace sk {
 
 class PassTrace;
 
-/// What a user may choose of a device that is found.
+/// The user's choices for a device that has been found.
 struct DeviceChoices {
-  std::int32_t textureLimit = 0;    ///< 0: the device's own
+  std::int32_t textureLimit = 0;    ///< largest texture size; 0: the device's own limit
   bool guaranteedLimits = false;
-  bool pairs = false;               ///< doubles are pairs of floats even where GLSL has double
-  std::optional<Barrier> barrier = {};  ///< none: the one that proves itself
-  Target target = Target::Default;  ///< Fragment, Compute, or what is faster
+  bool pairs = false;               ///< doubles are pairs of floats even if GLSL has double
+  std::optional<Barrier> barrier = {};  ///< nullopt: chosen by testing the device's arithmetic
+  Target target = Target::Default;  ///< Fragment or Compute; Default: whichever is faster
   bool sharesContext = false;  ///< the application draws in the device's own context
-  std::optional<bool> sharesTexels = {};  ///< assemble::Profile::sharesTexels; none: on hardware
+  std::optional<bool> sharesTexels = {};  ///< assemble::Profile::sharesTexels; nullopt: only on GPUs
 };
 
-/// What of a call's options is in all of its programs.
+/// The options of a call that affect all of its programs: a program cache's key.
 struct ProgramChoice {
   assemble::Stage stage = assemble::Stage::Fragment;
   bool accurate = true;
@@ -85,8 +85,8 @@ class GlDevice final : public DeviceState {
   void run(const ResolvedCall& call) override;
   void reduce(const ResolvedReduction& call) override;
 
-  /// New planes of an element type, with undefined texels. Throws sk::Error saying what for, where
-  /// there is no memory.
+  /// Takes the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
+  /// their purpose `whatFor`, if memory is exhausted.
   std::vector<RenderTarget> takePlanes(const program::Element& element, const assemble::TextureShape& shape,
                                        std::string_view whatFor);
   void givePlanes(std::vector<RenderTarget>& planes) noexcept;
@@ -96,52 +96,55 @@ class GlDevice final : public DeviceState {
     if (trace) trace->countBytes(pool.bytesUsed(), pool.bytesKept());
   }
 
-  /// Whether the application draws in the context, too, so that each call puts its state back.
+  /// Whether the application also draws in the context, so that each call must restore its state.
   bool isGuest() const { return context.isAdopted() || sharesContext_; }
 
   assemble::TextureLimits textureLimits() const { return {limits.textureSize, limits.textureLayers}; }
 
-  /// Throws sk::Error where the device computes nothing as the options say. No DeviceScope is open.
+  /// Throws sk::Error if the device cannot run the kernel with these options. No DeviceScope may be open.
   void checkOptions(const program::Kernel& kernel, const CallOptions& options);
-  /// run() without that check: what the check itself runs.
+  /// run() without checkOptions(), whose tests of the device call this.
   void runUnchecked(const ResolvedCall& call);
   void runUnchecked(const program::Kernel& kernel, std::span<const Argument> arguments,
                     const CallOptions& options);
-  /// Throws sk::Error where a kernel cannot use a stream that holds its floats as something else. `plan`: the passes that
-  /// it takes; null where it takes one.
+  /// Throws sk::Error if a kernel cannot use a stream because of its storage. `plan` has the passes of the
+  /// kernel; null if one pass is enough.
   void checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments,
                      const program::Plan* plan = nullptr) const;
-  /// From here on, the programs are those for a call with these options.
+  /// Selects the program cache for a call with these options, which programs() then returns.
   void choose(const CallOptions& options, assemble::Stage stage);
-  /// What runs the kernel, or the fold of a reduction, in a call with these options. No scope of the device is open.
+  /// The stage that runs a kernel, or the fold of a reduction, in a call with these options. May measure
+  /// which one is faster. No DeviceScope may be open.
   assemble::Stage stageOf(const program::Kernel& kernel, KernelClass kernels, const CallOptions& options);
   ProgramCache& programs() { return *programs_; }
-  /// The texture of a table, made at first. Binds a texture.
+  /// The texture of a table, created on first use. Binds a texture.
   GLuint textureOf(const FunctionTable& table);
 
-  /// Throws sk::Error where the driver has reported an error since it was last asked; the streams that were written meanwhile are
-  /// broken then.
+  /// Throws sk::Error if the driver has reported an error since the last call. The streams that were written
+  /// since then are marked as broken.
   void throwPendingError();
-  /// Throws sk::Error where the context is lost. Asks the driver: for after a failure, whose reason this may be.
+  /// Throws sk::Error if the context is lost. Queries the driver: call this after a failure that a lost
+  /// context would explain.
   void throwIfLost();
-  /// The context, unless it is known to be lost, in which case this throws sk::Error.
+  /// The context. Throws sk::Error if it is known to be lost.
   const gl::Context& livingContext() const {
     if (bound.errors.isLost()) failAsLost();
     return context;
   }
-  /// Between two looks at the driver's errors, streams are written in the same period.
+  /// The number of the current period. A period ends whenever the driver's errors are queried: an error
+  /// breaks the streams that were written in it.
   std::int64_t period() const { return period_; }
 
   gl::Context context;
   const gl::Capabilities capabilities;
-  const assemble::Profile profile;  ///< of fragment programs: that of the table, but for what the device has
-  const assemble::Profile computeProfile;  ///< of compute programs; of no meaning where it has none
-  const Target target;  ///< Fragment, Compute, or what is faster
-  Barrier barrier;  ///< of programs; only arithmetic() tells whether it holds
+  const assemble::Profile profile;  ///< of fragment programs: the table's row, adapted to the device
+  const assemble::Profile computeProfile;  ///< of compute programs; unused if the device has none
+  const Target target;  ///< Fragment or Compute; Default: whichever is faster
+  Barrier barrier;  ///< of programs; arithmetic() tests whether it is effective
   gl::BoundState bound;
 
  private:
-  /// Deletes what all members below have left.
+  /// Deletes the GL objects that the members below queue for deletion when they are destroyed.
   struct LastDeletions {
     GlDevice& device;
     ~LastDeletions();
@@ -160,16 +163,16 @@ class GlDevice final : public DeviceState {
   gl::Labels labels;
   const CacheFolder cache;
   ProgramBinaries binaries;
-  std::unique_ptr<PassTrace> passes;  ///< null where there is no trace
-  std::vector<std::byte> staging;  ///< texels on their way; transfer/transfer.cpp
-  std::vector<Operand> operands;  ///< of the call that runs; pass/run_kernel.cpp
-  bool hasDrawn = false;  ///< since the last dispatch
+  std::unique_ptr<PassTrace> passes;  ///< null if there is no trace
+  std::vector<std::byte> staging;  ///< staging buffer of transfer/transfer.cpp, kept between calls
+  std::vector<Operand> operands;  ///< operands of the current call (pass/run_kernel.cpp)
+  bool hasDrawn = false;  ///< something was drawn since the last dispatch
 
  private:
   bool takesPairs(const CallOptions& options) const;
   assemble::Stage fasterFor(KernelClass kernels);
   bool mayDispatch(const program::Kernel& kernel) const;
-  /// Throws sk::Error where a kernel cannot run as what a call asks for.
+  /// Throws sk::Error if a kernel cannot run on the target that a call requests.
   void checkTarget(const program::Kernel& kernel, Target asked) const;
   void needExactSums(const program::Kernel& kernel);
   [[noreturn]] void failAsLost() const;
@@ -178,13 +181,13 @@ class GlDevice final : public DeviceState {
   const bool sharesContext_;
   std::map<ProgramChoice, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
-  ProgramCache* programs_ = nullptr;  ///< one of them
-  ProgramChoice chosen_;  ///< its key
+  ProgramCache* programs_ = nullptr;  ///< the selected cache
+  ProgramChoice chosen_;  ///< the key of the selected cache
   std::optional<Arithmetic> arithmetic_;
   std::array<std::optional<assemble::Stage>, kernelClasses> faster_;
 };
 
-/// Makes a device's context current and ready for passes, for as long as it lives.
+/// Makes a device's context current and ready for passes as long as this object lives.
 class DeviceScope {
  public:
   explicit DeviceScope(GlDevice& device) : current_(device.livingContext()) {
@@ -202,7 +205,7 @@ class DeviceScope {
   std::optional<gl::SavedState> saved_;
 };
 
-/// Planes from the pool of a device for as long as this lives.
+/// Holds planes from a device's pool and returns them when it is destroyed.
 class PlanesLease {
  public:
   explicit PlanesLease(GlDevice& device) : device_(device) {}
@@ -210,7 +213,7 @@ class PlanesLease {
   PlanesLease(const PlanesLease&) = delete;
   PlanesLease& operator=(const PlanesLease&) = delete;
 
-  /// Adds planes, as GlDevice::takePlanes().
+  /// Adds planes, like GlDevice::takePlanes().
   void add(const program::Element& element, const assemble::TextureShape& shape, std::string_view whatFor);
 
   std::vector<RenderTarget> planes;

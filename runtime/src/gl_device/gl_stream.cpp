@@ -106,7 +106,8 @@ Layout GlStream::withSize(Layout list, std::int32_t count) {
   return list;
 }
 
-// A region of whole texels travels as such, and others once the stream is no longer packed.
+// Packed texels are transferred as they are if the region consists of whole ones; else the stream is
+// unpacked.
 GlStream::Travelling GlStream::travelling(const StreamRegion& region) {
   const RegionLayout place = regionLayoutOf(region, layout);
   if (!place.packed) {
@@ -121,9 +122,10 @@ GlStream::Travelling GlStream::travelling(const StreamRegion& region) {
           region.shape.with(last, region.shape[last] / assemble::lanes), assemble::texelsOf(place)};
 }
 
-/// Whether elements that are written to a region had better go through a buffer of the driver's. Software has them where it wants
-/// them anyway. A GPU's driver may pass all of a texture on to change a part of it from host memory: of a stream of 1 GiB, that
-/// took 69 ms for a row on an H200, and through a buffer 38 us on an H100. What is written as a whole is faster without.
+/// Whether writing to a region is faster through a pixel buffer. On a GPU it is for parts of a stream: from
+/// host memory, a driver may transfer the whole texture to change a part of it. Writing one row of a stream
+/// of 1 GiB took 69 ms on an H200, but 38 us through a buffer on an H100. Whole streams, and all streams of a
+/// software renderer, are written faster without a buffer.
 bool GlStream::writesThroughBuffer(const StreamRegion& region) const {
   constexpr std::int64_t mostBytes = std::int64_t{64} << 20;
   const std::int64_t bytes = region.shape.size() * static_cast<std::int64_t>(held().size);
@@ -165,7 +167,7 @@ void GlStream::labelPlanes() const noexcept {
                              fields[i].path.empty() ? name : fmt::format("{}.{}", name, fields[i].path));
     }
   } catch (const std::bad_alloc&) {
-    return;  // they keep the labels of other streams
+    return;  // the planes keep their previous labels
   }
 }
 
@@ -228,7 +230,7 @@ void GlStream::writeReals(const StreamRegion& region, const double* values) {
   uploadHeld(region, converted.data());
 }
 
-// A texel with the value is an input that serves every element.
+// Runs a copy kernel whose input, one texel with the value, is broadcast to the region.
 void GlStream::fill(const StreamRegion& region, const std::byte* value) {
   const DeviceScope scope(owner());
   const Travelling what = travelling(region);
@@ -273,7 +275,7 @@ bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   const RegionLayout sourcePlace = regionLayoutOf(from, source.layout);
   prepareCopy(owner(), held(), sourcePlace, place);
   PlanesLease before(owner());
-  if (&source == this) {  // the regions may overlap: all of the stream is copied, and read from there
+  if (&source == this) {  // the regions may overlap: reads from a copy of the stream
     before.planes = takePlanesFor(layout);
     copyRegion(owner(), held(), planes, layout.whole, before.planes, layout.whole);
   }

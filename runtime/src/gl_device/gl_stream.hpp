@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A stream on a GL device: its planes, and where its elements lie in them.
+// A stream on a GL device: its planes, and the layout of its elements in them.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class GlDevice;
 
 class GlStream final : public StreamState {
  public:
-  /// A scope of the device must be open. Throws sk::Error where there is no room.
+  /// A DeviceScope must be open. Throws sk::Error if memory is exhausted or no texture is large enough.
   GlStream(GlDevice& device, const program::Element& element, const Shape& shape, Storage storage);
   ~GlStream() override;
 
@@ -36,35 +36,39 @@ class GlStream final : public StreamState {
   void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
   void setName(std::string_view given) override;
 
-  /// What the planes hold: the element, or another for it.
+  /// The element type that the planes hold, which differs from `element` if the storage is not Single.
   const program::Element& held() const { return held_ ? held_->element : *element; }
 
-  /// Whether the stream can lie packed, four elements to a texel.
+  /// Whether the stream can be packed: four elements per texel.
   bool canPack() const { return assemble::mayPack(held()) && mayPack(shape); }
-  /// Makes the stream lie unpacked, as it then does until a kernel writes all of it. A scope of the device is open.
+  /// Converts a packed stream to one element per texel, which it stays until a kernel writes all of it. A
+  /// DeviceScope must be open.
   void unpack();
 
-  /// What goes between a region and host memory: elements as they are held, or packed texels. May unpack the stream.
+  /// A region in the units of its transfers to and from host memory: elements of type held(), or packed
+  /// texels.
   struct Travelling {
     const program::Element* element;
-    Shape shape;  ///< of such elements
+    Shape shape;  ///< in these units
     assemble::RegionLayout place;
   };
+  /// Unpacks the stream if the region does not consist of whole texels.
   Travelling travelling(const StreamRegion& region);
 
-  Layout layout;  ///< holds once the stream is settled
-  std::vector<RenderTarget> planes;  ///< one a field of what is held; none where the stream is empty
+  Layout layout;  ///< valid once the stream is settled
+  std::vector<RenderTarget> planes;  ///< one per field of held(); none if the stream is empty
 
-  /// For debuggers, where planes have changed.
+  /// Labels the planes for debuggers; must be called after they have been replaced.
   void labelPlanes() const noexcept;
 
-  /// Takes what a kernel has pushed for its elements, and gives its planes for it. `total`: where their number
-  /// is not known, HistoPyramid::totalTexture(); `list` has then room for all that may be, and is else of the elements.
+  /// Swaps its planes for `elements`, the list that a kernel has pushed, of layout `list`. If their number is
+  /// not known yet, `total` is HistoPyramid::totalTexture(), which is moved from, and the list has room for
+  /// the largest possible number; otherwise `total` is null.
   void become(std::vector<RenderTarget>& elements, Layout&& list, RenderTarget* total) noexcept;
-  /// The layout of the first elements of a list.
+  /// The layout of the first `count` elements of a list.
   static Layout withSize(Layout list, std::int32_t count);
 
-  /// All that is to be written is.
+  /// Must be called after a write has succeeded: the stream is not broken any more.
   void setWritten() noexcept;
   bool wasWrittenIn(std::int64_t period) const { return period_ == period; }
 
@@ -72,17 +76,17 @@ class GlStream final : public StreamState {
   friend class GlDevice;
   GlDevice& owner() const;
   bool writesThroughBuffer(const StreamRegion& region) const;
-  /// Between all elements of a region, as they are held, and host memory.
+  /// Transfer all elements of a region, of type held(), from and to host memory.
   void uploadHeld(const StreamRegion& region, const std::byte* elements);
   void downloadHeld(const StreamRegion& region, std::byte* elements);
   std::vector<RenderTarget> takePlanesFor(const Layout& planned);
 
-  std::unique_ptr<assemble::HeldElement> held_;  ///< where the storage is not Single
-  std::int64_t period_ = 0;  ///< of the device, in which it was written last
-  RenderTarget total_;  ///< holds the number of elements until somebody asks
+  std::unique_ptr<assemble::HeldElement> held_;  ///< null if the storage is Single
+  std::int64_t period_ = 0;  ///< of the device (GlDevice::period()), in which it was last written
+  RenderTarget total_;  ///< holds the number of elements until settle() reads it
 };
 
-/// The stream of an argument of a call on a GL device.
+/// The stream of a region on a GL device.
 inline GlStream& glStream(const StreamRegion& region) { return static_cast<GlStream&>(*region.stream); }
 
 }  // namespace sk

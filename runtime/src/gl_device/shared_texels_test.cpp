@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a stencil whose work groups share texels has the results of one whose invocations fetch all that they read,
-// wherever the domain ends in a group. On a software renderer, which is made to share what only GPUs do.
+// Promises: a stencil whose work groups share texels has the same results as one whose invocations fetch all
+// texels themselves, wherever the domain ends in a work group. Runs on a software renderer, which by default
+// does not share texels.
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -26,7 +27,7 @@ using program::Role;
 
 constexpr const program::Element& floats = ElementTraits<float>::element();
 
-/// Neighbours as far as `reach`, at most five in a row, with a weight each: a driver's compiler takes long for 81.
+/// A weighted sum of neighbours within `reach`, at most five per row: drivers compile 81 of them too slowly.
 std::string bodyOf(int reach) {
   std::string body = "void weigh(out float r) {\n  r = 0.0;\n";
   int weight = 1;
@@ -40,7 +41,7 @@ std::string bodyOf(int reach) {
   return body + "}\n";
 }
 
-/// Lives as long as the devices that run it, which know it by its address.
+/// Must outlive the devices that run it, which identify it by its address.
 struct Weigh {
   Weigh(Boundary boundary, int reach)
       : body(bodyOf(reach)),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Counts, trees, lists, and what becomes of the lists. All passes that run the kernel come before any that
-// changes a stream which it may read.
+// Draws the counts, the pyramids and the lists, then scatters the lists or makes them the elements of
+// variable outputs. All passes that run the kernel come before any change of a stream that the kernel may
+// read.
 #include "gl_device/append/append_call.hpp"
 
 #include <algorithm>
@@ -31,18 +32,18 @@ using program::Kernel;
 using program::Parameter;
 using program::Role;
 
-/// Up to so many pushes an element, a variable output gets room for all that may come, and nobody waits for
-/// their number.
+/// If elements push at most this often to a variable output, its list has room for the largest possible
+/// number of entries, and the call does not wait for their number.
 constexpr std::int32_t mostRoom = 4;
 
-/// What was pushed to one append output.
+/// The list of one append output.
 struct List {
   explicit List(GlDevice& device) : planes(device), total(device) {}
 
   std::size_t appendOutput = 0;
   Layout layout;         ///< of `planes`
-  PlanesLease planes;    ///< none where nothing was pushed; of a scatter output, the texels first
-  PlanesLease total;     ///< where the number of entries is not known: HistoPyramid::totalTexture()
+  PlanesLease planes;    ///< none if the list is empty; a scatter output's target texels come first
+  PlanesLease total;     ///< HistoPyramid::totalTexture() if the number of entries is not read; else none
 };
 
 class AppendCall {
@@ -62,7 +63,8 @@ class AppendCall {
     }
   }
 
-  /// Everything that a driver may refuse comes before any stream changes, and what changes whole streams at the end.
+  /// Everything that may fail precedes changes of streams, except of outputs that the counting pass draws in
+  /// place. Streams that get new planes change last.
   void run() {
     OutputTargets outputs(device_, kernel_, arguments_, specs_, operands_, layout_.whole, layout_);
     drawCounts(outputs);
@@ -103,7 +105,7 @@ class AppendCall {
     return kernel_.parameters[i].role == Role::Scatter && assemble::isNeeded(kernel_.parameters[i], specs_);
   }
 
-  /// The domain does not lie packed, and what is copied there goes to a part of the stream.
+  /// Whether an element output is a part of its stream, which must then be unpacked, because the domain is.
   bool isPartlyWritten(std::size_t i) const {
     const StreamRegion& region = arguments_[i].region;
     return kernel_.parameters[i].role == Role::Output && assemble::isNeeded(kernel_.parameters[i], specs_) &&
@@ -125,7 +127,7 @@ class AppendCall {
     return regionOperand(argument, domain);
   }
 
-  /// Element outputs, and the counts of each counted append output.
+  /// Draws the element outputs, and the counts of each counted append output.
   void drawCounts(OutputTargets& targets) {
     const auto counted = std::count_if(
         kernel_.parameters.begin(), kernel_.parameters.end(),
@@ -146,7 +148,7 @@ class AppendCall {
     runKernel(device_, pass, kernel_, operands_, layout_.whole, layout_.draws, targets.planes(), {}, task);
   }
 
-  /// Where `counts` is null, the list has slots.
+  /// Draws the list of an append output. `counts` is null if it is not counted: its list then has slots.
   std::unique_ptr<List> makeList(std::size_t i, RenderTarget* counts) {
     const Parameter& appendOutput = kernel_.parameters[i];
     const std::int64_t elements = assemble::elements(layout_.whole.extent);
@@ -175,7 +177,7 @@ class AppendCall {
          appendOutput.role == Role::Scatter ? "scatters to" : "pushes to", appendOutput.name, mostPushes);
   }
 
-  /// Whether the list can be made without its length.
+  /// Whether the list is given room for the largest possible number of entries (mostRoom).
   bool hasRoom(const Parameter& appendOutput, std::int64_t elements) const {
     const std::int64_t most = std::int64_t{device_.limits.textureSize} * device_.limits.textureSize / 2;
     return appendOutput.role == Role::VariableOutput && appendOutput.pushes >= 0 &&
@@ -195,8 +197,8 @@ class AppendCall {
     for (RenderTarget& plane : list.planes.planes) {
       targets.push_back(&plane);
     }
-    assemble::RegionLayout
-        domain;  // of the elements, as their numbers are decoded; the list's own is `draws`
+    // decodes the elements' numbers; list.layout.draws are the texels to draw
+    assemble::RegionLayout domain;
     domain.linear = true;
     domain.extent = layout_.whole.extent;
     domain.stride = assemble::stridesOf(domain.extent);
@@ -230,7 +232,7 @@ class AppendCall {
   std::span<const Argument> arguments_;
   const assemble::SpecValues& specs_;
   Layout layout_;  ///< of the domain
-  PlanesLease counts_;  ///< one a counted append output
+  PlanesLease counts_;  ///< one plane per counted append output
   std::vector<Operand> operands_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Kernels with variable or scatter outputs: the passes of assemble/append/append_passes.hpp, in their order. A scope of the
-// device must be open.
+// Runs kernels with variable or scatter outputs: the passes of assemble/append/append_passes.hpp, in order. A
+// DeviceScope must be open.
 #pragma once
 
 #include "call/resolved_call.hpp"
@@ -17,7 +17,7 @@ bool hasAppendOutputs(const program::Kernel& kernel);
 /// Runs a kernel over its domain, which is not empty.
 void runWithAppendOutputs(GlDevice& device, const ResolvedCall& call);
 
-/// What such a kernel leaves where there is no element: variable outputs of size 0.
+/// Runs such a kernel over an empty domain: its variable outputs become empty.
 void runOverNothing(const ResolvedCall& call);
 
 }  // namespace sk

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// Assembling, compiling and keeping programs of append outputs.
 #include "gl_device/append/append_programs.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The programs of a device that belong to no kernel's body: sums of counts, and points of scatter outputs.
-// They are made when first needed and kept until the device ends.
+// The programs for append outputs that do not contain a kernel's body: those that draw pyramids and those
+// that scatter points. They are compiled on first use and kept as long as the device.
 #pragma once
 
 #include <map>
@@ -22,14 +22,14 @@ namespace sk {
 
 class GlDevice;
 
-/// A program whose uniforms are integers, named as they are set. It must be bound then.
+/// A program with integer uniforms, which are set by name. It must be bound to set them.
 class StepProgram {
  public:
   explicit StepProgram(gl::Program&& program) : program_(std::move(program)) {}
 
   void set(std::string_view uniform, std::int32_t value) { find(uniform, false).set(value); }
   void set(std::string_view uniform, const gl::Int4& value) { find(uniform, true).set(value); }
-  /// `sk_domain_row`, of those that draw to layers.
+  /// The uniform `sk_domain_row` of programs that draw to layers.
   gl::IntUniform& row() { return find("sk_domain_row", false); }
   const gl::Program& program() const { return program_; }
 
@@ -44,10 +44,12 @@ class AppendPrograms {
  public:
   explicit AppendPrograms(GlDevice& device) : device_(device) {}
 
-  /// Reads from texture unit 0.
+  /// The program of a pyramid's level, which reads from texture unit 0. Throws sk::Error if the driver
+  /// rejects it.
   StepProgram& tree(const assemble::PyramidTextures& textures);
-  /// Units: 0 the texels of the list, then the values, or elements, plane by plane, then what earlier
-  /// steps have drawn.
+  /// The program of a step. Its texture units: 0 has the target texels of the list; the next ones have the
+  /// planes of the list's values, or of the stored elements; then come the results of earlier steps. Throws
+  /// sk::Error if the driver rejects it.
   StepProgram& points(const program::Parameter& appendOutput, assemble::PointStep step,
                       const assemble::PointTextures& textures);
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// Drawing the levels of a tree, and reading its root.
 #include "gl_device/append/histo_pyramid.hpp"
 
 #include <array>
@@ -40,7 +38,7 @@ HistoPyramid::HistoPyramid(GlDevice& device, RenderTarget& counts, const Layout&
   }
 }
 
-/// A level over counts, or over nodes that start in row `belowRow`.
+/// Draws a level over the counts, or over the nodes of the level below, which begins in row `belowRow`.
 void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below, bool ofCounts,
                         std::int32_t belowRow) {
   const assemble::TextureShape& shape = below.texture.shape();

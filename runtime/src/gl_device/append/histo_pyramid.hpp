@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The tree over an append output's counts and the list of what was pushed to it, as textures.
+// The histogram pyramid over the counts of an append output, in textures (assemble/append/histo_pyramid.hpp).
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace sk {
 
-/// Sums of the counts of one append output.
 class HistoPyramid {
  public:
-  /// `counts` lie as `layout` says, in the order of elements.
+  /// Draws all levels. `counts` has the layout `layout`. Throws sk::Error if memory is exhausted or the
+  /// driver rejects a program. A DeviceScope must be open.
   HistoPyramid(GlDevice& device, RenderTarget& counts, const Layout& layout);
 
   const assemble::PyramidPlan& plan() const { return plan_; }
   RenderTarget& odd() { return odd_.planes.front(); }
   RenderTarget& even() { return even_.planes.empty() ? odd() : even_.planes.front(); }
 
-  /// The number of all pushes. Waits for the device.
+  /// The total number of pushes. Waits for the device.
   std::int32_t total();
-  /// The same as a texture of one texel, whose fourth channel it is.
+  /// A texture of one texel whose fourth channel is the total number of pushes. Does not wait.
   std::vector<RenderTarget> totalTexture();
 
  private:
@@ -36,7 +36,8 @@ class HistoPyramid {
   PlanesLease odd_, even_;
 };
 
-/// The number in a texel of totalTexture().
+/// Reads the number in a totalTexture(). Waits for the device. Throws sk::Error like
+/// GlDevice::throwPendingError().
 std::int32_t readTotal(GlDevice& device, RenderTarget& total);
 
 }  // namespace sk

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// Stores, sums, smallest and largest: which steps each takes.
 #include "gl_device/append/scatter_points.hpp"
 
 #include <algorithm>
@@ -20,7 +18,7 @@ using program::ScatterOp;
 
 constexpr const char* whatFor = "a scatter output of integers";
 
-/// A float for each component, as a plane of the same width.
+/// The float element of this width.
 const program::Element& floatsOf(int width) {
   switch (width) {
     case 1: return ElementTraits<float>::element();
@@ -34,7 +32,7 @@ bool isOfFloats(const program::Parameter& appendOutput) {
   return appendOutput.element->fields.front().scalar == Scalar::Float;
 }
 
-/// What is drawn, one after the other.
+/// The steps of a scatter output, in order.
 std::span<const PointStep> stepsOf(const program::Parameter& appendOutput) {
   static constexpr PointStep store[] = {PointStep::Store};
   static constexpr PointStep sums[] = {PointStep::SplitLimbs, PointStep::AddLimbs, PointStep::JoinLimbs};
@@ -85,7 +83,7 @@ void Scatterer::run() {
 
 void Scatterer::store(gl::Blend blend) { points(PointStep::Store, blend, planes_, 0, length_); }
 
-/// In rounds of so many points that their limbs add up without rounding.
+/// Draws at most mostLimbPoints points at a time, so that the sums of their limbs are exact.
 void Scatterer::addIntegers() {
   for (std::int32_t first = 0; first < length_; first += assemble::mostLimbPoints) {
     region(PointStep::SplitLimbs, limbs_.planes);
@@ -106,12 +104,12 @@ void Scatterer::extremeIntegers() {
   region(PointStep::JoinHalves, planes_);
 }
 
-/// A plane of floats as large as those of the output.
+/// Adds a plane of floats, as large as the output's planes.
 void Scatterer::takeFloats(PlanesLease& lease, int width) {
   lease.add(floatsOf(width), planes_.front().texture.shape(), whatFor);
 }
 
-/// Units 0 and 1 are those of a list, or of the elements.
+/// Binds planes from unit 2 on, behind the two of a list, or of the elements. Returns the next unit.
 int Scatterer::bindAfterElements(std::span<RenderTarget> planes) { return bindPlanes(device_, planes, 2); }
 
 StepProgram& Scatterer::programOf(PointStep step) {
@@ -130,7 +128,7 @@ DrawTarget Scatterer::target(std::span<RenderTarget> planes) {
   return targetOf(device_, std::span(renderTargets).first(planes.size()));
 }
 
-/// Every point is drawn to every layer, of which it is outside of all but one.
+/// Draws every point to every layer: it is clipped in all layers but its own.
 void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> targets, std::int32_t first,
                        std::int32_t count) {
   StepProgram& program = programOf(step);
@@ -154,7 +152,7 @@ void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> 
   });
 }
 
-/// Over the region that is written. The steps that draw elements read none.
+/// Draws a step over the region. Steps that draw to the elements' own planes do not read them.
 void Scatterer::region(PointStep step, std::span<RenderTarget> targets) {
   StepProgram& program = programOf(step);
   const DrawTarget drawn = target(targets);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Brings the list of a scatter output to where it belongs, in the steps of assemble/append/point_program.hpp.
+// Stores the list of a scatter output to its region, in the steps of assemble/append/point_program.hpp.
 #pragma once
 
 #include <span>
@@ -16,16 +16,17 @@
 
 namespace sk {
 
-/// Draws the entries of a list: its planes are the texels that they belong to, then their values. `regionLayout` and
-/// `planes`: of the region that is written.
+/// Draws the entries of a list to a region of a stream, which has the layout `regionLayout` in `planes`. The
+/// planes of the list hold the target texels, then the values. All arguments must outlive this object.
 class Scatterer {
  public:
-  /// Makes the programs and temporaries. Throws sk::Error where a driver refuses one.
+  /// Prepares the programs and temporaries. Throws sk::Error if the driver rejects a program or memory is
+  /// exhausted.
   Scatterer(GlDevice& device, const program::Parameter& appendOutput, std::span<RenderTarget> list,
             const assemble::RegionLayout& listLayout, const assemble::RegionLayout& regionLayout,
             std::span<RenderTarget> planes);
 
-  /// Changes the region.
+  /// Draws all steps: changes the region.
   void run();
 
  private:
@@ -49,7 +50,7 @@ class Scatterer {
   const assemble::RegionLayout& regionLayout_;
   std::span<RenderTarget> planes_;
   std::vector<assemble::Rect> rects_;
-  PlanesLease limbs_, upper_, lower_;  ///< what integers are combined in
+  PlanesLease limbs_, upper_, lower_;  ///< floats in which integers are combined
 };
 
 }  // namespace sk

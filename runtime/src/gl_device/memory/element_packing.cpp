@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Loops over elements, one instantiation for each size that is copied, so that copies are moves.
+// The loops over elements are instantiated for each size of field, so that each copy compiles to moves.
 #include "gl_device/memory/element_packing.hpp"
 
 #include <cstdint>
@@ -17,7 +17,7 @@ using program::Element;
 using program::Field;
 using program::Scalar;
 
-/// Calls `loop` with the bytes of a field and of its texel as constants.
+/// Calls loop(bytes, texelBytes) with the sizes of a field and of its texel as constants.
 template <class Loop>
 void withBytes(const Field& field, Loop loop) {
   const auto call = [&]<std::size_t Bytes, std::size_t TexelBytes>() {
@@ -35,7 +35,7 @@ void withBytes(const Field& field, Loop loop) {
   }
 }
 
-/// Copies the bytes of a field, of bools as 0 or 1.
+/// Copies the bytes of a field; those of bools become 0 or 1.
 template <std::size_t Bytes, bool IsBool>
 void copyField(const std::byte* from, std::byte* to) {
   if constexpr (IsBool) {
@@ -47,7 +47,7 @@ void copyField(const std::byte* from, std::byte* to) {
   }
 }
 
-/// Copies `count` fields from one place to another, each place `step` bytes after the one before.
+/// Copies `count` fields, which are `fromStep` bytes apart in the source and `toStep` bytes in the target.
 template <std::size_t Bytes>
 void copyFields(const Field& field, const std::byte* from, std::size_t fromStep, std::byte* to,
                 std::size_t toStep, std::size_t count) {
@@ -64,7 +64,7 @@ void copyFields(const Field& field, const std::byte* from, std::size_t fromStep,
   }
 }
 
-/// One channel of 32 bits as one of fewer: a float as a half, the low bytes of an integer.
+/// Converts a channel of 32 bits to a narrower one: a float to a half, an integer to its low bytes.
 void narrowChannel(const gl::Transfer& tight, const std::byte* wide, std::byte* channel) {
   if (tight.type == GL_HALF_FLOAT) {
     float value = 0;

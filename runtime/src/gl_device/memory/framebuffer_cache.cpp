@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// Looking framebuffers up, and making those that are missing.
 #include "gl_device/memory/framebuffer_cache.hpp"
 
 #include <algorithm>

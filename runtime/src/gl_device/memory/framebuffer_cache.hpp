@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Framebuffers over several textures, kept by the names of the textures.
+// Framebuffers that draw to several textures, cached by the textures' names.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ class FramebufferCache {
  public:
   explicit FramebufferCache(gl::BoundState& bound) : bound_(bound) {}
 
-  /// The framebuffer that draws to `textures`, 1 to gl::maxDrawBuffers, all with layers or none; null where the driver
-  /// cannot draw to these together.
+  /// The framebuffer that draws to `textures`: 1 to gl::maxDrawBuffers, all with layers or none. Null if the
+  /// driver cannot draw to them together. Valid until the next call.
   gl::Framebuffer* framebufferOf(std::span<const GLuint> textures, bool isLayered);
 
-  /// Forgets the framebuffers of a texture that is about to be deleted.
+  /// Deletes the framebuffers of a texture that is about to be deleted.
   void dropTexture(GLuint texture);
 
  private:

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// What a software renderer needs of the C library's heap.
+// Tunes the C library's heap for software renderers.
 #pragma once
 
 namespace sk {
 
-/// llvmpipe takes tens of KiB from the heap for each draw whose uniforms differ from those before, and gives them back when
-/// it has drawn. glibc returns what is free at the heap's end to the system from 128 KiB on, so that every draw gets new
-/// pages, which costs several times what the rest of a call does. From the first large block on that a program frees, it
-/// keeps more: twice as much as this was (mallopt(3), M_TRIM_THRESHOLD). So one is freed, of which no page was ever there.
-/// Where MALLOC_TRIM_THRESHOLD_ or mallopt() says how much to keep, and in other C libraries, this does nothing.
+/// Makes glibc keep free memory at the end of the heap instead of returning it to the system. llvmpipe
+/// allocates tens of KiB for each draw whose uniforms have changed, and frees them after drawing. By default,
+/// glibc trims the heap from 128 KiB on, so that every draw faults in new pages, which takes several times as
+/// long as the rest of a call. When a program frees a large block, glibc raises the limit to twice the
+/// block's size (mallopt(3), M_TRIM_THRESHOLD): this function frees one whose pages were never touched. It
+/// has no effect with other C libraries, or if MALLOC_TRIM_THRESHOLD_ or mallopt() sets the limit.
 void keepHeap() noexcept;
 
 }  // namespace sk

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// From shapes to textures.
 #include "gl_device/memory/layout.hpp"
 
 #include <optional>
@@ -14,7 +12,8 @@ namespace sk {
 
 namespace {
 
-/// A longer row makes a texture that is but one texel high, of which a device that works on squares of texels wastes most.
+/// The longest 1-D stream that is not linearised. Its texture is one texel high, and a device that processes
+/// squares of texels wastes most of each square.
 constexpr std::int64_t longestRow = 256;
 
 bool liesAsItIs(const Shape& shape, std::int32_t longest) {
@@ -29,7 +28,7 @@ bool liesAsItIs(const Shape& shape, std::int32_t longest) {
   return true;
 }
 
-/// The texture of so many elements, 1 or more, of `what`.
+/// The texture of `count` linearised elements, at least 1. Throws sk::Error, about `what`, if there is none.
 assemble::TextureShape textureOf(std::int64_t count, const assemble::TextureLimits& limits,
                                  std::string_view what, std::string_view advice) {
   const std::optional<assemble::TextureShape> texture = assemble::linearTexture(count, limits);
@@ -53,7 +52,7 @@ Layout linearised(const Shape& shape, const assemble::TextureLimits& limits) {
   return layout;
 }
 
-/// That of the texels, each of which has four elements.
+/// The layout of a stream of texels with four elements each, but with the extents and strides of elements.
 Layout packedLayout(const Shape& shape, const assemble::TextureLimits& limits) {
   const int last = shape.rank() - 1;
   Layout layout = layoutOf(shape.with(last, shape[last] / assemble::lanes), limits);
@@ -124,7 +123,7 @@ assemble::RegionLayout regionLayoutOf(const StreamRegion& region, const Layout& 
 }
 
 bool haveSameTexels(const assemble::RegionLayout& a, const assemble::RegionLayout& b) {
-  if (&a == &b) return true;  // an output whose region layout is the domain
+  if (&a == &b) return true;  // an output whose region layout is the domain itself
   return a.extent == b.extent && a.origin == b.origin && a.linear == b.linear && a.packed == b.packed &&
          a.layered == b.layered && (!a.linear || (a.shift == b.shift && a.stride == b.stride));
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// How a stream's elements lie in its textures: as they are where they fit, else linearised. Plain
-// arithmetic, no GL. Shapes are rows first on this side, x first on the assembler's.
+// The layout of a stream's elements in its textures: a plane for streams of rank 2 and short ones of rank 1
+// if a texture is large enough, else linearised. Pure arithmetic, no GL. An sk::Shape begins with the slowest
+// dimension, an assemble::Index4 with x.
 #pragma once
 
 #include <cstdint>
@@ -15,29 +16,29 @@
 namespace sk {
 
 struct Layout {
-  assemble::RegionLayout whole;             ///< where the stream's elements are
-  assemble::TextureShape texture;        ///< of each plane; of no size where the stream is empty
-  std::vector<assemble::Rect> draws;     ///< what a pass over the whole stream draws
+  assemble::RegionLayout whole;             ///< of all elements
+  assemble::TextureShape texture;        ///< of each plane; all 0 if the stream is empty
+  std::vector<assemble::Rect> draws;     ///< the rectangles of a pass over the whole stream
 };
 
-/// The layout of a stream of this shape. `packed`: four elements a texel; the rows are a multiple of that. Throws sk::Error
-/// where no texture holds it, or it has no dimension.
+/// The layout of a stream of this shape. `packed`: four elements per texel, if the stream is not empty; its
+/// rows must be a multiple of four. Throws sk::Error if no texture is large enough, or if the rank is 0.
 Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits, bool packed = false);
 
-/// Whether the rows of a stream of this shape are a multiple of four, and there are some.
+/// Whether a stream of this shape is not empty, and its rows have a multiple of four elements.
 bool mayPack(const Shape& shape);
 
-/// That of a list of so many elements: linearised, whatever their number. Throws sk::Error where no texture
-/// holds them.
+/// The layout of a list of `length` elements, which is always linearised. Throws sk::Error if no texture is
+/// large enough.
 Layout listLayout(std::int64_t length, const assemble::TextureLimits& limits);
 
-/// Where the elements of a region lie, given the layout of its stream.
+/// The layout of a region, given the layout of its stream.
 assemble::RegionLayout regionLayoutOf(const StreamRegion& region, const Layout& layout);
 
-/// The shape reversed: x first, missing dimensions 1.
+/// The extents of a shape, x first; missing dimensions are 1.
 assemble::Index4 xFirst(const Shape& shape);
 
-/// Whether each element of both regions, of equal shape, is at the same place in the same texel.
+/// Whether the regions have the same shape, and equal indices are at the same position in the same texel.
 bool haveSameTexels(const assemble::RegionLayout& a, const assemble::RegionLayout& b);
 
 }  // namespace sk

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// Taking render targets from the pool and giving them back.
 #include "gl_device/memory/render_target.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// A texture together with the framebuffer that draws to it and reads from it, and the pool of those
-// that nobody uses, keyed by extent and format. Giving one back touches no GL, so that streams may
-// be destroyed anywhere.
+// A texture with the framebuffer that draws to it and reads from it, and the pool of idle render targets,
+// keyed by size and format. Returning one to the pool does not call GL, so that a stream may be destroyed
+// while the context is not current.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace sk {
 
 struct RenderTarget {
   gl::Texture texture;
-  gl::Framebuffer framebuffer;   ///< made when first needed
+  gl::Framebuffer framebuffer;   ///< created on first use
 
   gl::Framebuffer& framebufferIn(gl::BoundState& bound);
   explicit operator bool() const { return texture.name() != 0; }
@@ -31,19 +31,21 @@ class TexturePool {
   TexturePool(gl::BoundState& bound, FramebufferCache& framebuffers)
       : bound_(bound), framebuffers_(framebuffers) {}
 
-  /// A render target with undefined texels; an empty one where there is no memory for it. The context is current.
+  /// Returns a render target with undefined texels, or an empty one if memory is exhausted. The context must
+  /// be current.
   RenderTarget take(const gl::Format& format, const assemble::TextureShape& shape);
-  /// Of a renderTarget that was taken. Allocates nothing.
+  /// Returns a render target from take() to the pool. Never allocates, and does not call GL.
   void give(RenderTarget&& renderTarget) noexcept;
 
-  /// Deletes what has lain unused for a while, where there is much of it. Once a call.
+  /// Deletes the render targets that have been idle for a number of calls, if idle ones take much memory.
+  /// Must be called once per call.
   void trim() {
     ++clock_;
     if (bytes_ > keptBytes) {
       deleteOlderThan(clock_ - keptCalls);
     }
   }
-  /// Of render targets that were taken, and of those that nobody uses.
+  /// The bytes of render targets in use, and of idle ones.
   std::int64_t bytesUsed() const { return used_; }
   std::int64_t bytesKept() const { return static_cast<std::int64_t>(bytes_); }
 
@@ -53,14 +55,14 @@ class TexturePool {
     std::int64_t since;
   };
   struct Shelf {
-    std::vector<Idle> idle;  ///< with room for those that were taken
+    std::vector<Idle> idle;  ///< has capacity for the taken ones as well
     std::size_t taken = 0;
   };
   static constexpr std::size_t keptBytes = std::size_t{256} << 20;
   static constexpr std::int64_t keptCalls = 16;
 
   static std::uint64_t key(const gl::Format& format, const assemble::TextureShape& shape);
-  /// Empty where there is none.
+  /// Returns an empty render target if no idle one has this key.
   RenderTarget takeIdle(std::uint64_t place);
   void deleteOlderThan(std::int64_t time);
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// The passes of a plan.
 #include "gl_device/pass/multipass_plan.hpp"
 
 #include <algorithm>
@@ -25,7 +23,8 @@ using program::Pass;
 using program::Plan;
 using program::Role;
 
-/// Copies the layers of a plane, or its only one, to layers first, first + step, ...
+/// Copies all layers of a plane (one if it is not layered) to the layers first, first + step, ... of a
+/// texture.
 void copyLayers(GlDevice& device, RenderTarget& plane, gl::Texture& to, std::int32_t first,
                 std::int32_t step) {
   const assemble::TextureShape& shape = plane.texture.shape();
@@ -38,9 +37,10 @@ void copyLayers(GlDevice& device, RenderTarget& plane, gl::Texture& to, std::int
   }
 }
 
-/// Copies the planes of a bundle to one array texture: the first layer of each, the second ones, and so on.
+/// Copies the planes of a bundle to one array texture: the first layers of all planes, then the second ones,
+/// and so on.
 gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const Operand> operands) {
-  std::vector<RenderTarget*> planes;   // null where a stream is left out
+  std::vector<RenderTarget*> planes;   // null if a stream is omitted
   const auto count = static_cast<std::int32_t>(bundle.layers.size());
   assemble::TextureShape shape{1, 1, 1};
   for (const program::ArgumentPlane& place : bundle.layers) {
@@ -84,13 +84,13 @@ class PlanRun {
   PlanRun(const PlanRun&) = delete;
   PlanRun& operator=(const PlanRun&) = delete;
 
-  /// Lets the driver begin with the program of a pass. False where it is there already.
+  /// Makes the driver start compiling the program of a pass. False if the program exists already.
   bool start(const Pass& pass) {
     choose(pass);
     return targets_.empty() || device_.programs().startKernelProgram(pass.kernel, operands_, call_.domain);
   }
 
-  /// Makes what draw() needs.
+  /// Prepares everything that draw() needs. Throws sk::Error if the driver rejects something.
   void prepare(const Pass& pass) {
     choose(pass);
     if (targets_.empty()) return;
@@ -99,7 +99,7 @@ class PlanRun {
 
   void draw(const Pass& pass) {
     choose(pass);
-    if (targets_.empty()) {   // all of its outputs are left out
+    if (targets_.empty()) {   // all of its outputs are omitted
       return;
     }
     runKernel(device_, pass.kernel, operands_, call_.domain, call_.rects, targets_, bundles_);
@@ -118,7 +118,7 @@ class PlanRun {
     }
   }
 
-  /// Temporaries lie as the domain does.
+  /// Temporaries have the layout of the domain.
   Operand operandOf(const program::PassOperand& operand) {
     return operand.isTemporary
                ? Operand{.regionLayout = call_.domain, .planes = temporaries_[operand.index].planes}
@@ -152,7 +152,7 @@ void runPlan(GlDevice& device, const Plan& plan, const PlannedCall& call,
              const std::function<void()>& begin) {
   PlanRun run(device, plan, call);
   for (const Pass& pass : plan.passes) {
-    if (!run.start(pass)) break;   // nor are the others new
+    if (!run.start(pass)) break;   // then the other programs exist, too
   }
   for (const Pass& pass : plan.passes) run.prepare(pass);
   begin();

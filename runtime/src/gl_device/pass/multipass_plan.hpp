@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs a kernel that is too large for one pass, by the plan that the compiler has made. Where the outputs belong is
-// run_kernel.cpp's business.
+// Runs a kernel that is too large for one pass, by the compiler's plan. run_kernel.cpp decides where the
+// outputs are drawn.
 #pragma once
 
 #include <functional>
@@ -17,17 +17,17 @@ namespace sk {
 
 class GlDevice;
 
-/// What all passes share: the call, its arguments checked.
+/// A call with checked arguments, which all passes of the plan share.
 struct PlannedCall {
-  std::span<const Operand> operands;  ///< one a parameter of the whole kernel
-  std::span<const std::span<RenderTarget>> outputs;  ///< likewise: the planes that outputs are drawn to
+  std::span<const Operand> operands;  ///< one per parameter of the whole kernel
+  std::span<const std::span<RenderTarget>> outputs;  ///< likewise: the planes to draw outputs to
   const assemble::RegionLayout& domain;
-  const Layout& layout;  ///< of what is drawn to
+  const Layout& layout;  ///< of the stream that the domain is a region of
   std::span<const assemble::Rect> rects;
 };
 
-/// No output is drawn to planes that an operand reads. `begin` is called before the first pass, when everything is there that a driver
-/// may refuse; without it this throws sk::Error.
+/// Runs the passes. No operand may read the planes of an output. Calls begin() before the first pass draws,
+/// after everything that may fail; throws sk::Error before that.
 void runPlan(GlDevice& device, const program::Plan& plan, const PlannedCall& call,
              const std::function<void()>& begin);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The ways of outputs.
+// Chooses in-place, swap or copy for each output.
 #include "gl_device/pass/output_targets.hpp"
 
 #include <utility>
@@ -57,7 +57,8 @@ OutputTargets::Way OutputTargets::wayOf(std::size_t output) const {
   return isWhole && !isWrittenBefore ? Way::Swap : Way::Copy;
 }
 
-/// New planes lie as the domain does. What it takes to bring them to their place is made beforehand.
+/// Adds new planes with the layout of the domain, and prepares the copy from there, so that it cannot fail
+/// later.
 void OutputTargets::addAside(std::size_t output) {
   const program::Element& held = glStream(arguments_[output].region).held();
   aside_.resize(arguments_.size());

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Where a pass draws the element outputs of a call: in place where they lie as the domain does and nobody
-// reads them, else aside, from where they are brought to their places afterwards.
+// Where a pass draws the element outputs of a call, or the accumulators of a reduction: in place if they have
+// the layout of the domain and the call does not read them, else to new planes, which are swapped with the
+// stream's or copied to them afterwards.
 #pragma once
 
 #include <array>
@@ -20,12 +21,13 @@ namespace sk {
 
 class OutputTargets {
  public:
-  /// `domain` and `layout`: what the pass is drawn over. The arguments have been checked.
+  /// The pass is drawn over `domain`, a region of a stream with the layout `layout`. The arguments have been
+  /// checked. Throws sk::Error if new planes are needed and memory is exhausted.
   OutputTargets(GlDevice& device, const program::Kernel& kernel, std::span<const Argument> arguments,
                 const assemble::SpecValues& specs, std::span<const Operand> operands,
                 const assemble::RegionLayout& domain, const Layout& layout);
 
-  /// Planes to draw to, in the order of outputs; for kernels that one pass writes.
+  /// The planes to draw to, in the order of outputs. Only for kernels that run in one pass.
   std::span<RenderTarget* const> planes() const { return std::span(targets_).first(count_); }
   void add(RenderTarget& plane) {
     if (count_ < targets_.size()) {
@@ -33,13 +35,14 @@ class OutputTargets {
     }
     ++count_;
   }
-  /// The same, output by output: empty where an argument is none.
+  /// The planes to draw to, one entry per argument; empty if the argument is not an output.
   std::vector<std::span<RenderTarget>> planesOfOutputs() const;
 
-  /// From here on, passes write outputs in place: these are broken until putInPlace().
+  /// Must be called before passes draw. Marks the outputs that are drawn in place as broken, until
+  /// putInPlace().
   void begin() noexcept;
-  /// Brings what was drawn aside to its place, once nothing reads the old elements any more. All copies come first, since they may
-  /// fail.
+  /// Moves outputs that were drawn to new planes to their streams; passes must not read the old elements any
+  /// more. Copies come first, because they may fail.
   void putInPlace() {
     copy();
     exchange();
@@ -48,14 +51,15 @@ class OutputTargets {
   void exchange() noexcept;
 
  private:
-  /// How the elements of an output get to where they belong.
+  /// How the elements of an output reach its stream.
   enum class Way {
     Direct,  ///< drawn in place
-    Swap,  ///< drawn to new planes, which become the stream's: the call reads the old ones, or they lie otherwise
-    Copy,  ///< drawn to new planes, and copied from there
+    /// Drawn to new planes, which replace the stream's: the call reads these, or they have another layout.
+    Swap,
+    Copy,  ///< drawn to new planes, and copied from there to the stream's
   };
 
-  /// Of a reduction: an accumulator.
+  /// Whether an argument is an element output or an accumulator, and needed.
   bool isOutput(std::size_t i) const {
     const program::Role role = kernel_.parameters[i].role;
     return (role == program::Role::Output || role == program::Role::Accumulator) && isNeeded(i);
@@ -63,12 +67,12 @@ class OutputTargets {
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
   Way wayOf(std::size_t output) const;
   void addAside(std::size_t output);
-  /// What an output is drawn to, if that is not its place.
+  /// The new planes of an output that is not drawn in place.
   struct Aside {
     explicit Aside(GlDevice& device) : drawn(device) {}
 
     PlanesLease drawn;
-    Layout layout;  ///< Way::Swap
+    Layout layout;  ///< of the stream after Way::Swap
   };
 
   GlDevice& device_;
@@ -80,7 +84,7 @@ class OutputTargets {
   const Layout& layout_;
   std::array<RenderTarget*, gl::maxDrawBuffers> targets_{};
   std::size_t count_ = 0;
-  std::vector<std::unique_ptr<Aside>> aside_;  ///< one an argument, or none at all
+  std::vector<std::unique_ptr<Aside>> aside_;  ///< one per argument, null if drawn in place; or empty
 };
 
 }  // namespace sk

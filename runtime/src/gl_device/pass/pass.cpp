@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// Binding and drawing.
 #include "gl_device/pass/pass.hpp"
 
 #include <algorithm>
@@ -31,7 +29,7 @@ void blit(GlDevice& device, RenderTarget& from, const RegionLayout& source, Rend
            {target.origin[0], target.origin[1]}, target.extent[0], target.extent[1]);
 }
 
-/// The images are those of whole textures, whose layers are numbered by the rows of the rectangles.
+/// An image binds all layers of a texture: the rows of `rects` are numbered across layers.
 void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes,
                    std::span<const Rect> rects) {
   if (std::exchange(device.hasDrawn, false)) {
@@ -44,7 +42,7 @@ void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTar
   const auto groups = [&](GLsizei texels, GLint group) {
     return program.isGrouped ? texels : (texels + group - 1) / group;
   };
-  constexpr GLsizei mostGroups = 65535;  // in each dimension, of any context
+  constexpr GLsizei mostGroups = 65535;  // per dimension; guaranteed by GL 4.3
   for (const Rect& rect : rects) {
     const GLint rows = program.isGrouped ? mostGroups : mostGroups * program.workGroup[1];
     for (std::int32_t done = 0; done < rect.height; done += rows) {
@@ -55,7 +53,7 @@ void dispatchRects(GlDevice& device, KernelProgram& program, std::span<RenderTar
   }
 }
 
-/// Those planes of a parameter that are not in a bundle.
+/// Binds the planes of a parameter that are not in a bundle. Returns the next unit.
 int bindOwnPlanes(GlDevice& device, const program::Parameter& parameter, std::span<RenderTarget> planes,
                   int unit) {
   if (parameter.layers.empty()) {
@@ -199,7 +197,7 @@ void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel
 
 namespace {
 
-/// Whether texels lie alike, so that no program is needed to copy them.
+/// Whether a blit can copy a region: source and target are planes with the same elements per texel.
 bool isBlit(const RegionLayout& source, const RegionLayout& target) {
   return !source.linear && !target.linear && source.packed == target.packed;
 }

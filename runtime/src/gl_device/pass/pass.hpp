@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// One pass of a kernel over render targets, with everything checked and chosen before. A scope of the
-// device must be open.
+// Runs one pass of a kernel over render targets. The caller has checked the arguments and chosen the layouts.
+// A DeviceScope must be open.
 #pragma once
 
 #include <span>
@@ -19,61 +19,67 @@ namespace sk {
 class GlDevice;
 struct KernelProgram;
 
-/// Binds the planes of an operand to consecutive texture units from `unit` on; the unit after them.
+/// Binds the planes of an operand to consecutive texture units from `unit` on. Returns the next unit.
 int bindPlanes(GlDevice& device, std::span<RenderTarget> planes, int unit);
 
-/// What a pass draws to: planes of one shape.
+/// What a pass draws to: one or more planes of the same shape.
 struct DrawTarget {
   gl::Framebuffer* framebuffer = nullptr;
-  std::int32_t layerRows = 0;  ///< 0 where the planes have no layers
+  std::int32_t layerRows = 0;  ///< rows per layer; 0 if the planes have no layers
 };
 
-/// Draws to these planes, 1 to gl::maxDrawBuffers. Good until the next one is asked for. Throws sk::Error where the driver cannot.
+/// The target that draws to these planes, 1 to gl::maxDrawBuffers. Valid until the next call. Throws
+/// sk::Error if the driver cannot draw to them together.
 DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes);
 DrawTarget targetOf(GlDevice& device, RenderTarget& plane);
 
-/// Binds the framebuffer with a layer of its planes, and tells the program that is bound.
+/// Binds the framebuffer with a layer of its planes attached, and sets `row`, a uniform of the bound program,
+/// to the layer's first row.
 void selectLayer(GlDevice& device, const DrawTarget& target, std::int32_t layer, gl::IntUniform& row);
 
-/// Draws each rectangle of a target with the program that is bound, whose `sk_domain_row` is `row`.
+/// Draws each rectangle of a target with the bound program, whose uniform `sk_domain_row` is `row`.
 void drawRects(GlDevice& device, const DrawTarget& target, std::span<const assemble::Rect> rects,
                gl::IntUniform& row);
 
-/// A kernel's program and what it draws to. Good until the next one is asked for.
+/// A kernel's program and what it draws to. Valid until the next pass is prepared.
 struct PreparedPass {
   KernelProgram& program;
-  DrawTarget target;  ///< none of a compute program
+  DrawTarget target;  ///< empty for a compute program
 };
 PreparedPass preparedPass(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes);
 
-/// Writes each rectangle of planes of one shape with a program, which is bound: draws or dispatches it.
+/// Draws or dispatches the pass's program, which must be bound, for each rectangle of planes of the same
+/// shape.
 void writeRects(GlDevice& device, const PreparedPass& pass, std::span<RenderTarget* const> planes,
                 std::span<const assemble::Rect> rects);
 
-/// Binds the planes that a kernel's program reads, and sets the uniforms of its parameters; the program is
-/// bound. `operands` and `bundles`: as for runKernel().
+/// Binds the planes that a kernel's program reads, and sets the uniforms of its parameters. The program must
+/// be bound. `operands` and `bundles` are those of runKernel().
 void bindOperands(GlDevice& device, KernelProgram& program, const program::Kernel& kernel,
                   std::span<const Operand> operands, std::span<const gl::Texture> bundles = {});
 
-/// Writes `rects` of `targets`, planes of one shape, with a kernel. `operands`: one a parameter; those of outputs are
-/// not looked at, since `targets` are their planes. No operand is a texture of the targets. `bundles`:
-/// the array textures of the plan that the kernel is a pass of. The tree of a list is bound by the caller.
+/// Runs a kernel on the rectangles `rects` of `targets`, which are planes of the same shape. There is one
+/// operand per parameter; the planes of output operands are ignored in favour of `targets`. No operand may
+/// read a target. `bundles` are the array textures of the plan that the kernel is a pass of. For Work::List,
+/// the caller binds the pyramid. Throws sk::Error if the driver rejects the program or the targets.
 void runKernel(GlDevice& device, const program::Kernel& kernel, std::span<const Operand> operands,
                const assemble::RegionLayout& domain, std::span<const assemble::Rect> rects,
                std::span<RenderTarget* const> targets, std::span<const gl::Texture> bundles = {},
                const assemble::Task& task = {});
-/// The same with what was prepared for it: nothing is left that a driver refuses.
+/// Like the other runKernel(), for a prepared pass: the driver has accepted its program and its targets.
 void runKernel(GlDevice& device, const PreparedPass& pass, const program::Kernel& kernel,
                std::span<const Operand> operands, const assemble::RegionLayout& domain,
                std::span<const assemble::Rect> rects, std::span<RenderTarget* const> targets,
                std::span<const gl::Texture> bundles = {}, const assemble::Task& task = {});
 
-/// Makes the programs that copyRegion() takes, without which it throws sk::Error. `byKernel`: also where it takes none.
+/// Compiles the programs that copyRegion() needs, so that it cannot fail later. `byKernel`: compiles them
+/// even if a blit is enough. Throws sk::Error if the driver rejects one.
 void prepareCopy(GlDevice& device, const program::Element& element, const assemble::RegionLayout& source,
                  const assemble::RegionLayout& target, bool byKernel = false);
 
-/// Copies one region to another of the same shape, plane by plane, wherever each lies. They are not of
-/// the same render target. `element`: what both hold. A target that is packed is of whole texels, as its source then is.
+/// Copies one region to another of the same shape, plane by plane; their layouts may differ. They must not
+/// share a render target. Both hold elements of type `element`. A packed target consists of whole texels; if
+/// the source is packed as well, so does the source.
 void copyRegion(GlDevice& device, const program::Element& element, std::span<RenderTarget> from,
                 const assemble::RegionLayout& source, std::span<RenderTarget> to,
                 const assemble::RegionLayout& target);

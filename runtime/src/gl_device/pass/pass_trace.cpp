@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// What passes read and write, and when.
 #include "gl_device/pass/pass_trace.hpp"
 
 #include <algorithm>
@@ -37,8 +35,8 @@ std::int64_t texelsOf(const RenderTarget& plane) {
   return std::int64_t{plane.texture.shape().width} * plane.texture.rows();
 }
 
-/// Each texel that a program's parameters may read, once. A partial result's operand is placed as the elements that it
-/// stands for are, of which its plane has less texels.
+/// The bytes of all texels that a program may read, each counted once. An operand of partial results has the
+/// region layout of the folded elements, although its planes have fewer texels.
 std::int64_t bytesRead(const KernelProgram& program, std::span<const Operand> operands) {
   std::int64_t bytes = 0;
   for (const KernelProgram::Read& read : program.reads) {
@@ -100,11 +98,11 @@ void PassTrace::end() noexcept {
       trace_.devicePass(record_, begin_, Trace::now(), "wall clock around glFinish");
     }
   } catch (const std::bad_alloc&) {
-    return;  // a pass less in the trace
+    return;  // the pass is missing from the trace
   }
 }
 
-/// The clocks drift apart.
+/// Measures the offset of the clocks, at most once per second, because they drift.
 void PassTrace::calibrate() {
   const Trace::Time now = Trace::now();
   if (calibrated_ == 0 || now - calibrated_ > second) {
@@ -113,9 +111,10 @@ void PassTrace::calibrate() {
   }
 }
 
-/// Passes may run into one another on the device, but the slices of a track may not.
+/// Passes may overlap on the device, but slices on a track must not: each one begins after the previous one's
+/// end.
 void PassTrace::collect() {
-  if (!usesTimestamps_) return;  // nor may the driver's clock be asked
+  if (!usesTimestamps_) return;  // the driver may not have a clock to query
   calibrate();
   while (!timed_.empty()) {
     Timed& pass = timed_.front();
@@ -135,7 +134,7 @@ void PassTrace::complete() noexcept {
   try {
     collect();
   } catch (const std::bad_alloc&) {
-    return;  // some passes less in the trace
+    return;  // some passes are missing from the trace
   }
 }
 
@@ -150,7 +149,7 @@ std::size_t texelBytesOf(std::span<const RenderTarget> planes) {
   return bytes;
 }
 
-/// The domain is told in elements.
+/// The record's domain is in elements, not in texels.
 PassRecord recordOf(const PassName& name, std::int64_t bytesRead, std::span<const Rect> rects,
                     std::size_t texelBytes, int elementsOfTexel) {
   const std::int64_t texels = texelsOf(rects);

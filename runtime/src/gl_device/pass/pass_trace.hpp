@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// The passes of a GL device in its trace. A GPU's times come from timestamps that are collected when they are there,
-// without waiting. On a software renderer, whose timestamps miss most of the work, and where there are none, each pass
-// is timed alone by the host's clock, between two waits for the device; the trace tells which of both it was.
+// Records the passes of a GL device in its trace. On a GPU, times come from timestamps, which are collected
+// later, without waiting. Without timestamps, and on software renderers, whose timestamps miss most of the
+// work, each pass is timed separately by the host's clock, between two waits for the device. The trace names
+// the clock.
 #pragma once
 
 #include <deque>
@@ -21,14 +22,14 @@ namespace sk {
 
 class PassTrace {
  public:
-  /// A scope of the device is open, here and below.
+  /// A DeviceScope must be open whenever this class is used.
   PassTrace(GlDevice& device, Trace& trace);
 
   void begin(PassRecord&& record);
   void end() noexcept;
-  /// Puts passes in the trace whose times are known by now.
+  /// Adds the passes whose times are known by now to the trace.
   void collect();
-  /// Waits for all passes that are not in the trace yet.
+  /// Waits for the passes that are not in the trace yet, and adds them.
   void complete() noexcept;
 
  private:
@@ -43,47 +44,47 @@ class PassTrace {
   Trace& trace_;
   gl::Deletions& deletions_;
   const bool usesTimestamps_;
-  PassRecord record_;  ///< of the pass that is drawn
-  Trace::Time begin_ = 0;  ///< of it, on the host
-  std::deque<Timed> timed_;  ///< those that may not be done; the last one may not have ended
+  PassRecord record_;  ///< of the current pass
+  Trace::Time begin_ = 0;  ///< of the current pass, by the host's clock
+  std::deque<Timed> timed_;  ///< passes that may be pending; the last one may lack its end
   std::vector<gl::Timestamp> idle_;
   Trace::Time calibrated_ = 0;
-  Trace::Time hostAhead_ = 0;  ///< the host's clock over the device's
-  Trace::Time lastEnd_ = 0;  ///< of the latest pass on the device's track
+  Trace::Time hostAhead_ = 0;  ///< the host's clock minus the device's
+  Trace::Time lastEnd_ = 0;  ///< end of the last slice on the device's track
 };
 
-/// What a pass is called.
+/// The name of a pass in the trace: the members of a PassRecord.
 struct PassName {
   std::string_view kernel;
   std::string_view step = {};
   std::string_view kind = "draw";
 };
 
-/// Bytes that a pass writes for each texel, of all planes together.
+/// The bytes that a pass writes per texel, over all planes.
 std::size_t texelBytesOf(std::span<RenderTarget* const> planes);
 std::size_t texelBytesOf(std::span<const RenderTarget> planes);
 
-/// What a pass of a kernel's program over these texels, of so many bytes, reads and writes.
+/// The record of a pass of a kernel's program, which writes `texelBytes` bytes for each texel of `rects`.
 PassRecord recordOf(const PassName& name, const KernelProgram& program, std::span<const Operand> operands,
                     std::span<const assemble::Rect> rects, std::size_t texelBytes);
-/// Of one that is known to read so many bytes and to write so many elements a texel.
+/// The record of a pass that reads `bytesRead` bytes. Each texel holds `elementsOfTexel` elements.
 PassRecord recordOf(const PassName& name, std::int64_t bytesRead, std::span<const assemble::Rect> rects,
                     std::size_t texelBytes, int elementsOfTexel = 1);
-/// Of one that reads the whole of some planes.
+/// The record of a pass that reads all texels of `planes`.
 PassRecord recordOf(const PassName& name, std::span<const RenderTarget> planes,
                     std::span<const assemble::Rect> rects, std::size_t texelBytes);
 
-/// Of one that copies texels to a rectangle of the target.
+/// The record of a copy of texels to a rectangle of the target.
 PassRecord recordOf(const PassName& name, const assemble::Rect& rect, std::size_t texelBytes);
 
-/// Of one that runs a kernel's program.
+/// The name of a pass that runs a kernel's program: a draw or a dispatch.
 PassName nameOf(std::string_view kernel, std::string_view step, const KernelProgram& program);
 
-/// What a kernel does in a pass, where that is not all of it.
+/// The step of a pass of a kernel with append outputs; empty for Work::Elements.
 std::string_view stepOf(const assemble::Task& task);
 
-/// A pass for as long as this lives, traced and counted; nothing where the device does neither. Two do not overlap. After the
-/// name come what recordOf() takes.
+/// Traces and counts a pass, which lasts as long as this object; does nothing if the device does neither.
+/// Scopes must not overlap. The arguments after the name are those of a recordOf().
 class PassScope {
  public:
   template <class... What>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// GlDevice::reduce: where the results of a reduction go, to values in host memory or to streams. Its passes are
-// reduce_passes.hpp's.
+// GlDevice::reduce: reduces to values in host memory or to streams. reduce_passes.hpp runs the passes.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -27,13 +26,14 @@ using program::Parameter;
 using program::Reduction;
 using program::Role;
 
-/// Folds are tried natively alone; nobody should think that this one was.
+/// Throws sk::Error if SK_CHECK asks for tests of folds, which only native devices run, lest the fold seem
+/// tested.
 void refuseFoldCheck(const Reduction& reduction) {
   if (!checksFolds() || reduction.commutative) return;
   fail(reduction.fold, "SK_CHECK=folds tries reduces natively; set SK_DEVICE=native, too");
 }
 
-/// fn(element, its planes) for each accumulator, given the planes of all of them.
+/// Calls fn(element, itsPlanes) for each accumulator. `planes` are the planes of all of them, in order.
 template <class Plane, class Fn>
 void forEachAccumulator(const Kernel& fold, std::span<Plane> planes, Fn&& fn) {
   for (const Parameter& parameter : fold.parameters) {
@@ -45,8 +45,9 @@ void forEachAccumulator(const Kernel& fold, std::span<Plane> planes, Fn&& fn) {
   }
 }
 
-/// Waits for the device once, whatever the number of planes: on a GPU all of them come through one buffer. Software has
-/// nothing left to do after the first, and a buffer takes it some microseconds more.
+/// Reads values from their textures to `results`. On a GPU, all planes are read through one buffer, which
+/// waits for the device once. A software renderer has finished when the first plane is read, and a buffer
+/// would only take some microseconds more.
 void readValues(GlDevice& device, const Kernel& fold, std::span<RenderTarget> values,
                 const RegionLayout& regionLayout, std::span<void* const> results) {
   auto result = results.begin();
@@ -67,7 +68,8 @@ void readValues(GlDevice& device, const Kernel& fold, std::span<RenderTarget> va
   device.throwPendingError();
 }
 
-/// Takes what a fold has left in the device's buffer of values, whose texels are wide.
+/// Reads values from the device's value buffer, in which each plane takes ValueBuffer::planeBytes, to
+/// `results`.
 void takeValues(GlDevice& device, const Kernel& fold, std::span<void* const> results) {
   std::array<std::byte, gl::ValueBuffer::bytes> texels;
   device.values.read(device.bound,

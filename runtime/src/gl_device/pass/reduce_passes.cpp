@@ -25,7 +25,7 @@ using program::Role;
 
 namespace {
 
-/// What the trace calls a pass.
+/// The step of a pass in the trace.
 std::string_view stepOf(Walk walk) {
   switch (walk) {
     case Walk::Partials:
@@ -104,7 +104,7 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
                                     .inGroups = assemble::foldsInGroups(reduction_)};
   const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
   for (const ReducePass& pass : passes) {
-    if (!start(pass)) break;  // nor are the others new
+    if (!start(pass)) break;  // then the other programs exist, too
   }
   for (const ReducePass& pass : passes) {
     if (pass.toResult) {
@@ -144,7 +144,7 @@ std::int32_t ReducePasses::longRunOfGroups() const {
 }
 
 bool ReducePasses::mayGroup() const {
-  constexpr std::size_t planeBytes = 4 * sizeof(float);  // at most: four components, or two doubles
+  constexpr std::size_t planeBytes = 4 * sizeof(float);  // the most: four components, or two doubles
   const std::size_t planes = accumulatorPlanes(reduction_.fold);
   return device_.programs().stage() == assemble::Stage::Compute &&
          planes * planeBytes * assemble::groupSize <= assemble::groupBytes &&

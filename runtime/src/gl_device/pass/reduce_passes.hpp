@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The passes of one reduction on a GL device, by the assembler's schedule: from the inputs' planes through temporary ones to
-// the results'. Where the results belong is reduce.cpp's business.
+// Runs the passes of one reduction on a GL device, by the assembler's schedule: from the inputs' planes
+// through temporaries to the results' planes, which reduce.cpp chooses.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +19,10 @@
 
 namespace sk {
 
-/// Planes of all accumulators.
+/// The number of planes of all accumulators.
 std::size_t accumulatorPlanes(const program::Kernel& fold);
 
-/// New planes of all accumulators, in their order.
+/// Adds new planes for all accumulators, in order, to `lease`.
 void takeAccumulators(const program::Kernel& fold, const assemble::TextureShape& shape,
                       std::string_view whatFor, PlanesLease& lease);
 
@@ -30,55 +30,61 @@ std::vector<RenderTarget*> pointersTo(std::span<RenderTarget> planes);
 
 class ReducePasses {
  public:
-  /// A scope of the device is open, and the programs of the call are chosen. Inputs that the reduction cannot read packed
-  /// are unpacked.
+  /// Unpacks the inputs unless the reduction can read all of them by packed texels. A DeviceScope must be
+  /// open, and GlDevice::choose() must have been called.
   ReducePasses(GlDevice& device, const ResolvedReduction& call);
 
-  /// Of the fold, one a parameter.
+  /// The operands of the fold, one per parameter.
   std::span<const Operand> operands() const { return operands_; }
 
-  /// Whether the value that is left of some elements may stay in the device's buffer of values.
+  /// Whether a reduction of a nonempty domain to a value may write it to the device's value buffer.
   bool mayEndInBuffer() const;
 
-  /// Folds the elements to the planes of all results, or, where there are none, stores the identities. Without targets, there is
-  /// a value, which goes to the device's buffer of values. `begin` is called before the targets change, when everything is there that
-  /// a driver may refuse.
+  /// Folds the elements and writes the results, or the identities if the domain is empty, to `targets`: the
+  /// planes of all results, which have the layout `result`. If there are no targets, writes a value to the
+  /// device's value buffer. Calls begin() before the targets change, after everything that may fail; throws
+  /// sk::Error before that.
   void run(const assemble::RegionLayout& result, std::span<RenderTarget* const> targets,
            const std::function<void()>& begin);
 
  private:
   void findOperands(std::span<const Argument> arguments, const Shape& domain);
-  /// In software a pass costs as much as some thousand texels, and a few threads have enough to do with few invocations.
+  /// The limits for planReduction(). In software, runs are long: a pass costs as much as some thousand
+  /// texels, and few invocations are enough for the threads.
   assemble::ReduceLimits limitsOfPasses() const;
-  /// Of so many texels that a large GPU has enough work groups anyway, longer runs leave less to the passes behind.
+  /// ReduceLimits::longRun for dispatches. If there are enough texels to occupy a large GPU, long runs leave
+  /// fewer partial results to later passes.
   std::int32_t longRunOfGroups() const;
-  /// Whether work groups may fold partial results together: they share an element of each accumulator an invocation.
+  /// Whether work groups may fold partial results together: their shared memory must have room for the
+  /// accumulators of all invocations.
   bool mayGroup() const;
-  /// Whether all inputs are packed and blocks made of whole texels, which are then read as such.
+  /// Whether runs step by packed texels: all inputs are packed, and blocks consist of whole texels.
   bool foldsByTexel(const assemble::Index4& blocks) const;
   Operand operandOf(std::size_t i, const Argument& argument, const Shape& domain) const;
-  /// That of the first input which does not repeat. Where all do, each in another dimension, there is no
-  /// such place, and elements are found by their index.
+  /// The region layout of the first input that has the shape of the domain. If there is none, for example
+  /// because all inputs are broadcast, only the extent of the result is meaningful, and elements are read by
+  /// index.
   assemble::RegionLayout layoutOfElements(const assemble::Index4& shape) const;
   bool isRead(std::size_t i) const;
-  /// Whether a run has to know where each of its elements is.
+  /// Whether runs need the index of each element: the fold uses it, or the inputs' layouts differ.
   bool foldsByIndex() const;
-  /// The operands of the combining kernel: planes of partial results, where there are some by now, and arguments
-  /// of the fold.
+  /// The operands of the combining kernel: the planes of partial results, and operands of the fold.
+  /// `partials` may be empty to choose a program.
   std::vector<Operand> operandsOfCombine(std::span<RenderTarget> partials) const;
-  /// Draws a pass, for as many of the targets at a time as the device draws to.
+  /// Draws a pass, once for each group of targets that the device can draw to together.
   void draw(const assemble::ReducePass& pass, std::span<RenderTarget> partials,
             std::span<RenderTarget* const> targets);
-  /// Makes what draw() needs: programs, and framebuffers over several planes.
+  /// Prepares what draw() needs: programs, and framebuffers over several planes. Throws sk::Error if the
+  /// driver rejects one.
   void prepare(const assemble::ReducePass& pass, std::span<RenderTarget* const> targets);
-  /// Throws sk::Error where there is no memory for the buffer of values.
+  /// Binds the value buffer. Throws sk::Error if memory is exhausted.
   void bindValues();
-  /// Lets the driver begin with the programs of a pass. False where they are there already.
+  /// Makes the driver start compiling the programs of a pass. False if they exist already.
   bool start(const assemble::ReducePass& pass);
-  /// visit(variant, first, count) for as many of the planes at a time as the device draws to.
+  /// Calls visit(variant, first, count) for each group of planes that the device can draw to together.
   template <class Visit>
   void forEachPart(const assemble::ReducePass& pass, std::span<const Operand> operands, Visit&& visit) const;
-  /// Adds the choices that depend on the operands.
+  /// Sets the choices of a variant that depend on the operands.
   void addAccess(assemble::ReduceVariant& variant, const program::Kernel& kernel,
                  std::span<const Operand> operands) const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// GlDevice::run: a kernel over the domain that its outputs fix. A call like one before allocates no host
-// memory, unless an output cannot be drawn to where it lies.
+// GlDevice::run: runs a kernel over the domain that its outputs determine. A repeated call allocates no host
+// memory, unless an output cannot be drawn in place.
 #include <span>
 #include <vector>
 
@@ -25,7 +25,8 @@ using program::Kernel;
 using program::Parameter;
 using program::Role;
 
-/// The rectangles of a pass over a region of a stream; makes a list only where none is known.
+/// The rectangles of a pass over a region of a stream. Allocates a list only for a part of a linearised
+/// stream.
 class DrawnRects {
  public:
   DrawnRects(const RegionLayout& domain, const Layout& layout) {
@@ -50,7 +51,7 @@ class DrawnRects {
   std::span<const Rect> rects_;
 };
 
-/// One call, its arguments checked and its domain not empty.
+/// One call with checked arguments and a nonempty domain.
 class KernelCall {
  public:
   KernelCall(GlDevice& device, const ResolvedCall& call)
@@ -87,8 +88,8 @@ class KernelCall {
   }
 
  private:
-  /// Decides how the outputs lie: packed where the kernel may write them so. What is written in part keeps its layout, if
-  /// that will do.
+  /// Chooses the layout of the outputs: packed if possible. Streams that are written only in part keep their
+  /// layout, or are unpacked.
   void layOut() {
     const StreamRegion& region = arguments_[first_].region;
     GlStream& stream = glStream(region);
@@ -104,13 +105,14 @@ class KernelCall {
     domain_ = regionLayoutOf(region, *layout_);
   }
 
-  /// Whether an output's planes are written themselves, and not replaced, because it or the domain is part of a stream.
+  /// Whether an output's planes cannot be replaced, because the output or the domain is only a part of a
+  /// stream.
   bool isWrittenInPlace(std::size_t i) const {
     const auto isPart = [](const StreamRegion& region) { return region.shape != region.stream->shape; };
     return isOutput(i) && (isPart(arguments_[i].region) || isPart(arguments_[first_].region));
   }
 
-  /// Whether the outputs may lie packed.
+  /// Whether the outputs can be written packed.
   bool mayWritePacked() const {
     bool may = plan_ == nullptr && assemble::mayWritePacked(kernel_);
     for (std::size_t i = 0; may && i < arguments_.size(); ++i) {
@@ -125,7 +127,8 @@ class KernelCall {
     return may;
   }
 
-  /// Whether an argument is read by what knows no packed texels: passes that share textures, and filters.
+  /// Whether an argument must be unpacked before it is read: plans and linear filters do not support packed
+  /// texels.
   bool keepsScalars(std::size_t i) const {
     const Role role = kernel_.parameters[i].role;
     const bool isRead = (role == Role::Input || role == Role::Gather) && isNeeded(i);
@@ -154,11 +157,11 @@ class KernelCall {
   const Kernel& kernel_;
   std::span<const Argument> arguments_;
   const assemble::SpecValues& specs_;
-  const program::Plan* const plan_;  ///< null where one pass will do
+  const program::Plan* const plan_;  ///< null if one pass is enough
   std::vector<Operand>& operands_;
-  std::size_t first_ = 0;  ///< output: its region is the domain
+  std::size_t first_ = 0;  ///< the first output, whose region is the domain
   Layout made_;
-  const Layout* layout_ = nullptr;  ///< of the first output, after the call
+  const Layout* layout_ = nullptr;  ///< of the first output's stream, after the call
   RegionLayout domain_;
 };
 

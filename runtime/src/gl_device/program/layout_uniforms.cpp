@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// Finding the uniforms of a region layout.
 #include "gl_device/program/layout_uniforms.hpp"
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The uniforms that tell a program where a region lies: of a parameter, or of the domain.
+// The uniforms that hold the region layout of a parameter or of the domain.
 #pragma once
 
 #include <string_view>
@@ -14,10 +14,10 @@ namespace sk {
 class LayoutUniforms {
  public:
   LayoutUniforms() = default;
-  /// `names`: what the uniforms are called, `*` standing for origin, shape, stride and shift.
+  /// `names` is the pattern of the uniforms' names, in which `*` stands for origin, shape, stride and shift.
   LayoutUniforms(const gl::Program& program, std::string_view names);
 
-  /// Its program must be bound.
+  /// The program must be bound.
   void set(const assemble::RegionLayout& regionLayout) {
     origin_.set(regionLayout.origin);
     shape_.set(regionLayout.extent);

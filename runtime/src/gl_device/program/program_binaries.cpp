@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A file holds the number of the format and the binary. Some drivers believe what they are given: the cache folder sees to it that
-// it is what was written.
+// A file holds the number of the binary's format, then the binary. Some drivers do not verify binaries, so
+// the cache folder must detect corrupted files.
 #include "gl_device/program/program_binaries.hpp"
 
 #include <algorithm>

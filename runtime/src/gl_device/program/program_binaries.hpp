@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// From sources to a program: the binary that an earlier process has kept for this driver and these sources, else the
-// driver's compiler, which may work at several programs at a time until their ends are asked for.
+// Builds programs: from the binary that an earlier process has stored for this driver and these sources, else
+// with the driver's compiler, which may compile several programs at a time.
 #pragma once
 
 #include <string>
@@ -16,30 +16,33 @@ namespace sk {
 class CacheFolder;
 class GlDevice;
 
-/// The binaries of one driver in the cache folder (support/cache_folder.hpp). What is broken, or what the driver refuses, is as
-/// good as not there.
+/// The binaries of one driver in the cache folder (support/cache_folder.hpp). Binaries that are corrupted, or
+/// that the driver rejects, count as missing.
 class ProgramBinaries {
  public:
-  /// `driver`: everything that binaries depend on beside the sources. The folder must outlive this.
+  /// `driver` identifies everything that binaries depend on besides the sources. The folder must outlive this
+  /// object.
   ProgramBinaries(const CacheFolder& cache, const gl::Capabilities& capabilities, std::string driver);
 
-  /// Whether the driver gives binaries, and there is a folder for them.
+  /// Whether the driver supports binaries and there is a cache folder.
   bool areKept() const;
+  /// Empty if there is no usable binary.
   gl::Program load(gl::BoundState& bound, std::string_view sources) const;
   void store(std::string_view sources, const gl::Program& program) const;
 
  private:
   const CacheFolder& cache_;
   std::string driver_;
-  std::vector<GLenum> formats_;  ///< that the driver takes
+  std::vector<GLenum> formats_;  ///< formats that the driver supports
 };
 
+/// A program that is being built.
 class ProgramBuild {
  public:
-  /// Begins. Waits for no compiler.
+  /// Loads the binary or starts the compiler, without waiting for it.
   ProgramBuild(GlDevice& device, gl::ProgramSources sources);
 
-  /// Waits. Where the driver refuses, the result is empty and `log` has its words.
+  /// Waits. If the driver rejects the program, the result is empty and `log` has its messages.
   gl::Program finish(GlDevice& device, std::string& log);
   const gl::ProgramSources& sources() const { return sources_; }
 

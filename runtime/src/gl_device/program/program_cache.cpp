@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-//
-// Assembling, compiling and keeping programs.
 #include "gl_device/program/program_cache.hpp"
 
 #include <algorithm>
@@ -185,7 +183,8 @@ void ProgramCache::findValue(KernelProgram& made, std::size_t number, const prog
   }
 }
 
-/// A double is a struct of its bits, or of two floats; a vector of doubles is a struct of these.
+/// In GLSL, a double is a struct of its bits or of two floats, and a vector of doubles is a struct of
+/// doubles.
 void ProgramCache::addDoubles(KernelProgram& made, std::size_t number, const std::string& name,
                               std::span<const program::Field> parts) const {
   const auto location = [&](const std::string& member) { return made.program.location(member); };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The programs of a device, assembled and compiled when a variant is first needed and kept in memory
-// until the device ends, or a kernel has had too many others since. Descriptors are known by their addresses: they must outlive the device.
+// The programs of a device: assembled and compiled when a variant is first used, and kept as long as the
+// device, unless a kernel has too many variants. Descriptors are identified by their addresses and must
+// outlive the device.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@ namespace sk {
 
 class GlDevice;
 
-/// One variant of a kernel. Parameters are named by their position.
+/// The program of one variant of a kernel. Parameters are identified by their indices.
 struct KernelProgram {
   struct Value {
     std::size_t parameter;
@@ -41,16 +42,16 @@ struct KernelProgram {
     std::size_t parameter;
     LayoutUniforms uniforms;
     gl::IntUniform ratio;
-    GLuint sampler = 0;  ///< for its only plane; 0: the texture's own settings
+    GLuint sampler = 0;  ///< a linear sampler for its only plane; 0: the nearest one
   };
 
   struct Table {
     GLuint texture;
     gl::FieldUniform range;
-    std::array<float, 3> values;  ///< of the uniform
+    std::array<float, 3> values;  ///< the value of `range`
   };
 
-  /// Where a list's program finds the tree over the counts (assemble/append/histo_pyramid.hpp).
+  /// The uniforms of a list's program for the pyramid (assemble/append/histo_pyramid.hpp).
   struct Tree {
     gl::IntUniform shift, levels;
     std::array<gl::IntUniform, assemble::mostPyramidLevels + 1> rows;
@@ -60,26 +61,26 @@ struct KernelProgram {
 
   gl::Program program;
   assemble::Stage stage = assemble::Stage::Fragment;
-  gl::IntUniform rect;  ///< of a compute program: the texels that a dispatch writes
+  gl::IntUniform rect;  ///< compute programs: the texels that a dispatch writes
   std::array<GLint, 3> workGroup{1, 1, 1};
-  bool isGrouped = false;  ///< a work group computes a texel
-  bool isPacked = false;  ///< a texel holds as many elements as it has lanes
+  bool isGrouped = false;  ///< each work group computes one texel
+  bool isPacked = false;  ///< a texel of the domain holds assemble::lanes elements
   LayoutUniforms domain;
-  gl::IntUniform domainRow;  ///< of a layered domain: the first row of the layer that is drawn
-  LayoutUniforms target;  ///< of the scatter output whose list it makes
-  Tree tree;  ///< its textures lie on the units from `units` on
-  int units = 0;  ///< what `reads` take
+  gl::IntUniform domainRow;  ///< layered domains: the first row of the drawn layer
+  LayoutUniforms target;  ///< of the scatter output whose list it writes
+  Tree tree;  ///< its textures are on the units from `units` on
+  int units = 0;  ///< the number of units of reads, bundles and tables
   std::vector<Value> values;
   std::vector<Double> doubles;
-  std::vector<Value> steps;  ///< of iterators
-  std::vector<Read> reads;  ///< their planes lie on consecutive texture units, from 0, in this order
-  std::vector<std::size_t> bundles;  ///< of the plan, on the units after these
-  std::vector<Table> tables;  ///< of functions, on the units after those
+  std::vector<Value> steps;  ///< steps of iterators
+  std::vector<Read> reads;  ///< their planes are on consecutive texture units from 0, in this order
+  std::vector<std::size_t> bundles;  ///< of the plan, on the next units
+  std::vector<Table> tables;  ///< of functions, on the next units
 };
 
-/// One variant of a reduction's passes.
+/// The program of one variant of a reduction's passes.
 struct ReduceProgram {
-  KernelProgram kernel;  ///< with the parameters of the kernel that it calls
+  KernelProgram kernel;  ///< its parameters are those of the fold or of the combining kernel
   std::vector<std::pair<std::string, gl::IntUniform>> uniforms;
 
   gl::IntUniform& uniform(const assemble::UniformValue& value);
@@ -87,18 +88,20 @@ struct ReduceProgram {
 
 class ProgramCache {
  public:
-  /// Of programs for this profile.
+  /// Creates programs for this profile.
   ProgramCache(GlDevice& device, const assemble::Profile& profile);
   ProgramCache(const ProgramCache&) = delete;
   ProgramCache& operator=(const ProgramCache&) = delete;
 
-  /// Both throw sk::Error where the driver refuses the program, with its words. It lives until many others have been asked for.
+  /// Return the program, which is compiled on first use. The reference is valid until mostVariants other
+  /// programs of the kernel have been used. Throw sk::Error, with the driver's messages, if the driver
+  /// rejects the program.
   KernelProgram& kernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                                const assemble::RegionLayout& domain, const assemble::Task& task = {});
   ReduceProgram& reduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
 
-  /// Lets the driver begin with what the functions above will be asked for, so that it compiles several programs at once.
-  /// False where it is there already.
+  /// Make the driver start compiling a program that will be needed, so that it can compile several at a time.
+  /// False if the program exists already.
   bool startKernelProgram(const program::Kernel& kernel, std::span<const Operand> operands,
                           const assemble::RegionLayout& domain);
   bool startReduceProgram(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
@@ -119,21 +122,23 @@ class ProgramCache {
   bool isCompute() const { return profile_.stage == assemble::Stage::Compute; }
   ProgramBuild begin(const program::Kernel& kernel, const assemble::Variant& variant);
   ProgramBuild begin(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
-  /// Throws sk::Error where the driver refuses the program, with its words.
+  /// Throws sk::Error, with the driver's messages, if the driver rejects the program.
   void finish(KernelProgram& made, const program::Kernel& kernel, ProgramBuild&& begun);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);
 
-  /// A program, and when it was last asked for.
+  /// A program, and the time of its last use.
   template <class Program>
   struct Kept {
     std::unique_ptr<Program> program;
     std::int64_t used = 0;
   };
-  /// Makes room for one more of a kernel's programs, of which the one that was not used for longest is deleted.
+  /// Makes room for one more program of a kernel: if it has mostVariants, deletes the least recently used
+  /// one.
   template <class Programs, class IsOfKernel>
   void makeRoom(Programs& programs, IsOfKernel&& isOfKernel);
 
-  /// Variants of one kernel or reduction that stay. More than any one call asks for, since each value of a spec parameter makes one.
+  /// The most programs per kernel or reduction, which each value of a spec parameter multiplies. It is more
+  /// than a single call uses.
   static constexpr std::ptrdiff_t mostVariants = 256;
 
   GlDevice& device_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Places in programs and in drivers' logs.
+// Translates source locations in programs and in drivers' logs.
 #include "gl_device/program/shader_log.hpp"
 
 #include <charconv>
@@ -11,11 +11,12 @@ namespace sk {
 
 namespace {
 
-/// A telling line number is source << sourceShift | line: enough for files of a million lines.
+/// A line number that encodes the source is source << sourceShift | line, which allows a million lines per
+/// file.
 constexpr unsigned sourceShift = 20;
 constexpr std::uint32_t lineMask = (std::uint32_t{1} << sourceShift) - 1;
 
-/// Takes a number off the front of `text`.
+/// Removes a number from the front of `text`; nullopt if there is none.
 std::optional<std::uint32_t> takeNumber(std::string_view& text) {
   std::uint32_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -34,7 +35,7 @@ bool take(std::string_view& text, std::string_view prefix) {
   return isThere;
 }
 
-/// Calls change(line) for each line of a text, and joins what it returns.
+/// Calls change(line) for each line of a text, and joins the results.
 template <class Change>
 std::string changeLines(std::string_view text, Change change) {
   std::string changed;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The choices of a variant, in one place for both of its forms.
+// Chooses variants and packs the same choices into keys.
 #include "gl_device/program/variant.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using assemble::Work;
 using program::Parameter;
 using program::Role;
 
-/// Whether a program depends on where the elements of a parameter lie, beside the domain's.
+/// Whether a program depends on the region layout of a parameter, besides the domain's.
 bool hasAccess(const program::Kernel& kernel, std::size_t i, const Task& task) {
   const Role role = kernel.parameters[i].role;
   return role == Role::Input || role == Role::Gather ||
@@ -36,7 +36,8 @@ assemble::Domain domainOf(const RegionLayout& domain, const Task& task) {
   return task.work == Work::List ? assemble::Domain::Entry : assemble::domainOf(domain);
 }
 
-/// Whether one step brings a neighbour's index back inside the gather, wherever the domain's index is.
+/// StreamAccess::nearby: whether a neighbour's index wraps or mirrors at most once, at every index of the
+/// domain.
 bool isNearby(const Parameter& gather, const RegionLayout& regionLayout, const RegionLayout& domain) {
   if (!gather.usesNear || gather.reach < 0) {
     return false;
@@ -49,7 +50,8 @@ bool isNearby(const Parameter& gather, const RegionLayout& regionLayout, const R
   return true;
 }
 
-/// Whether the sampler's filter reads what sample() means: the whole of a texture, at its edges too.
+/// StreamAccess::filtered: whether the sampler's linear filter implements sk_sample_p(), also at the
+/// texture's edges.
 bool isFiltered(const Parameter& gather, const RegionLayout& regionLayout, bool filtersFloats) {
   const bool isFloat = gather.element->fields.front().scalar == program::Scalar::Float;
   return assemble::mayFilter(gather) && !regionLayout.linear && !regionLayout.packed && !regionLayout.view &&
@@ -76,7 +78,8 @@ StreamAccess chooseAccess(const Parameter& parameter, const Operand& operand, co
 
 bool isFlat(const RegionLayout& domain) { return assemble::elements(domain.extent) == domain.extent[0]; }
 
-/// In a domain of one dimension, or one that might be, the index along it is the element's number.
+/// If only x has an extent above 1, the index in x is the element number, which needs no addressing by
+/// number.
 StreamAccess chooseIteration(const Parameter& iterator, const Operand& operand, const RegionLayout& domain) {
   const bool isScalar = iterator.element->fields[0].width == 1;
   const bool counts = countsElements(iterator, operand.rank) && !(isScalar && isFlat(domain));
@@ -98,18 +101,19 @@ bool isDomainView(const RegionLayout& domain) {
   return !domain.linear && domain.origin != assemble::Index4{};
 }
 
-/// A fitted input is taken as a view, and no input is nearby, so that two bits tell all choices apart.
+/// Two bits for `fit`, `view` and `nearby`: fitted inputs are always views, and inputs are never nearby.
 std::uint64_t choiceBits(const StreamAccess& access) {
   if (access.fitted) return 2;
   return std::uint64_t{access.view} | std::uint64_t{access.nearby} << 1;
 }
 
-/// Whether a kernel with loops need not look for fragments outside. A list's passes draw other texels than its domain's.
+/// Variant::domainEven, which matters only for kernels with loops. The passes of a list draw the list's
+/// texels, not the domain's.
 bool isEven(const program::Kernel& kernel, const RegionLayout& domain, const Task& task) {
   return kernel.usesLoops && task.work != Work::List && assemble::drawsWholeQuads(domain);
 }
 
-/// Packs small numbers into the words of a key.
+/// Packs small numbers into a key's words.
 class KeyBits {
  public:
   explicit KeyBits(ProgramKey& key) : key_(key) {}
@@ -136,7 +140,7 @@ class KeyBits {
 std::size_t ProgramKeyHash::operator()(const ProgramKey& key) const {
   std::uint64_t hash = reinterpret_cast<std::uintptr_t>(key.kernel);
   const auto add = [&](std::uint64_t word, std::size_t place) {
-    if (word == 0) return;  // most are
+    if (word == 0) return;  // most words are 0
     hash = (hash ^ (word + place)) * 0x9E3779B97F4A7C15u;
     hash ^= hash >> 29;
   };
@@ -203,7 +207,7 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
   return variant;
 }
 
-// Each entry is 4 bits, so that none is divided between words.
+// Every entry has 4 bits, so that none straddles two words.
 ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> operands,
                       const RegionLayout& domain, const Task& task, bool filtersFloats) {
   ProgramKey key{&kernel, {}, {}, specsOf(kernel, operands)};
@@ -227,12 +231,12 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
     if (parameter.role == Role::Iterator && !std::exchange(hasIterator, true)) {
-      // both that chooseIteration() asks of the domain, for all iterators
+      // the properties of the domain on which chooseIteration() depends, once for all iterators
       bits.add(std::uint64_t{operands[i].rank == 1} | std::uint64_t{isFlat(domain)} << 1, 4);
     }
     if (hasAccess(kernel, i, task) && isNeeded(parameter, key.specs)) {
       const StreamAccess access = chooseAccess(parameter, operands[i], domain, task, filtersFloats);
-      // what is filtered lies in a plane and is no view; no gather is aligned
+      // Aligned, which no gather is, stands for a filtered one: those are planes and not views
       const Addressing addressing = access.filtered ? Addressing::Aligned : access.addressing;
       bits.add(static_cast<std::uint64_t>(addressing) | choiceBits(access) << 2, 4);
     }

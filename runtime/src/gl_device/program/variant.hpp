@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Which variant of a kernel a call needs: from where its streams lie, to the assembler's choices and
-// to a key that is quick to look up.
+// Determines the variant of a kernel that a call needs from its streams' layouts: the assembler's choices,
+// and a key for fast lookup.
 #pragma once
 
 #include <array>
@@ -19,15 +19,15 @@
 
 namespace sk {
 
-/// One argument of a pass. Uniform and Spec parameters have a value; iterators their first value, the step
-/// and the domain as region layout; all others a region layout and planes.
+/// One argument of a pass. Operands of Uniform and Spec parameters have a value; those of iterators have the
+/// first value, the step, and the domain as region layout; all others have a region layout and planes.
 struct Operand {
   const void* value = nullptr;
   assemble::RegionLayout regionLayout = {};
   std::span<RenderTarget> planes = {};
   IteratorStep step = {};
-  int rank = 0;                      ///< iterators: of the domain's shape
-  bool fitted = false;                        ///< inputs with another program::Fit than Same
+  int rank = 0;         ///< iterators: rank of the domain
+  bool fitted = false;  ///< inputs with another program::Fit than Same
   /// Fitted inputs: k > 0 if each element serves k consecutive indices, -k if every k-th element is read.
   assemble::Index4 ratio = {1, 1, 1, 1};
   Storage storage = Storage::Single;
@@ -37,7 +37,7 @@ struct Operand {
 struct ProgramKey {
   const program::Kernel* kernel = nullptr;
   std::array<std::uint64_t, 8> words{};
-  std::vector<std::uint64_t> more{};  ///< where these are too few: kernels may have any number of streams
+  std::vector<std::uint64_t> more{};  ///< if `words` are too few: kernels may have any number of streams
   assemble::SpecValues specs{};
 
   bool operator==(const ProgramKey&) const = default;
@@ -47,17 +47,17 @@ struct ProgramKeyHash {
   std::size_t operator()(const ProgramKey& key) const;
 };
 
-/// How an element is found in the textures of a region that lies so, by its index.
+/// How an element of a region with this layout is addressed by its index.
 assemble::Addressing addressingOf(const assemble::RegionLayout& regionLayout);
 
-/// The operand of a region that is given as `argument` of a call over a domain of this shape.
+/// The operand for a region, an argument of a call over a domain of this shape.
 Operand regionOperand(const Argument& argument, const Shape& domain);
 
-/// The operand of an iterator with these ends over a domain of this shape.
+/// The operand for an iterator with these ends over a domain of this shape.
 Operand iteration(const program::Parameter& iterator, const void* ends, const Shape& domain);
 
-/// The variant of `kernel` for operands, one a parameter, over `domain`; `variant` and `key` hold the
-/// same choices. `filtersFloats`: what the device can.
+/// The variant of `kernel` for these operands, one per parameter, and this domain. variantKey() returns a key
+/// that holds the same choices. `filtersFloats`: the device can filter 32-bit floats.
 assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const Operand> operands,
                                 const assemble::RegionLayout& domain, const assemble::Task& task = {},
                                 bool filtersFloats = false);

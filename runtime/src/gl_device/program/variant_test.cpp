@@ -98,7 +98,7 @@ TEST_CASE("views, repeats and linearised streams are told apart, each with a key
 }
 
 TEST_CASE("kernels of many streams have keys of their own for each way that these lie") {
-  // Operands that are packed take two entries a stream, and 200 of them more than the words inside a key.
+  // Packed operands take two entries per stream: 200 of them exceed the key's fixed words.
   constexpr std::size_t count = 200;
   std::vector<program::Parameter> many(count, parameters[1]);
   many.push_back(parameters[3]);

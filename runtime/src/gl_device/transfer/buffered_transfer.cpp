@@ -21,7 +21,7 @@ using assemble::RegionLayout;
 using program::Element;
 using program::Field;
 
-/// Offsets of texels are multiples of a channel's bytes, at least.
+/// The alignment of a block in the buffer. GL requires a multiple of the size of a channel.
 constexpr std::size_t alignment = 16;
 
 std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1) / alignment * alignment; }
@@ -30,7 +30,7 @@ std::size_t texelsOf(const Rect& rect) {
   return static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
 }
 
-/// An offset in the buffer that is bound.
+/// An offset in the bound buffer, as the address that GL functions take.
 void* atOffset(std::size_t offset) { return static_cast<std::byte*>(nullptr) + offset; }
 
 [[noreturn]] void failForMemory(GlDevice& device, std::size_t bytes) {

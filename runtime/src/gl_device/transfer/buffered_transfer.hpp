@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Elements between regions of streams and host memory through a buffer of the driver's, all planes in one, so that the
-// device is waited for once, or not at all. A scope of the device must be open.
+// Transfers elements between regions of streams and host memory through a pixel buffer, which holds all
+// planes, so that a transfer waits for the device at most once. A DeviceScope must be open.
 #pragma once
 
 #include <cstddef>
@@ -17,24 +17,26 @@ namespace sk {
 
 class GlDevice;
 
-/// First what is to be read is added, then all of it begun, then taken part by part.
+/// Reads one or more regions: add() them, begin() once, then take() each part.
 class BufferedRead {
  public:
   explicit BufferedRead(GlDevice& device);
-  /// Gives the buffer back; touches no GL.
+  /// Returns the buffer to the device; does not call GL.
   ~BufferedRead();
   BufferedRead(const BufferedRead&) = delete;
   BufferedRead& operator=(const BufferedRead&) = delete;
 
-  /// All elements of a region; its number as a part. `element` must outlive this, the planes begin().
+  /// Adds all elements of a region, and returns the number of the part. `element` must outlive this object,
+  /// and the planes the call of begin().
   std::size_t add(const program::Element& element, std::span<RenderTarget> planes,
                   const assemble::RegionLayout& region);
-  /// Queues the reading. What is written to the planes later is not read. Throws sk::Error where there is no memory.
+  /// Queues the reads: later writes to the planes do not affect them. Throws sk::Error if memory is
+  /// exhausted.
   void begin();
 
   bool isReady() const { return held_.fence.isReached(); }
   void wait() const { held_.fence.wait(); }
-  /// The elements of a part, row-major. Waits for them. Throws sk::Error where the driver fails.
+  /// Waits, and copies the elements of a part, row-major. Throws sk::Error if the driver fails.
   void take(std::size_t part, std::byte* elements);
 
  private:
@@ -43,16 +45,15 @@ class BufferedRead {
     assemble::RegionLayout region;
     std::size_t firstBlock;
   };
-  /// Texels of a plane that are read in one piece.
+  /// A rectangle of a plane's texels, which the buffer holds row by row.
   struct Block {
     RenderTarget* plane;
     const gl::Format* format;
     const program::Field* field;
-    gl::Transfer transfer;  ///< how the texels lie in the buffer
-    assemble::Rect rect;  ///< rows are those of all layers
-    std::int64_t
-        first;  ///< its first element in the region; wholeRows: it is all rows that the region lies in
-    std::size_t offset;  ///< in the buffer
+    gl::Transfer transfer;  ///< the layout of the texels in the buffer
+    assemble::Rect rect;  ///< rows are numbered across layers
+    std::int64_t first;  ///< number of its first element in the region; wholeRows: it is rowsOf(region)
+    std::size_t offset;  ///< of its first texel in the buffer, in bytes
   };
   static constexpr std::int64_t wholeRows = -1;
 
@@ -68,13 +69,15 @@ class BufferedRead {
   std::size_t bytes_ = 0;
 };
 
-/// Copies all texels of a region of a plane, row-major, to a GL buffer of the application's, from a byte on. Throws sk::Error
-/// where the buffer is too small, or the driver reads such texels in another form only.
+/// Copies all texels of a region of a plane, row-major, to the application's GL buffer, from byte `offset`
+/// on. Throws sk::Error if the buffer is too small, or if the driver cannot read these texels as
+/// Format::tight.
 void readToBuffer(GlDevice& device, RenderTarget& plane, const assemble::RegionLayout& region, GLuint buffer,
                   std::size_t offset);
 
-/// Copies all elements of a region, row-major in host memory, to its planes. The memory may be reused at once; nobody
-/// waits for the device. Throws sk::Error where there is no memory. `isTorn` is set when the planes begin to change.
+/// Copies all elements of a region, row-major in host memory, to its planes, without waiting for the device.
+/// The caller may change `elements` afterwards. Throws sk::Error if memory is exhausted. Sets `isTorn` before
+/// the planes change.
 void writeBuffered(GlDevice& device, const program::Element& element, std::span<RenderTarget> planes,
                    const assemble::RegionLayout& region, const std::byte* elements, bool& isTorn);
 

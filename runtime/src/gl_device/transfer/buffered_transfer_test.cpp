@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Transfers through buffers of the driver's against direct ones.
+// Compares transfers through pixel buffers with direct ones.
 #include "gl_device/transfer/buffered_transfer.hpp"
 
 #include <array>
@@ -37,7 +37,7 @@ const program::Element& mixed() {
   return element;
 }
 
-/// Bytes of elements that read back as they are: 0 or 1 everywhere, so that bools are.
+/// Random elements that read back unchanged: every byte is 0 or 1, which bools require.
 std::vector<std::byte> bitsOf(const program::Element& element, std::int64_t count) {
   static std::mt19937 random(7);
   std::vector<std::byte> bytes(static_cast<std::size_t>(count) * element.size);
@@ -45,7 +45,7 @@ std::vector<std::byte> bitsOf(const program::Element& element, std::int64_t coun
   return bytes;
 }
 
-/// The bytes of fields, without those between them.
+/// Compares the bytes of fields, without padding.
 bool areEqual(const program::Element& element, const std::vector<std::byte>& a,
               const std::vector<std::byte>& b) {
   bool equal = a.size() == b.size();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Descriptors as skc would write them, made for each scalar type and width when first needed.
+// Descriptors as skc would generate them, for every scalar type and width; created on first use.
 #include "gl_device/transfer/copy_kernel.hpp"
 
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 constexpr int widths = 4;
 constexpr int scalars = 14;
 
-/// The scalar and width of texels of the field's format: bits are copied, not values.
+/// A field with the same texel format, so that the kernel copies bits instead of converting values.
 program::Field texelField(const program::Field& field) {
   using program::Scalar;
   switch (field.scalar) {

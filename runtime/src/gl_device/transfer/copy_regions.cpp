@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-//
-// Runs of a linearised region.
 #include "gl_device/transfer/copy_regions.hpp"
 
 namespace sk {
 
-// A dimension joins the runs below it where they fill those entirely.
+// Runs extend over a dimension if the region covers the lower dimensions of its stream entirely.
 ElementRuns::ElementRuns(const assemble::RegionLayout& region) : region_(region) {
   const std::size_t rank = region.extent.size();
   length = region.extent[0];

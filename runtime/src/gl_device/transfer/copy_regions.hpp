@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A region as rectangles of texels whose elements are consecutive in host memory too: what goes to or
-// comes from a texture in one piece. Plain arithmetic, no GL.
+// Divides a region into rectangles of texels whose elements are consecutive in row-major order, each of which
+// one GL command per layer can transfer. Pure arithmetic, no GL.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,15 @@
 
 namespace sk {
 
-/// Texels of a rectangle, row by row, are the elements of the region from number `first` on.
+/// A rectangle of texels: row by row, they hold the region's elements from number `first` on.
 struct CopyRegion {
   assemble::Rect rect;
   std::int64_t first;
 };
 
-/// Calls visit(part, layer, first) for the parts of a rectangle that lie in one layer each: `part` counts rows
-/// in its layer, and `first` is its first row in the rectangle. `layerRows`: 0 where there are no layers.
+/// Divides a rectangle, whose rows are numbered across layers, into parts that lie in one layer each. Calls
+/// visit(part, layer, first): the rows of `part` are numbered in its layer, and `first` is its first row,
+/// counted from the top of the rectangle. `layerRows` is 0 if there are no layers.
 template <class Visit>
 void forEachLayer(const assemble::Rect& rect, std::int32_t layerRows, Visit&& visit) {
   if (layerRows == 0) {
@@ -34,12 +35,11 @@ void forEachLayer(const assemble::Rect& rect, std::int32_t layerRows, Visit&& vi
   }
 }
 
-/// A linearised region as runs of elements that are consecutive in the stream: `count` runs of
-/// `length` elements each.
+/// A linearised region as `count` runs of `length` elements each, which are consecutive in the stream.
 struct ElementRuns {
   explicit ElementRuns(const assemble::RegionLayout& region);
 
-  /// Number in the stream of the first element of a run.
+  /// The number of a run's first element in the stream.
   std::int64_t start(std::int64_t run) const;
 
   std::int64_t count = 1;
@@ -47,11 +47,12 @@ struct ElementRuns {
 
  private:
   const assemble::RegionLayout& region_;
-  std::size_t axis_ = 0;  ///< the runs differ in this dimension and those above
+  std::size_t axis_ = 0;  ///< the first dimension over which runs do not extend
 };
 
-/// Calls visit(const CopyRegion&) for consecutive elements `first ...` of a region that lie at numbers
-/// `start ... start + length` of a linearised stream: at most a part of a row, full rows, a part.
+/// Divides a run into rectangles: at most a part of a row, full rows, and a part of a row. The run's elements
+/// have the numbers `start` to `start + length - 1` in a linearised stream, and numbers from `first` on in
+/// the region. Calls visit(const CopyRegion&) for each.
 template <class Visit>
 void splitRun(std::int32_t shift, std::int64_t start, std::int64_t length, std::int64_t first,
               Visit&& visit) {
@@ -71,7 +72,7 @@ void splitRun(std::int32_t shift, std::int64_t start, std::int64_t length, std::
   }
 }
 
-/// Calls visit(const CopyRegion&) for pieces that together are the region, in order.
+/// Calls visit(const CopyRegion&) for rectangles that cover the region, in order.
 template <class Visit>
 void forEachCopyRegion(const assemble::RegionLayout& region, Visit&& visit) {
   if (!region.linear) {
@@ -84,7 +85,7 @@ void forEachCopyRegion(const assemble::RegionLayout& region, Visit&& visit) {
   }
 }
 
-/// The rows of texels, whole, that a linearised region lies in.
+/// The whole rows of texels that contain a linearised region.
 assemble::Rect rowsOf(const assemble::RegionLayout& region);
 
 }  // namespace sk

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs are checked against the definition: element n is texel (n & (w - 1), n >> shift).
+// Checks runs against the definition of a linearised layout: element n is texel (n & (w - 1), n >> shift).
 #include "gl_device/transfer/copy_regions.hpp"
 
 #include <array>
@@ -19,7 +19,7 @@ using sk::assemble::RegionLayout;
 
 namespace {
 
-/// Numbers in the stream of the elements of a region, row-major.
+/// The numbers of a region's elements in its stream, row-major.
 std::vector<std::int64_t> numbersOf(const RegionLayout& p) {
   std::vector<std::int64_t> numbers;
   for (std::int64_t w = 0; w < p.extent[3]; ++w)
@@ -31,7 +31,7 @@ std::vector<std::int64_t> numbersOf(const RegionLayout& p) {
   return numbers;
 }
 
-/// The same numbers by the texels of the runs.
+/// The same numbers, computed from the texels of the runs.
 std::vector<std::int64_t> numbersOfRuns(const RegionLayout& p, int& rects) {
   std::vector<std::int64_t> numbers;
   forEachCopyRegion(p, [&](const CopyRegion& run) {
@@ -54,19 +54,19 @@ TEST_CASE("runs are the elements of a region, in order") {
     int rects;
   };
   const std::vector<Case> cases{
-      {{1000}, {0}, {1000}, 2},                      // 32 wide: 31 rows and a part
-      {{1000}, {5}, {3}, 1},                         // inside of a row
-      {{1000}, {30}, {4}, 2},                        // around the end of a row
+      {{1000}, {0}, {1000}, 2},                      // the texture is 32 wide: 31 rows and a part
+      {{1000}, {5}, {3}, 1},                         // inside a row
+      {{1000}, {30}, {4}, 2},                        // across the end of a row
       {{1000}, {30}, {900}, 3},                      // a part, rows, a part
       {{1000}, {32}, {64}, 1},                       // rows
-      {{4, 5, 6}, {0, 0, 0}, {4, 5, 6}, 2},          // all of it is one run
+      {{4, 5, 6}, {0, 0, 0}, {4, 5, 6}, 2},          // the whole stream is one run
       {{4, 5, 6}, {1, 0, 0}, {2, 5, 6}, 3},          // two slices are one run
       {{4, 5, 6}, {1, 1, 0}, {2, 2, 6}, -1},
       {{4, 5, 6}, {1, 1, 1}, {2, 2, 2}, -1},
       {{3, 4, 5, 6}, {1, 1, 1, 1}, {1, 2, 2, 4}, -1},
       {{3, 4, 5, 6}, {0, 1, 0, 0}, {3, 1, 5, 6}, -1},
       {{200, 3}, {7, 1}, {100, 1}, 100},
-      {{100, 100}, {0, 0}, {100, 100}, 2},           // in layers: rows go on
+      {{100, 100}, {0, 0}, {100, 100}, 2},           // layered: rows continue across layers
       {{100, 100}, {3, 5}, {90, 80}, -1},
   };
   for (const Case& c : cases) {

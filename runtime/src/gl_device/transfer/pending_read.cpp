@@ -33,7 +33,7 @@ PendingRead::PendingRead(GlDevice& device, GlStream& stream, const StreamRegion&
   }
   try {
     const GlStream::Travelling what = stream.travelling(region);
-    const program::Element& own = held_ ? held_->element : element_;  // the stream's may end before this does
+    const program::Element& own = held_ ? held_->element : element_;  // the stream's may be destroyed first
     read_.emplace(device).add(what.element == &stream.held() ? own : *what.element, stream.planes,
                               what.place);
     read_->begin();
@@ -44,7 +44,8 @@ PendingRead::PendingRead(GlDevice& device, GlStream& stream, const StreamRegion&
   }
 }
 
-// On any thread: where the device ends at the same time, it is either told before or never knew.
+// Runs on any thread. If the device is destroyed at the same time, the lock decides: either it has notified
+// this read, or it does not find it in the list.
 PendingRead::~PendingRead() {
   const std::lock_guard lock(all_->mutex);
   if (device_ != nullptr) leave();
@@ -109,7 +110,7 @@ void PendingRead::fail(const char* why) noexcept {
   }
 }
 
-// Touches no GL: a future may be destroyed where the context is not current. The lock is held.
+// Does not call GL: a future may be destroyed while the context is not current. The lock must be held.
 void PendingRead::leave() noexcept {
   std::erase(all_->list, this);
   read_.reset();

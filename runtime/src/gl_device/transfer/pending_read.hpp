@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Elements of a GL stream on their way to host memory, through a buffer of the driver's.
+// An asynchronous read of a GL stream's elements, through a pixel buffer.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,8 @@ class GlStream;
 
 class PendingRead final : public TransferState {
  public:
-  /// Of a region that has elements. A scope of the device must be open. Throws sk::Error where there is no memory.
+  /// Starts reading a region, which is not empty. A DeviceScope must be open. Throws sk::Error if memory is
+  /// exhausted.
   PendingRead(GlDevice& device, GlStream& stream, const StreamRegion& region);
   ~PendingRead() override;
 
@@ -27,9 +28,11 @@ class PendingRead final : public TransferState {
   void wait() override;
   void take(std::byte* elements) override;
 
-  /// The device ends: the elements come to host memory. Its context is current. The lock of the list is held, here and below.
+  /// Copies the elements to host memory because the device is being destroyed. Its context must be current,
+  /// and the lock of the list must be held.
   void land() noexcept;
-  /// The device ends, and its context is out of reach.
+  /// Makes take() fail because the device is being destroyed and its context cannot be made current. The lock
+  /// of the list must be held.
   void abandon() noexcept;
 
  private:
@@ -38,14 +41,14 @@ class PendingRead final : public TransferState {
   void leave() noexcept;
 
   const std::shared_ptr<PendingReads> all_;
-  GlDevice* device_;  ///< null once it has ended, or the elements are taken
+  GlDevice* device_;  ///< null after the device has been destroyed
   const program::Element& element_;
-  std::unique_ptr<assemble::HeldElement> held_;  ///< where the planes hold another
+  std::unique_ptr<assemble::HeldElement> held_;  ///< the element type of the planes; null if it is element_
   std::size_t count_;
   std::optional<BufferedRead> read_;
   std::vector<std::byte> landed_;
   bool hasFailed_ = false;
-  std::string failure_;  ///< empty also where there was no memory for it
+  std::string failure_;  ///< may be empty even so, if memory was exhausted
 };
 
 }  // namespace sk

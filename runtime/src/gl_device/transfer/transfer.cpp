@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Texels travel in rectangles: directly where elements are texels, else through a buffer of a few
-// MiB. A linearised region of many short runs travels as the whole rows that it lies in.
+// Transfers texels in rectangles: directly if the elements equal their texels, else through a staging buffer
+// of a few MiB. A linearised region of many short runs is transferred as the whole rows that contain it.
 #include "gl_device/transfer/transfer.hpp"
 
 #include <algorithm>
@@ -22,8 +22,8 @@ using program::Field;
 
 constexpr std::size_t stagingBytes = std::size_t{4} << 20;
 
-/// What one transfer costs beside its bytes, in bytes that could have been moved instead (measured on
-/// llvmpipe: 1 us for an upload and 15 us for a readback, at about 4 GB/s).
+/// The fixed cost of one transfer, in bytes that could be transferred in the same time (measured on llvmpipe:
+/// 1 us for an upload and 15 us for a readback, at about 4 GB/s).
 constexpr std::int64_t uploadCost = 4 << 10;
 constexpr std::int64_t readCost = 64 << 10;
 
@@ -31,7 +31,8 @@ std::size_t texelsOf(const Rect& rect) {
   return static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
 }
 
-/// Calls visit(part, first) for bands of rows of `rect` that fit the staging buffer.
+/// Calls visit(band, first) for bands of rows of `rect`, each of which fits the staging buffer unless it is a
+/// single row. `first` is the number of texels above the band.
 template <class Visit>
 void forEachBand(const Rect& rect, std::size_t texelBytes, Visit&& visit) {
   const std::size_t rowBytes = static_cast<std::size_t>(rect.width) * texelBytes;
@@ -42,10 +43,10 @@ void forEachBand(const Rect& rect, std::size_t texelBytes, Visit&& visit) {
   }
 }
 
-/// One plane of a stream, and the ways of its texels.
+/// Transfers the texels of one plane.
 class PlaneTransfer {
  public:
-  /// `isTorn` is set when texels are written.
+  /// `isTorn`, which is set before texels are written, may be null if none are.
   PlaneTransfer(GlDevice& device, const Element& element, const Field& field, RenderTarget& renderTarget,
                 bool* isTorn)
       : device_(device),
@@ -102,7 +103,7 @@ class PlaneTransfer {
     return device_.staging.data();
   }
 
-  /// Reads the rows of a region to rows_, and calls visit(texels, first, count) for each run of it.
+  /// Reads rowsOf(region) to rows_, and calls visit(texels, first, count) for each run of the region.
   template <class Visit>
   void forEachRowRun(const RegionLayout& region, Visit&& visit) {
     const Rect rows = rowsOf(region);
@@ -165,7 +166,8 @@ class PlaneTransfer {
   std::vector<std::byte> rows_;
 };
 
-/// Whether it is cheaper to move the rows that a region lies in `times` times than each run by itself.
+/// Whether transferring the rows that contain a region `times` times is cheaper than transferring each run.
+/// `cost`: the fixed cost of one transfer.
 bool goesByRows(const RegionLayout& region, std::size_t texelBytes, std::int64_t cost, std::int64_t times) {
   if (!region.linear) {
     return false;
@@ -178,7 +180,7 @@ bool goesByRows(const RegionLayout& region, std::size_t texelBytes, std::int64_t
 
 }  // namespace
 
-/// Every GL reads the tight texels of a format. ES promises the wide ones and one pair of the driver's choice.
+/// GL reads every format as Format::tight. ES guarantees Format::wide and one more, of the driver's choice.
 gl::Transfer readTransferOf(GlDevice& device, RenderTarget& plane) {
   const gl::Format& format = plane.texture.format();
   const bool readsTight = device.capabilities.api == gl::Api::Gl || format.tight == format.wide ||

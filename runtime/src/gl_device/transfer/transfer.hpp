@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Elements between host memory and a region of a stream. A scope of the device must be open.
+// Transfers elements between host memory and a region of a stream. A DeviceScope must be open.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +14,19 @@ namespace sk {
 
 class GlDevice;
 
-/// How a plane's texels are read: Format::tight, or, where the driver cannot, Format::wide.
+/// How to read a plane's texels: as Format::tight or, if the driver cannot do that, as Format::wide.
 gl::Transfer readTransferOf(GlDevice& device, RenderTarget& plane);
 
-/// Whether it is cheaper to read the rows that a region lies in than each of its runs by itself.
+/// Whether reading the rows that contain a region is cheaper than reading each of its runs.
 bool readsByRows(const assemble::RegionLayout& region, std::size_t texelBytes);
 
-/// Copies all elements of a region, row-major in host memory, to its planes. `isTorn` is set when these begin to change.
+/// Copies all elements of a region, row-major in host memory, to its planes. Sets `isTorn` before they
+/// change.
 void upload(GlDevice& device, const program::Element& element, std::span<RenderTarget> planes,
             const assemble::RegionLayout& region, const std::byte* elements, bool& isTorn);
 
-/// The other way. Waits for the device. Throws sk::Error where the driver has reported an error since
-/// it was last asked.
+/// Copies all elements of a region from its planes to host memory, row-major. Waits for the device. Throws
+/// sk::Error like GlDevice::throwPendingError().
 void download(GlDevice& device, const program::Element& element, std::span<RenderTarget> planes,
               const assemble::RegionLayout& region, std::byte* elements);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Buffers of the driver's that transfers share, and the futures that have some. Any thread may destroy a future, while another one
-// uses the device, or ends it: what both touch is behind a lock, and GL is called by the device's thread alone.
+// The pool of pixel buffers for transfers, and the list of pending futures, which hold such buffers. A future
+// may be destroyed on any thread while another thread uses or destroys the device: locks protect what both
+// access, and only the device's thread calls GL.
 #pragma once
 
 #include <atomic>
@@ -17,27 +18,28 @@ namespace sk {
 
 class PendingRead;
 
-/// A buffer, and when the device is done with it; kept for the next transfer.
+/// A pixel buffer, and the fence after the commands that write it.
 struct TransferBuffer {
   gl::PixelBuffer buffer;
   gl::Fence fence;
-  std::size_t bytes = 0;  ///< that were allocated last
+  std::size_t bytes = 0;  ///< its size, as last allocated
 };
 
-/// The buffers that nobody uses. They wait here to be used again, or to be deleted with the context current.
+/// The idle buffers, which are reused, or deleted while the context is current.
 class TransferBuffers {
  public:
   explicit TransferBuffers(gl::Deletions& deletions) : deletions_(deletions) {}
 
-  /// One that nobody uses; its fence is none. The context is current.
+  /// Returns an idle buffer or a new one, without a fence. The context must be current.
   TransferBuffer take();
-  /// Of a buffer that was taken. Any thread may call this: it touches no GL and allocates nothing.
+  /// Returns a buffer from take() to the pool. Thread-safe: it does not call GL, and it never allocates.
   void give(TransferBuffer&& buffer) noexcept;
 
-  /// Deletes those that have lain unused for a while, where they take much. Once a call, with the context current.
+  /// Deletes the buffers that have been idle for a number of calls, if idle ones are many or large. Must be
+  /// called once per call, while the context is current.
   void trim() {
-    clock_.store(clock_.load(std::memory_order_relaxed) + 1,
-                 std::memory_order_relaxed);  // no other thread changes it
+    // no read-modify-write is needed, since only this thread changes it
+    clock_.store(clock_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     if (hasMany_.load(std::memory_order_relaxed)) deleteUnused();
   }
 
@@ -55,15 +57,16 @@ class TransferBuffers {
 
   gl::Deletions& deletions_;
   std::mutex mutex_;
-  std::vector<Idle> idle_;  ///< with room for those that were taken
+  std::vector<Idle> idle_;  ///< has capacity for the taken ones as well
   std::size_t taken_ = 0;
   std::size_t bytes_ = 0;
   std::atomic<std::int64_t> clock_ = 0;
-  std::atomic<bool> hasMany_ = false;  ///< so that no call takes the lock where there are few
+  std::atomic<bool> hasMany_ = false;  ///< spares calls the lock if there are few idle buffers
 };
 
-/// The futures that a device notifies before it ends. Device and futures share this list, since either may end first. Hold the
-/// lock to add or remove a future, and while the device ends.
+/// The futures that a device notifies when it is destroyed. Device and futures share the ownership of this
+/// list, because either may be destroyed first. The lock must be held to add or remove a future, and while
+/// the device notifies them.
 struct PendingReads {
   std::mutex mutex;
   std::vector<PendingRead*> list;
