@@ -17,8 +17,8 @@ using sk::bool2, sk::float2, sk::float4, sk::int2;
 
 namespace {
 
-/// Calls test(device) on devices with the guaranteed limits, which need many passes, in every layout, and on a device with
-/// its own limits.
+/// Calls test(device) on devices with the guaranteed limits, which need many passes, and with their own limits, in every
+/// layout.
 template <class Test>
 void onEveryLimit(const Test& test) {
   struct Limits {
