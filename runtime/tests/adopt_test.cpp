@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Devices on the application's own context: results are right whatever state it left, and the state is
-// as it left it.
+// Devices on the application's own context: results are right whatever state the application set, and that state is
+// restored.
 #include <map>
 #include <numeric>
 #include <string>
@@ -22,10 +22,10 @@ using namespace sk::test;
 
 namespace {
 
-/// An application's context, current while it lives.
+/// An application's context. The constructor makes it current.
 class Application {
  public:
-  /// Compute: a core context of 4.3, as others may be.
+  /// Compute is a core context of version 4.3 or later; Core asks for 3.3.
   enum class Kind { Core, Compute, Compatibility, Es };
 
   explicit Application(Kind kind) : kind_(kind) {
@@ -103,7 +103,7 @@ bool hasClipControl(const Application& application) {
   return !application.isEs() && epoxy_gl_version() >= 45;
 }
 
-/// Sets as much as can be set to what would spoil a pass.
+/// Sets as much state as possible to values that would spoil a pass.
 void makeHostileState(const Application& application) {
   const bool isEs = application.isEs();
   for (const GLenum toggle : {GL_BLEND, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_SCISSOR_TEST, GL_CULL_FACE,
@@ -175,7 +175,7 @@ void makeHostileState(const Application& application) {
   REQUIRE(glGetError() == GL_NO_ERROR);
 }
 
-/// All of it, by name.
+/// The state that makeHostileState() sets, and more, by name.
 std::map<std::string, GLint> readState(const Application& application) {
   std::map<std::string, GLint> state;
 #define STATE(name) state[#name] = integerOf(name)
@@ -240,7 +240,7 @@ const TestKernel& put() {
   return kernel;
 }
 
-/// Everything that a device does, with results checked.
+/// Uses a device in every way and checks the results.
 void useAll(Device& device) {
   constexpr std::size_t count = 150;
   auto a = device.stream<float>(count);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A call like one before allocates no host memory, and a software renderer needs no new pages for it: a program of its
-// own, because it counts every allocation by operator new, and every page.
+// A repeated call allocates no host memory, and a software renderer needs no new pages for it. This is a separate program,
+// because it replaces operator new to count every allocation, and counts page faults of the whole process.
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -31,7 +31,7 @@ void* allocateOrThrow(std::size_t size) {
 
 }  // namespace
 
-// All of them, since drivers are C++ too and use those that the program has.
+// Replaces all of them: drivers are C++, too, and use the program's.
 void* operator new(std::size_t size) { return allocateOrThrow(size); }
 void* operator new[](std::size_t size) { return allocateOrThrow(size); }
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
@@ -48,7 +48,7 @@ namespace {
 using namespace sk;
 using namespace sk::test;
 
-/// Allocations of one call, after two like it.
+/// The number of allocations of a call that has been made twice before.
 template <class Call>
 long allocationsOf(Call call) {
   call();
@@ -94,8 +94,8 @@ long pagesSoFar() {
   return usage.ru_minflt;
 }
 
-/// Calls with another uniform each, for which llvmpipe takes memory from the heap; once it has had as much, no page of it
-/// may be new (gl_device/memory/keep_heap.hpp). Without that there are four thousand in each thousand calls.
+/// Makes calls with a new uniform each, for which llvmpipe allocates from the heap. After a warm-up, fewer than one call in
+/// four may need a new page (gl_device/memory/keep_heap.hpp); without keepHeap(), each call needs about four.
 bool checkPages(Device& device) {
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
   static const TestKernel scale("scale", "void scale(float a, float x, out float r) { r = a * x; }\n",
@@ -124,7 +124,7 @@ int main() {
   Device device({.textureLimit = 64});
   const bool isFree = checkAll(device);
   bool hasPages = checkPages(device);
-  // on a busy machine llvmpipe's queues settle at another length at times, and take a page for each call
+  // On a busy machine, llvmpipe's queues sometimes settle at another length, and take a page for each call.
   for (int again = 0; again < 3 && !hasPages; ++again) {
     Device other({.textureLimit = 64});
     hasPages = checkPages(other);

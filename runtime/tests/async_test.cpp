@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Reading and writing without waiting: what is asked for comes as it was then, whatever happens afterwards.
+// readAsync() and writeAsync(): a future holds the elements as they were at the call, whatever happens afterwards.
 #include <atomic>
 #include <chrono>
 #include <cstring>
@@ -30,7 +30,7 @@ const TestKernel& plusOne() {
   return kernel;
 }
 
-/// Some hundred operations an element, so that the device is still at it when the call returns.
+/// Thousands of operations per element, so that the device is still computing when the call returns.
 const TestKernel& slow() {
   static const TestKernel kernel(
       "slow",
@@ -148,7 +148,7 @@ TEST_CASE("any thread may destroy futures while another one uses the device, and
 TEST_CASE("buffers of futures that have ended do not stay") {
   for (const std::string& profile : profileNames) {
     Device device(DeviceOptions{.profile = profile});
-    auto x = device.stream<float>({512, 512});  // of 1 MiB
+    auto x = device.stream<float>({512, 512});  // 1 MiB
     x.write(std::vector<float>(512 * 512, 1));
     device.makeCurrent();
     const auto buffers = [] {
@@ -169,7 +169,7 @@ TEST_CASE("buffers of futures that have ended do not stay") {
 
 TEST_CASE("later calls do not disturb what was asked for") {
   for (Device& device : devices()) {
-    if (device.profile() == "native") continue;  // it has no code for kernels of tests
+    if (device.profile() == "native") continue;  // kernels of tests have no native code
     INFO(device.name());
     auto x = device.stream<float>({64, 64}), r = device.stream<float>({64, 64});
     x.write(std::vector<float>(64 * 64, 0));
@@ -189,7 +189,7 @@ TEST_CASE("later calls do not disturb what was asked for") {
 
 TEST_CASE("neither asking nor writing waits for the device") {
   Device device;
-  const std::int64_t side = device.isSoftware() ? 32 : 512;  // whose times are not compared
+  const std::int64_t side = device.isSoftware() ? 32 : 512;  // times are not compared on a software renderer
   const auto count = static_cast<std::size_t>(side * side);
   auto x = device.stream<float>({side, side}), r = device.stream<float>({side, side});
   x.write(std::vector<float>(count, 0.5F));
@@ -214,7 +214,7 @@ TEST_CASE("neither asking nor writing waits for the device") {
   const double whole = milliseconds(start - before);
   INFO("the kernel " << whole << " ms, asking " << milliseconds(asked - start) << " ms, writing "
                      << milliseconds(written - asked) << " ms");
-  if (whole > 50 && !device.isSoftware()) {  // else the device is too fast to tell, or draws before it reads
+  if (whole > 50 && !device.isSoftware()) {  // else the device is too fast, or finishes drawing before a read returns
     CHECK_FALSE(wasReady);
     CHECK(milliseconds(written - start) < whole / 2);
   }

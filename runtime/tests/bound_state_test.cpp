@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What is known of bindings holds, also where the driver gives out the name of an object that was deleted, as drivers may; and objects are
-// deleted in their context.
+// gl::BoundState stays right when the driver gives a new object the name of a deleted one, as drivers may.
 #include "gl/bound_state.hpp"
 
 #include <type_traits>
@@ -21,7 +20,8 @@ namespace {
 
 constexpr GLuint onlyName = 4711;
 
-/// Gives out one name and no other, for as long as it lives: OpenGL ES lets an application choose names.
+/// Makes a glGen* function return the same name for every object while it lives. The driver accepts that name, because
+/// OpenGL ES lets an application choose names.
 template <auto* place>
 class OneName {
  public:

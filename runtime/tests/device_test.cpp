@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Devices: what they tell, several of them, threads, and what they leave current.
+// Devices: their names and limits, several at once, threads, and the context that they leave current.
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -187,7 +187,7 @@ TEST_CASE("memory of streams is used again") {
 TEST_CASE("a stream for which there is no memory") {
   Device device({.textureLimit = 1 << 20});
   if (!device.isSoftware()) {
-    return;  // takes all of a GPU's memory, and perhaps its time
+    return;  // it would take all of a GPU's memory, and perhaps block the GPU
   }
   const std::int64_t side = device.limits().textureSize;
   const std::string error = errorOf([&] { device.stream<float4>({side, side}); });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What applications draw with that compute on a device: its context when they share it, buffers filled from streams;
-// and the count of what the device does.
+// What applications use to draw what they compute: the context that they share with a device, and buffers filled from
+// streams. Also the count of a device's passes.
 #include <cstring>
 #include <numeric>
 #include <string>
@@ -20,7 +20,7 @@ using namespace sk::test;
 
 namespace {
 
-/// A buffer of the application's with bytes of 0xff.
+/// A buffer of the application, filled with 0xff.
 GLuint bufferOf(std::size_t bytes) {
   GLuint name = 0;
   glGenBuffers(1, &name);

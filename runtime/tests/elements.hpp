@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Struct elements of the tests, registered as the headers that skc writes register theirs.
+// Structs for tests, registered as element types in the same way as the headers that skc writes do it.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Gathers: ranks, boundary modes, neighbours, views, layouts, against the same lookup on the host.
+// Gathers against the same lookup on the host: ranks, boundary modes, neighbours, views, layouts.
 #include <algorithm>
 #include <memory>
 #include <numeric>
@@ -37,7 +37,7 @@ program::Parameter gatherOf(Boundary boundary, int rank) {
   return made;
 }
 
-/// Adds up the neighbours (dx, dy) of each element by sk_near_a, or the same by sk_at_a.
+/// Reads the neighbour (dx, dy) of each element: by sk_near_a if `near`, else by sk_at_a.
 const TestKernel& neighbour(Boundary boundary, bool near) {
   static constexpr const char* nearBody =
       "void neighbour(int dx, int dy, out float r) { r = sk_near_a(ivec2(dx, dy)); }\n";
@@ -75,7 +75,7 @@ TEST_CASE("every boundary mode, by index and by neighbour") {
   std::vector<float> host(static_cast<std::size_t>(whole.size()));
   std::iota(host.begin(), host.end(), 1.0f);
   whole.write(host);
-  auto exact = device.stream<float>({height, width});  // lies as it is; the view's stream is linearised
+  auto exact = device.stream<float>({height, width});  // not linearised, unlike the view's stream
   const auto view = whole.domain({2, 3}, {2 + height, 3 + width});
   exact.write(view.read());
   const auto values = view.read();

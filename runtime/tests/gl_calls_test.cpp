@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Which calls of GL a call of a kernel makes: of what the one before has left as it wants it, none. A count instead of a
-// time, so that it fails on any machine once a call costs more.
+// Which GL functions a kernel's call calls: none that would set state that is already set. Counting calls instead of
+// measuring time makes the test fail on every machine as soon as a call costs more.
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -20,10 +20,10 @@ using namespace sk;
 using namespace sk::test;
 using Names = std::vector<std::string>;
 
-/// What has been called, in order.
+/// The names of the called functions, in order.
 Names called;
 
-/// Notes the calls of a function for as long as it lives. `place` is where libepoxy keeps the driver's.
+/// Records the calls of a function while it lives. `place` is libepoxy's pointer to the driver's function.
 template <auto* place, class F = std::remove_pointer_t<decltype(place)>>
 class Spy;
 template <auto* place, class R, class... A>
@@ -50,7 +50,7 @@ class Spy<place, R (*)(A...)> {
 #define SPY(function) \
   const Spy<&epoxy_##function> function##Spy { #function }
 
-/// What is called when `work` runs, which has run before, so that libepoxy knows where the driver's functions are.
+/// The functions that `work` calls. It must have run before, so that libepoxy has resolved the driver's functions.
 template <class Work>
 Names callsOf(Work&& work) {
   SPY(glUseProgram);
@@ -108,7 +108,7 @@ struct Streams {
         s(device.stream<float>({8, 8})) {
     const std::vector<float> ones(64, 1.0f);
     for (Stream<float>* stream : {&x, &y, &r, &s}) stream->write(ones);
-    // Everything that is called below, once before, so that all programs and framebuffers are there.
+    // Makes every program and framebuffer that the tests need.
     saxpy()(1.0f, x, y, s);
     saxpy()(1.0f, y, x, r);
     saxpy()(2.0f, x, y, r);
@@ -142,7 +142,7 @@ TEST_CASE("a call dispatches, and sets what has changed") {
         Names{"glBindImageTexture", "glDispatchCompute", "glMemoryBarrier"});
 }
 
-// A GPU takes longer to read a texel than all of a small sum.
+// On a GPU, reading a texel back takes longer than computing a small sum.
 TEST_CASE("the value of a dispatched reduction comes through a buffer") {
   Device device(DeviceOptions{.profile = "glsl430"});
   const TestReduction sum("sum", "void sum(float x, inout float total) { total += x; }\n",
@@ -151,13 +151,13 @@ TEST_CASE("the value of a dispatched reduction comes through a buffer") {
   x.write(std::vector<float>(64, 1.0f));
   CHECK(sum.value<float>(x) == 64);
   CHECK(callsOf([&] { CHECK(sum.value<float>(x) == 64); }) ==
-        Names{"glUseProgram", "glBindTexture", "glDispatchCompute", "glMemoryBarrier",  // the elements
+        Names{"glUseProgram", "glBindTexture", "glDispatchCompute", "glMemoryBarrier",  // folds the elements
               "glUseProgram", "glBindTexture", "glDispatchCompute",
-              "glMemoryBarrier",  // what groups have left
+              "glMemoryBarrier",  // folds the work groups' partial results
               "glMemoryBarrier", "glGetBufferSubData", "glGetError"});
 }
 
-// A renderer in software copies all of its state where a uniform of the fragment program changes.
+// A software renderer copies all of its state when a uniform of the fragment program changes.
 TEST_CASE("a renderer in software takes arguments as uniforms of the vertex program") {
   Device device(DeviceOptions{.profile = "glsl330"});
   Streams of(device);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Preloaded into a test: makes dlopen fail for the libraries that SK_TEST_HIDE lists (names with ':'
-// between), as it would where they are not installed.
+// Preloaded into a test: makes dlopen fail for the libraries that SK_TEST_HIDE lists, separated by ':', as if they were not
+// installed.
 #include <dlfcn.h>
 #include <cstdlib>
 #include <string>

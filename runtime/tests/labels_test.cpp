@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What debuggers call textures and programs (KHR_debug), which are labelled where there is a trace.
+// The KHR_debug labels of textures and programs, which debuggers show. Objects are labelled while there is a trace.
 #include <array>
 #include <cstdlib>
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace {
 using namespace sk;
 using namespace sk::test;
 
-/// SK_TRACE for as long as this lives, with the file that comes of it.
+/// Sets SK_TRACE while it lives, and removes the trace's file at the end.
 class Traced {
  public:
   explicit Traced(std::string file) : file_(std::move(file)) { ::setenv("SK_TRACE", file_.c_str(), 1); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Each misuse gives one sk::Error that names the kernel, the parameters and the shapes.
+// Each misuse throws one sk::Error that names the kernel, the parameters and the shapes.
 #include <limits>
 #include <vector>
 

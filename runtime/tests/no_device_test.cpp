@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Opens a device in an environment that CTest has made hostile, and checks what comes of it:
-//   no_device_test fails TEXT...     sk::Error, and its message has every TEXT
-//   no_device_test opens PROFILE     a device of that profile, on which a stream works
-// Status 0 if so, 1 with what happened if not, 77 (skipped) where a driver other than Mesa pays no heed
-// to Mesa's variables.
+// Opens a device in the hostile environment that CTest sets, and checks the result:
+//   no_device_test fails TEXT...     expects an sk::Error whose message contains every TEXT
+//   no_device_test opens PROFILE     expects a device of that profile, on which a stream works
+// Exit status: 0 if so; 1 after printing what happened if not; 77 (skipped) if a device opens that should not, but its
+// driver is not Mesa, which Mesa's variables do not affect.
 #include <cstdio>
 #include <cstring>
 #include <string_view>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Outputs: several at once, outputs that are read by the same call, outputs that lie differently.
+// Outputs: several at once, outputs that the same call reads, outputs with different layouts.
 #include <cstring>
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Programs that are kept. Binaries in the cache folder: another device takes them, and nothing is worse where they are
-// broken. In memory: a kernel has so many variants at most.
+// The program binary cache: another device loads the binaries, and recompiles broken ones. Also the limit on the number of
+// a kernel's variants in memory.
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -47,14 +47,14 @@ std::string contentsOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// As the runtime computes it (FNV-1a).
+/// FNV-1a, like the runtime's checksum.
 std::uint64_t hashOf(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   return hash;
 }
 
-/// A cache folder and a trace of this test's own.
+/// A cache folder and a trace for this test alone.
 class Folder {
  public:
   Folder() { fs::create_directories(path_); }
@@ -62,7 +62,7 @@ class Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
-  /// Those of the kernel: measuring for the trace compiles, too.
+  /// The files of the kernel's programs. Others are left out: measuring for the trace compiles programs, too.
   std::vector<fs::path> programs() const {
     std::vector<fs::path> found;
     for (const auto& entry : fs::directory_iterator(path_)) {
@@ -73,7 +73,7 @@ class Folder {
     }
     return found;
   }
-  /// Changes what is after the key and the checksum of each program's file, with a checksum that is right or stays.
+  /// Changes the binary in each program's file, and updates its checksum if `isRight`.
   void change(bool isRight, const std::function<void(std::string&)>& edit) const {
     for (const fs::path& file : programs()) {
       const std::string text = contentsOf(file);
@@ -92,7 +92,7 @@ class Folder {
       out << binary;
     }
   }
-  /// How many programs a new device has found, as its trace says, when it has doubled a number.
+  /// Doubles numbers on a new device. Returns the number of cache hits in its trace.
   std::size_t hits(const std::string& profile) const {
     static const TestKernel twice("twice", "void twice(float x, out float r) { r = 2.0 * x; }\n",
                                   {input<float>("x"), output<float>("r")});
@@ -114,7 +114,7 @@ class Folder {
     return found;
   }
 
-  mutable bool hasBinaries = true;  ///< all devices that were asked
+  mutable bool hasBinaries = true;  ///< whether every device so far supports program binaries
 
  private:
   static GLint formats() {
@@ -176,7 +176,7 @@ TEST_CASE("of a kernel's variants, those that were not used for longest are dele
   };
   for (int n = 0; n < 270; ++n) {
     special(n, x, r);
-    special(0, x, r);  // which is used all the time
+    special(0, x, r);  // never the least recently used
   }
   CHECK(r.read() == std::vector<float>{1, 2, 3, 4});
   CHECK(programs() >= 256);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Random calls on random boxes of random streams, in place and across layouts, against the same on
-// host memory: whatever a call reads is what was there before it, and nothing else changes.
+// Random calls on random boxes of random streams, in place and across layouts, against loops over host memory: a call reads
+// only the values from before it, and changes nothing but its outputs.
 #include <algorithm>
 #include <cstdint>
 #include <random>
@@ -40,10 +40,11 @@ const TestKernel& shuffle(int rank) {
   return rank == 2 ? plane : box;
 }
 
-/// What the neighbour and the index are multiplied with, rows first.
+/// The offset of the neighbour in `shuffle`, rows first.
 std::vector<std::int64_t> reachOf(int rank) {
   return rank == 2 ? std::vector<std::int64_t>{-2, 1} : std::vector<std::int64_t>{3, -2, 1};
 }
+/// The factors of the index in `shuffle`, rows first.
 std::vector<std::int64_t> scaleOf(int rank) {
   return rank == 2 ? std::vector<std::int64_t>{10, 1} : std::vector<std::int64_t>{100, 10, 1};
 }
@@ -59,7 +60,7 @@ struct Box {
   Shape shape;
 };
 
-/// The element of a box at an index in the box.
+/// The element at an index relative to the box.
 std::int32_t& elementAt(std::vector<HostStream>& streams, const Box& box, const Index& index) {
   HostStream& stream = streams[box.stream];
   std::int64_t number = 0;
@@ -134,7 +135,7 @@ class Game {
     return {stream, begin, shape};
   }
 
-  /// A box of this shape in some stream that is large enough.
+  /// A box of this shape in a random stream that is large enough.
   Box boxOf(const Shape& shape) {
     for (;;) {
       const std::size_t stream = anyStream();
@@ -167,7 +168,7 @@ class Game {
     return streams_[box.stream].domain(box.begin, end);
   }
 
-  // Sums wrap around, as the device's do.
+  // Sums wrap around, as on the device.
   void runOnHost(std::int32_t k, const Box& x, const Box& y, const Box& g, const Box& r, const Box& s) {
     std::vector<HostStream> before = hosts_;
     for (std::int64_t number = 0; number < r.shape.size(); ++number) {

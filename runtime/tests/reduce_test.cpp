@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Reductions: any length, in order, to a value and to a smaller stream, of structs, without elements.
+// Reductions: of any length, in order, to a value and to a smaller stream, of structs, of no elements.
 #include <numeric>
 #include <vector>
 
@@ -23,8 +23,8 @@ const TestReduction& sum() {
   return reduction;
 }
 
-/// Joins runs of integers: not commutative. (first, last, inOrder) of a run; false once two
-/// neighbours do not follow each other.
+/// Joins runs of consecutive integers, which is not commutative. A run is (first, last, isInOrder); isInOrder becomes 0 as
+/// soon as two joined runs do not follow each other.
 const TestReduction& inOrder() {
   static const TestReduction reduction("inOrder",
                                        "void inOrder(ivec3 x, inout ivec3 r) { r = ivec3(r.x, x.y, (r.z != 0 "

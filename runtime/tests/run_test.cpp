@@ -38,7 +38,7 @@ std::vector<float> ramp(std::int64_t count, float step = 1.0f) {
   return values;
 }
 
-/// Index of element `number` of a shape, x first.
+/// The index of element `number` of a shape, x first.
 int4 indexOf(std::int64_t number, const Shape& shape) {
   std::int32_t index[4] = {0, 0, 0, 0};
   for (int d = shape.rank() - 1; d >= 0; --d) {
@@ -261,8 +261,8 @@ TEST_CASE("views of linearised streams of any rank") {
 }
 
 TEST_CASE("what lies beside the domain never runs a kernel") {
-  // Loops that end on the elements, but on nothing else that a texture or the space around it may hold:
-  // one such fragment would keep the device busy until its driver gives up.
+  // The loop ends on the elements, but on no other value that a texture or the space around it may hold: a single fragment
+  // outside the domain would keep the device busy until its driver gives up.
   const auto profile = GENERATE(from_range(profileNames));
   Device device({.profile = profile, .textureLimit = 64});
   static const TestKernel doublings(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What is written to a stream is what is read from it, bit for bit, in every type, shape, layout and
-// profile, as a whole and in parts.
+// A stream gives back what was written to it, bit for bit, in every type, shape, layout and profile, as a whole and in
+// parts.
 #include <bit>
 #include <cstring>
 #include <numeric>
@@ -31,7 +31,7 @@ Device makeDevice(const std::string& profile, int textureLimit = 0) {
   return Device({.profile = profile, .textureLimit = textureLimit});
 }
 
-/// Elements of any type with components of 4 bytes, every word a pattern of its own.
+/// Elements of any type with components of 4 bytes; each component has a distinct bit pattern.
 template <class T>
 std::vector<T> patterned(std::size_t count) {
   const std::vector<std::uint32_t> words = bitPatterns(count * sizeof(T) / 4);
@@ -292,7 +292,7 @@ TEST_CASE("streams and devices move") {
 
 namespace {
 
-/// fill() and copyTo() of a stream and of its parts on a device, against the same on the host.
+/// Compares fill() and copyTo() of a stream and of its parts with the same on the host.
 template <class T>
 void checkFillAndCopy(Device& device, const Shape& shape) {
   INFO(device.name() << ", " << device.profile() << ", shape " << toString(shape));

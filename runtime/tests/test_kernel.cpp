@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Filling descriptors in.
+// Fills the descriptors in, as skc would.
 #include "test_kernel.hpp"
 
 namespace sk::test {
@@ -65,7 +65,6 @@ TestReduction::TestReduction(std::string_view name, std::string_view body,
   reduction_.seeded = seeded;
 }
 
-// An odd factor makes the map one to one.
 const TestKernel& twice() {
   static const TestKernel kernel("twice", "void twice(float x, out float r) { r = 2.0 * x; }\n",
                                  {input<float>("x"), output<float>("r")});
@@ -78,6 +77,7 @@ const TestReduction& sumOfFloats() {
   return reduction;
 }
 
+// An odd factor makes the map one to one.
 std::vector<std::uint32_t> bitPatterns(std::size_t count) {
   std::vector<std::uint32_t> patterns(count);
   for (std::size_t i = 0; i < count; ++i) {

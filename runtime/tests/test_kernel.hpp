@@ -16,7 +16,7 @@
 
 namespace sk::test {
 
-/// The profiles that each test of results is run in.
+/// The profiles that each test of results runs on.
 inline const std::vector<std::string> profileNames{"glsl330", "essl300"};
 
 template <class T>
@@ -45,7 +45,7 @@ program::Parameter gather(std::string_view name, int rank,
   made.boundary = boundary;
   return made;
 }
-/// A scatter output that each element puts `pushes` values to.
+/// A scatter output to which each element writes `pushes` values.
 template <class T>
 program::Parameter scatter(std::string_view name, int rank, std::int32_t pushes) {
   program::Parameter made = parameter<T>(name, program::Role::Scatter);
@@ -73,8 +73,8 @@ Argument argumentOf(const T& value) {
   }
 }
 
-/// A kernel whose entry function bears its name ("_" for "::"). What its body uses of a parameter is found
-/// in its text; `reach` is that of all its neighbours.
+/// A kernel whose entry function has its name, with "_" for "::". The constructor searches the body's text for what it
+/// uses of each parameter. `reach` applies to every parameter.
 class TestKernel {
  public:
   TestKernel(std::string_view name, std::string_view body, std::vector<program::Parameter> parameters,
@@ -96,8 +96,8 @@ class TestKernel {
   program::Kernel kernel_;
 };
 
-/// A reduction of one input, whose fold bears its name; `combine`, another function of the body, is the fold
-/// where none is given.
+/// A reduction of one input. The function with its name folds; `combine`, another function of the body, combines partial
+/// results. Without `combine`, the fold combines them, too.
 class TestReduction {
  public:
   TestReduction(std::string_view name, std::string_view body, std::vector<program::Parameter> parameters,
@@ -126,12 +126,12 @@ class TestReduction {
   program::Reduction reduction_;
 };
 
-/// r = 2 x, of floats.
+/// r = 2 x, for floats.
 const TestKernel& twice();
-/// The sum of floats, from 0 on.
+/// The sum of floats, with identity 0.
 const TestReduction& sumOfFloats();
 
-/// Each value a bit pattern of its own: 0, 1, 2 ... spread over all 32 bits.
+/// Distinct bit patterns: 0, 1, 2 ... spread over all 32 bits.
 std::vector<std::uint32_t> bitPatterns(std::size_t count);
 
 }  // namespace sk::test

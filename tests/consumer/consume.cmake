@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
 #
-# Builds project/ outside of this repository as another project would, runs its kernels, and proves that
+# Builds project/ outside of this repository as another project would, runs its kernels, and checks that
 # sk_add_kernels rebuilds what has changed and nothing else. Run by cmake -P with
 #   WAY            find_package (an installation, moved after it was made) or add_subdirectory
-#   WORK           a folder of this test's own
+#   WORK           a folder for this test alone
 #   SOURCE BUILD   StreamKernel's source and build folder
 #   SKC            the skc built there
-#   GENERATOR      of the consumer
-#   SETTINGS       -D options that both builds must agree on
+#   GENERATOR      CMake's generator for the consumer
+#   SETTINGS       -D options for the consumer, on which both builds must agree
 cmake_minimum_required(VERSION 3.25)
 
-# step(WHAT COMMAND...): runs it; its text goes to `output`, and a failure ends the test.
+# step(WHAT COMMAND...): runs a command and sets `output` to what it prints; a failure ends the test.
 macro(step what)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
@@ -18,7 +18,7 @@ macro(step what)
   endif()
 endmacro()
 
-# built(WHAT [RUNS file...]): builds the consumer, where skc must run for these .sk files only.
+# built(WHAT [RUNS file...]): builds the consumer, and checks that skc runs for these .sk files only.
 function(built what)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "RUNS")
   step("building ${what}" ${CMAKE_COMMAND} --build "${WORK}/build")
@@ -32,7 +32,7 @@ function(built what)
   endforeach()
 endfunction()
 
-# prints(EXPECTED): what the consumer computes, with GL and natively.
+# prints(EXPECTED): checks what the consumer prints, with GL and natively.
 function(prints expected)
   foreach(device gl native)
     step("running the consumer" ${CMAKE_COMMAND} -E env SK_DEVICE=${device} "${WORK}/build/consumer")
@@ -42,7 +42,7 @@ function(prints expected)
   endforeach()
 endfunction()
 
-# edit(FILE OLD NEW)
+# edit(FILE OLD NEW): replaces a text in a file of the project.
 function(edit file old new)
   file(READ "${WORK}/project/${file}" text)
   string(REPLACE "${old}" "${new}" changed "${text}")
@@ -52,7 +52,7 @@ function(edit file old new)
   file(WRITE "${WORK}/project/${file}" "${changed}")
 endfunction()
 
-# readmeBlock(FENCE FILE): writes the block of README.md behind this fence to a file of the project that README.md shows.
+# readmeBlock(FENCE FILE): writes the code block of README.md with this fence to a file of README.md's project.
 function(readmeBlock fence file)
   file(READ "${SOURCE}/README.md" text)
   string(FIND "${text}" "\n```${fence}\n" begin)
@@ -67,7 +67,8 @@ function(readmeBlock fence file)
   file(WRITE "${WORK}/readme/${file}" "${text}\n")
 endfunction()
 
-# readmeProject(PLACE): the three files of README.md, pasted to an empty folder, make a program that prints what it says.
+# readmeProject(PLACE): pastes the three files of README.md to an empty folder, and checks that they build a program which
+# prints what README.md says.
 function(readmeProject place)
   readmeBlock("sk file=heat.sk" heat.sk)
   readmeBlock("c++ run kernels=heat.sk prints=1000" main.cpp)
@@ -81,7 +82,7 @@ function(readmeProject place)
   endif()
 endfunction()
 
-# relocatable(FOLDER): no text of the installation names a folder of this machine.
+# relocatable(FOLDER): checks that no text file of the installation names a folder of this machine.
 function(relocatable folder)
   file(GLOB_RECURSE files "${folder}/*.cmake" "${folder}/*.hpp")
   foreach(file IN LISTS files)
@@ -134,7 +135,7 @@ edit(scale.sk "factor * a" "2 * factor * a")
 built("after a change of one file" RUNS scale.sk)
 prints("6 9 12 15 ")
 
-# A mistake in a kernel stops the build, with its place.
+# A mistake in a kernel stops the build with a message that names its line.
 edit(scale.sk "* a * x" "* a * y")
 execute_process(COMMAND ${CMAKE_COMMAND} --build "${WORK}/build"
                 RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Hooks: what stands in the variables of libepoxy in place of the driver's functions.
+// The functions that replace the driver's in libepoxy's function pointers.
 #include "faults.hpp"
 
 #include <array>
@@ -32,10 +32,10 @@ struct Armed {
   std::atomic<long> seen = 0;
 };
 Armed armed;
-thread_local bool mayFail = false;  ///< the thread of the test
-thread_local int inDriver = 0;  ///< its own allocations do not fail
+thread_local bool mayFail = false;  ///< true on the test's thread while a fault is armed
+thread_local int inDriver = 0;  ///< above 0 inside the driver, whose own allocations do not fail
 
-/// Counts a chance; whether it is the one that fails.
+/// Counts an opportunity. Returns whether it fails.
 bool fails(Kind kind) {
   if (!armed.is || armed.kind != kind) return false;
   const long seen = ++armed.seen;
@@ -72,7 +72,7 @@ struct Books {
   std::set<std::tuple<void*, Object, std::uintptr_t>> living;
   std::set<void*> contexts, lost;
   long wrong = 0, left = 0;
-  GLenum error = GL_NO_ERROR;  ///< of a fault
+  GLenum error = GL_NO_ERROR;  ///< left by a fault, for glGetError
 };
 Books& books() {
   static Books all;
@@ -91,7 +91,7 @@ struct Hook<place, R (*)(A...)> {
     driver = *place;
     *place = standIn;
   }
-  /// libepoxy finds a function out when it is first called, and puts it in its variable.
+  /// Calls the driver's function. libepoxy resolves a function at its first call and then overwrites its own pointer.
   static R real(A... arguments) {
     const InDriver scope;
     R (*const standIn)(A...) = *place;
@@ -117,7 +117,7 @@ void* currentContext() {
                                                               : eglGetCurrentContext();
 }
 
-/// Whether the current context is lost, of which this call may be the cause. Each call then leaves an error.
+/// Whether the current context is lost, be it by this call. If so, leaves an error.
 bool isLost() {
   if (!armed.is && books().lost.empty()) return false;
   const InDriver scope;
@@ -127,7 +127,7 @@ bool isLost() {
   return true;
 }
 
-/// Of a function of GL that nothing is known of.
+/// Replaces a GL function that fails only in a lost context.
 template <auto* place, class F = std::remove_pointer_t<decltype(place)>>
 struct Plain;
 template <auto* place, class R, class... A>
@@ -138,7 +138,7 @@ struct Plain<place, R (*)(A...)> {
   }
 };
 
-/// Of one that can fail for want of memory, and then does nothing.
+/// Replaces a GL function that can run out of memory, and then does nothing.
 template <auto* place, Kind kind, class F = std::remove_pointer_t<decltype(place)>>
 struct Failing;
 template <auto* place, Kind kind, class R, class... A>
@@ -179,7 +179,7 @@ void eraseOne(GLuint name) {
   if (!isLost()) Hook<place>::real(name);
 }
 
-// ---- functions with a behaviour of their own -------------------------------------------------------
+// ---- functions with special behaviour --------------------------------------------------------------
 
 GLenum getError() {
   if (books().error != GL_NO_ERROR) return std::exchange(books().error, GL_NO_ERROR);
@@ -203,7 +203,7 @@ GLuint createProgram() {
   created(Program, name);
   return name;
 }
-/// What is neither compiled nor linked has the status of failures.
+/// A shader or program that the driver was never asked to compile or link has the status of a failure.
 void compileShader(GLuint name) {
   if (isLost() || fails(Kind::Program)) return;
   Hook<&epoxy_glCompileShader>::real(name);
@@ -262,7 +262,7 @@ EGLBoolean destroyContext(EGLDisplay display, EGLContext context) {
   return Hook<&epoxy_eglDestroyContext>::real(display, context);
 }
 
-/// EGL is the driver's, too.
+/// Replaces an EGL function. It never fails, and allocations inside it count as the driver's.
 template <auto* place, class F = std::remove_pointer_t<decltype(place)>>
 struct PlainEgl;
 template <auto* place, class R, class... A>
@@ -437,7 +437,7 @@ void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); 
 void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
 void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
 
-// Arrays of native streams.
+// Native streams allocate their elements by it.
 extern "C" int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
   using Function = int (*)(void**, std::size_t, std::size_t);
   static const auto next = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "posix_memalign"));

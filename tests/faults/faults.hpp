@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Faults by number: the n-th chance of a kind fails, so that a loop over n tries every one. libepoxy calls the driver through
-// variables, which are replaced here by functions that count, fail and keep the books of GL's objects; operator new and
-// posix_memalign are replaced for the whole program. Nothing fails while no fault is armed, nor inside of the driver.
+// Injects faults by number: the n-th opportunity of a kind fails, so that a loop over n tries them all. libepoxy calls the
+// driver through function pointers; they are replaced by functions that count, fail and track GL objects. operator new and
+// posix_memalign are replaced for the whole program. Nothing fails without an armed fault, nor inside the driver.
 #pragma once
 
 #include <cstdint>
@@ -11,41 +11,42 @@
 namespace faults {
 
 enum class Kind : std::uint8_t {
-  Allocation,  ///< of a texture or a buffer: GL_OUT_OF_MEMORY
-  Program,  ///< a shader is not created or compiled, a program not created or linked
-  Mapping,  ///< a buffer is not mapped, or its contents are lost as it is unmapped
-  Fence,  ///< there is none, or waiting for it fails
-  Framebuffer,  ///< it is not complete
+  Allocation,  ///< the allocation of a texture or a buffer leaves GL_OUT_OF_MEMORY
+  Program,  ///< a shader is not created or compiled, or a program is not created, linked or loaded
+  Mapping,  ///< a buffer is not mapped, or loses its contents when it is unmapped
+  Fence,  ///< a fence is not created, or waiting for it fails
+  Framebuffer,  ///< a framebuffer is not complete
   Command,  ///< a draw, dispatch, upload or copy leaves GL_OUT_OF_MEMORY and does nothing
-  Context,  ///< lost: from this call on, none does anything
+  Context,  ///< the context is lost: this call and all later ones do nothing
   Host,  ///< an allocation of host memory by the runtime
-  HostOfAnyThread,  ///< also by threads that it starts; not where a driver has threads
+  HostOfAnyThread,  ///< like Host, also on threads that the runtime starts; not for drivers that have threads
 };
 std::string nameOf(Kind kind);
 
-/// One fault for as long as this lives.
+/// Arms a fault while it lives.
 class Fault {
  public:
-  /// `number`: from 1. `isLasting`: all that come after fail, too.
+  /// `number` counts opportunities from 1. `isLasting`: all later ones fail, too.
   Fault(Kind kind, long number, bool isLasting = false);
   ~Fault();
   Fault(const Fault&) = delete;
   Fault& operator=(const Fault&) = delete;
 
   bool hasFired() const;
-  /// Kind::Program: chances that belong to programs which are there now, and come no more.
+  /// For Kind::Program: the number of opportunities that do not come again, because their programs have been linked.
   long passed() const;
 };
 
-/// Replaces the functions of GL and EGL. Once, before the first device.
+/// Replaces the functions of GL and EGL. Call it once, before the first device.
 void install();
 
 struct Census {
-  long objects = 0;  ///< of GL that live
+  long objects = 0;  ///< GL objects that are alive
   long contexts = 0;
-  /// Names that were deleted twice or in another context than theirs, and objects that were left to die with a context.
+  /// `wrong`: deletions of objects that were deleted before or belong to another context. `left`: objects that were not
+  /// deleted before their context.
   long wrong = 0, left = 0;
-  std::string kinds = {};  ///< of the living
+  std::string kinds = {};  ///< how many objects of each kind are alive, as text
   bool operator==(const Census&) const = default;
 };
 Census census();

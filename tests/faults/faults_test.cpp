@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// After every fault that can be injected: the right kind of sk::Error or none, each stream as it was, or as it should be, or marked as
-// lost, a device that goes on, and nothing of GL left over.
+// Injects every fault. After each, the call has thrown the right kind of sk::Error or none; each stream has its elements
+// from before or after the call, or is marked as lost; the device still works; and no GL object is left over.
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -24,7 +24,7 @@ const bool areInstalled = [] {
   return true;
 }();
 
-/// What a call has thrown; none where it threw nothing.
+/// The error that a call throws, if any.
 std::optional<sk::Error> errorOf(const std::function<void()>& call) {
   try {
     call();
@@ -49,13 +49,13 @@ bool mayThrow(Kind fault, ErrorKind thrown) {
   return thrown == ErrorKind::Memory;
 }
 
-/// A device and, on another one where nothing fails, what should become of the same calls.
+/// The device under test, and one where nothing fails, which gives the expected elements.
 struct Pair {
   sk::Device& device;
   sk::Device& reference;
 };
 
-/// All faults of a kind in one call.
+/// Tries all faults of a kind in one call.
 class Trial {
  public:
   Trial(const Pair& pair, const Scenario& scenario, Kind kind, bool isLasting, std::int64_t& size)
@@ -68,9 +68,9 @@ class Trial {
   long faults = 0, thrown = 0, lost = 0;
 
  private:
-  /// Textures and framebuffers of other sizes than any before have to be made.
+  /// Whether each try needs streams of a new size, so that their textures and framebuffers have to be made.
   bool needsNewSizes() const { return kind_ == Kind::Allocation || kind_ == Kind::Framebuffer; }
-  /// Where programs are there, no more of them fail.
+  /// Whether the call must not succeed between faults: making its programs can fail only until they exist.
   bool staysCold() const { return kind_ == Kind::Program || (kind_ == Kind::Host && !isLasting_); }
 
   void setUp() {
@@ -83,11 +83,11 @@ class Trial {
       scenario_.call(other);
       after_ = other.elements();
     }
-    pair_.device.finish();  // so that the driver's errors are not about what was written before
+    pair_.device.finish();  // so that no error of the driver comes from the writes above
   }
 
-  /// Streams that are neither as they were, or where the call was carried out as they should be, nor lost, which those may be that
-  /// the call writes.
+  /// Names the streams with wrong elements. After an error, a stream must have its elements from before the call, or be
+  /// lost if the call writes it; after success, it must have the elements that the call gives.
   std::string tornStreams(const Scene::Elements& found, bool hasThrown) const {
     std::string torn;
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -98,7 +98,7 @@ class Trial {
     return torn;
   }
 
-  /// The next fault. False where there is none any more.
+  /// Tries the next fault. False if there is none.
   bool tryNext() {
     INFO(scenario_.name << ": " << nameOf(kind_) << " " << number_ << (isLasting_ ? " and all after" : ""));
     setUp();
@@ -106,7 +106,7 @@ class Trial {
     {
       const Fault fault(kind_, number_, isLasting_);
       error = errorOf([&] { scenario_.call(*scene_); });
-      if (!error) error = errorOf([&] { pair_.device.finish(); });  // what the driver has not said yet
+      if (!error) error = errorOf([&] { pair_.device.finish(); });  // reports errors of the driver that are still pending
       if (!fault.hasFired()) {
         CHECK_FALSE(error);
         return false;
@@ -135,7 +135,7 @@ class Trial {
   const Scenario& scenario_;
   Kind kind_;
   bool isLasting_;
-  std::int64_t& size_;  ///< of the next streams
+  std::int64_t& size_;  ///< the size of the next streams
   long number_ = 1;
   std::optional<Scene> scene_;
   Scene::Elements before_, after_;
@@ -231,7 +231,7 @@ TEST_CASE("a native device survives every lack of host memory", "[native][host]"
 
 namespace {
 
-/// Everything that uses the device.
+/// Every use of the device.
 std::vector<std::function<void()>> usesOf(Scene& scene, const bool& isLost) {
   std::vector<std::function<void()>> uses;
   for (const Scenario& scenario : scenarios()) {
@@ -244,7 +244,7 @@ std::vector<std::function<void()>> usesOf(Scene& scene, const bool& isLost) {
   return uses;
 }
 
-/// Loses the context with the n-th call of GL. False where there are not so many.
+/// Loses the context at GL call `number`. False if there are fewer calls.
 bool loseContext(const std::string& profile, long number) {
   INFO("call " << number);
   const Census before = census();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// No room on the disk for what is kept and traced: programs run, and what could not be written is told once. A limit on the size of files
-// stands for the full disk.
+// A full disk, on which neither caches nor traces can be written: programs still run, and an error reports the trace once.
+// A limit on the size of files stands in for the full disk.
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An environment variable for as long as this lives.
+/// Sets an environment variable while it lives.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
@@ -41,7 +41,7 @@ class Variable {
   std::string old_;
 };
 
-/// No file grows beyond so many bytes.
+/// Keeps files from growing beyond a number of bytes.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -61,7 +61,7 @@ class FullDisk {
   rlimit old_{};
 };
 
-/// A folder of its own.
+/// A folder for this test, removed at the end.
 class Folder {
  public:
   Folder() : path_(fs::temp_directory_path() / ("sk_faults_" + std::to_string(::getpid()))) {
@@ -83,7 +83,7 @@ std::string textOf(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Calls everything; the texts of the errors of kind File, one a line. Any other fails.
+/// Calls every scenario. Returns the texts of errors of kind File, one per line; an error of another kind fails the test.
 std::string callAll(sk::Device& device, bool isGl) {
   std::string told;
   Scene scene(device, 8);

@@ -12,7 +12,7 @@ namespace {
 
 using namespace faulty;
 
-/// 0, 1, 2 ..., and a bit more for each stream.
+/// first, first + 1, ... first + 6, repeated.
 template <class T>
 std::vector<T> numbers(const sk::Stream<T>& stream, int first) {
   std::vector<T> made(static_cast<std::size_t>(stream.size()));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Streams with known elements, and everything that can be done with them: what the tests of faults try out, call by call.
+// Streams with known elements, and every operation on them: the tests of faults try each in turn.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@ namespace faults {
 
 class Scene {
  public:
-  /// Streams of `size` x 8 elements or so; each size takes textures that no other does.
+  /// Makes streams of about `size` x 8 elements. No two sizes share textures.
   Scene(sk::Device& device, std::int64_t size);
 
-  /// The bytes of every stream; none of one that says that it was lost.
+  /// The bytes of every stream; nullopt for a stream whose elements were lost.
   using Elements = std::vector<std::optional<std::vector<std::byte>>>;
   Elements elements() const;
-  /// Writes all streams anew.
+  /// Writes the initial elements to all streams.
   void reset();
 
   sk::Device& device;
@@ -36,7 +36,7 @@ struct Scenario {
   std::string name;
   std::function<void(Scene&)> call;
   bool needsGl = false;
-  bool moves = false;  ///< elements, which stay the same
+  bool moves = false;  ///< whether the call moves elements to another texture without changing them
 };
 const std::vector<Scenario>& scenarios();
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What all programs are asked on their command lines, and how they tell what they found. Exit status 1 after a
-// finding.
+// The command line options that all fuzzers share, and how they report findings. The exit status is 1 after a finding.
 #pragma once
 
 #include <cstdint>
@@ -17,31 +16,31 @@ class App;
 
 namespace fuzz {
 
-/// Which inputs, and what of them.
+/// Which inputs to try, and what to do with them.
 struct Command {
   std::uint64_t seed = 1, first = 0, count = 1000;
   unsigned seconds = 10;
   std::string out = "fuzz-findings";
   bool show = false;
 
-  /// `input` is what the program makes: "mutant".
+  /// `input` is the word for what the program makes, such as "mutant".
   void addTo(CLI::App& app, const std::string& input);
 
   /// A campaign over these inputs, without its checks.
   Campaign campaign() const { return {.first = first, .count = count, .seconds = seconds}; }
 
-  /// Writes an input with a finding into `out`, as PREFIX-SEED-NUMBER and the suffix; where it lies.
+  /// Writes an input with a finding into `out`, as PREFIX-SEED-NUMBER and the suffix. Returns its path.
   std::filesystem::path keep(const std::string& prefix, const Finding& finding, const std::string& text,
                              const std::string& suffix = ".sk") const;
 };
 
-/// `input` as in "mutant 7: died by signal 11"; `again` is the command that makes the finding again.
+/// Prints a finding, such as "mutant 7: died by signal 11"; `input` is "mutant", and `again` the command that reproduces it.
 void tell(const std::string& input, const Finding& finding, const std::string& again);
 
-/// The summary's line.
+/// Prints the summary.
 void conclude(const Summary& summary);
 
-/// The status of `work`; what it throws is told, and gives 1.
+/// Returns the status of `work`, or 1 after printing what it throws.
 int guarded(const char* program, const std::function<int()>& work);
 
 }  // namespace fuzz

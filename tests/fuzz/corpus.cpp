@@ -17,7 +17,7 @@ std::string textOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// The blocks of a page that begin with ```sk, but for bodies, which are no programs by themselves.
+/// Adds the ```sk blocks of a page, except bodies of kernels, which are no programs by themselves.
 void addBlocks(const fs::path& page, std::vector<Program>& programs) {
   std::istringstream lines(textOf(page));
   std::string block;

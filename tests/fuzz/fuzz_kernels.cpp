@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_kernels: random kernels that are right, compiled in this process, shown to glslang, run on every profile, and
-// compared with what they mean (kernels/model.hpp). Kernel N of a seed is always the same. Exit status 1 after a
-// finding. Where the driver itself dies, that is counted apart.
+// fuzz_kernels: compiles random correct kernels in this process, checks their GLSL with glslang, runs them on both fragment
+// profiles, and compares their results with their meaning (kernels/model.hpp). Kernel N of a seed is always the same. The
+// exit status is 1 after a finding, but crashes of the GL driver are counted separately.
 #include <csignal>
 #include <deque>
 #include <filesystem>
@@ -33,14 +33,14 @@ struct Options : fuzz::Command {
   bool withoutDevice = false;
 };
 
-/// The devices of a child; both profiles with their own limits and with those that are guaranteed.
+/// The devices of a child process: with the device's own limits, and both profiles with the guaranteed limits.
 struct Devices {
   sk::Device many{sk::DeviceOptions{.profile = "glsl330", .limits = "device"}};
   sk::Device few{sk::DeviceOptions{.profile = "essl300", .textureLimit = 64, .limits = "guaranteed"}};
   sk::Device fewOfMany{sk::DeviceOptions{.profile = "glsl330", .textureLimit = 64, .limits = "guaranteed"}};
 };
 
-/// What a child keeps: devices know descriptors by their addresses.
+/// What a child keeps between kernels: devices identify descriptors by their addresses.
 struct Kept {
   std::deque<skc::emit::Program> programs;
   std::optional<Devices> devices;
@@ -70,7 +70,7 @@ std::string check(const Options& options, const fuzz::RandomKernel& kernel, Kept
   return {};
 }
 
-/// Where a process dies, told on standard error before it does.
+/// Prints a stack trace to standard error before the process dies.
 void traceDeath(int signal) {
   void* frames[40];
   const int count = backtrace(frames, 40);
@@ -79,7 +79,7 @@ void traceDeath(int signal) {
   std::raise(signal);
 }
 
-/// Whether a trace begins in the GL driver: in Mesa, or in the LLVM that it compiles with.
+/// Whether the innermost frame, apart from our own and those of the C library, is in the GL driver: in Mesa, or in its LLVM.
 bool isDriversDeath(const fuzz::Finding& finding) {
   std::istringstream frames(finding.log);
   for (std::string frame; std::getline(frames, frame);) {

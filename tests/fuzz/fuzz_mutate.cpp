@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_mutate: programs of the corpus with random changes, compiled in every form. skc must give a result or an
-// error, whatever it is given. Input N of a seed is always the same. Exit status 1 after a finding.
+// fuzz_mutate: compiles programs of the corpus with random changes to every output. skc must give a result or an error for
+// any input. Mutant N of a seed is always the same. The exit status is 1 after a finding.
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 struct Options : fuzz::Command {
   std::vector<std::string> corpus = {SK_SOURCE_FOLDER "/tests", SK_SOURCE_FOLDER "/examples",
                                      SK_SOURCE_FOLDER "/docs"};
-  std::vector<std::string> files;  ///< judged instead of mutants
-  std::string reduce;  ///< a file to make smaller
+  std::vector<std::string> files;  ///< files to judge instead of mutants
+  std::string reduce;  ///< a file to shrink
   bool withGlslang = false;
 };
 
@@ -72,7 +72,7 @@ int judgeFiles(const Options& options, const char* program) {
   return statusOf(campaign);
 }
 
-/// Findings are the same where their first words are.
+/// Two findings are of the same kind if their texts begin alike.
 std::string kindOf(const std::string& what) { return what.substr(0, 24); }
 
 int reduce(const Options& options) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What glslang says of what skc has written, as one finding.
+// Checks the GLSL that skc writes with glslang, and makes one finding of its complaints.
 #pragma once
 
 #include <string>

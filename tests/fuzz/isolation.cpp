@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t longestLog = 6000;
 
-/// A line for each thing that a child tells: a letter, the input's number, a text without line breaks.
+/// Sends messages from a child to its parent, one per line: a letter, the input's number, a text without line breaks.
 class Reporter {
  public:
   explicit Reporter(int pipe) : out_(fdopen(pipe, "w")) {}
@@ -38,8 +38,8 @@ class Reporter {
   std::FILE* out_;
 };
 
-/// Ends this process by a signal after so many seconds of its processors' time, which a busy machine does not
-/// stretch, or ten times as long by the clock, if it waits for what never comes. 0: no longer.
+/// Ends this process by a signal after `seconds` of processor time, which does not depend on the machine's load, or after
+/// ten times as long by the clock, in case it waits forever. 0 removes the limits.
 void limitTime(unsigned seconds) {
   const itimerval timer{.it_interval = {}, .it_value = {.tv_sec = seconds, .tv_usec = 0}};
   setitimer(ITIMER_PROF, &timer, nullptr);
@@ -80,10 +80,10 @@ void limitMemory(std::uint64_t megabytes) {
     if (!verdict.finding.empty()) reporter.tell('f', number, verdict.finding);
     reporter.tell('t', number, verdict.tally);
   }
-  std::exit(0);  // with the sanitizer's search for leaks
+  std::exit(0);  // runs the sanitizer's leak check, unlike _exit
 }
 
-/// The end of a file that a child has written.
+/// The last longestLog bytes of a file.
 std::string tailOf(int file) {
   const off_t size = lseek(file, 0, SEEK_END);
   const auto length = std::min<std::size_t>(static_cast<std::size_t>(size), longestLog);
@@ -93,7 +93,7 @@ std::string tailOf(int file) {
   return text;
 }
 
-/// Why a process ended; empty where it ended well.
+/// How a process died; empty if it succeeded.
 std::string deathOf(int status, unsigned seconds) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
@@ -118,7 +118,7 @@ class Runner {
   }
 
  private:
-  /// Runs [first, end) as far as the child lives. The first that is still to do.
+  /// Runs the inputs [first, end) until the child ends. Returns the first input that is still to do.
   std::uint64_t batch(std::uint64_t first, std::uint64_t end) {
     int ends[2];
     if (pipe(ends) != 0) throw std::runtime_error(std::string("pipe: ") + std::strerror(errno));
@@ -150,7 +150,7 @@ class Runner {
     return death.empty() ? end : current + 1;
   }
 
-  /// Until the child has nothing more to say.
+  /// Reads the child's messages until it closes the pipe.
   void listen(int pipe, std::uint64_t& current, bool& isDone) {
     std::FILE* in = fdopen(pipe, "r");
     char* line = nullptr;

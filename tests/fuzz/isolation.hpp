@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs many checks in child processes, so that one that crashes, hangs or ends its process costs no other, and
-// is told like any other finding. It knows nothing of what is checked.
+// Runs many checks in child processes, so that a check that crashes, hangs or ends its process does not stop the others and
+// is a finding like any other. Knows nothing about what is checked.
 #pragma once
 
 #include <cstdint>
@@ -11,30 +11,30 @@
 
 namespace fuzz {
 
-/// What a check has to say of one input.
+/// The result of checking one input.
 struct Verdict {
   std::string finding;  ///< what is wrong; empty if nothing is
-  std::string tally;  ///< what it counts as in the summary: "accepted", "refused"
+  std::string tally;  ///< the input's category in the summary, such as "accepted" or "refused"
 };
 
 struct Finding {
   std::uint64_t number;
   std::string what;
-  std::string log;  ///< the end of what the process said on standard error, where it died
+  std::string log;  ///< if the process died: the end of its standard error
 };
 
 struct Campaign {
   std::uint64_t first = 0, count = 0;
-  std::uint64_t batch = 500;  ///< inputs to a process
-  unsigned seconds = 10;  ///< of processor time for one input; more is a hang
-  /// MiB that a process may take beyond what it begins with, or 0 for no limit; further allocations fail. Sanitizers, which
-  /// reserve address space for themselves, have limits of their own (max_allocation_size_mb).
+  std::uint64_t batch = 500;  ///< inputs per process
+  unsigned seconds = 10;  ///< processor time for one input; more is a hang
+  /// MiB that a process may allocate beyond its initial size, or 0 for no limit; further allocations fail. Ignored under
+  /// sanitizers, which reserve address space and have their own limit (max_allocation_size_mb).
   std::uint64_t memory = 0;
-  /// In the child, once before the first of a batch.
+  /// Runs in the child, once before the first input of a batch.
   std::function<void()> begin = [] {};
-  /// In the child.
+  /// Runs in the child.
   std::function<Verdict(std::uint64_t number)> check = {};
-  /// In the parent, as they come.
+  /// Runs in the parent, at each finding.
   std::function<void(const Finding&)> onFinding = {};
 };
 
@@ -44,8 +44,8 @@ struct Summary {
   std::int64_t largestProcess = 0;  ///< KiB
 };
 
-/// A child that dies by a signal or with another status than 0 is a finding about the input that it was at; the
-/// next child goes on behind it.
+/// Runs a campaign. A child that ends by a signal or with a status other than 0 is a finding about its current input; the
+/// next child continues after that input.
 Summary run(const Campaign& campaign);
 
 }  // namespace fuzz

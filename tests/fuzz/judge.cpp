@@ -26,12 +26,12 @@ constexpr Form forms[] = {
 
 bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
-/// A file that declares nothing but streams has no GLSL and no plan.
+/// A module without kernels has no GLSL and no plan.
 bool mayBeEmpty(Emit emit, const skc::ir::Module& module) {
   return module.kernels.empty() && (emit == Emit::Glsl || emit == Emit::Plan);
 }
 
-/// What is wrong with what skc said, or "".
+/// What is wrong with skc's messages, or "".
 std::string mistakeIn(const std::string& messages, bool isAccepted) {
   if (contains(messages, "internal error")) return "speaks of an internal error: " + messages;
   if (isAccepted && contains(messages, "error:")) return "accepted, with an error: " + messages;
@@ -41,7 +41,7 @@ std::string mistakeIn(const std::string& messages, bool isAccepted) {
 
 Verdict compile(const Program& program, bool withGlslang) {
   skc::driver::Options options;
-  options.emit = Emit::Ast;   // the frontend alone; it prints the tree of programs with mistakes, too
+  options.emit = Emit::Ast;   // runs only the frontend, which prints the tree even of programs with errors
   const skc::driver::Outcome parsed = skc::driver::compileText(options, program.path, program.text);
   if (parsed.status != 0) return {mistakeIn(parsed.messages, false), "refused"};
   options.emit = Emit::Glsl;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Compiles a program in this process, in every way that skc has, and says what a compiler must not do. Crashes
-// are for isolation.hpp to notice.
+// Compiles a program in this process to every output that skc has, and finds what a compiler must not do. isolation.hpp
+// notices crashes.
 #pragma once
 
 #include "corpus.hpp"
@@ -9,7 +9,7 @@
 
 namespace fuzz {
 
-/// Tallied as "accepted" or "refused". `withGlslang`: what is accepted is shown to glslang, too.
+/// The tally is "accepted" or "refused". `withGlslang`: checks the GLSL of accepted programs with glslang, too.
 Verdict judge(const Program& program, bool withGlslang);
 
 }  // namespace fuzz

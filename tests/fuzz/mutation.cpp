@@ -12,7 +12,7 @@
 namespace fuzz {
 namespace {
 
-/// What the language is made of, and what C++ has beside it.
+/// Words of the language, and of C++ and GLSL.
 constexpr std::string_view words[] = {
 #define SKF_WORD(text) text,
 #include "words.def"
@@ -133,7 +133,7 @@ class Mutator {
   }
 
  private:
-  /// What often leaves a program that is one, so that the phases behind the parser get theirs.
+  /// Makes a change that often leaves a valid program, so that the phases after the parser are tested, too.
   void changeGently() {
     tokens_ = tokensOf(program_.text);
     if (tokens_.empty()) return;
@@ -148,7 +148,7 @@ class Mutator {
     program_.text = join(tokens_);
   }
 
-  /// One of these in place of another, if there is any.
+  /// Replaces a token that is one of `alike` by another of them, if there is such a token.
   void replaceOneOf(std::span<const std::string_view> alike) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < tokens_.size(); ++i) {
@@ -158,7 +158,7 @@ class Mutator {
   }
 
   void change() {
-    // Most keep a program that is nearly one: what is wrong early hides all that comes behind.
+    // Most changes are small and leave a nearly valid program: an early error hides everything after it.
     switch (random_.below(20)) {
       case 0: changeBytes(); break;
       case 1: changeLines(); break;
@@ -191,7 +191,7 @@ class Mutator {
 
   std::size_t spot() { return random_.below(tokens_.size()); }
 
-  /// Some token of the kind, or any.
+  /// The index of a random token of the kind, or of any token if there is none.
   std::size_t spotOf(TokenKind kind) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < tokens_.size(); ++i) {
@@ -221,7 +221,7 @@ class Mutator {
   void replaceWord(std::string word) { tokens_[spotOf(TokenKind::Word)].text = std::move(word); }
   void replaceNumber() { tokens_[spotOf(TokenKind::Number)].text = std::string(random_.pick(numbers)); }
 
-  /// One word in place of another, both of the program: types and names change their places.
+  /// Replaces a word by another word of the program: a type or a name by another.
   void renameWord() {
     const std::string word = tokens_[spotOf(TokenKind::Word)].text;
     replaceWord(word);
@@ -274,7 +274,7 @@ class Mutator {
     }
   }
 
-  /// The same opening, or operator, very often.
+  /// Inserts the same opening bracket, operator or statement head many times.
   void nest() {
     static constexpr std::string_view openings[] = {"(",
                                                     "{",

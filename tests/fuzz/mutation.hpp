@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Programs that somebody has typed wrongly: a program of the corpus after a few random changes to its tokens, its
-// lines or its bytes.
+// Programs with mistakes: a program of the corpus after a few random changes to its tokens, its lines or its bytes.
 #pragma once
 
 #include <string>
@@ -11,7 +10,7 @@
 
 namespace fuzz {
 
-/// The path is that of the program it began as. The same for the same corpus, seed and number.
+/// A mutant, with the path of its original. Deterministic for a corpus and the state of `random`.
 Program mutant(const Corpus& corpus, Random& random);
 
 }  // namespace fuzz

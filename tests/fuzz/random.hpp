@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Random numbers that are the same on every machine: SplitMix64 (Steele, Lea and Flood, "Fast splittable
-// pseudorandom number generators", 2014). One generator for each input, so that any of them can be made again
-// by itself.
+// pseudorandom number generators", 2014). Each input has its own generator, so that any input can be reproduced alone.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +12,7 @@ namespace fuzz {
 
 class Random {
  public:
-  /// Of input `number` of the campaign `seed`.
+  /// The generator for input `number` of the campaign `seed`.
   Random(std::uint64_t seed, std::uint64_t number) : state_(seed * 0xd1342543de82ef95u + number) { next(); }
 
   std::uint64_t next() {
@@ -28,7 +27,7 @@ class Random {
   int between(int least, int most) {
     return least + static_cast<int>(below(static_cast<std::size_t>(most - least) + 1));
   }
-  /// True `count` times in `of`.
+  /// True with probability `count` / `of`.
   bool chance(std::size_t count, std::size_t of) { return below(of) < count; }
 
   /// An element of an array or a vector that is not empty.

@@ -31,7 +31,7 @@ Pieces tokenTexts(const std::string& text) {
   return pieces;
 }
 
-/// Drops runs of pieces, long ones first, until no single one can go.
+/// Drops runs of pieces, long runs first, until no single piece can be dropped.
 Pieces withoutNeedless(Pieces pieces, const std::function<bool(const std::string&)>& fails) {
   for (std::size_t run = std::max<std::size_t>(pieces.size() / 2, 1);;) {
     bool hasShrunk = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Makes a program that fails smaller, as long as it fails in the same way (Zeller and Hildebrandt, "Simplifying
-// and isolating failure-inducing input", 2002, on lines and then on tokens).
+// Shrinks a failing program while it still fails in the same way: delta debugging (Zeller and Hildebrandt, "Simplifying
+// and isolating failure-inducing input", 2002), first on lines, then on tokens.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace fuzz {
 
-/// `fails(text)` says whether a text still fails as the first one does.
+/// `fails(text)` returns whether a text still fails like the original.
 std::string reduced(std::string text, const std::function<bool(const std::string&)>& fails);
 
 }  // namespace fuzz

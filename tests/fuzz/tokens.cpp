@@ -11,7 +11,7 @@ bool isWordChar(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 
 bool isDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool isSpace(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 
-/// Where the piece that ends with `end` does, or the text.
+/// The position after the next `end`, or the end of the text.
 std::size_t behind(std::string_view text, std::string_view end, std::size_t from) {
   const std::size_t at = text.find(end, from);
   return at == std::string_view::npos ? text.size() : at + end.size();

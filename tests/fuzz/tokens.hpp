@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Cuts a program into tokens just well enough to mutate it: every byte is in exactly one piece.
+// Splits a program into tokens just well enough to mutate it: every byte is in exactly one token.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace fuzz {
 enum class TokenKind { Space, Word, Number, Mark };
 
 struct Token {
-  TokenKind kind;      ///< comments and strings are Marks
+  TokenKind kind;      ///< Mark for comments and strings
   std::string text;
 };
 

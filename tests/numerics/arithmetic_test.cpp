@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: arithmetic at its extremes gives what docs/language.md says, on every profile and natively. Where GLSL lets devices
-// differ, the set of what may come is stated, and native code gives the IEEE 754 value of the set.
+// differ, a test states the possible results, and native code gives the one of IEEE 754.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -74,7 +74,7 @@ TEST_CASE("any bits go through a kernel that copies") {
     x.push_back({some(0), some(1), some(2), some(3)});
   }
   x[0] = {std::bit_cast<float>(0x7fc12345U), std::bit_cast<float>(0xff812345U), inf,
-          -0.0F};  // the second signals
+          -0.0F};  // the second is a signalling NaN
   onEveryProfile([&](sk::Device& device) {
     auto same = output<sk::float4>(device, x.size());
     copies4(streamOf<sk::float4>(device, x), same);
@@ -99,7 +99,7 @@ TEST_CASE("quotients by zero and differences of infinities are those of IEEE 754
   });
 }
 
-// GLSL lets a compiler take x * 0 for 0 and x - x likewise; natively, both are NaN here.
+// GLSL lets a compiler simplify x * 0 and x - x to 0; native code gives NaN for both.
 TEST_CASE("NaN and infinity times a literal zero are NaN, or 0 where the driver folds that") {
   onEveryProfile([&](sk::Device& device) {
     auto product = output<float>(device, 2);
@@ -178,7 +178,7 @@ TEST_CASE("fractions are below 1, halves go to the even neighbour") {
     CHECK(std::isnan(got[4].x));
     CHECK(got[0].y == 0.0F);
     CHECK(got[1].y == 0.84375F);
-    CHECK(got[3].y == 0.0F);  // as clamp drops a NaN
+    CHECK(got[3].y == 0.0F);  // clamp ignores a NaN
     CHECK(got[4].y == 1.0F);
     CHECK(got[1].z == 1.0F);  // 0.75 / 0 is infinite
     CHECK(got[5].w == 2.0F);
@@ -201,7 +201,7 @@ TEST_CASE("lengths neither overflow nor vanish") {
     CHECK(length[2] == 0.0F);
     CHECK(length[3] == inf);
     CHECK(std::isnan(length[4]));
-    CHECK(length[5] == inf);  // as hypot has it
+    CHECK(length[5] == inf);  // like hypot
     CHECK(d.read()[0] == 2e30F);
     CHECK(unit[0] == sk::float3{1, 0, 0});
     CHECK(std::fabs(unit[1].x - 0.6F) <= 2 * 0x1p-24F);
@@ -209,7 +209,7 @@ TEST_CASE("lengths neither overflow nor vanish") {
   });
 }
 
-// A product that overflows is not scaled: the sum is 0 where it does not, else the difference of infinities.
+// Dot products are not scaled: the result is 0 if the device's products do not overflow, else inf - inf.
 TEST_CASE("dot products of 1e30 are 0 or NaN") {
   onEveryProfile([&](sk::Device& device) {
     auto r = output<float>(device, 2);
@@ -318,7 +318,7 @@ TEST_CASE("an index outside a gather is the nearest element or the border, and N
   });
 }
 
-// Between elements, the weights are multiplied with both neighbours, also where one is 0.
+// A sample multiplies both neighbours by their weights, even by a weight of 0.
 TEST_CASE("a gather reads beside NaN exactly; a sample there may be NaN") {
   onEveryProfile([&](sk::Device& device) {
     const auto a = streamOf<float>(device, {1, nan, 3, 4});
@@ -343,7 +343,7 @@ TEST_CASE("every length: none, one, primes, and past what a float counts") {
       CHECK(misplaced(r) == 0);
     }
     CHECK(largest(device.stream<float>({0})) == -inf);
-    if (isNative(device)) return;  // no float has part in its indices
+    if (isNative(device)) return;  // native code computes indices without floats
     const std::int64_t n = (1 << 24) + 1;
     auto r = device.stream<std::int32_t>({n});
     indices(r);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: Accumulate::Exact adds products of floats as they are, also where they are no floats, and rounds once;
-// Accumulate::Compensated is within u + 400 u^2 cond of the sum of products (Dot2 of Ogita, Rump and Oishi, SIAM J.
-// Sci. Comput. 26, 2005, over a tree), where no product is below 2^-100.
+// Promises: Accumulate::Exact adds the unrounded products of floats and rounds once; Accumulate::Compensated is within
+// u + 400 u^2 cond of the sum of products (Dot2 of Ogita, Rump and Oishi, SIAM J. Sci. Comput. 26, 2005, over a tree) if no
+// product is below 2^-100.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -44,7 +44,7 @@ void addAll(TrueSum& sum, const std::vector<float>& x, const std::vector<float>&
   for (std::size_t i = 0; i < x.size(); ++i) sum.addProduct(x[i], y[i]);
 }
 
-TEST_CASE("ill-conditioned dot products, exact to the bit") {  // R1
+TEST_CASE("ill-conditioned dot products, exact to the bit") {
   for (const double wanted : {1e6, 1e10, 1e14, 1e20, 1e24}) {
     const Pairs pairs = illConditionedDot(4001, wanted, 7);
     TrueSum sum;
@@ -61,7 +61,7 @@ TEST_CASE("ill-conditioned dot products, exact to the bit") {  // R1
   }
 }
 
-TEST_CASE("any floats at all, whose products overflow and underflow") {  // R7, R8, R9
+TEST_CASE("any floats at all, whose products overflow and underflow") {
   for (const std::size_t n : {1U, 2U, 32U, 33U, 1021U, 20011U}) {
     const std::vector<float> x = anyFloats(n, static_cast<unsigned>(n));
     const std::vector<float> y = anyFloats(n, static_cast<unsigned>(n) + 1);
@@ -87,7 +87,7 @@ TEST_CASE("dot products on the reference round no product of doubles") {
     addAll(sum, pairs.x, pairs.y);
     CHECK(bits(exactDot(device, pairs.x, pairs.y)) == bits(sum.rounded()));
   }
-  // (1 + a)(1 - a) - 1 = -a^2, of which a product of doubles keeps nothing
+  // (1 + a)(1 - a) - 1 = -a^2, which a rounded product of doubles loses completely
   auto x = device.stream<float>({2}), y = device.stream<float>({2});
   x.writeReals(std::vector<double>{1 + 0x1p-40, -1});
   y.writeReals(std::vector<double>{1 - 0x1p-40, 1});
@@ -192,7 +192,7 @@ TEST_CASE("products of expressions beside terms that are none, in members, under
   for (std::size_t i = 0; i < pairs.x.size(); ++i) {
     const float x = pairs.x[i];
     const float y = pairs.y[i];
-    all.addProduct(x, y + 1);  // y + 1 is rounded, its product is not
+    all.addProduct(x, y + 1);  // y + 1 is rounded, the product is not
     all.add(-y);
     if (x > 0) positive.addProduct(x - 1, y);
   }
@@ -211,20 +211,20 @@ TEST_CASE("compensated products at the ends of the range") {
     CHECK(dot({3e38F, 1}, {2, 1}) == inf);
     CHECK(dot({inf, 1}, {2, 1}) == inf);
     CHECK(std::isnan(dot({inf, 1}, {0, 1})));
-    CHECK(dot({0x1.fffffep127F, 0x1p-3F}, {1, 1}) == 0x1.fffffep127F);  // 4097 times that were infinite
+    CHECK(dot({0x1.fffffep127F, 0x1p-3F}, {1, 1}) == 0x1.fffffep127F);  // splitting it with the factor 4097 would overflow
     CHECK(dot({0x1p-70F, 1}, {0x1p-70F, 1}) == 1.0F);
     CHECK(std::fabs(dot({0x1.234568p-60F}, {0x1.fedcbap-60F})) <= 0x1p-118F);
   });
 }
 
-TEST_CASE("products of infinities, zeros and NaN") {  // R5, R6
+TEST_CASE("products of infinities, zeros and NaN") {
   onEveryProfile([](sk::Device& device) {
     CHECK(exactDot(device, {inf, 1}, {2, 3}) == inf);
     CHECK(exactDot(device, {inf, 1}, {-2, 3}) == -inf);
     CHECK(bits(exactDot(device, {inf, 1}, {0, 3})) == 0x7fc00000U);
     CHECK(bits(exactDot(device, {inf, inf}, {1, -1})) == 0x7fc00000U);
     CHECK(bits(exactDot(device, {std::numeric_limits<float>::quiet_NaN()}, {0})) == 0x7fc00000U);
-    CHECK(bits(exactDot(device, {-1}, {0})) == 0);  // folds from 0, as the plain form does
+    CHECK(bits(exactDot(device, {-1}, {0})) == 0);  // folds from 0, like the plain sum
     CHECK(bits(exactDot(device, {}, {})) == 0);
   });
 }

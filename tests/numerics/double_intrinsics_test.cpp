@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: functions of doubles have the bounds and the special cases that docs/accuracy.md tells, in every form: GLSL's
-// doubles, pairs of floats with `precise` and with a uniform, and native code. The reference is the C library in long
-// double, whose error is some 1e-3 units of the last place of a double.
-//
-// Bounds are those measured, with some room. Native code has the C library's, which promises 1 ulp of most, and 2 of some.
+// Promises: functions of doubles have the error bounds and special cases of docs/accuracy.md in every form: GLSL's doubles,
+// pairs of floats with `precise` and with a uniform, and native code. The reference is the C library in long double, whose
+// error is about 1e-3 ulp of a double. Bounds are measured errors with some room.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -36,14 +34,14 @@ struct Range {
 
 double random01(std::uint32_t i) { return hashed(i) * 0x1p-32 + hashed(i ^ 0x9e3779b9U) * 0x1p-64; }
 
-/// Exactly what a pair of floats holds: of a number with one bit every 2^-47 and above.
+/// x, truncated to 48 bits, which a pair of floats holds exactly.
 double to48(double x) {
   int e = 0;
   const double mantissa = std::frexp(x, &e);
   return std::ldexp(std::trunc(std::ldexp(mantissa, 48)), e - 48);
 }
 
-/// A quarter with random exponents in the range of the form's numbers, the others from the ranges.
+/// A quarter of the inputs have random exponents in the range of the form's numbers; the others are from the ranges.
 std::vector<double> inputs(const Form& form, const std::vector<Range>& ranges, std::uint32_t seed) {
   const double exponents = form.isNative() ? 1000 : 60;
   std::vector<double> x(count);
@@ -59,15 +57,15 @@ std::vector<double> inputs(const Form& form, const std::vector<Range>& ranges, s
   return x;
 }
 
-/// What is too small for a form, whose error may then be as large as the second.
+/// Results below smallest() may have an absolute error of leastError().
 double smallest(const Form& form) { return form.isNative() ? 0x1p-1022 : 0x1p-78; }
 double leastError(const Form& form) { return form.isNative() ? 0x1p-1022 : 0x1p-124; }
 double largest(const Form& form) {
   return form.isNative() ? std::numeric_limits<double>::max() : 0x1.fffffcp127;
 }
 
-/// The relative error; infinite where one is NaN or infinite and the other is not. Numbers too large for a form are infinite
-/// in it, and of those too small it has few bits, or 0.
+/// The relative error; infinite if only one of the two is NaN or too large for the form. Results too small for the form have
+/// an absolute bound instead.
 double errorOf(const Form& form, double got, long double exact) {
   if (std::isnan(exact) || std::isnan(got)) return std::isnan(exact) == std::isnan(got) ? 0 : inf;
   const auto size = static_cast<double>(std::fabs(exact));
@@ -90,7 +88,7 @@ struct Worst {
   }
 };
 
-/// In units of 2^-53.
+/// The error in units of 2^-53, as text.
 std::string told(const char* name, const Worst& worst) {
   std::ostringstream text;
   text << name << ": " << worst.error * 0x1p53 << " * 2^-53 = 2^" << std::log2(worst.error) << " at "

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: accurate intrinsics are within 3 ulp over all floats, with the special cases of C99 (annex F), on every profile
-// and natively. The reference is the C library in double, whose error is some 1e-9 ulp of a float.
+// and natively. The reference is the C library in double, whose error is about 1e-9 ulp of a float.
 //
-// Bounds are what docs/accuracy.md tells, with some room; natively, glibc promises 1 ulp for most of them and 2 for some. What is denormal may be taken as 0 by a device, and a result that is
-// denormal may be 0.
+// Bounds are the errors of docs/accuracy.md with some room. A device may read denormals as 0, and give 0 for a denormal
+// result.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -35,7 +35,7 @@ struct Range {
   double low, high;
 };
 
-/// Random bits in the first half, values of the ranges in the second, and special ones at the end.
+/// Random bits in the first half, values from the ranges in the second, and special values at the end.
 std::vector<float> inputs(const std::vector<Range>& ranges, std::uint32_t seed) {
   std::vector<float> x(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -55,26 +55,26 @@ std::vector<float> inputs(const std::vector<Range>& ranges, std::uint32_t seed) 
 
 bool isDenormal(double x) { return x != 0 && std::fabs(x) < 0x1p-126; }
 
-/// A unit in the last place of the float nearest to `exact`.
+/// One unit in the last place of the float nearest to `exact`.
 double ulp(double exact) {
   return std::ldexp(1.0, std::max(exact == 0 ? -126 : std::ilogb(exact), -126) - 23);
 }
 
-/// The error in such units; infinite where one is NaN or infinite and the other is not.
+/// The error in ulp; infinite if only one of the two is NaN or infinite.
 double ulps(float got, double exact) {
   const auto nearest = static_cast<float>(exact);
   if (std::isnan(nearest) || std::isnan(got)) return std::isnan(nearest) == std::isnan(got) ? 0 : HUGE_VAL;
   if (!std::isinf(nearest) && !std::isinf(got)) return std::fabs(got - exact) / ulp(exact);
   const bool isOverflow = std::fabs(exact) > 3.4028233e38 && std::fabs(got) > 3.4028230e38F;
-  return got == nearest ? 0 : isOverflow ? 1 : HUGE_VAL;  // it may come an ulp early or late
+  return got == nearest ? 0 : isOverflow ? 1 : HUGE_VAL;  // may overflow an ulp early or late
 }
 
-/// The largest error over all elements, and where.
+/// The largest error over all elements, and its arguments.
 struct Worst {
   double error = 0;
   std::string where;
 
-  /// `error` of a function that gave `got` of x, and of y if it has two arguments.
+  /// Adds the error of a function that returned `got` for x, and y if it has two arguments.
   void add(double ulps, double got, double exact, float x, float y = 0) {
     if (ulps <= error) return;
     std::ostringstream text;
@@ -103,8 +103,8 @@ Worst worst(sk::Device& device, const auto& kernel, const Unary& exact, const st
 struct Case {
   const char* name;
   std::function<Worst(sk::Device&, const std::vector<float>&)> measure;
-  double bound;  ///< of our functions
-  std::vector<Range> ranges;  ///< the hard ones
+  double bound;  ///< in ulp, for our GLSL functions
+  std::vector<Range> ranges;  ///< ranges that are hard to compute
 };
 
 #define MEASURED(f, exact, bound, ...)                                          \
@@ -177,10 +177,10 @@ struct Pairs {
   std::vector<float> x, y;
 };
 
-/// Random bits, and the ranges given.
+/// Pairs of random bits, and of values from the ranges.
 Pairs pairs(const char* name, std::vector<Range> x, std::vector<Range> y, std::uint32_t seed) {
   Pairs made{name, inputs(x, seed), inputs(y, seed + 100)};
-  std::ranges::rotate(made.y, made.y.end() - 3);  // special values meet each other, shifted
+  std::ranges::rotate(made.y, made.y.end() - 3);  // combines special values with other special values
   return made;
 }
 
@@ -290,7 +290,7 @@ TEST_CASE("lengths of all vectors") {
       length.add(ulps(gotDistances[i], exact), gotDistances[i], exact, v[i].x);
       unit.add(ulps(gotUnits[i].x, v[i].x / exact), gotUnits[i].x, v[i].x / exact, v[i].x);
     }
-    // three squares and two sums, halved by the root, and the root itself: 2.5 ulp at most; the quotient another half
+    // Three squares and two sums, whose error the root halves, and the root itself: at most 2.5 ulp. The quotient adds 0.5.
     CHECK(length.error <= 2.5);
     CHECK(unit.error <= 3.0);
   });

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the functions that native code calls for intrinsics (compiler/native/library) are within their bounds of the
-// exact results over all numbers, fmod of floats is exact, and special cases are those of C99, annex F. The reference is MPFR.
+// Promises: the functions that native code calls for intrinsics (compiler/native/library) are within their error bounds over
+// all numbers, fmod of floats is exact, and special cases are those of C99, annex F. The reference is MPFR.
 //
-// The bound of floats has half a unit for the rounding to float, and 0.01 for the polynomials, whose errors
-// float_functions.sk states, and for the roundings of doubles. docs/accuracy.md has the errors of every 61st of all floats:
-// those that SK_STRIDE=61 makes this test measure, against the C library in double, whose error is some 1e-9 ulp of a float.
-// The bounds of doubles are the largest errors of 16 million arguments each, with some room.
+// The bound for floats is 0.5 ulp for rounding to float, and 0.01 ulp for the polynomials, whose errors float_functions.sk
+// states, and for rounding doubles. docs/accuracy.md lists the errors over every 61st float, which this test measures with
+// SK_STRIDE=61 against the C library in double, whose error is about 1e-9 ulp of a float. The bounds for doubles are the
+// largest errors over 16 million arguments each, with some room.
 #include <mpfr.h>
 
 #include <bit>
@@ -55,7 +55,7 @@ std::vector<Real> computed(const auto& kernel, const std::vector<Real>& x, const
   return result.read();
 }
 
-/// The largest error, and where.
+/// The largest error, and its arguments.
 struct Worst {
   double error = 0;
   std::string where;
@@ -75,7 +75,7 @@ struct UnaryCase {
   numerics::Unary exact;
   double (*inDouble)(double);
   double boundOfDoubles;
-  Real low, high;  ///< where the function does most
+  Real low, high;  ///< the range of most of the random arguments
 
   double bound() const { return std::is_same_v<Real, float> ? floatBound : boundOfDoubles; }
 };
@@ -115,7 +115,7 @@ Real anyBits(std::mt19937_64& random) {
   return std::bit_cast<Real>(static_cast<Bits>(random()));
 }
 
-/// Special numbers, those near multiples of pi/2, random bits, and random numbers of the range and near 0 and 1.
+/// Special numbers, numbers near multiples of pi/2, random bits, and random numbers in the case's range and near 0 and 1.
 template <class Real>
 std::vector<Real> argumentsOf(const UnaryCase<Real>& one) {
   std::vector<Real> x = numerics::specialNumbers<Real>();
@@ -145,7 +145,7 @@ TEMPLATE_TEST_CASE("functions of one number against MPFR", "", float, double) {
   }
 }
 
-/// In units in the last place of a float.
+/// The error in ulp of a float.
 double errorOf(float result, double exact) {
   const auto nearest = static_cast<float>(exact);
   if (std::isnan(nearest)) return std::isnan(result) ? 0 : HUGE_VAL;
@@ -207,7 +207,7 @@ const std::vector<BinaryCase<double>> binaryCases<double> = {
     BINARY(double, atan2, mpfr_atan2, 1.9),
 };
 
-/// All pairs of special numbers, and random ones: of any bits, near by, whole, and for powers near 1 and of moderate size.
+/// All pairs of special numbers, and random pairs: any bits, close together, whole, and for powers near 1 and of moderate size.
 template <class Real>
 void argumentPairs(std::vector<Real>& x, std::vector<Real>& y) {
   const auto add = [&](Real a, Real b) {
@@ -230,7 +230,7 @@ void argumentPairs(std::vector<Real>& x, std::vector<Real>& y) {
     add(static_cast<Real>(whole(random)), static_cast<Real>(whole(random)));
     add(2000 * unit(random) - 1000, 4 * unit(random) - 2);
   }
-  // a grid of powers up to the ends of the range
+  // A grid of powers up to the ends of the range.
   for (int i = -149; i < 128; i += 3) {
     for (int k = -40; k <= 40; ++k) add(std::ldexp(1 + unit(random), i), static_cast<Real>(k) / 8);
   }

@@ -55,7 +55,7 @@ float trueSum(const std::vector<float>& x) {
   return sum.rounded();
 }
 
-TEST_CASE("ill-conditioned sums: exact to the bit, compensated within its bound") {  // R1
+TEST_CASE("ill-conditioned sums: exact to the bit, compensated within its bound") {
   for (const double wanted : {1e6, 1e10, 1e14, 1e20, 1e24}) {
     const std::vector<float> x = illConditionedSum(4001, wanted, 7);
     TrueSum sum;
@@ -80,7 +80,7 @@ TEST_CASE("any floats at all, of every exponent") {
   }
 }
 
-TEST_CASE("small sums, where the denormals are, and ties") {  // R8
+TEST_CASE("small sums, where the denormals are, and ties") {
   const std::vector<std::vector<float>> all = {{denormal},
                                                {denormal, denormal},
                                                {-denormal, denormal, -denormal},
@@ -112,7 +112,7 @@ TEST_CASE("small sums, where the denormals are, and ties") {  // R8
   onEveryProfile([&](sk::Device& device) { CHECK(bits(exactSum(device, many)) == bits(trueSum(many))); });
 }
 
-TEST_CASE("long sums of zeros, and what is not finite among many") {  // R5, R6, R10
+TEST_CASE("long sums of zeros, and what is not finite among many") {
   for (const std::size_t n : {15U, 16U, 1024U, 5003U}) {
     std::vector<float> x(n, -0.0F);
     const auto sumOf = [&] { return bits(exactSum(run_tests::device("native"), x)); };
@@ -145,7 +145,7 @@ TEST_CASE("magnitudes that are near each other and far apart") {
   }
 }
 
-TEST_CASE("order and shape change no bit") {  // R12, R13
+TEST_CASE("order and shape change no bit") {
   std::vector<float> x = illConditionedSum(5040, 1e20, 5);
   const std::uint32_t expected = bits(trueSum(x));
   std::mt19937 random(1);
@@ -161,7 +161,7 @@ TEST_CASE("order and shape change no bit") {  // R12, R13
   run_tests::onEveryLayout([&](sk::Device& device) { CHECK(bits(exactSum(device, x)) == expected); });
 }
 
-TEST_CASE("Kahan's killers, and what cancels in another order") {  // R2, R4
+TEST_CASE("Kahan's killers, and what cancels in another order") {
   std::vector<float> x = {1e8F, 1, -1e8F};
   std::sort(x.begin(), x.end());
   onEveryProfile([&](sk::Device& device) {
@@ -176,7 +176,7 @@ TEST_CASE("Kahan's killers, and what cancels in another order") {  // R2, R4
   });
 }
 
-TEST_CASE("2^24 + 1 ones and tenths") {  // R3, and R11 for a long stream
+TEST_CASE("2^24 + 1 ones and tenths") {
   const std::size_t n = (1U << 24U) + 1;
   const auto tenths = static_cast<float>(static_cast<double>(0.1F) * static_cast<double>(n));
   sk::Device& device = run_tests::device("glsl330");
@@ -187,7 +187,7 @@ TEST_CASE("2^24 + 1 ones and tenths") {  // R3, and R11 for a long stream
   CHECK(sums::sum.with(compensated)(x) == tenths);
 }
 
-TEST_CASE("infinities and NaN, as IEEE 754 adds them") {  // R5, R6
+TEST_CASE("infinities and NaN, as IEEE 754 adds them") {
   onEveryProfile([](sk::Device& device) {
     CHECK(exactSum(device, {1, inf, -3e38F}) == inf);
     CHECK(exactSum(device, {1, -inf, 3e38F, -inf}) == -inf);
@@ -199,7 +199,7 @@ TEST_CASE("infinities and NaN, as IEEE 754 adds them") {  // R5, R6
   });
 }
 
-TEST_CASE("partial sums overflow, and the sum does not") {  // R7
+TEST_CASE("partial sums overflow, and the sum does not") {
   onEveryProfile([](sk::Device& device) {
     CHECK(exactSum(device, {3e38F, 3e38F, -3e38F, -3e38F}) == 0.0F);
     std::vector<float> x(4096, 3.4e38F);
@@ -211,7 +211,7 @@ TEST_CASE("partial sums overflow, and the sum does not") {  // R7
   });
 }
 
-TEST_CASE("zeros, and no element") {  // R10, R11
+TEST_CASE("zeros, and no element") {
   onEveryProfile([](sk::Device& device) {
     CHECK(bits(exactSum(device, {-0.0F, -0.0F})) == bits(-0.0F));
     CHECK(bits(exactSum(device, {-0.0F, 0.0F})) == 0);
@@ -249,7 +249,7 @@ TEST_CASE("sums beside other accumulators, with a uniform and an early return") 
   TrueSum sum;
   std::int32_t n = 0;
   for (const float v : x) {
-    if (v != 0) sum.addProduct(3, v - 1), ++n;  // v - 1 is rounded, its product is not
+    if (v != 0) sum.addProduct(3, v - 1), ++n;  // v - 1 is rounded, the product is not
   }
   onEveryProfile([&](sk::Device& device) {
     const auto [total, most, count] = sums::sumBeside.with(exact)(streamOf(device, x), 3.0F);
@@ -304,14 +304,14 @@ TEST_CASE("several terms of members, which an element may leave out") {
     CHECK(bits(s.positive) == bits(positive.rounded()));
     CHECK(bits(s.others.x) == bits(greater.rounded()));
     CHECK(bits(s.others.y) == bits(less.rounded()));
-    const std::vector<float> none(70, -1.0F);  // of what no element adds, the identity is left
+    const std::vector<float> none(70, -1.0F);  // a sum to which no element adds is its identity
     CHECK(bits(sums::signs.with(exact)(streamOf(device, none), streamOf(device, none)).positive) ==
           bits(0.0F));
   });
 }
 
 TEST_CASE("ill-conditioned sums of members, combined by the compiler and by the author") {
-  for (const double wanted : {1e6, 1e10, 1e14}) {  // squares of others overflow
+  for (const double wanted : {1e6, 1e10, 1e14}) {  // squares would overflow at larger condition numbers
     const std::vector<float> x = illConditionedSum(4001, wanted, 15);
     TrueSum sum;
     TrueSum squares;
@@ -345,7 +345,7 @@ TEST_CASE("ill-conditioned sums of members, combined by the compiler and by the 
   }
 }
 
-TEST_CASE("infinities in members, and what cancels there") {  // R2, R5
+TEST_CASE("infinities in members, and what cancels there") {
   onEveryProfile([](sk::Device& device) {
     const auto sum = [&](const std::vector<float>& x) {
       return sums::totals.with(compensated)(streamOf(device, x));
@@ -386,7 +386,7 @@ TEST_CASE("what sums no floats is refused") {
                     Catch::Contains("largest") && Catch::Contains("no sum of floats"));
 }
 
-/// Terms of up to 2^50 that cancel but for a small one, in an order that no partial sum of doubles holds.
+/// Terms of up to 2^50 that cancel except for two small ones, in an order in which sums of doubles must round.
 std::vector<float> cancellingTerms(std::size_t pairs) {
   std::mt19937 random(50);
   std::uniform_real_distribution<float> mantissas(0.5F, 1.0F);
@@ -407,7 +407,7 @@ TEST_CASE("exact sums are exact on the reference, too") {
   for (const float term : terms) sum.add(term);
   sk::Device device = sk::Device::reference();
   const auto x = streamOf(device, terms, {8, 100'000});
-  // what shows that the terms are hard enough: compensated sums of doubles lose bits of this one
+  // Shows that the terms are hard enough: a compensated sum of doubles loses bits.
   CHECK(bits(sums::sum.with(compensated)(x)) != bits(sum.rounded()));
   CHECK(bits(sums::sum.with(exact)(x)) == bits(sum.rounded()));
   auto total = device.stream<float>({1, 1});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a device finds out by itself what keeps rounding errors from its compiler, and remembers it; where nothing
-// does, what is built on them is refused, and what is not works.
+// Promises: a device finds out by itself which barrier keeps rounding errors from its driver's compiler, and caches it. If no
+// barrier does, calls that need one are rejected, and all others work.
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Catch::Contains;
 
-/// 1, a million times 2^-25, -1: a plain sum of floats, however grouped, loses some of the small ones.
+/// 1, a million times 2^-25, -1: a plain sum of floats loses some of the small ones in any order.
 constexpr std::size_t many = 1 << 20;
 std::vector<float> cancelling() {
   std::vector<float> x(many + 2, 0x1p-25F);
@@ -41,7 +41,7 @@ sk::Device deviceOf(const std::string& profile, const std::string& barrier) {
   return sk::Device({.profile = profile, .doubles = "pairs", .barrier = barrier});
 }
 
-/// SK_CACHE is an empty folder for as long as this lives.
+/// Sets SK_CACHE to an empty folder while it lives.
 class Cache {
  public:
   Cache() : folder_(fs::temp_directory_path() / ("sk_barriers_" + std::to_string(::getpid()))) {
@@ -56,7 +56,7 @@ class Cache {
   Cache& operator=(const Cache&) = delete;
 
   bool hasFile() const { return fs::exists(folder_) && !files().empty(); }
-  /// The one file of barriers in it.
+  /// The folder's only file of barriers.
   fs::path file() const {
     REQUIRE(files().size() == 1);
     return files().front();
@@ -67,7 +67,7 @@ class Cache {
     while (in.peek() != EOF) std::getline(in, line);
     return line;
   }
-  /// Another text for the same key, with the checksum that belongs to it (FNV-1a), else with the old one.
+  /// Replaces the text for the key. Updates the checksum (FNV-1a) if `isRight`, else keeps the old one.
   void replaceLastLine(const std::string& text, bool isRight) const {
     std::ifstream in(file());
     std::string key, checksum;
@@ -176,7 +176,7 @@ TEST_CASE("what was found out is remembered, and rubbish is not believed") {
   };
   REQUIRE(found("essl300") == sk::Barrier::Xor);
   CHECK(cache.lastLine() == "xor");
-  for (const std::string rubbish : {"precise\n", "none\n", "xor xor\n", ""}) {  // the first is not in this language
+  for (const std::string rubbish : {"precise\n", "none\n", "xor xor\n", ""}) {  // ESSL 3.00 has no `precise`
     for (const bool isRight : {true, false}) {
       cache.replaceLastLine(rubbish, isRight);
       CHECK(found("essl300") == sk::Barrier::Xor);

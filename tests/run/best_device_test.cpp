@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the best device is a GPU, else native code; it has code of every .sk file, and GL where something is asked
-// for that needs it. A device that lacks what a call needs names the way out.
+// Promises: the best device is a GPU, else native code. It can run every .sk file of the program, and has GL if an option
+// needs GL. If a device lacks what a call needs, the error says what to do.
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -17,7 +17,7 @@ namespace {
 
 using sk::program::LinkedFile;
 
-/// A variable of the environment has another value, or none, as long as this lives.
+/// Sets or unsets an environment variable while it lives.
 class Environment {
  public:
   Environment(const char* name, const char* value) : name_(name) {
@@ -34,7 +34,7 @@ class Environment {
   std::optional<std::string> old_;
 };
 
-/// Nothing is asked for.
+/// Unsets all variables that choose a device.
 struct NoWishes {
   Environment device{"SK_DEVICE", nullptr}, profile{"SK_PROFILE", nullptr},
       limit{"SK_TEXTURE_LIMIT", nullptr};
@@ -42,7 +42,7 @@ struct NoWishes {
 
 std::string nameOfBestWith(const sk::DeviceOptions& options = {}) { return sk::Device(options).name(); }
 
-// An object of the program, which is initialized before main: its stubs are registered by then.
+// Initialised before main(); the program's kernels are registered by then.
 const sk::Device early = [] {
   const NoWishes none;
   return sk::Device();
@@ -85,7 +85,7 @@ TEST_CASE("what only devices with GL have is asked of one") {
 
 TEST_CASE("a machine without GL has native code") {
   const NoWishes none;
-  if (!sk::Device("gl").isSoftware()) return;  // a GPU's driver may be found by other ways
+  if (!sk::Device("gl").isSoftware()) return;  // a GPU's driver may be found in other ways
   const Environment noDrivers("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent");
   CHECK(nameOfBestWith() == "native");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What gathers give outside where their elements are more than a number. All exact.
+// Borders of gathers whose elements are not plain scalars. All results are exact.
 #include "borders.sk.hpp"
 #include "support/devices.hpp"
 #include "support/host_array.hpp"
@@ -73,7 +73,7 @@ TEST_CASE("each plane of a gather gets its part of the border") {
     }
   };
   onEveryLayout(check);
-  for (const std::string profile : {"glsl330", "essl300"}) {   // in passes of few planes
+  for (const std::string profile : {"glsl330", "essl300"}) {   // each pass writes few planes
     sk::Device device({.profile = profile, .limits = "guaranteed"});
     check(device);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Kernels whose inputs share array textures, on devices that keep to what their profile guarantees and on the device as
-// it is, against plain C++. All exact.
+// Kernels whose inputs share array textures (bundles) against plain C++, on devices with guaranteed and with their own
+// limits. All results are exact.
 #include "bundles.sk.hpp"
 
 #include <array>
@@ -16,8 +16,7 @@ using sk::float2;
 
 namespace {
 
-/// test(device) on devices that keep to what their profile guarantees, with streams as they are and in layers, and on
-/// the device as it is.
+/// Calls test(device) on devices with the guaranteed limits, with and without layers, and on one with its own limits.
 template <class Test>
 void onEveryLimit(const Test& test) {
   struct Limits {
@@ -34,7 +33,7 @@ void onEveryLimit(const Test& test) {
   }
 }
 
-/// `lists` of elements made by make(number of the list, number of the element).
+/// Lists of elements; make(list number, element number) makes an element.
 template <class T, class Make>
 std::vector<std::vector<T>> listsOf(std::size_t lists, std::size_t count, const Make& make) {
   std::vector<std::vector<T>> all(lists);
@@ -44,7 +43,7 @@ std::vector<std::vector<T>> listsOf(std::size_t lists, std::size_t count, const 
   return all;
 }
 
-/// kernel(stream of the first list, of the second ..., rest ...)
+/// Calls kernel(stream of the first list, stream of the second list, ..., rest ...).
 template <std::size_t lists, class T, class Kernel, class... Rest>
 void callWith(const Kernel& kernel, sk::Device& device, const sk::Shape& shape,
               const std::vector<std::vector<T>>& all, Rest&&... rest) {
@@ -167,10 +166,10 @@ TEST_CASE("gathers that share textures are interpolated without the device's fil
                                  [](int n, int i) { return float2{-1, static_cast<float>((n + i) % 16)}; });
   std::vector<float2> where;
   for (std::size_t i = 0; i < count; ++i) {
-    where.push_back({static_cast<float>(i % 10) / 4, static_cast<float>(i % 4)});  // no weight along y
+    where.push_back({static_cast<float>(i % 10) / 4, static_cast<float>(i % 4)});  // the weight along y is 0
   }
   onEveryLimit([&](sk::Device& device) {
-    // as many as keep textures of their own may be filtered, with weights of 8 bits at least
+    // The device may filter the gathers that keep their own textures, with weights of at least 8 bits.
     const auto x = streamOf<float2>(device, where);
     auto r = device.stream<float>({count});
     callWith<20>(bundles::sampled, device, {height, width}, a, x, r);
@@ -197,7 +196,7 @@ TEST_CASE("gathers that share textures are interpolated without the device's fil
 }
 
 TEST_CASE("as many gathers as a kernel may have") {
-  // rows of 68 elements are packed where the device packs them
+  // Only rows of 68 elements can be packed.
   const std::size_t count = GENERATE(std::size_t{67}, std::size_t{68});
   const auto g = listsOf<int>(120, count, [](int n, int i) { return n * 31 + i * i - 500; });
   onEveryLimit([&](sk::Device& device) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: native code rounds every operation unless contraction is asked for, by a call, the source or a file; then it
-// fuses products with sums, but neither in the library's functions nor in compensated and exact sums.
+// Promises: native code rounds every operation unless a call, the source or a file asks for contraction. Then it fuses
+// products with sums, but neither in library functions nor in compensated and exact sums.
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -18,9 +18,9 @@ namespace {
 
 using sk::Contraction;
 
-constexpr std::int64_t count = 1000;  // several vectors and a rest
+constexpr std::int64_t count = 1000;  // several vectors and a remainder
 
-/// Whether native code has fused operations for this CPU.
+/// Whether native code can use fused operations on this CPU.
 bool cpuFuses() {
 #if defined(__x86_64__)
   return __builtin_cpu_supports("x86-64-v3") != 0;
@@ -31,7 +31,7 @@ bool cpuFuses() {
 #endif
 }
 
-/// x, and the squares of x as floats round them: what the rounding loses is left of x * x - y, where it is fused.
+/// x, y = x * x rounded to float, and what that rounding loses, which is x * x - y if it is fused.
 struct Squares {
   std::vector<float> x, y, lost;
 
@@ -52,7 +52,7 @@ sk::Stream<float> streamOf(sk::Device& device, const std::vector<float>& values)
   return stream;
 }
 
-/// What a kernel of x and y gives natively.
+/// The results of a kernel of x and y.
 template <class Kernel>
 std::vector<float> resultsOf(sk::Device& device, const Kernel& kernel, const Squares& in) {
   auto r = device.stream<float>({count});

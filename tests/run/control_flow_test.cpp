@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Control flow against the C++ compiler's reading of the same text.
+// Compares control flow with the same text compiled as C++.
 #include "control_flow.sk.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"   // that names may be shadowed is part of what is tested
+#pragma GCC diagnostic ignored "-Wshadow"   // shadowing is part of the test
 #include "shared/control_flow.hpp"
 #pragma GCC diagnostic pop
 #include "support/devices.hpp"
@@ -65,7 +65,7 @@ TEST_CASE("an index outside an array takes the nearest element") {
     auto written = device.stream<int>({count}), read = device.stream<int>({count});
     control::nearestElement(streamOf<int>(device, x), written, read);
     CHECK(difference(read.read(), [&](std::size_t i) {
-            const int atUint = x[i] < 0 ? 4 : std::min(x[i], 4);   // as uint, -1 lies beyond the end
+            const int atUint = x[i] < 0 ? 4 : std::min(x[i], 4);   // as uint, -1 is beyond the end
             return (10 + std::clamp(x[i], 0, 4)) * 100 + 10 + atUint;
           }) == "");
     CHECK(difference(written.read(), [&](std::size_t i) {

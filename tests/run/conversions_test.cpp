@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Conversions against the C++ compiler's reading of the same text. All exact: the values are chosen
-// so that no operation rounds.
+// Compares conversions with the same text compiled as C++. All results are exact: the values are chosen so that no
+// operation rounds.
 #include "conversions.sk.hpp"
 
 #include "shared/conversions.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// details.sk against plain C++. All exact but the constants by intrinsics.
+// details.sk against plain C++. All results are exact except constants that intrinsics compute.
 #include "details.sk.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ TEST_CASE("constants may call intrinsics and constexpr functions, and may be tab
     auto n = device.stream<int3>({2});
     details::constants(streamOf<float>(device, {2.0f, 4.0f}), r, row, n);
     const float4 first = r.read()[0];
-    CHECK(std::fabs(first.x - 5.0) <= 4e-6);  // square roots and unit vectors: a few ulp on any device
+    CHECK(std::fabs(first.x - 5.0) <= 4e-6);  // square roots and unit vectors have errors of a few ulp
     CHECK(std::fabs(first.y - 2.6) <= 1e-6);
     CHECK(std::fabs(first.z - 2.8) <= 1e-6);
     CHECK(first.w == 0.1f * 4);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Vectors, structs, arrays, uniforms, gathers, reduces and sinks of doubles, in every form. Values are small multiples
-// of 1/256, so that sums and products are exact in a pair, too; where they are not, the bound is stated.
+// Vectors, structs, arrays, uniforms, gathers, reduces, variable and scatter outputs of doubles, in every form. Values are
+// small multiples of 1/256, so that sums and products are exact even in pairs of floats; other tests state their bound.
 #include "doubles.sk.hpp"
 
 #include <cmath>
@@ -230,7 +230,7 @@ TEST_CASE("reduces of doubles") {
         total += v;
         size += std::fabs(static_cast<long double>(v));
       }
-      // a tree of fewer than 200 additions from any element to the root
+      // No element passes through more than 200 additions on its way to the root.
       const long double error = 200 * precisionOf(form) * size;
       CHECK(std::fabs(sum(stream) - total) <= error);
       CHECK(largest(stream) == *std::max_element(x.begin(), x.end()));
@@ -243,7 +243,7 @@ TEST_CASE("reduces of doubles") {
       const auto v = vectorsOf<sk::double2>(n, 13);
       double expected = 0;
       for (const auto& [a, b] : v) expected += a * a + b * b;
-      CHECK(squares(streamOf<sk::double2>(device, v)) == expected);  // 2^-16 times integers below 2^40
+      CHECK(squares(streamOf<sk::double2>(device, v)) == expected);  // exact: 2^-16 times integers below 2^40
     }
     const auto x = smallDoubles(24, 14);
     auto rows = device.stream<double>({6, 1});

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Doubles in every form: GLSL's own, and pairs of floats with `precise` and with a uniform. Streams hold 64 bits in
-// any. Native arithmetic is IEEE 754's; a pair has 48 bits, and its sums, products, quotients and roots are
-// within 2^-45 of the exact ones: the bounds of Joldes, Muller and Popescu (2017) are 2^-46.4 and 2^-45.6 for the
-// former, and long division and one step of Newton's give the latter.
+// Doubles in every form: GLSL's doubles, and pairs of floats with `precise` and with a uniform. Streams hold 64 bits in
+// every form. Native arithmetic is that of IEEE 754. A pair has 48 bits; its sums, products, quotients and roots have
+// relative errors below 2^-45: Joldes, Muller and Popescu (2017) bound sums and products by 2^-46.4 and 2^-45.6, and long
+// division and one Newton step give quotients and roots.
 #include "doubles.sk.hpp"
 
 #include <array>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Operands that nearly cancel, and that have long runs of ones and zeros.
+/// Adds operands that nearly cancel, and operands with long runs of ones and zeros.
 void addAdversaries(std::vector<double>& x, std::vector<double>& y) {
   const double ulp = 0x1p-47;
   for (int k = 0; k < 48; ++k) {
@@ -36,7 +36,7 @@ void addAdversaries(std::vector<double>& x, std::vector<double>& y) {
   }
 }
 
-/// "" where each element is within `relative` of the expected one.
+/// "" if each element is within `relative` of the expected one.
 template <class Expected>
 std::string farFrom(const std::vector<double>& actual, const Expected& expected, long double relative) {
   return difference(
@@ -389,13 +389,13 @@ TEST_CASE("remainders, smooth steps and powers of two of doubles") {
     for (std::size_t i = 0; i < x.size(); ++i) {
       const double a = x[i], b = y[i];
       INFO(a << ", " << b << ", " << e[i]);
-      // the quotient's error counts as many times as the divisor is taken, which is about |a|
+      // The error of the quotient is multiplied by the divisor, which gives about |a|.
       const double error = static_cast<double>(precisionOf(form)) * 8 * (1 + std::fabs(a) + std::fabs(b));
       CHECK(std::fabs(mods[i] - (mod(a, b) + mod(b, 0.75))) <= error);
       CHECK(std::fabs(fmods[i] - std::fmod(a, b)) <= error);
       CHECK(std::fabs(powers[i] - std::ldexp(a, e[i])) <=
             static_cast<double>(precisionOf(form)) * std::ldexp(std::fabs(a), e[i]));
-      // the slope of a smooth step is 1.5 at most
+      // The slope of smoothstep is at most 1.5.
       CHECK(std::fabs(steps[i].x - (smooth(-1, 2, a) + smooth(b, b + 1, a))) <= 4 * error);
       CHECK(std::fabs(steps[i].y - (smooth(-1, 2, b) + smooth(0, 3, a))) <= 4 * error);
     }

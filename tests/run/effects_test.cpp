@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Effects in expressions against the C++ compiler's reading of the same text.
+// Compares expressions with side effects with the same text compiled as C++.
 #include "effects.sk.hpp"
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wsequence-point"   // C++17 orders what g++ warns of
+#pragma GCC diagnostic ignored "-Wsequence-point"   // C++17 defines the orders that g++ warns about
 #include "shared/effects.hpp"
 #pragma GCC diagnostic pop
 #include "support/shared_cases.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Elements, structs and uniforms of every type, in every layout: what goes in comes out, bit for bit.
+// Elements, structs and uniforms of every type, in every layout: a kernel passes them on bit for bit.
 #include <bit>
 #include <limits>
 
@@ -12,7 +12,7 @@ using namespace run_tests;
 
 namespace {
 
-/// Shapes of every rank: empty, one element, primes, beyond a row of the small devices.
+/// Shapes of every rank: empty, one element, prime extents, rows longer than a texture of the small devices.
 const std::vector<sk::Shape> shapes = {
     {0},     {1},     {2},      {64},      {65},      {1021},       {0, 3},       {1, 1},       {13, 17},
     {1, 67}, {67, 1}, {61, 65}, {3, 5, 7}, {4, 0, 2}, {2, 3, 4, 5}, {1, 1, 1, 1}, {3, 1, 67, 2}};
@@ -61,7 +61,7 @@ TEST_CASE("elements of every type go in and come out, whatever the shape") {
     for (const sk::Shape& shape : shapes) {
       INFO("shape " << sk::toString(shape));
       checkKept<float>(device, shape, streams::keep_float);
-      if (shape.rank() > 2) continue;   // where elements lie does not depend on their type
+      if (shape.rank() > 2) continue;   // the layout does not depend on the type
       checkKept<int>(device, shape, streams::keep_int);
       checkKept<std::uint32_t>(device, shape, streams::keep_uint);
       checkKept<bool>(device, shape, streams::keep_bool);
@@ -71,7 +71,7 @@ TEST_CASE("elements of every type go in and come out, whatever the shape") {
 
 TEST_CASE("what is special in float is kept bit for bit") {
   using Limits = std::numeric_limits<float>;
-  // no NaN with a payload: a device may change it; no denormal: a kernel may flush it
+  // No NaN with a payload, which a device may change, and no denormal, which a kernel may flush to 0.
   const std::vector<float> special = {0.0f,
                                       -0.0f,
                                       Limits::infinity(),
@@ -143,7 +143,7 @@ namespace {
 template <class T, class Kernel>
 void checkUniforms(sk::Device& device, const Kernel& kernel) {
   for (std::uint32_t round = 0; round < 3;
-       ++round) {   // the same program with other values, and with the same again
+       ++round) {   // the same program with other values, then with the first values again
     const std::uint32_t seed = round % 2 * 40;
     const T a = valueAt<T>(seed);
     const auto b = valueAt<sk::Vector2<T>>(seed + 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Floats at their ends against the C++ compiler's reading of the same text.
+// Compares operations on extreme floats with the same text compiled as C++.
 #include <cmath>
 
 #include "floats.sk.hpp"
@@ -18,7 +18,7 @@ const std::vector<float> special = {0.0f,     -0.0f,    1,         -1,       0.5
                                     1e10f,    -1e10f,   3.4e38f,   -3.4e38f, 1.2e-38f, 16777216,
                                     16777215, INFINITY, -INFINITY, NAN};
 
-/// The same, NaN for NaN and -0 for -0; what is below the least normal number may be a zero of its sign.
+/// Whether two floats are equal with the same sign, or both NaN. A denormal expected value may be flushed to 0.
 bool agree(const float& a, const float& b) {
   const bool isFlushed = b != 0 && std::fabs(b) < 1.17549435e-38f && a == 0;
   return isFlushed || (isSame(a, b) && std::signbit(a) == std::signbit(b)) ||

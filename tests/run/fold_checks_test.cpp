@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// SK_CHECK=folds, which tests/run/CMakeLists.txt sets: reduces that are wrong throw, natively, and the others do not.
+// SK_CHECK=folds, which tests/run/CMakeLists.txt sets: on a native device, wrong reduces throw, and correct ones do not.
 #include <string>
 #include <vector>
 

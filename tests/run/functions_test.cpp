@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Helper functions and names against the C++ compiler's reading of the same text.
+// Compares helper functions and names with the same text compiled as C++.
 #include "functions.sk.hpp"
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Gathers of rank 3 and 4 against plain C++, on every layout. All exact.
+// Gathers of rank 3 and 4 against plain C++, in every layout. All results are exact.
 #include <cmath>
 
 #include "gather_ranks.sk.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int outsideValue = -7;
 
-/// The index inside an extent that a boundary mode makes of any index; -1 for the border.
+/// Maps any index into the extent, as a boundary mode does; -1 stands for the border.
 std::int64_t clampIndex(std::int64_t i, std::int64_t n) { return std::clamp<std::int64_t>(i, 0, n - 1); }
 std::int64_t wrapIndex(std::int64_t i, std::int64_t n) { return ((i % n) + n) % n; }
 std::int64_t mirrorIndex(std::int64_t i, std::int64_t n) {
@@ -25,7 +25,7 @@ std::int64_t mirrorIndex(std::int64_t i, std::int64_t n) {
 std::int64_t borderIndex(std::int64_t i, std::int64_t n) { return i < 0 || i >= n ? -1 : i; }
 using Inside = std::int64_t (*)(std::int64_t, std::int64_t);
 
-/// The element at any position, slowest dimension first.
+/// The element at any position, slowest dimension first, as a boundary mode reads it.
 int at(const HostArray<int>& a, Position p, Inside inside) {
   for (int d = 0; d < a.shape().rank(); ++d) {
     auto& i = p[static_cast<std::size_t>(d)];
@@ -42,7 +42,7 @@ HostArray<int> numbered(const sk::Shape& shape) {
 const std::vector<int> indices = {0,  1,  4,   5,    66,         67,         65536,          1 << 30,
                                   -1, -2, -66, -100, -(1 << 24), 2147483647, -2147483647 - 1};
 
-/// The elements p + offset of the current position p in a domain of the same rank.
+/// The position of element i of the domain, plus an offset.
 Position moved(const sk::Shape& domain, std::size_t i, const Position& offset) {
   Position p = positionOf(domain, i);
   for (std::size_t d = 0; d < p.size(); ++d) p[d] += offset[d];
@@ -88,7 +88,7 @@ void checkSpace(sk::Device& device, const Mode& mode, const Read& read, const Ne
     CHECK(difference(u.read(), offset) == "");
     CHECK(difference(v.read(), offset) == "");
 
-    // offsets by one: over the gather's own shape, and over a larger domain
+    // Offsets by one, over the gather's own shape and over a larger domain.
     for (const sk::Shape& domain : {shape, sk::Shape{9, 4, 70}}) {
       auto w = device.stream<int>(domain);
       stencil(stream, w);
@@ -198,7 +198,7 @@ TEST_CASE("a gather of rank 3 may be a view, whose faces are then the boundary")
     check(gather_ranks::space_stencil_wrap, wrapIndex);
     check(gather_ranks::space_stencil_mirror, mirrorIndex);
     check(gather_ranks::space_stencil_border, borderIndex);
-    // in place: it reads what was there before
+    // In place, the kernel reads the old elements.
     gather_ranks::space_stencil_wrap(part, part);
     CHECK(stream.domain({0, 0, 0}, {1, 9, 70}).read() ==
           std::vector<int>(whole.elements().begin(), whole.elements().begin() + 630));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What kernels do with gathers: elements of every type, helpers and kernels that take them, computed
-// addresses, gathers beside elements.
+// Uses of gathers: elements of every type, helper functions and kernels with gather parameters, computed indices, a stream
+// that is both gather and input.
 #include "gathers.sk.hpp"
 
 #include <numeric>
@@ -107,7 +107,7 @@ TEST_CASE("helpers and kernels take gathers, with the mode that the outermost ke
   onEveryLayout([&](sk::Device& device) {
     auto one = device.stream<float>(shape), two = device.stream<float>(shape);
     gathers::outer(u.on(device), w.on(device), k.on(device), x.on(device), one, two);
-    // values are multiples of 1/256 below 1000, so that no order of additions rounds
+    // Values are multiples of 1/256 below 1000, so that no order of additions rounds.
     CHECK(difference(one.read(), r) == "");
     CHECK(difference(two.read(), s) == "");
   });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Gathers against plain C++: every boundary mode at indices inside, outside and at the ends of int,
-// for every rank, layout and kind of index. All exact.
+// Gathers against plain C++: every boundary mode at indices inside, outside and at the limits of int, for ranks 1 and 2,
+// every layout and every kind of index. All results are exact.
 #include <limits>
 
 #include "gathers.sk.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t outsideValue = -7;
 
-/// The index inside an extent that a boundary mode makes of any index; -1 for the border.
+/// Maps any index into the extent, as a boundary mode does; -1 stands for the border.
 std::int64_t clampIndex(std::int64_t i, std::int64_t n) { return std::clamp<std::int64_t>(i, 0, n - 1); }
 std::int64_t wrapIndex(std::int64_t i, std::int64_t n) { return ((i % n) + n) % n; }
 std::int64_t mirrorIndex(std::int64_t i, std::int64_t n) {
@@ -158,14 +158,14 @@ void checkFloatIndices(sk::Device& device, const char* mode, Inside inside, cons
                    [&](std::size_t i) { return at(b, nearest(x[i].x), nearest(x[i].y), inside); }) == "");
   const auto mixed = t.read();
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const bool isInt = std::fabs(x[i].x) < 1e9f && std::fabs(x[i].y) < 1e9f;  // int(x) is not defined beyond
+    const bool isInt = std::fabs(x[i].x) < 1e9f && std::fabs(x[i].y) < 1e9f;  // int(x) is undefined beyond
     if (!isInt) continue;
     const int expected = at(b, nearest(x[i].x), nearest(x[i].y), inside) +
                          at(b, static_cast<int>(std::fabs(x[i].x)), static_cast<int>(x[i].y), inside);
     CHECK(mixed[i] == expected);
   }
 
-  // NaN names some element (or the border), and nothing worse happens
+  // NaN as an index gives any element, or the border.
   const float nan = std::numeric_limits<float>::quiet_NaN();
   auto one = device.stream<int>({1}), two = device.stream<int>({1}), three = device.stream<int>({1});
   kernel(a.on(device), b.on(device), streamOf<sk::float2>(device, {{nan, nan}}), one, two, three);
@@ -252,7 +252,7 @@ TEST_CASE("a gather may be a view, whose edges are then the boundary") {
             return near(0, 0) + 3 * near(1, 0) + 5 * near(-1, 0) + 7 * near(0, 1) + 11 * near(0, -1) +
                    13 * near(-1, -1) + 17 * near(1, 1);
           }) == "");
-    // into a view of the very stream that it reads, elsewhere
+    // Writes to a view of the stream that it reads, at another place.
     gathers::stencil_border(part, stream.domain({7, 0}, {12, 65}), far);
     CHECK(difference(stream.domain({7, 0}, {12, 65}).read(), [&](std::size_t i) {
             const auto p = positionOf(part.shape(), i);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// idioms.sk against plain C++. All exact: small multiples of 1/256.
+// idioms.sk against plain C++. All results are exact: values are small multiples of 1/256.
 #include "idioms.sk.hpp"
 #include "support/devices.hpp"
 #include "support/values.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Integer arithmetic against the C++ compiler's reading of the same text: all exact.
+// Compares integer arithmetic with the same text compiled as C++. All results are exact.
 #include "integers.sk.hpp"
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wparentheses"   // precedence is about what they would say
+#pragma GCC diagnostic ignored "-Wparentheses"   // precedence is tested without parentheses
 #include "shared/integers.hpp"
 #pragma GCC diagnostic pop
 #include "support/shared_cases.hpp"

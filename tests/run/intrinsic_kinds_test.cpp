@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Intrinsics that are no plain functions of floats: geometry, several results, bits, integers,
-// comparisons, scalars among vectors.
+// Intrinsics other than plain functions of floats: geometry, several results, bits, integers, comparisons, mixes of scalars
+// and vectors.
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -34,7 +34,7 @@ Double3 sum(const Double3& a, double s, const Double3& b) {
 Double3 scaled(double s, const Double3& a) { return {s * a.x, s * a.y, s * a.z}; }
 Double3 normal(const Double3& a) { return scaled(1 / std::sqrt(dot(a, a)), a); }
 
-/// "" where all components are within `absolute` of expected(i).
+/// "" if all components are within `absolute` of expected(i).
 template <class Expected>
 std::string differenceBy(double absolute, const std::vector<float4>& actual, const Expected& expected) {
   std::vector<float> flat;
@@ -56,7 +56,7 @@ TEST_CASE("geometry") {
     auto a = device.stream<float4>({count}), b = device.stream<float4>({count});
     auto c = device.stream<float4>({count}), d = device.stream<float4>({count});
     intrinsics::geometry(streamOf<float4>(device, u), streamOf<float4>(device, v), a, b, c, d);
-    // lengths up to 16, dot products up to 256: some ulp of these
+    // Lengths are up to 16 and dot products up to 256: the bound is a few ulp of these.
     CHECK(differenceBy(1e-4, a.read(), [&](std::size_t i) {
             const Double3 p = of(u[i]), q = of(v[i]);
             const double w = u[i].w, t = v[i].w;
@@ -100,7 +100,7 @@ TEST_CASE("scalars may stand among the vectors of an intrinsic") {
       const float4& v = x[i];
       return std::array<double, 4>{f(v.x, other.x), f(v.y, other.y), f(v.z, other.z), f(v.w, other.w)};
     };
-    // mix may be computed as a + t(b - a), of values up to 8 * 8 * 16: 1e-3 is 8 ulp of that
+    // mix may be computed as a + t(b - a), with values up to 8 * 8 * 16, of which 1e-3 is 8 ulp.
     CHECK(differenceBy(1e-3, a.read(), [&](std::size_t i) {
             return each(
                 [&](double p, double q) {
@@ -190,7 +190,7 @@ TEST_CASE("ldexp scales by powers of two to both ends") {
   x.push_back({0, 1e-30f, 1e30f, 5});
   e.push_back({100, 200, -200, 1000});
   const auto size = static_cast<std::int64_t>(x.size());
-  // a result below the least normal number may be flushed to 0
+  // A denormal result may be flushed to 0.
   const auto agree = [](float a, float b) {
     return a == b || (std::fabs(b) < 1.1754944e-38f && std::fabs(a) <= std::fabs(b));
   };

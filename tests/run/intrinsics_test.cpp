@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The intrinsics of floats against <cmath> in double, in every width; shared/intrinsics.hpp has the
-// errors that are allowed and where they come from.
+// The intrinsics of floats against <cmath> in double, for every vector width; shared/intrinsics.hpp states the error bounds
+// and where they come from.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t count = 400;
 
-/// Values in [low, high], both ends among them, on no grid that an argument reduction favours.
+/// Values in [low, high], including both ends, but on no grid that would suit an argument reduction.
 std::vector<float4> spread(double low, double high, std::uint32_t seed) {
   std::vector<float4> result;
   const auto at = [&](std::uint32_t i) {
@@ -30,7 +30,7 @@ std::vector<float4> spread(double low, double high, std::uint32_t seed) {
   return result;
 }
 
-/// The outputs of a kernel in four widths, as the components of x that each was given.
+/// The outputs of a kernel for vectors of four widths. Each width gets some of the components of x.
 struct Outputs {
   explicit Outputs(sk::Device& device)
       : r(device.stream<float4>({count})),
@@ -38,7 +38,7 @@ struct Outputs {
         r2(device.stream<float2>({count})),
         r1(device.stream<float>({count})) {}
 
-  /// "" where every component is within the errors of reference(component number, element).
+  /// "" if every component is within the error bounds of reference(component number, element).
   template <class Reference>
   std::string wrong(const Reference& reference, double absolute, double relative) const {
     const auto check = [&](const char* width, const std::vector<float>& actual, std::vector<int> components) {
@@ -80,7 +80,7 @@ TEST_CASE("functions of one float") {
     Outputs out(device);
     const auto check = [&](const char* name, const auto& kernel, double (*reference)(double),
                            const Bounds& b) {
-      if (std::string_view(name) == "normalize") return;   // of the vector as a whole: see geometry
+      if (std::string_view(name) == "normalize") return;   // takes the whole vector: see geometry
       INFO(name);
       const auto x = spread(b.low, b.high, 1);
       kernel(streamOf<float4>(device, x), out.r, out.r3, out.r2, out.r1);
@@ -174,7 +174,7 @@ TEST_CASE("an intrinsic of a constant is what the device computes") {
     const auto a = folded.read(), b = computed.read();
     for (std::size_t i = 0; i < rows.size(); ++i) {
       INFO(rows[i].name);
-      // the driver folds what skc leaves, by a better libm than its device: within the error of the row
+      // The driver may fold what skc does not, with a more accurate libm: the results agree within the row's error.
       CHECK(std::fabs(a[i] - b[i]) <= std::max(rows[i].absolute, rows[i].relative * std::fabs(b[i])));
     }
   });

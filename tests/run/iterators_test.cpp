@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Iterators: exact integers over any domain; floats as one multiplication and one addition.
+// Iterators over any domain: integers are exact, floats have the error of one multiplication and one addition.
 #include "iterators.sk.hpp"
 
 #include <array>
@@ -18,14 +18,14 @@ namespace {
 const std::vector<sk::Shape> shapes = {{1},     {7},     {1021},    {1, 1},     {13, 17},     {5, 1},
                                        {67, 3}, {3, 67}, {2, 3, 5}, {67, 2, 3}, {2, 3, 2, 5}, {3, 1, 5, 7}};
 
-/// x first, as kernels count.
+/// The extents, x first, as in kernels.
 std::array<std::int64_t, 4> xFirst(const sk::Shape& shape) {
   std::array<std::int64_t, 4> e = {1, 1, 1, 1};
   for (int d = 0; d < shape.rank(); ++d) e[static_cast<std::size_t>(d)] = shape[shape.rank() - 1 - d];
   return e;
 }
 
-/// Steps behind the begin for component c of `width` at element n.
+/// The number of steps from the begin at element n, for component c of `width` components.
 std::int64_t stepsAt(const sk::Shape& shape, int width, std::size_t c, std::int64_t n) {
   if (width == 1 || shape.rank() == 1) return n;
   const auto e = xFirst(shape);
@@ -40,7 +40,7 @@ std::int64_t stepCount(const sk::Shape& shape, int width, std::size_t c) {
 template <class T, std::size_t Width>
 using Components = std::array<T, Width>;
 
-/// Ends of each component: begin, and `step` times as many steps as there are, wrapping as unsigned.
+/// Each component's begin, and its end: begin plus `step` times the number of steps.
 template <class T, int Width>
 struct Ramp {
   Components<T, Width> begin, end;
@@ -59,7 +59,7 @@ Ramp<T, Width> integerRamp(const sk::Shape& shape) {
   return ramp;
 }
 
-/// The order of components in memory is that of sk's vectors.
+/// sk's vectors have the same memory layout as Components.
 template <class V, class T, int Width>
 sk::Iter<V> iterOf(const Ramp<T, Width>& ramp) {
   static_assert(sizeof(V) == sizeof(ramp.begin));
@@ -109,7 +109,7 @@ void check(sk::Device& device, const Kernel& kernel) {
             floats.begin[c] +
             length * static_cast<double>(stepsAt(shape, Width, c, static_cast<std::int64_t>(i))) /
                 static_cast<double>(stepCount(shape, Width, c));
-        // the step and its product are rounded once each, relative to the length, and then the sum
+        // The step and the product are rounded once each, relative to the length, and then the sum is rounded.
         const double ulp = std::ldexp(1.0, -24);
         REQUIRE(std::abs(got[c] - wanted) <= 2 * ulp * std::abs(length) + ulp * std::abs(wanted));
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Kernels as such against plain C++: names, overloads, namespaces, calls among kernels. All exact.
+// Names, overloads and namespaces of kernels, and calls among kernels, against plain C++. All results are exact.
 #include "kernels.sk.hpp"
 #include "same_names.sk.hpp"
 #include "support/devices.hpp"
@@ -125,7 +125,7 @@ TEST_CASE("kernels call kernels and reduces, and know their streams within") {
     const auto join = [](float whole, float part, float gain) {
       return part == 0 ? whole : whole + gain * part;
     };
-    // floats: sums of numbers up to 16000 with 1/512 as their unit need 23 bits
+    // Exact in float: multiples of 1/512 up to 16000 need 23 bits.
     CHECK(difference(r.read(), [&](std::size_t i) {
             const float v = input.elements()[i], w = std::floor(v);
             const float half = join(w, v - w, 10) * 0.5f;
@@ -133,7 +133,7 @@ TEST_CASE("kernels call kernels and reduces, and know their streams within") {
                    std::floor(half) + 1;
           }) == "");
     CHECK(difference(s.read(), [](std::size_t i) {
-            // numbered(x, ...) gave `size` the index and `s` the extents, both of the domain
+            // numbered(x, ...) sets `size` to the domain's index and `s` to its extents.
             const int px = static_cast<int>(i % 70), py = static_cast<int>(i / 70);
             return int4{70 * 101 + px * 101, 7 * 101 + py * 101, 101, 101};
           }) == "");

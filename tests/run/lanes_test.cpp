@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Promise: native code that computes neighbours side by side gives every bit of what it gives one element after the other. Rows of
-// one element each have no neighbours, so the same elements go through every kernel in both shapes; columns of a wider stream, since
-// the runtime makes one row of rows that follow each other.
+// Promise: native code that computes elements in lanes gives the same bits as element by element. Each kernel gets the same
+// elements as a row, which fills lanes, and as a column, whose rows of one element cannot. The column is part of a wider
+// stream, because the runtime joins contiguous rows to one row.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -24,7 +24,7 @@ namespace {
 
 using Limits = std::numeric_limits<float>;
 
-/// Every row length up to two full sets of lanes and one more, and longer ones with a rest.
+/// Every row length up to two full vectors plus one, and longer lengths with a remainder.
 std::vector<std::int64_t> lengths() {
   std::vector<std::int64_t> result(2 * sk::native::mostLanes + 1);
   std::iota(result.begin(), result.end(), 1);
@@ -39,7 +39,7 @@ sk::Stream<T> streamOf(sk::Device& device, const sk::Shape& shape, const std::ve
   return stream;
 }
 
-/// Where the elements of a call lie: in one row, or in a column of wider streams, which it keeps.
+/// Makes streams with the elements of a call in one row, or in a column of a wider stream. Keeps the streams alive.
 class Place {
  public:
   Place(std::int64_t count, bool isColumn) : count_(count), isColumn_(isColumn) {}
@@ -64,7 +64,7 @@ class Place {
   std::vector<std::shared_ptr<void>> streams_;
 };
 
-/// Bits, of which all that are NaN count as the same.
+/// The bits of values, with the same bits for every NaN.
 template <class T>
 std::vector<std::uint32_t> bitsOf(const std::vector<T>& values) {
   std::vector<std::uint32_t> bits;
@@ -87,7 +87,7 @@ std::vector<std::uint32_t> bitsOf(const std::vector<T>& values) {
   return bits;
 }
 
-/// run(place) gives what a kernel computes there.
+/// Checks that run(place), which returns a kernel's results, returns the same for a row and a column.
 template <class Run>
 void sameByLanes(std::int64_t n, const Run& run) {
   INFO(n << " elements");
@@ -107,7 +107,7 @@ auto list(std::int64_t n, Make&& make) {
   for (std::int64_t i = 0; i < n; ++i) values.push_back(make(static_cast<int>(i)));
   return values;
 }
-/// As good as random.
+/// A pseudorandom number.
 int scattered(int i) { return static_cast<int>(static_cast<unsigned>(i + 1) * 2654435761U >> 7U); }
 
 template <class Kernel>
@@ -217,7 +217,7 @@ void gathersAreTheSame(const Kernel& kernel) {
                             return sk::float2{static_cast<float>(k), static_cast<float>(scattered(k) % 100)};
                           }));
   const auto c = streamOf(device, {33}, list(33, scattered));
-  // within, around the ends, and far outside
+  // Inside, around the ends, and far outside.
   for (const int first : {0, -20, 20, 1 << 30, -(1 << 30), std::numeric_limits<int>::max() - 40}) {
     for (const std::int64_t n : lengths()) {
       sameByLanes(n, [&](Place& place) {
@@ -335,7 +335,8 @@ TEST_CASE("gathers that follow the element's index are right side by side, with 
   }
 }
 
-/// Calls a kernel for all rows together and for each row alone; call(top, kernel's outputs ...) does both.
+/// Compares a kernel's results for all rows together with those for each row alone. call(top, outputs ...) calls the kernel
+/// for rows from `top` on.
 template <class... Results, class Call>
 void checkRows(sk::Device& device, std::int64_t rows, std::int64_t columns, Call&& call) {
   const auto compare = [&](auto together, auto alone) {

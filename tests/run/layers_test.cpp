@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Streams in layers, of devices whose textures have 16 x 16 texels, against plain C++: every way in which
-// a stream is read, written, folded or pushed to. All exact.
+// Streams in layers against plain C++, on devices with textures of 16 x 16 texels: every way in which a stream is read,
+// written, folded or pushed to. All results are exact.
 #include "layers.sk.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ HostArray<int> numbered(const sk::Shape& shape, std::uint32_t seed = 0) {
           }};
 }
 
-/// 0 ... count - 1 and back again, so that several elements have one place.
+/// Pseudorandom indices below `count`; several elements may have the same.
 std::vector<int> places(std::size_t elements, int count) {
   std::vector<int> to(elements);
   for (std::size_t i = 0; i < elements; ++i) {
@@ -210,7 +210,7 @@ TEST_CASE("pushes from layers and to layers, counted and not") {
       CHECK(y.read() == some);
       CHECK(z.read() == most);
       auto again = device.stream<int>({0});
-      layers::most(y, again);   // the list of one is the input of the next
+      layers::most(y, again);   // the output of one call is the input of the next
       std::erase_if(some, [](int value) { return value % 5 == 0; });
       CHECK(again.read() == some);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Ten remainders in a kernel whose outputs are packed by four: forty copies of one function, which llvmpipe has to compile in time
-// (TIMEOUT in CMakeLists.txt), with its optimisations.
+// Ten remainders in a kernel whose outputs are packed by four: forty calls of library functions, which llvmpipe inlines and must
+// compile in time (TIMEOUT in CMakeLists.txt), with its optimisations.
 #include <cmath>
 #include <vector>
 

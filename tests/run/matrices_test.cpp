@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Matrices against plain loops over their rows. Elements are small integers, so that every product and
-// sum is exact; only an inverse rounds.
+// Matrices against plain loops over rows. Elements are small integers, so that every product and sum is exact; only an
+// inverse rounds.
 #include "matrices.sk.hpp"
 
 #include <cmath>
@@ -150,7 +150,7 @@ TEST_CASE("transposes, inverses and determinants") {
         }
       }
     }
-    // the conditions of these matrices are below 1e4, and elements of a and its inverse below 1e3
+    // The condition numbers of these matrices are below 1e4, and elements of a and its inverse are below 1e3.
     CHECK(worst < 1e-2);
   });
 }
@@ -203,7 +203,7 @@ TEST_CASE("matrices in structs and uniforms, gathered, in place and on views") {
 
 TEST_CASE("a product of matrices keeps its order") {
   for (const std::int64_t count : {1, 2, 64, 997, 10007}) {
-    // shears and quarter turns: whole numbers, and no two orders of them give the same
+    // Shears and quarter turns have integer elements and do not commute.
     const auto a = listOf(count, [](std::uint32_t i) {
       switch (hashed(i) % 4) {
         case 0: return float2x2{{{1, 1}, {0, 1}}};
@@ -212,7 +212,7 @@ TEST_CASE("a product of matrices keeps its order") {
         default: return float2x2{{{0, 1}, {-1, 0}}};
       }
     });
-    // elements wrap at 64, and so stay exact: the fold is over the ring of integers modulo 64
+    // Elements are integers modulo 64, so that every product is exact.
     std::vector<matrices::Turn> turns;
     const auto wrapped = [](float2x2 m) {
       for (float2& row : m.rows)
@@ -229,7 +229,7 @@ TEST_CASE("a product of matrices keeps its order") {
     });
   }
   onEveryProfile([&](sk::Device& device) {
-    // 10,007 factors whose product never grows: a rotation by a right angle between two shears
+    // 10,007 factors whose product never grows: a quarter turn between two shears.
     std::vector<float2x2> a;
     float2x2 expected{{{1, 0}, {0, 1}}};
     for (std::uint32_t i = 0; i < 10007; ++i) {

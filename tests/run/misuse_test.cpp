@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Calls of compiled kernels that do not fit: each sk::Error names the kernel with its namespace, the
-// parameters as declared and the shapes, and leaves the streams as they were.
+// Wrong calls of compiled kernels: each sk::Error names the kernel with its namespace, the parameters as declared and the
+// shapes, and the streams keep their elements.
 #include <type_traits>
 
 #include "error_of.hpp"
@@ -14,7 +14,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-// What is wrong with the types, the C++ compiler tells (of const outputs: misuse_types/calls.cpp).
+// The C++ compiler rejects wrong types (for const outputs: misuse_types/calls.cpp).
 using Floats = sk::Stream<float>&;
 template <class Kernel, class... Arguments>
 constexpr bool isCallable = std::is_invocable_v<const Kernel&, Arguments...>;
@@ -64,7 +64,7 @@ TEST_CASE("gathers of another rank, or of nothing") {
           "misuse::lookup: 'weights' has shape {0}: there is no element to read");
     auto empty = device.stream<float>({0, 4});
     CHECK_THAT(errorOf([&] { misuse::lookup(empty, weights, x, r); }), Contains("'table' has shape {0, 4}"));
-    CHECK(errorOf([&] { misuse::lookup(empty, none, none, none); }) == "no error");  // nothing is to be done
+    CHECK(errorOf([&] { misuse::lookup(empty, none, none, none); }) == "no error");  // there is nothing to compute
   });
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("reduces that do not fit") {
           "4}; "
           "write the one that you mean");
     auto a = device.stream<misuse::Ten>({4}), r = device.stream<misuse::Ten>({2});
-    CHECK(errorOf([&] { misuse::widest(a, r); }) == "no error");  // in parts, where too many are written
+    CHECK(errorOf([&] { misuse::widest(a, r); }) == "no error");  // split into several passes if it writes too many planes
     const int units = device.limits().textureUnits;
     if (units < 40) {
       CHECK(

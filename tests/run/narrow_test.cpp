@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Narrow types against C++'s own, and half and the normalized ones against formulas in double
-// precision: every value that 8 and 16 bits can have, and floats at and beside every boundary. All
-// exact: what a device stores is decided by integers.
+// Storage types against those of C++, and half and normalized types against formulas in double: every value of 8 and 16
+// bits, and floats at and next to every rounding boundary. All results are exact, because devices round with integer
+// arithmetic.
 #include "narrow.sk.hpp"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ void addAround(std::vector<float>& list, float x) {
   }
 }
 
-/// The halves, what lies in the middle of two, and their neighbours.
+/// All halves, the midpoints between them, and the neighbours of both.
 std::vector<float> floatsForHalf() {
   std::vector<float> list = {infinity, -infinity, std::nanf(""), 3e38f, -3e38f, 65519.99f, 65520.0f, 1e-30f};
   for (std::uint16_t bits = 0; bits < 0x7c00; ++bits) {
@@ -65,7 +65,7 @@ std::vector<float> floatsForHalf() {
   return list;
 }
 
-/// Integers of the type over its scale, what lies between them, and what lies outside.
+/// Values of the normalized type, values between them, and values outside its range.
 template <class T>
 std::vector<float> floatsFor() {
   std::vector<float> list = {infinity, -infinity, std::nanf(""), -0.0f, 1e-40f, 2.0f, -2.0f, 1e30f, -1e30f};
@@ -76,7 +76,7 @@ std::vector<float> floatsFor() {
   return list;
 }
 
-/// The nearest half by the arithmetic of double, in which all of it is exact but for the last rounding.
+/// The nearest half, computed in double, where everything but the last rounding is exact.
 float nearestHalf(float x) {
   if (std::isnan(x) || std::isinf(x)) return x;
   int exponent = 0;
@@ -130,7 +130,7 @@ std::vector<T> hashedValues(std::size_t count, std::uint32_t seed) {
   return list;
 }
 
-/// Halves of ordinary size: in [-8, 8).
+/// Halves in [-8, 8).
 sk::half halfAt(std::size_t i) { return sk::half(valueAt<float>(static_cast<std::uint32_t>(i))); }
 
 sk::unorm8 unormAt(std::size_t i) {
@@ -335,7 +335,7 @@ TEST_CASE("structs of narrow types as uniforms, gathers, outputs, in place and o
 }
 
 TEST_CASE("reduces over narrow types") {
-  for (const std::int64_t count : {1, 2, 997, 3989}) {  // the largest that a device of the small limit holds
+  for (const std::int64_t count : {1, 2, 997, 3989}) {  // the last is near the most that a device with the small limit holds
     const auto n = static_cast<std::size_t>(count);
     const auto bytes = hashedValues<std::uint8_t>(n, 9);
     std::vector<sk::half> halves;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: native code needs no GL; the reference computes in double and takes the same calls. What arithmetic
-// gives at its extremes is the business of tests/numerics.
+// Promises: native code needs no GL; the reference computes in double and takes the same calls. tests/numerics tests
+// arithmetic at its extremes.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -89,7 +89,7 @@ TEST_CASE("sums have the error of a tree, not of a loop") {
   sk::Device reference = sk::Device::reference();
   const double exact = 0.1F * static_cast<double>(n);
   const float total = sum(streamOf(device, x));
-  // 16 elements one after the other, then pairs: 15 + 17 roundings of half an ulp
+  // 16 elements in sequence, then a tree of pairs: 15 + 17 roundings of half an ulp.
   CHECK(std::fabs(total - exact) <= 32 * 0x1p-24 * exact);
   CHECK(sum(streamOf(reference, x)) == static_cast<float>(exact));
 }
@@ -107,7 +107,7 @@ TEST_CASE("results have the same bits on one thread as on many") {
   const std::vector<float> onMany = sums();
   std::vector<float> onOne;
   sk::native::inParallel(2, 1 << 20, sk::native::Deal::Evenly, [&](sk::native::Range range) {
-    if (range.begin == 0) onOne = sums();  // a thread of several starts no others
+    if (range.begin == 0) onOne = sums();  // inside a parallel region, no further threads are started
   });
   CHECK(onOne == onMany);
 }
@@ -142,7 +142,7 @@ TEST_CASE("sums of floats in doubles are the same whether streams are read where
   const float total = compensated(a, b);
   CHECK(compensated(a, whole.domain({0, 0}, {static_cast<std::int64_t>(n), 1})) == total);
   CHECK(dot(a, b) == total);
-  // in doubles: a rounding of the result, and n of the loop above
+  // The result is rounded to float once; the loop above has n roundings to double.
   CHECK(std::fabs(total - expected) <= 0x1p-24 * std::fabs(expected) + 0x1p-53 * n * magnitude);
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("folds know the index of each element, in blocks of any width") {
 
 TEST_CASE("floats are rounded to halves as the host does it") {
   std::vector<float> x;
-  for (std::uint64_t bits = 0; bits < 1ULL << 32U; bits += 0x1000) {  // all halves, and what is between two
+  for (std::uint64_t bits = 0; bits < 1ULL << 32U; bits += 0x1000) {  // all halves, and values between them
     for (const int beside : {-1, 0, 1, 77})
       x.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(bits + beside)));
   }
@@ -209,7 +209,7 @@ TEST_CASE("floats are rounded to halves as the host does it") {
   CHECK(wrong == 0);
 }
 
-/// What each block of a stream of {height, width} folds to, by a loop: add() of the slopes, and compose().
+/// The expected folds of each block of a stream of lines: the sum of the slopes, and the composition of the lines.
 struct Folded {
   std::vector<std::int32_t> sums;
   std::vector<Line> lines;
@@ -274,7 +274,7 @@ TEST_CASE("a stream that is read at other places is read as it was") {
   CHECK(a.read() == std::vector<float>{2.5F, 3.5F, 4.5F, 1.5F});
 }
 
-// Whole streams take other arrays for what is written, parts of them are read from a copy: one after the other, and of all lengths.
+// A whole stream gets a new array for its results; a part of a stream is read from a copy.
 TEST_CASE("streams that are read while they are written are right step after step, whole and in part") {
   sk::Device device = sk::Device::native();
   for (const std::int64_t n : {1, 5, 1000, 1 << 17}) {
@@ -311,7 +311,7 @@ TEST_CASE("reals are read of floats alone") {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-/// Leaves the process so much address space beside what it has, for as long as this lives.
+/// Limits how many bytes of address space the process may add while this object lives.
 class LittleMemory {
  public:
   explicit LittleMemory(rlim_t more) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Streams whose rows are a multiple of four: on GL devices, scalars lie four to a texel until something needs them
-// otherwise. Whatever it is, results are those of native code, which knows no texels, in every layout.
+// Streams with rows of a multiple of four elements: GL devices pack four scalars in a texel until an operation needs them
+// unpacked. The results must be those of native code, which has no texels, in every layout.
 #include "packing.sk.hpp"
 
 #include <cstdint>
@@ -15,7 +15,7 @@ using namespace run_tests;
 
 namespace {
 
-/// Small whole numbers, which floats add exactly; never 0, so that what is left out shows.
+/// Small integers, which floats add exactly; never 0, so that a missing element shows.
 template <class T>
 std::vector<T> numbers(const sk::Shape& shape, int seed) {
   std::vector<T> made;
@@ -48,7 +48,7 @@ sk::Stream<T> filled(sk::Device& device, const sk::Shape& shape, int seed = 1) {
   return stream;
 }
 
-/// What a scenario has left on a device, as bytes.
+/// The results of a scenario on a device, as bytes.
 class Results {
  public:
   template <class S>
@@ -77,7 +77,7 @@ void sameAsNative(const Scenario& scenario) {
     scenario(one, found);
     REQUIRE(found.all().size() == expected.all().size());
     for (std::size_t i = 0; i < expected.all().size(); ++i) {
-      const bool isSame = found.all()[i] == expected.all()[i];  // neither is worth reading
+      const bool isSame = found.all()[i] == expected.all()[i];  // printing both would not help
       INFO("result " << i);
       CHECK(isSame);
     }

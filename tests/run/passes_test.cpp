@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Kernels that take several passes against plain C++, on devices that keep to what their profile
-// guarantees, and on the device as it is. All exact: the values are such that no operation rounds.
+// Kernels with multipass plans against plain C++, on devices with guaranteed limits and with their own. All results are
+// exact: the values are chosen so that no operation rounds.
 #include "passes.sk.hpp"
 
 #include <array>
@@ -17,8 +17,8 @@ using sk::bool2, sk::float2, sk::float4, sk::int2;
 
 namespace {
 
-/// test(device) on devices that keep to what their profile guarantees, where passes are many, in every layout, and on the
-/// device as it is.
+/// Calls test(device) on devices with the guaranteed limits, which need many passes, and with their own limits, in every
+/// layout.
 template <class Test>
 void onEveryLimit(const Test& test) {
   struct Limits {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Promises: .with({.precision = ...}) computes a kernel's floats as pairs of floats, as doubles or as halves, on every
-// profile and natively, and gives floats; what has no such form is refused.
+// profile and natively, and gives floats; kernels that have no such variant are rejected.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -24,7 +24,7 @@ namespace {
 
 using sk::Precision;
 
-// a result is the exact one, computed with an error far below, rounded to float: half a unit and a little
+// A result is computed with an error far below an ulp, then rounded to float: half an ulp and a little more.
 constexpr double halfUlp = 0x1.001p-24;
 
 template <class T>
@@ -42,7 +42,7 @@ std::vector<float> numbers(std::size_t n, unsigned seed, float low, float high) 
   return x;
 }
 
-/// Those in which a device computes more than floats.
+/// The precisions above float that a device has.
 std::vector<Precision> widePrecisions(const sk::Device& device) {
   if (device.name() == "native" || device.profile() == "glsl330")
     return {Precision::Extended, Precision::Double};
@@ -88,7 +88,7 @@ TEST_CASE("functions, arrays, gathers and constants") {
       auto [r, s] = run(device, precision);
       const std::vector<double> polynomial = exactR.readReals();
       const std::vector<float> got = r.read();
-      // near a root, pairs of floats have an error of their own: 8 operations of 2^-44, of terms up to 20
+      // Near a root, the error of pairs of floats shows: 8 operations with errors of 2^-44, on terms up to 20.
       for (std::size_t i = 0; i < got.size(); ++i) {
         CHECK(std::fabs(got[i] - polynomial[i]) <= halfUlp * std::fabs(polynomial[i]) + 160 * 0x1p-44);
       }
@@ -213,7 +213,7 @@ TEST_CASE("reduces to streams, and of vectors") {
   });
 }
 
-/// The nearest half.
+/// x, rounded to the nearest half.
 float toHalf(double x) { return static_cast<float>(sk::half(static_cast<float>(x))); }
 
 TEST_CASE("halves round every operation") {
@@ -227,7 +227,7 @@ TEST_CASE("halves round every operation") {
       const float x = toHalf(a[i]);
       CHECK(got[i] == toHalf(double{toHalf(double{x} + toHalf(b[i]))} - x));
     }
-    // a sum of 1 that stops at 2048
+    // A sum of ones in sequence would stop at 2048.
     const std::vector<float> ones(1 << 14, 1.0F);
     CHECK(precision::sum.with({.precision = Precision::Half})(streamOf(device, ones)) == 16384);  // a tree
     CHECK(precision::product.with({.precision = Precision::Half})(streamOf<float>(device, {300, 300})) ==
@@ -370,7 +370,7 @@ TEST_CASE("elements are interpolated in doubles") {
       REQUIRE(got.size() == exact.size());
       for (std::size_t i = 0; i < got.size(); ++i) {
         INFO(i << ": " << got[i] << ", not " << exact[i]);
-        // the position is off by 2^-44 of up to 50, of which a difference of elements up to 2 is made
+        // The position, up to 50, has a relative error of 2^-44, which multiplies a difference of elements of up to 2.
         if (!std::isnan(exact[i]))
           CHECK(std::fabs(got[i] - exact[i]) <= halfUlp * std::fabs(exact[i]) + 0x1p-36);
       }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a variable output is what the pushes of all elements are, one after another in row-major order,
-// at every size and layout; its size is known without being waited for until somebody asks.
+// Promises: a variable output holds the pushes of all elements in row-major order, for every size and layout. A call does not
+// wait for the output's size; asking for it does.
 #include <cstdint>
 #include <vector>
 
@@ -52,7 +52,7 @@ TEST_CASE("a stream that was pushed to is a stream like any other") {
     x.write(list);
     auto r = device.stream<float>({17});
     keepPositive(x, r);
-    keepPositive(r, x);   // its size is asked for here
+    keepPositive(r, x);   // needs the size of r
     CHECK(x.read() == positive(list));
     keepPositive(x, x);   // reads the old elements
     CHECK(x.size() == r.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: pushes and scatters of elements that are computed together come in the order of a loop over the elements, whatever
-// way each of them goes, and whatever the number of lanes and threads (CMakeLists.txt runs this with several).
+// Promises: pushes and scatters of elements in lanes keep the order of a loop over the elements, whatever path each element
+// takes, and whatever the number of lanes and threads (CMakeLists.txt runs this with several).
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::int64_t sizes[] = {0, 1, 2, 7, 31, 64, 257, 1009, 4099, 70001, 600011};
 
-/// Numbers below `limit` in no order.
+/// Pseudorandom numbers below `limit`.
 std::vector<int> someInts(std::int64_t count, int limit, std::uint32_t seed = 1) {
   std::vector<int> values(static_cast<std::size_t>(count));
   for (int& value : values) {
@@ -118,7 +118,7 @@ TEST_CASE("rows of a view are pushed one after the other") {
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-/// Limits how far the address space may grow, in bytes, as long as this object lives.
+/// Limits how many bytes of address space the process may add while this object lives.
 class MemoryLimit {
  public:
   explicit MemoryLimit(std::size_t more) {
@@ -142,7 +142,7 @@ TEST_CASE("pushes that find no memory throw, and the next call works") {
   const auto count = streamOf(device, counts);
   const auto three = streamOf(device, std::vector<int>{3});
   auto r = device.stream<sk::float4>({0});
-  endless(three, r);  // whatever is allocated once
+  endless(three, r);  // makes the allocations that happen only once
   {
     const MemoryLimit limit(std::size_t{1} << 28);
     CHECK_THROWS_WITH(endless(count, r), Catch::Contains("endless: there is no host memory for "));
@@ -156,7 +156,7 @@ TEST_CASE("pushes that find no memory throw, and the next call works") {
 
 // ---- scatters --------------------------------------------------------------------------------------
 
-/// Calls store(i) for each element whose index is inside of `count` elements.
+/// Calls store(i, at[i]) for each element i whose index is in [0, count).
 template <class Store>
 void forEachInside(const std::vector<int>& at, std::size_t count, Store&& store) {
   for (std::size_t i = 0; i < at.size(); ++i) {
@@ -164,7 +164,7 @@ void forEachInside(const std::vector<int>& at, std::size_t count, Store&& store)
   }
 }
 
-/// Some are outside: far away, or just before the first or behind the last element.
+/// Indices of which some are outside: far away, just before the first element, or just after the last.
 std::vector<int> someIndices(std::int64_t count, int limit) {
   std::vector<int> at = someInts(count, limit + 2);
   for (std::size_t i = 0; i < at.size(); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Folds of several inputs, with uniforms, gathers, iterators and specialisation constants, against plain
-// loops: streams that lie differently, views, and inputs that repeat.
+// Folds of several inputs, with uniforms, gathers, iterators and specialisation constants, against plain loops: inputs of
+// different layouts, views, and broadcast inputs.
 #include <cmath>
 
 #include "reduce_arguments.sk.hpp"
@@ -14,7 +14,7 @@ using sk::float2, sk::int2, sk::uint2;
 
 namespace {
 
-/// Integers in [-8, 8), of which sums of products are exact.
+/// Integers in [-8, 8), so that sums of products are exact.
 float smallAt(std::size_t i) { return static_cast<float>(hashed(static_cast<std::uint32_t>(i)) % 16u) - 8; }
 float otherAt(std::size_t i) { return smallAt(i + 100003); }
 std::uint32_t bitsAt(std::size_t i) { return valueAt<std::uint32_t>(static_cast<std::uint32_t>(i)); }
@@ -34,7 +34,7 @@ TEST_CASE("two inputs, wherever they lie") {
       float expected = 0;
       for (std::size_t i = 0; i < count(shape); ++i) expected += x.elements()[i] * y.elements()[i];
       CHECK(folds::dot(x.on(device), y.on(device)) == expected);
-      // a view beside a whole stream
+      // A view and a whole stream.
       sk::Shape larger = shape;
       sk::Index begin = sk::Index::origin(shape.rank()), end = begin;
       for (int d = 0; d < shape.rank(); ++d) {

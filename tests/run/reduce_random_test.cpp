@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Folds that do not commute, of two inputs to three accumulators, against a plain loop: random shapes,
-// blocks, views, inputs that repeat, and dimensions left out of the result.
+// Folds that do not commute, with two inputs and three accumulators, against a plain loop: random shapes, blocks, views,
+// broadcast inputs, and results of lower rank.
 #include <random>
 
 #include "reduce_arguments.sk.hpp"
@@ -17,7 +17,7 @@ namespace {
 class Dice {
  public:
   explicit Dice(std::uint32_t seed) : engine_(seed) {}
-  /// In [low, high].
+  /// A random number in [low, high].
   std::int64_t roll(std::int64_t low, std::int64_t high) {
     return low + static_cast<std::int64_t>(engine_() % static_cast<std::uint64_t>(high - low + 1));
   }
@@ -36,7 +36,7 @@ sk::Shape ones(int rank) {
   }
 }
 
-/// Up to some thousands of elements.
+/// A random shape of up to a few thousand elements.
 sk::Shape randomShape(Dice& dice) {
   constexpr std::int64_t most[] = {5000, 75, 17, 8};
   sk::Shape shape = ones(static_cast<int>(dice.roll(1, 4)));
@@ -54,7 +54,7 @@ sk::Shape randomDivisor(Dice& dice, const sk::Shape& shape) {
   return divisor;
 }
 
-/// A stream of its own, or a view of a larger one, with these elements.
+/// A whole stream, or a view of a larger stream, with these elements.
 class Placed {
  public:
   Placed(sk::Device& device, Dice& dice, const HostArray<std::uint32_t>& elements)
@@ -84,7 +84,7 @@ struct Result {
   bool odd = false;
 };
 
-/// The plain loop: what every block folds, row-major.
+/// The expected results: a plain loop folds every block in row-major order.
 std::vector<Result> expectedOf(const HostArray<std::uint32_t>& x, const HostArray<std::uint32_t>& y,
                                const sk::Shape& blocks) {
   const sk::Shape& shape = x.shape();

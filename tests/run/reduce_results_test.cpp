@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What reduces give: several values or streams at once, places, more planes than a pass writes, matrices
-// and narrow types, and streams of fewer dimensions. Everything is exact.
+// Results of reduces: several values or streams at once, indices of elements, more planes than a pass writes, matrices and
+// storage types, and streams of lower rank. All results are exact.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,7 +17,7 @@ namespace {
 
 float smallAt(std::size_t i) { return static_cast<float>(hashed(static_cast<std::uint32_t>(i)) % 16u) - 8; }
 std::uint32_t bitsAt(std::size_t i) { return valueAt<std::uint32_t>(static_cast<std::uint32_t>(i)); }
-/// No two are alike.
+/// Distinct floats, up to 65536 of them.
 float distinctAt(std::size_t i) {
   return static_cast<float>(static_cast<std::uint32_t>(i) * 40503u % 65536u);
 }
@@ -43,9 +43,9 @@ bool sameBest(const std::vector<results::Best>& a, const std::vector<results::Be
       [](const results::Best& x, const results::Best& y) { return x.value == y.value && x.at == y.at; });
 }
 
-/// Devices that write four planes in a pass.
+/// A device that writes four planes in a pass.
 sk::Device& narrowDevice(const std::string& profile) {
-  // Never destroyed: some drivers end before our static objects do.
+  // Never destroyed: some drivers shut down before our static objects are destroyed.
   static auto& devices = *new std::map<std::string, sk::Device>;
   auto found = devices.find(profile);
   if (found == devices.end()) {
@@ -230,7 +230,7 @@ TEST_CASE("products of matrices keep the order of 10007 factors") {
     float2x2 expected = m.elements()[0];
     for (std::size_t i = 1; i < m.elements().size(); ++i) expected = times(expected, m.elements()[i]);
     CHECK(results::exactProduct(m.on(device)) == expected);
-    // powers of a shear and of a quarter turn, exact as they are
+    // Shears and a quarter turn, whose products are exact.
     const HostArray<float2x2> steps({n}, [](std::size_t i) {
       return i % 3 == 0   ? float2x2{{{0, -1}, {1, 0}}}
              : i % 3 == 1 ? float2x2{{{1, 2}, {0, 1}}}

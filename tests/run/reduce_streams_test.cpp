@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Reduces to smaller streams: rows, columns, blocks of every rank; views as input and output; sums
-// that lose and special values.
+// Reduces to smaller streams: rows, columns, blocks of every rank; views as input and output; sums that round, and special
+// values.
 #include <cmath>
 #include <numeric>
 
@@ -68,7 +68,7 @@ TEST_CASE("a reduce to a stream folds each block, in order") {
       reduces::compose(f.on(device), maps);
       CHECK(differenceOfMaps(maps.read(), expected.elements()) == "");
 
-      if (row.output.size() > 2) continue;   // the rest differs in its programs, not in where elements lie
+      if (row.output.size() > 2) continue;   // the rest tests other programs, not other layouts
       reduces::composeSeeded(f.on(device), maps);
       CHECK(differenceOfMaps(maps.read(), expected.elements()) == "");
       const HostArray<float> x(row.input, smallAt);
@@ -119,7 +119,7 @@ TEST_CASE("views are folded, and folded into") {
       const auto target = room.domain(sk::Index::origin(half.rank()), corner);
       reduces::compose(part, target);
       CHECK(differenceOfMaps(target.read(), expected.elements()) == "");
-      // into a part of the very stream that is folded
+      // Into a part of the stream that is folded.
       const auto own = stream.domain(sk::Index::origin(half.rank()), corner);
       reduces::composeSeeded(part, own);
       CHECK(differenceOfMaps(own.read(), expected.elements()) == "");
@@ -152,8 +152,8 @@ TEST_CASE("a chain of kernels and reduces: variance of rows, then the largest") 
 
 TEST_CASE("sums of floats that round stay within the bound of their tree") {
   onEveryProfile([](sk::Device& device) {
-    // N. J. Higham, "The accuracy of floating point summation" (1993): |error| <= d u sum|x| where no element
-    // passes more than d additions; runs of up to 64 elements in up to 3 levels are d < 256.
+    // N. J. Higham, "The accuracy of floating point summation" (1993): |error| <= d u sum|x| if no element
+    // passes through more than d additions; up to 3 levels of up to 64 elements each give d < 256.
     constexpr double u = 5.9604644775390625e-8;
     std::vector<float> x(65537);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::sin(static_cast<float>(i)) * 1000.1f;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Reduces to a value against a plain loop, for every kind of operation, at lengths and shapes of all
-// kinds. Values are chosen so that no order of operations rounds: all exact.
+// Reduces to a value against a plain loop, for every kind of operation, and many lengths and shapes. Values are chosen so
+// that no order of operations rounds: all results are exact.
 #include <algorithm>
 #include <cmath>
 
@@ -14,10 +14,10 @@ using sk::float2, sk::float3, sk::float4, sk::int2, sk::uint2, sk::uint4;
 
 namespace {
 
-/// For what a reduce computes: each shape takes programs of its own, which cost more than they compute.
+/// For tests of what a reduce computes: each shape needs its own programs, and compiling them takes most of the time.
 const std::vector<sk::Shape> fewShapes = {{1}, {2}, {1021}, {13, 17}};
 
-/// For where elements lie, and for order.
+/// For tests of layouts and of order.
 std::vector<sk::Shape> manyShapes(const sk::Device& device) {
   std::vector<sk::Shape> shapes = {{1},      {2},       {3},         {7},        {64},          {65},
                                    {1021},   {4093},    {1, 1},      {13, 17},   {1, 1021},     {1021, 1},
@@ -27,10 +27,10 @@ std::vector<sk::Shape> manyShapes(const sk::Device& device) {
   return shapes;
 }
 
-/// Floats of which sums of 65537 are exact: integers in [-8, 8).
+/// Integers in [-8, 8), so that sums of 65537 floats are exact.
 float smallAt(std::size_t i) { return static_cast<float>(hashed(static_cast<std::uint32_t>(i)) % 16u) - 8; }
 
-/// kernel(stream) is the fold of the elements make(i).
+/// Checks that kernel(stream) is the fold of the elements make(i).
 template <class T, class A, class Make, class Kernel, class Fold>
 void check(sk::Device& device, const char* name, const Make& make, const Kernel& kernel, const A& identity,
            const Fold& fold) {
@@ -93,7 +93,7 @@ TEST_CASE("bits and bools fold") {
         0, [](int& r, int x) { r |= x; });
     check<uint2>(device, "parity", bitsAt<uint2>, reduces::parity, uint2{},
                  [](uint2& r, const uint2& x) { r = {r.x ^ x.x, r.y ^ x.y}; });
-    for (const int odd : {-1, 0, 3, 1000}) {   // which one differs
+    for (const int odd : {-1, 0, 3, 1000}) {   // the element that differs, if there is one
       for (const sk::Shape& shape : {sk::Shape{1021}, sk::Shape{19, 53}, sk::Shape{1}}) {
         INFO("element " << odd << " of shape " << sk::toString(shape));
         const bool isThere = odd >= 0 && odd < shape.size();
@@ -134,7 +134,7 @@ TEST_CASE("how partial results combine follows from the body, or from an overloa
       CHECK(m.count == shape.size());
       const reduces::Mean a = reduces::average(stream);
       CHECK(a.n == shape.size());
-      // a running mean of values up to 8: each step rounds by 2^-22, and log(n) of the steps add up
+      // A mean of values up to 8: each step rounds by up to 2^-22, and an element passes through about log(n) steps.
       CHECK(std::fabs(a.mean - double{sum} / double(shape.size())) < 1e-5);
     }
   });
@@ -202,7 +202,7 @@ TEST_CASE("order is kept where it matters") {
       });
       const auto expected = foldBox(f, {}, shape, reduces::Affine{1, 0}, compose);
       CHECK(isEqual(reduces::compose(f.on(device)), expected));
-      if (shape.rank() > 1) continue;   // the rest differs in its programs, not in where elements lie
+      if (shape.rank() > 1) continue;   // the rest tests other programs, not other layouts
       CHECK(isEqual(reduces::composeSeeded(f.on(device)), expected));
 
       const HostArray<int> n(shape, [](std::size_t i) { return static_cast<int>(i) + 3; });

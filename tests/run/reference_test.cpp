@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: the reference in __float128 runs any program that was compiled for it, holds and computes 113 bits where a
-// kernel says float or double, and tells of others.
+// Promises: the reference in __float128 runs any program that was compiled for it, stores and computes floats and doubles
+// with 113 bits, and rejects other programs.
 #include <cmath>
 #include <cstdint>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// rounds.sk: unrolling and finding neighbors change no bit, whatever the boundary and the shapes, beside loops that stay because
-// their bounds come from the program.
+// rounds.sk: unrolling loops and recognizing neighbors changes no bit, for every boundary mode and shape. The expected results
+// come from loops that stay loops because their bounds are arguments.
 #include <algorithm>
 
 #include "rounds.sk.hpp"

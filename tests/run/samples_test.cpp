@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// sample() against plain C++. Elements and weights have so few bits that no step rounds, and all is exact
-// but where a bound says otherwise.
+// sample() against plain C++. Elements and weights have so few bits that no step rounds: results are exact unless a test
+// states a bound.
 #include <array>
 #include <bit>
 #include <limits>
@@ -29,7 +29,7 @@ std::int64_t borderIndex(std::int64_t i, std::int64_t n) { return i < 0 || i >= 
 using Inside = std::int64_t (*)(std::int64_t, std::int64_t);
 constexpr float outsideValue = -7;
 
-/// The neighbour below a position, as far as indices go, and the weight of the one above.
+/// The index of the neighbour below a position, limited to the range of indices, and the weight of the neighbour above.
 struct Split {
   std::int64_t index;
   float weight;
@@ -41,7 +41,7 @@ Split splitAt(float x) {
 
 float lerp(float a, float b, float t) { return t <= 0 ? a : t >= 1 ? b : a * (1 - t) + b * t; }
 
-/// Component `c` of `a` at `x`, x fastest, interpolated along the first `dimensions` of them.
+/// Component `c` of `a` at position `x` (fastest dimension first), interpolated along its first `dimensions` dimensions.
 template <class T>
 float interpolated(const HostArray<T>& a, const std::array<float, 4>& x, int dimensions, Position p, int c,
                    Inside inside) {
@@ -78,7 +78,7 @@ const std::vector<float> positions = {0,     1,          0.125f,  0.5f, 2.875f, 
                                       6.25f, -0.0f,      -0.125f, -1,   -5.5f,  17.5f,    -100.625f,
                                       1e6f,  8388607.5f, -3e7f,   3e9f, -1e30f, infinity, -infinity};
 
-/// Position number i of a gather of the rank of X.
+/// Position number i, of as many components as X.
 template <class X>
 X positionAt(std::uint32_t i) {
   std::array<float, sizeof(X) / 4> x{};
@@ -143,7 +143,7 @@ TEST_CASE("a whole position gives the element to the bit, and a neighbour withou
       CHECK((std::isnan(a[i]) ? std::isnan(read[i])
                               : std::bit_cast<std::uint32_t>(read[i]) == std::bit_cast<std::uint32_t>(a[i])));
     }
-    // so near below 0 that the weight rounds to 1; between infinite elements; NaN as position
+    // A position so close below 0 that the weight rounds to 1; positions between infinite elements; NaN as a position.
     const std::vector<float> near = {-1e-10f, 0.5f, 5.5f, 2.5f, notANumber};
     auto s = device.stream<float>({5});
     samples::line_clamp(streamOf<float>(device, {1.5f, infinity, 2, notANumber, 4, 5, -infinity}),
@@ -177,7 +177,7 @@ TEST_CASE("sample rounds a few times for each dimension") {
       const double high = at(px, py + 1).x * (1 - tx) + at(px + 1, py + 1).x * tx;
       worst = std::max(worst, std::fabs(read[i].x - (low * (1 - ty) + high * ty)));
     }
-    // per dimension: two weights, two products and a sum of numbers below 2.3, each rounded to 2^-24
+    // Per dimension: two weights, two products and a sum, all below 2.3 and rounded with relative error 2^-24.
     CHECK(worst <= 2 * 5 * 2.3 * 0x1p-24);
   });
 }
@@ -192,7 +192,7 @@ TEST_CASE("[[filter]] is as exact as the device's filter, and exact where that c
         {static_cast<float>(hashed(i) % 400) / 8 - 15, static_cast<float>(hashed(i + 5000) % 400) / 8 - 15});
     u.push_back(x.back().x);
   }
-  // Weights of 8 bits are off by 2^-9, in each of two dimensions, between elements in [-8, 8].
+  // Weights of 8 bits have errors up to 2^-9 in each of two dimensions, between elements in [-8, 8].
   constexpr double bound = 2 * 16 * 0x1p-9;
   onEveryLayout([&](sk::Device& device) {
     const auto where = streamOf<float2>(device, x);
@@ -216,7 +216,7 @@ TEST_CASE("[[filter]] is as exact as the device's filter, and exact where that c
     CHECK(farthest(a, mirrorIndex) <= bound);
     samples::filtered_border(whole, where, r);
     CHECK(farthest(a, borderIndex) == 0);
-    // a view, and a stream too long for its texture where the limit is small
+    // A view, and a stream that is too long for a texture of the small devices.
     const auto part = whole.domain({0, 0}, {7, 9});
     const HostArray<float2> inner(part.shape(),
                                   [&](std::size_t i) { return a[positionOf(part.shape(), i)]; });
@@ -231,7 +231,7 @@ TEST_CASE("[[filter]] is as exact as the device's filter, and exact where that c
     for (std::size_t i = 0; i < u.size(); ++i) {
       REQUIRE(std::fabs(double{read[i]} - sampled(line, u[i], mirrorIndex)) <= allowed);
     }
-    // other textures are read as ever afterwards
+    // Later reads of other textures are not filtered.
     samples::plane_wrap(whole, where, r);
     CHECK(farthest(a, wrapIndex) == 0);
   });
@@ -322,7 +322,7 @@ TEST_CASE("reduces fold what lies between elements") {
   const HostArray<float> bf({9}, [](std::size_t i) { return static_cast<float>(i * 5 % 9); });
   std::vector<float2> x;
   std::vector<float> line;
-  for (std::uint32_t i = 0; i < 64; ++i) {   // of sums with 14 bits of fraction, below 2^9
+  for (std::uint32_t i = 0; i < 64; ++i) {   // exact: sums have 14 fraction bits and are below 2^9
     x.push_back(
         {static_cast<float>(hashed(i) % 50) / 8 - 1, static_cast<float>(hashed(i + 500) % 50) / 8 - 1});
     line.push_back(x.back().x);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a scatter output ends as if the elements had run one after another, for every type, rank and layout,
-// on views and in place. Integers are exact over all 32 bits. Floats are compared bit for bit too: the device
-// adds in the order of the elements, and the values here are small multiples of 1/8, whose sums are exact.
+// Promises: a scatter output has the same result as running the elements one after another, for every type, rank and layout,
+// on views and in place. Integers are exact in all 32 bits. Floats are compared bit for bit, too: the device adds in the order
+// of the elements, and the values here are small multiples of 1/8, whose sums are exact.
 #include <algorithm>
 #include <cstdint>
 #include <random>
@@ -17,7 +17,7 @@ using run_tests::onEveryLayout;
 
 constexpr std::int64_t sizes[] = {0, 1, 2, 67, 1009, 4001};
 
-/// Indices of which some are outside.
+/// Random indices, some of them outside the extent.
 std::vector<int> indicesInto(std::int64_t extent, std::int64_t count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> index(-2, static_cast<int>(extent) + 2);
@@ -42,7 +42,7 @@ std::vector<float> eighths(std::int64_t count, unsigned seed) {
   return list;
 }
 
-/// Runs `kernel(at, x, r)` over streams and `fold(r[i], x)` over arrays, and compares.
+/// Compares kernel(at, x, r) over streams with fold(r[i], x) over arrays.
 template <class T, class Kernel, class Fold>
 void compare(sk::Device& device, const Kernel& kernel, const std::vector<T>& x, const std::vector<T>& before,
              const Fold& fold) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Long random sequences of everything that changes streams: writes, calls on views, reduces, streams
-// that come and go, on two devices in turn. After each step some stream is compared with plain arrays.
+// Long random sequences of operations that change streams: writes, calls on views, reduces, streams that are made and
+// destroyed, on several devices in turn. After each step, a stream is compared with a plain array.
 #include <optional>
 #include <random>
 
@@ -19,14 +19,14 @@ struct Pair {
   HostArray<int> host;
 };
 
-/// A box of one of them.
+/// A box of the stream of a pair.
 struct Box {
   std::size_t pair;
   sk::Index begin, end;
   sk::Shape shape() const { return {end[0] - begin[0], end[1] - begin[1]}; }
 };
 
-/// Sums wrap on devices; so do they here.
+/// Wraps a sum as devices do.
 int wrapped(std::int64_t v) { return static_cast<int>(static_cast<std::uint32_t>(v)); }
 std::int64_t mirrored(std::int64_t i, std::int64_t n) {
   const std::int64_t m = ((i % (2 * n)) + 2 * n) % (2 * n);
@@ -54,14 +54,14 @@ class Sequence {
   std::int64_t extent() { return 1 + static_cast<std::int64_t>(below(below(3) == 0 ? 70 : 12)); }
 
   Pair made() {
-    const sk::Shape shape{extent(), 1 + extent() % 55};   // on a small device, up to 64 x 64 elements
+    const sk::Shape shape{extent(), 1 + extent() % 55};   // up to 64 x 64 elements on a small device
     const std::uint32_t seed = random_();
     HostArray<int> host(
         shape, [&](std::size_t i) { return static_cast<int>(hashed(seed + static_cast<std::uint32_t>(i))); });
     return {host.on(device_), host};
   }
 
-  /// A box of at least one element in a random stream, of the given shape where it fits.
+  /// A random box of at least one element in a random stream.
   Box box() {
     const std::size_t pair = below(pairs_.size());
     const sk::Shape& shape = pairs_[pair].host.shape();
@@ -73,7 +73,8 @@ class Sequence {
     }
     return result;
   }
-  /// A box of this shape, or of extent 1 where `repeats`; nothing if no stream that is looked at has one.
+  /// A random box of this shape; `repeats` allows extent 1 in one dimension instead. Gives up after a few streams that are
+  /// too small.
   std::optional<Box> boxOf(sk::Shape shape, bool repeats) {
     if (repeats && below(3) == 0) shape = shape.with(static_cast<int>(below(2)), 1);
     for (int attempt = 0; attempt < 8; ++attempt) {
@@ -157,7 +158,7 @@ class Sequence {
 }  // namespace
 
 TEST_CASE("whatever the order of writes, calls and reduces, streams hold what plain arrays hold") {
-  // the steps that come first take most programs of their own, which cost more than they compute
+  // The first steps need most of the programs, and compiling these takes most of the time.
   Sequence glsl(device("glsl330"), 1), essl(device("essl300"), 2),
       small(device("glsl330", smallLimits[1]), 3);
   for (int i = 0; i < 60; ++i) {

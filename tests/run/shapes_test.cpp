@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Shapes: indexof and extentof, inputs that repeat, views as inputs and outputs, calls in place.
+// Shapes: indexof and extentof, broadcast inputs, views as inputs and outputs, calls in place.
 #include "streams.sk.hpp"
 #include "support/devices.hpp"
 #include "support/host_array.hpp"
@@ -113,7 +113,7 @@ TEST_CASE("inputs stretch and stride to the domain by whole ratios") {
       const auto scaled = [&](Position p, const sk::Shape& shape) {
         for (int d = 0; d < shape.rank(); ++d) {
           auto& q = p[static_cast<std::size_t>(d)];
-          q = q * shape[d] / row.r[d];   // both are whole
+          q = q * shape[d] / row.r[d];   // exact
         }
         return p;
       };
@@ -303,14 +303,14 @@ TEST_CASE("a call may read and write one stream") {
       CHECK(difference(stream.read(), [&](std::size_t i) { return static_cast<int>(4u * unsigned(x[i])); }) ==
             "");
     }
-    // a part shifted onto itself: every element is read before any is written
+    // The views overlap: every element is read before any is written.
     std::vector<int> x(100);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<int>(i);
     auto stream = streamOf<int>(device, x);
     streams::add(stream.domain({0}, {90}), stream.domain({5}, {95}), stream.domain({10}, {100}));
     CHECK(difference(stream.read(), [](std::size_t i) { return i < 10 ? int(i) : int(2 * (i - 10) + 5); }) ==
           "");
-    // a view that repeats, into the stream that it is a view of
+    // A broadcast view, with the result in its own stream.
     auto row = streamOf<int>(device, {1, 4}, {1, 2, 3, 4});
     streams::add(row.domain({0, 1}, {1, 2}), row, row);
     CHECK(row.read() == std::vector<int>{3, 4, 5, 6});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Sinks of every kind of element, against plain C++. All exact.
+// Variable and scatter outputs with every kind of element, against plain C++. All results are exact.
 #include "sinks.sk.hpp"
 
 #include "support/devices.hpp"

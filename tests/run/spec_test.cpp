@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Specialisation constants: every value computes what it says, and what it switches off need not be
-// given, but must where it is needed after all.
+// Specialisation constants: every value gives the right results. An argument that a value switches off may be left out;
+// one that is needed may not.
 #include "spec.sk.hpp"
 
 #include <limits>
@@ -72,7 +72,7 @@ TEST_CASE("outputs and gathers that a switch leaves out") {
     CHECK(difference(sum.read(), [](std::size_t i) { return 3 + 2 * static_cast<float>(i); }) == "");
     CHECK(difference(product.read(), products) == "");
     product.write(numbered({70}, 0));
-    spec::modes(0, x, y, sum, product);   // given, but not written: it keeps what it held
+    spec::modes(0, x, y, sum, product);   // `product` is given, but not written: it keeps its elements
     CHECK(product.read() == numbered({70}, 0));
     spec::modes(7, sk::none, sk::none, sk::none, sk::none);   // nothing is left to do
   });

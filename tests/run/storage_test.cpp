@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a stream may hold halves or doubles for its floats; what kernels write is rounded to nearest, and what they
-// compute in doubles is kept in a stream of doubles.
+// Promises: a stream may store its floats as halves or doubles; halves are rounded to nearest, and a stream of doubles keeps
+// what a kernel computes in doubles.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -86,7 +86,7 @@ TEST_CASE("doubles keep what is computed in doubles") {
     for (std::size_t i = 0; i < exact.size(); ++i) {
       CHECK(std::fabs(got[i] - exact[i]) <= 0x1p-40 * (0.3 + std::fabs(exact[i])) + 1e-25);
     }
-    // and without doubles in the kernel, a stream of them holds floats
+    // If the kernel computes in float, a stream of doubles holds floats.
     for (const double v : run(device, Storage::Extended, {}))
       CHECK((v == static_cast<float>(v) || std::isnan(v)));
   });

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Structs and arrays against the C++ compiler's reading of the same text.
+// Compares structs and arrays with the same text compiled as C++.
 #include "structs.sk.hpp"
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"   // that the rest is zero is tested
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"   // tests that missing members are zero
 #include "shared/structs.hpp"
 #pragma GCC diagnostic pop
 #include "support/shared_cases.hpp"

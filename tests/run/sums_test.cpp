@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: sums of floats keep what their roundings lose, on every profile, unless a call asks for the plain
-// tree; what is no sum of floats is folded as ever.
+// Promises: sums of floats are compensated on every profile, unless a call asks for the plain tree; reduces that are no sums
+// of floats are folded as usual.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -29,7 +29,7 @@ sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
   return stream;
 }
 
-/// Numbers of magnitudes from 2^-20 to 2^20 and their negatives, in random order, and a small rest.
+/// Numbers of magnitudes from 2^-20 to 2^20 and their negatives, in random order, and 0.125, which is their sum.
 std::vector<float> cancelling(std::size_t pairs, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> mantissa(1, 2);
@@ -48,7 +48,8 @@ double magnitudes(const std::vector<float>& x) {
   return std::accumulate(x.begin(), x.end(), 0.0, [](double s, float v) { return s + std::fabs(v); });
 }
 
-/// u for the result's own rounding, and (log2 n)^2 u^2 of the magnitudes: NUMERICS 1.4.
+/// The error bound of a compensated sum: u |sum| for rounding the result, and (log2 n)^2 u^2 times the sum of magnitudes
+/// (Ogita, Rump and Oishi, 2005, for Sum2 over a tree).
 double bound(double exact, double magnitude, std::size_t n) {
   const double log = std::log2(static_cast<double>(n)) + 1;
   return u * std::fabs(exact) + log * log * u * u * magnitude;
@@ -73,7 +74,7 @@ TEST_CASE("the plain tree is there for the asking") {
     const std::vector<float> x = cancelling(30000, 4);
     const float plain = sums::sum.with({.accumulate = sk::Accumulate::Tree})(streamOf(device, x));
     CHECK(std::fabs(plain - 0.125) <= 20 * u * magnitudes(x));
-    CHECK(std::fabs(plain - 0.125) > bound(0.125, magnitudes(x), x.size()));  // else nothing was to be gained
+    CHECK(std::fabs(plain - 0.125) > bound(0.125, magnitudes(x), x.size()));  // so these numbers need compensation
   });
 }
 
@@ -116,7 +117,7 @@ TEST_CASE("sums beside other accumulators, with an early return") {
     x.insert(x.begin() + 7, std::numeric_limits<float>::quiet_NaN());
     const auto [s, m, n] = sums::moments(streamOf(device, x), 0.0F);
     x.erase(x.begin() + 7);
-    if (n == static_cast<std::int32_t>(x.size())) {  // where the device knows NaN
+    if (n == static_cast<std::int32_t>(x.size())) {  // if isnan() works on the device
       CHECK(std::fabs(s - 0.125) <= bound(0.125, magnitudes(x), x.size()));
       CHECK(m == *std::max_element(x.begin(), x.end()));
     }
@@ -262,7 +263,7 @@ TEST_CASE("the author's combination, where it does more") {
     const std::vector<float> x = cancelling(3000, 26);
     const sums::Variance v = sums::variance(streamOf(device, x));
     CHECK(v.n == static_cast<float>(x.size()));
-    CHECK(std::fabs(v.sum - 0.125) <= bound(0.125, magnitudes(x), x.size()));  // the one that is added to
+    CHECK(std::fabs(v.sum - 0.125) <= bound(0.125, magnitudes(x), x.size()));  // only `sum` is a plain sum
     const auto plain = sums::variance.with({.accumulate = sk::Accumulate::Tree});
     CHECK(plain(streamOf(device, x)).m2 == Approx(v.m2).epsilon(1e-4));
     const auto insisted = sums::scaled.with({.accumulate = sk::Accumulate::Compensated});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: a function with a table is looked up in it, within the error that the device tells, in every kind of kernel and
-// on every device; it is computed where a call, a kernel's declaration, a file or a precision says so.
+// Promises: a function with a table is looked up, within the error that the device reports, in every kind of kernel and on
+// every device; it is computed instead if a call, a kernel's declaration, a file or a precision says so.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -29,7 +29,7 @@ sk::Stream<float> streamOf(sk::Device& device, const std::vector<float>& values)
   return stream;
 }
 
-/// Numbers over a range, both ends among them.
+/// Evenly spaced numbers over a range, including both ends.
 std::vector<float> ramp(float low, float high, std::size_t count) {
   std::vector<float> values(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -66,9 +66,9 @@ TEST_CASE("a linear table's error is what theory says, and what the device tells
     const std::vector<float> x = ramp(-4, 4, 30000);
     const double error = largestError(x, called(device, table::bells, x), bell);
     const sk::TableReport report = reportOf(device, "table::bell");
-    // h^2/8 max |f''|, which is 2 at 0
+    // The error of linear interpolation is h^2/8 max |f''|, and |f''| is 2 at 0.
     const double h = 8.0 / 1024;
-    CHECK(report.predicted == Approx(h * h / 4).epsilon(0.1));  // and some roundings
+    CHECK(report.predicted == Approx(h * h / 4).epsilon(0.1));  // plus roundings
     CHECK(report.measured <= report.predicted);
     CHECK(report.measured > 0.9 * h * h / 4);
     CHECK(std::abs(report.worst) < 4 * h);
@@ -154,7 +154,7 @@ TEST_CASE("a call, a declaration and a precision compute the function") {
 
 TEST_CASE("reductions, pushes and functions of functions look up, too") {
   onEveryLayout([](sk::Device& device) {
-    const std::vector<float> x = ramp(-0.5, 0.5, 5000);  // where every chord is below the curve
+    const std::vector<float> x = ramp(-0.5, 0.5, 5000);  // here every chord is below the curve
     const auto stream = streamOf(device, x);
     double looked = 0;
     for (const float v : called(device, table::bells, x)) looked += v;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Templates: each instance computes in its own types, and C++ chooses it by its arguments.
+// Templates: each instance computes in its own types, and C++ selects the instance by the arguments.
 #include "templates.sk.hpp"
 
 #include "support/devices.hpp"

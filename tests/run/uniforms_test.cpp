@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Uniform arrays, and arrays in uniform structs: every element arrives, from every kind of host array.
+// Uniform arrays, and arrays in uniform structs: every element reaches the kernel, from every kind of host array.
 #include "uniforms.sk.hpp"
 
 #include <array>
@@ -94,7 +94,7 @@ TEST_CASE("uniforms arrive bit by bit, and again when they change") {
     auto r = device.stream<sk::int4>({2});
     auto s = device.stream<sk::int4>({2});
     auto t = device.stream<sk::uint4>({2});
-    // a NaN with a payload, -0, a denormal and an infinity; then others, of which but one is new
+    // A NaN with a payload, -0, a denormal and an infinity; then the same with another last value.
     for (const int last : {-8388608, 0x7f7fffff}) {
       const sk::int4 bits = {0x7fc12345, -2147483647 - 1, 1, last};
       const auto f = [](int of) { return std::bit_cast<float>(of); };

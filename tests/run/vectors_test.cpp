@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Vectors against plain C++ on their components. Floats are small multiples of 1/256 and no
-// operation rounds, so all is exact.
+// Vectors against plain C++ on their components. Floats are small multiples of 1/256 and no operation rounds, so all results
+// are exact.
 #include "vectors.sk.hpp"
 
 #include <functional>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t count = 257;
 
-/// f applied to each component of the arguments.
+/// Applies f to each component of the arguments.
 template <class F, class... V>
 auto by4(const F& f, const V&... v) {
   using R = decltype(f(v.x...));
@@ -243,7 +243,7 @@ TEST_CASE("uint operators wrap by components") {
 
 TEST_CASE("comparisons of vectors give masks by components") {
   auto v = values<float4>(count), w = values<float4>(count, 1);
-  for (std::size_t i = 0; i < v.size(); ++i) {   // equal components now and then
+  for (std::size_t i = 0; i < v.size(); ++i) {   // makes some components equal
     if (i % 2 == 0) w[i].x = v[i].x;
     if (i % 3 == 0) w[i].z = v[i].z;
     if (i % 7 == 0) w[i] = v[i];

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// What a call of the runtime throws, as text, for tests of its messages.
+// The text of the error that a call of the runtime throws, for tests of messages.
 #pragma once
 
 #include <string>
 
 #include "sk/error.hpp"
 
-/// The text of the sk::Error that `call` throws; "no error" where it throws none.
+/// The text of the sk::Error that `call` throws; "no error" if it throws none.
 std::string errorOf(const auto& call) {
   try {
     call();

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of this process, for as long as this lives.
+/// A folder for this process, removed at the end.
 class Folder {
  public:
   Folder() { fs::create_directories(path_); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// glslangValidator, the reference compiler of GLSL, over what skc writes: many programs in one process, and its
+// Checks the GLSL that skc writes with glslangValidator, the reference compiler: many programs in one process, with its
 // messages as data.
 #pragma once
 
@@ -13,13 +13,13 @@ namespace glslang {
 std::vector<std::string> programsOf(const std::string& listing);
 
 struct Complaint {
-  int source;  ///< source string number: 0 the program itself, else the file of #line
+  int source;  ///< source string number: 0 for the program itself, else the file that a #line names
   int line;
   std::string text;
 };
 
-/// What glslang complains of in fragment and compute programs, program by program. Throws std::runtime_error where it cannot
-/// be run.
+/// glslang's complaints about each of these fragment and compute programs. Throws std::runtime_error if glslang cannot be
+/// run.
 std::vector<std::vector<Complaint>> complaintsOf(const std::vector<std::string>& programs);
 
 }  // namespace glslang

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How often a text stands in another, for tests of generated text.
+// Counts the occurrences of a text in another, for tests of generated text.
 #pragma once
 
 #include <cstddef>

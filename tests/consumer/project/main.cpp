@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs two kernels from two .sk files of one name, and prints what comes out.
+// Runs two kernels from two .sk files of the same name, and prints their results.
 #include <sk/sk.hpp>
 
 #include <cstdio>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Expressions that choose, compare, read streams and call, and values of whole variables.
+// Random expressions that select, compare, read streams or call functions, and initialisers of variables.
 #include <algorithm>
 #include <cmath>
 
@@ -38,7 +38,7 @@ Value gathered(const Gather& gather, const HostStream& stream, std::array<std::i
   return stream.elements[static_cast<std::size_t>(number)];
 }
 
-/// a ? b : c in its forms: by a bool, by a mask, by a bool vector.
+/// The forms of a ? b : c: by a bool, by a mask of ints, and select() by a bool vector.
 Expr Expressions::chosen(Type type, int depth) {
   Expr a = make(type, depth - 1), b = make(type, depth - 1);
   const Bound bound{std::max(a.bound.magnitude, b.bound.magnitude),
@@ -49,7 +49,7 @@ Expr Expressions::chosen(Type type, int depth) {
   const Expr condition = isMask          ? comparison(type.width, depth - 1)
                          : isByComponent ? make({Scalar::Bool, type.width}, depth - 1)
                                          : make({Scalar::Bool, 1}, depth - 1);
-  if (isMask) {   // Clang wants one type on both sides, a const one being another
+  if (isMask) {   // Clang requires the same type on both sides, and counts const as a difference
     a.text = fmt::format("{}({})", spelling({}, type), a.text);
     b.text = fmt::format("{}({})", spelling({}, type), b.text);
   }
@@ -68,7 +68,7 @@ Expr Expressions::chosen(Type type, int depth) {
           bound.bits() > exactBits ? kept : bound};
 }
 
-/// A bool, or a vector of ints with -1 where true.
+/// A comparison, which gives a bool, or for vectors a mask: ints that are -1 for true.
 Expr Expressions::comparison(int width, int depth) {
   static constexpr Scalar scalars[] = {Scalar::Float, Scalar::Int, Scalar::Uint};
   const Scalar scalar = random_.pick(scalars);
@@ -105,7 +105,7 @@ Expr Expressions::makeBool(int width, int depth) {
   }
   if (kind == 2) {
     const Expr a = make(type, depth - 1);
-    // ! of a bool vector gives a mask, ~ a bool vector
+    // For a bool vector, ! gives a mask, and ~ a bool vector.
     const std::string text = width == 1             ? fmt::format("(!{})", a.text)
                              : random_.chance(1, 2) ? fmt::format("(~{})", a.text)
                                                     : fmt::format("{}(!{})", spelling({}, type), a.text);
@@ -115,7 +115,7 @@ Expr Expressions::makeBool(int width, int depth) {
               return r;
             }};
   }
-  if (kind == 3 && width == 1) {   // any or all of a mask or a bool vector
+  if (kind == 3 && width == 1) {   // any() or all() of a mask or a bool vector
     const bool isAny = random_.chance(1, 2);
     const int count = random_.between(2, 4);
     const Expr a =
@@ -147,7 +147,7 @@ Expr Expressions::makeBool(int width, int depth) {
           }};
 }
 
-/// A matrix times a vector: the dot products of its rows.
+/// A matrix times a vector.
 Expr Expressions::product(int width, int depth) {
   const Expr m = matrix(width, depth - 1), v = tamed(make({Scalar::Float, width}, depth - 1));
   return {{Scalar::Float, width},
@@ -165,7 +165,7 @@ Expr Expressions::product(int width, int depth) {
           {2 * kept.magnitude + 2, 2 * kept.fraction}};
 }
 
-/// A matrix whose elements are within `kept`.
+/// A matrix whose elements are within the bound `kept`.
 Expr Expressions::matrix(int width, int depth) {
   const Type type{Scalar::Float, width, true};
   std::vector<Place> known;
@@ -211,7 +211,7 @@ Expr Expressions::makeKept(Type type, int depth) {
   if (type.record < 0) {
     Expr expr = make({carrierOf(type.scalar), type.width}, depth);
     if (type.scalar == Scalar::Float || type.scalar == Scalar::Half) expr = tamed(expr);
-    // Narrow types are converted to by name; and Clang's components of bool vectors are no bools in braces.
+    // Storage types need an explicit conversion. So does bool: in braces, Clang does not accept a component of a bool vector.
     const bool isBool = type == Type{Scalar::Bool, 1};
     if (isNarrow(type.scalar) || isBool)
       expr.text = fmt::format("{}({})", spelling(records, type), expr.text);
@@ -265,7 +265,7 @@ std::optional<Expr> Expressions::call(Type type, int depth) {
   return fit(
       {function.result, fmt::format("{}({})", function.name, text),
        [arguments, run = function.call](Frame& frame) {
-         std::vector<Value> values;  // all of them before any is there: a call may stand in an argument
+         std::vector<Value> values;  // evaluated before any is stored: an argument may call the function, too
          for (const auto& argument : arguments) values.push_back(argument.first(frame));
          for (std::size_t i = 0; i < values.size(); ++i) {
            frame.slots[static_cast<std::size_t>(arguments[i].second)] = values[i];
@@ -294,7 +294,7 @@ std::optional<Expr> Expressions::gatherRead(Type type, int depth) {
   } else {
     text = fmt::format("{}[{}]", gather.name, index.text);
   }
-  // Read like a variable that holds the element.
+  // Reads the element like a variable that holds it.
   const auto element = [gather, at = index.value, isNear, isFloat](Frame& frame) {
     const Value where = at(frame);
     std::array<std::int64_t, 2> place{};

@@ -13,7 +13,7 @@
 
 namespace {
 
-/// In place of a type that only the descriptors know: streams of it have the element of the moment.
+/// Stands for an element type that only the descriptors know. Streams are made with the current `element`.
 struct Untyped {
   static const sk::program::Element* element;
 };
@@ -33,7 +33,7 @@ using Bytes = std::vector<std::byte>;
 
 std::size_t sizeOf(Scalar scalar) { return sk::program::hostBytes(static_cast<sk::program::Scalar>(scalar)); }
 
-/// What the host keeps for a component whose carrier has these bits.
+/// The storage bits of a component whose arithmetic type has these bits.
 std::uint32_t stored(Scalar scalar, std::uint32_t bits) {
   const auto value = std::bit_cast<float>(bits);
   if (scalar == Scalar::Half) return sk::half(value).bits();
@@ -44,7 +44,7 @@ std::uint32_t stored(Scalar scalar, std::uint32_t bits) {
   return static_cast<std::uint32_t>(sk::snorm16(value).integer());
 }
 
-/// Calls visit(scalar, byte offset, number of the component) for each component of an element.
+/// Calls visit(scalar, byte offset, component number) for each component of an element.
 template <class Visit>
 void components(const sk::program::Element& element, Visit visit) {
   int number = 0;
@@ -54,7 +54,7 @@ void components(const sk::program::Element& element, Visit visit) {
   }
 }
 
-/// Values as they lie in host memory. A uniform array is one element of many values, `perValue` components each.
+/// Writes values as they lie in host memory. A uniform array is one element of many values, `perValue` components each.
 void pack(const sk::program::Element& element, std::span<const Value> values, int perValue,
           std::byte* target) {
   components(element, [&](Scalar scalar, std::size_t offset, int number) {
@@ -130,7 +130,7 @@ class Run {
     return bytes.data();
   }
 
-  /// The two ends of a ramp, one after the other.
+  /// The begin and the end of an iterator, one after the other.
   const void* ends(std::size_t p) {
     const Parameter& parameter = kernel_.parameters()[p];
     const std::vector<std::int64_t>& domain = kernel_.domain();
@@ -188,7 +188,7 @@ class Run {
     return {};
   }
 
-  /// The same but for the sign of a zero, over the bytes that the host keeps.
+  /// Whether two components are the same in the bytes that the host stores, apart from the sign of a zero.
   static bool agree(Scalar scalar, std::uint32_t a, std::uint32_t b) {
     if (scalar == Scalar::Float) return std::bit_cast<float>(a) == std::bit_cast<float>(b);
     if (scalar == Scalar::Half) return a == b || ((a | b) & 0x7fffu) == 0;

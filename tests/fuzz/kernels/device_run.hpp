@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs a compiled random kernel on a device and compares all of its outputs with what they must hold.
+// Runs a compiled random kernel on a device and compares all of its outputs with the expected ones.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace fuzz {
 
-/// What differs, or ''. The descriptors must outlive the device. Throws sk::Error where the runtime does.
+/// The first difference, or "". The descriptors must outlive the device. Throws what the runtime throws.
 std::string difference(sk::Device& device, const sk::program::Kernel& compiled, const RandomKernel& kernel);
 
 }  // namespace fuzz

@@ -17,7 +17,7 @@ constexpr char axes[] = "xyzw";
 
 bool isFunction(const char* what) { return what[0] >= 'a' && what[0] <= 'z'; }
 
-/// Component by component; a scalar goes with every component of the other.
+/// Applies f component by component; a scalar operand is broadcast.
 template <class F>
 std::function<Value(Frame&)> componentwise(const Expr& a, const Expr& b, int width, F f) {
   return [left = a.value, right = b.value, aWide = a.type.width > 1, bWide = b.type.width > 1, width,
@@ -49,7 +49,7 @@ std::string unary(const char* what, const Expr& a) {
 
 }  // namespace
 
-// ---- what is read ---------------------------------------------------------------------------------
+// ---- places and leaves ----------------------------------------------------------------------------
 
 Place Expressions::whole(const Variable& variable, int depth) {
   if (variable.length == 0) {
@@ -61,7 +61,7 @@ Place Expressions::whole(const Variable& variable, int depth) {
             },
             variable.isWritable};
   }
-  // An index outside takes the nearest element.
+  // An index out of bounds is clamped.
   const Expr index = depth > 0 ? make({Scalar::Int, 1}, depth - 1) : makeLiteral({Scalar::Int, 1});
   return {variable.type, fmt::format("{}[{}]", variable.name, index.text),
           [slot = variable.slot, length = variable.length, at = index.value](Frame& frame) {
@@ -103,7 +103,7 @@ std::vector<Place> Expressions::partsOf(const Place& place) {
   return parts;
 }
 
-/// One component or several of a vector, by name or by a computed index.
+/// One or several components of a vector, by name or by a computed index.
 Place Expressions::component(const Place& place, int depth) {
   const int width = place.type.width;
   if (random_.chance(1, 2)) {
@@ -167,7 +167,7 @@ Expr Expressions::read(const Place& place) {
   if (!isNarrow(type.scalar)) return {type, place.text, load, kept};
   const std::string wide = fmt::format("{}({})", spelling({}, carrier), place.text);
   if (!isNormalized(type.scalar)) return {carrier, wide, load, kept};
-  // Its integer, which is exact.
+  // The stored integer, which is exact.
   const float scale = scaleOf(type.scalar);
   Expr number{{Scalar::Int, type.width},
               fmt::format("{}(roundEven({} * {:.1f}))", spelling({}, {Scalar::Int, type.width}), wide, scale),
@@ -205,7 +205,7 @@ Expr Expressions::fit(Expr expr, int width, int depth) {
             expr.bound};
   }
   const std::string name = spelling({}, type);
-  if (expr.type.width == 1 && random_.chance(1, 2)) {   // the same everywhere
+  if (expr.type.width == 1 && random_.chance(1, 2)) {   // broadcast
     return {type, fmt::format("{}({})", name, expr.text),
             [inner = expr.value](Frame& frame) {
               Value r = inner(frame);
@@ -238,7 +238,7 @@ Expr Expressions::makeLiteral(Type type) {
   return {type, literal(type, value), [value](Frame&) { return value; }, kept};
 }
 
-/// A part of a variable whose carrier is the type's, or a literal.
+/// A part of a variable with the same arithmetic type, or a literal.
 Expr Expressions::leaf(Type type, int depth) {
   std::vector<Place> fitting;
   if (!scope_.variables.empty() && !random_.chance(1, 6)) {
@@ -289,7 +289,7 @@ Expr Expressions::tamed(Expr expr) {
 Expr Expressions::makeFloat(int width, int depth) {
   const Type type{Scalar::Float, width};
   switch (random_.below(8)) {
-    case 0: {   // of an integer that is small
+    case 0: {   // conversion of a small integer
       const Expr small = make({random_.chance(1, 2) ? Scalar::Int : Scalar::Uint, width}, depth - 1);
       const char* mask = small.type.scalar == Scalar::Int ? "63" : "63u";
       return {type,
@@ -337,7 +337,7 @@ Expr Expressions::makeFloat(int width, int depth) {
     default: {
       const FloatOperation& operation = randomFloatOperation(random_);
       Expr a = make(type, depth - 1);
-      // a scalar goes with a vector: on either side of an operator, on the right of min and max
+      // The second operand may be a scalar, which is broadcast.
       Expr b = make({Scalar::Float, random_.chance(1, 4) && operation.what[0] != 's' ? 1 : width}, depth - 1);
       if (operation.bound(a.bound, b.bound).bits() > exactBits) a = tamed(a), b = tamed(b);
       return {type, binary(operation.what, a, b),
@@ -361,7 +361,7 @@ Expr Expressions::makeInteger(Scalar scalar, int width, int depth) {
                 r.set(i, static_cast<std::uint32_t>(static_cast<std::int32_t>(f)));
               })};
     }
-    case 1: {   // bits stay as they are
+    case 1: {   // a conversion that keeps the bits
       const Expr other = make({scalar == Scalar::Int ? Scalar::Uint : Scalar::Int, width}, depth - 1);
       return {type, fmt::format("{}({})", spelling({}, type), other.text), other.value};
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Random expressions over the variables of a scope. They have no effects, but for what calls do to their own
+// Random expressions over the variables of a scope. They have no effects, except that a called function may change its own
 // parameters.
 #pragma once
 
@@ -19,7 +19,7 @@ struct Variable {
   std::string name;
   Type type;
   int slot = 0;
-  int length = 0;            ///< of an array; 0: none
+  int length = 0;            ///< elements of an array; 0 if it is none
   bool isWritable = false;
 };
 
@@ -27,18 +27,18 @@ struct Gather {
   std::string name;
   Type type;
   int rank = 1;
-  int stream = 0;            ///< into Frame::streams
+  int stream = 0;            ///< index into Frame::streams
   sk::program::Boundary boundary = sk::program::Boundary::Clamp;
   Value border = {};
-  bool hasNeighbors = false; ///< its rank is the domain's
+  bool hasNeighbors = false; ///< whether its rank is the domain's
 };
 
-/// A helper that takes values and gives one.
+/// A helper function, whose parameters and result are values.
 struct Function {
   std::string name;
   Type result;
   std::vector<Variable> parameters;
-  std::function<Value(Frame&)> call;   ///< with the arguments in the parameters' slots
+  std::function<Value(Frame&)> call;   ///< expects the arguments in the parameters' slots
 };
 
 struct Scope {
@@ -46,25 +46,25 @@ struct Scope {
   std::vector<Variable> variables;
   std::vector<Gather> gathers;
   std::vector<Function> functions;
-  std::vector<std::string> indexed;  ///< parameters that indexof and extentof take, all of the domain's shape
+  std::vector<std::string> indexed;  ///< parameters of the domain's shape, for indexof and extentof
 };
 
-/// What is read of a stream at an index, x first, that may lie outside.
+/// The element that a gather reads at an index, x first, which may be out of bounds.
 Value gathered(const Gather& gather, const HostStream& stream, std::array<std::int64_t, 2> index);
 
 class Expressions {
  public:
   Expressions(const Scope& scope, Random& random) : scope_(scope), random_(random) {}
 
-  /// Of a carrier type or a vector of one; `depth` bounds how deep it nests.
+  /// An expression of an arithmetic type or a vector of one; `depth` limits its nesting.
   Expr make(Type type, int depth);
-  /// Of any type, as a variable of that type takes it: tamed, converted, a struct in braces.
+  /// An initialiser for a variable of any type: tamed, converted, a struct in braces.
   Expr makeKept(Type type, int depth);
-  /// Brought back to `kept` if it is not.
+  /// The expression, reduced to the bound `kept` if it exceeds it.
   Expr tamed(Expr expr);
-  /// Some part of some variable that can be written, if there is one.
+  /// A random part of a random writable variable, if there is one.
   std::optional<Place> writable(int depth);
-  /// What a place holds, as its carrier.
+  /// The value of a place, in its arithmetic type; for a normalized type, the integer that it stores.
   Expr read(const Place& place);
   Expr condition(int depth) { return make({Scalar::Bool, 1}, depth); }
 

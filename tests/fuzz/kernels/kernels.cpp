@@ -21,7 +21,7 @@ std::int64_t sizeOf(const std::vector<std::int64_t>& shape) {
   return size;
 }
 
-/// The element of an input at an index of the domain, which it repeats along where its extent is 1.
+/// The element of an input at an index of the domain; the input is broadcast in dimensions of extent 1.
 const Value& repeated(const HostStream& stream, const std::array<int, 4>& index) {
   const std::size_t rank = stream.shape.size();
   std::int64_t number = 0;
@@ -31,7 +31,8 @@ const Value& repeated(const HostStream& stream, const std::array<int, 4>& index)
   return stream.elements[static_cast<std::size_t>(number)];
 }
 
-/// begin + k * step for each component: k counts elements, or along x, y, ... where there are several dimensions.
+/// begin + k * step for each component. For a scalar or a one-dimensional domain, k is the element's number; otherwise it is
+/// the component's index in the domain.
 Value rampAt(const Parameter& iterator, const std::array<int, 4>& index, std::int64_t number,
              std::size_t rank) {
   const Type type = iterator.variable.type;

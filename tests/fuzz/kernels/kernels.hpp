@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Random kernels: a program as text, its arguments, and what it must compute.
+// Random kernels: the text of a program, its arguments, and the results that it must compute.
 #pragma once
 
 #include <array>
@@ -20,9 +20,9 @@ using Role = sk::program::Role;
 
 struct Parameter {
   Role role;
-  Variable variable;             ///< of a gather only its name and type count
+  Variable variable;             ///< a gather uses only its name and type
   std::vector<Value>
-      values;     ///< of a uniform, one an element of its array; of an iterator its begin and step
+      values;     ///< for a uniform, one per element of its array; for an iterator, its begin and step
 };
 
 class RandomKernel {
@@ -35,10 +35,10 @@ class RandomKernel {
   const Records& records() const { return records_; }
   const std::vector<Parameter>& parameters() const { return parameters_; }
   const std::vector<std::int64_t>& domain() const { return domain_; }
-  /// One a parameter: what is in inputs, gathers and scatter outputs, and nothing in others.
+  /// One per parameter: the elements of inputs, gathers and scatter outputs before the call; empty for others.
   const std::vector<HostStream>& streams() const { return streams_; }
 
-  /// What each output must hold; one a parameter, and nothing for others.
+  /// One per parameter: the expected elements of outputs; empty for others.
   std::vector<HostStream> results() const;
 
  private:
@@ -48,7 +48,7 @@ class RandomKernel {
   std::vector<Parameter> parameters_;
   std::vector<std::int64_t> domain_;
   std::vector<HostStream> streams_;
-  std::vector<std::pair<int, Value>> constants_;   ///< slots of global constants
+  std::vector<std::pair<int, Value>> constants_;   ///< slots and values of global constants
   std::function<Flow(Frame&)> body_;
   int slots_ = 0;
   std::string text_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How a random kernel is made: structs, constants, helpers, parameters, and a body.
+// Makes a random kernel: structs, constants, helper functions, parameters, and a body.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 namespace fuzz {
 namespace {
 
-/// What a stream holds on a device whose textures are 64 texels wide.
+/// The number of texels in a layer on a device whose textures are limited to 64 x 64.
 constexpr std::int64_t fewTexels = 64 * 64;
 
 }  // namespace
@@ -73,7 +73,7 @@ class RandomKernel::Maker {
     }
   }
 
-  /// A function of values; the last thing it does is to return.
+  /// Makes a helper function, which ends with a return.
   void makeHelper() {
     static constexpr Scalar scalars[] = {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float};
     Function function{names_.fresh("f"), {random_.pick(scalars), random_.between(1, 4)}, {}, {}};
@@ -117,7 +117,7 @@ class RandomKernel::Maker {
   // ---- parameters -------------------------------------------------------------------------------
 
   void makeParameters() {
-    // Too large for a pass, or with sinks: kernels with sinks are never divided.
+    // Some kernels are too large for one pass, others have sinks; kernels with sinks are never split.
     const bool hasSinks = random_.chance(1, 4), isLarge = !hasSinks && random_.chance(1, 3);
     const auto streamType = [&] { return hasSinks ? randomVector(random_) : randomType(records(), random_); };
     std::vector<Role> roles;
@@ -140,7 +140,7 @@ class RandomKernel::Maker {
     text() += fmt::format("kernel void k({}) {{\n", list);
   }
 
-  /// Its declaration. `type` is that of its elements, if it has any.
+  /// Adds a parameter and returns its declaration. `type` is the type of its elements, if it has any.
   std::string makeParameter(Role role, const Type& type) {
     kernel_.streams_.emplace_back();
     switch (role) {
@@ -239,7 +239,7 @@ class RandomKernel::Maker {
     const Variable variable = addParameter(Role::Iterator, "i", {random_.pick(scalars), width}, 0);
     Value begin, step;
     for (int i = 0; i < width; ++i) {
-      if (variable.type.scalar == Scalar::Float) {   // the last stays within what is kept
+      if (variable.type.scalar == Scalar::Float) {   // small enough that the last value is within `kept`
         begin.set(i, static_cast<float>(random_.between(-16, 16)) / 16);
         step.set(i, static_cast<float>(random_.between(-3, 3)) / 16);
       } else {
@@ -282,7 +282,7 @@ class RandomKernel::Maker {
   // ---- the body ---------------------------------------------------------------------------------
 
   void makeBody() {
-    // Every output is written first, by what can be read before; the rest then changes them.
+    // First writes every output, by expressions that read no output. The rest then changes them.
     Statements statements(scope_, names_, random_, true, sinks_);
     std::vector<std::function<Flow(Frame&)>> parts;
     const std::vector<Variable> all = scope_.variables;

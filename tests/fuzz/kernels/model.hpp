@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// What random kernels are made of. Every expression and statement has its text and its meaning side by side: the
-// text goes to skc, and the meaning is run here, element by element.
+// The parts of random kernels. Every expression and statement has both a text, which goes to skc, and a meaning, which runs
+// here, element by element.
 //
-// Floats are chosen such that nothing is ever rounded. Each expression knows a bound of its values, of the form
-// k / 2^fraction with |k| <= 2^(magnitude + fraction); as long as that is below 2^24, every order of evaluation and
-// every contraction gives the same value. What a variable keeps is brought back to `kept` (expressions.hpp, tamed).
+// Floats are chosen such that nothing is ever rounded. Each expression has a bound: its values are k / 2^fraction with
+// |k| <= 2^(magnitude + fraction). As long as that is at most 2^24, every order of evaluation and every contraction gives
+// the same value. Values that variables hold are reduced to the bound `kept` (expressions.hpp, tamed).
 #pragma once
 
 #include <array>
@@ -25,13 +25,13 @@ struct Type {
   Scalar scalar = Scalar::Float;
   int width = 1;  ///< components, or rows and columns of a matrix
   bool isMatrix = false;
-  int record = -1;  ///< index of a struct, in place of all of the above
+  int record = -1;  ///< index of a struct, which replaces all of the above
 
   friend bool operator==(const Type&, const Type&) = default;
 };
 
-/// Up to 16 components, one after the other: of vectors, rows of matrices, members of structs. Narrow ones are as
-/// their carrier (int or float) has them.
+/// Up to 16 components, one after the other: of vectors, rows of matrices, members of structs. Components of a storage type
+/// are in their arithmetic type, int or float.
 struct Value {
   std::array<std::uint32_t, 16> bits{};
 
@@ -58,12 +58,13 @@ struct HostStream {
   std::vector<Value> elements;
 };
 
-/// What a kernel's element sees while it runs. Every variable of every function has a slot of its own: nothing recurs.
+/// The state of a kernel while it runs for one element. Every variable of every function has its own slot: there is no
+/// recursion.
 struct Frame {
   std::vector<Value> slots;
-  std::array<int, 4> index{}, extent{1, 1, 1, 1};  ///< of the domain, x first
-  const std::vector<HostStream>* streams = nullptr;  ///< one a parameter
-  std::vector<HostStream>* sinks = nullptr;  ///< likewise: what is pushed and scattered so far
+  std::array<int, 4> index{}, extent{1, 1, 1, 1};  ///< index in the domain and extents of the domain, x first
+  const std::vector<HostStream>* streams = nullptr;  ///< one per parameter
+  std::vector<HostStream>* sinks = nullptr;  ///< one per parameter: what has been pushed and scattered so far
 };
 
 struct Bound {
@@ -75,18 +76,18 @@ inline constexpr int exactBits = 24;
 
 struct Expr {
   Type type;
-  std::string text;  ///< in brackets where it is no primary
+  std::string text;  ///< in parentheses unless it is a primary expression
   std::function<Value(Frame&)> value;
-  Bound bound = {};  ///< of floats
+  Bound bound = {};  ///< for floats only
 };
 
-/// Where a place lies: the components of a slot.
+/// The location of a place: components of a slot.
 struct Where {
   int slot = 0;
   std::array<std::uint8_t, 16> components{};
 };
 
-/// What can be read and, maybe, written.
+/// A part of a variable, which can be read and, if isWritable, written.
 struct Place {
   Type type;
   std::string text;

@@ -41,7 +41,7 @@ std::uint32_t rightInt(std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint32_t>(static_cast<std::int32_t>(a) >> (b & 31));
 }
 std::uint32_t rightUint(std::uint32_t a, std::uint32_t b) { return a >> (b & 31); }
-// A divisor is a small positive constant.
+// Divisors are small positive constants.
 std::uint32_t quotientInt(std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint32_t>(static_cast<std::int32_t>(a) / static_cast<std::int32_t>(b));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Operators and intrinsics of random expressions: how each is written, what it gives for a component, and how it
-// bounds a float.
+// Operators and intrinsics of random expressions: the spelling of each, its value for one component, and the bound of a
+// float result.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@
 
 namespace fuzz {
 
-/// `what` as text: "+" between the operands, a word in front of them.
+/// `what` is the spelling: an operator such as "+", or the name of a function.
 struct FloatOperation {
   const char* what;
   float (*value)(float, float);
   Bound (*bound)(Bound, Bound);
 };
-/// Of two floats that need no rounding, but where the bound says so.
+/// An operation on two floats. Its result is exact if its bound has at most exactBits bits.
 const FloatOperation& randomFloatOperation(Random& random);
 
 struct IntOperation {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int depth = 2;
 
-/// One component of what is there and what comes.
+/// Combines one component of the old element and of the written value.
 std::uint32_t combined(ScatterOp op, Scalar scalar, std::uint32_t old, std::uint32_t value) {
   if (op == ScatterOp::Store) return value;
   if (op == ScatterOp::Add) return old + value;
@@ -38,7 +38,7 @@ std::string written(const Sink& sink, const std::string& index, const std::strin
   return {};
 }
 
-/// Where an index, x first, lies in a stream.
+/// The element number of an index, x first, in a stream; nullopt if it is out of bounds.
 std::optional<std::size_t> placeIn(const HostStream& stream, const Value& index) {
   const std::size_t rank = stream.shape.size();
   std::int64_t number = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Sinks of random kernels: variable outputs, which are pushed to, and scatter outputs, which are written at computed
-// indices by one operation. What they hold is exact: floats are only stored, or compared.
+// Variable and scatter outputs of random kernels. Each scatter output is written at computed indices by one operation.
+// Their elements are exact: floats are only stored or compared.
 #pragma once
 
 #include <string>
@@ -14,18 +14,18 @@ namespace fuzz {
 
 using sk::program::ScatterOp;
 
-/// No extent of a scatter output is smaller, and most indices lie within.
+/// The smallest extent of a scatter output; most indices are below it.
 inline constexpr int leastScattered = 8;
 
 struct Sink {
   std::string name;
   Type type;
-  int stream = 0;  ///< into Frame::sinks
-  int rank = 0;  ///< of a scatter output; 0: pushed to
+  int stream = 0;  ///< index into Frame::sinks
+  int rank = 0;  ///< rank of a scatter output; 0 for a variable output
   ScatterOp op = ScatterOp::Store;
 };
 
-/// An operation that elements of the type take.
+/// A random operation that the type allows.
 ScatterOp randomScatterOp(const Type& type, Random& random);
 
 /// `push(r, v);`, `r[i] = v;`, `r[i] += v;`, `r[i] = min(r[i], v);` ...

@@ -16,7 +16,7 @@ void store(Frame& frame, const Where& where, const Value& value, int count) {
     slot.bits[where.components[i]] = value.bits[i];
 }
 
-/// Runs the rounds of a loop: whether another one begins is `test`'s to say.
+/// Runs a loop: `test` returns whether another iteration begins.
 template <class Test, class Body>
 Flow rounds(Test test, Body body) {
   while (test()) {
@@ -126,7 +126,7 @@ Statement Statements::assignment(const std::string& indent) {
   return assignTo(*place, expressions_.makeKept(place->type, expressionDepth), indent);
 }
 
-/// place op= value; a float is brought back to what is kept.
+/// place op= value; or, for a float, an assignment that reduces the result to the bound `kept`.
 Statement Statements::compound(const Place& place, const std::string& indent) {
   const Type type = place.type, carrier{carrierOf(type.scalar), type.width};
   Expr old = expressions_.read(place);
@@ -193,7 +193,7 @@ Statement Statements::forLoop(int depth, const std::string& indent) {
   const auto limitOf = [isConstant, most, end = bound.value](Frame& frame) {
     return isConstant ? most : end(frame).asInt(0) & 3;
   };
-  // A limit that is computed again for each round must not be changed by the body: it is kept beside.
+  // The limit is computed once, before the loop: the body may change the variables that it reads.
   const Variable end{names_.fresh("n"), {Scalar::Int, 1}, names_.take(1), 0, false};
   scope_.variables.push_back(counter);
   ++loops_, ++breakables_;
@@ -218,7 +218,7 @@ Statement Statements::forLoop(int depth, const std::string& indent) {
           }};
 }
 
-/// while or do, with a counter that ends it.
+/// A while or do loop with a counter that limits its trip count.
 Statement Statements::whileLoop(int depth, const std::string& indent) {
   const bool isDo = random_.chance(1, 2);
   const int most = random_.between(1, 4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Random statements: declarations, assignments, branches, loops that end, switches, early returns.
+// Random statements: declarations, assignments, branches, loops that terminate, switches, early returns.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace fuzz {
 
-/// Names and slots that no two variables of a program share.
+/// Gives every variable of a program its own name and slots.
 struct Names {
   int next = 0;
   std::string fresh(const char* kind) { return kind + std::to_string(next++); }
@@ -23,7 +23,7 @@ struct Names {
 
 class Statements {
  public:
-  /// The scope gets what is declared, and loses it where its block ends. `canReturn`: a plain `return;` may stand
+  /// Declarations enter the scope and leave it at the end of their block. `canReturn`: a plain `return;` may stand
   /// anywhere. Some statements write to the sinks, if there are any.
   Statements(Scope& scope, Names& names, Random& random, bool canReturn, std::vector<Sink> sinks = {})
       : scope_(scope),
@@ -33,9 +33,9 @@ class Statements {
         canReturn_(canReturn),
         sinks_(std::move(sinks)) {}
 
-  /// Up to `count` statements, each on lines of its own.
+  /// `count` statements, each on its own lines.
   Statement block(int count, int depth, const std::string& indent);
-  /// A place becomes a value of its type.
+  /// Assigns a value of the place's type.
   Statement assignTo(const Place& place, const Expr& value, const std::string& indent);
 
  private:
@@ -56,8 +56,8 @@ class Statements {
   Expressions expressions_;
   const bool canReturn_;
   const std::vector<Sink> sinks_;
-  int loops_ = 0;  ///< around the statement that is made
-  int breakables_ = 0;  ///< loops and switches
+  int loops_ = 0;  ///< number of loops around the current statement
+  int breakables_ = 0;  ///< number of loops and switches around it
 };
 
 }  // namespace fuzz

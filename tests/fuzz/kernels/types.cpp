@@ -47,7 +47,7 @@ std::uint32_t randomBits(Scalar scalar, Random& random) {
     const float value = static_cast<float>(random.between(-most, most)) / (1 << kept.fraction);
     return quantized(scalar, std::bit_cast<std::uint32_t>(value));
   }
-  // Small numbers as often as large ones.
+  // Shifting by a random amount makes small numbers as likely as large ones.
   const std::uint64_t bits = random.next();
   return quantized(scalar, static_cast<std::uint32_t>(bits) >> (bits >> 59));
 }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t longest = std::size_t{1} << 16;
 
-/// What parsers of numbers stumble over.
+/// Numbers that parsers often get wrong.
 constexpr std::string_view numbers[] = {"0",
                                         "-0",
                                         "-1",
@@ -45,7 +45,7 @@ constexpr std::string_view numbers[] = {"0",
                                         "1e",
                                         "123456789012345678901234567890"};
 
-/// What parsers of text stumble over: bad UTF-8, ends of lines, quotes, brackets.
+/// Texts that parsers often get wrong: invalid UTF-8, line ends, quotes, brackets.
 constexpr std::string_view pieces[] = {"\xff",
                                        "\xc0\x80",
                                        "\xed\xa0\x80",
@@ -108,7 +108,7 @@ class ByteMutator {
     }
   }
 
-  /// Of a byte, or the end.
+  /// The index of a random byte, or the end.
   std::size_t place() { return random_.below(text_.size() + 1); }
 
   std::string pieceOf(const std::string& from) {
@@ -122,7 +122,7 @@ class ByteMutator {
     byte = static_cast<char>(random_.chance(1, 2) ? byte ^ (1 << random_.below(8)) : random_.below(256));
   }
 
-  /// An integer of 1, 2 or 4 bytes becomes an extreme one: sizes in the heads of binary files.
+  /// Replaces 1, 2 or 4 bytes by an extreme integer, such as a size in the header of a binary file.
   void changeInteger() {
     static constexpr std::uint32_t extremes[] = {0,          1,          0x7f,       0xff,      0x100,
                                                  0x7fff,     0xffff,     0x10000,    0x1000000, 0x7fffffff,
@@ -148,7 +148,7 @@ class ByteMutator {
     text_ = join(tokens);
   }
 
-  /// Nests deeply, if the piece opens something.
+  /// Inserts a piece many times, which nests deeply if the piece opens a bracket.
   void repeatPiece() {
     const std::string piece = random_.chance(1, 2) ? std::string(random_.pick(pieces)) : pieceOf(text_);
     const std::size_t count = random_.chance(1, 8) ? longest / 2 : 1 + random_.below(300);

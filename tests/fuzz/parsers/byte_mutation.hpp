@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Files that are nearly right, of any format: a file of the corpus after a few random changes to its bytes, its numbers or its
-// pieces. Programs have changes of their own (mutation.hpp).
+// Nearly valid files of any format: a file of the corpus after a few random changes to its bytes, its numbers or its
+// pieces. mutation.hpp changes programs instead.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace fuzz {
 
-/// The same for the same seeds (of which there is one at least) and random numbers.
+/// A mutant of one of the seeds, of which there must be at least one. Deterministic for the seeds and the state of `random`.
 std::string mutatedBytes(std::span<const std::string> seeds, Random& random);
 
 }  // namespace fuzz

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A file in memory that has a name: parsers that take the name of a file read an input without a disk.
+// A file in memory that has a path, for parsers that take the path of a file.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@ namespace fuzz {
 
 class MemoryFile {
  public:
-  /// Throws std::system_error where the system has no such files.
+  /// Throws std::system_error if the system cannot make such a file.
   MemoryFile();
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
-  /// Puts these bytes in place of what the file held. Throws std::system_error where there is no memory for them.
+  /// Replaces the file's contents. Throws std::system_error if there is not enough memory.
   void hold(std::span<const std::uint8_t> bytes) const;
   std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
 

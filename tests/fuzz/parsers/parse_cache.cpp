@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Files of the cache folder. The first byte says whether the rest is a whole file, or what a file with the right key and checksum holds:
-// a measured number.
+// Files of the cache folder. The first byte decides whether the rest is a whole file, or the contents of a file with the right
+// key and checksum, which should be a measured number.
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The JSON file of `skc --device=FILE`. The driver makes a message and status 1 of every std::runtime_error.
+// The JSON file of `skc --device=FILE`. skc reports every std::runtime_error and exits with status 1.
 #include <cstdlib>
 #include <stdexcept>
 

@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       }
     }
   } catch (const std::runtime_error& error) {
-    if (std::string_view(error.what()).ends_with("outofmem")) throw;  // it believed a size
+    if (std::string_view(error.what()).ends_with("outofmem")) throw;  // the parser trusted a size in the file
   }
   return 0;
 }

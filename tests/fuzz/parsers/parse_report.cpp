@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What `sk info` has kept of a device. Whatever it is, it is reported and written as JSON, or measured again.
+// What `sk info` keeps about a device. Any text must either be rejected, or be reported and written as JSON.
 #include <string>
 
 #include "info/report.hpp"

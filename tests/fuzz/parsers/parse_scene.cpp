@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The scenes of an example. cloth and lattice each have a scene.hpp of their own, and each gets a program of this source.
+// The scenes of an example. cloth and lattice each have their own scene.hpp, and this source is built once with each.
 #include "scene.hpp"
 
 #include <stdexcept>

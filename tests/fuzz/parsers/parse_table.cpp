@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The tables of the example stats: the first byte chooses between CSV, with a separator, and raw floats, with a number of columns.
+// The tables of the example stats. The first byte chooses between CSV with one of two separators, and raw floats with a number
+// of columns.
 #include <cstdlib>
 #include <stdexcept>
 

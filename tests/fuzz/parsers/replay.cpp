@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The main function of parse_NAME without libFuzzer: shows the parser every file of the corpus, then mutants of them. Mutant N of a
-// seed is always the same. Exit status 1 after a finding.
+// The main function of parse_NAME without libFuzzer: runs the parser on every file of the corpus, then on mutants of them.
+// Mutant N of a seed is always the same. The exit status is 1 after a finding.
 #include <algorithm>
 #include <exception>
 #include <fstream>
@@ -32,7 +32,7 @@ std::string textOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// In an order that does not depend on the file system.
+/// The files, sorted, so that their order does not depend on the file system.
 std::vector<fs::path> filesOf(const std::vector<std::string>& corpus) {
   std::vector<fs::path> files;
   for (const fs::path place : corpus) {
@@ -58,7 +58,7 @@ fuzz::Verdict verdictOf(const std::string& input) {
   }
 }
 
-/// Every check is of a parser, which may not believe the sizes that a file names.
+/// Limits memory, so that a parser that trusts a size in its file is a finding.
 fuzz::Campaign campaignOf(const Options& options, std::uint64_t count) {
   fuzz::Campaign campaign = options.campaign();
   campaign.count = count;

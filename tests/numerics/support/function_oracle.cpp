@@ -11,7 +11,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr mpfr_prec_t precision = 200;
 
-/// The exponent of the unit in the last place of the number next to `exact`, which is not infinite.
+/// The exponent of the unit in the last place of the Real nearest to `exact`, which is not infinite.
 template <class Real>
 mpfr_exp_t unitExponent(const mpfr_t exact) {
   using Limits = std::numeric_limits<Real>;
@@ -21,7 +21,7 @@ mpfr_exp_t unitExponent(const mpfr_t exact) {
   return std::clamp(own, lowest, highest) - Limits::digits;
 }
 
-/// Of an infinity or a number that is too large, the power of 2 beyond the largest number.
+/// Replaces an infinity or a number that is too large for Real by the next power of 2 above the largest Real.
 template <class Real>
 void limit(mpfr_t x) {
   const int sign = mpfr_signbit(x) ? -1 : 1;
@@ -95,7 +95,7 @@ std::vector<Real> nearMultiplesOfHalfPi(int first, int others) {
     add(std::floor(std::exp2(exponent) * (1 + 0.618 * (i % 7))));
   }
   mpfr_clear(multiple);
-  // of all floats and of all doubles, those that come closest to a multiple
+  // The floats and the double that are closest to multiples of pi/2.
   for (int shift = 0; shift <= 80; ++shift) found.push_back(std::ldexp(Real(16367173), shift));
   if (Limits::digits == 53) found.push_back(static_cast<Real>(std::ldexp(6381956970095103.0, 797)));
   return found;
@@ -112,9 +112,9 @@ std::vector<Real> specialNumbers() {
       0, Limits::denorm_min(), Limits::min(), Limits::min() / 64, Limits::epsilon() / 2, 1e-30F, 0.41421357F,
       0.5F, 0.70710677F, one - Limits::epsilon() / 2, one, one + Limits::epsilon(), 1.4142135F, 1.5F, 2, 3,
       9.01F, 10, 22, 44.3F, 1000, 1e30F, Limits::max(), Limits::infinity(), Limits::quiet_NaN(),
-      // where whole numbers lose their halves, and where they are all even
+      // where halves end, and where all numbers are even
       whole - Real(0.5), whole, whole + 1, 2 * whole - 1, 2 * whole, 2 * whole + 2, 256 * whole};
-  // where exponentials become infinite or 0, and what is next to it
+  // The arguments at which exponentials become infinite or 0, and their neighbours.
   for (const double end : {Limits::max_exponent * 1.0, Limits::min_exponent - 1.0,
                            Limits::min_exponent - Limits::digits * 1.0}) {
     for (const double unit : {1.0, std::log(2.0)}) {

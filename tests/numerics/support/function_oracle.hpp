@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How far a result is from the exact value of a function, by MPFR, and arguments for which functions are hard to compute.
+// Measures the error of a function's result with MPFR. Also arguments for which functions are hard to compute.
 #pragma once
 
 #include <mpfr.h>
@@ -12,8 +12,9 @@ namespace numerics {
 using Unary = int (*)(mpfr_t, const mpfr_t, mpfr_rnd_t);
 using Binary = int (*)(mpfr_t, const mpfr_t, const mpfr_t, mpfr_rnd_t);
 
-/// The error of a float or double in units in the last place of the one that is next to the exact value, or infinity where
-/// one is NaN and the other not, or where zeros differ in sign. Beyond the largest number all are the next power of 2.
+/// Computes the error of a float or double in units in the last place (ulp) of the number nearest to the exact value. The
+/// error is infinite if only one of result and exact value is NaN, or if a result of 0 has the wrong sign. Infinities and
+/// overflows count as the next power of 2 above the largest number.
 class FunctionOracle {
  public:
   FunctionOracle();
@@ -33,14 +34,14 @@ class FunctionOracle {
   mpfr_t x_, y_, exact_, difference_;
 };
 
-/// x less y times the floor of their quotient: the intrinsic `mod`.
+/// x - y * floor(x / y): the intrinsic `mod`.
 int floorModulo(mpfr_t result, const mpfr_t x, const mpfr_t y, mpfr_rnd_t rounding);
 
-/// The numbers next to multiples of pi/2: of the first ones, and of others up to the largest numbers.
+/// The numbers next to multiples of pi/2: the first `first` multiples, and `others` up to the largest numbers.
 template <class Real>
 std::vector<Real> nearMultiplesOfHalfPi(int first, int others);
 
-/// Every special value, the ends of the ranges of functions, and whole numbers where fractions end.
+/// Every special value, the ends of functions' ranges, and numbers around the largest fractions.
 template <class Real>
 std::vector<Real> specialNumbers();
 

@@ -58,7 +58,7 @@ Pairs illConditionedDot(std::size_t n, double condition, unsigned seed) {
   TrueSum sum;
   for (std::size_t i = 0; i < n; ++i) {
     const bool isFirstHalf = i < n / 2;
-    // the second half takes the sum down, from the largest exponent to 0
+    // The second half reduces the sum, from the largest exponent to 0.
     const auto left = static_cast<double>(n - 1 - i) / static_cast<double>(n - n / 2);
     const int e = i == 0        ? range
                   : isFirstHalf ? exponents(random)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// True sums of floats, and of products of floats, by MPFR: 1500 bits hold every one of them without rounding. And inputs
-// that are hard to sum.
+// Exact sums of floats and of products of floats: MPFR numbers of 1500 bits hold them without rounding. Also inputs that
+// are hard to sum.
 #pragma once
 
 #include <mpfr.h>
@@ -22,12 +22,12 @@ class TrueSum {
   void add(float x) { addProduct(x, 1); }
   void addProduct(float x, float y);
 
-  /// The nearest float, ties to even, denormals among them.
+  /// The nearest float, which may be denormal; ties to even.
   float rounded() const;
   /// |result - sum|.
   double errorOf(float result) const;
   double magnitude() const;  ///< sum of |x * y|
-  /// magnitude() / |sum|; infinity of a sum of 0.
+  /// magnitude() / |sum|; infinity if the sum is 0.
   double condition() const;
   double value() const;
 
@@ -39,13 +39,13 @@ struct Pairs {
   std::vector<float> x, y;
 };
 
-/// n floats and their factors whose dot product has about this condition number: Ogita, Rump and Oishi, Accurate sum and dot
-/// product, SIAM J. Sci. Comput. 26 (2005), algorithm 6.1. The true condition number is TrueSum's to say.
+/// Two vectors of n floats whose dot product has about this condition number: Ogita, Rump and Oishi, Accurate sum and dot
+/// product, SIAM J. Sci. Comput. 26 (2005), algorithm 6.1. TrueSum computes the actual condition number.
 Pairs illConditionedDot(std::size_t n, double condition, unsigned seed);
-/// The same as a sum, of n floats.
+/// n floats whose sum has about this condition number.
 std::vector<float> illConditionedSum(std::size_t n, double condition, unsigned seed);
 
-/// Finite floats of every exponent, denormals among them.
+/// Finite floats with random bits, so of every exponent, including denormals.
 std::vector<float> anyFloats(std::size_t n, unsigned seed);
 
 }  // namespace numerics

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// One call of a kernel on the native device: a program for check.sh to stop in, and one that tells why native code does not run.
+// Calls a kernel on the native device: check.sh debugs this program, and other tests check its error if no native code fits
+// the CPU.
 #include <cstdio>
 #include <vector>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Calls that write what is const: each WRONG is compiled by itself and must not pass.
+// Calls with const outputs: each value of WRONG is compiled separately and must not compile.
 #include "misuse.sk.hpp"
 
 void call(sk::Stream<float>& f, const sk::Stream<float>& constant) {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# Compiles calls.cpp rightly, and once for each WRONG: the compiler must refuse it, and say why.
+# Compiles calls.cpp without WRONG, which must succeed, and with each WRONG, which the compiler must reject and explain.
 # Usage: cmake -DCXX=... -DINCLUDES=a:b:c -P compile.cmake
 cmake_policy(VERSION 3.25)
 

@@ -42,5 +42,5 @@ TEST_CASE("binary search: many keys in tables of every length") {
       for (const std::int64_t count : {0, 1, 517}) check(device, length, count);
     }
   });
-  onEveryProfile([](sk::Device& device) { check(device, 20011, 1021); });  // larger than a row of a texture
+  onEveryProfile([](sk::Device& device) { check(device, 20011, 1021); });  // longer than a row of a texture
 }

@@ -2,10 +2,10 @@
 //
 // binomial_options.sk against the same lattice in double, whose factors and weights are not rounded to float.
 //
-// A node's price is a product of 2 n factors at most, n of `up` or `down` with 2 roundings each (its own and the product's) and n
-// of `ratio` with 4. Each step back adds 3 roundings: a weight's, the product's, the sum's. All terms are positive, and under the
-// weights' measure the discounted price is a martingale: the error is below that of (spot + strike) after 9 n + 1 roundings, the
-// last being the difference of spot and strike.
+// A node's price is a product of at most 2 n factors: n times `up` or `down`, with 2 roundings each (the factor's and the
+// product's), and n times `ratio`, with 4 each. Each step back adds 3 roundings: of a weight, of the product and of the sum. All
+// terms are positive, and under the weights' measure the discounted price is a martingale: the error is below that of
+// (spot + strike) after 9 n + 1 roundings; the last one rounds the difference of spot and strike.
 #include "programs/binomial_options.sk.hpp"
 
 #include "programs/bounds.hpp"

@@ -14,12 +14,12 @@ using namespace run_tests;
 
 namespace {
 
-/// Sorts floats or items where they are.
+/// Sorts floats or items in place.
 template <class T>
 void sort(sk::Stream<T>& items) {
   const auto n = static_cast<int>(items.size());
   for (int run = 1; run < n; run *= 2) {
-    bitonic_sort::exchange(2 * run - 1, items, items);   // folds two runs onto each other
+    bitonic_sort::exchange(2 * run - 1, items, items);   // compares each element with its mirror image in the other run
     for (int distance = run / 2; distance > 0; distance /= 2) {
       bitonic_sort::exchange(distance, items, items);
     }
@@ -82,7 +82,7 @@ TEST_CASE("bitonic sort: NaN comes last, and nothing is lost") {
   const float special[] = {nan, 0.0f, inf, -0.0f, nan, -inf, 3e38f, nan};
   for (std::size_t i = 0; i < keys.size(); i += 5) keys[i] = special[i / 5 % 8];
   auto sorted = keys;
-  // totalOrder of IEEE 754 for NaN without a sign: -0 precedes 0, and NaN is the largest
+  // totalOrder of IEEE 754, with positive NaN only: -0 precedes 0, and NaN is the largest.
   std::sort(sorted.begin(), sorted.end(), [](float a, float b) {
     if (std::isnan(a) || std::isnan(b)) return !std::isnan(a) && std::isnan(b);
     return a < b || (a == b && std::signbit(a) && !std::signbit(b));

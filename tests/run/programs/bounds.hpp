@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Floats that carry all their bits, so that every sum and product is rounded, and the comparison of results with
-// values in double, each with the error that it may have.
+// Floats that use all their bits, so that every sum and product is rounded, and the comparison of results with values in
+// double, each with its error bound.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace run_tests {
 
-/// The largest relative error of a float operation that is rounded to the nearest.
+/// The largest relative error of rounding to the nearest float.
 inline constexpr double unitRoundoff = 0x1p-24;
 
 /// The largest relative error after n roundings: N. J. Higham, "Accuracy and stability of numerical algorithms",
@@ -37,7 +37,7 @@ struct Bounded {
   double value, error;
 };
 
-/// "" where every element is within the error of its expected value, else the first that is not.
+/// "" if every element is within the error bound of its expected value, else the first that is not.
 template <std::invocable<std::size_t> Expected>
 std::string outside(const std::vector<float>& actual, const Expected& expected) {
   for (std::size_t i = 0; i < actual.size(); ++i) {

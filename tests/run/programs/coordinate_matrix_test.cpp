@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// coordinate_matrix.sk against a loop over the entries, in double. Each product is rounded once, and its element of y as often
-// as it has entries, in whatever order.
+// coordinate_matrix.sk against a loop over the entries, in double. Each product is rounded once, and each element of y once per
+// entry of its row, in any order.
 #include "programs/coordinate_matrix.sk.hpp"
 
 #include "programs/bounds.hpp"
@@ -12,7 +12,7 @@ using coordinate_matrix::Entry;
 
 namespace {
 
-/// Entries in no order, some of them at one place.
+/// Entries in random order; some have the same row and column.
 std::vector<Entry> entries(int rows, int columns, int count) {
   std::vector<Entry> list;
   for (int i = 0; i < count; ++i) {
@@ -54,5 +54,5 @@ TEST_CASE("coordinate matrix: entries in any order add up in their rows") {
     }
   });
   onEveryProfile(
-      [](sk::Device& device) { check(device, 20011, 997, 60013); });  // larger than a row of a texture
+      [](sk::Device& device) { check(device, 20011, 997, 60013); });  // longer than a row of a texture
 }

@@ -2,9 +2,9 @@
 //
 // fft.sk against the sum that defines the transform, in double.
 //
-// N. J. Higham, "Accuracy and stability of numerical algorithms", second edition (2002), theorem 24.2: with roots that
-// are right to mu, log2(n) passes leave a relative error of at most log2(n) eta / (1 - log2(n) eta) in the Euclidean
-// norm, where eta = mu + gamma_4 (sqrt(2) + mu). Roots rounded from double have mu <= unitRoundoff.
+// N. J. Higham, "Accuracy and stability of numerical algorithms", second edition (2002), theorem 24.2: if the roots have
+// errors of at most mu, the relative error after log2(n) passes is at most log2(n) eta / (1 - log2(n) eta) in the Euclidean
+// norm, where eta = mu + gamma_4 (sqrt(2) + mu). For roots rounded from double, mu <= unitRoundoff.
 #include "programs/fft.sk.hpp"
 
 #include <complex>
@@ -37,7 +37,7 @@ std::vector<float2> rounded(const std::vector<Complex>& x) {
   return result;
 }
 
-/// Transforms every row where it is. The sign is -1 forward and 1 back.
+/// Transforms every row in place. The sign is -1 for the transform and 1 for its inverse.
 void transformRows(sk::Device& device, Matrix& x, double sign) {
   const std::int64_t n = x.shape()[1];
   const auto roots = streamOf<float2>(device, rounded(rootsOfUnity(n, sign)));
@@ -60,7 +60,7 @@ std::vector<Complex> signal(std::int64_t count) {
   return x;
 }
 
-/// The definition, for each row of `length` elements.
+/// The transform of each row of `length` elements, by its definition.
 std::vector<Complex> definedRows(const std::vector<Complex>& x, std::int64_t length) {
   const auto n = static_cast<std::size_t>(length);
   const auto roots = rootsOfUnity(length, -1);
@@ -80,7 +80,7 @@ std::vector<Complex> transposed(const std::vector<Complex>& x, std::int64_t widt
   return y;
 }
 
-/// The Euclidean norm of the error, over that of the right result.
+/// The Euclidean norm of the error, relative to the norm of the expected result.
 double relativeError(const std::vector<float2>& actual, const std::vector<Complex>& expected) {
   REQUIRE(actual.size() == expected.size());
   double error = 0, whole = 0;

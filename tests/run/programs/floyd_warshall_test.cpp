@@ -15,7 +15,7 @@ namespace {
 
 constexpr float none = std::numeric_limits<float>::infinity();
 
-/// One way in four is there; from a place to a later one it may have a negative length.
+/// A quarter of all edges; edges to places with larger numbers may have negative lengths.
 std::vector<float> edges(std::size_t places) {
   std::vector<float> edge(places * places, none);
   for (std::size_t i = 0; i < edge.size(); ++i) {
@@ -38,7 +38,7 @@ sk::Stream<Route> shortestRoutes(sk::Device& device, const sk::Stream<float>& ed
   return routes;
 }
 
-/// The lengths, by the same algorithm, where each step changes the matrix in place.
+/// The shortest lengths by the same algorithm, but each step changes the matrix in place.
 std::vector<double> shortestLengths(const std::vector<float>& edge, std::size_t n) {
   std::vector<double> length(edge.begin(), edge.end());
   for (std::size_t i = 0; i < n; ++i) length[i * n + i] = 0;
@@ -52,7 +52,7 @@ std::vector<double> shortestLengths(const std::vector<float>& edge, std::size_t 
   return length;
 }
 
-/// How long the way from one place to another is that `first` tells, edge by edge.
+/// The length of the route from one place to another that follows Route::first edge by edge.
 double walk(const std::vector<Route>& routes, const std::vector<float>& edge, std::size_t n, std::size_t from,
             std::size_t to) {
   double length = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // itpack.sk against a loop over the entries, in double. A row of n entries has n products and n - 1 sums: no term is
-// rounded more than n times. The zeros that fill rows up are exact.
+// rounded more than n times. The zeros that pad rows are exact.
 #include "programs/itpack.sk.hpp"
 
 #include "programs/bounds.hpp"
@@ -12,12 +12,12 @@ using namespace run_tests;
 namespace {
 
 struct Matrix {
-  std::int64_t rows, columns, width;  // width: the most entries of a row
+  std::int64_t rows, columns, width;  // width: the largest number of entries in a row
   std::vector<float> values = std::vector<float>(static_cast<std::size_t>(rows * width), 0.0f);
   std::vector<int> places = std::vector<int>(static_cast<std::size_t>(rows * width), 0);
 };
 
-/// Rows of 0 to `width` entries, anywhere.
+/// A matrix with rows of 0 to `width` entries in random columns.
 Matrix sparse(std::int64_t rows, std::int64_t columns, std::int64_t width) {
   Matrix m{rows, columns, width};
   for (std::size_t i = 0; i < m.values.size(); ++i) {
@@ -76,5 +76,5 @@ TEST_CASE("itpack: a sparse matrix times a vector, in both ways") {
     }
   });
   onEveryProfile(
-      [](sk::Device& device) { checkBoth(device, 20011, 997, 5); });  // larger than a row of a texture
+      [](sk::Device& device) { checkBoth(device, 20011, 997, 5); });  // longer than a row of a texture
 }

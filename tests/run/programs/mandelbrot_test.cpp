@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// mandelbrot.sk against the same steps in double. A float cannot always tell in which step a point leaves the circle. The
-// reference therefore follows how far the device's z may be off: by e before a step, and after it, with the unit
-// roundoff u, by no more than
+// mandelbrot.sk against the same steps in double. In floats, the step in which a point leaves the circle is not always certain.
+// The reference therefore bounds the error of the device's z: if it is e before a step, then after the step, with the unit
+// roundoff u, it is at most
 //
 //   2 |z| e + e^2 + 5 u (|z| + e)^2 + 4 u (|c| + |corner|)
 //
-// The first two are what z^2 makes of e. The parts of z^2 have two and one roundings, together less than 3 u |z|^2; the sum with c
-// has one, of |z|^2 + |c|; c itself has two. The step in which a point leaves is right if the squared distance, by its error,
-// may have passed 4 there and need not have before.
+// The first two terms are the error e after squaring. The parts of z^2 have two and one roundings, together less than 3 u |z|^2;
+// the sum with c has one, of |z|^2 + |c|; c itself has two. A device's step is right if the squared distance, within its error,
+// may exceed 4 in that step and need not exceed it before.
 #include "programs/mandelbrot.sk.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Steps expected(const Window& w, std::int64_t width, std::size_t pixel, int most)
   const auto y = static_cast<double>(pixel / static_cast<std::size_t>(width));
   const std::complex<double> c(w.corner.x + w.perPixel.x * (x + 0.5), w.corner.y + w.perPixel.y * (y + 0.5));
   const double ofC = 4 * unitRoundoff * (std::abs(c) + std::hypot(w.corner.x, w.corner.y));
-  const double ofDistance = 1 + roundings(2);  // what its own roundings make of a squared distance
+  const double ofDistance = 1 + roundings(2);  // the roundings of the squared distance itself
   const auto squared = [](double v) { return v * v; };
   std::complex<double> z = 0;
   double error = 0;
@@ -44,12 +44,12 @@ Steps expected(const Window& w, std::int64_t width, std::size_t pixel, int most)
     if (squared(nearest) > 4 * ofDistance) return {first, step};
     error = 2 * size * error + squared(error) + 5 * unitRoundoff * squared(farthest) + ofC;
     z = z * z + c;
-    if (error > 1e3) return {first, most};  // nothing is known any more
+    if (error > 1e3) return {first, most};  // the error is too large to tell
   }
   return {first, most};
 }
 
-/// The share of pixels whose step is known for certain; all must be right.
+/// Checks all pixels. Returns the share of pixels with only one possible step.
 double check(sk::Device& device, const Window& window, std::int64_t height, std::int64_t width, int most) {
   auto image = device.stream<int>({height, width});
   mandelbrot::escape(window, most, image);
@@ -77,7 +77,7 @@ TEST_CASE("mandelbrot: pictures of every size") {
   });
 }
 
-// -1 has the period 2 and 0 the period 1: neither is rounded, and neither gets away.
+// The orbit of -1 has period 2 and that of 0 period 1: neither is rounded, and neither leaves the circle.
 TEST_CASE("mandelbrot: long loops end when they should") {
   onEveryProfile([](sk::Device& device) {
     auto image = device.stream<int>({1, 2});

@@ -12,7 +12,7 @@ using namespace run_tests;
 
 namespace {
 
-/// Each element becomes its sum with all before it.
+/// Replaces each element by its sum with all elements before it.
 void scanInclusive(sk::Stream<int>& x) {
   for (int distance = 1; distance < x.size(); distance *= 2) prefix_scan::include(distance, x, x);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// sgemm.sk against three plain loops in double. Each of the inner dimension's products is rounded once, and there are as many
-// sums: one to join the two products of a block, one for each block, and zeros where a block is not full.
+// sgemm.sk against three plain loops in double. Each product is rounded once, and each element has as many sums as products:
+// one adds the two products of a block, one adds each block; blocks at odd extents are padded with zeros.
 #include "programs/sgemm.sk.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using sk::float4;
 
 namespace {
 
-/// The blocks of a matrix of the given shape.
+/// A matrix as blocks of 2 x 2.
 sk::Stream<float4> packed(sk::Device& device, std::int64_t height, std::int64_t width,
                           const std::vector<float>& a) {
   auto blocks = device.stream<float4>({(height + 1) / 2, (width + 1) / 2});
@@ -22,7 +22,7 @@ sk::Stream<float4> packed(sk::Device& device, std::int64_t height, std::int64_t 
   return blocks;
 }
 
-/// c += a b, all in blocks; `strip` blocks of the inner dimension in each pass.
+/// c += a b in blocks; each pass takes `strip` blocks of the inner dimension.
 void multiplyAdd(const sk::Stream<float4>& a, const sk::Stream<float4>& b, sk::Stream<float4>& c, int strip) {
   const auto inner = static_cast<int>(a.shape()[1]);
   for (int begin = 0; begin < inner; begin += strip) {

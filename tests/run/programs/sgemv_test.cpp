@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// sgemv.sk against a plain loop in double. A product, a sum of n of them in any order, and alpha, beta and the last sum
-// leave at most n + 3 roundings in each term.
+// sgemv.sk against a plain loop in double. Each term has at most n + 3 roundings: of the product, of a sum of n products in any
+// order, of the factors alpha and beta, and of the last sum.
 #include "programs/sgemv.sk.hpp"
 
 #include "programs/bounds.hpp"
@@ -30,10 +30,10 @@ struct Problem {
 
 const std::vector<std::pair<std::int64_t, std::int64_t>> shapes = {{1, 1},   {7, 1},   {1, 7},    {13, 17},
                                                                    {64, 64}, {67, 61}, {3, 1021}, {1009, 2}};
-/// More than a row of a texture, and more than a small device holds.
+/// Longer than a row of a texture, and more elements than a small device holds.
 const std::vector<std::pair<std::int64_t, std::int64_t>> largeShapes = {{3, 20011}, {307, 211}};
 
-/// A product for each element, and a sum over each row.
+/// Checks the variant with a product for each element and a sum over each row.
 void checkSteps(sk::Device& device, std::int64_t rows, std::int64_t columns) {
   INFO(rows << " x " << columns);
   const Problem problem{rows, columns};

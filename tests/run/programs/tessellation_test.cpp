@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// tessellation.sk against the same passes over a vector, in double, exactly: corners begin as integers below 32, and each of
-// their halvings adds a bit, so that no square or product needs more than the 24 bits of a float.
+// tessellation.sk against the same passes over a vector, in double. Results are exact: corners begin as integers below 32, and
+// each halving adds a bit, so that no square or product needs more than the 24 bits of a float.
 #include "programs/tessellation.sk.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using tessellation::Triangle;
 
 namespace {
 
-/// Refines until a pass has nothing left to halve.
+/// Refines until a pass halves no triangle.
 sk::Stream<Triangle> tessellated(sk::Device& device, const Detail& detail,
                                  const std::vector<Triangle>& mesh) {
   auto coarse = device.stream<Triangle>({static_cast<std::int64_t>(mesh.size())});
@@ -61,7 +61,7 @@ std::vector<Triangle> refined(const Detail& detail, const std::vector<Triangle>&
   return fine;
 }
 
-/// Counterclockwise triangles with corners among the integers below 32.
+/// Counterclockwise triangles with integer corners below 32.
 std::vector<Triangle> triangles(std::size_t count) {
   std::vector<Triangle> mesh;
   for (std::uint32_t seed = 0; mesh.size() < count; ++seed) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Control flow, as text that is both a .sk file and C++: what skc makes of it is compared with what
-// the C++ compiler makes of it. Only scalars, and nothing that C++ leaves undefined.
+// Control flow. The text is both a .sk file and C++: tests compare the results of skc with those of the C++ compiler. It
+// uses only scalars, and nothing that C++ leaves undefined.
 // clang-format off: a macro is a list
 #define CONTROL_FLOW_CASES(CASE)                                                                   \
   CASE(ifElseChain) CASE(ifWithInit) CASE(elseOfWhich) CASE(forSum) CASE(forEmptyParts)            \
@@ -205,7 +205,7 @@ inline int doWhileEffect(int x, int y) {
 inline int doWhileContinue(int x, int y) {
   int i = 0, sum = 0;
   do {
-    if (i == x) continue;   // goes to the condition, whose effect still happens
+    if (i == x) continue;   // goes to the condition, whose side effect still happens
     sum += i + y;
   } while (++i < 7);
   return sum * 10 + i;
@@ -403,7 +403,7 @@ inline int indexByBool(int x, int y) {
   return a[x < y] * 3 + a[true];
 }
 
-// Too long to be unrolled, so that the array is one in the device's program, too.
+// The loop is too long to be unrolled, so that the device's program has an array, too.
 inline int arrayShifted(int x, int y) {
   int a[40];
   const int n = x < 0 ? 3 : x + 3;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Conversions between bool, int, uint and float. Text that is both a .sk file and C++ (see
-// control_flow.hpp); no float is converted to an integer type that cannot hold it.
+// Conversions between bool, int, uint and float. The text is both a .sk file and C++ (see control_flow.hpp). No float is
+// converted to an integer type that cannot hold it.
 // clang-format off: a macro is a list
 #define FLOAT_TO_INT_CASES(CASE)                                                                   \
   CASE(truncate) CASE(castSpellings) CASE(toUnsigned) CASE(floatTests) CASE(intFromSum)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Expressions with effects, and where C++ fixes the order in which they happen. Text that is both a
-// .sk file and C++ (see control_flow.hpp).
+// Expressions with side effects whose order C++ defines. The text is both a .sk file and C++ (see control_flow.hpp).
 // clang-format off: a macro is a list
 #define EFFECTS_CASES(CASE)                                                                        \
   CASE(postfixAndPrefix) CASE(postfixInIndex) CASE(assignmentAsValue) CASE(assignmentChain)        \
@@ -170,7 +169,7 @@ inline int three(int a, int b, int c) { return a + 10 * b + 100 * c; }
 inline int earlierArgumentKept(int x, int y) {
   int i = x;
   int first = i, second = i += y, third = i *= 2;
-  int braces[3] = {i, ++i, i++};   // braces fix the order
+  int braces[3] = {i, ++i, i++};   // braces evaluate from left to right
   return three(first, second, third) + 3 * braces[0] + 5 * braces[1] + 7 * braces[2] + i;
 }
 
@@ -195,7 +194,7 @@ inline int callInCondition(int x, int y) {
   return i * 100 + turns;
 }
 
-inline int tail(int& i) { return bump(i) + i * 10; }   // + of two values that a change lies between
+inline int tail(int& i) { return bump(i) + i * 10; }   // the left operand changes what the right one reads
 inline int callInReturn(int x, int y) {
   int i = x;
   int r = add(i, y);
@@ -267,7 +266,7 @@ inline int fill(int& a, int& b) {
 }
 inline int resultIntoArgument(int x, int y) {
   int a = x, b = y;
-  a = fill(a, b);          // the result comes last
+  a = fill(a, b);          // the result is assigned last
   return a * 100 + b;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Helper functions, templates, constants, names. Text that is both a .sk file and C++ (see
-// control_flow.hpp).
+// Helper functions, templates, constants, names. The text is both a .sk file and C++ (see control_flow.hpp).
 // clang-format off: a macro is a list
 #define FUNCTION_CASES(CASE)                                                                       \
   CASE(overloads) CASE(overloadsByCount) CASE(defaultArguments) CASE(defaultFromCall)              \
@@ -201,7 +200,7 @@ inline int conditionalText(int x, int y) {
   return r;
 }
 
-// Names that GLSL has taken, and C++ has not.
+// Names that are reserved in GLSL, but not in C++.
 inline int input(int attribute, int varying) { return attribute - varying; }
 inline int texture(int sampler2D) { return sampler2D * 2; }
 inline int glslWords(int x, int y) {
@@ -213,7 +212,7 @@ inline int glslWords(int x, int y) {
   return in + out + inout + uniform + precise + highp + flat + discard + common + filter + gl_Position +
          main + ivec2 + lowp + smooth + shared + layout + output + active + superp + sample;
 }
-// Names like those of our own machinery, and names that GLSL reserves.
+// Names like those that skc makes, and forms of names that GLSL reserves.
 inline int tooLikeOurs(int x, int y) {
   int sk_x = x, sk_index = y, t = 3, t_2 = 4, a__b = 5, self = 6, x_2 = 7;
   {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Integer arithmetic. Text that is both a .sk file and C++ (see control_flow.hpp). Signed overflow
-// and what else C++ leaves undefined does not happen here: sums that wrap are unsigned.
+// Integer arithmetic. The text is both a .sk file and C++ (see control_flow.hpp). It has no signed overflow or other
+// undefined behaviour: sums that wrap are unsigned.
 // clang-format off: a macro is a list
 #define INT_CASES(CASE)                                                                            \
   CASE(sum) CASE(product) CASE(quotient) CASE(remainder) CASE(remainderByConstant)                 \
@@ -20,7 +20,7 @@ namespace integers {
 
 inline int sum(int x, int y) { return static_cast<int>(static_cast<uint>(x) + static_cast<uint>(y)); }
 inline int product(int x, int y) { return static_cast<int>(static_cast<uint>(x) * static_cast<uint>(y)); }
-// The one quotient that overflows is asked for elsewhere (operators_test.cpp).
+// tests/numerics/arithmetic_test.cpp tests the quotient that overflows, and quotients by zero.
 inline bool isUndefined(int x, int y) { return y == 0 || (y == -1 && x == -2147483647 - 1); }
 inline int quotient(int x, int y) { return isUndefined(x, y) ? 0 : x / y; }
 inline int remainder(int x, int y) { return isUndefined(x, y) ? 0 : x % y; }

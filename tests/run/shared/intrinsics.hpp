@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// The intrinsics of floats, one row each: for the .sk file, whose kernels only need the name, and for
-// the test. CASE(name, reference in double, least x, largest x, absolute error, relative error); with
-// two arguments y lies in [0.25, 4], with three y in [-1, 1] and z in [1, 3].
+// The intrinsics of floats, one row each, for the .sk file, whose kernels only need the name, and for
+// the test. CASE(name, reference in double, smallest x, largest x, absolute error, relative error). With
+// two arguments, y is in [0.25, 4]; with three, y is in [-1, 1] and z in [1, 3].
 //
-// GLSL promises little. The errors allowed are the worst that we measured, nearly all on llvmpipe,
-// times 1.5 to 4, in decimal: sine and cosine are good to 1e-7 in [-100, 100], to 7e-6 on an
-// NVIDIA H200; asin 3.9e-4, acos 1.6e-4;
-// atan 2.1e-5 relative; exp 64 ulp (4e-6) at its ends, pow 107 ulp; log 1.6e-7 absolute near 1; the
-// hyperbolic functions are made of exp and log and lose most digits near 0, so that only their
-// absolute error is bounded. + - * / and sqrt round correctly there, other drivers take 3 ulp.
+// GLSL promises little. The error bounds are the largest errors that we measured, nearly all on llvmpipe,
+// times 1.5 to 4. Measured errors: sine and cosine 1e-7 in [-100, 100], but 7e-6 on an NVIDIA H200;
+// asin 3.9e-4, acos 1.6e-4; atan 2.1e-5 relative; exp 64 ulp (4e-6) at the ends of its range, pow 107 ulp;
+// log 1.6e-7 absolute near 1. The hyperbolic functions are computed from exp and log and lose most digits
+// near 0, so that only their absolute error is bounded. llvmpipe rounds + - * / and sqrt correctly; other
+// drivers have errors up to 3 ulp.
 #define EXACT 0, 0
 #define FEW_ULP 1e-30, 4e-7
 

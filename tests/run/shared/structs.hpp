@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Structs and arrays. Text that is both a .sk file and C++ (see control_flow.hpp).
+// Structs and arrays. The text is both a .sk file and C++ (see control_flow.hpp).
 // clang-format off: a macro is a list
 #define STRUCT_CASES(CASE)                                                                         \
   CASE(membersReadAndWritten) CASE(copies) CASE(nested) CASE(memberFunctions)                      \

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The switches of control_flow.hpp, which lists them: text that is both a .sk file and C++.
+// The switches that control_flow.hpp lists. The text is both a .sk file and C++.
 namespace control {
 
 inline int switchPlain(int x, int y) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A file of choices of accuracy (docs/accuracy.md) for a test.
+// A configuration file (docs/accuracy.md) for a test.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace run_tests {
 
-/// It is there as long as this lives.
+/// The file exists while this object lives.
 struct ConfigurationFile {
   explicit ConfigurationFile(const std::string& text)
       : path((std::filesystem::temp_directory_path() / "sk_test.toml").string() +

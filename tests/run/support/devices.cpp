@@ -7,7 +7,7 @@
 namespace run_tests {
 
 sk::Device& device(std::string_view profile, int textureLimit) {
-  // Never destroyed: some drivers end before our static objects do.
+  // Never destroyed: some drivers shut down before our static objects are destroyed.
   static auto& devices = *new std::map<std::pair<std::string, int>, sk::Device>;
   const std::pair key{std::string(profile), textureLimit};
   auto found = devices.find(key);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The devices that a test program runs on, each opened once: all profiles, and all again with small
-// texture limits, under which most shapes are linearised, or lie in several layers; and native code.
+// The devices that a test program runs on, each opened once: native code, and all profiles, with their own texture limits
+// and with small ones, under which most shapes are linearised or need several layers.
 #pragma once
 
 #include <string>
@@ -13,13 +13,13 @@
 
 namespace run_tests {
 
-/// Extents above the first are linearised, streams of more than 64 elements layered under the second.
+/// Under the first, extents above 64 are linearised. Under the second, streams of more than 64 elements need several layers.
 inline constexpr int smallLimits[] = {64, 8};
 
-/// The device of a profile ("glsl330", "glsl430", "essl300", "native"), with its own texture limit (0) or a smaller one.
+/// The device with a profile ("glsl330", "glsl430", "essl300", "native") and its own texture limit (0) or a smaller one.
 sk::Device& device(std::string_view profile, int textureLimit = 0);
 
-/// test(device) on every profile: for what a kernel computes.
+/// Calls test(device) on every profile: for tests of what a kernel computes.
 template <class Test>
 void onEveryProfile(const Test& test) {
   for (const std::string profile : {"glsl330", "glsl430", "essl300", "native"}) {
@@ -34,16 +34,16 @@ struct Layout {
   int textureLimit;
 };
 
-/// Each layout that programs read and write on each stage: most of a test's time goes into the driver's compiler. Programs of
-/// essl300 differ from glsl330's by their header and by the precision of what they declare, layers' being the one that has no
-/// default: run.layers runs those of every kind.
+/// Every layout with fragment programs, and whole and layered streams with compute programs. Most of a test's time goes
+/// into the driver's compiler, so essl300 is left out: its programs differ from those of glsl330 only in the header and in
+/// precision qualifiers. Samplers of layers are the only ones without a default precision; run.layers tests them.
 inline constexpr Layout layouts[] = {{"glsl330", 0},
                                      {"glsl330", smallLimits[0]},
                                      {"glsl330", smallLimits[1]},
                                      {"glsl430", 0},
                                      {"glsl430", smallLimits[1]}};
 
-/// test(device) on every one of the layouts, and natively: for where elements lie.
+/// Calls test(device) on every layout, and natively: for tests of where elements lie.
 template <class Test>
 void onEveryLayout(const Test& test) {
   for (const Layout& layout : layouts) {

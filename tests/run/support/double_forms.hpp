@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The forms that doubles have on devices, and test values that all of them hold exactly.
+// The forms of doubles on devices, and test values that every form holds exactly.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct Form {
 };
 
 inline sk::Device& deviceOf(const Form& form) {
-  // Never destroyed: some drivers end before our static objects do.
+  // Never destroyed: some drivers shut down before our static objects are destroyed.
   static auto& devices = *new std::map<std::string, sk::Device>;
   const std::string key = form.profile + form.doubles;
   auto found = devices.find(key);
@@ -32,7 +32,7 @@ inline sk::Device& deviceOf(const Form& form) {
   return found->second;
 }
 
-/// test(device, form) on every form that there is.
+/// Calls test(device, form) for every form.
 template <class Test>
 void onEveryForm(const Test& test) {
   for (const Form& form : {Form{"glsl330", "native"}, Form{"glsl330", "pairs"}, Form{"essl300", "pairs"},
@@ -56,7 +56,7 @@ inline std::vector<double> randomDoubles(std::size_t count, std::uint32_t seed, 
   return list;
 }
 
-/// Of one operation, relative to its result.
+/// The error bound of one operation, relative to its result.
 inline long double precisionOf(const Form& form) { return form.isNative() ? 0x1p-52L : 0x1p-45L; }
 
 }  // namespace run_tests

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What a reduce is compared with: the plain left-to-right fold of an array, or of its blocks.
+// The expected results of reduces: plain left-to-right folds of an array, or of its blocks.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace run_tests {
 
-/// Folds the elements of the box of `input` from `begin` on, of the given shape, in row-major order.
+/// Folds the elements of a box of `input`, which starts at `begin` and has shape `box`, in row-major order.
 template <class A, class T, class Fold>
 A foldBox(const HostArray<T>& input, const Position& begin, const sk::Shape& box, A accumulator,
           const Fold& fold) {

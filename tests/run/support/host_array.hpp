@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// An array of a shape in host memory: the plain counterpart of a stream, with row-major positions.
+// An array with a shape in host memory: the counterpart of a stream, in row-major order.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ inline Position positionOf(const sk::Shape& shape, std::size_t i) {
   return position;
 }
 
-/// A position in a view, as one in its stream.
+/// The position in the stream of a position in a view that starts at `begin`.
 inline Position inside(const sk::Index& begin, Position position) {
   for (int d = 0; d < begin.rank(); ++d) position[static_cast<std::size_t>(d)] += begin[d];
   return position;
@@ -41,7 +41,7 @@ class HostArray {
 
   T& operator[](const Position& position) { return elements_[number(position)]; }
   const T& operator[](const Position& position) const { return elements_[number(position)]; }
-  /// The element at a position of a larger array, along which this one repeats where its extent is 1.
+  /// The element at a position of a larger array; this array is broadcast in dimensions of extent 1.
   const T& repeated(Position position) const {
     for (int d = 0; d < shape_.rank(); ++d) {
       auto& p = position[static_cast<std::size_t>(d)];

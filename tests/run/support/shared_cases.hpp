@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs functions whose text is both .sk and C++ (tests/run/shared): what a device makes of one, in a
-// kernel (T x<>, T y<>, out R r<>), is compared with calling it here.
+// Tests functions whose text is both .sk and C++ (tests/run/shared): compares the results of a kernel
+// (T x<>, T y<>, out R r<>) that calls one with the results of calling it here.
 #pragma once
 
 #include <utility>
@@ -37,7 +37,7 @@ inline Samples<int> pairsOf(int begin, int end) {
   return pairsOf(values);
 }
 
-/// The samples on a device, and functions checked at all of them.
+/// Checks functions at all samples on a device.
 template <class R, class T>
 class SharedCases {
  public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Host arrays of test values, streams made of them, and how they are compared: `difference` is ""
-// where two arrays agree, else it names the first element that does not.
+// Host arrays of test values, streams made from them, and comparisons: `difference` is "" if two arrays agree, else it
+// names the first elements that differ.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace run_tests {
 
-/// Bits that follow from a number alone, the same on every machine (the finaliser of MurmurHash3).
+/// Hashes a number (the finaliser of MurmurHash3), so that test values are the same on every machine.
 inline std::uint32_t hashed(std::uint32_t x) {
   x ^= x >> 16;
   x *= 0x85ebca6bu;
@@ -25,7 +25,7 @@ inline std::uint32_t hashed(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-/// A value of type T for element i: floats in [-8, 8) with 8 bits of fraction, integers of all sizes.
+/// A value of type T for element i: floats in [-8, 8) with 8 fraction bits, integers of all magnitudes.
 template <class T>
 T valueAt(std::uint32_t i) {
   const std::uint32_t bits = hashed(i * 2654435761u + 12345u);
@@ -64,7 +64,7 @@ sk::Stream<T> streamOf(sk::Device& device, const sk::Shape& shape,
   return stream;
 }
 
-/// A stream of rank 1 or of the given shape, from a list.
+/// A stream of rank 1 with these elements.
 template <class T>
 sk::Stream<T> streamOf(sk::Device& device, const std::vector<sk::HostElement<T>>& elements) {
   return streamOf<T>(device, {static_cast<std::int64_t>(elements.size())}, elements);
@@ -99,7 +99,7 @@ void show(std::ostream& out, const T& value) {
   }
 }
 
-/// NaN agrees with NaN, and nothing else is forgiven.
+/// Whether two values are equal, or both NaN.
 template <class T>
 bool isSame(const T& a, const T& b) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -109,7 +109,7 @@ bool isSame(const T& a, const T& b) {
   }
 }
 
-/// "" where `actual` is `expected(i)` for all i in [0, count), by `agree`.
+/// "" if agree(actual[i], expected(i)) for all i in [0, count).
 template <class Actual, class Expected, class Agree>
 std::string difference(const Actual& actual, std::size_t count, const Expected& expected,
                        const Agree& agree) {
@@ -132,7 +132,7 @@ std::string difference(const Actual& actual, std::size_t count, const Expected& 
   return out.str();
 }
 
-/// "" where every element is exactly the expected one (NaN for NaN).
+/// "" if every element is equal to the expected one, or both are NaN.
 template <class T>
 std::string difference(const std::vector<T>& actual, const std::vector<T>& expected) {
   return difference(
@@ -143,7 +143,7 @@ std::string difference(const std::vector<T>& actual, const Expected& expected) {
   return difference(actual, actual.size(), expected, isSame<T>);
 }
 
-/// "" where every element is within `absolute` or `relative` of the expected one, whichever allows more.
+/// "" if every element is within `absolute` or `relative` of the expected one, whichever allows more.
 template <std::invocable<std::size_t> Expected>
 std::string difference(const std::vector<float>& actual, const Expected& expected, double absolute,
                        double relative) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// trace_program SCENARIO: does what check.py then looks for in the file that SK_TRACE names.
+// trace_program SCENARIO: runs a scenario; check.py then checks the trace in the file that SK_TRACE names.
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -32,7 +32,7 @@ void callAll() {
   device.finish();
 }
 
-/// One kernel and one reduce, of which the former's argument `shape` changes alone.
+/// Calls one kernel and one reduce with streams of many shapes.
 void callInManyShapes() {
   sk::Device device;
   for (std::int64_t rows = 2; rows < 40; ++rows) {
@@ -43,7 +43,7 @@ void callInManyShapes() {
   }
 }
 
-/// Ends in the middle of things, with a device and streams alive.
+/// Exits the process while a device and streams are alive.
 void exitInTheMiddle() {
   sk::Device device;
   auto x = device.stream<float>({64, 64}), r = device.stream<float>({64, 64});
@@ -52,7 +52,7 @@ void exitInTheMiddle() {
   std::_Exit(0);
 }
 
-/// A call with wrong arguments, whose exception nobody catches.
+/// Makes a call with wrong arguments, whose exception nobody catches.
 void throwInTheMiddle() {
   sk::Device device;
   auto x = device.stream<float>({64, 64}), r = device.stream<float>({64, 64});

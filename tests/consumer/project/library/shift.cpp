@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A library with a kernel of its own, which its users do not see.
+// A library with a kernel that its users do not see.
 #include "library/shift.hpp"
 
 #include <sk/sk.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What the library offers.
+// The library's interface.
 #pragma once
 
 /// value + 0.5, computed on a device.
