@@ -29,7 +29,8 @@ struct SlotPlan {
 /// Plans slots for inputs, outputs and, except in reductions, rows of neighbours at constant offsets.
 SlotPlan planSlots(const ir::Module& module, const ir::Kernel& kernel);
 
-/// True if the row at a constant offset has a slot. Rows farther away are read like any gather.
+/// True if a neighbour at this constant offset is read from a slot; those farther away are read like any
+/// gather.
 bool isNear(const std::vector<std::int32_t>& offset);
 
 /// The components of a constant offset, x first; nullopt if it is not constant.

@@ -33,8 +33,8 @@ SK_FOR_V3 inline void widen(const float* at, Doubles& wide) {
 #endif
 }
 
-/// sum += x * y. The product is exact, so that there is one rounding, fused or not. The fused operation
-/// spares CPUs an addition where they convert to doubles with the same unit.
+/// sum += x * y. The product is exact, so that there is one rounding, fused or not. Fused, it leaves the
+/// adders free on CPUs that also use them to convert to double.
 SK_FOR_V3 inline void addProduct(const Doubles& x, const Doubles& y, Doubles& sum) {
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
   sum = __builtin_ia32_vfmaddpd256(x, y, sum);
