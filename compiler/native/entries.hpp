@@ -39,7 +39,7 @@ llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, sk::na
 
 /// The kinds of entries that a kernel needs, apart from RunRows. A reduction needs Fold, Combine if it folds
 /// accumulators into accumulators, and Identity if it has identities. Any other kernel needs Run, and Borders
-/// if a gather has a border value. Both need Apply if they scatter.
+/// if a gather has a border value. Either needs Apply if it scatters.
 std::vector<sk::native::EntryKind> entriesOf(const ir::Module& module, const ir::Kernel& kernel);
 
 }  // namespace skc::native

@@ -29,7 +29,7 @@ struct SlotPlan {
 /// Plans slots for inputs, outputs and, except in reductions, rows of neighbours at constant offsets.
 SlotPlan planSlots(const ir::Module& module, const ir::Kernel& kernel);
 
-/// True if a neighbour at this constant offset is read from a slot; those farther away are read like any
+/// True if neighbours at this constant offset are read from a slot. Those farther away are read like any
 /// gather.
 bool isNear(const std::vector<std::int32_t>& offset);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Coalesces dimensions, so that native loops have fewer and longer rows: dimensions that are contiguous in
-// all streams of a call become one, if the kernel does not depend on its position. This changes how elements
+// all streams of a call become one, if the kernel uses no indices or extents. This changes how elements
 // are counted, never their order.
 #pragma once
 

@@ -30,7 +30,7 @@ void LeafFolder::moveToRow(const native::Extents& first) {
 
 void LeafFolder::fold(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
                       Start start, std::int64_t step) {
-  const bool areApart = program_.layout.hasGathers() && step != 1;  // gathers read at the neighbours of lanes
+  const bool areApart = program_.layout.hasGathers() && step != 1;  // gathers need adjacent lanes
   if (program_.layout.goesByElement() || areApart) {
     foldOneByOne(state, x, columns, rounds, start, step);
     return;

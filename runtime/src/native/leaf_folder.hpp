@@ -11,7 +11,7 @@
 
 namespace sk {
 
-/// Whether columns start anew or with their contents.
+/// Whether a fold starts its columns anew or continues them.
 enum class Start : std::uint8_t { New, Continued };
 
 /// Each thread has its own.

@@ -39,7 +39,7 @@ class NativeStream final : public StreamState {
   /// Takes over `count` elements that were pushed, in place of its own; its shape becomes {count}.
   void become(Components&& pushed, std::int64_t count) noexcept;
 
-  /// Rounds floats to the stream's storage if that is half precision. Must follow every write.
+  /// Rounds floats to half precision if that is the stream's storage. Must follow every write.
   void keepStorage();
 
   /// Arrays for a call to write to while it reads the stream's own. They are uninitialised at first, and kept

@@ -22,7 +22,7 @@ inline constexpr program::Element floatElement{"float", "float", 4, floatField};
 inline constexpr program::Field intField[] = {{"", program::Scalar::Int, 1, 0}};
 inline constexpr program::Element intElement{"int", "int", 4, intField};
 
-/// The elements that the code computes in whole groups of lanes.
+/// `count`, rounded up to whole groups of lanes.
 inline std::int64_t inGroups(std::int64_t count) { return roundUp(count, testLanes); }
 
 template <class T>

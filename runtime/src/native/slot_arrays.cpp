@@ -315,8 +315,8 @@ void SlotArrays::layOutInput(std::size_t row, std::size_t s, std::int64_t x, con
   useScratch(row, slot);
 }
 
-/// Lays out elements with their neighbours. The neighbours below one row are those beside the next row, and
-/// so on: they are laid out once.
+/// Lays out elements with their neighbours. The row below one row of the domain is the middle row for the
+/// next one, so that it is laid out only once.
 void SlotArrays::layOutGather(std::size_t s, std::int64_t x, const Length& length, bool areOutsideAlone) {
   const Slot& slot = layout_.slots()[s];
   const std::size_t anew = slot.below ? 1 : wanted_;

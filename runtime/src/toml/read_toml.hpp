@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Reads TOML files from untrusted sources. Some files crash toml++ (3.3) alone: it destroys tables by
+// Reads TOML files from untrusted sources. Some files crash toml++ (3.3) itself: it destroys tables by
 // recursion, so that a key of many thousand parts overflows the stack, and it aborts on a header like [[[a]]]
 // (without assertions, it assumes that there is none). Include this header in place of toml++'s.
 #pragma once
