@@ -27,11 +27,11 @@ struct Pushed {
 /// The argument for one parameter.
 struct Operand {
   std::span<void* const> components;  ///< empty if the stream is omitted (sk::none)
-  std::int64_t first = 0;              ///< number of the region's first element
-  Extents stride{};                    ///< of the stream, in elements
-  Extents extent{1, 1, 1, 1};          ///< of the region
-  Extents multiply{1, 1, 1, 1};        ///< an element input's index is the domain's, times this,
-  Extents divide{1, 1, 1, 1};          ///< divided by this
+  std::int64_t first = 0;  ///< number of the region's first element
+  Extents stride{};  ///< of the stream, in elements
+  Extents extent{1, 1, 1, 1};  ///< of the region
+  Extents multiply{1, 1, 1, 1};  ///< an element input's index is the domain's, times this,
+  Extents divide{1, 1, 1, 1};  ///< divided by this
   bool holdsFloats = false;  ///< element inputs: the arrays hold floats, but the code has doubles
   bool countsElements = false;  ///< iterators: advances with the element number, else with the index
   Pushed* pushed = nullptr;  ///< variable outputs
