@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Pushes to variable outputs and stores to scatter outputs: several lanes append records. What they store is carried out later, or
-// at once where nothing has to be put in order.
+// Pushes to variable outputs and stores to scatter outputs. The active lanes append records, which are
+// carried out later; without an append buffer, stores are carried out immediately.
 #include <algorithm>
 #include <cstddef>
 
@@ -19,17 +19,17 @@ using namespace ir;
 using sk::native::AppendBuffer;
 using sk::native::Argument;
 
-/// An array of records, and what each lane has for it.
+/// One array of an AppendBuffer, and the value that each lane appends to it.
 struct Streams::Column {
-  std::size_t field;  ///< of AppendBuffer
-  std::size_t component;  ///< of AppendBuffer::arrays
+  std::size_t field;  ///< offset in AppendBuffer
+  std::size_t component;  ///< index in AppendBuffer::arrays
   llvm::Value* values;
   llvm::Value* array = nullptr;
 };
 
 namespace {
 
-/// Fewer bits than these make no vector that is compressed.
+/// Sizes, in bits, of the vectors that AVX-512 can compress.
 constexpr std::uint32_t leastCompressed = 128;
 constexpr std::uint32_t mostCompressed = 512;
 
@@ -39,7 +39,7 @@ llvm::Value* lanesFrom(Lanes& l, llvm::Value* vector, std::uint32_t first, std::
   return l.b.CreateShuffleVector(vector, numbers);
 }
 
-/// The entries of a vector whose bits are set, first; what follows is anything.
+/// Moves the entries whose mask bit is set to the front. The entries behind them are unspecified.
 llvm::Value* compressed(Lanes& l, llvm::Value* vector, llvm::Value* mask) {
   llvm::Type* const type = vector->getType();
   return l.b.CreateIntrinsic(llvm::Intrinsic::x86_avx512_mask_compress, {type},
@@ -50,7 +50,8 @@ llvm::Value* maskOfBits(Lanes& l, llvm::Value* bits) {
   return l.b.CreateBitCast(bits, l.vector(l.b.getInt1Ty()));
 }
 
-/// Stores the values of set lanes one behind the other, and perhaps others behind them.
+/// Stores the values of the active lanes consecutively from array[count] on. May overwrite entries behind
+/// them.
 void storeCompressed(Lanes& l, llvm::Value* values, llvm::Value* array, llvm::Value* bits,
                      llvm::Value* count) {
   llvm::Type* const stored = values->getType()->getScalarType();
@@ -88,7 +89,7 @@ void Streams::scatter(std::uint32_t param, const Parts& index, const Parts& valu
   llvm::Value* number = l.spread(argumentField(param, offsetof(Argument, first), l.int64()));
   for (std::size_t d = 0; d < index.size(); ++d) {
     llvm::Value* const i = l.spread(index[d]);
-    // an index is an int, so that none is inside behind 2^31, and a negative one is behind that
+    // compared as unsigned, a negative index is 2^31 or more, and so never in bounds
     llvm::Value* const extent =
         l.b.CreateBinaryIntrinsic(llvm::Intrinsic::umin, argumentExtent(param, d, offsetof(Argument, extent)),
                                   l.integer(l.int64(), std::int64_t{1} << 31));
@@ -125,7 +126,7 @@ void Streams::scatter(std::uint32_t param, const Parts& index, const Parts& valu
   l.b.SetInsertPoint(end);
 }
 
-/// Stores the elements of set lanes at once, one after the other.
+/// Carries out the stores of the active lanes immediately, in the order of lanes.
 void Streams::applyLanes(std::uint32_t param, llvm::Value* number, const Parts& stored, llvm::Value* mask) {
   llvm::Function* const function = l.b.GetInsertBlock()->getParent();
   const auto block = [&](const char* name) {
@@ -158,7 +159,7 @@ void Streams::applyLanes(std::uint32_t param, llvm::Value* number, const Parts& 
   l.b.SetInsertPoint(end);
 }
 
-/// A loop over the set lanes, of which there is one at least.
+/// Loops over the active lanes; there is at least one.
 void Streams::applySomeLanes(std::uint32_t param, llvm::Value* number, const Parts& stored, llvm::Value* bits,
                              const std::vector<llvm::Value*>& to) {
   llvm::Function* const function = l.b.GetInsertBlock()->getParent();
@@ -187,7 +188,7 @@ void Streams::applySomeLanes(std::uint32_t param, llvm::Value* number, const Par
   l.b.SetInsertPoint(end);
 }
 
-/// The arrays of a parameter. Not in the prologue: a stream that is left out has none.
+/// Loads the arrays of a parameter; not in the prologue, because an omitted stream has none.
 std::vector<llvm::Value*> Streams::componentsNow(std::uint32_t param) {
   llvm::Value* const all = argumentField(param, offsetof(Argument, components), l.b.getPtrTy());
   std::vector<llvm::Value*> arrays;
@@ -196,7 +197,7 @@ std::vector<llvm::Value*> Streams::componentsNow(std::uint32_t param) {
   return arrays;
 }
 
-/// Carries out record `i` of those whose targets and components are in these arrays.
+/// Carries out record `i`; `targets` and `from` are the arrays of the records' targets and components.
 void Streams::applyRecord(std::uint32_t param, llvm::Value* targets, const std::vector<llvm::Value*>& from,
                           const std::vector<llvm::Value*>& to, llvm::Value* i) {
   Parts value;
@@ -220,7 +221,7 @@ void Streams::applyOne(std::uint32_t param, llvm::Value* target, const Parts& va
   for (std::size_t c = 0; c < to.size(); ++c) l.storeOne(scalars(param)[c], result[c].value, addresses[c]);
 }
 
-/// What an element of a scatter output becomes.
+/// The new value of an element of a scatter output.
 Parts Streams::combined(std::uint32_t param, const Parts& old, const Parts& value) {
   Parts result;
   for (std::size_t c = 0; c < value.size(); ++c) {
@@ -276,7 +277,7 @@ void Streams::makeRoom(llvm::Value* appendBuffer) {
   l.b.SetInsertPoint(append);
 }
 
-/// Stores the set lanes behind `count` records, and returns how many there are then.
+/// Stores the records of the active lanes from number `count` on; returns the new count.
 llvm::Value* Streams::storeRecords(const std::vector<Column>& columns, llvm::Value* bits,
                                    llvm::Value* count) {
   const auto addressAt = [&](const Column& column, llvm::Value* number) {
@@ -306,7 +307,7 @@ llvm::Value* Streams::storeRecords(const std::vector<Column>& columns, llvm::Val
   l.b.SetInsertPoint(all);
   llvm::Value* const afterAll = storeAll();
   l.b.CreateBr(end);
-  // each lane stores, and the next one stores over it where its bit is not set
+  // every lane stores; the next lane overwrites the record of an inactive one
   l.b.SetInsertPoint(some);
   llvm::Value* const mask = l.b.CreateZExt(bits, l.int64());
   llvm::Value* next = count;

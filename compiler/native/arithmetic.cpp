@@ -15,7 +15,7 @@ namespace {
 
 bool isSigned(Scalar scalar) { return scalar != Scalar::Uint && scalar != Scalar::Bool; }
 
-/// Consecutive numbers stay consecutive where the same number is added to all, or taken away.
+/// True if the result is consecutive: a uniform value is added to a consecutive one, or subtracted from it.
 bool staysConsecutive(BinaryOp op, const Lanes& lanes, const Part& lhs, const Part& rhs) {
   if (op == BinaryOp::Add) {
     return (lhs.isConsecutive && lanes.isUniform(rhs)) || (lanes.isUniform(lhs) && rhs.isConsecutive);
@@ -23,8 +23,8 @@ bool staysConsecutive(BinaryOp op, const Lanes& lanes, const Part& lhs, const Pa
   return op == BinaryOp::Sub && lhs.isConsecutive && lanes.isUniform(rhs);
 }
 
-/// A quotient of vectors of 32-bit integers. CPUs have no such instruction, but doubles hold both operands and the
-/// truncated quotient exactly.
+/// Divides vectors of 32-bit integers in double, because CPUs have no instruction for it. Doubles hold the
+/// operands and the truncated quotient exactly.
 llvm::Value* quotientByDoubles(Lanes& l, bool isSigned, llvm::Value* a, llvm::Value* c) {
   llvm::Type* const wide = l.vector(l.b.getDoubleTy());
   llvm::Value* const x = isSigned ? l.b.CreateSIToFP(a, wide) : l.b.CreateUIToFP(a, wide);
@@ -56,7 +56,7 @@ Division divide(Lanes& l, bool isSigned, llvm::Value* a, llvm::Value* c) {
   }
   llvm::Value* const divisor = l.b.CreateSelect(isSpecial, one, c);
   llvm::Value* quotient = plainQuotient(l, isSigned, a, divisor);
-  llvm::Value* const remainder = l.b.CreateSub(a, l.b.CreateMul(quotient, divisor));  // by 1: 0
+  llvm::Value* const remainder = l.b.CreateSub(a, l.b.CreateMul(quotient, divisor));  // 0 for the divisor 1
   if (isSigned) quotient = l.b.CreateSelect(isMinusOne, l.b.CreateNeg(a), quotient);
   return {quotient, remainder};
 }
@@ -116,7 +116,7 @@ llvm::Value* integerOperation(Lanes& l, BinaryOp op, bool isSigned, llvm::Value*
 
 // ---- narrow scalars -------------------------------------------------------------------------------
 
-/// The float that a normalized integer stands for: k / max, not below -1.
+/// The float that a normalized integer represents: k / max, but at least -1.
 Part floatOfNormalized(Lanes& l, Scalar narrow, const Part& stored) {
   llvm::Value* const k = l.value(stored);
   const bool isSnorm = narrow == Scalar::Snorm8 || narrow == Scalar::Snorm16;
@@ -128,7 +128,7 @@ Part floatOfNormalized(Lanes& l, Scalar narrow, const Part& stored) {
   return {l.b.CreateSelect(l.b.CreateFCmpOLT(value, least), least, value)};
 }
 
-/// The nearest of them; of two the even one; NaN gives 0.
+/// The nearest normalized integer, ties to even; 0 for NaN.
 Part normalizedOfFloat(Lanes& l, Scalar narrow, const Part& value) {
   llvm::Value* const x = l.value(value);
   llvm::Type* const type = x->getType();
@@ -139,14 +139,14 @@ Part normalizedOfFloat(Lanes& l, Scalar narrow, const Part& value) {
   inside = l.b.CreateSelect(l.b.CreateFCmpOLT(inside, high), inside, high);
   inside = l.b.CreateSelect(l.b.CreateFCmpUNO(x, x), l.number(type, 0), inside);
   llvm::Value* const product = l.b.CreateFMul(inside, l.number(type, normalizedScale(narrow)));
-  // no bits behind the point are left of what is so large
+  // this sum has no bits behind the binary point, so that it rounds to an integer
   llvm::Value* const large = l.number(type, 0x1.8p23);
   llvm::Value* const nearest = l.b.CreateFSub(l.b.CreateFAdd(product, large), large);
   llvm::Value* const whole = l.b.CreateFPToSI(nearest, l.sameShape(x, l.int32()));
   return {l.b.CreateTrunc(whole, l.sameShape(x, l.type(narrow)))};
 }
 
-/// A real number of any type as a float, and the way back.
+/// Converts a real number of any type to float, and back.
 Part asFloat(Lanes& l, const Part& real) {
   llvm::Type* const type = l.sameShape(real.value, l.b.getFloatTy());
   return real.value->getType() == type ? real : Part{l.b.CreateFPTrunc(real.value, type)};
@@ -198,7 +198,7 @@ Part binary(Lanes& l, BinaryOp op, Scalar scalar, const Part& lhs, const Part& r
                          : integerOperation(l, op, isSigned(scalar), a.value, c.value)};
 }
 
-/// The nearest int of each lane, 0 for NaN: what fptosi.sat says, which LLVM does lane by lane on x86.
+/// Truncates and saturates; 0 for NaN. This is fptosi.sat, which LLVM computes lane by lane on x86.
 static llvm::Value* saturatedInts(Lanes& l, llvm::Value* x) {
   llvm::Type* const type = l.sameShape(x, l.int32());
   const bool isFloat = x->getType()->getScalarType()->isFloatTy();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The language's operators and conversions of one scalar, in all lanes: as docs/language.md defines them for every operand.
-// Arithmetic of integers wraps; a quotient by 0 is the dividend and the remainder 0; a shift counts modulo 32; a real number
-// becomes the nearest integer towards 0 that the type holds, and NaN 0.
+// Operators and conversions of one scalar component in all lanes, defined for every operand as
+// docs/language.md says. Integer arithmetic wraps; x / 0 is x and x % 0 is 0; shift counts are taken modulo
+// 32; a conversion from a real number to an integer truncates and saturates, and NaN becomes 0.
 #pragma once
 
 #include "ir/ir.hpp"
@@ -11,8 +11,8 @@
 namespace skc::native {
 
 Part unary(Lanes& lanes, ir::UnaryOp op, ir::Scalar scalar, const Part& operand);
-/// Both operands are of the type `scalar`, except that a shift's count may be the other integer type. `&&` and `||`
-/// evaluate both.
+/// Both operands have the type `scalar`, except that a shift count may have the other integer type. `&&` and
+/// `||` evaluate both operands.
 Part binary(Lanes& lanes, ir::BinaryOp op, ir::Scalar scalar, const Part& lhs, const Part& rhs);
 Part convert(Lanes& lanes, ir::Scalar from, ir::Scalar to, const Part& operand);
 

@@ -20,11 +20,12 @@ using analysis::Uniformity;
 
 namespace {
 
-/// A body is written twice.
+/// The largest body that is emitted twice.
 constexpr std::size_t mostExpressions = 100;
 constexpr std::size_t mostComponents = 4;
 
-/// Expressions of a block and of what it calls. None where it contains a loop, or more than there may be.
+/// The number of expressions in a block and its callees; nullopt if they contain a loop or exceed
+/// mostExpressions.
 std::optional<std::size_t> sizeOf(const Module& module, const Block& body) {
   std::size_t count = 0;
   bool isTooLarge = false;
@@ -73,7 +74,7 @@ class LoopGathers {
   }
 
  private:
-  /// The uniform variable that the loop's step adds one to, if nothing else changes it.
+  /// The uniform variable that the loop's step increments by one, if the body does not assign it.
   std::optional<VarId> findCounter() const {
     if (loop_.kind != LoopKind::For || loop_.step.size() != 1) return std::nullopt;
     const auto* step = std::get_if<Assign>(&loop_.step.front().node);
@@ -104,7 +105,7 @@ class LoopGathers {
     return shapes[0] == Shape::Varying || !isRow;
   }
 
-  /// The expression with the initial values of the body's variables in place of these, where they keep them.
+  /// Replaces variables that the body declares and never reassigns by their initial values.
   ExprPtr beforeBody(const Expr& expr) {
     ExprPtr result = clone(expr);
     rewriteExprs(result, [&](ExprPtr& slot) {
@@ -127,7 +128,7 @@ class LoopGathers {
     return is;
   }
 
-  /// True of an integer that grows by one in each iteration: the counter, plus or minus what is invariant.
+  /// True if an integer grows by one in each iteration: it is the counter, plus or minus invariant values.
   bool growsByOne(const Expr& expr) const {
     if (!expr.type.isScalar() || !expr.type.isInteger()) return false;
     if (const auto* n = std::get_if<VarRef>(&expr.node)) return n->var == counter_;
@@ -139,7 +140,7 @@ class LoopGathers {
     return (growsByOne(*n->lhs) && isInvariant(*n->rhs)) || (isInvariant(*n->lhs) && growsByOne(*n->rhs));
   }
 
-  /// True if x grows by one in each iteration, and nothing else changes.
+  /// True if x grows by one in each iteration and the other indices are invariant.
   bool advances(const Expr& index) const {
     if (index.type.isScalar()) return growsByOne(index);
     const auto* n = std::get_if<Construct>(&index.node);
@@ -154,7 +155,7 @@ class LoopGathers {
   FunctionId function_;
   const Loop& loop_;
   VarId counter_ = 0;
-  std::map<VarId, const Expr*> declared_;  ///< variables of the body, and their initial values or null
+  std::map<VarId, const Expr*> declared_;  ///< variables of the body; initial values or null
   std::size_t replaced_ = 0;
 };
 

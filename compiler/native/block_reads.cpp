@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Reads gathers in blocks: each lane loads consecutive elements of a row, and a transpose makes vectors of lanes of these.
-// Elements are transposed four at a
-// time, since all CPUs transpose 4 x 4 words within 128 bits of a register.
+// Reads gathers in blocks (block_gathers.hpp): each lane loads consecutive elements of its row, and a
+// transpose turns these into one vector per iteration. It transposes 4 x 4 elements at a time, which every
+// CPU can do within 128 bits of a register.
 #include <array>
 #include <cstddef>
 
@@ -18,7 +18,7 @@ using sk::native::Argument;
 
 namespace {
 
-/// A shuffle of two vectors that does the same in each segment of 4 entries. 0 to 3 are those of `a`, 4 to 7 those of `c`.
+/// Shuffles each segment of 4 entries in the same way: 0 to 3 are entries of `a`, 4 to 7 entries of `c`.
 llvm::Value* shuffleSegments(Lanes& l, llvm::Value* a, llvm::Value* c, const std::array<int, 4>& from) {
   const auto width = static_cast<int>(llvm::cast<llvm::FixedVectorType>(a->getType())->getNumElements());
   std::vector<int> mask;
@@ -28,7 +28,7 @@ llvm::Value* shuffleSegments(Lanes& l, llvm::Value* a, llvm::Value* c, const std
   return l.b.CreateShuffleVector(a, c, mask);
 }
 
-/// In each segment of 4 entries, a transpose of four vectors.
+/// Transposes four vectors within each segment of 4 entries.
 std::array<llvm::Value*, 4> transposeSegments(Lanes& l, const std::array<llvm::Value*, 4>& rows) {
   const auto low = [&](llvm::Value* a, llvm::Value* c) { return shuffleSegments(l, a, c, {0, 4, 1, 5}); };
   const auto high = [&](llvm::Value* a, llvm::Value* c) { return shuffleSegments(l, a, c, {2, 6, 3, 7}); };
@@ -41,7 +41,7 @@ std::array<llvm::Value*, 4> transposeSegments(Lanes& l, const std::array<llvm::V
   return {first(low01, low23), last(low01, low23), first(high01, high23), last(high01, high23)};
 }
 
-/// Vectors of one length, a power of 2 of them, one behind the other.
+/// Concatenates vectors of equal length, a power of 2 of them.
 llvm::Value* concatenate(Lanes& l, std::vector<llvm::Value*> vectors) {
   while (vectors.size() > 1) {
     const auto width = llvm::cast<llvm::FixedVectorType>(vectors[0]->getType())->getNumElements();
@@ -64,7 +64,7 @@ llvm::Value* Streams::isBlockInside(std::uint32_t param, const Parts& index) {
   };
   for (std::size_t d = 0; d < index.size(); ++d) {
     const bool isClamped = kernel_.params[param].boundary == Boundary::Clamp;
-    if (d > 0 && isClamped) continue;  // laneOffsets does it
+    if (d > 0 && isClamped) continue;  // laneOffsets clamps it
     llvm::Value* const extent =
         l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32());
     const std::uint32_t needed = d == 0 ? blockLength : 1;
@@ -76,7 +76,7 @@ llvm::Value* Streams::isBlockInside(std::uint32_t param, const Parts& index) {
   return isInside;
 }
 
-/// Numbers of the elements at an index, less the counter: what stays the same in a loop.
+/// The element number at an index in each lane, minus the counter; invariant in the loop.
 llvm::Value* Streams::laneOffsets(std::uint32_t param, const Parts& index, llvm::Value* counter) {
   llvm::Value* const x = l.value(index[0]);
   llvm::Value* offsets = l.spread(l.b.CreateSub(x, l.isVector(x) ? l.spread(counter) : counter));
@@ -96,7 +96,8 @@ llvm::Value* Streams::laneOffsets(std::uint32_t param, const Parts& index, llvm:
   return offsets;
 }
 
-/// Elements from each lane's address on. One register's lanes after the other, so that few rows compete for the cache's ways.
+/// Loads a block of elements from each lane's address on and stores it transposed. Handles the lanes of one
+/// register at a time, so that few rows compete for the cache's ways.
 void Streams::storeTransposed(llvm::Type* element, const std::vector<llvm::Value*>& addresses,
                               llvm::Value* block) const {
   llvm::Type* const four = llvm::FixedVectorType::get(element, 4);

@@ -14,7 +14,7 @@ namespace skc::native {
 
 namespace {
 
-/// One loop that is entered from one block and goes on from one.
+/// Transforms one loop, which must have a preheader and a single latch.
 class Carrier {
  public:
   Carrier(const llvm::Loop& loop, const llvm::DominatorTree& dominators)
@@ -41,7 +41,7 @@ class Carrier {
     return phi != nullptr && phi->getParent() == loop_.getHeader() ? phi : nullptr;
   }
 
-  /// Products that may be contracted are worth more beside the sum that they go to.
+  /// Excludes products that may be contracted: they are worth more beside the sum that they feed.
   bool mayMove(const llvm::Instruction& instruction) const {
     const auto* const real = llvm::dyn_cast<llvm::FPMathOperator>(&instruction);
     const bool mayFuse =
@@ -55,7 +55,7 @@ class Carrier {
            });
   }
 
-  /// The operands as they are when the head is reached from `block`.
+  /// The operands when control enters the header from `block`.
   Values operandsFrom(const llvm::Instruction& instruction, const llvm::BasicBlock* block) const {
     Values values;
     for (llvm::Value* const operand : instruction.operands()) {
@@ -65,7 +65,8 @@ class Carrier {
     return values;
   }
 
-  /// What computes in this iteration what `instruction` will compute in the next one; null if nothing does.
+  /// The instruction that computes in this iteration what `instruction` computes in the next; null if none
+  /// does.
   llvm::Instruction* sameOfNextIteration(const llvm::Instruction& instruction) const {
     const Values operands = operandsFrom(instruction, latch_);
     const auto* const known =

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// What an iteration of a loop computes and the next one computes again. A loop in lanes asks at its end whether lanes go on, and what it
-// asks (x * x + y * y <= 4) often has parts that the next iteration begins with (x * x - y * y). LLVM's own elimination of partial
-// redundancies leaves out blocks that follow themselves, which these loops are.
+// Removes computations that an iteration of a loop repeats from the iteration before. A loop in lanes tests
+// at its end whether any lane continues, and the condition (x * x + y * y <= 4) often has parts with which
+// the next iteration begins (x * x - y * y). LLVM's own elimination of partial redundancies skips blocks that
+// are their own successors, as in these loops.
 #pragma once
 
 #include <llvm/IR/PassManager.h>
 
 namespace skc::native {
 
-/// An instruction at the head of a loop whose operands for the next iteration are at hand in this one, beside the instruction itself,
-/// becomes a value that goes around the loop. The values stay the same.
+/// If the loop computes in each iteration what an instruction in its header computes in the next, replaces
+/// that instruction by a phi. No value changes.
 class CarriedValues : public llvm::PassInfoMixin<CarriedValues> {
  public:
   llvm::PreservedAnalyses run(llvm::Function& function, llvm::FunctionAnalysisManager& analyses);

@@ -14,7 +14,8 @@ using sk::native::Slot;
 
 namespace {
 
-// The structs below have the members of the C++ ones, in their order; their layouts are the same on all 64-bit machines.
+// The LLVM structs below have the members of the C++ structs in the same order. The layouts are equal on all
+// 64-bit machines.
 static_assert(sizeof(Entry) == 16 && offsetof(Entry, kind) == 8 && offsetof(Entry, lanes) == 12 &&
               offsetof(Entry, rows) == 13);
 static_assert(sizeof(Slot) == 6);
@@ -34,7 +35,7 @@ class TableData {
   llvm::Constant* record(const std::vector<llvm::Constant*>& members) {
     return llvm::ConstantStruct::getAnon(context_, members);
   }
-  /// The address of an array of these; null of none.
+  /// The address of a constant array of `items`; null if there are none.
   llvm::Constant* array(const std::vector<llvm::Constant*>& items) {
     if (items.empty()) return llvm::ConstantPointerNull::get(llvm::PointerType::get(context_, 0));
     auto* const type = llvm::ArrayType::get(items[0]->getType(), items.size());

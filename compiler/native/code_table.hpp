@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The constant sk::native::Code of a kernel, as the runtime's C++ has it.
+// Writes the constant sk::native::Code of a kernel, with the layout that the runtime's C++ expects.
 #pragma once
 
 #include <string>

@@ -31,11 +31,11 @@ using sk::native::Real;
 
 namespace {
 
-/// A module as code of one real type is made of it: with the functions of the library for floats, which others have from
-/// the C library.
+/// The module that code of some real type is compiled from. Code for floats calls the functions of
+/// native/library; other code calls the C library.
 struct Version {
   Module plain;
-  Module predicated;  ///< for several lanes
+  Module predicated;  ///< for code with several lanes
 
   explicit Version(Module module) : plain(std::move(module)), predicated(clone(plain)) {
     predicate(predicated);
@@ -62,7 +62,7 @@ class Compilation {
     if (options.debugInfo) debug_.emplace(code_, plain_, options.optimizes);
   }
 
-  /// Values in LLVM IR need names for readers alone.
+  /// Only readers of LLVM IR need the names of values.
   void discardNames() { context_.setDiscardValueNames(true); }
 
   void add(const KernelRequest& request) {
@@ -109,22 +109,23 @@ class Compilation {
   }
 
  private:
-  /// What an entry is compiled as.
+  /// The kind of an entry, and what it is compiled for.
   struct EntryForm {
     EntryKind kind;
     Real real;
     const CpuLevel& level;
     bool isContracted = false;
-    const RowPlan* rowPlan = nullptr;  ///< of a RunRows
+    const RowPlan* rowPlan = nullptr;  ///< RunRows only
   };
 
-  /// What is seldom run, what computes in wider numbers than the kernel says, and what has no lanes, is compiled for one level.
+  /// Returns only the lowest level for code that is seldom run, that computes in another real type than
+  /// float, or that has no lanes.
   std::vector<CpuLevel> levelsFor(const KernelRequest& request, EntryKind kind, Real real) const {
     if (!request.isCold && real == Real::Float && kind != EntryKind::Apply) return target_.levels();
     return {target_.levels().front()};
   }
 
-  /// Identities and borders are constants, records are stored as they are, and what is seldom run gains nothing.
+  /// Identities and borders are constants, and Apply has no products; cold code is not worth a second entry.
   bool mayContract(const KernelRequest& request, EntryKind kind) const {
     const bool computes = kind == EntryKind::Run || kind == EntryKind::RunRows || kind == EntryKind::Fold ||
                           kind == EntryKind::Combine;
@@ -137,7 +138,7 @@ class Compilation {
     }
   }
 
-  /// Entries that compute several rows at once, where this saves loads.
+  /// Adds entries that compute several rows at once, if that saves loads.
   void addRows(CodeTable& table, const KernelRequest& request, const SlotPlan& slots) {
     const Module& module = ofFloats_.predicated;
     const Kernel& kernel = module.kernels[request.kernel];
@@ -157,8 +158,8 @@ class Compilation {
                 const EntryForm& made) {
     const auto& [kind, real, level, isContracted, rowPlan] = made;
     const Kernel& kernel = plain_.kernels[request.kernel];
-    const bool hasMaskRegisters =
-        level.hasMaskRegisters && options_.optimizes;  // debuggers see no single bits
+    // debuggers cannot show vectors of single bits
+    const bool hasMaskRegisters = level.hasMaskRegisters && options_.optimizes;
     Form form{.lanes = 1,
               .real = real,
               .hasMaskRegisters = hasMaskRegisters,

@@ -35,11 +35,11 @@ Part belowOne(const Part& x) {
   return {llvm::ConstantFP::get(x.value->getType()->getScalarType(), one)};
 }
 
-/// The bits of a number as a normal double.
+/// A number as the bits of a normal double.
 struct DoubleBits {
   llvm::Value* word;
   llvm::Value* exponent;  ///< biased
-  llvm::Value* isScaled;  ///< by 2^54; null where that cannot be
+  llvm::Value* isScaled;  ///< by 2^54, if it is subnormal; null if no number can be
 };
 DoubleBits doubleBits(const Formula& f, const Part& x) {
   Lanes& l = f.l;
@@ -57,12 +57,12 @@ DoubleBits doubleBits(const Formula& f, const Part& x) {
   return {bits, field, isScaled};
 }
 
-/// Whether frexp returns x itself with an exponent of 0.
+/// True for zeros, infinities and NaN: frexp returns x itself and the exponent 0.
 Part isWithoutExponent(const Formula& f, const Part& x) {
   return f.either(f.equal(x, f.number(x, 0)), unary(f.l, UnaryOp::LogicalNot, Scalar::Bool, f.isFinite(x)));
 }
 
-/// Calls frexpq() lane by lane; gives its mantissa or its exponent.
+/// Calls frexpq() or frexpl() lane by lane; returns the mantissa or the exponent.
 Part quadFrexp(const Formula& f, const Part& x, bool isExponent) {
   Lanes& l = f.l;
   llvm::Function* const around = l.b.GetInsertBlock()->getParent();

@@ -17,7 +17,7 @@ bool isProduct(const Expr& expr) {
   return n != nullptr && n->op == BinaryOp::Mul && isReal(expr.type.scalar);
 }
 
-/// What a kernel computes, as far as contraction is concerned.
+/// Counts the operations of a kernel that contraction may fuse.
 class Operations {
  public:
   bool hasPair() const { return !isExact_ && sums_ > 0 && products_ > 0; }
@@ -36,7 +36,7 @@ class Operations {
   void add(const Expr& expr) {
     if (const auto* n = std::get_if<IntrinsicCall>(&expr.node)) return add(n->intrinsic, expr.type);
     if (const auto* n = std::get_if<Convert>(&expr.node)) {
-      // a product that is rounded to half, as all are in half precision, feeds no sum
+      // a product that is rounded to half, as are all in half precision, feeds no sum
       if (expr.type.scalar == Scalar::Half && isProduct(*n->operand)) --products_;
     }
     if (isProduct(expr)) ++products_;

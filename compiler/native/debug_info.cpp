@@ -16,7 +16,7 @@ using namespace ir;
 
 namespace {
 
-/// The path as skc has it, relative to where it runs: what C++ compilers write.
+/// Names the path as skc got it and the working directory, as C++ compilers do.
 llvm::DIFile* makeFile(llvm::DIBuilder& builder, const std::string& path) {
   return builder.createFile(path, std::filesystem::current_path().string());
 }
@@ -41,7 +41,7 @@ const char* nameOf(Scalar scalar) {
   return "snorm16";
 }
 
-/// A narrow scalar is shown as what memory holds.
+/// Debuggers show a narrow scalar as the integer that memory holds.
 unsigned encodingOf(Scalar scalar) {
   switch (scalar) {
     case Scalar::Bool: return llvm::dwarf::DW_ATE_boolean;
@@ -73,7 +73,7 @@ DebugInfo::DebugInfo(llvm::Module& code, const Module& module, bool isOptimized)
     : module_(module), isOptimized_(isOptimized), builder_(code) {
   for (const std::string& source : module.sources) files_.push_back(makeFile(builder_, source));
   if (files_.empty()) files_.push_back(makeFile(builder_, module.file));
-  // of C, whose functions debuggers show by name, without the types of their parameters
+  // C, because debuggers show its functions by name, without the types of parameters
   unit_ = builder_.createCompileUnit(llvm::dwarf::DW_LANG_C99, files_[0], "skc", isOptimized, "", 0);
   code.addModuleFlag(llvm::Module::Warning, "Debug Info Version", llvm::DEBUG_METADATA_VERSION);
   code.addModuleFlag(llvm::Module::Warning, "Dwarf Version", 4);
@@ -81,7 +81,7 @@ DebugInfo::DebugInfo(llvm::Module& code, const Module& module, bool isOptimized)
 
 llvm::DIFile* DebugInfo::file(std::uint32_t number) { return files_[number < files_.size() ? number : 0]; }
 
-/// It has no linkage name, which debuggers would show in place of the kernel's.
+/// Sets no linkage name, because debuggers would show it in place of the kernel's name.
 llvm::DISubprogram* DebugInfo::makeProgram(const Function& function) {
   llvm::DISubroutineType* const type = builder_.createSubroutineType(builder_.getOrCreateTypeArray({}));
   const auto optimized = isOptimized_ ? llvm::DISubprogram::SPFlagOptimized : llvm::DISubprogram::SPFlagZero;
@@ -106,7 +106,7 @@ void DebugInfo::end(llvm::IRBuilder<>& b) {
   b.SetCurrentDebugLocation({});
 }
 
-/// The body of the function that has begun is no inlined function.
+/// The body of the function that begin() got is not an inlined function.
 void DebugInfo::enter(llvm::IRBuilder<>& b, const Function& function) {
   const llvm::DebugLoc before = b.getCurrentDebugLocation();
   if (&function == begun_) {
@@ -125,7 +125,7 @@ void DebugInfo::leave(llvm::IRBuilder<>& b) {
 }
 
 void DebugInfo::moveTo(llvm::IRBuilder<>& b, const Loc& loc) {
-  if (loc.line == 0) return;  // what transforms have added belongs to the line before it
+  if (loc.line == 0) return;  // code that transforms added belongs to the line before it
   const Scope& scope = scopes_.back();
   b.SetCurrentDebugLocation(
       llvm::DILocation::get(b.getContext(), loc.line, 0, scope.program, scope.calledAt));
@@ -133,8 +133,8 @@ void DebugInfo::moveTo(llvm::IRBuilder<>& b, const Loc& loc) {
 
 // ---- types ----------------------------------------------------------------------------------------
 
-/// Float is named by what stands for it: it is double in code for the reference. A bool in a word is all ones where it is
-/// true.
+/// Names a float by the type that represents it, such as double in code for the reference. A bool of more
+/// than 8 bits has all bits set if it is true.
 llvm::DIType* DebugInfo::scalarType(Scalar scalar, std::uint64_t bits) {
   if (scalar == Scalar::Bool && bits > 8) {
     llvm::DINodeArray const values = builder_.getOrCreateArray(
@@ -200,7 +200,7 @@ llvm::DIType* DebugInfo::typeOf(Type type, Leaves& next) {
       }
       return recordType(module_.structs[type.index].name, members);
     case Type::Kind::Array:
-      return typeOf(module_.arrays[type.index].element, next);  // leaves know their arrays
+      return typeOf(module_.arrays[type.index].element, next);  // leafType() adds the dimensions
   }
   return nullptr;
 }

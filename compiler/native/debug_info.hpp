@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Lines and variables of the .sk file for debuggers and profilers (DWARF). Functions of the IR are written into one LLVM
-// function; here they are inlined functions of it, as after any compiler's inliner. A variable that varies from lane to
-// lane is a vector with one entry for each lane; of consecutive numbers, the first lane's is shown. What the library has added
-// is not shown.
+// Describes the lines and variables of the .sk file for debuggers and profilers (DWARF). All functions of the
+// IR are emitted into one LLVM function; they are described as inlined functions. A varying variable is a
+// vector with one entry per lane; for a consecutive one, debuggers show the first lane's value. Code of the
+// library is not described.
 #pragma once
 
 #include <map>
@@ -22,17 +22,18 @@ class DebugInfo {
  public:
   DebugInfo(llvm::Module& code, const ir::Module& module, bool isOptimized);
 
-  /// The LLVM function is the code of this function of the IR.
+  /// Starts describing `code`, the LLVM function of `function`.
   void begin(llvm::IRBuilder<>& b, llvm::Function& code, const ir::Function& function);
   void end(llvm::IRBuilder<>& b);
 
-  /// A call of `function` is written from here on, or has been.
+  /// Marks the start and the end of the code that is emitted for a call of `function`.
   void enter(llvm::IRBuilder<>& b, const ir::Function& function);
   void leave(llvm::IRBuilder<>& b);
 
-  /// What follows belongs to this source location.
+  /// Sets the source location of the code that follows.
   void moveTo(llvm::IRBuilder<>& b, const Loc& loc);
-  /// A variable of the current function, whose leaves are in `memory`. Parameters count from 1; 0 is no parameter.
+  /// Describes a variable of the current function whose leaves are in `memory`. `parameter` counts from 1; it
+  /// is 0 for other variables.
   void declare(llvm::IRBuilder<>& b, const ir::Variable& variable, unsigned parameter,
                const std::vector<LeafMemory>& memory);
 
@@ -43,7 +44,7 @@ class DebugInfo {
   struct Scope {
     llvm::DISubprogram* program;
     llvm::DILocation* calledAt;  ///< null in the LLVM function's own code
-    llvm::DebugLoc before;  ///< where the caller was
+    llvm::DebugLoc before;  ///< location in the caller
   };
   struct Member {
     std::string name;
@@ -64,11 +65,11 @@ class DebugInfo {
   std::vector<llvm::DIFile*> files_;
   llvm::DICompileUnit* unit_;
   const ir::Function* begun_ = nullptr;
-  std::map<const ir::Function*, llvm::DISubprogram*> programs_;  ///< of the current LLVM function
+  std::map<const ir::Function*, llvm::DISubprogram*> programs_;  ///< inlined into the current LLVM function
   std::vector<Scope> scopes_;
 };
 
-/// Enters a function where there is debug information to write.
+/// Enters a function and leaves it, if there is debug information to write.
 class DebugScope {
  public:
   DebugScope(DebugInfo* debug, llvm::IRBuilder<>& b, const ir::Function& function) : debug_(debug), b_(b) {

@@ -58,7 +58,7 @@ class EntryWriter {
     if (paramsOf(ParamRole::VariableOutput).empty() && paramsOf(ParamRole::Scatter).empty()) {
       function_->setDoesNotThrow();
     } else {
-      function_->setUWTableKind(llvm::UWTableKind::Default);  // AppendBuffer::grow may find no memory
+      function_->setUWTableKind(llvm::UWTableKind::Default);  // AppendBuffer::grow may throw
     }
     setLevel(*function_, s_.level);
     if (!s_.level.hasMaskRegisters) markWideMasks(*function_);
@@ -108,7 +108,8 @@ class EntryWriter {
     return parts;
   }
 
-  /// The value that the entry takes for a parameter. Accumulators have none here: the callers pass their state.
+  /// The value that the entry takes for a parameter; empty for streams, and for accumulators, whose state the
+  /// callers pass.
   Parts argument(std::uint32_t i) {
     switch (s_.kernel.params[i].role) {
       case ParamRole::Uniform:
@@ -132,7 +133,7 @@ class EntryWriter {
     return found;
   }
 
-  /// Adds the entry's mask, which says what lanes have an element.
+  /// Adds the entry's mask, if it takes one: true in lanes that have an element.
   void addMask(std::vector<Parts>& arguments, llvm::Value* element, llvm::Value* count) {
     if (l_.count() == 1 || !entryMask(s_.module, s_.kernel)) return;
     llvm::Value* const left = b_.CreateTrunc(b_.CreateSub(count, element), b_.getInt32Ty());
@@ -231,7 +232,7 @@ class EntryWriter {
     }
     return parts;
   }
-  /// Where a column begins: with the identities, or the element itself.
+  /// The initial accumulators of a column: the identities or, in a seeded reduction, the element itself.
   Parts startOf(llvm::Value* element) {
     Parts parts;
     if (s_.kernel.reduction->seeded) {
@@ -247,7 +248,7 @@ class EntryWriter {
     return parts;
   }
 
-  /// The accumulators after the entry's call; `state` is split among them.
+  /// Calls the entry with `state` as accumulators; returns their new values.
   Parts folded(const Parts& state, const std::function<Parts(std::uint32_t)>& others, llvm::Value* element,
                llvm::Value* count) {
     std::vector<Parts> arguments;
@@ -295,7 +296,7 @@ class EntryWriter {
   llvm::Value* reversed(llvm::Value* value, llvm::Value* count) {
     llvm::Value* const all = b_.CreateUnaryIntrinsic(llvm::Intrinsic::bitreverse, value);
     llvm::Value* const bits = b_.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, count, b_.getTrue());
-    // in two steps: a shift by all 64 bits has no value
+    // in two steps, because a shift by 64 bits is undefined
     return b_.CreateLShr(b_.CreateLShr(all, b_.CreateSub(number(63), bits)), number(1));
   }
 
@@ -407,7 +408,8 @@ class EntryWriter {
   llvm::BasicBlock* prologue_ = nullptr;
 };
 
-/// Whether it can fold partial results: its inputs are of the accumulators' types, and it does not ask where they are.
+/// True if the reduction can fold partial results: its inputs have the types of its accumulators, and it uses
+/// no index.
 bool combines(const Module& module, const Kernel& kernel) {
   std::vector<Type> inputs, accumulators;
   for (const KernelParam& param : kernel.params) {

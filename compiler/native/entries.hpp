@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The functions of a kernel that the runtime calls (sk/native/code.hpp): the loops around the code of its entry.
+// Writes the functions of a kernel that the runtime calls (sk/native/code.hpp): loops around its entry.
 #pragma once
 
 #include <optional>
@@ -20,25 +20,26 @@ namespace skc::native {
 
 class DebugInfo;
 
-/// A kernel as an entry is written for it. The module has been through `predicate` where there is more than one lane.
+/// What an entry is written from. If there are several lanes, the module must have passed `predicate`.
 struct EntrySource {
   const ir::Module& module;
   const ir::Kernel& kernel;
   const SlotPlan& slots;
   const analysis::Uniformity* uniformity;  ///< null with one lane
-  const RowPlan* rowPlan;  ///< null unless a RunRows is written
-  std::uint32_t rows;  ///< of that
+  const RowPlan* rowPlan;  ///< null except for RunRows
+  std::uint32_t rows;  ///< rows computed together
   Form form;
   CpuLevel level;
   DebugInfo* debug;
 };
 
-/// Writes the function of this kind; its name begins with that of the kernel's Code.
+/// Writes the function of this kind.
 llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, sk::native::EntryKind kind,
                            const std::string& name);
 
-/// What a kernel needs, apart from RunRows: Run, or Fold and, with identities, Identity; Combine where it folds accumulators
-/// into accumulators; Borders where a gather with slots has one; Apply where it scatters.
+/// The kinds of entries that a kernel needs, apart from RunRows. A reduction needs Fold, Combine if it folds
+/// accumulators into accumulators, and Identity if it has identities. Any other kernel needs Run, and Borders
+/// if a gather has a border value. Either needs Apply if it scatters.
 std::vector<sk::native::EntryKind> entriesOf(const ir::Module& module, const ir::Kernel& kernel);
 
 }  // namespace skc::native

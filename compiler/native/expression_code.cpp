@@ -25,7 +25,7 @@ Parts FunctionCode::expression(const Expr& expr) {
   return match(expr.node, [&](const auto& node) { return parts(expr, node); });
 }
 
-/// What all rows read is read once.
+/// Emits a read that all rows share once.
 Parts FunctionCode::shared(const Expr& expr) {
   const auto known = shared_->find(&expr);
   if (known != shared_->end()) return known->second;
@@ -75,7 +75,7 @@ Parts FunctionCode::parts(const Expr& expr, const Unary& n) {
   return all;
 }
 
-/// What is worth a branch: it reads streams, or calls functions.
+/// True if an operand is worth a branch: it reads streams or calls functions.
 bool FunctionCode::isCostly(const Expr& expr) const {
   bool is = false;
   walkExprs(expr, [&](const Expr& inner) {
@@ -91,7 +91,7 @@ Parts FunctionCode::either(llvm::Value* condition, const std::function<Parts()>&
   llvm::BasicBlock* const noBlock = newBlock("no");
   llvm::BasicBlock* const end = newBlock("either");
   b.CreateCondBr(condition, yesBlock, noBlock);
-  const auto outer = std::exchange(shared_, std::nullopt);  // what a branch reads is not there after it
+  const auto outer = std::exchange(shared_, std::nullopt);  // reads in a branch do not dominate the end
   b.SetInsertPoint(yesBlock);
   Parts a = yes();
   llvm::BasicBlock* const yesEnd = b.GetInsertBlock();
@@ -174,7 +174,7 @@ Parts FunctionCode::arithmetic(BinaryOp op, Type type, Type left, const Parts& l
     all.push_back(binary(l, op, left.scalar, lhs[lhs.size() == 1 ? 0 : i], rhs[rhs.size() == 1 ? 0 : i]));
   }
   if (all.size() == 1 || !type.isScalar()) return all;
-  // matrices are equal or not as a whole
+  // matrices are compared as a whole
   const BinaryOp join = op == BinaryOp::Equal ? BinaryOp::LogicalAnd : BinaryOp::LogicalOr;
   Part whole = all[0];
   for (std::size_t i = 1; i < all.size(); ++i) whole = binary(l, join, Scalar::Bool, whole, all[i]);
@@ -195,7 +195,7 @@ Parts FunctionCode::parts(const Expr&, const Select& n) {
 }
 
 Parts FunctionCode::parts(const Expr& expr, const Convert& n) {
-  // to half and back is rounding alone
+  // converting to half and back only rounds
   const auto* inner = std::get_if<Convert>(&n.operand->node);
   const bool isRounding = inner != nullptr && n.operand->type.scalar == Scalar::Half &&
                           expr.type.scalar == Scalar::Float && inner->operand->type.scalar == Scalar::Float;
@@ -238,7 +238,6 @@ Parts FunctionCode::parts(const Expr& expr, const Member& n) {
 
 namespace {
 
-/// The array of constants, if they all are: one global for each component of an element.
 bool areConstants(const Parts& parts) {
   return std::ranges::all_of(parts, [](const Part& part) { return llvm::isa<llvm::Constant>(part.value); });
 }
@@ -262,7 +261,7 @@ Parts FunctionCode::parts(const Expr& expr, const Index& n) {
   for (std::size_t c = 0; c < size; ++c) {
     Parts column;
     for (std::uint32_t i = 0; i < length; ++i) column.push_back(base[i * size + c]);
-    if (length > 4 && areConstants(column)) {
+    if (length > 4 && areConstants(column)) {  // reads a global array
       std::vector<llvm::Constant*> values;
       for (const Part& part : column)
         values.push_back(llvm::cast<llvm::Constant>(l.toStored(scalars[c], part.value)));
@@ -292,7 +291,7 @@ Parts FunctionCode::parts(const Expr&, const Call& n) {
   return isTabulated ? lookUp(n.callee, arguments[0]) : inlineCall(k, n.callee, arguments).result;
 }
 
-/// A function's value, from its table where the call has one.
+/// The value of a tabulated function, from its table if the call has one.
 Parts FunctionCode::lookUp(FunctionId function, const Parts& argument) {
   const std::vector<FunctionId> tabulated = tabulatedFunctionsOf(k.module, k.kernel);
   const auto number = std::ranges::find(tabulated, function) - tabulated.begin();
@@ -307,7 +306,7 @@ Parts FunctionCode::lookUp(FunctionId function, const Parts& argument) {
       });
 }
 
-/// sk::native::Table::at().
+/// Emits sk::native::Table::at().
 Part FunctionCode::tableValue(llvm::Value* table, const Part& x) {
   using sk::native::Table;
   const auto field = [&](std::size_t offset, llvm::Type* type) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Arithmetic of one component, in all lanes, in the notation of formulas: what rows of ir/intrinsics.def and the functions that
-// they name (component_functions.hpp, vector_functions.hpp) are written with.
+// Arithmetic of one component in all lanes, in the notation of formulas. The rows of ir/intrinsics.def and
+// the functions that they name (component_functions.hpp, vector_functions.hpp) are written in it.
 #pragma once
 
 #include <limits>
@@ -35,27 +35,28 @@ class Formula {
   Part select(const Part& c, const Part& yes, const Part& no) const { return l.select(c, yes, no); }
   Part negate(const Part& x) const { return unary(l, ir::UnaryOp::Negate, Scalar::Float, x); }
 
-  /// A number of the type of `like`.
+  /// A constant of the type of `like`.
   Part number(const Part& like, double value) const;
-  /// The same with more digits than a double has.
+  /// A constant with more digits than a double has.
   Part decimal(const Part& like, const char* text) const;
 
   Part abs(const Part& x) const;
   Part copySign(const Part& magnitude, const Part& sign) const;
   Part isInfinite(const Part& x) const { return equal(abs(x), number(x, infinity)); }
   Part isFinite(const Part& x) const { return less(abs(x), number(x, infinity)); }
-  /// Whether the sign bit is set, also that of -0 and of a NaN.
+  /// True if the sign bit is set, also for -0 and NaN.
   Part isNegative(const Part& x) const;
 
   Part sqrt(const Part& x) const { return instruction(llvm::Intrinsic::sqrt, "sqrt", x); }
   Part floor(const Part& x) const { return instruction(llvm::Intrinsic::floor, "floor", x); }
   Part trunc(const Part& x) const { return instruction(llvm::Intrinsic::trunc, "trunc", x); }
-  /// An operation that CPUs have. For binary128 it is the function `name` of libm.
+  /// An operation for which CPUs have an instruction; for binary128, the function `name` of libm.
   Part instruction(llvm::Intrinsic::ID id, const char* name, const Part& x) const;
 
-  /// A function of the C library, lane by lane, for the type of its first argument, which is also that of its result.
+  /// Calls a function of the C library lane by lane. The type of its first argument selects the variant and
+  /// is the type of the result.
   Part libm(std::string name, const std::vector<Part>& x) const;
-  /// How its functions of binary128 end: libquadmath's or, where long double is binary128, those of the C library.
+  /// The suffix of functions of binary128: libquadmath's or, if long double is binary128, the C library's.
   const char* quadSuffix() const;
 
  private:

@@ -64,7 +64,7 @@ std::vector<CallResult> FunctionCode::write(const std::vector<std::vector<Parts>
   return called;
 }
 
-/// Functions that the entry calls are written for the row that calls them.
+/// Does nothing in functions that the entry calls: they are emitted for the row that calls them.
 void FunctionCode::selectRow(std::size_t row) {
   if (plan_ == nullptr) return;
   row_ = row;
@@ -79,7 +79,7 @@ llvm::BasicBlock* FunctionCode::newBlock(const char* name) const {
 
 void FunctionCode::branch(llvm::BasicBlock* to) { b.CreateBr(to); }
 
-/// What follows a jump is never reached.
+/// Starts a block for the statements after a jump, which never run.
 void FunctionCode::startUnreachable() { b.SetInsertPoint(newBlock("unreachable")); }
 
 void FunctionCode::block(const Block& statements) {
@@ -94,7 +94,7 @@ void FunctionCode::write(const Stmt& stmt) {
   match(stmt.node, [&](const auto& node) { write(node); });
 }
 
-/// Control flow that differs from row to row is run through by one row after the other, and shares nothing.
+/// Emits a statement once per row. Rows share reads only in statements without control flow.
 void FunctionCode::writeInEachRow(const Stmt& stmt) {
   const bool branches = std::holds_alternative<If>(stmt.node) || std::holds_alternative<Loop>(stmt.node) ||
                         std::holds_alternative<Switch>(stmt.node);
@@ -153,7 +153,7 @@ void FunctionCode::write(const If& n) {
   b.SetInsertPoint(end);
 }
 
-/// The body and the step of a loop.
+/// Emits the body and the step of a loop.
 void FunctionCode::iteration(const Loop& n, llvm::BasicBlock* end) {
   llvm::BasicBlock* const step = newBlock("step");
   targets_.push_back({end, step});
@@ -183,8 +183,8 @@ void FunctionCode::write(const Loop& n) {
   b.SetInsertPoint(end);
 }
 
-/// Where gathers of the loop can be read in blocks, writes code that does so if the elements are inside, and goes on to `test`.
-/// The insertion point is afterwards where they are not.
+/// If gathers of the loop can be read in blocks, emits code that does so while the elements of a block are in
+/// bounds, and then continues at `test`. Afterwards, the insertion point is where they are not.
 void FunctionCode::writeBlocks(const Loop& n, llvm::BasicBlock* test, llvm::BasicBlock* end) {
   if (l.form().blockWidth == 0 || plan_ != nullptr) return;
   const std::vector<BlockGather> gathers = blockGathers(k.module, k.kernel, *k.uniformity, id_, n);
@@ -208,7 +208,7 @@ void FunctionCode::writeBlocks(const Loop& n, llvm::BasicBlock* test, llvm::Basi
   b.SetInsertPoint(outside);
 }
 
-/// The iterations of a block, as long as the loop goes on.
+/// Emits the iterations of a block, which end early if the loop does.
 void FunctionCode::writeIterations(const Loop& n, const std::vector<BlockGather>& gathers,
                                    const std::vector<Streams::Block>& blocks, llvm::BasicBlock* end) {
   llvm::BasicBlock* const before = b.GetInsertBlock();
@@ -285,7 +285,7 @@ void FunctionCode::write(const Scatter& n) {
   k.streams.scatter(n.stream.id, index, value, maskOf(n.mask));
 }
 
-/// The lanes in which a statement runs: all where there is no mask.
+/// The lanes in which a statement runs; all lanes without a mask.
 llvm::Value* FunctionCode::maskOf(const ExprPtr& mask) {
   return l.spread(mask ? expression(*mask)[0] : Part{b.getTrue()});
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The code of a function of the IR, written into an LLVM function in place of each call: statements here, expressions in
-// expression_code.cpp, variables in places.cpp. It needs nothing of control flow but that it is the same for all lanes,
-// which `predicate` sees to; with one lane, any function will do.
+// Emits a function of the IR into an LLVM function in place of each call: statements here, expressions in
+// expression_code.cpp, variables in places.cpp. Control flow must be uniform, which `predicate` ensures; with
+// one lane, it always is.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ namespace skc::native {
 
 class DebugInfo;
 
-/// What all functions of a kernel share.
+/// The context that all functions of a kernel share.
 struct KernelContext {
   Lanes& lanes;
   const ir::Module& module;
@@ -33,42 +33,42 @@ struct KernelContext {
   DebugInfo* debug = nullptr;
 };
 
-/// What a call gives: its result, and what it leaves in each InOut parameter, in their order.
+/// The result of a call, and the final values of its InOut parameters in their order.
 struct CallResult {
   Parts result;
   std::vector<Parts> outputs;
 };
 
-/// Writes the body of a function at the insertion point, which is afterwards where it has returned. There is one argument
-/// for each parameter; those of streams are empty.
+/// Emits the body of a function at the insertion point, which moves behind it. There is one argument per
+/// parameter; those of streams are empty.
 CallResult inlineCall(const KernelContext& context, ir::FunctionId function,
                       const std::vector<Parts>& arguments);
 
-/// The same for the kernel's entry in several rows at once: arguments and results of each. The streams' row is afterwards
-/// the first.
+/// Likewise emits the kernel's entry for several rows at once, with arguments and results for each row.
+/// Afterwards, the first row of the streams is selected.
 std::vector<CallResult> inlineRows(const KernelContext& context, const RowPlan& plan,
                                    const std::vector<std::vector<Parts>>& arguments);
 
-/// The parts of an expression without variables: a constant, a border, an identity.
+/// The value of an expression without variables: a constant, a border value, an identity.
 Parts constantParts(const KernelContext& context, const ir::Expr& expr);
 
-// ---- for the parts of this folder's function code ----------------------------------------------------
+// ---- shared by function_code.cpp, expression_code.cpp and places.cpp ---------------------------------
 
-/// The memory of one leaf of a variable: an array where the variable has arrays around it.
+/// The memory of one leaf of a variable; an array if arrays contain the leaf.
 struct LeafMemory {
   llvm::Value* memory;
-  llvm::Type* element;  ///< what it holds: a scalar, or a vector of lanes
+  llvm::Type* element;  ///< a scalar, or a vector of lanes
   ir::Scalar scalar;
   std::vector<std::uint32_t> dimensions;
   analysis::Shape shape;
 };
 
-/// Leaves of a variable, or of a part of one, and how far into their arrays it is.
+/// An lvalue: leaves of a variable, and how far into their arrays it is.
 struct Place {
   struct Leaf {
     const LeafMemory* memory;
     Part offset;  ///< an int, in elements
-    std::size_t dimensions;  ///< that have been indexed
+    std::size_t dimensions;  ///< number of dimensions indexed so far
   };
   ir::Type type;
   std::vector<Leaf> leaves;
@@ -76,15 +76,15 @@ struct Place {
 
 class FunctionCode {
  public:
-  /// `plan` where it is written for several rows.
+  /// With a `plan`, emits code for several rows.
   FunctionCode(const KernelContext& context, ir::FunctionId function, const RowPlan* plan = nullptr);
 
-  /// For each row, from its arguments.
+  /// Emits the function for each row of arguments.
   std::vector<CallResult> write(const std::vector<std::vector<Parts>>& arguments);
   Parts expression(const ir::Expr& expr);
 
  private:
-  // ---- variables and places (places.cpp)
+  // ---- variables and lvalues (places.cpp)
   void declareAll(std::size_t rows);
   LeafMemory memoryOf(const std::string& name, const Leaf& leaf, analysis::Shape shape) const;
   const std::vector<LeafMemory>& memoryOf(ir::VarId var) const;
@@ -127,7 +127,7 @@ class FunctionCode {
   llvm::Value* condition(const ir::Expr& expr);
 
   // ---- expressions (expression_code.cpp)
-  /// For products and sums that the text writes, unlike those within functions of the library and in conversions.
+  /// The flags for products and sums in the source, unlike those in library functions and conversions.
   llvm::FastMathFlags flagsOfText() const;
   Parts shared(const ir::Expr& expr);
   Parts arithmetic(ir::BinaryOp op, ir::Type type, ir::Type left, const Parts& lhs, ir::Type right,
@@ -152,7 +152,7 @@ class FunctionCode {
   Parts parts(const ir::Expr& expr, const ir::ExtentOf& n);
   Parts matrixProduct(const Parts& a, const Parts& c, std::size_t width, bool isVector);
   std::vector<Parts> expressions(const std::vector<ir::ExprPtr>& list);
-  /// Branches to one of both, where the condition is the same for all lanes.
+  /// Branches on a uniform condition.
   Parts either(llvm::Value* condition, const std::function<Parts()>& yes, const std::function<Parts()>& no);
   bool isCostly(const ir::Expr& expr) const;
   Parts lookUp(ir::FunctionId function, const Parts& argument);
@@ -164,17 +164,17 @@ class FunctionCode {
   const ir::Function& function_;
   ir::FunctionId id_;
   const RowPlan* plan_;
-  std::size_t row_ = 0;  ///< whose code is being written
-  bool isInAllRows_;  ///< what is written now is executed by all rows, one after the other or together
-  /// What the first row has read for all of them, while a statement is written in each row.
+  std::size_t row_ = 0;  ///< the row that code is emitted for
+  bool isInAllRows_;  ///< all rows execute the statement that is emitted
+  /// While a statement is emitted in each row: what the first row has read for all of them.
   std::optional<std::map<const ir::Expr*, Parts>> shared_;
-  /// What gathers give in the iteration of a block that is written now (block_gathers.hpp).
+  /// The values of gathers in the current iteration of a block (block_gathers.hpp).
   std::map<const ir::Expr*, Parts> fromBlocks_;
-  std::vector<std::vector<std::vector<LeafMemory>>>
-      variables_;  ///< by row and variable; the first row has all
+  /// By row and variable. Rows after the first have only the variables that differ between rows.
+  std::vector<std::vector<std::vector<LeafMemory>>> variables_;
   std::vector<LeafMemory> result_;
   llvm::BasicBlock* exit_ = nullptr;
-  /// Where a jump goes to: of a Switch, `next` is that of the loop around it.
+  /// The targets of `break` and `continue`. In a Switch, `next` is that of the loop around it.
   struct Target {
     llvm::BasicBlock* end;
     llvm::BasicBlock* next;

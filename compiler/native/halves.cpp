@@ -11,7 +11,7 @@ using namespace ir;
 
 namespace {
 
-// ---- from the bits --------------------------------------------------------------------------------
+// ---- in software ----------------------------------------------------------------------------------
 
 llvm::Value* expanded(Lanes& l, llvm::Value* stored) {
   llvm::Value* const bits = l.b.CreateZExt(stored, l.sameShape(stored, l.int32()));
@@ -40,7 +40,7 @@ llvm::Value* roundedBits(Lanes& l, llvm::Value* x) {
   llvm::Value* const odd = l.b.CreateAnd(l.b.CreateLShr(magnitude, 13), constant(1));
   llvm::Value* const up = l.b.CreateAdd(l.b.CreateAdd(magnitude, constant(0xfff)), odd);
   llvm::Value* const normal = l.b.CreateAnd(up, constant(~std::int64_t{0x1fff}));
-  // the unit of a float at 1/2 is that of denormal halves, 2^-24
+  // floats at 1/2 have the same unit as subnormal halves, 2^-24
   llvm::Value* const half = l.number(real, 0.5);
   llvm::Value* const denormal =
       l.b.CreateBitCast(l.b.CreateFSub(l.b.CreateFAdd(l.b.CreateBitCast(magnitude, real), half), half), word);
@@ -61,7 +61,7 @@ llvm::Value* halfBits(Lanes& l, llvm::Value* x) {
   llvm::Value* const magnitude = l.b.CreateAnd(bits, l.integer(word, 0x7fffffff));
   llvm::Value* const normal = l.b.CreateSub(l.b.CreateLShr(magnitude, 13), l.integer(word, 112 << 10));
   llvm::Value* const special = l.b.CreateSub(l.b.CreateLShr(magnitude, 13), l.integer(word, 224 << 10));
-  // a denormal half counts units of 2^-24
+  // a subnormal half counts units of 2^-24
   llvm::Value* const scaled =
       l.b.CreateFMul(l.b.CreateBitCast(magnitude, rounded->getType()), l.number(rounded->getType(), 0x1p24));
   llvm::Value* const isDenormal = l.b.CreateICmpULT(magnitude, l.integer(word, 0x38800000));
@@ -74,8 +74,8 @@ llvm::Value* halfBits(Lanes& l, llvm::Value* x) {
 
 using Conversion = llvm::Value*(Lanes& l, llvm::Value* x);
 
-/// A function of the module that converts vectors like this one. It saves all registers where the target has such a calling
-/// convention, so that a call costs its caller none.
+/// A function of the module that converts values of this type. If the target has a calling convention that
+/// preserves all registers, it uses that, so that callers need not save theirs.
 llvm::Function* outOfLine(Lanes& l, const char* name, Conversion* conversion, llvm::Type* operand,
                           llvm::Type* result) {
   llvm::Function* const caller = l.b.GetInsertBlock()->getParent();

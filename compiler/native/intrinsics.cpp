@@ -19,11 +19,11 @@ namespace {
 
 using Arguments = std::vector<IntrinsicArgument>;
 
-/// A component of the result, from the same component of each argument; what is not given has no value. `scalar` is the
-/// first argument's.
+/// Computes a component of the result from the same component of each argument; missing arguments have no
+/// value. `scalar` is the type of the first argument's components.
 using ByComponent = llvm::function_ref<Part(Scalar scalar, const Part& x, const Part& y, const Part& z)>;
 
-/// Component by component; a scalar serves for every one.
+/// Applies the function to each component; a scalar argument serves for every one.
 Parts byComponent(const Lanes& lanes, const Arguments& arguments, ByComponent function) {
   std::size_t width = 1;
   for (const IntrinsicArgument& argument : arguments) width = std::max(width, argument.parts.size());
@@ -40,7 +40,7 @@ Parts byComponent(const Lanes& lanes, const Arguments& arguments, ByComponent fu
   return result;
 }
 
-/// The result, from all components of the arguments; `n` is the width of the first.
+/// Computes the result from all components of the arguments; `n` is the width of the first argument.
 using OfWholes = llvm::function_ref<Parts(const Parts& a, const Parts& b, const Parts& c, std::size_t n)>;
 
 Parts ofWholes(const Arguments& arguments, OfWholes function) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The intrinsics of the language in all lanes, as the column `native` of ir/intrinsics.def says.
+// Emits the intrinsics of the language in all lanes, as the column `native` of ir/intrinsics.def says.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What the native back end is asked for, kernel by kernel. The stub says it (program/stub.hpp), compile() does it (native.hpp).
+// A request for native code of one kernel. The stub makes it (program/stub.hpp), compile() serves it
+// (native.hpp).
 #pragma once
 
 #include <string>
@@ -9,14 +10,13 @@
 
 namespace skc::native {
 
-/// A kernel that gets native code.
 struct KernelRequest {
   ir::KernelId kernel;
-  std::string symbol;  ///< of its Code
-  bool inDoubles = false;  ///< computing in double, too, wherever the kernel says float
-  bool inQuads = false;  ///< and in binary128
-  bool isCold = false;  ///< computes a handful of elements: one level of the CPU does
-  bool onlyCombines = false;  ///< a reduce that nothing runs but to combine partial results of another
+  std::string symbol;  ///< the name of its Code
+  bool inDoubles = false;  ///< also compiled with double in place of float
+  bool inQuads = false;  ///< also compiled with binary128 in place of float
+  bool isCold = false;  ///< computes few elements: one level of the CPU is enough
+  bool onlyCombines = false;  ///< a reduction that only combines partial results of another
 };
 
 }  // namespace skc::native

@@ -19,10 +19,10 @@ using analysis::Uniformity;
 
 namespace {
 
-/// Operations for each gather, up to which a loop takes its time for gathers.
+/// Most operations per gather for which gathers dominate the time of a loop.
 constexpr std::size_t fewOperations = 4;
 
-/// The variable that a `for` loop's step adds a constant to, if the body leaves it alone.
+/// The variable that a `for` loop's step changes by a constant, if the body does not assign it.
 std::optional<VarId> counterOf(const Loop& loop) {
   if (loop.kind != LoopKind::For || loop.step.size() != 1) return std::nullopt;
   const auto* step = std::get_if<Assign>(&loop.step.front().node);
@@ -32,7 +32,7 @@ std::optional<VarId> counterOf(const Loop& loop) {
   return assigns(loop.body, counter) ? std::nullopt : std::optional(counter);
 }
 
-/// True if a variable in the expression carries a value from one iteration to the next.
+/// True if the loop's body assigns a variable in the expression.
 bool dependsOnEarlier(const Expr& expr, const Loop& loop) {
   bool depends = false;
   walkExprs(expr, [&](const Expr& inner) {
@@ -42,8 +42,9 @@ bool dependsOnEarlier(const Expr& expr, const Loop& loop) {
   return depends;
 }
 
-/// True of a loop with a trip count of each lane's own that does little but gather elements at indices which follow from its
-/// counter. One element after the other, its gathers overlap as well, and none is for a lane that has left the loop.
+/// True if lanes have different trip counts and the loop does little but gather elements whose indices follow
+/// from its counter. One element at a time, its gathers overlap just as well, and none is for a lane that has
+/// left the loop.
 bool gathersAlone(const Uniformity& uniformity, FunctionId function, const Stmt& stmt) {
   const auto* loop = std::get_if<Loop>(&stmt.node);
   if (loop == nullptr || !uniformity.diverges(function, stmt)) return false;
@@ -71,7 +72,7 @@ bool gathersAlone(const Uniformity& uniformity, FunctionId function, const Stmt&
   return isSimple && gathers > 0 && operations <= fewOperations * gathers;
 }
 
-/// True if some loop of the kernel only gathers, and no other loop has work for lanes.
+/// True if the kernel has such loops and no others.
 bool onlyGathers(const Module& module, const Kernel& kernel) {
   const Uniformity uniformity(module, kernel);
   bool some = false, all = true;
@@ -86,9 +87,10 @@ bool onlyGathers(const Module& module, const Kernel& kernel) {
   return some && all;
 }
 
-/// The number of vectors, of `bytes` each, in which accumulators are folded side by side. Several read memory in order and do not wait
-/// for each other's additions. The runtime has 256 bytes of columns for a scalar. With all of them a leaf is read from end to end;
-/// half are enough where there are several scalars, whose code would take long to compile.
+/// The number of vectors, of `bytes` each, in which accumulators are folded side by side. Several vectors
+/// read memory in order and do not wait for each other's additions. The runtime has 256 bytes of columns per
+/// scalar: one scalar uses them all, so that a leaf is read sequentially; several use half of them, because
+/// their code would take long to compile.
 std::uint32_t vectorsOfFold(const Module& module, const Kernel& kernel, std::size_t scalars,
                             std::uint32_t bytes, std::uint32_t registers) {
   std::size_t accumulators = 0;
@@ -113,7 +115,7 @@ std::uint32_t laneCount(const Module& module, const Kernel& kernel, sk::native::
     for (const Variable& variable : module.functions[id].variables)
       scalars += componentCount(module, variable.type);
   }
-  // a chain of dependent operations leaves units idle; a second vector fills them
+  // a chain of dependent operations leaves execution units idle; a second vector fills them
   constexpr std::size_t few = 16;
   const bool waits = analysis::streamUses(module, kernel).loops;
   if (waits) return scalars <= few ? 2 * one : one;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How many elements a kernel computes together.
+// Chooses how many elements a kernel computes together.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace skc::native {
 
-/// Lanes that fill the CPU's vectors; several vectors of each where the kernel waits for results in loops and has
-/// registers to spare, or folds in any order. One where loops of different trip counts do little but gather elements.
+/// As many lanes as fill a vector of the CPU; several vectors if the kernel waits for results in loops and
+/// has registers to spare, or folds in any order. One lane if loops with different trip counts do little but
+/// gather.
 std::uint32_t laneCount(const ir::Module& module, const ir::Kernel& kernel, sk::native::EntryKind kind,
                         sk::native::Real real, const CpuLevel& level);
 

@@ -136,7 +136,7 @@ Part Lanes::callPerLane(std::string_view name, llvm::Type* result, const std::ve
       module.getOrInsertFunction(llvm::StringRef(name), llvm::FunctionType::get(result, types, false));
   auto* const function = llvm::cast<llvm::Function>(callee.getCallee());
   function->setDoesNotThrow();
-  function->setDoesNotAccessMemory();   // nobody looks at errno
+  function->setDoesNotAccessMemory();  // nobody reads errno
   function->setWillReturn();
   return perLane(parts, result,
                  [&](llvm::ArrayRef<llvm::Value*> arguments) { return b.CreateCall(callee, arguments); });

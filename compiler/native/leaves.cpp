@@ -37,7 +37,7 @@ void addLeaves(const Module& module, Type type, std::vector<std::uint32_t>& dime
   }
 }
 
-/// Adds the components of a type whose leaves have numbers from `leaf` on.
+/// Adds the components of a type whose leaves are numbered from `leaf` on.
 void addComponents(const Module& module, Type type, std::uint32_t leaf, std::vector<Component>& components) {
   switch (type.kind) {
     case Type::Kind::Void: return;

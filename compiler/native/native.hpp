@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The native back end: kernels of a module as LLVM vectors, several elements to a vector, and as an object file that has a
-// constant sk::native::Code for each of them (sk/native/code.hpp). Only this folder knows LLVM; it must not know Clang, and
-// takes the IR as runTransforms leaves it.
+// The native back end compiles the kernels of a module to vector code, one element per lane, and writes an
+// object file with one constant sk::native::Code per kernel (sk/native/code.hpp). Only this folder uses LLVM,
+// and it must not use Clang. It takes the IR as runTransforms leaves it.
 #pragma once
 
 #include <cstdint>
@@ -18,30 +18,32 @@
 
 namespace skc::native {
 
-/// What is written for a module.
+/// The form in which compile() returns the code.
 enum class Output : std::uint8_t { Object, Assembly, Llvm };
 
 struct Options {
-  std::string triple = {};  ///< empty: of the machine that skc runs on
-  std::vector<std::string> levels = {};  ///< of the CPU, as levelNames() has them; empty: all
-  std::uint32_t lanes = 0;  ///< elements computed together; 0: chosen for each kernel
-  bool debugInfo = false;  ///< lines and variables of the .sk file for debuggers
-  bool optimizes = true;  ///< else every variable stays in memory, where debuggers find it
+  std::string triple = {};  ///< empty: the host
+  std::vector<std::string> levels = {};  ///< CPU levels, as levelNames() has them; empty: all
+  std::uint32_t lanes = 0;  ///< elements computed together; 0: chosen per kernel
+  bool debugInfo = false;  ///< describes lines and variables of the .sk file
+  bool optimizes = true;  ///< false: variables stay in memory, where debuggers find them
 };
 
-/// A mistake in the options, lower-case and without a period: an unknown triple, level or number of lanes.
+/// An invalid option: an unknown triple or level, or an impossible number of lanes. The message is
+/// lower-case, without a period.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Throws Error where compile() would because of the options.
+/// Throws the Error that compile() would throw for these options.
 void checkOptions(const Options& options);
 
-/// Names of the levels of the target's CPU, lowest first; of a CPU without levels, none.
+/// The names of the target's CPU levels, lowest first; empty if it has none.
 std::vector<std::string_view> levelNames(const std::string& triple);
 
-/// The object file (its bytes), the assembly or the LLVM IR of these kernels. The object is position independent.
+/// Returns the object file, the assembly or the LLVM IR of these kernels. Objects are position-independent.
+/// Throws Error if an option is invalid.
 std::string compile(const ir::Module& module, const std::vector<KernelRequest>& kernels,
                     const CompileLibrary& compileLibrary, const Options& options, Output output);
 

@@ -13,8 +13,8 @@ namespace skc::native {
 
 namespace {
 
-/// What clang -O2 runs takes three times as long for the same code: calls are inlined when the code is written, loops are
-/// unrolled in the IR, and vectors are there from the start.
+/// The pipeline of clang -O2 takes three times as long for the same code. Calls are inlined and vectors
+/// formed as code is emitted, and loops are unrolled in our own IR.
 constexpr char pipeline[] =
     "function("
     "sroa<modify-cfg>,early-cse<memssa>,simplifycfg,instcombine<no-verify-fixpoint>,"  // variables become registers

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// LLVM's passes over a module of kernels (-O2). They are vectors already: nothing looks for loops to vectorise.
+// Runs LLVM's passes on a module of kernels. Their code consists of vectors already: no pass looks for loops
+// to vectorise.
 #pragma once
 
 #include <llvm/IR/Module.h>

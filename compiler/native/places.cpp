@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Variables of functions in memory, which LLVM makes registers of, and the places in them that are read and assigned.
+// Variables of functions in memory, which LLVM promotes to registers, and the lvalues in them.
 #include <llvm/IR/Constants.h>
 #include <llvm/IR/Intrinsics.h>
 
@@ -14,8 +14,8 @@ namespace skc::native {
 using namespace ir;
 using analysis::Shape;
 
-/// Bools that lanes do not share are words outside of arrays, unless the CPU has registers for masks: so LLVM keeps them as
-/// the words that comparisons give.
+/// Outside arrays, a varying bool is a word unless the CPU has mask registers, so that LLVM keeps it in the
+/// form in which comparisons give it.
 LeafMemory FunctionCode::memoryOf(const std::string& name, const Leaf& leaf, Shape shape) const {
   llvm::Type* element = leaf.dimensions.empty() ? l.type(leaf.scalar) : l.stored(leaf.scalar);
   const bool isMask = leaf.scalar == Scalar::Bool && leaf.dimensions.empty() && shape == Shape::Varying;
@@ -64,7 +64,7 @@ Place FunctionCode::variable(VarId var) const {
   return place;
 }
 
-/// The nearest index inside.
+/// The index, clamped to 0 ... length - 1.
 Part FunctionCode::indexInside(const Expr& index, std::uint32_t length) {
   Part i = expression(index)[0];
   if (i.isConsecutive) i = {l.spread(i)};
@@ -78,7 +78,7 @@ Part FunctionCode::indexInside(const Expr& index, std::uint32_t length) {
 
 namespace {
 
-/// The constant that a Literal index is, brought inside; nothing for other indices.
+/// The value of a Literal index, clamped; nullopt for other indices.
 std::optional<std::uint32_t> literalIndex(const Expr& index, std::uint32_t length) {
   const auto* literal = std::get_if<Literal>(&index.node);
   if (literal == nullptr) return std::nullopt;
@@ -88,7 +88,8 @@ std::optional<std::uint32_t> literalIndex(const Expr& index, std::uint32_t lengt
 
 }  // namespace
 
-/// Returns nullopt for an expression that is no place, and for a vector component at a dynamic index.
+/// Returns nullopt if the expression is not an lvalue, or is a component of a vector or a row of a matrix at
+/// a dynamic index.
 std::optional<Place> FunctionCode::placeOf(const Expr& expr) {
   if (const auto* n = std::get_if<VarRef>(&expr.node)) return variable(n->var);
   if (const auto* n = std::get_if<Member>(&expr.node)) {
@@ -131,7 +132,8 @@ std::optional<Place> FunctionCode::placeOf(const Expr& expr) {
   return place;
 }
 
-/// Where a component is. Where lanes have different offsets, a vector of addresses of scalars, and isScattered is set.
+/// The address of a component. If lanes have different offsets, a vector of addresses of scalars; isScattered
+/// is then set.
 llvm::Value* FunctionCode::addressOf(const Place::Leaf& leaf, std::uint32_t offset, bool* isScattered) {
   const LeafMemory& memory = *leaf.memory;
   *isScattered = false;

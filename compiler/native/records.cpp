@@ -13,7 +13,7 @@ using namespace ir;
 
 namespace {
 
-/// Counts, up to `many`, how often a group of lanes may record for one parameter.
+/// Counts how often a group of lanes may append records for one parameter, up to `many`.
 class Counter {
  public:
   static constexpr std::uint32_t many = 2;
@@ -27,7 +27,7 @@ class Counter {
   }
 
  private:
-  /// Lanes may take all branches of a statement.
+  /// Adds up all branches of a statement, because lanes may take different ones.
   std::uint32_t block(const Block& statements) {
     std::uint32_t sum = 0;
     for (const Stmt& stmt : statements) {
@@ -50,7 +50,7 @@ class Counter {
   std::map<FunctionId, std::uint32_t> functions_;
 };
 
-/// Operations of an expression alone, compared to an addition.
+/// The operations of an expression itself, without operands, relative to an addition.
 std::uint32_t costOf(const Expr& expr) {
   constexpr std::uint32_t intrinsic = 8, gather = 4, sample = 16;
   if (std::holds_alternative<IntrinsicCall>(expr.node)) return intrinsic * expr.type.width;
@@ -74,8 +74,8 @@ bool isReordered(const Module& module, const Kernel& kernel) {
 }
 
 bool isLight(const Module& module, const Kernel& kernel) {
-  constexpr std::uint32_t limit =
-      192;  // several elements are computed together, and records are moved one by one
+  // large, because elements are computed several at a time, and records are moved one by one
+  constexpr std::uint32_t limit = 192;
   std::uint32_t cost = 0;
   for (const FunctionId id : functionsOf(module, kernel)) {
     const Block& body = module.functions[id].body;

@@ -23,7 +23,7 @@ bool isControl(const Stmt& stmt) {
          std::holds_alternative<Switch>(stmt.node) || std::holds_alternative<Scope>(stmt.node);
 }
 
-/// visit(variable) for each variable that the statement itself assigns.
+/// Calls visit(variable) for each variable that the statement itself assigns.
 template <class Visit>
 void forEachAssigned(const Module& module, const Stmt& stmt, Visit&& visit) {
   if (const auto* n = std::get_if<Declare>(&stmt.node)) visit(n->var);
@@ -37,7 +37,7 @@ void forEachAssigned(const Module& module, const Stmt& stmt, Visit&& visit) {
   }
 }
 
-/// visit(loop) for each loop that all rows run through together, inner ones too.
+/// Calls visit(loop) for each loop that all rows run through together, including inner ones.
 template <class Visit>
 void forEachJointLoop(const RowPlan& plan, const Block& body, Visit&& visit) {
   for (const Stmt& stmt : body) {
@@ -60,7 +60,7 @@ RowPlan::RowPlan(const Module& module, const Kernel& kernel)
     if (isOutput || std::ranges::any_of(shapes, [](Shape shape) { return shape != Shape::Uniform; }))
       perRow_.insert(var);
   }
-  // the rows run one after the other through what diverges, and what one of them assigns there must not reach the next
+  // the rows run divergent code one after the other; what one row assigns there must not reach the next
   for (std::size_t before = 0; before != perRow_.size();) {
     before = perRow_.size();
     addAssigned(entry_.body, false);
@@ -125,7 +125,7 @@ std::uint32_t RowPlan::carried() const {
 }
 
 RowBlock blockFor(const CpuLevel& level, std::uint32_t carried) {
-  // what rows share takes as many registers as one of them carries, and what a row reads some more
+  // what rows share takes as many registers as one row carries; a row's own reads take three more
   const std::uint32_t vectors = carried <= 1 ? 2 : 1;
   const std::uint32_t perRow = vectors * std::max(carried, 1U);
   const std::uint32_t free = level.vectorRegisters - 3;

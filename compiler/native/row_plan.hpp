@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// Register blocking by rows. Where a loop of a kernel reads elements that do not depend on the row, as a product of matrices
-// does, code that computes several rows together reads them once for all of these:
+// Register blocking by rows. If a loop of a kernel reads elements that do not depend on the row, as in a
+// product of matrices, code that computes several rows together reads them once:
 //
 //   for (k) sum += a[p.y][k] * b[k][p.x];      for (k) { bk = b[k][p.x]; sum0 += a[y][k] * bk; sum1 += a[y + 1][k] * bk; ... }
 //
-// Control flow that is the same in all rows is written once, and what depends on the row once for each row. All values
-// are those of rows computed alone.
+// Control flow that is uniform along y is emitted once, and what depends on the row once per row. All values
+// are the same as when rows are computed one by one.
 #pragma once
 
 #include <cstdint>
@@ -19,21 +19,22 @@
 
 namespace skc::native {
 
-/// What depends on the row in a kernel's entry. The module has been through `predicate`.
+/// Finds what depends on the row in a kernel's entry. The module must have passed `predicate`.
 class RowPlan {
  public:
   RowPlan(const ir::Module& module, const ir::Kernel& kernel);
 
-  /// True if computing rows together saves loads: a loop that all rows run through together reads vectors that they share.
+  /// True if computing rows together saves loads: a loop that all rows run through together reads vectors
+  /// that they share.
   bool pays(const analysis::Uniformity& lanes) const;
-  /// Scalars that each row carries from one iteration of such loops to the next.
+  /// The number of scalars that each row carries from one iteration of such loops to the next.
   std::uint32_t carried() const;
 
-  /// True of a variable of the entry that has a value of its own in each row.
+  /// True if a variable of the entry has its own value in each row.
   bool isPerRow(ir::VarId var) const { return perRow_.contains(var); }
-  /// True of a statement that is written once for all rows; what it contains may still depend on the row.
+  /// True if a statement is emitted once for all rows; statements in it may still depend on the row.
   bool isJoint(const ir::Stmt& stmt) const;
-  /// True of an expression of the entry that has one value for all rows.
+  /// True if an expression of the entry has the same value in all rows.
   bool isShared(const ir::Expr& expr) const;
 
  private:
@@ -47,10 +48,12 @@ class RowPlan {
   std::set<ir::VarId> perRow_;
 };
 
-/// Lanes of a row, and rows, that fill the registers of the CPU with what `carried` scalars are in all of them.
+/// The lanes and the rows that code computes together.
 struct RowBlock {
   std::uint32_t lanes, rows;
 };
+
+/// The block whose `carried` scalars, in all lanes and rows, fill the registers of the CPU.
 RowBlock blockFor(const CpuLevel& level, std::uint32_t carried);
 
 }  // namespace skc::native

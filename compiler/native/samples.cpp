@@ -11,7 +11,8 @@ namespace skc::native {
 
 using namespace ir;
 
-/// By dimensions, the last of these first; a neighbour of no weight is not looked at.
+/// Interpolates along `dimensions` dimensions, the last one first. Ignores neighbours with a weight of 0,
+/// even NaN.
 Parts Streams::weighted(std::uint32_t param, const Parts& low, const Parts& weights, std::size_t dimensions) {
   if (dimensions == 0) {
     const Parts element = gather(param, low);
@@ -50,7 +51,7 @@ Parts Streams::sample(std::uint32_t param, const Parts& position) {
     const Part isWhole =
         binary(l, BinaryOp::GreaterEqual, Scalar::Float, size, {l.number(l.real(), 16777216)});
     low.push_back(wholeIndex(l, whole));
-    // infinity has no fraction
+    // infinity has no fraction; other numbers of this size have a fraction of 0
     weights.push_back(
         l.select(isWhole, {l.number(l.real(), 0)}, binary(l, BinaryOp::Sub, Scalar::Float, x, whole)));
   }

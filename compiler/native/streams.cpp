@@ -20,7 +20,7 @@ using sk::native::Argument;
 using sk::native::Chunk;
 using sk::native::Frame;
 
-// ---- what the runtime hands over ------------------------------------------------------------------
+// ---- arguments of the function --------------------------------------------------------------------
 
 Streams::Streams(Lanes& lanes, const Module& module, const Kernel& kernel, const SlotPlan& slots,
                  std::function<Parts(const Expr&)> value)
@@ -56,7 +56,7 @@ llvm::Value* Streams::load(llvm::Value* base, std::size_t offset, llvm::Type* ty
 
 llvm::Value* Streams::frameField(std::size_t offset, llvm::Type* type) { return load(frame_, offset, type); }
 llvm::Value* Streams::chunkField(std::size_t offset) { return load(chunk_, offset, l.int64()); }
-/// The chunks of several rows differ in y alone.
+/// The chunks of several rows differ only in y.
 llvm::Value* Streams::first(std::size_t dimension) {
   const std::size_t chunk = dimension == 1 ? row_ * sizeof(Chunk) : 0;
   return chunkField(chunk + offsetof(Chunk, first) + dimension * sizeof(std::int64_t));
@@ -136,7 +136,7 @@ Parts Streams::index(const StreamRef& stream) {
   return parts;
 }
 
-/// In each lane, the x of its element: a fold's elements are `step` apart.
+/// The x of each lane's element; in a fold, elements are `step` apart.
 llvm::Value* Streams::foldedPosition(llvm::Value* first) {
   llvm::Value* const elements = l.b.CreateAdd(l.spread(element_), l.laneNumbers(l.int64()));
   llvm::Value* const step = l.spread(chunkField(offsetof(Chunk, step)));
@@ -155,7 +155,7 @@ Parts Streams::extent(const StreamRef& stream) {
   return parts;
 }
 
-/// begin + (end - begin) * k / n, rounded once where that is exact; of integers, begin + (end - begin) / n * k.
+/// begin + (end - begin) * k / n, computed in double; for integers, begin + (end - begin) / n * k.
 Parts Streams::iterator(std::uint32_t param) {
   const std::size_t width = scalars(param).size();
   llvm::Value* const counts = argumentField(param, offsetof(Argument, countsElements), l.int64());
@@ -169,7 +169,7 @@ Parts Streams::iterator(std::uint32_t param) {
     number = l.b.CreateAdd(l.b.CreateMul(number, domain(d)), first(d));
     total = l.b.CreateMul(total, domain(d));
   }
-  // elements are neighbours, except in folds
+  // elements are consecutive, except in folds
   llvm::Value* const spacing =
       kernel_.reduction ? chunkField(offsetof(Chunk, step)) : l.integer(l.int64(), 1);
   llvm::Value* const moved = l.b.CreateMul(element_, spacing);
@@ -183,7 +183,7 @@ Parts Streams::iterator(std::uint32_t param) {
     llvm::Value* const own = c == 0 ? l.b.CreateAdd(first(0), moved) : first(c);
     llvm::Value* const from = l.b.CreateSelect(byNumber, number, own);
     llvm::Value* const steps = l.b.CreateSelect(byNumber, total, domain(c));
-    // x grows from lane to lane, and so does the number of the element
+    // from lane to lane, x and the number of the element grow; other indices do not
     llvm::Value* grows = spacing;
     if (c > 0) grows = l.b.CreateSelect(byNumber, spacing, l.integer(l.int64(), 0));
     llvm::Value* const k =
@@ -254,7 +254,7 @@ Streams::Inside Streams::inside(std::uint32_t param, std::size_t dimension, llvm
   return {result, nullptr};
 }
 
-/// One element for all lanes.
+/// Reads one element for all lanes, and applies the boundary mode.
 Parts Streams::gatherBounded(std::uint32_t param, const Parts& index) {
   llvm::Value* number = argumentField(param, offsetof(Argument, first), l.int64());
   llvm::Value* isOutside = nullptr;
@@ -305,7 +305,8 @@ Parts Streams::choose(llvm::Value* condition, const std::function<Parts()>& yes,
   return result;
 }
 
-/// The same. With one lane, a branch that the CPU predicts lets it load before it knows that the index is inside.
+/// Likewise. With one lane, it branches on whether the index is in bounds: the CPU predicts the branch and
+/// loads without waiting for it.
 Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
   if (l.count() > 1) return gatherBounded(param, index);
   llvm::Value* isInside = l.b.getTrue();
@@ -331,7 +332,7 @@ Parts Streams::gatherOne(std::uint32_t param, const Parts& index) {
   return choose(isInside, inside, [&] { return gatherBounded(param, index); }, scalars(param));
 }
 
-/// Neighbours along x, where all of them are inside.
+/// Reads neighbours along x with one load if all of them are in bounds.
 Parts Streams::gatherNeighbors(std::uint32_t param, const Parts& index) {
   llvm::Value* const x = l.b.CreateSExt(index[0].value, l.int64());
   llvm::Value* const extent = argumentExtent(param, 0, offsetof(Argument, extent));
@@ -361,7 +362,7 @@ Parts Streams::gatherNeighbors(std::uint32_t param, const Parts& index) {
       [&] { return gatherByLanes(param, index); }, scalars(param));
 }
 
-/// Numbers of elements as vectors of 32 bits; for streams that have no more.
+/// Gathers by 32-bit element numbers; only for streams whose numbers all fit.
 Parts Streams::gatherByNumbers(std::uint32_t param, const Parts& index) {
   const Boundary boundary = kernel_.params[param].boundary;
   llvm::Value* number = nullptr;
@@ -396,7 +397,7 @@ Parts Streams::gatherByNumbers(std::uint32_t param, const Parts& index) {
   return orBorder(param, isOutside, parts);
 }
 
-/// Whether every lane's index needs no boundary.
+/// True if the indices of all lanes are in bounds.
 static llvm::Value* areAllInside(Lanes& l, const Parts& index, const std::vector<llvm::Value*>& extents) {
   llvm::Value* all = nullptr;
   for (std::size_t d = 0; d < index.size(); ++d) {
@@ -422,7 +423,7 @@ Parts Streams::gatherAnywhere(std::uint32_t param, const Parts& index) {
       scalars(param));
 }
 
-/// Lane by lane, by a function of its own: for what is rare.
+/// Reads lane by lane in a function of its own: for rare cases.
 Parts Streams::gatherByLanes(std::uint32_t param, const Parts& index) {
   if (l.count() == 1) {
     Parts own;
@@ -453,7 +454,8 @@ Parts Streams::gatherByLanes(std::uint32_t param, const Parts& index) {
   return parts;
 }
 
-/// void(frame, indices of each dimension ..., results of each component ...).
+/// The function for gatherByLanes(): void(frame, indices for each dimension ..., results for each component
+/// ...).
 llvm::Function* Streams::laneGather(std::uint32_t param) {
   llvm::Function*& known = laneGathers_[param];
   if (known != nullptr) return known;
@@ -531,7 +533,8 @@ Parts Streams::neighbor(std::uint32_t param, const Parts& offset,
   return gather(param, there);
 }
 
-/// An index and an offset, whose sum may be no int: what is as far outside serves as well.
+/// The sum of an index and an offset; if it could overflow, another index at which the gather has the same
+/// element.
 Part Streams::moved(std::uint32_t param, std::size_t dimension, const Part& index, const Part& offset) {
   const Boundary boundary = kernel_.params[param].boundary;
   if (boundary == Boundary::Wrap || boundary == Boundary::Mirror) {

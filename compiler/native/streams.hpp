@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// How a kernel's code reads and writes its parameters (sk/native/code.hpp says how they lie in memory). The elements that
-// are computed together are neighbours along x. What is the same for a whole chunk is loaded in the function's prologue.
+// How a kernel's code reads and writes its parameters (sk/native/code.hpp describes their memory layout). The
+// elements that are computed together are neighbours along x. What is constant in a whole chunk is loaded in
+// the function's prologue.
 #pragma once
 
 #include <functional>
@@ -18,19 +19,18 @@ namespace skc::native {
 
 class Streams {
  public:
-  /// `value` computes a constant expression: a border.
+  /// `value` computes a constant expression: a border value.
   Streams(Lanes& lanes, const ir::Module& module, const ir::Kernel& kernel, const SlotPlan& slots,
           std::function<Parts(const ir::Expr&)> value);
 
-  /// The arguments of the function; `chunk` may be null where there is none. Loads are added to `prologue`, which must
-  /// have no terminator yet.
+  /// Sets the arguments of the function; `chunk` is null if it takes none. Loads are added to `prologue`.
   void begin(llvm::Value* frame, llvm::Value* chunk, llvm::BasicBlock* prologue);
-  /// From here on, code is for the elements from number `element` of the chunk on.
+  /// Code that follows is for the elements of the chunk from number `element` on.
   void moveTo(llvm::Value* element) { element_ = element; }
-  /// Where the function has chunks of several rows, one behind the other: from here on, code is for this one.
+  /// If the function takes chunks of several rows: code that follows is for this row.
   void selectRow(std::size_t row) { row_ = row; }
 
-  /// Records tell from which elements they come.
+  /// Makes records carry the numbers of their elements.
   void numberRecords() { numbersRecords_ = true; }
 
   llvm::Value* chunkCount() { return chunkField(offsetof(sk::native::Chunk, count)); }
@@ -42,35 +42,36 @@ class Streams {
 
   Parts index(const ir::StreamRef& stream);
   Parts extent(const ir::StreamRef& stream);
-  /// Indices x first, one int for each dimension.
+  /// `index` has one int per dimension, x first.
   Parts gather(std::uint32_t param, const Parts& index);
-  /// What gathers read in blocks: consecutive elements along x, each of a cache line's length. They need 4 lanes or more.
+  /// The number of consecutive elements along x in a block, a cache line. Blocks need 4 lanes or more.
   static constexpr std::uint32_t blockLength = 16;
-  /// Elements of a gather in all lanes: for each component, vectors of lanes in memory.
+  /// A block of a gather in all lanes: for each component, vectors of lanes in memory.
   struct Block {
     std::uint32_t param;
     std::vector<llvm::Value*> components;
   };
-  /// Whether a block can be read from the index on, and needs no boundary in any lane.
+  /// True if the block from `index` on is in bounds in all lanes.
   llvm::Value* isBlockInside(std::uint32_t param, const Parts& index);
   /// `counter` is a uniform summand of the index.
   Block readBlock(std::uint32_t param, const Parts& index, llvm::Value* counter);
   Parts elementOf(const Block& block, llvm::Value* number);
-  /// `constant`: the offset, if it is known.
+  /// `constant` is the offset, if it is known.
   Parts neighbor(std::uint32_t param, const Parts& offset,
                  const std::optional<std::vector<std::int32_t>>& constant);
   Parts sample(std::uint32_t param, const Parts& position);
 
-  /// Records that the lanes of the mask push their elements.
+  /// Appends records of what the lanes of the mask push.
   void push(std::uint32_t param, const Parts& value, llvm::Value* mask);
-  /// Likewise that they store, or combine, them where their indices are inside; or does so, where records are not asked for.
+  /// Appends records of what the lanes of the mask store or combine, if their indices are in bounds. Carries
+  /// them out immediately if the output has no append buffer.
   void scatter(std::uint32_t param, const Parts& index, const Parts& value, llvm::Value* mask);
   /// Carries out the records of a scatter output, in their order.
   void apply(std::uint32_t param, llvm::Value* appendBuffer);
 
-  /// What the gather has outside, of a Boundary::Border.
+  /// The border value of a gather with Boundary::Border.
   Parts border(std::uint32_t param);
-  /// The table for function number `table`: its address, or null.
+  /// The address of the call's tables, one sk::native::Table per tabulated function; null if it has none.
   llvm::Value* tables();
 
  private:
@@ -102,7 +103,7 @@ class Streams {
 
   struct Inside {
     llvm::Value* index;  ///< i64, in range
-    llvm::Value* isOutside;  ///< of Border; null else
+    llvm::Value* isOutside;  ///< Boundary::Border only; else null
   };
   Inside inside(std::uint32_t param, std::size_t dimension, llvm::Value* index);
   Parts gatherBounded(std::uint32_t param, const Parts& index);

@@ -130,7 +130,7 @@ Target::Target(const Options& options) : triple_(normalized(options.triple)) {
   const llvm::Target& target = findTarget(triple_);
   levels_ = chosenLevels(triple_, options.levels);
   llvm::TargetOptions targetOptions;
-  targetOptions.AllowFPOpFusion = llvm::FPOpFusion::Standard;  // what is marked, and nothing else
+  targetOptions.AllowFPOpFusion = llvm::FPOpFusion::Standard;  // fuses only marked operations
   machine_.reset(target.createTargetMachine(
       triple_, levels_.front().name, "", targetOptions, llvm::Reloc::PIC_, std::nullopt,
       options.optimizes ? llvm::CodeGenOptLevel::Default : llvm::CodeGenOptLevel::None));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The machine that code is generated for: LLVM's description of it, and the levels of its CPU. A level is a set of
-// instructions; functions for all of them stand in one object file, and the runtime chooses when the program starts.
+// The machine that code is generated for: LLVM's description of it, and the levels of its CPU. A level is a
+// set of instructions. One object file has functions for all levels, and the runtime chooses when the program
+// starts.
 #pragma once
 
 #include <memory>
@@ -18,14 +19,14 @@
 namespace skc::native {
 
 struct CpuLevel {
-  std::string_view
-      name;  ///< as --levels has it; also LLVM's name of the CPU. Empty: the target has no levels
+  /// The name in --levels, and LLVM's name of the CPU; empty if the target has no levels.
+  std::string_view name;
   sk::native::Level level;
   std::uint32_t vectorBits;
   std::uint32_t vectorRegisters;
   bool hasMaskRegisters;
   bool hasFusedMultiplyAdd;
-  bool convertsHalves;  ///< between float and half, whole vectors
+  bool convertsHalves;  ///< converts whole vectors between float and half
 };
 
 class Target {
@@ -35,7 +36,7 @@ class Target {
 
   llvm::TargetMachine& machine() const { return *machine_; }
   const std::string& triple() const { return triple_; }
-  /// The levels that are asked for, lowest first.
+  /// The levels to compile for, lowest first.
   const std::vector<CpuLevel>& levels() const { return levels_; }
 
  private:
@@ -44,7 +45,7 @@ class Target {
   std::vector<CpuLevel> levels_;
 };
 
-/// The function is for CPUs of this level.
+/// Compiles the function for CPUs of this level.
 void setLevel(llvm::Function& function, const CpuLevel& level);
 
 }  // namespace skc::native

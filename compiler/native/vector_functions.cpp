@@ -21,8 +21,8 @@ Part largest(const Formula& f, const Parts& a) {
   return most;
 }
 
-/// A power of 2 for a vector with this largest component: scaled by it, no square overflows or vanishes. It is in the range of
-/// float, even for doubles.
+/// A power of 2 by which to scale a vector with this largest component, so that no square overflows or
+/// underflows. It is in the range of float, even for doubles.
 Part lengthScale(const Formula& f, const Part& most) {
   const Part small =
       f.select(f.less(most, f.number(most, 0x1p-40)), f.number(most, 0x1p86), f.number(most, 1));
@@ -30,7 +30,7 @@ Part lengthScale(const Formula& f, const Part& most) {
   return f.select(isLarge, f.number(most, 0x1p-66), small);
 }
 
-/// An n by n matrix, row after row, without one row and one column.
+/// An n by n matrix in row-major order, without one row and one column.
 Parts minorOf(const Parts& m, std::size_t n, std::size_t row, std::size_t column) {
   Parts part;
   for (std::size_t i = 0; i < n; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Intrinsics of whole vectors and matrices, in all lanes. A value is its components; a matrix of n rows is stored row after
-// row.
+// Intrinsics of whole vectors and matrices in all lanes. A value is the list of its components; matrices are
+// row-major.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace skc::native {
 
 Parts minus(const Formula& f, const Parts& a, const Parts& c);
 Part dot(const Formula& f, const Parts& a, const Parts& c);
-/// Scales a first, so that no square overflows or vanishes.
+/// Scales `a` first, so that no square overflows or underflows.
 Part length(const Formula& f, const Parts& a);
 /// Returns a zero vector unchanged.
 Parts normalize(const Formula& f, const Parts& a);

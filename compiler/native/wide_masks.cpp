@@ -21,7 +21,7 @@ llvm::FixedVectorType* maskType(const llvm::Value& value) {
   return type != nullptr && type->getElementType()->isIntegerTy(1) ? type : nullptr;
 }
 
-/// What of masks is a mask, and is computed in words.
+/// True if an instruction computes a mask from masks, which is done in words.
 bool isComputed(const llvm::Instruction& instruction) {
   return llvm::isa<llvm::PHINode, llvm::FreezeInst, llvm::SelectInst>(instruction) ||
          instruction.isBitwiseLogicOp();
@@ -130,7 +130,8 @@ class Widener {
     return b_.CreateICmpSLT(words, llvm::Constant::getNullValue(words->getType()));
   }
 
-  /// What takes a mask and is none gets it from the words; of those that comparisons give, only in other blocks.
+  /// Makes users that are not computed in words take the mask from the words. `everywhere` is false for masks
+  /// of comparisons, whose users in the same block stay.
   void replaceUses(llvm::Instruction& mask, bool everywhere) {
     llvm::SmallSetVector<llvm::Instruction*, 8> users;
     for (llvm::User* const user : mask.users()) {
@@ -148,7 +149,7 @@ class Widener {
     }
   }
 
-  /// Whether any bit is set.
+  /// Turns a test whether any bit is set into a test of the words; false if `user` is no such test.
   bool asks(llvm::Instruction& user, llvm::Value* wide) {
     using namespace llvm::PatternMatch;
     if (!llvm::isa<llvm::BitCastInst>(user) || !user.getType()->isIntegerTy()) return false;
@@ -168,7 +169,8 @@ class Widener {
     return true;
   }
 
-  /// A mask as numbers: 1 is what all ones are subtracted as.
+  /// Turns a conversion of a mask to numbers into the words, which are -1 where the mask is true: adding 1
+  /// becomes subtracting them. False if `user` is no such conversion.
   bool counts(llvm::Instruction& user, llvm::Value* wide) {
     if (user.getType() != wide->getType()) return false;
     if (llvm::isa<llvm::SExtInst>(user)) {
@@ -199,7 +201,7 @@ class Widener {
   llvm::IRBuilder<> b_;
   llvm::IntegerType* word_ = nullptr;
   llvm::SmallSetVector<llvm::Instruction*, 16> computed_;
-  llvm::SmallVector<llvm::Instruction*, 16> given_;  ///< comparisons, and masks from elsewhere
+  llvm::SmallVector<llvm::Instruction*, 16> given_;  ///< comparisons and other sources of masks
   llvm::DenseMap<llvm::Value*, llvm::Value*> words_;
 };
 

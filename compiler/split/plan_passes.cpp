@@ -220,7 +220,7 @@ class Planner {
   }
 
   /// Cost of copying planes to bundles if a pass reads more planes than it has texture units; infinite if the
-  /// pass loads so many temporaries that bundles do not help.
+  /// temporaries that the pass loads take more than half of the units.
   double unitCost(const Slice& slice) const {
     const auto temporaries = static_cast<std::uint32_t>(std::ranges::count(slice.loaded, true));
     const VarSet params = demand_.params(slice);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
 // Program slicing (Weiser 1981) on structured statements: the part of a kernel's entry that computes some of
-// its variables. Of
+// its variables. The slice for q of
 //
 //   float s = f(x), t = g(x);
 //   for (int i = 0; i < 4; ++i) { s += a[i]; t *= b[i]; }
 //   r = s; q = t;
 //
-// the slice for q is `float t = g(x); for (...) { t *= b[i]; } q = t;`. A variable may be loaded instead of
+// is `float t = g(x); for (...) { t *= b[i]; } q = t;`. A variable may be loaded instead of
 // computed; statements that only it needed then drop out. The slicer tracks whole variables, not components,
 // and keeps a statement when in doubt.
 #pragma once

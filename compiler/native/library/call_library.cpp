@@ -21,7 +21,7 @@ class KernelCalls {
 
   void rewrite(const Kernel& kernel) {
     for (const FunctionId id : functionsOf(module_, kernel)) {
-      // functions are added on the way, which moves them all
+      // adding functions may move them all
       Block body = std::move(module_.functions[id].body);
       rewriteExprs(body, [&](ExprPtr& slot) { rewrite(slot); });
       module_.functions[id].body = std::move(body);
@@ -43,7 +43,8 @@ class KernelCalls {
     slot = makeExpr(slot->type, Call{called, std::move(n->args)}, slot->loc);
   }
 
-  /// The function of vectors that calls one of scalars for each component; a scalar argument serves for every one.
+  /// A function of vectors that calls one of scalars for each component; a scalar argument serves for every
+  /// call.
   FunctionId ofVectors(Intrinsic intrinsic, FunctionId scalars, const std::vector<Type>& types, Type result) {
     std::vector<std::uint8_t> widths;
     for (const Type& type : types) widths.push_back(type.width);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Calls of the library's functions in place of intrinsics:
+// Replaces intrinsics by calls of the library's functions:
 //
 //   before   kernel void wave(float2 x<>, out float2 r<>) { r = sin(x); }
 //   after    float2 sin_2(float2 a) { return float2(sin(a.x), sin(a.y)); }
@@ -12,7 +12,7 @@
 
 namespace skc::native {
 
-/// Each kernel gets copies of the functions of its own, as after specialize-gathers.
+/// Each kernel gets its own copies of the functions, as after specialize-gathers.
 void callLibrary(ir::Module& module, const LinkedFunctions& linked);
 
 }  // namespace skc::native

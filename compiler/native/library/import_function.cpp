@@ -30,7 +30,7 @@ ConstantId FunctionImporter::importConstant(ConstantId id) {
   const Constant& constant = from_.constants[id];
   Constant copy{constant.name, importType(constant.type), clone(*constant.value), {}};
   walkExprs(*copy.value, [&](Expr& expr) { adapt(expr); });
-  to_.constants.push_back(std::move(copy));   // behind those that its value names
+  to_.constants.push_back(std::move(copy));  // after the constants that its value names
   return constants_[id] = static_cast<ConstantId>(to_.constants.size() - 1);
 }
 
@@ -46,7 +46,7 @@ std::uint32_t FunctionImporter::importStruct(std::uint32_t index) {
   Struct copy = from_.structs[index];
   for (StructField& field : copy.fields) field.type = importType(field.type);
   copy.loc = {};
-  copy.isMade = true;   // no type of the user's program
+  copy.isMade = true;  // not a type of the user's program
   to_.structs.push_back(std::move(copy));
   return structs_[index] = static_cast<std::uint32_t>(to_.structs.size() - 1);
 }

@@ -14,7 +14,7 @@ class FunctionImporter {
  public:
   FunctionImporter(ir::Module& to, const ir::Module& from) : to_(to), from_(from) {}
 
-  /// The copy of a function, which is made at the first call. It must not take streams.
+  /// Returns the copy of a function, which must not take streams; makes it at the first call.
   ir::FunctionId import(ir::FunctionId id);
 
  private:

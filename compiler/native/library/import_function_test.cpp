@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: an imported function brings what it names, each once, under numbers of its new module, which stays valid.
+// Promises: an imported function brings everything that it names, once each and numbered as in its new
+// module, which stays valid.
 #include "native/library/import_function.hpp"
 
 #include <catch2/catch.hpp>
@@ -43,7 +44,7 @@ FunctionId addTwice(Module& module) {
   return addFunction(module, std::move(twice), block(returnStmt(binary(BinaryOp::Add, called(), called()))));
 }
 
-/// A module in which every table has something already.
+/// A module whose tables are not empty.
 Module target() {
   Module module = testModule();
   arrayOf(module, intType, 7);
@@ -70,7 +71,7 @@ TEST_CASE("an imported function is valid where it comes to") {
   CHECK(to.constants.size() == 2);
   CHECK(to.arrays.size() == 2);
 
-  // a kernel that calls it, so that validation looks at it
+  // a kernel that calls it, so that validation checks it
   KernelMaker k(to, "f");
   const VarId r = k.output("r", floatType);
   k.finish(block(assign(k.ref(r), call(to, id, {}))));

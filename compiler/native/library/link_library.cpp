@@ -19,7 +19,7 @@ namespace {
 
 using namespace ir;
 
-/// The files of the library that have a function for an intrinsic.
+/// The files of the library that implement an intrinsic.
 enum class In : std::uint8_t { None, Floats, Reals, Sums };
 
 struct Row {
@@ -44,7 +44,7 @@ struct Library {
   std::string_view file;
   std::string_view (*text)();
   bool (*has)(In in);
-  std::optional<Scalar> scalar;   ///< of the first argument, if intrinsics of others are not the library's
+  std::optional<Scalar> scalar;  ///< type of the first argument that it is for; nullopt: any
 };
 constexpr Library libraries[] = {
     {"float_functions.sk", floatFunctions, [](In in) { return in == In::Floats || in == In::Reals; },
@@ -53,7 +53,7 @@ constexpr Library libraries[] = {
     {"exact_sums.sk", exactSums, [](In in) { return in == In::Sums; }, std::nullopt},
 };
 
-/// Rows whose intrinsics kernels call, with arguments that the library is for.
+/// The rows whose intrinsics kernels call with arguments of the type that the library is for.
 std::vector<Row> wantedRows(const Library& library, const Module& module) {
   std::vector<bool> isWanted(std::size(rows));
   const auto look = [&](const Expr& expr) {
@@ -73,7 +73,7 @@ std::vector<Row> wantedRows(const Library& library, const Module& module) {
   return wanted;
 }
 
-/// By name and types, since `atan` is two intrinsics.
+/// Compares names and types, because `atan` is two intrinsics.
 bool implements(const Function& function, const Row& row) {
   std::vector<Type> parameters;
   for (std::uint32_t i = 0; i < function.parameterCount; ++i)

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// Functions in place of intrinsics. What float_functions.sk and double_functions.sk say of sin, exp and their like is an
-// ordinary program of the language, so that the back end computes several elements together as it does in any kernel:
+// Links functions that implement intrinsics. float_functions.sk and double_functions.sk define sin, exp and
+// the like in the language itself, so that the back end computes several elements together, as in any kernel.
+// For
 //
 //   kernel void wave(float x<>, out float r<>) { r = sin(x); }
 //
-// makes linkLibrary() compile the library and append to the module its `float sin(float)`, all that this calls, and their
-// constants. The kernel keeps its IntrinsicCall; callLibrary() puts calls of the functions that LinkedFunctions names in its
-// place. Code that computes a kernel's floats in another precision must call the C library instead: the library's functions
-// are right in their own types only. exact_sums.sk does the same for the intrinsics of exact sums.
+// linkLibrary() compiles the library and appends its `float sin(float)` to the module, with all functions and
+// constants that this needs. callLibrary() then replaces the kernel's IntrinsicCall by a call. Code that
+// computes a kernel's floats in another precision must call the C library instead, because library functions
+// are accurate only in their own types. exact_sums.sk does the same for the intrinsics of exact sums.
 #pragma once
 
 #include <functional>
@@ -21,11 +22,11 @@
 
 namespace skc::native {
 
-/// Functions of the module that compute intrinsics, by the scalar type of their first argument. Those of reals take scalars:
-/// components of vectors are computed one by one.
+/// The functions of a module that implement intrinsics, by the scalar type of their first argument. Functions
+/// of real numbers take scalars: they compute vectors component by component.
 class LinkedFunctions {
  public:
-  /// Empty where the module has none: the back end has an instruction or calls the C library.
+  /// Returns nullopt if the module has none: the back end then has an instruction or calls the C library.
   std::optional<ir::FunctionId> find(ir::Intrinsic intrinsic, ir::Scalar scalar) const;
   void add(ir::Intrinsic intrinsic, ir::Scalar scalar, ir::FunctionId function);
   bool empty() const { return functions_.empty(); }
@@ -34,12 +35,12 @@ class LinkedFunctions {
   std::map<std::pair<ir::Intrinsic, ir::Scalar>, ir::FunctionId> functions_;
 };
 
-/// Compiles a text of the language, which must be right, to what the frontend gives.
+/// Runs the frontend on a source text, which must be correct.
 using CompileLibrary = std::function<ir::Module(std::string_view file, std::string_view text)>;
 
-/// Appends to the module the library's functions for the intrinsics that its kernels call. It is for the module as
-/// runTransforms leaves it: earlier, remove-unused would take the functions out. They are shared by all kernels, so that nobody
-/// may change them for one of these. `compile` is called only if there is such an intrinsic.
+/// Appends the library's functions for the intrinsics that the module's kernels call. Must follow
+/// runTransforms, where remove-unused would remove the functions. All kernels share the functions, which
+/// therefore must not be changed for one of them. Calls `compile` only if there is such an intrinsic.
 LinkedFunctions linkLibrary(ir::Module& module, const CompileLibrary& compile);
 
 }  // namespace skc::native

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The texts of this folder's .sk files, which CMake puts into skc.
+// The texts of this folder's .sk files, which CMake embeds in skc.
 #pragma once
 
 #include <string_view>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Memory for what a call needs while it lasts. Small calls, which should take well below a microsecond, allocate nothing.
+// Memory for what a call needs while it runs. Small calls, which should take well below a microsecond,
+// allocate nothing on the heap.
 #pragma once
 
 #include <cstddef>

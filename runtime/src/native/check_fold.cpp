@@ -20,7 +20,7 @@ namespace {
 using native::Extents;
 
 constexpr int trials = 16;
-constexpr std::int64_t longest = 4;   // elements of a run
+constexpr std::int64_t longest = 4;  // most elements of a run
 
 template <class T>
 double valueAt(const std::byte* bytes) {
@@ -29,7 +29,7 @@ double valueAt(const std::byte* bytes) {
   return static_cast<double>(value);
 }
 
-/// A scalar of an accumulator: its number, or 0 where it is of a type that rounds what is kept.
+/// The value of an accumulator's scalar; 0 if its type rounds what it stores.
 double numberOf(const ComponentType& type, const std::byte* bytes) {
   using program::Scalar;
   switch (type.scalar) {
@@ -58,7 +58,7 @@ double numberOf(const ComponentType& type, const std::byte* bytes) {
   return 0;
 }
 
-/// How far two results may be from one another, in parts of the largest magnitude.
+/// How far two results may differ, relative to the largest magnitude.
 double boundOf(const ComponentType& type) {
   const bool isReal = type.scalar == program::Scalar::Float || type.scalar == program::Scalar::Double;
   if (!isReal) return 0;
@@ -118,7 +118,7 @@ class FoldCheck {
   }
 
  private:
-  /// Some elements, anywhere.
+  /// The indices of some random elements.
   std::vector<Extents> elements() {
     std::vector<Extents> chosen(static_cast<std::size_t>(1 + random_() % longest));
     for (Extents& at : chosen) {
@@ -156,7 +156,7 @@ class FoldCheck {
                 const std::vector<const StateColumns*>& used) const {
     for (std::size_t scalar = 0; scalar < types_.size(); ++scalar) {
       const double x = number(a, scalar), y = number(b, scalar);
-      if (x == y || !std::isfinite(x) || !std::isfinite(y)) continue;   // what overflows says nothing
+      if (x == y || !std::isfinite(x) || !std::isfinite(y)) continue;  // an overflow proves nothing
       double largest = 0;
       for (const StateColumns* state : used) {
         const double magnitude = std::fabs(number(*state, scalar));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// SK_CHECK=folds: tries what the author of a reduce promises, on elements of each call that are chosen at random: that the
-// fold is associative, that what a run starts from is neutral, and that partial results combine to what folding their elements
-// one after the other gives.
+// SK_CHECK=folds: checks what the author of a reduction promises, on random elements of each call: that the
+// fold is associative, that its initial value is neutral, and that combining partial results gives the same
+// as folding their elements one after the other.
 #pragma once
 
 #include "native/call.hpp"
@@ -12,8 +12,9 @@
 
 namespace sk {
 
-/// Throws sk::Error, which names the reduce and shows the values, where one of these does not hold: integers are compared
-/// exactly, floats within 2^-12 (doubles 2^-40) of the largest magnitude that the scalar had in any of the results.
+/// Throws sk::Error, which names the reduction and shows the values, if one of these does not hold. Integers
+/// are compared exactly, floats within 2^-12 (doubles 2^-40) of the largest magnitude of the scalar in any of
+/// the results.
 void checkFold(const program::Reduction& reduction, const FoldProgram& program, const native::Call& call,
                const CodeChoice& choice);
 

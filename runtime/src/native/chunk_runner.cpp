@@ -29,7 +29,7 @@ std::size_t ChunkRunner::rowsAtOnce(const SlotLayout& layout) {
   return layout.hasGathers() && layout.isDirect() && !layout.goesByElement() ? enough : 1;
 }
 
-/// Rows that are computed together are computed even where they are not wanted, and nobody looks at what.
+/// The entry always computes `together_` rows; results of rows that are not wanted are discarded.
 void ChunkRunner::moveTo(const Extents& first, std::size_t rows) {
   wanted_ = rows;
   placed_ = (rows + together_ - 1) / together_ * together_;
@@ -53,7 +53,7 @@ void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows
     runPart(begin, end, longest);
     return;
   }
-  // a few groups at both ends of a row look over its margins; the elements between them are read where they lie
+  // a few groups of lanes at both ends of a row reach beyond it; the elements between them are read in place
   const native::Range inside = arrays_.inside();
   const std::int64_t left =
       std::min(end, begin + roundUp(std::max<std::int64_t>(inside.begin - begin, 0), lanes_));

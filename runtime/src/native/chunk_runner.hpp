@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs a kernel's object code on neighbours in a row, or in several rows at once: divides them into chunks that the code can
-// take, whole groups of its lanes wherever possible.
+// Runs a kernel's object code on neighbours in one row, or in several rows at once: divides them into chunks
+// for the code, in whole groups of lanes where possible.
 #pragma once
 
 #include <array>
@@ -16,30 +16,33 @@
 
 namespace sk {
 
-/// What is to happen between chunks.
+/// What happens between chunks.
 struct ChunkHook {
-  std::int64_t longest =
-      std::numeric_limits<std::int64_t>::max();  ///< elements of a chunk; a multiple of mostLanes
+  /// The most elements of a chunk, a multiple of mostLanes.
+  std::int64_t longest = std::numeric_limits<std::int64_t>::max();
   std::function<void()> after = {};  ///< called after each chunk
 };
 
-/// For one thread.
+/// Each thread has its own.
 class ChunkRunner {
  public:
-  /// `run` is an entry of kind Run or RunRows. At most so many rows are run at once, or as many as the entry computes together.
+  /// `run` is an entry of kind Run or RunRows. `rows` is the most rows that run() gets in one call; fewer
+  /// than the entry computes together count as that many.
   ChunkRunner(const SlotLayout& layout, const native::Entry& run, const native::Frame* frame,
               ChunkHook hook = {}, std::size_t rows = 1);
 
-  /// Rows that should be run at once, at most native::mostRows: their ends are laid out one after the other, which costs less than a
-  /// row at a time.
+  /// The number of rows that run() should get in one call, at most native::mostRows. Laying out the ends of
+  /// several rows together costs less than one row at a time.
   static std::size_t rowsAtOnce(const SlotLayout& layout);
 
-  /// `count` elements from `first` on.
+  /// Computes `count` elements from `first` on.
   void run(const native::Extents& first, std::int64_t count) { run(first, count, 1); }
-  /// `count` elements in each of `rows` rows. Where the entry computes more rows together, no more than native::mostLanes elements.
+  /// Computes `count` elements in each of `rows` rows. If the entry computes several rows together, `count`
+  /// is at most native::mostLanes.
   void run(const native::Extents& first, std::int64_t count, std::size_t rows);
 
-  /// Likewise at most mostLaidOut of them, as one chunk whose arrays after(arrays) can look at.
+  /// Computes at most mostLaidOut elements as one chunk, then calls after(arrays) with the arrays of the
+  /// chunk.
   template <class After>
   void runChunk(const native::Extents& first, std::int64_t count, After&& after) {
     moveTo(first, 1);
@@ -50,7 +53,7 @@ class ChunkRunner {
  private:
   void moveTo(const native::Extents& first, std::size_t rows);
   void runPart(std::int64_t begin, std::int64_t end, std::int64_t longest);
-  /// Whole groups of lanes that lie as the domain does, with the neighbours that gathers read.
+  /// For whole groups of lanes whose elements and neighbours are read in place.
   void runInside(std::int64_t begin, std::int64_t end, std::int64_t longest);
   void call(std::int64_t x, std::int64_t count, std::int64_t room);
   void compute(std::int64_t x, std::int64_t count);
@@ -59,10 +62,10 @@ class ChunkRunner {
   native::RunFunction* function_;
   std::int64_t lanes_;
   const native::Frame* frame_;
-  std::size_t together_;  ///< rows that the entry computes
-  std::size_t wanted_ = 1;  ///< rows
-  std::size_t placed_ = 1;  ///< these, and others that are computed together with them
-  std::int64_t laidOut_;  ///< elements of a row at a time, at most
+  std::size_t together_;  ///< rows that the entry computes together
+  std::size_t wanted_ = 1;  ///< rows to compute
+  std::size_t placed_ = 1;  ///< wanted_, rounded up to a multiple of together_
+  std::int64_t laidOut_;  ///< most elements of a row that are laid out at a time
   SlotArrays arrays_;
   std::array<native::Chunk, native::mostRows> chunks_;
   ChunkHook hook_;

@@ -13,7 +13,7 @@ using native::Operand;
 using program::Parameter;
 using program::Role;
 
-/// Whether nothing in the kernel depends on the dimensions of its domain.
+/// True if nothing in the kernel depends on the dimensions of its domain.
 bool knowsNoPlace(const program::Kernel& kernel, std::span<const Operand> operands) {
   if (kernel.usesIndex || kernel.usesExtent) return false;
   for (std::size_t i = 0; i < operands.size(); ++i) {
@@ -63,7 +63,7 @@ class Coalesce {
   }
   bool isResult(std::size_t i) const { return kernel_.parameters[i].role == Role::Accumulator; }
 
-  /// Of a dimension of one element.
+  /// Drops a dimension of extent 1.
   void dropAll(std::size_t dimension) {
     for (std::size_t i = 0; i < operands_.size(); ++i) {
       if (isElement(i) || isResult(i)) drop(operands_[i], dimension);
@@ -72,7 +72,7 @@ class Coalesce {
     drop(block_, dimension, 1);
   }
 
-  /// What is stored lies element by element along x.
+  /// True if the elements of all outputs are consecutive along y.
   bool outputsAreDense() const {
     for (std::size_t i = 0; i < operands_.size(); ++i) {
       if (isElement(i) && kernel_.parameters[i].role == Role::Output && operands_[i].stride[1] != 1)
@@ -81,7 +81,7 @@ class Coalesce {
     return true;
   }
 
-  /// Whether each row follows the one before it, in every stream, and a block has whole rows.
+  /// True if each row directly follows the one before it in every stream, and a block has whole rows.
   bool areRowsInOne() const {
     if (block_[0] != domain_[0]) return false;
     for (std::size_t i = 0; i < operands_.size(); ++i) {

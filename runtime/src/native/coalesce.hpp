@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Fewer and longer rows for native loops: dimensions that lie one behind the other in all streams of a call become one, where the
-// kernel does not ask where it is. It changes how elements are counted, never their order.
+// Coalesces dimensions, so that native loops have fewer and longer rows: dimensions that are contiguous in
+// all streams of a call become one, if the kernel uses no indices or extents. This changes how elements
+// are counted, never their order.
 #pragma once
 
 #include <span>
@@ -11,7 +12,8 @@
 
 namespace sk {
 
-/// `domain`, and `block` of a reduction (of a kernel, all of the domain), and the operands of its parameters, which match.
+/// Changes `domain`, `block` and the operands of the kernel's parameters alike. `block` is that of a
+/// reduction; for a kernel, it is the whole domain.
 void coalesce(const program::Kernel& kernel, std::span<native::Operand> operands, native::Extents& domain,
               native::Extents& block);
 

@@ -49,7 +49,8 @@ CodeFrame::CodeFrame(const program::Kernel& kernel, const native::Call& call,
   arguments_.reserve(call.operands.size());
   for (std::size_t i = 0; i < call.operands.size(); ++i) {
     const program::Parameter& parameter = kernel.parameters[i];
-    // object code brings the indices of a gather inside and then reads, also where its stream is left out
+    // object code applies the boundary mode to the indices of a gather and then reads, even if its stream is
+    // omitted
     if (parameter.role == Role::Gather && isEmpty(call.operands[i])) {
       Argument& zero = arguments_.emplace_back(argumentOf({}));
       zero.stride[0] = 1;

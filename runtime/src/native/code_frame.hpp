@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The operands of a call as object code takes them (sk/native/code.hpp).
+// The operands of a call in the form that object code takes (sk/native/code.hpp).
 #pragma once
 
 #include <memory_resource>
@@ -13,7 +13,7 @@
 
 namespace sk {
 
-/// A Frame with its Arguments, one for each parameter of the kernel. What the operands point to must outlive it.
+/// A Frame with its Arguments, one per parameter of the kernel. What the operands point to must outlive it.
 class CodeFrame {
  public:
   CodeFrame(const program::Kernel& kernel, const native::Call& call,

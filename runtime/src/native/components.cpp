@@ -46,7 +46,7 @@ void convertFrom(const std::byte* from, std::size_t fromStride, std::byte* to, s
   }
 }
 
-/// Copies values, or, where they differ in size, converts real ones.
+/// Copies values; converts real ones if their sizes differ.
 void move(const Values<const std::byte>& from, const Values<std::byte>& to, std::int64_t count) {
   if (from.bytes == to.bytes) {
     if (from.stride == from.bytes && to.stride == to.bytes) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Elements as native code wants them: an array for each scalar component. Floats are held in the device's real
-// type, all else as in host memory.
+// Elements in the form that native code takes: one array per scalar component. Floats are held in the
+// device's real type, all else as in host memory.
 #pragma once
 
 #include <cstddef>
@@ -14,21 +14,22 @@
 
 namespace sk {
 
-/// What native code computes with where a kernel says float. Quad stands for double, too (native/quad_type.hpp).
+/// The type that represents the language's float in native code. Quad also represents double
+/// (sk/native/quad_type.hpp).
 enum class RealType : std::uint8_t { Float, Double, Quad };
 
 /// A scalar component of an element.
 struct ComponentType {
-  std::size_t offset;  ///< in the element, in host memory
+  std::size_t offset;  ///< in the element in host memory
   std::size_t hostBytes;
   std::size_t storedBytes;
   program::Scalar scalar;
 };
-/// What a scalar takes in an array.
+/// The size of a scalar in an array.
 std::size_t storedBytes(program::Scalar scalar, RealType real);
 std::vector<ComponentType> componentsOf(const program::Element& element, RealType real);
 
-/// Where values of some bytes lie, one each stride.
+/// Strided values; the size of a value and the stride between values are in bytes.
 template <class Byte>
 struct Values {
   Byte* first;
@@ -36,7 +37,7 @@ struct Values {
   std::size_t bytes;
 };
 
-/// Arrays of `count` elements, uninitialised. Throws NoMemory (support/checked_size.hpp).
+/// The arrays of `count` elements, at first uninitialised. Throws NoMemory (support/checked_size.hpp).
 class Components {
  public:
   Components() = default;
@@ -49,23 +50,24 @@ class Components {
 
   /// A copy that holds floats as `real`.
   Components clone(std::int64_t count, RealType real) const;
-  /// Takes the elements of others, which are of as many components.
+  /// Copies the first `count` elements of `from`, which has as many components.
   void assign(const Components& from, std::int64_t count);
   std::span<void* const> arrays() const { return pointers_; }
 
-  /// Copies `count` elements of others, which are of as many components, from `from` on to those from `first` on.
+  /// Copies `count` elements of `others`, which has as many components, from number `from` on to number
+  /// `first` on.
   void copy(const Components& others, std::int64_t from, std::int64_t first, std::int64_t count);
-  /// Gives `count` elements from `first` on the value of one in host memory.
+  /// Sets `count` elements from number `first` on to one in host memory.
   void fill(std::int64_t first, std::int64_t count, const std::byte* element);
-  /// `count` elements from `first` on, from and to host memory.
+  /// Copies `count` elements from number `first` on, from or to host memory.
   void write(std::int64_t first, std::int64_t count, const std::byte* elements, std::size_t elementBytes);
   void read(std::int64_t first, std::int64_t count, std::byte* elements, std::size_t elementBytes) const;
-  /// Of floats: one element after the other.
+  /// Likewise for elements of floats: `values` has all components of one element, then the next.
   void readReals(std::int64_t first, std::int64_t count, double* values) const;
   void writeReals(std::int64_t first, std::int64_t count, const double* values);
-  /// One scalar of `count` elements from `first` on: values as the arrays hold them.
+  /// Sets one scalar of `count` elements from number `first` on; `values` have the type of the arrays.
   void writeScalars(std::size_t component, std::int64_t first, std::int64_t count, const std::byte* values);
-  /// Floats to the nearest halves.
+  /// Rounds floats to half precision.
   void roundToHalf(std::int64_t count);
 
  private:

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Of a block of terms, each is cut at the same bit, by adding and taking away a large number; what is above adds up in doubles without
-// rounding, and so does what is below, cut once more (ExtractVector: Rump, Ogita and Oishi, Accurate floating-point summation, SIAM J.
-// Sci. Comput. 31, 2008). What then still is left of a term is added to the digits by itself.
+// Splits each term of a block at the same bit, by adding and subtracting a large number. The upper parts add
+// up in doubles without rounding, and so do the lower parts, which are split once more (ExtractVector: Rump,
+// Ogita and Oishi, Accurate floating-point summation, SIAM J. Sci. Comput. 31, 2008). What then remains of a
+// term is added to the digits by itself.
 #include "native/exact_accumulator.hpp"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ constexpr int digitBits = 26;
 constexpr std::int64_t digitMask = (std::int64_t{1} << digitBits) - 1;
 constexpr std::uint32_t infinityBits = 0x7f800000;
 
-constexpr int together = 16;  ///< terms that go through the loops side by side
+constexpr int together = 16;  ///< terms that the loops process together
 constexpr int mostInBlock = 1024;
 constexpr int bitsOfMost = 10;
 
@@ -39,7 +40,7 @@ bool hasVectors() {
 
 std::uint32_t magnitudeOf(float x) { return std::bit_cast<std::uint32_t>(x) & 0x7fffffff; }
 
-/// The largest magnitude, as bits: beyond those of infinity where there is a NaN.
+/// The largest magnitude as bits, which exceed those of infinity if there is a NaN.
 SK_FOR_V3 std::uint32_t largestOf(const float* x, int count) {
   std::uint32_t largest = 0;
   for (int i = 0; i < count; ++i) {
@@ -48,9 +49,10 @@ SK_FOR_V3 std::uint32_t largestOf(const float* x, int count) {
   return largest;
 }
 
-/// What adding this and taking it away again cuts numbers below 2^exponent at, so that the upper parts of a block add up exactly.
+/// The number whose addition and subtraction splits numbers below 2^exponent, so that the upper parts of a
+/// block add up exactly.
 double cutterFor(int exponent) { return std::ldexp(1.5, exponent + bitsOfMost); }
-/// Below which power of 2 the lower parts then are.
+/// The lower parts are then below 2 to the power of this.
 int below(int exponent) { return exponent + bitsOfMost - 52; }
 
 double cut(double x, double cutter) { return (x + cutter) - cutter; }
@@ -69,7 +71,7 @@ SK_FOR_V3 void termsAt(int i, Doubles& terms, const float* x, const float* y) {
   terms *= others;
 }
 
-/// Adds up both parts of each term; false if there is more than these.
+/// Adds up both parts of each term; returns false if anything remains of a term.
 template <class... Factors>
 SK_FOR_V3 bool addParts(int count, double upper, double lower, double (&sums)[2], const Factors*... x) {
   constexpr int vectors = together / doublesPerVector;
@@ -103,7 +105,8 @@ SK_FOR_V3 bool addParts(int count, double upper, double lower, double (&sums)[2]
   return all == 0;
 }
 
-/// The float nearest to an integer of digits that are settled and not negative; its bit `base` stands for 2^-149.
+/// The float nearest to an integer, whose bit `base` represents 2^-149. Its digits must be settled and not
+/// negative.
 float nearestFloat(const std::int64_t* digits, int count, bool isNegative, int base) {
   const auto digit = [&](int k) { return k < 0 ? std::uint64_t{0} : static_cast<std::uint64_t>(digits[k]); };
   int top = count - 1;
@@ -123,7 +126,7 @@ float nearestFloat(const std::int64_t* digits, int count, bool isNegative, int b
   return std::bit_cast<float>(std::min(bits, infinityBits) | (isNegative ? 0x80000000U : 0U));
 }
 
-/// Makes all digits but the last ones of 26 bits, with the same sum.
+/// Reduces all digits but the last to 26 bits, with the same sum.
 void settle(std::int64_t* digits, int count) {
   for (int k = 0; k + 1 < count; ++k) {
     digits[k + 1] += digits[k] >> digitBits;
@@ -209,13 +212,13 @@ void ExactAccumulator::addOne(float x, float y) {
   }
 }
 
-/// A multiple of the unit.
+/// Adds a multiple of the unit.
 void ExactAccumulator::addWhole(double x) {
   if (x == 0) return;
   const auto bits = std::bit_cast<std::uint64_t>(x);
   std::uint64_t mantissa = (bits & ((std::uint64_t{1} << 52) - 1)) | std::uint64_t{1} << 52;
   int at = static_cast<int>(bits >> 52 & 2047) - 1075 - unit();
-  if (at < 0) {  // zeros
+  if (at < 0) {  // the lowest bits are zeros
     mantissa >>= -at;
     at = 0;
   }

@@ -8,7 +8,7 @@ FactorKernel::FactorKernel(const program::Kernel& fold, std::span<const std::uin
     : call_(call) {
   for (const std::uint8_t parameter : factors) {
     operands_.push_back(call.operands[parameter]);
-    operands_.back().holdsFloats = false;  // they are read as the floats that they are
+    operands_.back().holdsFloats = false;  // read as floats, without widening
     parameters_.push_back(fold.parameters[parameter]);
     const auto number = static_cast<std::uint8_t>(slots_.size());
     slots_.push_back({.parameter = number, .row = {}, .reach = 0, .isOutput = 0});

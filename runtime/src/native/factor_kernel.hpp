@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The factors of a term (program::SumTerm) as a kernel that has no code but slots for them, so that the runtime's own sums read their
-// floats as object code would.
+// The factors of a term (program::SumTerm) as a kernel that has only slots and no code, so that the runtime's
+// own sums read floats the way object code does.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace sk {
 
 class FactorKernel {
  public:
-  /// `call` is one of `fold`, some parameters of which are the factors.
+  /// `call` is a call of `fold`; `factors` are the numbers of the parameters that are factors.
   FactorKernel(const program::Kernel& fold, std::span<const std::uint8_t> factors, const native::Call& call);
   FactorKernel(const FactorKernel&) = delete;
   FactorKernel& operator=(const FactorKernel&) = delete;

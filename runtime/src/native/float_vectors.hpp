@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Vectors of four doubles, which the runtime's own sums compute with. Compilers that are shown eight floats convert the halves of
-// them, for which CPUs take three times as long as for fours.
+// Vectors of four doubles for the runtime's own sums. With vectors of eight floats, compilers convert each
+// half by itself, which takes CPUs three times as long as converting vectors of four.
 #pragma once
 
 #include <cstdint>
@@ -20,21 +20,21 @@ using Doubles [[gnu::vector_size(32)]] = double;
 using Words [[gnu::vector_size(32)]] = std::int64_t;
 inline constexpr int doublesPerVector = 4;
 
-// No vector is handed over by value, of which compilers for other CPUs would warn.
+// Vectors are passed by reference, because compilers for other CPUs would warn about passing them by value.
 
 SK_FOR_V3 inline void widen(const float* at, Doubles& wide) {
   using Floats [[gnu::vector_size(16)]] = float;
   Floats floats;
   std::memcpy(&floats, at, sizeof floats);
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-  wide = __builtin_ia32_cvtps2pd256(floats);  // which GCC 12 makes of no __builtin_convertvector
+  wide = __builtin_ia32_cvtps2pd256(floats);  // GCC 12 does not emit this for __builtin_convertvector
 #else
   wide = __builtin_convertvector(floats, Doubles);
 #endif
 }
 
-/// sum += x * y, where the product is exact, so that it is rounded once in any case. In one operation it takes the place of additions
-/// on CPUs that convert to doubles where they add.
+/// sum += x * y. The product is exact, so that there is one rounding, fused or not. Fused, it leaves the
+/// adders free on CPUs that also use them to convert to double.
 SK_FOR_V3 inline void addProduct(const Doubles& x, const Doubles& y, Doubles& sum) {
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
   sum = __builtin_ia32_vfmaddpd256(x, y, sum);

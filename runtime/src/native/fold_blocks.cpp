@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The loops around reductions. A block of the domain is divided into pieces, which are folded by themselves and then combined in order;
-// narrow blocks are folded side by side.
+// The loops around reductions. A block of the domain is divided into pieces, which are folded by themselves
+// and then combined in order; narrow blocks are folded side by side.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -20,7 +20,7 @@ using native::Deal;
 using native::Extents;
 using native::Range;
 
-/// The largest power of 2 that is not greater; 0 for 0.
+/// The largest power of 2 that is not greater than `number`; 0 for 0.
 std::int64_t powerUpTo(std::int64_t number) {
   return static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(number)));
 }
@@ -45,7 +45,7 @@ class PieceFolder {
         leafColumns_(program.shape, group_),
         orderedColumns_(program.shape, program.isCommutative ? 0 : group_) {}
 
-  /// Of the block that is there. It has one element at least. The result is one column.
+  /// Folds a piece of a block, which has at least one element, to one column.
   const StateColumns& fold(const Extents& block, std::int64_t piece) {
     pieces_.forEachRow(block, piece, [&](const Extents& first, std::int64_t count) {
       leaves_.moveToRow(first);
@@ -63,7 +63,7 @@ class PieceFolder {
   }
 
  private:
-  // ---- in any order: each column folds every so many-th element -----------------------------------
+  // ---- in any order: consecutive elements go to consecutive columns --------------------------------
 
   void foldColumns(std::int64_t x, std::int64_t count) {
     while (count >= side_) {
@@ -83,12 +83,13 @@ class PieceFolder {
     if (count > 0) foldRest(x, count);
   }
 
-  /// How many leaves of whole columns are folded by one call, a power of 2; 0 or 1 where that is not possible.
+  /// The number of leaves of whole columns that one call can fold, a power of 2; 0 or 1 if it cannot fold
+  /// several.
   std::int64_t wholeLeaves(std::int64_t count) const {
     if (!leaves_.foldsLeavesTogether(side_)) return 0;
     return powerUpTo(std::min({mostLeaves, columnRuns_.mostTogether(), count / (leafRounds * side_)}));
   }
-  /// The columns of leaves are combined as they would be one leaf after the other.
+  /// Combines the columns of the leaves as if these were folded one after the other.
   void foldWholeLeaves(std::int64_t x, std::int64_t leaves) {
     leaves_.foldLeaves(leafColumns_, x, side_, leafRounds, leaves);
     combiner_.gather(leafColumns_, leaves * side_, side_);
@@ -96,7 +97,8 @@ class PieceFolder {
     columnRuns_.add(leaves);
   }
 
-  /// What is left of a row: an element for some of the columns. Those of several rows are a leaf.
+  /// Folds the remainder of a row: one element for some of the columns. The remainders of several rows form a
+  /// leaf.
   void foldRest(std::int64_t x, std::int64_t count) {
     const std::int64_t begun = std::min(count, restUsed_);
     leaves_.foldInto(rest_, 0, x, begun, Start::Continued);
@@ -105,7 +107,8 @@ class PieceFolder {
     if (++folded_ == leafRounds) endLeaf();
   }
 
-  /// Whole columns become one, with what is left of rows. If there are none, that is a leaf.
+  /// Combines whole columns and the remainders of rows into one column. Without whole columns, the remainders
+  /// stay a leaf of their own.
   void endColumns() {
     if (columnRuns_.isEmpty()) return;
     StateColumns& columns = columnRuns_.take();
@@ -140,15 +143,15 @@ class PieceFolder {
     }
   }
 
-  /// How many leaves may be folded side by side, a power of 2; 0 where that gains nothing.
+  /// The number of leaves that may be folded side by side, a power of 2; 0 if that gains nothing.
   std::int64_t leavesTogether(std::int64_t count) const {
     if (folded_ != 0 || !leaves_.foldsApart()) return 0;
     const std::int64_t most = std::min({group_, runs_.mostTogether(), count / leafRounds});
     return most < program_.fold.lanes ? 0 : powerUpTo(most);
   }
 
-  /// Folds leaves that lie one behind the other side by side. They are combined as they would be one by one: neighbours first,
-  /// and so those whose numbers differ in the lowest bit are half of the columns apart.
+  /// Folds consecutive leaves side by side. They are combined as if folded one by one, neighbours first:
+  /// therefore columns of leaves whose numbers differ in the lowest bit are placed half of the columns apart.
   void foldLeaves(std::int64_t x, std::int64_t count) {
     for (std::int64_t round = 0; round < leafRounds; ++round) {
       leaves_.fold(leafColumns_, x + round, count, 1, round == 0 ? Start::New : Start::Continued, leafRounds);
@@ -176,12 +179,12 @@ class PieceFolder {
   ColumnCombiner combiner_;
   StateRuns runs_;  ///< of single columns
   StateRuns columnRuns_;
-  StateColumns rest_;  ///< of what is left of rows
+  StateColumns rest_;  ///< remainders of rows
   std::int64_t restUsed_ = 0;
-  std::int64_t folded_ =
-      0;  ///< elements of the leaf so far, in order, or of what is left of rows, in each column
-  static constexpr std::int64_t mostLeaves = 16;  ///< that one call folds, in any order
-  std::int64_t group_;  ///< columns of leaves that are folded together, at most
+  /// Elements so far of the current leaf, in order; or, in any order, of the remainders' leaf in each column.
+  std::int64_t folded_ = 0;
+  static constexpr std::int64_t mostLeaves = 16;  ///< most leaves that one call folds, in any order
+  std::int64_t group_;  ///< most columns of leaves that are folded together
   StateColumns leafColumns_, orderedColumns_;
 };
 
@@ -194,7 +197,7 @@ class GroupFolder {
         combiner_(combinerOf(program)),
         runs_(program.shape, combiner_, groupOf(program.shape)) {}
 
-  /// Folds `count` neighbouring blocks from `first` on, a column each.
+  /// Folds `count` neighbouring blocks from `first` on, one per column.
   const StateColumns& fold(const Extents& first, std::int64_t count) {
     runs_.useColumns(count);
     Extents in{};
@@ -228,10 +231,10 @@ class GroupFolder {
   LeafFolder leaves_;
   ColumnCombiner combiner_;
   StateRuns runs_;
-  std::int64_t rounds_ = 0;  ///< elements of the leaf so far, in each column
+  std::int64_t rounds_ = 0;  ///< elements of the current leaf so far, in each column
 };
 
-/// Accumulators of many scalars gain little where blocks are folded side by side.
+/// Larger accumulators gain little if blocks are folded side by side.
 constexpr std::size_t mostInGroups = 8;
 
 void foldGroups(const FoldProgram& program, const Extents& domain, const Extents& block, Deal deal,

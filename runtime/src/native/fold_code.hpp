@@ -9,11 +9,11 @@
 
 namespace sk {
 
-/// Folds each block of the domain to one element of the accumulators' operands. No block is empty; the fold's code is not null.
-/// Throws sk::Error where this CPU runs none of it.
+/// Folds each block of the domain to one element of the accumulators' operands. No block is empty; the fold's
+/// code is not null. Throws sk::Error if it has no code that runs on this CPU.
 void foldCode(const program::Reduction& reduction, const native::ReduceCall& call, const CodeChoice& choice);
 
-/// Where there is no element: writes the identities to the first element of the accumulators' operands.
+/// For an empty domain: writes the identities to the first element of the accumulators' operands.
 void storeIdentities(const program::Reduction& reduction, const native::Call& call, const CodeChoice& choice);
 
 }  // namespace sk

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Reductions whose object code is written by hand. They fold everything once and in order, and the order in which partial
-// results are made and combined, which no application may see change, is that of a recorded run.
+// Tests reductions with hand-written object code. They fold every element once and in order. The order in
+// which partial results are computed and combined, which must never change for an application, is that of a
+// recorded run.
 #include "native/fold_code.hpp"
 
 #include <cstring>
@@ -23,7 +24,7 @@ using native::Frame;
 using native::Operand;
 using program::Role;
 
-/// fold(column, round, element number) for all elements of a fold, whole groups of columns.
+/// Calls fold(column, round, element number) for all elements of a fold, in whole groups of columns.
 template <class Fold>
 void forAll(std::int64_t columns, std::int64_t rounds, std::int64_t leaves, Fold&& fold) {
   std::int64_t reversed = 0;
@@ -89,14 +90,14 @@ void zero(const Frame*, void* const* values) {
   *static_cast<Real*>(values[0]) = 0;
 }
 
-/// A reduction of floats, whose combine has the same parameters.
+/// A reduction of floats.
 struct TestReduction {
   TestKernel fold, combine;
   program::Reduction reduction{};
 
   TestReduction(int inputs, int accumulators, bool isCommutative) {
     for (int i = 0; i < inputs; ++i) fold.add(Role::Input);
-    for (int i = 0; i < 3; ++i) combine.add(Role::Uniform);  // nobody looks at them
+    for (int i = 0; i < 3; ++i) combine.add(Role::Uniform);  // never read
     for (int i = 0; i < inputs; ++i) fold.slot(static_cast<std::uint8_t>(i));
     for (int i = 0; i < accumulators; ++i) fold.add(Role::Accumulator);
     reduction.commutative = isCommutative;
@@ -112,7 +113,8 @@ struct Shaped {
   Extents domain, block;
 };
 
-/// Blocks of every kind: one piece and several, whole rows and parts, rests, narrow ones; and the way that streams lie.
+/// Blocks of every kind: of one piece and several, of whole rows and parts of rows, with remainders, and
+/// narrow.
 const Shaped shapes[] = {
     {{1, 1, 1, 1}, {1, 1, 1, 1}},         {{63, 1, 1, 1}, {63, 1, 1, 1}},
     {{1100, 1, 1, 1}, {1100, 1, 1, 1}},   {{200003, 1, 1, 1}, {200003, 1, 1, 1}},
@@ -167,7 +169,7 @@ std::vector<std::vector<std::byte>> results(const Reduced& what, const Shaped& s
   return outputs;
 }
 
-/// A hash (FNV-1a) of the results of all shapes, however their inputs lie.
+/// A hash (FNV-1a) of the results for all shapes and all layouts of the inputs.
 std::uint64_t hashOfResults(const Reduced& what, const program::Reduction& reduction, RealType real) {
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const Shaped& shape : shapes) {
@@ -234,9 +236,9 @@ TEST_CASE("identities are stored where there is no element, in arrays of their o
   CHECK(r[0] == 0);
 }
 
-// ---- folds that know where they are ---------------------------------------------------------------
+// ---- folds that use indices and neighbours --------------------------------------------------------
 
-/// Sums x times (1 + its index), modulo 2^32; and the neighbour to the right of each element.
+/// Sums x * (1 + its index) and the neighbour to the right of each element, modulo 2^32.
 void placeFold(const Frame*, const Chunk* chunk, void* const* state, std::int64_t columns,
                std::int64_t rounds, std::int64_t leaves, std::int64_t starts) {
   auto* total = static_cast<std::uint32_t*>(state[0]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// How the blocks of a reduction's domain are divided among threads. Pieces do not depend on how many threads there are, and so neither
-// do the results.
+// Divides the blocks of a reduction's domain among threads. The pieces do not depend on the number of
+// threads, and so neither do the results.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 
 namespace sk {
 
-/// A domain in blocks, and these in pieces: whole rows of a block, or parts of one.
+/// A domain divided into blocks, and these into pieces: whole rows of a block, or parts of one row.
 class BlockPieces {
  public:
-  /// Elements of one.
+  /// The most elements of a piece.
   static constexpr std::int64_t most = 1 << 14;
 
   BlockPieces(const native::Extents& domain, const native::Extents& block) : block_(block) {
@@ -37,7 +37,7 @@ class BlockPieces {
     return at;
   }
 
-  /// visit(first, count) for the rows of a piece.
+  /// Calls visit(first, count) for the rows of a piece.
   template <class Visit>
   void forEachRow(const native::Extents& block, std::int64_t piece, Visit&& visit) const {
     const std::int64_t row = piece / perRow_ * height_;
@@ -61,7 +61,8 @@ class BlockPieces {
   std::int64_t height_;  ///< rows of a piece
 };
 
-/// Blocks of few elements along x, as those of a sum of columns, in groups of neighbours, which are folded side by side.
+/// Blocks of few elements along x, as in a sum of columns, in groups of neighbours that are folded side by
+/// side.
 class BlockGroups {
  public:
   BlockGroups(const native::Extents& domain, const native::Extents& block, std::int64_t longest)
@@ -69,7 +70,7 @@ class BlockGroups {
     for (std::size_t d = 0; d < 4; ++d) blocks_[d] = domain[d] / block_[d];
   }
 
-  /// Whether blocks are so narrow that a row of the domain goes through many of them.
+  /// True if blocks are so narrow that a row of the domain crosses many of them.
   static bool areNarrow(const native::Extents& domain, const native::Extents& block) {
     return block[0] <= 8 && block[0] < domain[0];
   }
@@ -78,7 +79,7 @@ class BlockGroups {
   std::int64_t elementsOfOne() const {
     return std::min(longest_, blocks_[0]) * block_[0] * block_[1] * block_[2] * block_[3];
   }
-  /// The first block of a group, and how many there are.
+  /// The first block of a group, and the number of its blocks.
   native::Extents firstOf(std::int64_t group) const {
     const std::int64_t row = group / perRow();
     return {group % perRow() * longest_, row % blocks_[1], row / blocks_[1] % blocks_[2],

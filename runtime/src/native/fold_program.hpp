@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What folds the elements of one reduction: functions of object code, or of the runtime itself, which keep to the same ABI.
+// The functions that fold the elements of one reduction: object code, or the runtime's own functions with the
+// same ABI.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +16,17 @@
 
 namespace sk {
 
-/// Elements, or partial results, that are folded one after the other; program::longestRun at most.
+/// The number of elements, or partial results, that are folded one after the other; at most
+/// program::longestRun.
 inline constexpr std::int64_t leafRounds = 16;
 
-/// Accumulators that are folded side by side, so that they stay in registers.
+/// The number of accumulators that are folded side by side, so that they stay in registers.
 inline std::int64_t sideOf(const StateShape& shape) { return shape.columnsIn(256, 16, 64); }
-/// Neighbouring blocks that are folded side by side, so that they stay in the nearest cache beside the elements.
+/// The number of neighbouring blocks that are folded side by side, so that they stay in the nearest cache
+/// beside the elements.
 inline std::int64_t groupOf(const StateShape& shape) { return shape.columnsIn(2048, 32, 512); }
 
-/// A function with its lanes and its arguments.
+/// A function, its lanes and its arguments.
 template <class Function>
 struct Bound {
   Function* function;
@@ -31,29 +34,29 @@ struct Bound {
   const native::Frame* frame;
 };
 
-/// All that threads share. What it refers to must outlive it.
+/// What all threads share. What it refers to must outlive it.
 struct FoldProgram {
   const SlotLayout& layout;  ///< of the fold's slots
   const StateShape& shape;
   Bound<native::FoldFunction> fold;
   Bound<native::CombineFunction> combine;
   bool isCommutative;  ///< elements may be folded in any order
-  bool isUneven;  ///< they may take very different times
+  bool isUneven;  ///< their times may differ widely
 };
 
-/// Where the results of blocks go.
+/// The destinations of the results of blocks.
 class FoldResults {
  public:
-  /// The operands of the accumulators among the parameters, in their order.
+  /// Uses the operands of the accumulators among the parameters, in their order.
   FoldResults(std::span<const program::Parameter> parameters, std::span<const native::Operand> operands,
               const StateShape& shape);
 
-  /// Of `count` neighbouring blocks from `block` on: the first columns.
+  /// Stores the results of `count` neighbouring blocks from `block` on, which are the first columns.
   void store(const native::Extents& block, const StateColumns& columns, std::int64_t count) const;
 
  private:
   struct Array {
-    std::byte* array;  ///< null where the result is left out
+    std::byte* array;  ///< null if the result is omitted
     const native::Operand* operand;
     std::size_t bytes;
   };

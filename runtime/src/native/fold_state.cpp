@@ -41,7 +41,7 @@ StateColumns::StateColumns(const StateShape& shape, std::int64_t most)
   };
   std::size_t total = cacheLine;
   for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) total += room(scalar);
-  bytes_ = std::make_unique<std::byte[]>(total);  // what lies beyond the columns is read, too
+  bytes_ = std::make_unique<std::byte[]>(total);  // zeroed, because code reads beyond the columns
   void* next = bytes_.get();
   next = std::align(cacheLine, total - cacheLine, next, total);
   for (std::size_t scalar = 0; scalar < arrays_.size(); ++scalar) {
@@ -129,7 +129,7 @@ void ColumnCombiner::gather(StateColumns& state, std::int64_t count, std::int64_
   while (count > left) {
     const std::int64_t half = (count + 1) / 2;
     if (count == 2 * half) {
-      call(state, state, half, half);  // nobody looks at the columns beyond these any more
+      call(state, state, half, half);  // columns beyond these are not needed any more
     } else {
       combine(state, state, half, count - half);
     }

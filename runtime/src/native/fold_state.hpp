@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Accumulators of reductions side by side, as object code folds them, and the order in which partial results become one.
+// Accumulators of reductions side by side, as object code folds them, and the order in which partial results
+// are combined.
 #pragma once
 
 #include <algorithm>
@@ -28,15 +29,16 @@ inline std::int64_t nextReversed(std::int64_t reversed, std::int64_t count) {
 /// The scalars of all accumulators of a reduction.
 class StateShape {
  public:
-  /// Of the accumulators among these parameters, in their order.
+  /// The scalars of the accumulators among these parameters, in their order.
   StateShape(std::span<const program::Parameter> parameters, RealType real);
-  /// Of scalars of these sizes.
+  /// Scalars of these sizes.
   explicit StateShape(std::vector<std::size_t> bytes);
 
   std::size_t scalars() const { return bytes_.size(); }
   std::size_t bytesOf(std::size_t scalar) const { return bytes_[scalar]; }
   std::size_t bytes() const { return total_; }
-  /// How many accumulators take so many bytes: a power of 2.
+  /// The number of accumulators that fit in `bytes`, clamped to `least` ... `most` and rounded down to a
+  /// power of 2.
   std::int64_t columnsIn(std::size_t bytes, std::size_t least, std::size_t most) const {
     return static_cast<std::int64_t>(std::bit_floor(std::clamp(bytes / total_, least, most)));
   }
@@ -46,7 +48,8 @@ class StateShape {
   std::size_t total_ = 0;
 };
 
-/// Accumulators side by side: an array for each scalar. Whole groups of lanes may be read and written beyond the last column.
+/// Accumulators side by side: one array per scalar. Code may read and write whole groups of lanes beyond the
+/// last column.
 class StateColumns {
  public:
   StateColumns(const StateShape& shape, std::int64_t most);
@@ -56,12 +59,12 @@ class StateColumns {
     return static_cast<std::byte*>(arrays_[scalar]) +
            static_cast<std::size_t>(column) * shape_->bytesOf(scalar);
   }
-  /// Takes `count` columns from `first` on from those of another one from `from` on.
+  /// Copies `count` columns of `other` from number `from` on to number `first` on.
   void assign(std::int64_t first, const StateColumns& other, std::int64_t from, std::int64_t count);
   /// Copies `count` columns, a power of 2, in bit-reversed order.
   void assignReversed(const StateColumns& other, std::int64_t count);
 
-  /// A column's scalars one behind the other: StateShape::bytes().
+  /// The scalars of a column one after the other, StateShape::bytes() in all.
   void pack(std::int64_t column, std::byte* bytes) const;
   void unpack(std::int64_t column, const std::byte* bytes);
   /// Unpacks `count` consecutive columns, a power of 2, in bit-reversed order.
@@ -73,20 +76,21 @@ class StateColumns {
   std::unique_ptr<std::byte[]> bytes_;
 };
 
-/// Combines columns by a reduction's object code, of which no column beyond the last changes.
+/// Combines columns with a reduction's object code. Columns beyond the last do not change.
 class ColumnCombiner {
  public:
   ColumnCombiner(const StateShape& shape, native::CombineFunction* function, std::int64_t lanes,
                  const native::Frame* frame);
 
-  /// Folds `count` columns of `later` from `first` on, which come later, into the first columns of `state`, which may be the same.
+  /// Folds `count` columns of `later` from number `first` on into the first columns of `state`. Both may be
+  /// the same.
   void combine(StateColumns& state, const StateColumns& later, std::int64_t first, std::int64_t count);
-  /// Folds `count` columns into the first `left` of them: each half into the other. `left` is 1, or `count` is a power of 2
-  /// times as many.
+  /// Folds `count` columns into the first `left` columns, each time the second half into the first. `left` is
+  /// 1, or `count` is `left` times a power of 2.
   void gather(StateColumns& state, std::int64_t count, std::int64_t left = 1);
 
  private:
-  /// Columns beyond the last change, up to a whole group of lanes.
+  /// May change columns beyond the last, up to a whole group of lanes.
   void call(StateColumns& state, const StateColumns& later, std::int64_t first, std::int64_t count);
 
   native::CombineFunction* function_;
@@ -97,26 +101,27 @@ class ColumnCombiner {
   const StateShape& shape_;
 };
 
-/// Results of leaves, each with how many it is made of; two of equal size become one. So a sum of n elements has an error of some log n
-/// roundings, not n.
+/// Combines the results of leaves as a binary tree: two results of equally many leaves become one. The error
+/// of a sum of n elements then grows with log n instead of n.
 class StateRuns {
  public:
-  /// Of `most` columns side by side at most.
+  /// Results have at most `most` columns.
   StateRuns(const StateShape& shape, ColumnCombiner& combiner, std::int64_t most)
       : shape_(shape), combiner_(combiner), most_(most), columns_(most) {}
 
-  /// Only the first of the columns count from here on.
+  /// Uses only the first `count` columns from here on.
   void useColumns(std::int64_t count) { columns_ = count; }
   bool isEmpty() const { return leaves_.empty(); }
-  /// Where the next leaf is to be stored,
+  /// Where the caller stores the next result before add().
   StateColumns& next();
-  /// and that it is there; or `leaves` of them, a power of 2 up to mostTogether(), combined as if added one by one.
+  /// Adds the result in next(): one leaf, or `leaves` leaves combined as if added one by one, a power of 2 up
+  /// to mostTogether().
   void add(std::int64_t leaves = 1);
-  /// How many leaves are combined with each other before any other.
+  /// The most leaves that may be combined with each other before they are added.
   std::int64_t mostTogether() const {
     return leaves_.empty() ? std::numeric_limits<std::int64_t>::max() : leaves_.back();
   }
-  /// Of all that were added, in order; there is one at least.
+  /// Combines all results in order, and starts anew. There must be at least one.
   StateColumns& take();
 
  private:

@@ -30,12 +30,12 @@ void LeafFolder::moveToRow(const native::Extents& first) {
 
 void LeafFolder::fold(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
                       Start start, std::int64_t step) {
-  const bool areApart = program_.layout.hasGathers() && step != 1;  // neighbours of the code's lanes are not
+  const bool areApart = program_.layout.hasGathers() && step != 1;  // gathers need adjacent lanes
   if (program_.layout.goesByElement() || areApart) {
     foldOneByOne(state, x, columns, rounds, start, step);
     return;
   }
-  // the ragged end of a row is laid out; what comes before it need not be
+  // only the incomplete group of lanes at the end of a row needs to be laid out
   const std::int64_t whole = columns & -program_.fold.lanes;
   if (rounds != 1 || whole == 0 || whole == columns) {
     call(state.arrays(), x, {columns, rounds, 1}, start, step);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Folds neighbours in a row into accumulators: one call of a fold's object code, or several where that cannot take them in one.
+// Folds neighbours in a row into accumulators with one call of a fold's object code, or with several if it
+// cannot take them in one.
 #pragma once
 
 #include <cstdint>
@@ -10,39 +11,40 @@
 
 namespace sk {
 
-/// How columns begin.
+/// Whether a fold starts its columns anew or continues them.
 enum class Start : std::uint8_t { New, Continued };
 
-/// For one thread.
+/// Each thread has its own.
 class LeafFolder {
  public:
   explicit LeafFolder(const FoldProgram& program);
 
-  /// From here on, elements are in the row of this one.
+  /// Elements are in the row of this one from here on.
   void moveToRow(const native::Extents& first);
-  /// How many neighbours are folded as if they were a row of their own.
+  /// The most neighbours that are folded as one row; longer rows are divided.
   std::int64_t longest() const { return longest_; }
-  /// Whether elements that are no neighbours are folded several together.
+  /// True if elements that are not neighbours are folded several at a time.
   bool foldsApart() const { return program_.fold.lanes > 1 && !goesOneByOne(); }
 
-  /// Whether one call can fold several consecutive leaves of `columns` columns.
+  /// True if one call can fold several consecutive leaves of `columns` columns.
   bool foldsLeavesTogether(std::int64_t columns) const {
     return program_.layout.isDirect() && !goesOneByOne() && columns % program_.fold.lanes == 0;
   }
-  /// Folds `leaves` of them from x on, a power of 2. Each starts; `state` has its columns where FoldFunction says.
+  /// Folds `leaves` leaves from x on, a power of 2. All columns start anew; FoldFunction says where they are
+  /// in `state`.
   void foldLeaves(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
                   std::int64_t leaves);
 
-  /// Folds the elements at x, x + step ... into the columns of `state`: `rounds` of them into each, every `columns`-th. Columns
-  /// beyond the last change.
+  /// Folds the elements at x, x + step ... into the columns of `state`: `rounds` elements into each column,
+  /// every `columns`-th. Changes columns beyond the last.
   void fold(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds, Start start,
             std::int64_t step = 1);
-  /// Folds one element into each of `count` columns from `first` on, and changes no other column.
+  /// Folds one element into each of `count` columns from number `first` on; changes no other column.
   void foldInto(StateColumns& state, std::int64_t first, std::int64_t x, std::int64_t count, Start start);
 
  private:
   bool goesOneByOne() const { return program_.layout.goesByElement() || program_.layout.hasGathers(); }
-  /// The numbers of a call of the object code.
+  /// How a call of the object code divides its elements.
   struct Division {
     std::int64_t columns, rounds, leaves;
   };

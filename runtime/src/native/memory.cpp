@@ -18,14 +18,15 @@ constexpr std::size_t cacheLine = 64;
 constexpr std::size_t smallPage = std::size_t{1} << 12;
 constexpr std::size_t largePage = std::size_t{1} << 21;
 
-/// Where in a page the next large array of this thread begins. Of sixteen arrays, each is 1 KiB or more behind all before it: what is
-/// stored to one does not look like what a loop is about to load from another.
+/// The offset in a page of the next large array of this thread. Each of sixteen arrays begins 1 KiB or more
+/// behind all before it in a page, so that a store to one is not taken for a dependency of a load from
+/// another.
 std::size_t nextPlace() {
   thread_local std::size_t number = 0;
   return number++ * 21 * cacheLine % smallPage;
 }
 
-/// `asked`: what the caller was asked for, without what goes before it.
+/// `asked` is the size for the error message: what the caller was asked for, without the offset in the page.
 std::byte* aligned(std::size_t alignment, std::size_t bytes, std::size_t asked) {
   void* memory = nullptr;
   if (posix_memalign(&memory, alignment, bytes) != 0) throw NoMemory(asked);
@@ -44,7 +45,7 @@ ArrayMemory allocated(std::size_t bytes) {
   if (whole < bytes) throw NoMemory(bytes);
   std::byte* const memory = aligned(largePage, whole, bytes);
 #if defined(__linux__)
-  // The rest has small pages, and so has all of it where the system has no others.
+  // The rest has small pages, and so has everything if the system has no huge ones.
   madvise(memory, whole / largePage * largePage, MADV_HUGEPAGE);
 #endif
   return {memory + place, Freeing{place}};

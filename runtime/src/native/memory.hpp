@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Memory for the arrays of native streams, such that loops through several of them are fast. What is longer than a cache line begins
-// where one does. Large arrays ask for large pages, as looking up small ones takes a good part of a loop's time, and begin at
-// different places in them: processors take a load for one that waits for a store where the two differ in their pages alone, and
-// keep equal places of all pages in the same few lines of a cache.
+// Memory for the arrays of native streams, so that loops through several of them are fast. Arrays of a cache
+// line or more are aligned to one. Large arrays use huge pages, because looking up small ones takes a good
+// part of a loop's time. They begin at different offsets in a page: processors take a load to depend on an
+// earlier store if their addresses differ only in the page (4K aliasing), and keep equal offsets of all pages
+// in the same few lines of a cache.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +12,14 @@
 
 namespace sk {
 
-/// Frees what begins some bytes before.
+/// Frees memory that begins `before` bytes before the pointer.
 struct Freeing {
   std::size_t before = 0;
   void operator()(std::byte* memory) const;
 };
 using ArrayMemory = std::unique_ptr<std::byte[], Freeing>;
 
-/// Uninitialised. Throws NoMemory (support/checked_size.hpp).
+/// Returns uninitialised memory. Throws NoMemory (support/checked_size.hpp).
 ArrayMemory allocated(std::size_t bytes);
 
 }  // namespace sk

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: memory for more than a few bytes begins where a cache line does, large memory at another place in its page each time;
-// all of it can be written; what no machine has throws.
+// Promises: memory of a cache line or more is aligned to one; large memory begins at another offset in its
+// page each time; all of it can be written; impossible sizes throw.
 #include "native/memory.hpp"
 
 #include <cstddef>

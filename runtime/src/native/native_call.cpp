@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Kernels and reductions on a native device: arguments become the operands of native code. A stream that is
-// read and written is read as it was, unless each element reads only itself: where all of it is written, it takes other arrays for
-// that, which become its own afterwards; else what reads it gets a copy.
+// Kernels and reductions on a native device: arguments become the operands of native code. A stream that a
+// call reads and writes is read as it was before, unless each element reads only itself. If the call writes
+// all of the stream, the results go to spare arrays, which then become the stream's own; otherwise, readers
+// get a copy.
 #include <algorithm>
 #include <functional>
 #include <list>
@@ -35,7 +36,7 @@ using program::Kernel;
 using program::Parameter;
 using program::Role;
 
-/// x fastest; missing dimensions have extent 1.
+/// Extents with x first; missing dimensions have extent 1.
 Extents fastestFirst(const Shape& shape) {
   Extents extents{1, 1, 1, 1};
   for (int d = 0; d < shape.rank(); ++d) {
@@ -44,7 +45,7 @@ Extents fastestFirst(const Shape& shape) {
   return extents;
 }
 
-/// How the index in an element input follows from that in the domain.
+/// Sets how the index in an element input follows from that in the domain.
 void fit(Operand& operand, Fit way, const Extents& domain) {
   for (std::size_t d = 0; d < domain.size(); ++d) {
     const std::int64_t extent = operand.extent[d];
@@ -68,7 +69,7 @@ bool isSameRegion(const StreamRegion& a, const StreamRegion& b) {
   return same;
 }
 
-/// The operands of one call, with what they point to.
+/// The operands of one call, and what they point to.
 class Operands {
  public:
   Operands(RealType real, const Kernel& kernel, std::span<const Argument> arguments, const Shape& domain,
@@ -86,7 +87,8 @@ class Operands {
   }
 
   std::span<Operand> list() { return list_; }
-  /// Of a kernel; of a reduction, whose domain is divided into blocks.
+  /// The call of a kernel, or of a reduction whose domain is divided into such blocks, after coalescing
+  /// dimensions.
   native::Call call() {
     Extents whole = fastestFirst(domain_);
     return call(whole);
@@ -98,19 +100,20 @@ class Operands {
   }
   native::Call callAsItIs() const { return {list_, fastestFirst(domain_), tables_}; }
 
-  /// Memory for a value of this element.
+  /// Allocates `count` values of this element.
   Components& value(const program::Element& element, std::int64_t count = 1) {
     return kept_.emplace_back(element, real_, count);
   }
 
-  /// From here on, the streams that are written where they lie are broken until settle().
+  /// Marks the streams that are written in place as broken until settle().
   void begin() noexcept {
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (isWrittenInPlace(i)) nativeStream(arguments_[i].region).isBroken = true;
     }
   }
 
-  /// Streams get what was pushed to them, and what was written to a copy in another real type. What may throw comes first.
+  /// Gives streams what was pushed to them and what was written to a copy or to spare arrays. What may throw
+  /// comes first.
   void settle() {
     struct Given {
       NativeStream& stream;
@@ -139,7 +142,7 @@ class Operands {
     }
   }
 
-  /// The arrays of a stream that is written, or of the copy in the real type of the call that stands for it.
+  /// The arrays of a stream to write to; if the call computes in another real type, those of a copy.
   std::span<void* const> arraysToWrite(NativeStream& stream) {
     if (stream.components.real() == real_) return stream.components.arrays();
     for (const auto& [written, copy] : written_) {
@@ -150,7 +153,7 @@ class Operands {
   }
 
  private:
-  /// Neither to spare arrays nor to a copy.
+  /// True if an argument is written neither to spare arrays nor to a copy.
   bool isWrittenInPlace(std::size_t i) const {
     const StreamRegion& region = arguments_[i].region;
     const Role role = kernel_.parameters[i].role;
@@ -204,7 +207,7 @@ class Operands {
     return {.components = components.arrays()};
   }
 
-  /// Whether the code has a double for each float that the stream holds, and for nothing else.
+  /// True if the code has a double for each float that the stream holds, and for nothing else.
   bool areWidened(const NativeStream& stream) const {
     return real_ == RealType::Double && stream.components.real() == RealType::Float &&
            std::ranges::none_of(stream.element->fields, [](const program::Field& field) {
@@ -227,7 +230,7 @@ class Operands {
     return false;
   }
 
-  /// Whether an output takes all of a stream that is read elsewhere, too: it is written to the spare arrays.
+  /// True if an output covers a whole stream that is also read: it is written to the spare arrays.
   bool isReplaced(const StreamRegion& region) const {
     bool isWhole = false, isRead = false;
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
@@ -245,7 +248,7 @@ class Operands {
            region.shape == region.stream->shape && nativeStream(region).components.real() == real_;
   }
 
-  /// A stream that several parameters read is copied once.
+  /// Copies a stream; only once if several parameters read it.
   const Components& copyOf(NativeStream& stream) {
     for (const auto& [source, copy] : copies_) {
       if (source == &stream) return *copy;
@@ -270,7 +273,7 @@ class Operands {
   std::vector<Operand> list_;
   std::list<Components> kept_;
   std::list<native::Pushed> pushed_;
-  std::vector<std::pair<const NativeStream*, const Components*>> copies_;  ///< that are read
+  std::vector<std::pair<const NativeStream*, const Components*>> copies_;  ///< for reading
   std::list<std::pair<NativeStream*, Components>> written_;
 };
 
@@ -291,7 +294,7 @@ CodeChoice codeChoice(RealType real, const CallOptions& options) {
   return {.real = real, .mayContract = options.contraction == Contraction::Fast};
 }
 
-/// A reduction's call, but for its results.
+/// The call of a reduction, without its results.
 class Folding {
  public:
   Operands fold;
@@ -314,7 +317,8 @@ class Folding {
     const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block};
     foldCode(reduction_, call, choice_);
   }
-  /// Stores the identities to all blocks, of which there are `counts` in each dimension. `results`: the accumulators.
+  /// Stores the identities to all blocks, of which there are `counts` in each dimension; `results` are the
+  /// indices of the accumulators.
   void storeIdentities(std::span<const std::size_t> results, const Extents& counts) {
     const std::vector<Operand> wholes(fold.list().begin(), fold.list().end());
     const std::int64_t blocks =
@@ -339,7 +343,8 @@ class Folding {
   std::vector<Operand> combine_;
 };
 
-/// Results may have fewer dimensions than blocks: those of extent 1 are left out. The others keep their order.
+/// The operand of a result, which may lack dimensions in which there is one block. The others keep their
+/// order.
 Operand resultOperand(Operands& fold, const StreamRegion& region, const Extents& blocks) {
   Operand operand = operandOf(region);
   const Operand own = operand;
@@ -356,7 +361,8 @@ Operand resultOperand(Operands& fold, const StreamRegion& region, const Extents&
 
 }  // namespace
 
-/// Pairs of floats are doubles here, where these are cheaper. A reference computes in its own precision whatever is asked.
+/// Where other devices compute with pairs of floats, this one uses doubles, which are cheaper here. A
+/// reference always computes in its own precision.
 RealType NativeDevice::realOf(const CallOptions& options) const {
   return isWide(options) && real_ == RealType::Float ? RealType::Double : real_;
 }
@@ -425,7 +431,7 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
   }
 }
 
-// Digits, to which sums are folded that have no term, are those of floats.
+// A sum without a term is folded to digits, which hold only floats.
 bool NativeDevice::sumsExactly(const program::Reduction& reduction) const {
   return !isReference() || std::ranges::all_of(reduction.exact, [&](const program::ExactSum& sum) {
     const Kernel* const term = sum.term.kernel;
@@ -446,7 +452,7 @@ std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& w
     for (std::size_t i = 0; i < arguments.size(); ++i) {
       if (reduction.fold.parameters[i].role != Role::Accumulator) all.push_back(arguments[i]);
     }
-    all.resize(kernel.parameters.size());  // its outputs are looked at and never stored
+    all.resize(kernel.parameters.size());  // its outputs are read, but never stored
   }
   const RealType real = realOf(whole.options);
   Operands operands(real, kernel, all, whole.domain, tablesOf(kernel, real, whole.options));

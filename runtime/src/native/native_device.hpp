@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// A device without GL: streams in host memory, kernels as the C++ that skc wrote into the application. With
-// doubles for floats, or __float128, it is the reference that other devices are measured against.
+// A device without GL: streams are in host memory, and kernels are the object code that skc compiled for the
+// application. With double or __float128 in place of float, it is the reference that other devices are
+// measured against.
 #pragma once
 
 #include "device/device_state.hpp"
@@ -15,7 +16,7 @@ class NativeDevice final : public DeviceState {
   ~NativeDevice() override;
 
   RealType real() const { return real_; }
-  /// For the trace: streams have so many bytes more, or less.
+  /// Adds to the bytes of streams in the trace.
   void countBytes(std::int64_t change) noexcept {
     bytes_ += change;
     if (trace) trace->countBytes(bytes_, 0);
@@ -47,13 +48,13 @@ class NativeDevice final : public DeviceState {
 
  private:
   RealType realOf(const CallOptions& options) const;
-  /// Throws sk::Error where a call asks for GLSL programs.
+  /// Throws sk::Error if a call asks for GLSL programs.
   void checkTarget(const program::Kernel& kernel, Target asked) const;
-  /// Whether a call takes the form that rounds to halves, which a reference does not.
+  /// True if a call takes the variant that rounds to halves. A reference does not.
   bool takesHalf(const CallOptions& options) const {
     return options.precision == Precision::Half && !isReference();
   }
-  /// Those that a call looks its functions up in; none where it computes them.
+  /// The tables of a call's tabulated functions; empty if it computes them.
   std::vector<native::Table> tablesOf(const program::Kernel& kernel, RealType real,
                                       const CallOptions& options);
 
@@ -61,7 +62,7 @@ class NativeDevice final : public DeviceState {
   std::int64_t bytes_ = 0;  ///< of streams
   std::string name_;
   std::string none_;
-  Arithmetic arithmetic_;   ///< IEEE 754's, which compilers keep to
+  Arithmetic arithmetic_;  ///< IEEE 754, as compilers guarantee
 };
 
 }  // namespace sk

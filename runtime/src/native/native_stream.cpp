@@ -15,7 +15,7 @@ namespace sk {
 
 namespace {
 
-/// visit(first element in the stream, number in the region, length) for every run of neighbours.
+/// Calls visit(first element in the stream, number in the region, length) for every run of neighbours.
 template <class Visit>
 void forEachRun(const StreamRegion& region, Visit&& visit) {
   const native::Operand place = operandOf(region);
@@ -120,7 +120,7 @@ bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   const NativeStream& source = nativeStream(from);
   std::vector<std::int64_t> starts;
   forEachRun(from, [&](std::int64_t first, std::int64_t, std::int64_t) { starts.push_back(first); });
-  Components before;  // elements that overlap are read as they were
+  Components before;  // overlapping elements are read with their old values
   if (&source == this) before = components.clone(shape.size(), components.real());
   isBroken = false;  // from here on nothing throws
   auto start = starts.begin();
@@ -141,7 +141,7 @@ void NativeStream::writeScalars(const StreamRegion& region, std::size_t offset, 
   });
 }
 
-// A reference is what storage is measured against, and rounds nothing.
+// A reference rounds nothing, because storage is measured against it.
 void NativeStream::keepStorage() {
   if (storage == Storage::Half && components.real() == RealType::Float) {
     components.roundToHalf(shape.size());

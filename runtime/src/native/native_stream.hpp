@@ -15,7 +15,7 @@ class NativeDevice;
 
 class NativeStream final : public StreamState {
  public:
-  /// Throws sk::Error where there is no room.
+  /// Throws sk::Error if there is not enough memory.
   NativeStream(NativeDevice& device, const program::Element& element, const Shape& shape, Storage storage);
 
   ~NativeStream() override;
@@ -27,23 +27,25 @@ class NativeStream final : public StreamState {
   void writeReals(const StreamRegion& region, const double* values) override;
   void fill(const StreamRegion& region, const std::byte* value) override;
   bool copyFrom(const StreamRegion& from, const StreamRegion& to) override;
-  /// The scalar that is `offset` bytes from the start of each element in host memory: values as the arrays hold them.
+  /// Writes the scalar that is `offset` bytes from the start of each element in host memory; `values` have
+  /// the type of the arrays.
   void writeScalars(const StreamRegion& region, std::size_t offset, const std::byte* values);
   StreamTexture texture(int plane) override;
   void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
 
-  /// What a kernel has pushed, which has floats as `real`, as this stream holds it. Throws sk::Error where it is too much.
+  /// Converts what a kernel has pushed, with floats in type `real`, to the types of this stream. Throws
+  /// sk::Error if it is too much.
   Components heldOf(native::Pushed pushed, RealType real) const;
-  /// Takes so many elements for its own.
+  /// Takes over `count` elements that were pushed, in place of its own; its shape becomes {count}.
   void become(Components&& pushed, std::int64_t count) noexcept;
 
-  /// After kernels have written to it: floats that are held as halves are rounded to these.
+  /// Rounds floats to half precision if that is the stream's storage. Must follow every write.
   void keepStorage();
 
-  /// Arrays for what a call writes while it reads the stream's own, uninitialised when they are asked for first. They stay for the
-  /// calls to come.
+  /// Arrays for a call to write to while it reads the stream's own. They are uninitialised at first, and kept
+  /// for later calls.
   Components& spare();
-  /// The spare arrays become the stream's own, and those the spare ones.
+  /// Exchanges the stream's own arrays for the spare ones.
   void exchange() { std::swap(components, spare_); }
   /// Frees all arrays.
   void empty() {
@@ -58,7 +60,7 @@ class NativeStream final : public StreamState {
   void countBytes() noexcept;
 
   Components spare_;
-  std::int64_t bytes_ = 0;  ///< as the trace knows them
+  std::int64_t bytes_ = 0;  ///< as counted for the trace
 };
 
 /// The stream of an argument of a call on a native device.
@@ -66,7 +68,7 @@ inline NativeStream& nativeStream(const StreamRegion& region) {
   return static_cast<NativeStream&>(*region.stream);
 }
 
-/// An operand's extent, stride and first element, from those of a region. Missing dimensions have extent 1.
+/// An operand with the extent, stride and first element of a region. Missing dimensions have extent 1.
 native::Operand operandOf(const StreamRegion& region);
 
 }  // namespace sk

@@ -9,7 +9,7 @@ namespace sk {
 
 namespace {
 
-/// Of a region, in the arrays that hold it.
+/// The bytes of a region in the arrays that hold it.
 std::int64_t bytesOf(const StreamRegion& region) {
   const auto& stream = static_cast<const NativeStream&>(*region.stream);
   std::int64_t bytes = 0;
@@ -40,7 +40,7 @@ void NativePass::end() noexcept {
     trace_->hostPass(record_, begin_, end);
     trace_->devicePass(record_, begin_, end, "wall clock");
   } catch (const std::bad_alloc&) {
-    return;  // a pass less in the trace
+    return;  // the trace lacks this pass
   }
 }
 

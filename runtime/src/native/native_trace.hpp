@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The loops of native code in a trace. They run on the calling thread and those that it starts, so that the host's clock
-// times them.
+// Records the loops of native code in a trace. They run on the calling thread and on threads that it starts,
+// so that the host's clock times them.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace sk {
 
-/// One loop nest for as long as this lives, traced and counted; nothing where the device does neither.
+/// Traces and counts one loop nest for as long as this object lives; does nothing if the device does neither.
 class NativePass {
  public:
   NativePass(DeviceState& device, const program::Kernel& kernel, std::string_view step,

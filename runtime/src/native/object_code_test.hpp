@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Kernels for tests whose object code is written by hand: functions that keep to sk/native/code.hpp, and touch whole groups of
-// lanes as it allows.
+// Kernels for tests with hand-written object code: functions that comply with sk/native/code.hpp and, as it
+// permits, access whole groups of lanes.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ inline constexpr program::Element floatElement{"float", "float", 4, floatField};
 inline constexpr program::Field intField[] = {{"", program::Scalar::Int, 1, 0}};
 inline constexpr program::Element intElement{"int", "int", 4, intField};
 
-/// Elements that the code computes where it may compute whole groups.
+/// `count`, rounded up to whole groups of lanes.
 inline std::int64_t inGroups(std::int64_t count) { return roundUp(count, testLanes); }
 
 template <class T>
@@ -45,7 +45,7 @@ native::Entry entry(native::EntryKind kind, Function* function, native::Real rea
           .rows = 1};
 }
 
-/// A kernel with its code. It must stay where it is.
+/// A kernel and its code. Its address must not change.
 struct TestKernel {
   std::vector<program::Parameter> parameters;
   std::vector<native::Slot> slots;
@@ -81,10 +81,10 @@ struct TestKernel {
   }
 };
 
-/// The operands of a call, and their pointers.
+/// The operands of a call, and the pointers in them.
 class TestOperands {
  public:
-  /// All of an array with these extents.
+  /// Adds a whole array with these extents.
   template <class T>
   native::Operand& add(std::vector<T>& array, const native::Extents& extent) {
     native::Operand& operand = list_.emplace_back();
@@ -93,7 +93,7 @@ class TestOperands {
     operand.stride = {1, extent[0], extent[0] * extent[1], extent[0] * extent[1] * extent[2]};
     return operand;
   }
-  /// What is left out.
+  /// Adds an omitted stream.
   native::Operand& addNone() { return list_.emplace_back(); }
   native::Call call(const native::Extents& domain) const { return {list_, domain, {}}; }
 
@@ -102,7 +102,7 @@ class TestOperands {
   std::vector<native::Operand> list_;
 };
 
-/// Whole numbers, whose sums and products of a few are exact in floats.
+/// Whole numbers; sums and products of a few of them are exact in floats.
 inline std::vector<float> someFloats(std::int64_t count, int seed = 1) {
   std::vector<float> values(static_cast<std::size_t>(count));
   std::uint32_t state = static_cast<std::uint32_t>(seed) * 2654435761U;

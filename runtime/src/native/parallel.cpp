@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Loops on OpenMP's threads, which the application's own loops share. It is the only file that knows of them.
+// Parallel loops on OpenMP's threads, which the application's own loops share. Only this file uses OpenMP.
 #include "sk/native/parallel.hpp"
 
 #include <algorithm>
@@ -23,14 +23,15 @@ namespace sk::native {
 
 namespace {
 
-/// Whether this thread has started others here since they last were to rest: those of the application are its own business.
+/// True if this thread has started others here since the last restThreads(). Threads that the application
+/// started are its own business.
 thread_local bool haveThreads = false;
 
-/// Elements that a thread must have to do: those that take as long as waking it, of the simplest kernels.
+/// The least work for a thread: as many elements of the simplest kernels as take the time of waking it.
 constexpr std::int64_t worthAThread = 1 << 13;
 
-// OpenMP's library is built without ThreadSanitizer, which must be told that threads begin after what is before their loop, and that
-// they are done before what is behind it.
+// OpenMP's library is built without ThreadSanitizer. These calls tell it that threads start after what
+// precedes their loop, and end before what follows it.
 #if defined(__SANITIZE_THREAD__)
 #define SK_UNSEEN_BY_TSAN __attribute__((no_sanitize_thread))
 void publish(void* to) { __tsan_release(to); }
@@ -41,7 +42,7 @@ void publish(void*) {}
 void observe(void*) {}
 #endif
 
-/// No exception may leave a thread: the last one is kept.
+/// Keeps the last exception, because none may leave a thread.
 class Guarded {
  public:
   Guarded(void (*work)(void*, Range), void* context) : work_(work), context_(context) { publish(&begun_); }
@@ -64,17 +65,18 @@ class Guarded {
  private:
   void (*work_)(void*, Range);
   void* context_;
-  std::mutex mutex_;  ///< of what is thrown
+  std::mutex mutex_;  ///< protects thrown_
   std::exception_ptr thrown_;
-  char begun_ = 0, done_ = 0;  ///< whose addresses stand for the two moments
+  char begun_ = 0, done_ = 0;  ///< their addresses represent start and end
 };
 
-/// Part `number` of `parts` that are as equal as can be.
+/// Part `number` of `parts` almost equal parts.
 Range partOf(std::int64_t count, std::int64_t number, std::int64_t parts) {
   return {count * number / parts, count * (number + 1) / parts};
 }
 
-/// ThreadSanitizer does not look at the loops themselves either: the compiler hands variables to threads in memory.
+/// ThreadSanitizer does not check these loops either, because the compiler passes variables to threads in
+/// memory.
 SK_UNSEEN_BY_TSAN void runOnThreads(std::int64_t count, int threads, Deal deal, Guarded& guarded) {
   if (deal == Deal::Evenly) {
 #pragma omp parallel num_threads(threads)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What object code pushes to variable outputs, put together: pushes of earlier elements come first in the result, however many
-// threads there are.
+// Joins what object code pushes to variable outputs. The results are in the order of elements, whatever the
+// number of threads.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ namespace sk {
 
 class PushParts {
  public:
-  /// Any thread may add what the elements from number `order` on have pushed.
+  /// Adds what a run of elements has pushed; parts are joined in ascending `order`. Thread-safe.
   void add(std::int64_t order, std::span<RecordFrame::Output> pushed);
-  /// Gives it to the operands of variable outputs.
+  /// Joins all parts and gives them to the operands of variable outputs.
   void store(std::span<const native::Operand> operands);
 
  private:

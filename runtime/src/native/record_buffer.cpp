@@ -47,7 +47,7 @@ void RecordBuffer::reserve(std::int64_t count) {
   const std::int64_t capacity = std::max({firstCapacity, appendBuffer_.capacity * 2, count});
   std::vector<ArrayMemory> larger;
   for (const std::size_t bytes : bytes_) {
-    // whole groups of lanes are stored beyond the last record
+    // code stores whole groups of lanes beyond the last record
     larger.push_back(allocated(bytesOf(capacity + native::mostLanes, bytes)));
   }
   for (std::size_t c = 0; c < bytes_.size(); ++c) {
@@ -66,7 +66,7 @@ void RecordBuffer::setPointers() {
   if (hasElement_) appendBuffer_.elements = reinterpret_cast<std::uint32_t*>(pointers_.back());
 }
 
-/// A counting sort, whose keys are the numbers of at most a chunk's elements.
+/// A counting sort by element number; there are at most as many numbers as elements in a chunk.
 void RecordBuffer::sort() {
   const std::int64_t first = sorted_;
   sorted_ = appendBuffer_.count;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Memory for the records that object code appends for variable and scatter outputs (sk/native/code.hpp), and their order. Each
-// thread has buffers of its own.
+// Memory for the records that object code appends for variable and scatter outputs (sk/native/code.hpp), and
+// their sorting. Each thread has its own buffers.
 #pragma once
 
 #include <cstddef>
@@ -18,11 +18,11 @@
 
 namespace sk {
 
-/// What a record of one output consists of.
+/// The format of one output's records.
 struct RecordShape {
-  std::vector<std::size_t> bytes;  ///< of each component
-  bool hasTarget;  ///< it is of a scatter output
-  bool hasElement;
+  std::vector<std::size_t> bytes;  ///< size of each component
+  bool hasTarget;  ///< it is a scatter output
+  bool hasElement;  ///< records carry element numbers
 
   RecordShape(const program::Parameter& parameter, RealType real, bool isReordered);
 };
@@ -36,18 +36,18 @@ class RecordBuffer {
   native::AppendBuffer* appendBuffer() { return &appendBuffer_; }
   const native::AppendBuffer& records() const { return appendBuffer_; }
   std::int64_t count() const { return appendBuffer_.count; }
-  /// The bytes of each array, and where it is: the components, then the targets.
+  /// The size of a value in each array, and the address of the array: the components, then the targets.
   std::span<const std::size_t> bytes() const { return {bytes_.data(), sortedColumns_}; }
   std::byte* array(std::size_t column) const { return pointers_[column]; }
 
   /// Makes room for `count` records in all. Throws NoMemory (support/checked_size.hpp).
   void reserve(std::int64_t count);
-  /// Adds records whose arrays the caller writes; there is room for them.
+  /// Adds records whose arrays the caller then writes; there must be room for them.
   void addUnwritten(std::int64_t count) { appendBuffer_.count += count; }
   void clear() { appendBuffer_.count = sorted_ = 0; }
 
-  /// Brings the records since the last call, which are of one chunk, into the order of its elements. Those of one element stay
-  /// in their order. Does nothing where records have no element.
+  /// Sorts the records since the last call, all of one chunk, by element; stable. Does nothing if records
+  /// carry no element numbers.
   void sort();
 
  private:
@@ -59,24 +59,24 @@ class RecordBuffer {
 
   AppendBuffer appendBuffer_;
   std::vector<std::size_t> bytes_;
-  std::size_t sortedColumns_;  ///< all but the elements
+  std::size_t sortedColumns_;  ///< all arrays except element numbers
   bool hasTarget_;
   bool hasElement_;
   std::vector<ArrayMemory> arrays_;
   std::vector<std::byte*> pointers_;
-  std::int64_t sorted_ = 0;  ///< records that are in order
+  std::int64_t sorted_ = 0;  ///< number of records that are sorted
   std::vector<std::size_t> starts_, positions_;
   std::vector<std::byte> copy_;
 };
 
-/// What code records of a call.
+/// What code records during a call.
 struct RecordOptions {
   RealType real;
-  bool isReordered;  ///< records have elements
-  bool scatters;  ///< scatter outputs are recorded, too, and not stored to at once
+  bool isReordered;  ///< records carry element numbers
+  bool scatters;  ///< also records scatter outputs, which code otherwise stores to immediately
 };
 
-/// The arguments of a call with one thread's buffers as append buffers.
+/// The arguments of a call, with the buffers of one thread as append buffers.
 class RecordFrame {
  public:
   RecordFrame(const program::Kernel& kernel, const CodeFrame& frame, const RecordOptions& options);
@@ -88,7 +88,8 @@ class RecordFrame {
     std::size_t parameter;
     std::unique_ptr<RecordBuffer> buffer;
   };
-  /// The buffers of variable outputs, and those of scatter outputs that are recorded, each in the order of parameters.
+  /// The buffers of variable outputs, and those of scatter outputs that are recorded, in the order of
+  /// parameters.
   std::span<Output> pushed() { return pushed_; }
   std::span<Output> scattered() { return scattered_; }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// What other users of the processor may ask of the threads that native loops run on.
+// Frees the processor from the idle threads of native loops.
 #pragma once
 
 namespace sk::native {
 
-/// Threads that wait for more work end. They would watch for it, as OpenMP's do for some milliseconds, in which a renderer that
-/// is software needs the cores; the next loop starts others.
+/// Ends threads that wait for more work; the next loop starts new ones. OpenMP's threads spin for some
+/// milliseconds, in which a software renderer needs the cores.
 void restThreads();
 
 }  // namespace sk::native

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How the elements of a domain are dealt out to threads: rows in pieces of neighbours.
+// Divides the elements of a domain among threads: rows in pieces of neighbours.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 
 namespace sk {
 
-/// The rows of a domain in pieces of elements that are neighbours along x.
+/// The rows of a domain, divided into pieces of neighbours along x.
 class RowPieces {
  public:
-  /// Where elements may take very different times, a few are enough for a piece.
+  /// If the times of elements may differ widely, pieces are short.
   RowPieces(const native::Extents& domain, bool areUneven)
       : domain_(domain),
         longest_(areUneven ? 1 << 6 : 1 << 13),
@@ -24,8 +24,8 @@ class RowPieces {
   std::int64_t count() const { return perRow_ * domain_[1] * domain_[2] * domain_[3]; }
   std::int64_t elementsOfOne() const { return std::min(domain_[0], longest_); }
 
-  /// visit(first, count, rows) for the elements of these pieces in order: those that are in one row together, and whole rows below each
-  /// other, at most `mostRows` of them.
+  /// Calls visit(first, count, rows) for the elements of these pieces in order. It joins pieces in one row,
+  /// and also whole rows below each other, at most `mostRows` of them.
   template <class Visit>
   void forEachRun(native::Range pieces, std::int64_t mostRows, Visit&& visit) const {
     native::Extents at = firstOf(pieces.begin);
@@ -57,8 +57,8 @@ class RowPieces {
   std::int64_t perRow_;
 };
 
-/// The rows of a domain in blocks of several, and these in pieces along x. Blocks below each other follow one another: what
-/// their rows read together stays in the cache.
+/// The rows of a domain in blocks of several rows, divided into pieces along x. The order is down the
+/// columns, so that what the rows of successive blocks read stays in the cache.
 class RowBlocks {
  public:
   RowBlocks(const native::Extents& domain, std::int64_t rows)
@@ -70,7 +70,7 @@ class RowBlocks {
   std::int64_t count() const { return perColumn_ * perRow_ * domain_[2] * domain_[3]; }
   std::int64_t elementsOfOne() const { return std::min(domain_[0], width) * rows_; }
 
-  /// visit(first, count, rows) for each of these blocks: `count` elements in each of `rows` rows.
+  /// Calls visit(first, count, rows) for each of these blocks: `count` elements in each of `rows` rows.
   template <class Visit>
   void forEach(native::Range blocks, Visit&& visit) const {
     for (std::int64_t block = blocks.begin; block < blocks.end; ++block) {

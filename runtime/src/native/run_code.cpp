@@ -51,7 +51,8 @@ class CodeRun {
   }
 
  private:
-  /// The entry that computes several rows at once, if the domain has more than one row, and half as many.
+  /// The RunRows entry; null if there is none, or if the domain has one row or less than half of the entry's
+  /// rows.
   static const native::Entry* findRowsEntry(const Kernel& kernel, const native::Call& call,
                                             const CodeChoice& choice) {
     const native::Entry* const found = findEntry(*kernel.code, native::EntryKind::RunRows, choice);
@@ -93,16 +94,19 @@ class CodeRun {
 
   // ---- variable and scatter outputs --------------------------------------------------------------
 
-  /// Several records of an element carry its number where several elements are computed together.
+  /// True if records carry element numbers: an element may have several records, and several elements are
+  /// computed together.
   bool isReordered() const { return kernel_.code->isReordered != 0 && entry_.lanes > 1; }
 
-  /// Logs cost something for each record, which a few threads gain only where there is more to compute.
+  /// True if scatters are logged. Logs cost time per record, so that few threads gain only if elements take
+  /// long to compute.
   bool keepsLogs(std::int64_t threads) const {
     constexpr std::int64_t enoughForAll = 8;
     return has(Role::Scatter) && threads >= (kernel_.code->isLight != 0 ? enoughForAll : 2);
   }
 
-  /// What is scattered by many elements is carried out before the next ones are computed, so that logs stay small.
+  /// Carries out the scatters of a batch of elements before the next batch is computed, so that logs stay
+  /// small.
   void record() const {
     PushParts pushes;
     const std::int64_t threads = native::threadsFor(pieces_.count(), costOfPiece());
@@ -130,7 +134,7 @@ class CodeRun {
     pushes.add(pieces.begin, frame.pushed());
   }
 
-  /// On one thread.
+  /// Computes pieces and carries out their scatters on one thread.
   void scatterPieces(Range pieces, PushParts& pushes) const {
     if (!isReordered()) return pushPieces(pieces, pushes);
     const Scatters scatters(kernel_, frame_, choice_);
@@ -153,9 +157,10 @@ class CodeRun {
     scatters.add(pieces.begin, std::move(log));
   }
 
-  /// Elements whose records are sorted and moved together: these stay in the nearest cache.
+  /// The elements whose records are sorted and moved together, so that these stay in the nearest cache.
   static constexpr std::int64_t elementsOfChunk = 1 << 10;
-  /// Elements of a thread whose records are carried out later. Those of the simplest kernels stay in a cache.
+  /// The elements per thread whose records are carried out later. The logs of the simplest kernels stay in a
+  /// cache.
   static constexpr std::int64_t elementsOfLog = 1 << 15;
 
   const Kernel& kernel_;

@@ -9,7 +9,7 @@
 
 namespace sk {
 
-/// `kernel.code` is not null. Throws sk::Error where this CPU runs none of it.
+/// `kernel.code` must not be null. Throws sk::Error if it has no code that runs on this CPU.
 void runCode(const program::Kernel& kernel, const native::Call& call, const CodeChoice& choice);
 
 }  // namespace sk

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Kernels whose object code is written by hand, against plain loops.
+// Tests kernels with hand-written object code against plain loops.
 #include "native/run_code.hpp"
 
 #include <algorithm>
@@ -278,7 +278,7 @@ TEST_CASE("neighbours outside are what the boundary says, in rows of every lengt
       checkStencil(boundary, 2, {width, 4, 1, 1}, {width, 4, 1, 1});
       checkStencil(boundary, 3, {width, 3, 2, 1}, {width, 3, 2, 1});
     }
-    for (const std::int64_t height : {7, 8, 9, 16, 25}) {  // rows are run several at once
+    for (const std::int64_t height : {7, 8, 9, 16, 25}) {  // several rows are run at once
       checkStencil(boundary, 2, {70, height, 1, 1}, {70, height, 1, 1});
       checkStencil(boundary, 3, {33, height, 3, 1}, {33, height, 3, 1});
     }
@@ -307,7 +307,7 @@ TEST_CASE("a gather that is left out is zeros") {
 
 // ---- pushes ----------------------------------------------------------------------------------------
 
-/// Pushes odd numbers, and those that 5 divides, twice where both hold.
+/// Pushes odd numbers and multiples of 5; numbers that are both, twice.
 void pushSome(const Frame* frame, const Chunk* chunk) {
   native::AppendBuffer* appendBuffer = frame->arguments[1].appendBuffer;
   const auto* x = arrayOf<float>(chunk, 0);
@@ -321,7 +321,7 @@ void pushSome(const Frame* frame, const Chunk* chunk) {
   }
 }
 
-/// Likewise, group by group: first all odd numbers of a group, then those that 5 divides.
+/// Likewise group by group: first all odd numbers of a group, then its multiples of 5.
 void pushInGroups(const Frame* frame, const Chunk* chunk) {
   native::AppendBuffer* appendBuffer = frame->arguments[1].appendBuffer;
   const auto* x = arrayOf<float>(chunk, 0);
@@ -381,7 +381,7 @@ TEST_CASE("pushes of lanes are brought into the order of elements") {
 
 // ---- scatters --------------------------------------------------------------------------------------
 
-/// Multiplies what is there by 3 and adds the value, modulo 2^32: the order matters.
+/// Records a store of each element.
 void recordStores(const Frame* frame, const Chunk* chunk) {
   native::AppendBuffer* appendBuffer = frame->arguments[1].appendBuffer;
   const auto* x = arrayOf<std::int32_t>(chunk, 0);
@@ -392,6 +392,7 @@ void recordStores(const Frame* frame, const Chunk* chunk) {
     reinterpret_cast<std::int32_t*>(appendBuffer->arrays[0])[appendBuffer->count++] = x[i];
   }
 }
+/// Multiplies an element by 3 and adds the value, modulo 2^32: the order matters.
 void multiplyAndAdd(const Frame* frame, const native::AppendBuffer* appendBuffer, std::int64_t parameter) {
   auto* r = static_cast<std::uint32_t*>(frame->arguments[parameter].components[0]);
   for (std::int64_t i = 0; i < appendBuffer->count; ++i) {
@@ -454,7 +455,7 @@ TEST_CASE("the newest entry that the CPU runs is taken, and fused ones only wher
     }
   }
   CHECK(findEntry(f.code, EntryKind::Fold, {}) == nullptr);
-  f.entries.pop_back();  // the fused one of the latest level: an earlier one comes before a plain one
+  f.entries.pop_back();  // the contracted entry for V4: one for an earlier level precedes a plain one
   f.finish();
   const native::Entry* fused = findEntry(f.code, EntryKind::Run, {.mayContract = true}, Level::V4);
   REQUIRE(fused != nullptr);

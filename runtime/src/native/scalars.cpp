@@ -8,7 +8,7 @@ namespace sk {
 
 namespace {
 
-/// visit<Held, Read>() for the types of these sizes.
+/// Calls visit<Held, Read>() with types of these sizes.
 template <class Visit>
 void withTypes(ScalarBytes bytes, Visit&& visit) {
   if (bytes.held != bytes.read) return visit.template operator()<float, double>();

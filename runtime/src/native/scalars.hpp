@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Arrays of scalars whose type is known by its size alone: what brings elements into the scratch memory of object code.
+// Copies scalars of which only the size is known: brings elements into the scratch memory of object code.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@ namespace sk {
 
 inline constexpr std::size_t mostScalarBytes = 16;
 
-/// Scalar components of an element.
+/// The number of scalar components of an element.
 std::size_t scalarsOf(const program::Element& element);
 
-/// visit(number, bytes in an array, type) for each scalar of an element, in order.
+/// Calls visit(number, bytes in an array, type) for each scalar of an element, in order.
 template <class Visit>
 void forEachScalar(const program::Element& element, RealType real, Visit&& visit) {
   std::size_t number = 0;
@@ -26,7 +26,8 @@ void forEachScalar(const program::Element& element, RealType real, Visit&& visit
   }
 }
 
-/// Bytes of a scalar in an array and in the code that reads it, which differ where a float is read as a double.
+/// The size of a scalar in an array, and in the code that reads it. They differ if a float is read as a
+/// double.
 struct ScalarBytes {
   std::uint8_t held;
   std::uint8_t read;
@@ -36,7 +37,7 @@ struct Bytes16 {
   std::uint64_t words[2];
 };
 
-/// visit<T>() for a type of this size.
+/// Calls visit<T>() with a type of this size.
 template <class Visit>
 void withScalar(std::size_t bytes, Visit&& visit) {
   switch (bytes) {
@@ -48,24 +49,25 @@ void withScalar(std::size_t bytes, Visit&& visit) {
   }
 }
 
-/// Where to read: element `index` of an array, and then one each `stride` elements.
+/// What to read: element `index` of an array, then every `stride`-th element.
 struct Steps {
   const std::byte* array;
   std::int64_t index;
   std::int64_t stride;
 };
 
-/// Writes `count` scalars side by side.
+/// Copies `count` scalars to an array without gaps.
 void copyScalars(const Steps& from, ScalarBytes bytes, std::byte* to, std::int64_t count);
 
-/// Likewise, but each of them is written `repeats` times; of the first, `begun` times are left out.
+/// Likewise, but repeats each scalar `repeats` times, and leaves out the first `begun` copies of the first
+/// one.
 void stretchScalars(const Steps& from, ScalarBytes bytes, std::int64_t repeats, std::int64_t begun,
                     std::byte* to, std::int64_t count);
 
-/// Writes the last of `count` scalars once more in each place up to `room`; zeros where there is none.
+/// Fills an array from `count` up to `room` with the last of its `count` scalars; with zeros if it has none.
 void padScalars(std::byte* array, std::size_t bytes, std::int64_t count, std::int64_t room);
 
-/// Writes one value in each of `count` places.
+/// Writes `count` copies of a value.
 void fillScalars(const void* value, std::size_t bytes, std::byte* to, std::int64_t count);
 
 }  // namespace sk

@@ -14,7 +14,7 @@ namespace sk {
 namespace {
 
 constexpr std::size_t mostBuckets = 64;
-/// Threads do not share cache lines, but at the borders of buckets.
+/// Buckets have 2^4 elements or more: threads share cache lines only at their borders.
 constexpr int leastShift = 4;
 
 template <std::size_t bytes>
@@ -46,7 +46,7 @@ Scatters::Scatters(const program::Kernel& kernel, const CodeFrame& frame, const 
     if (parameter.role != program::Role::Scatter || argument.components == nullptr) continue;
     std::int64_t last = 0;
     for (std::size_t d = 0; d < 4; ++d) last += (argument.extent[d] - 1) * argument.stride[d];
-    last = std::max<std::int64_t>(last, 0);  // of no elements nothing is recorded
+    last = std::max<std::int64_t>(last, 0);  // an empty output has no records
     int shift = leastShift;
     while (last >> shift >= static_cast<std::int64_t>(mostBuckets)) ++shift;
     const auto buckets = static_cast<std::size_t>(last >> shift) + 1;
@@ -135,7 +135,7 @@ void Scatters::applyLogs() {
     }
   }
   const auto count = static_cast<std::int64_t>(work.size());
-  const std::int64_t cost = count == 0 ? 0 : records / count;  // none where all outputs are left out
+  const std::int64_t cost = count == 0 ? 0 : records / count;  // no work if all outputs are omitted
   native::inParallel(count, cost, native::Deal::AsTheyCome, [&](native::Range range) {
     for (std::int64_t i = range.begin; i < range.end; ++i) {
       const auto& [target, bucket] = work[static_cast<std::size_t>(i)];

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Carries out the records of scatter outputs (sk/native/code.hpp) as if elements ran one after another. One thread does so after each
-// chunk. Several threads keep logs of what their elements store, divided by where it goes: into buckets, each a range of the
-// target's elements. A bucket then belongs to one thread, which goes through the logs in the order of elements.
+// Carries out the records of scatter outputs (sk/native/code.hpp) as if elements ran one after another. A
+// single thread does so after each chunk. Several threads log what their elements store in buckets, each for
+// a range of the target's elements. A bucket then belongs to one thread, which carries out its logs in the
+// order of elements.
 #pragma once
 
 #include <cstdint>
@@ -18,30 +19,31 @@
 
 namespace sk {
 
-/// The scatter outputs of one call that are not left out.
+/// The scatter outputs of one call that are not omitted.
 class Scatters {
  public:
   /// The kernel and the frame must outlive this.
   Scatters(const program::Kernel& kernel, const CodeFrame& frame, const CodeChoice& choice);
 
-  /// For a single thread: carries out the records of a frame, and clears them.
+  /// Carries out the records of a frame and clears them; for a single thread.
   void apply(RecordFrame& records) const;
 
-  /// Where a record goes: to which bucket, behind how many others of its chunk.
+  /// The destination of a record: its bucket, and its position among the records that go there from one
+  /// chunk.
   struct Place {
     std::uint32_t bucket, position;
   };
-  /// Records of neighbouring elements: for each output, its buckets.
+  /// The records of neighbouring elements: for each output, its buckets.
   struct Log {
     std::int64_t order = 0;
     std::vector<std::vector<std::unique_ptr<RecordBuffer>>> buckets;
     std::vector<Place> places;
   };
-  /// An empty log. Any thread may ask for one.
+  /// Returns an empty log. Thread-safe.
   std::unique_ptr<Log> newLog();
   /// Moves the records of a frame to a log.
   void move(RecordFrame& records, Log& log) const;
-  /// Any thread may add the log of the elements from number `order` on.
+  /// Adds a log; logs are carried out in ascending `order`. Thread-safe.
   void add(std::int64_t order, std::unique_ptr<Log> log);
   /// Carries out all logs, in order, on all threads.
   void applyLogs();
@@ -50,7 +52,7 @@ class Scatters {
   struct Target {
     std::size_t parameter;
     RecordShape shape;
-    std::int64_t first;  ///< number of its first element
+    std::int64_t first;  ///< number of the target's first element
     int shift;  ///< a bucket has 2^shift elements
     std::size_t buckets;
   };

@@ -19,7 +19,7 @@ using program::Role;
 
 constexpr std::size_t cacheLine = 64;
 
-/// The index inside for one that may be outside of n elements; -1 where there is a border.
+/// Applies the boundary mode to an index; -1 if the element is the border value.
 std::int64_t broughtInside(Boundary boundary, std::int64_t i, std::int64_t n) {
   if (i >= 0 && i < n) return i;
   switch (boundary) {
@@ -29,19 +29,19 @@ std::int64_t broughtInside(Boundary boundary, std::int64_t i, std::int64_t n) {
     case Boundary::Mirror: break;
   }
   const std::int64_t period = boundary == Boundary::Mirror ? 2 * n : n;
-  // divisions take long, and few neighbours are further away than the extent
+  // saves a division, because few neighbours are farther outside than the extent
   std::int64_t inside = i < 0 ? i + period : i < period ? i : i - period;
   if (inside < 0 || inside >= period) inside = (i % period + period) % period;
   return inside < n ? inside : period - 1 - inside;
 }
 
-/// The index in an input that belongs to one in the domain.
+/// The index in an input for an index in the domain.
 std::int64_t ownIndex(const Argument& input, std::size_t d, std::int64_t index) {
   const std::int64_t multiplied = index * input.multiply[d];
   return input.divide[d] == 1 ? multiplied : multiplied / input.divide[d];
 }
 
-/// Elements of a gather, the same ones of several rows.
+/// A range of a gather's elements along x, the same in several rows.
 struct Neighbors {
   Boundary boundary;
   const void* border;
@@ -49,7 +49,8 @@ struct Neighbors {
   std::int64_t first, count;
 };
 
-/// rows[r] is where a row's element at x = 0 is. `Rows` and `To` are indexed by the row.
+/// Copies the range in each row. rows(r) is the address of the element at x = 0 in row r, to(r) its
+/// destination.
 template <class T, class Rows, class To>
 void copyNeighbors(const Neighbors what, std::size_t rowCount, const Rows rows, const To to) {
   constexpr std::int64_t size = sizeof(T);
@@ -67,7 +68,7 @@ void copyNeighbors(const Neighbors what, std::size_t rowCount, const Rows rows, 
 
 }  // namespace
 
-// ---- of a call -------------------------------------------------------------------------------------
+// ---- the layout of a call --------------------------------------------------------------------------
 
 SlotLayout::SlotLayout(const program::Kernel& kernel, const native::Call& call, const CodeFrame& frame,
                        const CodeChoice& choice, std::pmr::memory_resource* memory)
@@ -97,7 +98,7 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   made.reach = slot.reach;
   made.argument = &argument;
   made.firstArray = arrays_.size();
-  // one element of an input, which repeats as far as its extent says, lies as the domain's one does
+  // if a row has one element, it does not matter how an input repeats or skips along x
   const bool isFitted = width_ != 1 && (argument.multiply[0] != 1 || argument.divide[0] != 1);
   made.isDirect =
       made.isGiven && !operand.holdsFloats && !isFitted && (width_ == 1 || argument.stride[0] == 1);
@@ -141,7 +142,7 @@ std::optional<std::size_t> SlotLayout::slotBelow(const Slot& slot) const {
   return std::nullopt;
 }
 
-/// The code writes all components of one gather after the other.
+/// The index of a gather's first border value. The code writes all components of one gather, then the next.
 std::size_t SlotLayout::firstBorderOf(const program::Kernel& kernel, std::size_t parameter) const {
   std::size_t values = 0;
   for (std::size_t i = 0; i < parameter; ++i) {
@@ -163,7 +164,7 @@ void SlotLayout::readBorders(const program::Kernel& kernel, const CodeFrame& fra
   functionOf<native::ValuesFunction>(entry)(frame.get(), values.data());
 }
 
-// ---- of a thread -----------------------------------------------------------------------------------
+// ---- the arrays of a thread ------------------------------------------------------------------------
 
 SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t mostAtEnds, std::size_t rows)
     : layout_(layout),
@@ -212,7 +213,7 @@ void SlotArrays::moveTo(const Extents& first, std::size_t wanted, std::size_t pl
   }
 }
 
-/// Of a slot; from one row to the next, `rows` has all slots.
+/// Finds the rows of one slot, the first of which is *rows; `rows` has slots_ entries per row.
 void SlotArrays::findRows(const Slot& slot, const Extents& first, Row* rows) const {
   const std::size_t slots = slots_, wanted = wanted_, placed = placed_;
   const std::int64_t y = first[1], last = y + static_cast<std::int64_t>(wanted) - 1;
@@ -227,7 +228,7 @@ void SlotArrays::findRows(const Slot& slot, const Extents& first, Row* rows) con
   for (std::size_t k = wanted; k < placed; ++k) rows[k * slots] = rows[(wanted - 1) * slots];
 }
 
-/// The row of the domain at `y`, in the plane of `first`.
+/// The slot's row for the domain's row at `y` in the plane of `first`.
 SlotArrays::Row SlotArrays::rowAt(const Slot& slot, Extents first, std::int64_t y) {
   const Argument& argument = *slot.argument;
   first[1] = y;
@@ -298,7 +299,7 @@ void SlotArrays::layOutInput(std::size_t row, std::size_t s, std::int64_t x, con
   for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
     const SlotLayout::Array& array = layout_.arrays()[a];
     std::byte* const to = scratch_[placeOf(row, a)];
-    if (array.held == nullptr) {  // nobody looks at what it holds
+    if (array.held == nullptr) {  // an omitted stream reads as zeros
       padScalars(to, array.bytes.read, 0, count);
     } else if (argument.divide[0] == 1) {
       copyScalars({array.held, numberAt(x), argument.multiply[0] * stride * step}, array.bytes, to, count);
@@ -314,7 +315,8 @@ void SlotArrays::layOutInput(std::size_t row, std::size_t s, std::int64_t x, con
   useScratch(row, slot);
 }
 
-/// With neighbours. What one row has below it, the next one has in the middle, and so on: it is laid out once.
+/// Lays out elements with their neighbours. The row below one row of the domain is the middle row for the
+/// next one, so that it is laid out only once.
 void SlotArrays::layOutGather(std::size_t s, std::int64_t x, const Length& length, bool areOutsideAlone) {
   const Slot& slot = layout_.slots()[s];
   const std::size_t anew = slot.below ? 1 : wanted_;
@@ -340,7 +342,7 @@ void SlotArrays::layOutGather(std::size_t s, std::int64_t x, const Length& lengt
   }
 }
 
-/// In rows from `begin` to `end`.
+/// Lays out the rows from `begin` to `end`.
 void SlotArrays::layOutNeighbors(const Slot& slot, std::size_t begin, std::size_t end, std::int64_t x,
                                  const Length& length) {
   const std::int64_t around = 2 * slot.reach;
@@ -375,7 +377,7 @@ void SlotArrays::layOutBorder(std::size_t row, const Slot& slot, std::int64_t ro
   }
 }
 
-/// What is outside of a gather's component; null where nothing is.
+/// The border value of a gather's component; null without Boundary::Border.
 const void* SlotArrays::borderOf(const Slot& slot, std::size_t component) const {
   return slot.boundary == Boundary::Border ? layout_.border(slot.firstBorder + component) : nullptr;
 }

@@ -25,7 +25,7 @@ using native::Range;
 using program::Kernel;
 using program::Role;
 
-/// What sums numbers of a type, and products of two of them.
+/// The accumulator for sums of numbers of a type, or of products of two.
 template <class Real>
 struct Summing {
   static WideSum<Real> of(bool /*areProducts*/) { return {}; }
@@ -104,7 +104,7 @@ class TermAdder {
   ChunkRunner runner_;
 };
 
-/// Numbers of the outputs' arrays, in the order of the parameters.
+/// The numbers of the outputs' first arrays, in the order of the parameters.
 std::vector<std::size_t> outputArrays(const Kernel& kernel, const SlotLayout& layout) {
   std::vector<std::pair<std::uint8_t, std::size_t>> outputs;
   for (std::size_t s = 0; s < layout.slots().size(); ++s) {
@@ -119,7 +119,7 @@ std::vector<std::size_t> outputArrays(const Kernel& kernel, const SlotLayout& la
   return arrays;
 }
 
-/// The scalar's identity, which is one of the summands; of a seeded reduction there is none.
+/// The scalar's identity, which is one of the terms; nullopt in a seeded reduction.
 template <class Real>
 std::optional<Real> identityOf(const program::Reduction& reduction, const program::ExactSum& sum,
                                const CodeChoice& choice) {
@@ -142,7 +142,8 @@ std::optional<Real> identityOf(const program::Reduction& reduction, const progra
   return *realsAt<Real>(identities.arrays()[scalar]);
 }
 
-/// The rounded sums of all blocks, each of which begins with `start`. make() makes what adds the terms of a row, for one thread.
+/// The rounded sums of all blocks; each sum starts with `start`. make() returns what adds the terms of a row,
+/// for one thread.
 template <class Real, class Make>
 std::vector<Real> sumBlocks(const BlockPieces& pieces, const Accumulator<Real>& start, native::Deal deal,
                             Make&& make) {

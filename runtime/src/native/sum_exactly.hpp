@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Exact sums of floats (program::ExactSum), which the runtime adds itself, of terms that are inputs, products of two, or what a
-// kernel computes.
+// Exact sums of floats (program::ExactSum) that the runtime computes itself. Their terms are inputs, products
+// of two inputs, or what a kernel computes.
 #pragma once
 
 #include <span>
@@ -13,16 +13,17 @@
 
 namespace sk {
 
-/// Whether the runtime can add a sum itself.
+/// True if the runtime can compute a sum itself.
 inline bool hasTerm(const program::ExactSum& sum) {
   return sum.term.kernel != nullptr || !sum.term.factors.empty();
 }
 
-/// The kernel that a term is summed for: its own, or the fold whose inputs are its factors.
+/// The kernel whose call sumExactly() gets: that of the term or, if its factors are inputs, the fold.
 const program::Kernel& kernelOfTerm(const program::Reduction& reduction, const program::ExactSum& sum);
 
-/// The rounded sum of each block of the domain, row-major; no block is empty. `call` is one of kernelOfTerm() whose outputs are left
-/// out; the reduction's identity is added once to each. Real: that of `choice`, float, double or native::Quad.
+/// The rounded sum of each block of the domain, row-major; no block is empty. Each sum includes the
+/// reduction's identity once. `call` is a call of kernelOfTerm() with all outputs omitted. Real is the type of
+/// `choice`: float, double or native::Quad.
 template <class Real>
 std::vector<Real> sumExactly(const program::Reduction& reduction, const program::ExactSum& sum,
                              const native::Call& call, const native::Extents& block,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Exact sums against integers that hold every bit, and where floats have no number.
+// Tests exact sums against integers that hold every bit, and with infinities and NaN.
 #include "native/sum_exactly.hpp"
 
 #include <cmath>
@@ -164,7 +164,7 @@ void squares(const Frame*, const Chunk* chunk) {
 
 const Extents domains[] = {{1, 1, 1, 1}, {100, 7, 1, 1}, {70001, 1, 1, 1}, {600, 90, 1, 1}};
 
-/// The exact sum of each row, plus 100: of x, or, where a kernel computes the terms, of x * x + x.
+/// Checks the exact sum of each row, plus 100: of x or, if a kernel computes the terms, of x * x + x.
 void checkRows(const Extents& domain, bool byKernel, std::int64_t multiply) {
   TestKernel fold, terms;
   for (TestKernel* kernel : {&fold, &terms}) kernel->add(Role::Input);

@@ -18,15 +18,16 @@ using native::Chunk;
 using native::Frame;
 using native::Level;
 
-/// What the functions below get for a Frame.
+/// The frame of the functions below.
 struct SumFrame : Frame {
-  double start;  ///< the identity; -0, which no term changes, of a seeded reduction
+  double start;  ///< the identity; -0, which changes no term, if seeded
 };
 
-/// Columns of a leaf: sideOf() one double.
+/// The columns of a leaf: sideOf() for one double.
 constexpr std::int64_t side = 32;
 
-/// Elements that are fetched before they are needed: converting them takes so many operations that few loads are under way at once.
+/// How many elements ahead to prefetch. Converting elements takes so many operations that otherwise few loads
+/// are in flight at once.
 constexpr std::int64_t fetchedAhead = 384;
 
 template <class... Factors>
@@ -46,7 +47,7 @@ SK_FOR_V3 void addTerm(Doubles& sum, std::int64_t i, const float* x, const float
   addProduct(first, second, sum);
 }
 
-/// A leaf of whole columns, on CPUs that have vectors of 256 bits.
+/// Sums a leaf of whole columns, on CPUs with 256-bit vectors.
 template <class... Factors>
 SK_FOR_V3 void sumLeaf(double* columns, double start, std::int64_t rounds, const Factors*... factors) {
   constexpr std::int64_t vectors = side / doublesPerVector;
@@ -71,7 +72,7 @@ void sumAny(double* columns, std::int64_t count, std::int64_t rounds, const Fact
   }
 }
 
-/// The numbers of a fold that are not in its chunk.
+/// The parameters of a fold other than its chunk and its state.
 struct Division {
   std::int64_t columns, rounds, leaves, starts;
 };
@@ -112,7 +113,7 @@ void sumOfProducts(const Frame* frame, const Chunk* chunk, void* const* state, s
               factorOf(chunk, 1));
 }
 
-/// Whether the functions for vectors of 256 bits run here.
+/// True if the functions for 256-bit vectors run on this CPU.
 bool hasWideVectors() {
 #if defined(__x86_64__) && defined(__GNUC__)
   return levelOfCpu() >= Level::V3;
@@ -131,7 +132,7 @@ void addColumns(const Frame*, void* const* state, void* const* later, std::int64
   const auto* const others = static_cast<const double*>(later[0]);
   for (std::int64_t k = 0; k < columns; ++k) sums[k] += others[k];
 }
-/// Adds whole vectors, on CPUs that have those of 256 bits.
+/// Adds whole vectors, on CPUs with 256-bit vectors.
 SK_FOR_V3 void addVectors(const Frame*, void* const* state, void* const* later, std::int64_t columns) {
   auto* const sums = static_cast<double*>(state[0]);
   const auto* const others = static_cast<const double*>(later[0]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Sums of floats, or of products of two, in doubles: what most sums of floats come to (program::SumTerm). The runtime adds them
-// itself, in the order of all other reductions.
+// Sums of floats, or of products of two, in doubles; most sums of floats are computed this way
+// (program::SumTerm). The runtime adds them itself, in the same order as other reductions.
 #pragma once
 
 #include "native/call.hpp"
@@ -10,7 +10,7 @@
 
 namespace sk {
 
-/// Whether a call in doubles only sums what streams of floats hold.
+/// True if a call in doubles only sums the contents of float streams.
 bool sumsFloats(const program::Reduction& reduction, const native::Call& fold, const CodeChoice& choice);
 
 /// Sums each block of the domain to one element of the accumulator's operand. No block is empty.

@@ -15,15 +15,15 @@ __extension__ typedef unsigned __int128 Bits128;
 constexpr int wordBits = 32;
 constexpr std::int64_t wordMask = (std::int64_t{1} << wordBits) - 1;
 std::int64_t lowestDigit(Bits128 number) { return static_cast<std::uint32_t>(number); }
-/// Digits that a term reaches: 113 bits, and the carries of many.
+/// The digits that a term reaches with its 113 bits, and those for the carries of many terms.
 constexpr int digitsOfTerm = 5, digitsOfCarry = 2;
 constexpr std::int64_t mostUnsettled = std::int64_t{1} << 30;
-/// The power of 2 that bit 0 of digit 0 stands for is that of the least __float128.
+/// Bit 0 of digit 0 represents 2^leastPower, the least __float128.
 constexpr int leastPower = -16494;
 
 static_assert(sizeof(Quad) == sizeof(Bits128), "IEEE 754's binary128 is what sums of doubles are made in");
 
-/// IEEE 754's formats: `least` is the bit of the accumulator that the least number stands for.
+/// IEEE 754's formats. Bit `least` of the accumulator represents the least number.
 struct DoubleFormat {
   using Bits = std::uint64_t;
   static constexpr int mantissaBits = 52, least = -1074 - leastPower;
@@ -46,15 +46,16 @@ Bits128 bitsOf(Quad x) {
   return bits;
 }
 
-/// The upper 56 of a number's 113 bits, so that products of two halves are exact (Dekker, A floating-point technique for
-/// extending the available precision, Numerische Mathematik 18, 1971). The number is below 2^16326.
+/// The upper 56 of a number's 113 bits, so that products of two halves are exact (Dekker, A floating-point
+/// technique for extending the available precision, Numerische Mathematik 18, 1971). The number must be below
+/// 2^16326.
 Quad upperHalf(Quad x) {
   constexpr auto splitter = static_cast<Quad>((std::int64_t{1} << 57) + 1);
   const Quad spread = x * splitter;
   return spread - (spread - x);
 }
 
-/// What a product that is finite has lost by rounding.
+/// The rounding error of a finite product.
 Quad lostBy(Quad product, Quad x, Quad y) {
   const Quad upperX = upperHalf(x), upperY = upperHalf(y);
   const Quad lowerX = x - upperX, lowerY = y - upperY;
@@ -86,7 +87,7 @@ void WideAccumulator::addTerm(Quad x) {
   const int exponent = static_cast<int>(magnitude >> QuadFormat::mantissaBits);
   Bits128 mantissa = magnitude & ((Bits128{1} << QuadFormat::mantissaBits) - 1);
   if (exponent > 0) mantissa |= Bits128{1} << QuadFormat::mantissaBits;
-  const int at = std::max(exponent - 1, 0);  // the bit of the accumulator that the mantissa's lowest is
+  const int at = std::max(exponent - 1, 0);  // the bit of the accumulator for the lowest bit of the mantissa
   reach(at / wordBits, at / wordBits + digitsOfTerm + digitsOfCarry);
   std::int64_t* digit = digits_.data() + (at / wordBits - first_);
   const int shift = at % wordBits;
@@ -109,7 +110,7 @@ void WideAccumulator::add(const WideAccumulator& other) {
   unsettled_ += other.unsettled_ + 1;
 }
 
-/// Makes all digits but the last ones of 32 bits, with the same sum.
+/// Reduces all digits but the last to 32 bits, with the same sum.
 void WideAccumulator::settle() {
   for (std::size_t k = 0; k + 1 < digits_.size(); ++k) {
     digits_[k + 1] += digits_[k] >> wordBits;
@@ -140,7 +141,7 @@ typename Format::Bits WideAccumulator::nearest() const {
   auto top = static_cast<int>(digits.size()) - 1;
   while (top >= 0 && digits[static_cast<std::size_t>(top)] == 0) --top;
   if (top < 0) return 0;
-  const auto digit = [&](int number) {  // as the accumulator counts them
+  const auto digit = [&](int number) {  // by its number in the accumulator
     const int k = number - sum.first_;
     return k < 0 || k > top ? std::uint64_t{0}
                             : static_cast<std::uint64_t>(digits[static_cast<std::size_t>(k)]);
@@ -149,13 +150,13 @@ typename Format::Bits WideAccumulator::nearest() const {
     return number >= 0 && (digit(number / wordBits) >> number % wordBits & 1) != 0;
   };
   const int highest = (sum.first_ + top) * wordBits + std::bit_width(digit(sum.first_ + top)) - 1;
-  const int lowest = std::max(highest - Format::mantissaBits, Format::least);  // the bits that stay
+  const int lowest = std::max(highest - Format::mantissaBits, Format::least);  // the lowest bit to keep
   Bits mantissa = 0;
   for (int number = highest; number >= lowest; --number) mantissa = mantissa << 1 | (bit(number) ? 1U : 0U);
   bool isMore = false;
   for (int number = sum.first_ * wordBits; number < lowest - 1 && !isMore; ++number) isMore = bit(number);
   if (bit(lowest - 1) && (isMore || (mantissa & 1) != 0)) ++mantissa;
-  // the bit above the mantissa counts the exponent up; numbers below the least normal one have none
+  // the mantissa's leading bit adds 1 to the exponent; subnormal numbers do not have it
   const Bits bits = (static_cast<Bits>(lowest - Format::least) << Format::mantissaBits) + mantissa;
   constexpr int exponents = static_cast<int>(Format::infinity >> Format::mantissaBits);
   const bool isTooLarge = lowest - Format::least >= exponents;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// A sum of doubles or of __float128, or of products of two, without rounding: what ExactAccumulator is for floats, for
-// reference devices. The digits are those that terms have reached, since a place for every bit of every __float128 takes 8 KiB.
+// A sum of doubles or of __float128, or of products of two, without rounding: the ExactAccumulator of
+// reference devices. It holds only digits that terms have reached, because a place for every bit of every
+// __float128 would take 8 KiB.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 namespace sk {
 
-/// What is the same for both types.
+/// The base class for both types.
 class WideAccumulator {
  public:
   void add(const WideAccumulator& other);
@@ -20,12 +21,13 @@ class WideAccumulator {
 
  protected:
   void addTerm(native::Quad x);
-  /// Both give infinities of both signs, and NaN, as NaN; -0 is the sum of zeros only where all are -0.
+  /// The nearest number, ties to even. NaN if the terms include infinities of both signs or a NaN; -0 only if
+  /// all of them are -0.
   double nearestDouble() const;
   native::Quad nearestQuad() const;
 
  private:
-  /// What has been added, beside -0.
+  /// What has been added, apart from -0.
   enum Flag : std::uint32_t { HasOther = 1, HasInfinity = 2, HasNegativeInfinity = 4, HasNaN = 8 };
 
   /// Makes room for digits [first, end).
@@ -36,8 +38,8 @@ class WideAccumulator {
   typename Format::Bits nearest() const;
 
   int first_ = 0;  ///< the number of the lowest digit; digit 0 counts units of 2^-16494
-  std::vector<std::int64_t> digits_;  ///< of more than 32 bits until they are settled
-  std::int64_t unsettled_ = 0;  ///< terms since then
+  std::vector<std::int64_t> digits_;  ///< longer than 32 bits until they are settled
+  std::int64_t unsettled_ = 0;  ///< terms since the last settle()
   std::uint32_t flags_ = 0;
 };
 

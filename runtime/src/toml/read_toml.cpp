@@ -15,10 +15,12 @@ namespace sk {
 namespace {
 
 constexpr std::size_t mostBytes = std::size_t{16} << 20;
-/// Together with the nesting of values it bounds the depth of tables: 64 values, each behind a key of 32 parts.
+/// The most dots of a key. With the limit for nested values, this bounds the depth of tables: 64 values, each
+/// with a key of 32 parts.
 constexpr int mostDots = 31;
 
-/// Where the string ends that begins at `at`: behind its quotes, or at the end of the line or the text, if none close it.
+/// The end of the string that begins at `at`: after its closing quotes, or the end of the line or the text if
+/// there are none.
 std::size_t endOfString(std::string_view text, std::size_t at) {
   const char quote = text[at];
   const std::string_view three = text.substr(at, 3);
@@ -32,7 +34,7 @@ std::size_t endOfString(std::string_view text, std::size_t at) {
     } else if (text[at] == quote) {
       if (!isMultiLine) return at + 1;
       const std::size_t end = std::min(text.find_first_not_of(quote, at), text.size());
-      if (end - at >= 3) return std::min(end, at + 5);  // two quotes may stand before those that close
+      if (end - at >= 3) return std::min(end, at + 5);  // two quotes may precede the closing ones
       at = end - 1;
     }
   }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// Reads TOML files that somebody else may have written. toml++ (3.3) alone can be brought down by one: it destroys tables by
-// recursion, which a key of many thousand parts takes beyond the stack, and it ends the program over a header like [[[a]]] (in
-// builds without assertions, it assumes that there is none). Include this header in place of toml++'s.
+// Reads TOML files from untrusted sources. Some files crash toml++ (3.3) itself: it destroys tables by
+// recursion, so that a key of many thousand parts overflows the stack, and it aborts on a header like [[[a]]]
+// (without assertions, it assumes that there is none). Include this header in place of toml++'s.
 #pragma once
 
 #include <string>
 
-// All of it is compiled in read_toml.cpp.
+// toml++ is compiled in read_toml.cpp.
 #define TOML_HEADER_ONLY 0
-// What it asserts of the next character of a file is no fact, and where it does not hold, the parser reports it anyway.
+// Some files violate its assertions about the next character; the parser then reports them anyway.
 #define TOML_ASSERT(condition) static_assert(true)
 #define TOML_MAX_NESTED_VALUES 64
 #pragma push_macro("NDEBUG")
@@ -19,7 +19,8 @@
 
 namespace sk {
 
-/// Reads a file. Throws toml::parse_error, which has no line where the file cannot be read or is larger than 16 MiB.
+/// Reads a file. Throws toml::parse_error; it has no line if the file cannot be read or is larger than 16
+/// MiB.
 toml::table readToml(const std::string& file);
 
 }  // namespace sk

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "LINE: what is wrong", or the number of keys at the top.
+/// "LINE: message", or the number of top-level keys.
 std::string read(const std::string& text) {
   const fs::path file = fs::temp_directory_path() / ("sk_toml_" + std::to_string(::getpid()));
   std::ofstream(file, std::ios::binary) << text;
