@@ -120,6 +120,10 @@ class Trial {
     const Scene::Elements found = scene_->elements();
     CHECK(tornStreams(found, error.has_value()) == "");
     for (const auto& stream : found) lost += stream ? 0 : 1;
+    if (scenario_.overwrites && !staysCold()) {
+      scenario_.call(*scene_);  // also where the results are lost
+      CHECK(scene_->elements() == after_);
+    }
     if (!staysCold()) checkThatItGoesOn();
     return true;
   }

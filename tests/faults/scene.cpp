@@ -89,16 +89,16 @@ Scene::Elements Scene::elements() const {
 const std::vector<Scenario>& scenarios() {
   static const std::vector<Scenario> all = {
       {"make a stream", [](Scene& of) { of.device.stream<sk::float3>({of.size, 5}); }},
-      {"write", [](Scene& of) { of.r.write(of.fives); }},
+      {"write", [](Scene& of) { of.r.write(of.fives); }, false, false, true},
       {"write a view", [](Scene& of) { of.r.domain({1, 1}, {3, 4}).write(std::span(of.fives).first(6)); }},
       {"write a view of a box",
        [](Scene& of) { of.box.domain({0, 1, 1}, {2, 3, 4}).write(std::span(of.fives).first(12)); }},
       {"write without waiting", [](Scene& of) { of.r.writeAsync(of.fives); }},
       {"write a view of a box without waiting",
        [](Scene& of) { of.box.domain({0, 1, 1}, {2, 3, 4}).writeAsync(std::span(of.fives).first(12)); }},
-      {"fill", [](Scene& of) { of.r.fill(3); }},
+      {"fill", [](Scene& of) { of.r.fill(3); }, false, false, true},
       {"fill a view of a box", [](Scene& of) { of.box.domain({0, 1, 1}, {2, 3, 4}).fill(3); }},
-      {"copy", [](Scene& of) { of.x.copyTo(of.r); }},
+      {"copy", [](Scene& of) { of.x.copyTo(of.r); }, false, false, true},
       {"copy a view of a box",
        [](Scene& of) { of.box.domain({0, 0, 0}, {2, 2, 3}).copyTo(of.box.domain({0, 1, 2}, {2, 3, 5})); }},
       {"read", [](Scene& of) { expect(of.x.read()[9] == 2, "read"); }},
@@ -110,7 +110,7 @@ const std::vector<Scenario>& scenarios() {
          early.wait();
          expect(early.get()[9] == 2, "readAsync");
        }},
-      {"call", [](Scene& of) { scale(2.0F, of.x, of.r); }},
+      {"call", [](Scene& of) { scale(2.0F, of.x, of.r); }, false, false, true},
       {"call in place", [](Scene& of) { scale(3.0F, of.x, of.x); }},
       {"call that reads what it writes",
        [](Scene& of) { shift(of.part.domain({0, 0}, {of.size, 1}), of.part); }, true},
@@ -122,11 +122,11 @@ const std::vector<Scenario>& scenarios() {
        [](Scene& of) {
          scale(2.0F, of.box.domain({0, 0, 1}, {2, 2, 4}), of.box.domain({0, 1, 2}, {2, 3, 5}));
        }},
-      {"call with two outputs", [](Scene& of) { two(of.x, of.wide[0], of.s); }},
+      {"call with two outputs", [](Scene& of) { two(of.x, of.wide[0], of.s); }, false, false, true},
       {"call of several passes",
-       [](Scene& of) { many(of.x, of.wide[0], of.wide[1], of.wide[2], of.wide[3], of.wide[4], of.wide[5]); }},
+       [](Scene& of) { many(of.x, of.wide[0], of.wide[1], of.wide[2], of.wide[3], of.wide[4], of.wide[5]); }, false, false, true},
       {"call with a choice",
-       [](Scene& of) { scale.with({.precision = sk::Precision::Extended})(2.0F, of.x, of.r); }},
+       [](Scene& of) { scale.with({.precision = sk::Precision::Extended})(2.0F, of.x, of.r); }, false, false, true},
       {"reduce to a value", [](Scene& of) { expect(sum(of.x) == sumOfNumbers(of.x.size()), "sum"); }},
       {"reduce in a tree",
        [](Scene& of) {
@@ -135,10 +135,10 @@ const std::vector<Scenario>& scenarios() {
        }},
       {"reduce integers",
        [](Scene& of) { expect(count(of.indices) == static_cast<int>(sumOfNumbers(of.x.size())), "count"); }},
-      {"reduce to a stream", [](Scene& of) { sum(of.x, of.part); }},
+      {"reduce to a stream", [](Scene& of) { sum(of.x, of.part); }, false, false, true},
       {"reduce exactly to a stream",
-       [](Scene& of) { sum.with({.accumulate = sk::Accumulate::Exact})(of.x, of.part); }},
-      {"push", [](Scene& of) { positive(of.x, of.pushed); }},
+       [](Scene& of) { sum.with({.accumulate = sk::Accumulate::Exact})(of.x, of.part); }, false, false, true},
+      {"push", [](Scene& of) { positive(of.x, of.pushed); }, false, false, true},
       {"push any number", [](Scene& of) { repeat(of.x, of.pushed, of.s); }},
       {"scatter", [](Scene& of) { histogram(of.indices, of.bins); }},
       {"scatter and push", [](Scene& of) { everything(of.indices, of.r, of.bins, of.pushed, of.r, of.s); }},

@@ -37,6 +37,7 @@ struct Scenario {
   std::function<void(Scene&)> call;
   bool needsGl = false;
   bool moves = false;  ///< whether the call moves elements to another texture without changing them
+  bool overwrites = false;  ///< whether the call gives every element of what it writes, and reads none of it
 };
 const std::vector<Scenario>& scenarios();
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "api/exact_reduction.hpp"
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -62,13 +63,26 @@ bool sumsEverything(const Reduction& reduction) {
   return scalars == reduction.exact.size();
 }
 
+/// Gives elements to results that have lost theirs: sums are stored one scalar at a time, beside the others.
+void restoreLostResults(const ResolvedReduction& call) {
+  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+    const Parameter& parameter = call.reduction.fold.parameters[i];
+    const StreamRegion& region = call.arguments[i].region;
+    if (parameter.role != Role::Accumulator || !region.stream->isBroken) continue;
+    const std::vector<std::byte> zeros(parameter.element->size);
+    region.stream->fill(region, zeros.data());
+  }
+}
+
 void reduceToStreams(const ResolvedReduction& call) {
   const Reduction& reduction = call.reduction;
   std::vector<Sum> sums;  // compute all sums before storing any: a result may be an input
   for (const ExactSum& sum : reduction.exact) sums.push_back(fold(sum, call));
   bool hasBegun = false;
   writeInSteps(reduction, call.arguments, hasBegun, [&] {
-    if (!sumsEverything(reduction)) {
+    if (sumsEverything(reduction)) {
+      restoreLostResults(call);
+    } else {
       call.device.reduce(call);
       hasBegun = true;
     }

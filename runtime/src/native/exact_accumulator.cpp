@@ -49,6 +49,10 @@ SK_FOR_V3 std::uint32_t largestOf(const float* x, int count) {
   return largest;
 }
 
+/// Whether a finite term is -0.
+bool isNegativeZero(float x) { return x == 0 && std::signbit(x); }
+bool isNegativeZero(float x, float y) { return (x == 0 || y == 0) && std::signbit(x) != std::signbit(y); }
+
 /// The number whose addition and subtraction splits numbers below 2^exponent, so that the upper parts of a
 /// block add up exactly.
 double cutterFor(int exponent) { return std::ldexp(1.5, exponent + bitsOfMost); }
@@ -176,7 +180,9 @@ void ExactAccumulator::addBlock(int count, const Factors*... x) {
     for (int i = 0; i < count; ++i) addOne(x[i]...);
     return;
   }
-  flags_ |= HasOther;
+  for (int i = 0; (flags_ & HasOther) == 0 && i < count; ++i) {
+    if (!isNegativeZero(x[i]...)) flags_ |= HasOther;
+  }
   const double upper = cutterFor(exponent);
   const double lower = cutterFor(below(exponent));
   double sums[2];
@@ -193,7 +199,7 @@ void ExactAccumulator::addOne(float x) {
   } else if (magnitude == infinityBits) {
     flags_ |= std::signbit(x) ? HasNegativeInfinity : HasInfinity;
   } else {
-    flags_ |= magnitude == 0 && std::signbit(x) ? 0U : HasOther;
+    flags_ |= isNegativeZero(x) ? 0U : HasOther;
     addWhole(x);
   }
 }
@@ -207,7 +213,7 @@ void ExactAccumulator::addOne(float x, float y) {
   } else if (high == infinityBits) {
     flags_ |= isNegative ? HasNegativeInfinity : HasInfinity;
   } else {
-    flags_ |= low == 0 && isNegative ? 0U : HasOther;
+    flags_ |= isNegativeZero(x, y) ? 0U : HasOther;
     addWhole(double{x} * double{y});
   }
 }

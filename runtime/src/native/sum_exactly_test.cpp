@@ -136,6 +136,12 @@ TEST_CASE("zeros, infinities and NaN are as in IEEE sums") {
   CHECK(std::signbit(exactSum({-0.0F, -0.0F})));
   CHECK(!std::signbit(exactSum({-0.0F, 0.0F})));
   CHECK(!std::signbit(exactSum({1, -1})));
+  std::vector<float> x(16, -0.0F), y(16, 5);  // all products are -0, though both factors have other terms
+  x[0] = 1;
+  y[0] = -0.0F;
+  CHECK(std::signbit(exactDot(x, y)));
+  y[0] = 0;
+  CHECK(!std::signbit(exactDot(x, y)));
   CHECK(exactSum({infinity, 1}) == infinity);
   CHECK(exactSum({-infinity, 1}) == -infinity);
   CHECK(std::isnan(exactSum({infinity, -infinity})));
