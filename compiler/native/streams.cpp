@@ -538,16 +538,16 @@ Parts Streams::neighbor(std::uint32_t param, const Parts& offset,
 Part Streams::moved(std::uint32_t param, std::size_t dimension, const Part& index, const Part& offset) {
   const Boundary boundary = kernel_.params[param].boundary;
   if (boundary == Boundary::Wrap || boundary == Boundary::Mirror) {
-    Part extent{l.b.CreateTrunc(argumentExtent(param, dimension, offsetof(Argument, extent)), l.int32())};
+    const Part extent{l.b.CreateTrunc(argumentExtent(param, dimension, offsetof(Argument, extent)), l.int32())};
     if (boundary == Boundary::Wrap) {
       return binary(l, BinaryOp::Add, Scalar::Int, index, binary(l, BinaryOp::Rem, Scalar::Int, offset, extent));
     }
     const Part period{l.b.CreateShl(extent.value, 1)};
-    Part rest = binary(l, BinaryOp::Rem, Scalar::Int, offset, period);
-    const Part less = binary(l, BinaryOp::Sub, Scalar::Int, rest, period);
-    l.unify(rest, extent);  // an index plus an extent is an int, an index plus a period may exceed it
-    rest.value = l.b.CreateSelect(l.b.CreateICmpSLT(rest.value, extent.value), rest.value, less.value);
-    return binary(l, BinaryOp::Add, Scalar::Int, index, rest);
+    const Part rest = binary(l, BinaryOp::Rem, Scalar::Int, offset, period);
+    // The sum of an index and an extent is an int; that of an index and a period may exceed it.
+    const Part isNear = binary(l, BinaryOp::Less, Scalar::Int, rest, extent);
+    const Part near = l.select(isNear, rest, binary(l, BinaryOp::Sub, Scalar::Int, rest, period));
+    return binary(l, BinaryOp::Add, Scalar::Int, index, near);
   }
   if (l.isUniform(offset)) {  // so that consecutive indices stay consecutive
     llvm::Value* const most = l.integer(l.int32(), 1 << 30);

@@ -31,6 +31,19 @@ namespace {
 /// because trials are inaccurate, especially in software, and fragment programs run on more devices.
 constexpr double worthDispatching = 0.9, worthDispatchingInSoftware = 0.7;
 
+/// Leaves the passes of trials out of the user's count.
+class UncountedPasses {
+ public:
+  explicit UncountedPasses(GlDevice& device) : device_(device), before_(device.passCount) {}
+  ~UncountedPasses() { device_.passCount = before_; }
+  UncountedPasses(const UncountedPasses&) = delete;
+  UncountedPasses& operator=(const UncountedPasses&) = delete;
+
+ private:
+  GlDevice& device_;
+  std::optional<PassCount> before_;
+};
+
 assemble::Profile profileOf(std::string_view name, const gl::Capabilities& capabilities,
                             const DeviceChoices& choices) {
   assemble::Profile profile = *assemble::findProfile(name);
@@ -167,9 +180,8 @@ assemble::Stage GlDevice::stageOf(const program::Kernel& kernel, KernelClass ker
 assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
   std::optional<assemble::Stage>& known = faster_[static_cast<std::size_t>(kernels)];
   if (!known) {
-    const std::optional<PassCount> counted = passCount;
+    const UncountedPasses uncounted(*this);
     const std::optional<double> ratio = computeOverFragment(*this, kernels);
-    passCount = counted;
     const double worth = capabilities.isSoftware ? worthDispatchingInSoftware : worthDispatching;
     known = ratio.value_or(1) < worth ? assemble::Stage::Compute : assemble::Stage::Fragment;
   }
@@ -177,6 +189,7 @@ assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
 }
 
 std::vector<TargetTrial> GlDevice::trialTargets() {
+  const UncountedPasses uncounted(*this);
   std::vector<TargetTrial> trials;
   for (std::size_t i = 0; capabilities.hasCompute && i < kernelClasses; ++i) {
     const auto kernels = static_cast<KernelClass>(i);
@@ -231,6 +244,7 @@ GLuint GlDevice::textureOf(const FunctionTable& table) {
 
 void GlDevice::startTrace(const std::string& file) {
   auto started = std::make_unique<Trace>(file, fmt::format("{} ({})", name(), profileName()));
+  const UncountedPasses uncounted(*this);
   started->setBandwidth(copyBandwidth(*this));
   trace = std::move(started);
   const DeviceScope scope(*this);
@@ -246,6 +260,7 @@ void GlDevice::finish() {
 
 const Arithmetic& GlDevice::arithmetic() {
   if (!arithmetic_) {
+    const UncountedPasses uncounted(*this);
     arithmetic_ = probeArithmetic(*this);
   }
   return *arithmetic_;

@@ -166,7 +166,8 @@ class GlDevice final : public DeviceState {
   std::unique_ptr<PassTrace> passes;  ///< null if there is no trace
   std::vector<std::byte> staging;  ///< staging buffer of transfer/transfer.cpp, kept between calls
   std::vector<Operand> operands;  ///< operands of the current call (pass/run_kernel.cpp)
-  bool hasDrawn = false;  ///< something was drawn since the last dispatch
+  /// Something was drawn or copied since the last dispatch: the next one may overwrite what that still reads.
+  bool hasDrawn = false;
 
  private:
   bool takesPairs(const CallOptions& options) const;
@@ -194,6 +195,7 @@ class DeviceScope {
     device.bound.deleteQueued();
     if (device.isGuest()) {
       saved_.emplace(device.capabilities, device.bound);
+      device.hasDrawn = true;  // by the application
     }
     device.pool.trim();
     device.transferBuffers.trim();

@@ -25,6 +25,7 @@ void blit(GlDevice& device, RenderTarget& from, const RegionLayout& source, Rend
           const RegionLayout& target) {
   const GLuint read = from.framebufferIn(device.bound).name();
   const GLuint draw = to.framebufferIn(device.bound).name();
+  device.hasDrawn = true;
   gl::blit(device.bound, read, {source.origin[0], source.origin[1]}, draw,
            {target.origin[0], target.origin[1]}, target.extent[0], target.extent[1]);
 }

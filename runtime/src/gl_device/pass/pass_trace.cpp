@@ -98,7 +98,8 @@ void PassTrace::end() noexcept {
       trace_.devicePass(record_, begin_, Trace::now(), "wall clock around glFinish");
     }
   } catch (const std::bad_alloc&) {
-    return;  // the pass is missing from the trace
+    // The pass is missing from the trace. collect() waits for the end of every pass in the list.
+    if (usesTimestamps_ && !timed_.back().end) timed_.pop_back();
   }
 }
 

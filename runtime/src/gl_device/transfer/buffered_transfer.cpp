@@ -2,7 +2,6 @@
 #include "gl_device/transfer/buffered_transfer.hpp"
 
 #include <cstring>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -45,9 +44,7 @@ std::int32_t layerRows(const RenderTarget& plane) {
 
 }  // namespace
 
-BufferedRead::BufferedRead(GlDevice& device) : device_(device), held_(device.transferBuffers.take()) {}
-
-BufferedRead::~BufferedRead() { device_.transferBuffers.give(std::move(held_)); }
+BufferedRead::BufferedRead(GlDevice& device) : device_(device), lease_(device.transferBuffers) {}
 
 std::size_t BufferedRead::add(const Element& element, std::span<RenderTarget> planes,
                               const RegionLayout& region) {
@@ -72,14 +69,14 @@ void BufferedRead::addBlock(RenderTarget& plane, const Field& field, const Rect&
 
 void BufferedRead::begin() {
   {
-    const gl::BoundPixels bound(held_.buffer, gl::BoundPixels::Way::Read);
+    const gl::BoundPixels bound(lease_.held.buffer, gl::BoundPixels::Way::Read);
     if (!bound.allocate(device_.bound.errors, bytes_)) failForMemory(device_, bytes_);
-    held_.bytes = bytes_;
+    lease_.held.bytes = bytes_;
     for (const Block& block : blocks_) readBlock(block);
   }
   device_.bound.errors.setAside();
-  held_.fence = gl::Fence::insert(device_.bound.deletions);
-  if (!held_.fence) {
+  lease_.held.fence = gl::Fence::insert(device_.bound.deletions);
+  if (!lease_.held.fence) {
     static_cast<void>(device_.bound.errors.takeNew());
     failForMemory(device_, bytes_);
   }
@@ -98,7 +95,7 @@ void BufferedRead::readBlock(const Block& block) {
 
 void BufferedRead::take(std::size_t part, std::byte* elements) {
   wait();
-  const gl::BoundPixels bound(held_.buffer, gl::BoundPixels::Way::Read);
+  const gl::BoundPixels bound(lease_.held.buffer, gl::BoundPixels::Way::Read);
   device_.bound.errors.setAside();
   const std::byte* texels = bound.map(bytes_);
   if (texels == nullptr) {
@@ -176,38 +173,35 @@ void writeBuffered(GlDevice& device, const Element& element, std::span<RenderTar
   const auto count = static_cast<std::size_t>(assemble::elements(region.extent));
   std::size_t bytes = 0;
   for (const RenderTarget& plane : planes) bytes += aligned(count * plane.texture.format().texelBytes());
-  TransferBuffer held = device.transferBuffers.take();
-  {
-    const gl::BoundPixels bound(held.buffer, gl::BoundPixels::Way::Write);
-    gl::Errors& errors = device.bound.errors;
-    std::byte* const texels = bound.allocate(errors, bytes) ? bound.map(bytes) : nullptr;
-    if (texels == nullptr) {
-      static_cast<void>(errors.takeNew());
-      failForMemory(device, bytes);
-    }
-    held.bytes = bytes;
-    std::size_t offset = 0;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      packTexels(element, element.fields[i], elements, count, texels + offset);
-      offset += aligned(count * planes[i].texture.format().texelBytes());
-    }
-    if (!bound.unmap()) failForMemory(device, bytes);
-    isTorn = true;
-    offset = 0;
-    for (RenderTarget& plane : planes) {
-      const std::size_t texelBytes = plane.texture.format().texelBytes();
-      forEachCopyRegion(region, [&](const CopyRegion& run) {
-        const std::size_t from = offset + static_cast<std::size_t>(run.first) * texelBytes;
-        const std::size_t rowBytes = static_cast<std::size_t>(run.rect.width) * texelBytes;
-        forEachLayer(run.rect, layerRows(plane), [&](const Rect& part, std::int32_t layer, std::int32_t row) {
-          plane.texture.write(device.bound, part, layer,
-                              atOffset(from + static_cast<std::size_t>(row) * rowBytes));
-        });
-      });
-      offset += aligned(count * texelBytes);
-    }
+  TransferBufferLease lease(device.transferBuffers);
+  const gl::BoundPixels bound(lease.held.buffer, gl::BoundPixels::Way::Write);
+  gl::Errors& errors = device.bound.errors;
+  std::byte* const texels = bound.allocate(errors, bytes) ? bound.map(bytes) : nullptr;
+  if (texels == nullptr) {
+    static_cast<void>(errors.takeNew());
+    failForMemory(device, bytes);
   }
-  device.transferBuffers.give(std::move(held));
+  lease.held.bytes = bytes;
+  std::size_t offset = 0;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    packTexels(element, element.fields[i], elements, count, texels + offset);
+    offset += aligned(count * planes[i].texture.format().texelBytes());
+  }
+  if (!bound.unmap()) failForMemory(device, bytes);
+  isTorn = true;
+  offset = 0;
+  for (RenderTarget& plane : planes) {
+    const std::size_t texelBytes = plane.texture.format().texelBytes();
+    forEachCopyRegion(region, [&](const CopyRegion& run) {
+      const std::size_t from = offset + static_cast<std::size_t>(run.first) * texelBytes;
+      const std::size_t rowBytes = static_cast<std::size_t>(run.rect.width) * texelBytes;
+      forEachLayer(run.rect, layerRows(plane), [&](const Rect& part, std::int32_t layer, std::int32_t row) {
+        plane.texture.write(device.bound, part, layer,
+                            atOffset(from + static_cast<std::size_t>(row) * rowBytes));
+      });
+    });
+    offset += aligned(count * texelBytes);
+  }
 }
 
 }  // namespace sk

@@ -22,7 +22,6 @@ class BufferedRead {
  public:
   explicit BufferedRead(GlDevice& device);
   /// Returns the buffer to the device; does not call GL.
-  ~BufferedRead();
   BufferedRead(const BufferedRead&) = delete;
   BufferedRead& operator=(const BufferedRead&) = delete;
 
@@ -34,8 +33,8 @@ class BufferedRead {
   /// exhausted.
   void begin();
 
-  bool isReady() const { return held_.fence.isReached(); }
-  void wait() const { held_.fence.wait(); }
+  bool isReady() const { return lease_.held.fence.isReached(); }
+  void wait() const { lease_.held.fence.wait(); }
   /// Waits, and copies the elements of a part, row-major. Throws sk::Error if the driver fails.
   void take(std::size_t part, std::byte* elements);
 
@@ -63,7 +62,7 @@ class BufferedRead {
   static void unpack(const Part& part, const Block& block, const std::byte* texels, std::byte* elements);
 
   GlDevice& device_;
-  TransferBuffer held_;
+  TransferBufferLease lease_;
   std::vector<Part> parts_;
   std::vector<Block> blocks_;
   std::size_t bytes_ = 0;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "gl/fence.hpp"
@@ -62,6 +63,20 @@ class TransferBuffers {
   std::size_t bytes_ = 0;
   std::atomic<std::int64_t> clock_ = 0;
   std::atomic<bool> hasMany_ = false;  ///< spares calls the lock if there are few idle buffers
+};
+
+/// Holds a buffer of the pool and gives it back when it is destroyed, on any thread.
+class TransferBufferLease {
+ public:
+  explicit TransferBufferLease(TransferBuffers& pool) : held(pool.take()), pool_(pool) {}
+  ~TransferBufferLease() { pool_.give(std::move(held)); }
+  TransferBufferLease(const TransferBufferLease&) = delete;
+  TransferBufferLease& operator=(const TransferBufferLease&) = delete;
+
+  TransferBuffer held;
+
+ private:
+  TransferBuffers& pool_;
 };
 
 /// The futures that a device notifies when it is destroyed. Device and futures share the ownership of this
