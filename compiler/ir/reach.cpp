@@ -46,7 +46,7 @@ std::vector<FunctionId> functionsOf(const Module& module, const Kernel& kernel) 
   return order;
 }
 
-std::optional<Loc> usesPlace(const Module& module, const Kernel& kernel) {
+std::optional<Loc> usesIndex(const Module& module, const Kernel& kernel) {
   std::optional<Loc> found;
   for (const KernelParam& param : kernel.params) {
     if (param.role == ParamRole::Iterator) found = param.loc;

@@ -29,7 +29,7 @@ bool usesExactSums(const Module& module, const Kernel& kernel);
 
 /// The source location of the first expression or iterator that asks for an element's index or an input's
 /// shape, which a partial result does not have. After specialize-gathers.
-std::optional<Loc> usesPlace(const Module& module, const Kernel& kernel);
+std::optional<Loc> usesIndex(const Module& module, const Kernel& kernel);
 
 /// A function that calls itself, directly or indirectly, if there is one.
 std::optional<FunctionId> findRecursion(const Module& module);

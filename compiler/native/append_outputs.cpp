@@ -81,26 +81,27 @@ llvm::Value* Streams::loadField(llvm::Value* record, std::size_t offset, llvm::T
 void Streams::push(std::uint32_t param, const Parts& value, llvm::Value* mask) {
   std::vector<Column> columns;
   for (std::size_t c = 0; c < value.size(); ++c)
-    columns.push_back({offsetof(AppendBuffer, arrays), c, l.toStored(scalars(param)[c], l.spread(value[c]))});
+    columns.push_back(
+        {offsetof(AppendBuffer, arrays), c, l.toStored(scalars(param)[c], l.broadcast(value[c]))});
   record(param, mask, std::move(columns));
 }
 
 void Streams::scatter(std::uint32_t param, const Parts& index, const Parts& value, llvm::Value* mask) {
-  llvm::Value* number = l.spread(argumentField(param, offsetof(Argument, first), l.int64()));
+  llvm::Value* number = l.broadcast(argumentField(param, offsetof(Argument, first), l.int64()));
   for (std::size_t d = 0; d < index.size(); ++d) {
-    llvm::Value* const i = l.spread(index[d]);
+    llvm::Value* const i = l.broadcast(index[d]);
     // compared as unsigned, a negative index is 2^31 or more, and so never in bounds
     llvm::Value* const extent =
         l.b.CreateBinaryIntrinsic(llvm::Intrinsic::umin, argumentExtent(param, d, offsetof(Argument, extent)),
                                   l.integer(l.int64(), std::int64_t{1} << 31));
-    mask = l.b.CreateAnd(mask, l.b.CreateICmpULT(i, l.spread(l.b.CreateTrunc(extent, l.int32()))));
+    mask = l.b.CreateAnd(mask, l.b.CreateICmpULT(i, l.broadcast(l.b.CreateTrunc(extent, l.int32()))));
     llvm::Value* step = l.b.CreateSExt(i, l.vector(l.int64()));
-    if (d > 0) step = l.b.CreateMul(step, l.spread(argumentExtent(param, d, offsetof(Argument, stride))));
+    if (d > 0) step = l.b.CreateMul(step, l.broadcast(argumentExtent(param, d, offsetof(Argument, stride))));
     number = l.b.CreateAdd(number, step);
   }
   Parts stored;
   for (std::size_t c = 0; c < value.size(); ++c)
-    stored.push_back({l.toStored(scalars(param)[c], l.spread(value[c]))});
+    stored.push_back({l.toStored(scalars(param)[c], l.broadcast(value[c]))});
   const auto logged = [&] {
     std::vector<Column> columns = {{offsetof(AppendBuffer, targets), 0, number}};
     for (std::size_t c = 0; c < stored.size(); ++c)
@@ -241,7 +242,7 @@ Parts Streams::combined(std::uint32_t param, const Parts& old, const Parts& valu
 void Streams::record(std::uint32_t param, llvm::Value* mask, std::vector<Column> columns) {
   if (numbersRecords_ && l.count() > 1) {
     llvm::Value* const first = l.b.CreateTrunc(element_, l.int32());
-    columns.push_back({offsetof(AppendBuffer, elements), 0, l.spread({first, /*isConsecutive=*/true})});
+    columns.push_back({offsetof(AppendBuffer, elements), 0, l.broadcast({first, /*isConsecutive=*/true})});
   }
   llvm::Function* const function = l.b.GetInsertBlock()->getParent();
   llvm::BasicBlock* const some = llvm::BasicBlock::Create(l.b.getContext(), "record", function);

@@ -71,7 +71,7 @@ llvm::Value* Streams::isBlockInside(std::uint32_t param, const Parts& index) {
     llvm::Value* const last = l.b.CreateSub(extent, l.integer(l.int32(), needed));
     llvm::Value* const i = l.value(index[d]);
     require(l.b.CreateICmpSGE(last, l.integer(l.int32(), 0)));
-    require(l.b.CreateICmpULE(i, l.isVector(i) ? l.spread(last) : last));
+    require(l.b.CreateICmpULE(i, l.isVector(i) ? l.broadcast(last) : last));
   }
   return isInside;
 }
@@ -79,19 +79,20 @@ llvm::Value* Streams::isBlockInside(std::uint32_t param, const Parts& index) {
 /// The element number at an index in each lane, minus the counter; invariant in the loop.
 llvm::Value* Streams::laneOffsets(std::uint32_t param, const Parts& index, llvm::Value* counter) {
   llvm::Value* const x = l.value(index[0]);
-  llvm::Value* offsets = l.spread(l.b.CreateSub(x, l.isVector(x) ? l.spread(counter) : counter));
+  llvm::Value* offsets = l.broadcast(l.b.CreateSub(x, l.isVector(x) ? l.broadcast(counter) : counter));
   for (std::size_t d = 1; d < index.size(); ++d) {
     llvm::Value* i = l.value(index[d]);
     if (kernel_.params[param].boundary == Boundary::Clamp) {
       llvm::Value* const extent =
           l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32());
       llvm::Value* const most = l.b.CreateSub(extent, l.integer(l.int32(), 1));
-      i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, l.isVector(i) ? l.spread(most) : most);
+      i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, l.isVector(i) ? l.broadcast(most) : most);
       i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, i, l.integer(i->getType(), 0));
     }
     llvm::Value* const stride =
         l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, stride)), l.int32());
-    offsets = l.b.CreateAdd(offsets, l.spread(l.b.CreateMul(i, l.isVector(i) ? l.spread(stride) : stride)));
+    offsets =
+        l.b.CreateAdd(offsets, l.broadcast(l.b.CreateMul(i, l.isVector(i) ? l.broadcast(stride) : stride)));
   }
   return offsets;
 }

@@ -137,7 +137,7 @@ class EntryWriter {
   void addMask(std::vector<Parts>& arguments, llvm::Value* element, llvm::Value* count) {
     if (l_.count() == 1 || !entryMask(s_.module, s_.kernel)) return;
     llvm::Value* const left = b_.CreateTrunc(b_.CreateSub(count, element), b_.getInt32Ty());
-    arguments.push_back({{b_.CreateICmpSLT(l_.laneNumbers(b_.getInt32Ty()), l_.spread(left))}});
+    arguments.push_back({{b_.CreateICmpSLT(l_.laneNumbers(b_.getInt32Ty()), l_.broadcast(left))}});
   }
   CallResult call(std::vector<Parts> arguments, llvm::Value* element, llvm::Value* count) {
     addMask(arguments, element, count);
@@ -244,7 +244,7 @@ class EntryWriter {
     } else {
       parts = identities();
     }
-    for (Part& part : parts) part = {l_.spread(part)};
+    for (Part& part : parts) part = {l_.broadcast(part)};
     return parts;
   }
 
@@ -264,7 +264,7 @@ class EntryWriter {
     }
     Parts result;
     for (const Parts& output : call(std::move(arguments), element, count).outputs) {
-      for (const Part& part : output) result.push_back({l_.spread(part)});
+      for (const Part& part : output) result.push_back({l_.broadcast(part)});
     }
     return result;
   }
@@ -416,7 +416,7 @@ bool combines(const Module& module, const Kernel& kernel) {
     if (param.role == ParamRole::Input) inputs.push_back(param.type);
     if (param.role == ParamRole::Accumulator) accumulators.push_back(param.type);
   }
-  return inputs == accumulators && !usesPlace(module, kernel);
+  return inputs == accumulators && !usesIndex(module, kernel);
 }
 
 bool hasIdentities(const Kernel& kernel) {

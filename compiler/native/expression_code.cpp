@@ -107,7 +107,7 @@ Parts FunctionCode::either(llvm::Value* condition, const std::function<Parts()>&
   const auto close = [&](llvm::BasicBlock* block, Parts& all) {
     b.SetInsertPoint(block);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (!areSame[i]) all[i] = {l.spread(all[i])};
+      if (!areSame[i]) all[i] = {l.broadcast(all[i])};
     }
     branch(end);
   };

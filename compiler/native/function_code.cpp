@@ -287,7 +287,7 @@ void FunctionCode::write(const Scatter& n) {
 
 /// The lanes in which a statement runs; all lanes without a mask.
 llvm::Value* FunctionCode::maskOf(const ExprPtr& mask) {
-  return l.spread(mask ? expression(*mask)[0] : Part{b.getTrue()});
+  return l.broadcast(mask ? expression(*mask)[0] : Part{b.getTrue()});
 }
 
 }  // namespace skc::native

@@ -76,19 +76,19 @@ llvm::Value* Lanes::laneNumbers(llvm::Type* integer) const {
   return llvm::ConstantVector::get(numbers);
 }
 
-llvm::Value* Lanes::spread(llvm::Value* scalar) const {
+llvm::Value* Lanes::broadcast(llvm::Value* scalar) const {
   return count() == 1 || isVector(scalar) ? scalar : b.CreateVectorSplat(count(), scalar);
 }
 
-llvm::Value* Lanes::spread(const Part& part) const {
-  llvm::Value* const all = spread(part.value);
+llvm::Value* Lanes::broadcast(const Part& part) const {
+  llvm::Value* const all = broadcast(part.value);
   return part.isConsecutive ? b.CreateAdd(all, laneNumbers(part.value->getType())) : all;
 }
 
 void Lanes::unify(std::vector<Part*> parts) const {
   const bool areUniform = std::ranges::all_of(parts, [&](const Part* part) { return isUniform(*part); });
   if (areUniform) return;
-  for (Part* part : parts) *part = {spread(*part)};
+  for (Part* part : parts) *part = {broadcast(*part)};
 }
 
 void Lanes::unify(Part& a, Part& c) const { unify({&a, &c}); }
@@ -102,7 +102,7 @@ Part Lanes::select(const Part& cond, const Part& yes, const Part& no) const {
     unify(y, n);
     return {b.CreateSelect(c.value, y.value, n.value)};
   }
-  return {b.CreateSelect(spread(c), spread(y), spread(n))};
+  return {b.CreateSelect(broadcast(c), broadcast(y), broadcast(n))};
 }
 
 llvm::Value* Lanes::any(const Part& mask) const {
@@ -117,7 +117,7 @@ Part Lanes::perLane(const std::vector<Part>& parts, llvm::Type* result,
     return {function(arguments)};
   }
   std::vector<llvm::Value*> vectors;
-  for (const Part& part : parts) vectors.push_back(spread(part));
+  for (const Part& part : parts) vectors.push_back(broadcast(part));
   if (count() == 1) return {function(vectors)};
   llvm::Value* all = llvm::PoisonValue::get(vector(result));
   for (std::uint32_t i = 0; i < count(); ++i) {
@@ -172,7 +172,7 @@ Part Lanes::loadNeighbors(Scalar scalar, llvm::Value* address) const {
 }
 
 void Lanes::storeNeighbors(Scalar scalar, const Part& part, llvm::Value* address) const {
-  b.CreateAlignedStore(toStored(scalar, spread(part)), address, llvm::Align(storedBytes(scalar)));
+  b.CreateAlignedStore(toStored(scalar, broadcast(part)), address, llvm::Align(storedBytes(scalar)));
 }
 
 Part Lanes::gather(Scalar scalar, llvm::Value* base, llvm::Value* index) const {
@@ -186,7 +186,7 @@ Part Lanes::gather(Scalar scalar, llvm::Value* base, llvm::Value* index) const {
 void Lanes::scatter(Scalar scalar, const Part& part, llvm::Value* base, llvm::Value* index) const {
   llvm::Value* const addresses = at(stored(scalar), base, index);
   if (count() == 1) return storeOne(scalar, part.value, addresses);
-  b.CreateMaskedScatter(toStored(scalar, spread(part)), addresses, llvm::Align(storedBytes(scalar)));
+  b.CreateMaskedScatter(toStored(scalar, broadcast(part)), addresses, llvm::Align(storedBytes(scalar)));
 }
 
 }  // namespace skc::native

@@ -71,10 +71,10 @@ class Lanes {
   /// 0, 1, 2 ..., one entry per lane.
   llvm::Value* laneNumbers(llvm::Type* integer) const;
   /// The value in each lane: a vector, or a scalar if there is one lane.
-  llvm::Value* spread(const Part& part) const;
-  llvm::Value* spread(llvm::Value* scalar) const;
+  llvm::Value* broadcast(const Part& part) const;
+  llvm::Value* broadcast(llvm::Value* scalar) const;
   /// A scalar if the value is uniform, else a vector.
-  llvm::Value* value(const Part& part) const { return part.isConsecutive ? spread(part) : part.value; }
+  llvm::Value* value(const Part& part) const { return part.isConsecutive ? broadcast(part) : part.value; }
   /// Turns all parts into vectors unless all are uniform.
   void unify(Part& a, Part& c) const;
   void unify(std::vector<Part*> parts) const;

@@ -67,7 +67,7 @@ Place FunctionCode::variable(VarId var) const {
 /// The index, clamped to 0 ... length - 1.
 Part FunctionCode::indexInside(const Expr& index, std::uint32_t length) {
   Part i = expression(index)[0];
-  if (i.isConsecutive) i = {l.spread(i)};
+  if (i.isConsecutive) i = {l.broadcast(i)};
   llvm::Type* const type = i.value->getType();
   llvm::Value* const last = l.integer(type, length - 1);
   if (index.type.scalar == Scalar::Uint)
@@ -168,7 +168,7 @@ void FunctionCode::storeComponent(const Place::Leaf& leaf, std::uint32_t offset,
   const LeafMemory& memory = *leaf.memory;
   bool isScattered = false;
   llvm::Value* const address = addressOf(leaf, offset, &isScattered);
-  llvm::Value* value = memory.shape == Shape::Varying ? l.spread(part) : part.value;
+  llvm::Value* value = memory.shape == Shape::Varying ? l.broadcast(part) : part.value;
   if (isScattered) {
     b.CreateMaskedScatter(l.toStored(memory.scalar, value), address,
                           llvm::Align(l.storedBytes(memory.scalar)));

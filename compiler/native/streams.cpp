@@ -138,9 +138,9 @@ Parts Streams::index(const StreamRef& stream) {
 
 /// The x of each lane's element; in a fold, elements are `step` apart.
 llvm::Value* Streams::foldedPosition(llvm::Value* first) {
-  llvm::Value* const elements = l.b.CreateAdd(l.spread(element_), l.laneNumbers(l.int64()));
-  llvm::Value* const step = l.spread(chunkField(offsetof(Chunk, step)));
-  return l.b.CreateAdd(l.spread(first), l.b.CreateMul(elements, step));
+  llvm::Value* const elements = l.b.CreateAdd(l.broadcast(element_), l.laneNumbers(l.int64()));
+  llvm::Value* const step = l.broadcast(chunkField(offsetof(Chunk, step)));
+  return l.b.CreateAdd(l.broadcast(first), l.b.CreateMul(elements, step));
 }
 
 Parts Streams::extent(const StreamRef& stream) {
@@ -187,7 +187,7 @@ Parts Streams::iterator(std::uint32_t param) {
     llvm::Value* grows = spacing;
     if (c > 0) grows = l.b.CreateSelect(byNumber, spacing, l.integer(l.int64(), 0));
     llvm::Value* const k =
-        l.b.CreateAdd(l.spread(from), l.b.CreateMul(l.laneNumbers(l.int64()), l.spread(grows)));
+        l.b.CreateAdd(l.broadcast(from), l.b.CreateMul(l.laneNumbers(l.int64()), l.broadcast(grows)));
     const Part begin = end(0), last = end(1);
     if (scalar == Scalar::Int || scalar == Scalar::Uint) {
       const auto widened = [&](const Part& part) {
@@ -195,8 +195,9 @@ Parts Streams::iterator(std::uint32_t param) {
                                      : l.b.CreateZExt(part.value, l.int64());
       };
       llvm::Value* const step = l.b.CreateSDiv(l.b.CreateSub(widened(last), widened(begin)), steps);
-      llvm::Value* const way = l.b.CreateMul(l.spread(step), k);
-      parts.push_back({l.b.CreateTrunc(l.b.CreateAdd(l.spread(widened(begin)), way), l.vector(l.int32()))});
+      llvm::Value* const way = l.b.CreateMul(l.broadcast(step), k);
+      parts.push_back(
+          {l.b.CreateTrunc(l.b.CreateAdd(l.broadcast(widened(begin)), way), l.vector(l.int32()))});
       continue;
     }
     llvm::Type* const wide = l.type(Scalar::Double);
@@ -204,9 +205,9 @@ Parts Streams::iterator(std::uint32_t param) {
     llvm::Value* const a = widened(begin.value);
     llvm::Value* const way = l.b.CreateFSub(widened(last.value), a);
     llvm::Value* const offset =
-        l.b.CreateFDiv(l.b.CreateFMul(l.spread(way), l.b.CreateSIToFP(k, l.vector(wide))),
-                       l.spread(l.b.CreateSIToFP(steps, wide)));
-    parts.push_back({l.b.CreateFPCast(l.b.CreateFAdd(l.spread(a), offset), l.vector(l.type(scalar)))});
+        l.b.CreateFDiv(l.b.CreateFMul(l.broadcast(way), l.b.CreateSIToFP(k, l.vector(wide))),
+                       l.broadcast(l.b.CreateSIToFP(steps, wide)));
+    parts.push_back({l.b.CreateFPCast(l.b.CreateFAdd(l.broadcast(a), offset), l.vector(l.type(scalar)))});
   }
   return parts;
 }
@@ -286,12 +287,12 @@ Parts Streams::choose(llvm::Value* condition, const std::function<Parts()>& yes,
                    llvm::MDBuilder(l.b.getContext()).createLikelyBranchWeights());
   l.b.SetInsertPoint(yesBlock);
   Parts a = yes();
-  for (Part& part : a) part = {l.spread(part)};
+  for (Part& part : a) part = {l.broadcast(part)};
   llvm::BasicBlock* const yesEnd = l.b.GetInsertBlock();
   l.b.CreateBr(end);
   l.b.SetInsertPoint(noBlock);
   Parts c = no();
-  for (Part& part : c) part = {l.spread(part)};
+  for (Part& part : c) part = {l.broadcast(part)};
   llvm::BasicBlock* const noEnd = l.b.GetInsertBlock();
   l.b.CreateBr(end);
   l.b.SetInsertPoint(end);
@@ -370,21 +371,21 @@ Parts Streams::gatherByNumbers(std::uint32_t param, const Parts& index) {
   for (std::size_t d = 0; d < index.size(); ++d) {
     llvm::Value* const extent =
         l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, extent)), l.int32());
-    llvm::Value* i = l.spread(index[d]);
+    llvm::Value* i = l.broadcast(index[d]);
     llvm::Value* const zero = l.integer(i->getType(), 0);
     if (boundary == Boundary::Clamp) {
-      llvm::Value* const most = l.spread(l.b.CreateSub(extent, l.integer(l.int32(), 1)));
+      llvm::Value* const most = l.broadcast(l.b.CreateSub(extent, l.integer(l.int32(), 1)));
       i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smin, i, most);
       i = l.b.CreateBinaryIntrinsic(llvm::Intrinsic::smax, i, zero);
     } else if (boundary == Boundary::Border) {
-      llvm::Value* const beyond = l.b.CreateICmpUGE(i, l.spread(extent));
+      llvm::Value* const beyond = l.b.CreateICmpUGE(i, l.broadcast(extent));
       i = l.b.CreateSelect(beyond, zero, i);
       isOutside = isOutside == nullptr ? beyond : l.b.CreateOr(isOutside, beyond);
     }
     if (d > 0) {
       llvm::Value* const stride =
           l.b.CreateTrunc(argumentExtent(param, d, offsetof(Argument, stride)), l.int32());
-      i = l.b.CreateMul(i, l.spread(stride));
+      i = l.b.CreateMul(i, l.broadcast(stride));
     }
     number = number == nullptr ? i : l.b.CreateAdd(number, i);
   }
@@ -401,7 +402,7 @@ Parts Streams::gatherByNumbers(std::uint32_t param, const Parts& index) {
 static llvm::Value* areAllInside(Lanes& l, const Parts& index, const std::vector<llvm::Value*>& extents) {
   llvm::Value* all = nullptr;
   for (std::size_t d = 0; d < index.size(); ++d) {
-    llvm::Value* const in = l.b.CreateICmpULT(l.spread(index[d]), l.spread(extents[d]));
+    llvm::Value* const in = l.b.CreateICmpULT(l.broadcast(index[d]), l.broadcast(extents[d]));
     all = all == nullptr ? in : l.b.CreateAnd(all, in);
   }
   return l.isVector(all) ? l.b.CreateAndReduce(all) : all;
@@ -437,7 +438,7 @@ Parts Streams::gatherByLanes(std::uint32_t param, const Parts& index) {
   std::vector<llvm::Value*> arguments = {frame_};
   for (const Part& part : index) {
     llvm::Value* const memory = allocas.CreateAlloca(indices);
-    l.b.CreateStore(l.spread(part), memory);
+    l.b.CreateStore(l.broadcast(part), memory);
     arguments.push_back(memory);
   }
   std::vector<llvm::Value*> results;
@@ -538,9 +539,11 @@ Parts Streams::neighbor(std::uint32_t param, const Parts& offset,
 Part Streams::moved(std::uint32_t param, std::size_t dimension, const Part& index, const Part& offset) {
   const Boundary boundary = kernel_.params[param].boundary;
   if (boundary == Boundary::Wrap || boundary == Boundary::Mirror) {
-    const Part extent{l.b.CreateTrunc(argumentExtent(param, dimension, offsetof(Argument, extent)), l.int32())};
+    const Part extent{
+        l.b.CreateTrunc(argumentExtent(param, dimension, offsetof(Argument, extent)), l.int32())};
     if (boundary == Boundary::Wrap) {
-      return binary(l, BinaryOp::Add, Scalar::Int, index, binary(l, BinaryOp::Rem, Scalar::Int, offset, extent));
+      return binary(l, BinaryOp::Add, Scalar::Int, index,
+                    binary(l, BinaryOp::Rem, Scalar::Int, offset, extent));
     }
     const Part period{l.b.CreateShl(extent.value, 1)};
     const Part rest = binary(l, BinaryOp::Rem, Scalar::Int, offset, period);

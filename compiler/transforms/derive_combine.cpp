@@ -184,12 +184,12 @@ class State {
 
   /// Partial results have no index.
   bool checkCombination(const Kernel& kernel) {
-    const std::optional<Loc> place = usesPlace(module_, module_.kernels[*kernel.reduction->combine]);
+    const std::optional<Loc> place = usesIndex(module_, module_.kernels[*kernel.reduction->combine]);
     if (place) diagnostics_.report(Diag::CombineUsesIndex, *place, {kernel.name});
     return !place;
   }
   bool checkOwnCombination(const Kernel& kernel, KernelId id) {
-    const std::optional<Loc> place = usesPlace(module_, kernel);
+    const std::optional<Loc> place = usesIndex(module_, kernel);
     const bool isTold = std::any_of(  // it is the overload that combines for another
         module_.kernels.begin(), module_.kernels.end(),
         [&](const Kernel& other) { return other.reduction && other.reduction->combine == id; });

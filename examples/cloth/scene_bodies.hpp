@@ -13,14 +13,14 @@
 namespace examples {
 
 std::optional<Vector> vectorOf(const SceneTable& table, std::string_view key);
-/// Of unit length. Throws where it is zero.
+/// Returns a vector of unit length. Throws if the table has a zero vector.
 std::optional<Vector> directionOf(const SceneTable& table, std::string_view key);
 /// Red, green and blue from 0 to 1, sRGB-encoded.
 std::optional<Vector> colourOf(const SceneTable& table, std::string_view key);
 
-/// Of all tables [[pin]].
+/// One pin for each table [[pin]].
 std::vector<Pin> pinsOf(const SceneTable& scene, const Cloth& cloth);
-/// Of all tables [[sphere]], [[plane]], [[capsule]] and [[box]].
+/// One body for each table [[sphere]], [[plane]], [[capsule]] and [[box]].
 std::vector<Body> bodiesOf(const SceneTable& scene);
 
 }  // namespace examples

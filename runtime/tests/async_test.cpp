@@ -214,7 +214,8 @@ TEST_CASE("neither asking nor writing waits for the device") {
   const double whole = milliseconds(start - before);
   INFO("the kernel " << whole << " ms, asking " << milliseconds(asked - start) << " ms, writing "
                      << milliseconds(written - asked) << " ms");
-  if (whole > 50 && !device.isSoftware()) {  // else the device is too fast, or finishes drawing before a read returns
+  if (whole > 50 &&
+      !device.isSoftware()) {  // else the device is too fast, or finishes drawing before a read returns
     CHECK_FALSE(wasReady);
     CHECK(milliseconds(written - start) < whole / 2);
   }

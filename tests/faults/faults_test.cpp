@@ -106,7 +106,9 @@ class Trial {
     {
       const Fault fault(kind_, number_, isLasting_);
       error = errorOf([&] { scenario_.call(*scene_); });
-      if (!error) error = errorOf([&] { pair_.device.finish(); });  // reports errors of the driver that are still pending
+      if (!error)
+        error =
+            errorOf([&] { pair_.device.finish(); });  // reports errors of the driver that are still pending
       if (!fault.hasFired()) {
         CHECK_FALSE(error);
         return false;

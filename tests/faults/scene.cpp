@@ -124,9 +124,11 @@ const std::vector<Scenario>& scenarios() {
        }},
       {"call with two outputs", [](Scene& of) { two(of.x, of.wide[0], of.s); }, false, false, true},
       {"call of several passes",
-       [](Scene& of) { many(of.x, of.wide[0], of.wide[1], of.wide[2], of.wide[3], of.wide[4], of.wide[5]); }, false, false, true},
+       [](Scene& of) { many(of.x, of.wide[0], of.wide[1], of.wide[2], of.wide[3], of.wide[4], of.wide[5]); },
+       false, false, true},
       {"call with a choice",
-       [](Scene& of) { scale.with({.precision = sk::Precision::Extended})(2.0F, of.x, of.r); }, false, false, true},
+       [](Scene& of) { scale.with({.precision = sk::Precision::Extended})(2.0F, of.x, of.r); }, false, false,
+       true},
       {"reduce to a value", [](Scene& of) { expect(sum(of.x) == sumOfNumbers(of.x.size()), "sum"); }},
       {"reduce in a tree",
        [](Scene& of) {

@@ -211,7 +211,8 @@ TEST_CASE("compensated products at the ends of the range") {
     CHECK(dot({3e38F, 1}, {2, 1}) == inf);
     CHECK(dot({inf, 1}, {2, 1}) == inf);
     CHECK(std::isnan(dot({inf, 1}, {0, 1})));
-    CHECK(dot({0x1.fffffep127F, 0x1p-3F}, {1, 1}) == 0x1.fffffep127F);  // splitting it with the factor 4097 would overflow
+    CHECK(dot({0x1.fffffep127F, 0x1p-3F}, {1, 1}) ==
+          0x1.fffffep127F);  // splitting it with the factor 4097 would overflow
     CHECK(dot({0x1p-70F, 1}, {0x1p-70F, 1}) == 1.0F);
     CHECK(std::fabs(dot({0x1.234568p-60F}, {0x1.fedcbap-60F})) <= 0x1p-118F);
   });

@@ -67,7 +67,8 @@ TEST_CASE("a file chooses what declared streams hold their floats as") {
     CHECK(s.field.read() == std::vector<float>{sk::half(third), 1});
     s.flux.writeReals(std::vector<double>{1.0 / 3, 1});
     CHECK(s.flux.readReals() == std::vector<double>{1.0 / 3, 1});
-    s.narrow.write(std::vector<sk::half>(3, sk::half(1.0F)));   // its elements are no floats, so the storage option does not apply
+    s.narrow.write(std::vector<sk::half>(
+        3, sk::half(1.0F)));   // its elements are no floats, so the storage option does not apply
     auto mine = device.stream<float>({1}, sk::Storage::Default, "mine");
     mine.writeReals(std::vector<double>{1.0 / 3});
     CHECK(mine.readReals() == std::vector<double>{third});

@@ -218,7 +218,7 @@ TEST_CASE("ldexp scales by powers of two to both ends") {
 TEST_CASE("bits are moved unchanged, and classes of floats told") {
   const auto x = values<float4>(count, 4);
   auto i = values<int4>(count, 5);
-  for (int4& v : i) v = by4([](int b) { return (b & 0x007fffff) | 0x3f800000; }, v);   // floats in [1, 2)
+  for (int4& v : i) v = by4([](int b) { return (b & 0x007fffff) | 0x3f800000; }, v);  // floats in [1, 2)
   const float infinity = std::numeric_limits<float>::infinity(),
               nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<float4> special = {{0, 1, -1, 3.4e38f},

@@ -80,7 +80,7 @@ TEST_CASE("functions of one float") {
     Outputs out(device);
     const auto check = [&](const char* name, const auto& kernel, double (*reference)(double),
                            const Bounds& b) {
-      if (std::string_view(name) == "normalize") return;   // takes the whole vector: see geometry
+      if (std::string_view(name) == "normalize") return;  // takes the whole vector: see geometry
       INFO(name);
       const auto x = spread(b.low, b.high, 1);
       kernel(streamOf<float4>(device, x), out.r, out.r3, out.r2, out.r1);

@@ -122,7 +122,7 @@ TEST_CASE("inputs and gathers in layers, as they are, in views, and beside strea
             return 3 * a[{p[0] + 30, p[1] + 3}] + a[{p[0] + 1, p[1] + 40}];
           }) == "");
 
-    layers::stencil(sa, sa);   // in place
+    layers::stencil(sa, sa);  // in place
     CHECK(difference(sa.read(), [&](std::size_t i) {
             const Position p = positionOf(a.shape(), i);
             const auto at = [&](std::int64_t y, std::int64_t x) {
@@ -210,7 +210,7 @@ TEST_CASE("pushes from layers and to layers, counted and not") {
       CHECK(y.read() == some);
       CHECK(z.read() == most);
       auto again = device.stream<int>({0});
-      layers::most(y, again);   // the output of one call is the input of the next
+      layers::most(y, again);  // the output of one call is the input of the next
       std::erase_if(some, [](int value) { return value % 5 == 0; });
       CHECK(again.read() == some);
     }

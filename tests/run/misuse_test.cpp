@@ -64,7 +64,8 @@ TEST_CASE("gathers of another rank, or of nothing") {
           "misuse::lookup: 'weights' has shape {0}: there is no element to read");
     auto empty = device.stream<float>({0, 4});
     CHECK_THAT(errorOf([&] { misuse::lookup(empty, weights, x, r); }), Contains("'table' has shape {0, 4}"));
-    CHECK(errorOf([&] { misuse::lookup(empty, none, none, none); }) == "no error");  // there is nothing to compute
+    CHECK(errorOf([&] { misuse::lookup(empty, none, none, none); }) ==
+          "no error");  // there is nothing to compute
   });
 }
 
@@ -129,7 +130,8 @@ TEST_CASE("reduces that do not fit") {
           "4}; "
           "write the one that you mean");
     auto a = device.stream<misuse::Ten>({4}), r = device.stream<misuse::Ten>({2});
-    CHECK(errorOf([&] { misuse::widest(a, r); }) == "no error");  // split into several passes if it writes too many planes
+    CHECK(errorOf([&] { misuse::widest(a, r); }) ==
+          "no error");  // split into several passes if it writes too many planes
     const int units = device.limits().textureUnits;
     if (units < 40) {
       CHECK(

@@ -100,7 +100,7 @@ void checkTo(sk::Device& device, const Kernel& kernel, const std::vector<float>&
   const std::vector<T> result = r.read();
   std::vector<float> values(result.begin(), result.end());
   CHECK(difference(values, [&](std::size_t i) { return rounding(floats[i]); }) == "");
-  CHECK(difference(values, [&](std::size_t i) { return float(T(floats[i])); }) == "");   // on the host
+  CHECK(difference(values, [&](std::size_t i) { return float(T(floats[i])); }) == "");  // on the host
 }
 
 template <class To, class T, class Kernel>
@@ -335,7 +335,8 @@ TEST_CASE("structs of narrow types as uniforms, gathers, outputs, in place and o
 }
 
 TEST_CASE("reduces over narrow types") {
-  for (const std::int64_t count : {1, 2, 997, 3989}) {  // the last is near the most that a device with the small limit holds
+  for (const std::int64_t count :
+       {1, 2, 997, 3989}) {  // the last is near the most that a device with the small limit holds
     const auto n = static_cast<std::size_t>(count);
     const auto bytes = hashedValues<std::uint8_t>(n, 9);
     std::vector<sk::half> halves;

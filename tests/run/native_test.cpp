@@ -49,7 +49,8 @@ TEST_CASE("the native device says what it is") {
   CHECK(device.isSoftware());
   CHECK(sk::Device("reference").name() == "reference (native, double)");
   auto stream = device.stream<float>({3});
-  CHECK_THROWS_WITH(stream.texture(), Catch::Matchers::Contains("no textures") && Catch::Matchers::Contains("read()"));
+  CHECK_THROWS_WITH(stream.texture(),
+                    Catch::Matchers::Contains("no textures") && Catch::Matchers::Contains("read()"));
 }
 
 TEST_CASE("native passes are counted, too") {
@@ -304,7 +305,8 @@ TEST_CASE("streams that are read while they are written are right step after ste
 TEST_CASE("reals are read of floats alone") {
   sk::Device device = sk::Device::native();
   auto ints = device.stream<std::int32_t>({2});
-  CHECK_THROWS_WITH(ints.readReals(), Catch::Matchers::Contains("int") && Catch::Matchers::Contains("read()"));
+  CHECK_THROWS_WITH(ints.readReals(),
+                    Catch::Matchers::Contains("int") && Catch::Matchers::Contains("read()"));
   CHECK(device.stream<sk::float2>({0}).readReals().empty());
   sk::Device& gl = run_tests::device("glsl330");
   CHECK(streamOf<sk::float2>(gl, {{1, 2}, {3, 4}}).readReals() == std::vector<double>{1, 2, 3, 4});
@@ -342,7 +344,7 @@ std::string errorWithLittleMemory(Call call) {
 }
 
 TEST_CASE("a call that finds no memory throws sk::Error, and the next one may succeed") {
-  constexpr std::size_t count = std::size_t{1} << 24;   // 64 MiB of floats
+  constexpr std::size_t count = std::size_t{1} << 24;  // 64 MiB of floats
   sk::Device device = sk::Device::native();
   auto x = device.stream<float>({count}), r = device.stream<float>({count});
   x.write(std::vector<float>(count, 1.0f));
@@ -351,9 +353,12 @@ TEST_CASE("a call that finds no memory throws sk::Error, and the next one may su
              Catch::Matchers::Contains("cancel") && Catch::Matchers::Contains("134217728 bytes"));
   CHECK_THAT(errorWithLittleMemory([&] { shift(x, 1.0f, x); }),
              Catch::Matchers::Contains("shift") && Catch::Matchers::Contains("67108864 bytes"));
-  CHECK_THAT(errorWithLittleMemory([&] { x.read(); }), Catch::Matchers::Contains("16777216 element(s) of 4 byte(s)"));
-  CHECK_THAT(errorWithLittleMemory([&] { x.readReals(); }), Catch::Matchers::Contains("16777216 element(s) of 8 byte(s)"));
-  CHECK_THAT(errorWithLittleMemory([&] { device.stream<float>({count}); }), Catch::Matchers::Contains("67108864 bytes"));
+  CHECK_THAT(errorWithLittleMemory([&] { x.read(); }),
+             Catch::Matchers::Contains("16777216 element(s) of 4 byte(s)"));
+  CHECK_THAT(errorWithLittleMemory([&] { x.readReals(); }),
+             Catch::Matchers::Contains("16777216 element(s) of 8 byte(s)"));
+  CHECK_THAT(errorWithLittleMemory([&] { device.stream<float>({count}); }),
+             Catch::Matchers::Contains("67108864 bytes"));
   CHECK(x.domain({0}, {3}).read() == std::vector<float>(3, 1.0f));
   inDoubles(x, r);
   shift(x, 1.0f, x);

@@ -52,9 +52,9 @@ TEST_CASE("a stream that was pushed to is a stream like any other") {
     x.write(list);
     auto r = device.stream<float>({17});
     keepPositive(x, r);
-    keepPositive(r, x);   // needs the size of r
+    keepPositive(r, x);  // needs the size of r
     CHECK(x.read() == positive(list));
-    keepPositive(x, x);   // reads the old elements
+    keepPositive(x, x);  // reads the old elements
     CHECK(x.size() == r.size());
     CHECK(x.read() == positive(list));
     x.write(std::vector<float>(static_cast<std::size_t>(x.size()), -1.0F));

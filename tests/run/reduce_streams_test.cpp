@@ -68,7 +68,7 @@ TEST_CASE("a reduce to a stream folds each block, in order") {
       reduces::compose(f.on(device), maps);
       CHECK(differenceOfMaps(maps.read(), expected.elements()) == "");
 
-      if (row.output.size() > 2) continue;   // the rest tests other programs, not other layouts
+      if (row.output.size() > 2) continue;  // the rest tests other programs, not other layouts
       reduces::composeSeeded(f.on(device), maps);
       CHECK(differenceOfMaps(maps.read(), expected.elements()) == "");
       const HostArray<float> x(row.input, smallAt);

@@ -93,7 +93,7 @@ TEST_CASE("bits and bools fold") {
         0, [](int& r, int x) { r |= x; });
     check<uint2>(device, "parity", bitsAt<uint2>, reduces::parity, uint2{},
                  [](uint2& r, const uint2& x) { r = {r.x ^ x.x, r.y ^ x.y}; });
-    for (const int odd : {-1, 0, 3, 1000}) {   // the element that differs, if there is one
+    for (const int odd : {-1, 0, 3, 1000}) {  // the element that differs, if there is one
       for (const sk::Shape& shape : {sk::Shape{1021}, sk::Shape{19, 53}, sk::Shape{1}}) {
         INFO("element " << odd << " of shape " << sk::toString(shape));
         const bool isThere = odd >= 0 && odd < shape.size();
@@ -202,7 +202,7 @@ TEST_CASE("order is kept where it matters") {
       });
       const auto expected = foldBox(f, {}, shape, reduces::Affine{1, 0}, compose);
       CHECK(isEqual(reduces::compose(f.on(device)), expected));
-      if (shape.rank() > 1) continue;   // the rest tests other programs, not other layouts
+      if (shape.rank() > 1) continue;  // the rest tests other programs, not other layouts
       CHECK(isEqual(reduces::composeSeeded(f.on(device)), expected));
 
       const HostArray<int> n(shape, [](std::size_t i) { return static_cast<int>(i) + 3; });

@@ -272,7 +272,7 @@ TEST_CASE("floats of fewer bits are interpolated as floats") {
     CHECK(difference(s.read(), [&](std::size_t i) { return sampled(bf, x[i], clampIndex); }) == "");
     CHECK(difference(u.read(), [&](std::size_t i) { return sampled(df, x[i].x, clampIndex); }) == "");
     const auto halves = t.read();
-    for (std::size_t i = 0; i < x.size(); ++i) {   // weights of 8 bits between elements in [0, 2]
+    for (std::size_t i = 0; i < x.size(); ++i) {  // weights of 8 bits between elements in [0, 2]
       const float2 wanted = sampled(cf, x[i], clampIndex);
       REQUIRE(std::fabs(halves[i].x - wanted.x) <= 2 * 2 * 0x1p-9);
       REQUIRE(std::fabs(halves[i].y - wanted.y) <= 2 * 2 * 0x1p-9);
@@ -322,7 +322,7 @@ TEST_CASE("reduces fold what lies between elements") {
   const HostArray<float> bf({9}, [](std::size_t i) { return static_cast<float>(i * 5 % 9); });
   std::vector<float2> x;
   std::vector<float> line;
-  for (std::uint32_t i = 0; i < 64; ++i) {   // exact: sums have 14 fraction bits and are below 2^9
+  for (std::uint32_t i = 0; i < 64; ++i) {  // exact: sums have 14 fraction bits and are below 2^9
     x.push_back(
         {static_cast<float>(hashed(i) % 50) / 8 - 1, static_cast<float>(hashed(i + 500) % 50) / 8 - 1});
     line.push_back(x.back().x);

@@ -54,7 +54,7 @@ class Sequence {
   std::int64_t extent() { return 1 + static_cast<std::int64_t>(below(below(3) == 0 ? 70 : 12)); }
 
   Pair made() {
-    const sk::Shape shape{extent(), 1 + extent() % 55};   // up to 64 x 64 elements on a small device
+    const sk::Shape shape{extent(), 1 + extent() % 55};  // up to 64 x 64 elements on a small device
     const std::uint32_t seed = random_();
     HostArray<int> host(
         shape, [&](std::size_t i) { return static_cast<int>(hashed(seed + static_cast<std::uint32_t>(i))); });
@@ -125,7 +125,7 @@ class Sequence {
   void call() {
     const Box r = box();
     const auto s = boxOf(r.shape(), false), x = boxOf(r.shape(), true), y = boxOf(r.shape(), true);
-    if (!s || !x || !y || s->pair == r.pair) return;   // outputs in one stream may overlap
+    if (!s || !x || !y || s->pair == r.pair) return;  // outputs in one stream may overlap
     const Box g = box();
     const HostArray<int> hx = held(*x), hy = held(*y), hg = held(g);
     const int k = static_cast<int>(random_());

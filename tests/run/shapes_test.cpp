@@ -174,9 +174,8 @@ TEST_CASE("what does not stretch or stride is an error, and nothing is written")
       "must divide the domain's");
   CHECK_THROWS_WITH(streams::repeat(sk::stride(y), x, x, r, at),
                     Catch::Contains("to stride through it, each of its extents must be a multiple"));
-  CHECK_THROWS_WITH(
-      streams::repeat(sk::stretch(sk::stride(y)), x, x, r, at),
-      Catch::Contains("each of its extents must divide the domain's or be a multiple of it"));
+  CHECK_THROWS_WITH(streams::repeat(sk::stretch(sk::stride(y)), x, x, r, at),
+                    Catch::Contains("each of its extents must divide the domain's or be a multiple of it"));
   auto none = device.stream<int>({0, 6});
   CHECK_THROWS_AS(streams::repeat(x, sk::stride(none), x, r, at), sk::Error);
   CHECK_THROWS_AS(streams::repeat(x, sk::stretch(sk::stride(none)), x, r, at), sk::Error);

@@ -72,9 +72,9 @@ TEST_CASE("outputs and gathers that a switch leaves out") {
     CHECK(difference(sum.read(), [](std::size_t i) { return 3 + 2 * static_cast<float>(i); }) == "");
     CHECK(difference(product.read(), products) == "");
     product.write(numbered({70}, 0));
-    spec::modes(0, x, y, sum, product);   // `product` is given, but not written: it keeps its elements
+    spec::modes(0, x, y, sum, product);  // `product` is given, but not written: it keeps its elements
     CHECK(product.read() == numbered({70}, 0));
-    spec::modes(7, sk::none, sk::none, sk::none, sk::none);   // nothing is left to do
+    spec::modes(7, sk::none, sk::none, sk::none, sk::none);  // nothing is left to do
   });
 }
 

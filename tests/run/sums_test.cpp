@@ -74,7 +74,8 @@ TEST_CASE("the plain tree is there for the asking") {
     const std::vector<float> x = cancelling(30000, 4);
     const float plain = sums::sum.with({.accumulate = sk::Accumulate::Tree})(streamOf(device, x));
     CHECK(std::fabs(plain - 0.125) <= 20 * u * magnitudes(x));
-    CHECK(std::fabs(plain - 0.125) > bound(0.125, magnitudes(x), x.size()));  // so these numbers need compensation
+    CHECK(std::fabs(plain - 0.125) >
+          bound(0.125, magnitudes(x), x.size()));  // so these numbers need compensation
   });
 }
 

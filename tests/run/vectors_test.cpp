@@ -243,7 +243,7 @@ TEST_CASE("uint operators wrap by components") {
 
 TEST_CASE("comparisons of vectors give masks by components") {
   auto v = values<float4>(count), w = values<float4>(count, 1);
-  for (std::size_t i = 0; i < v.size(); ++i) {   // makes some components equal
+  for (std::size_t i = 0; i < v.size(); ++i) {  // makes some components equal
     if (i % 2 == 0) w[i].x = v[i].x;
     if (i % 3 == 0) w[i].z = v[i].z;
     if (i % 7 == 0) w[i] = v[i];

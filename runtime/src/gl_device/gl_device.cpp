@@ -29,7 +29,7 @@ namespace {
 
 /// The largest ratio of dispatching time to drawing time at which dispatching is chosen. It is below 1
 /// because trials are inaccurate, especially in software, and fragment programs run on more devices.
-constexpr double worthDispatching = 0.9, worthDispatchingInSoftware = 0.7;
+constexpr double mostTimeRatio = 0.9, mostTimeRatioInSoftware = 0.7;
 
 /// Leaves the passes of trials out of the user's count.
 class UncountedPasses {
@@ -182,7 +182,7 @@ assemble::Stage GlDevice::fasterFor(KernelClass kernels) {
   if (!known) {
     const UncountedPasses uncounted(*this);
     const std::optional<double> ratio = computeOverFragment(*this, kernels);
-    const double worth = capabilities.isSoftware ? worthDispatchingInSoftware : worthDispatching;
+    const double worth = capabilities.isSoftware ? mostTimeRatioInSoftware : mostTimeRatio;
     known = ratio.value_or(1) < worth ? assemble::Stage::Compute : assemble::Stage::Fragment;
   }
   return *known;

@@ -108,7 +108,7 @@ Layout GlStream::withSize(Layout list, std::int32_t count) {
 
 // Packed texels are transferred as they are if the region consists of whole ones; else the stream is
 // unpacked.
-GlStream::Travelling GlStream::travelling(const StreamRegion& region) {
+GlStream::TransferRegion GlStream::transferRegion(const StreamRegion& region) {
   const RegionLayout place = regionLayoutOf(region, layout);
   if (!place.packed) {
     return {&held(), region.shape, place};
@@ -134,7 +134,7 @@ bool GlStream::writesThroughBuffer(const StreamRegion& region) const {
 
 void GlStream::uploadHeld(const StreamRegion& region, const std::byte* elements) {
   const bool isBuffered = writesThroughBuffer(region);
-  const Travelling what = travelling(region);
+  const TransferRegion what = transferRegion(region);
   if (isBuffered) {
     writeBuffered(owner(), *what.element, planes, what.place, elements, isBroken);
   } else {
@@ -144,7 +144,7 @@ void GlStream::uploadHeld(const StreamRegion& region, const std::byte* elements)
 }
 
 void GlStream::downloadHeld(const StreamRegion& region, std::byte* elements) {
-  const Travelling what = travelling(region);
+  const TransferRegion what = transferRegion(region);
   download(owner(), *what.element, planes, what.place, elements);
 }
 
@@ -209,7 +209,7 @@ void GlStream::writeAsync(const StreamRegion& region, const std::byte* elements)
     convertElements(*element, elements, held(), converted.data(), count);
     elements = converted.data();
   }
-  const Travelling what = travelling(region);
+  const TransferRegion what = transferRegion(region);
   writeBuffered(owner(), *what.element, planes, what.place, elements, isBroken);
   setWritten();
 }
@@ -233,7 +233,7 @@ void GlStream::writeReals(const StreamRegion& region, const double* values) {
 // Runs a copy kernel whose input, one texel with the value, is broadcast to the region.
 void GlStream::fill(const StreamRegion& region, const std::byte* value) {
   const DeviceScope scope(owner());
-  const Travelling what = travelling(region);
+  const TransferRegion what = transferRegion(region);
   std::vector<std::byte> texel(std::max(what.element->size, held().size));
   if (held_) {
     convertElements(*element, value, held(), texel.data(), 1);
@@ -302,7 +302,7 @@ StreamTexture GlStream::texture(int plane) {
 
 void GlStream::fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) {
   const DeviceScope scope(owner());
-  const Travelling what = travelling({this, {}, shape});
+  const TransferRegion what = transferRegion({this, {}, shape});
   readToBuffer(owner(), planes[static_cast<std::size_t>(plane)], what.place, buffer,
                static_cast<std::size_t>(byteOffset));
 }

@@ -47,13 +47,13 @@ class GlStream final : public StreamState {
 
   /// A region in the units of its transfers to and from host memory: elements of type held(), or packed
   /// texels.
-  struct Travelling {
+  struct TransferRegion {
     const program::Element* element;
     Shape shape;  ///< in these units
     assemble::RegionLayout place;
   };
   /// Unpacks the stream if the region does not consist of whole texels.
-  Travelling travelling(const StreamRegion& region);
+  TransferRegion transferRegion(const StreamRegion& region);
 
   Layout layout;  ///< valid once the stream is settled
   std::vector<RenderTarget> planes;  ///< one per field of held(); none if the stream is empty

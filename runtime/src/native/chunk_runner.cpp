@@ -15,8 +15,8 @@ ChunkRunner::ChunkRunner(const SlotLayout& layout, const native::Entry& run, con
       lanes_(run.lanes),
       frame_(frame),
       together_(run.rows),
-      laidOut_(std::max(together_, rows) > 1 ? 2 * native::mostLanes : mostLaidOut),
-      arrays_(layout, laidOut_, layout.isDirect() ? 0 : laidOut_, std::max(together_, rows)),
+      staged_(std::max(together_, rows) > 1 ? 2 * native::mostLanes : mostStaged),
+      arrays_(layout, staged_, layout.isDirect() ? 0 : staged_, std::max(together_, rows)),
       hook_(std::move(hook)) {
   for (std::size_t row = 0; row < std::max(together_, rows); ++row) {
     chunks_[row].arrays = arrays_.get(row);
@@ -26,7 +26,7 @@ ChunkRunner::ChunkRunner(const SlotLayout& layout, const native::Entry& run, con
 
 std::size_t ChunkRunner::rowsAtOnce(const SlotLayout& layout) {
   constexpr std::size_t enough = 8;
-  return layout.hasGathers() && layout.isDirect() && !layout.goesByElement() ? enough : 1;
+  return layout.hasGathers() && layout.isDirect() && !layout.needsElementwiseCalls() ? enough : 1;
 }
 
 /// The entry always computes `together_` rows; results of rows that are not wanted are discarded.
@@ -44,11 +44,11 @@ void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows
   moveTo(first, rows);
   const std::int64_t begin = first[0];
   const std::int64_t end = begin + count;
-  if (layout_.goesByElement()) {
+  if (layout_.needsElementwiseCalls()) {
     for (std::int64_t x = begin; x < end; ++x) call(x, 1, lanes_);
     return;
   }
-  const std::int64_t longest = layout_.isDirect() ? hook_.longest : std::min(laidOut_, hook_.longest);
+  const std::int64_t longest = layout_.isDirect() ? hook_.longest : std::min(staged_, hook_.longest);
   if (!layout_.hasGathers()) {
     runPart(begin, end, longest);
     return;
@@ -59,13 +59,13 @@ void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows
       std::min(end, begin + roundUp(std::max<std::int64_t>(inside.begin - begin, 0), lanes_));
   const std::int64_t groups = (std::min(inside.end, end) - left) / lanes_;
   const std::int64_t right = left + std::max<std::int64_t>(groups, 0) * lanes_;
-  runPart(begin, left, laidOut_);
+  runPart(begin, left, staged_);
   if (layout_.isDirect() && wanted_ == placed_) {
     runInside(left, right, longest);
   } else {
     runPart(left, right, longest);
   }
-  runPart(right, end, laidOut_);
+  runPart(right, end, staged_);
 }
 
 void ChunkRunner::runPart(std::int64_t begin, std::int64_t end, std::int64_t longest) {

@@ -41,7 +41,7 @@ class ChunkRunner {
   /// is at most native::mostLanes.
   void run(const native::Extents& first, std::int64_t count, std::size_t rows);
 
-  /// Computes at most mostLaidOut elements as one chunk, then calls after(arrays) with the arrays of the
+  /// Computes at most mostStaged elements as one chunk, then calls after(arrays) with the arrays of the
   /// chunk.
   template <class After>
   void runChunk(const native::Extents& first, std::int64_t count, After&& after) {
@@ -65,7 +65,7 @@ class ChunkRunner {
   std::size_t together_;  ///< rows that the entry computes together
   std::size_t wanted_ = 1;  ///< rows to compute
   std::size_t placed_ = 1;  ///< wanted_, rounded up to a multiple of together_
-  std::int64_t laidOut_;  ///< most elements of a row that are laid out at a time
+  std::int64_t staged_;  ///< most elements of a row that are laid out at a time
   SlotArrays arrays_;
   std::array<native::Chunk, native::mostRows> chunks_;
   ChunkHook hook_;

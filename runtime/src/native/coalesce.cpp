@@ -14,7 +14,7 @@ using program::Parameter;
 using program::Role;
 
 /// True if nothing in the kernel depends on the dimensions of its domain.
-bool knowsNoPlace(const program::Kernel& kernel, std::span<const Operand> operands) {
+bool isPositionIndependent(const program::Kernel& kernel, std::span<const Operand> operands) {
   if (kernel.usesIndex || kernel.usesExtent) return false;
   for (std::size_t i = 0; i < operands.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
@@ -121,7 +121,7 @@ class Coalesce {
 void coalesce(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block) {
   constexpr std::int64_t longest = std::int64_t{1} << 31;   // indices are ints
   const bool isCounted = domain[0] * domain[1] * domain[2] * domain[3] < longest;
-  if (isCounted && knowsNoPlace(kernel, operands)) Coalesce(kernel, operands, domain, block).run();
+  if (isCounted && isPositionIndependent(kernel, operands)) Coalesce(kernel, operands, domain, block).run();
 }
 
 }  // namespace sk

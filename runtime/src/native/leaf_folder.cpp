@@ -16,7 +16,7 @@ std::int64_t mostPlaced(const StateShape& shape) {
 
 LeafFolder::LeafFolder(const FoldProgram& program)
     : program_(program),
-      longest_(program.layout.isDirect() ? std::numeric_limits<std::int64_t>::max() : mostLaidOut),
+      longest_(program.layout.isDirect() ? std::numeric_limits<std::int64_t>::max() : mostStaged),
       arrays_(program.layout, mostPlaced(program.shape), mostPlaced(program.shape)),
       some_(program.shape, sideOf(program.shape)),
       rest_(program.shape.scalars()) {
@@ -31,7 +31,7 @@ void LeafFolder::moveToRow(const native::Extents& first) {
 void LeafFolder::fold(StateColumns& state, std::int64_t x, std::int64_t columns, std::int64_t rounds,
                       Start start, std::int64_t step) {
   const bool areApart = program_.layout.hasGathers() && step != 1;  // gathers need adjacent lanes
-  if (program_.layout.goesByElement() || areApart) {
+  if (program_.layout.needsElementwiseCalls() || areApart) {
     foldOneByOne(state, x, columns, rounds, start, step);
     return;
   }

@@ -24,11 +24,11 @@ class LeafFolder {
   /// The most neighbours that are folded as one row; longer rows are divided.
   std::int64_t longest() const { return longest_; }
   /// True if elements that are not neighbours are folded several at a time.
-  bool foldsApart() const { return program_.fold.lanes > 1 && !goesOneByOne(); }
+  bool foldsApart() const { return program_.fold.lanes > 1 && !foldsElementwise(); }
 
   /// True if one call can fold several consecutive leaves of `columns` columns.
   bool foldsLeavesTogether(std::int64_t columns) const {
-    return program_.layout.isDirect() && !goesOneByOne() && columns % program_.fold.lanes == 0;
+    return program_.layout.isDirect() && !foldsElementwise() && columns % program_.fold.lanes == 0;
   }
   /// Folds `leaves` leaves from x on, a power of 2. All columns start anew; FoldFunction says where they are
   /// in `state`.
@@ -43,7 +43,9 @@ class LeafFolder {
   void foldInto(StateColumns& state, std::int64_t first, std::int64_t x, std::int64_t count, Start start);
 
  private:
-  bool goesOneByOne() const { return program_.layout.goesByElement() || program_.layout.hasGathers(); }
+  bool foldsElementwise() const {
+    return program_.layout.needsElementwiseCalls() || program_.layout.hasGathers();
+  }
   /// How a call of the object code divides its elements.
   struct Division {
     std::int64_t columns, rounds, leaves;

@@ -109,7 +109,8 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
     made.firstBorder = firstBorderOf(kernel, slot.parameter);
   } else {
     isDirect_ = isDirect_ && made.isInPlace;
-    goesByElement_ = goesByElement_ || (made.kind == Kind::Input && parameter.usesIndex && isFitted);
+    needsElementwiseCalls_ =
+        needsElementwiseCalls_ || (made.kind == Kind::Input && parameter.usesIndex && isFitted);
   }
   constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
@@ -176,8 +177,8 @@ SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t
       scratch_(rows * width_, memory_.get()) {
   for (const Slot& slot : layout.slots()) {
     const bool isAtEndsAlone = slot.isInPlace && slot.kind != SlotLayout::Kind::Gather;
-    const std::int64_t laidOut = std::min(layout.width(), isAtEndsAlone ? mostAtEnds : most);
-    const std::int64_t elements = laidOut + native::mostLanes + 2 * slot.reach;
+    const std::int64_t staged = std::min(layout.width(), isAtEndsAlone ? mostAtEnds : most);
+    const std::int64_t elements = staged + native::mostLanes + 2 * slot.reach;
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
       const ScalarBytes bytes = layout.arrays()[a].bytes;
       const std::size_t ofRow =
@@ -252,7 +253,7 @@ void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, st
     switch (slot.kind) {
       case SlotLayout::Kind::Input:
         if (slot.isInPlace && step == 1 && x + room <= layout_.width()) break;
-        for (std::size_t row = 0; row < placed_; ++row) layOutInput(row, s, x, {count, room}, step);
+        for (std::size_t row = 0; row < placed_; ++row) stageInput(row, s, x, {count, room}, step);
         break;
       case SlotLayout::Kind::Output:
         for (std::size_t row = slot.isInPlace && count == room ? wanted_ : 0; row < placed_; ++row)
@@ -260,9 +261,9 @@ void SlotArrays::place(std::int64_t x, std::int64_t count, std::int64_t room, st
         break;
       case SlotLayout::Kind::Gather:
         if (x < slot.reach || x + room + slot.reach > slot.argument->extent[0]) {
-          layOutGather(s, x, {count, room}, /*areOutsideAlone=*/false);
+          stageGather(s, x, {count, room}, /*areOutsideAlone=*/false);
         } else if (isAnyOutside_) {
-          layOutGather(s, x, {count, room}, /*areOutsideAlone=*/true);
+          stageGather(s, x, {count, room}, /*areOutsideAlone=*/true);
         }
         break;
     }
@@ -287,8 +288,8 @@ void SlotArrays::storeOutputs(std::int64_t x, std::int64_t count) {
   }
 }
 
-void SlotArrays::layOutInput(std::size_t row, std::size_t s, std::int64_t x, const Length& length,
-                             std::int64_t step) {
+void SlotArrays::stageInput(std::size_t row, std::size_t s, std::int64_t x, const Length& length,
+                            std::int64_t step) {
   const Slot& slot = layout_.slots()[s];
   const Argument& argument = *slot.argument;
   const std::int64_t count = length.count;
@@ -317,19 +318,19 @@ void SlotArrays::layOutInput(std::size_t row, std::size_t s, std::int64_t x, con
 
 /// Lays out elements with their neighbours. The row below one row of the domain is the middle row for the
 /// next one, so that it is laid out only once.
-void SlotArrays::layOutGather(std::size_t s, std::int64_t x, const Length& length, bool areOutsideAlone) {
+void SlotArrays::stageGather(std::size_t s, std::int64_t x, const Length& length, bool areOutsideAlone) {
   const Slot& slot = layout_.slots()[s];
   const std::size_t anew = slot.below ? 1 : wanted_;
   if (isAnyOutside_) {
     for (std::size_t row = 0; row < anew; ++row) {
       if (rowOf(row, s).isOutside) {
-        layOutBorder(row, slot, length.room);
+        stageBorder(row, slot, length.room);
       } else if (!areOutsideAlone) {
-        layOutNeighbors(slot, row, row + 1, x, length);
+        stageNeighbors(slot, row, row + 1, x, length);
       }
     }
   } else {
-    layOutNeighbors(slot, 0, anew, x, length);
+    stageNeighbors(slot, 0, anew, x, length);
   }
   const std::size_t width = width_, wanted = wanted_, placed = placed_;
   for (std::size_t c = 0; c < slot.arrayCount; ++c) {
@@ -343,8 +344,8 @@ void SlotArrays::layOutGather(std::size_t s, std::int64_t x, const Length& lengt
 }
 
 /// Lays out the rows from `begin` to `end`.
-void SlotArrays::layOutNeighbors(const Slot& slot, std::size_t begin, std::size_t end, std::int64_t x,
-                                 const Length& length) {
+void SlotArrays::stageNeighbors(const Slot& slot, std::size_t begin, std::size_t end, std::int64_t x,
+                                const Length& length) {
   const std::int64_t around = 2 * slot.reach;
   const std::size_t width = width_, count = end - begin;
   for (std::size_t c = 0; c < slot.arrayCount; ++c) {
@@ -361,14 +362,14 @@ void SlotArrays::layOutNeighbors(const Slot& slot, std::size_t begin, std::size_
     });
     void** const arrays = &arrays_[at];
     for (std::size_t r = 0; r < count; ++r) {
-      std::byte* const laidOut = scratch[r * width];
-      if (length.count < length.room) padScalars(laidOut, bytes, neighbors.count, length.room + around);
-      arrays[r * width] = laidOut + slot.reach * static_cast<std::int64_t>(bytes);
+      std::byte* const staged = scratch[r * width];
+      if (length.count < length.room) padScalars(staged, bytes, neighbors.count, length.room + around);
+      arrays[r * width] = staged + slot.reach * static_cast<std::int64_t>(bytes);
     }
   }
 }
 
-void SlotArrays::layOutBorder(std::size_t row, const Slot& slot, std::int64_t room) {
+void SlotArrays::stageBorder(std::size_t row, const Slot& slot, std::int64_t room) {
   for (std::size_t c = 0; c < slot.arrayCount; ++c) {
     const std::size_t at = placeOf(row, slot.firstArray + c);
     const std::size_t bytes = layout_.arrays()[slot.firstArray + c].bytes.read;

@@ -25,7 +25,7 @@
 namespace sk {
 
 /// The most elements that are laid out at a time, so that they stay in the nearest cache.
-inline constexpr std::int64_t mostLaidOut = 512;
+inline constexpr std::int64_t mostStaged = 512;
 
 constexpr std::int64_t roundUp(std::int64_t count, std::int64_t lanes) {
   return (count + lanes - 1) & -lanes;
@@ -74,7 +74,7 @@ class SlotLayout {
   bool isDirect() const { return isDirect_; }
   /// True if the code uses the index in an input that is correct only in the first lane. Elements are then
   /// computed one by one.
-  bool goesByElement() const { return goesByElement_; }
+  bool needsElementwiseCalls() const { return needsElementwiseCalls_; }
   bool hasGathers() const { return hasGathers_; }
   /// The elements of a row for which gathers read only neighbours in bounds along x.
   native::Range inside() const { return inside_; }
@@ -95,7 +95,7 @@ class SlotLayout {
   std::pmr::vector<Array> arrays_;
   std::pmr::vector<Value> borders_;
   bool isDirect_ = true;
-  bool goesByElement_ = false;
+  bool needsElementwiseCalls_ = false;
   bool hasGathers_ = false;
   native::Range inside_{0, std::numeric_limits<std::int64_t>::max()};
 };
@@ -151,13 +151,12 @@ class SlotArrays {
   Row& rowOf(std::size_t row, std::size_t slot) { return rows_[row * slots_ + slot]; }
   std::size_t placeOf(std::size_t row, std::size_t array) const { return row * width_ + array; }
 
-  void layOutInput(std::size_t row, std::size_t slot, std::int64_t x, const Length& length,
-                   std::int64_t step);
+  void stageInput(std::size_t row, std::size_t slot, std::int64_t x, const Length& length, std::int64_t step);
   /// In all rows, or only in those that are out of bounds.
-  void layOutGather(std::size_t slot, std::int64_t x, const Length& length, bool areOutsideAlone);
-  void layOutNeighbors(const Slot& slot, std::size_t begin, std::size_t end, std::int64_t x,
-                       const Length& length);
-  void layOutBorder(std::size_t row, const Slot& slot, std::int64_t room);
+  void stageGather(std::size_t slot, std::int64_t x, const Length& length, bool areOutsideAlone);
+  void stageNeighbors(const Slot& slot, std::size_t begin, std::size_t end, std::int64_t x,
+                      const Length& length);
+  void stageBorder(std::size_t row, const Slot& slot, std::int64_t room);
   const void* borderOf(const Slot& slot, std::size_t component) const;
   /// Makes the code use the slot's scratch memory.
   void useScratch(std::size_t row, const Slot& slot);

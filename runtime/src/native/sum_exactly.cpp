@@ -49,9 +49,9 @@ template <class Real>
 class FactorAdder {
  public:
   explicit FactorAdder(const SlotLayout& layout)
-      : longest_(layout.isDirect() ? layout.width() : mostLaidOut),
+      : longest_(layout.isDirect() ? layout.width() : mostStaged),
         factors_(layout.slots().size()),
-        arrays_(layout, mostLaidOut, 0) {}
+        arrays_(layout, mostStaged, 0) {}
 
   void add(Accumulator<Real>& sum, const Extents& first, std::int64_t count) {
     arrays_.moveTo(first);
@@ -82,7 +82,7 @@ class TermAdder {
 
   void add(Accumulator<Real>& sum, Extents first, std::int64_t count) {
     for (std::int64_t now = 0; count > 0; first[0] += now, count -= now) {
-      now = std::min(count, mostLaidOut);
+      now = std::min(count, mostStaged);
       runner_.runChunk(first, now, [&](void* const* arrays) { addOutputs(sum, now, arrays); });
     }
   }

@@ -19,7 +19,7 @@ struct Variable {
   std::string name;
   Type type;
   int slot = 0;
-  int length = 0;            ///< elements of an array; 0 if it is none
+  int length = 0;  ///< elements of an array; 0 if it is none
   bool isWritable = false;
 };
 
@@ -27,10 +27,10 @@ struct Gather {
   std::string name;
   Type type;
   int rank = 1;
-  int stream = 0;            ///< index into Frame::streams
+  int stream = 0;  ///< index into Frame::streams
   sk::program::Boundary boundary = sk::program::Boundary::Clamp;
   Value border = {};
-  bool hasNeighbors = false; ///< whether its rank is the domain's
+  bool hasNeighbors = false;  ///< whether its rank is the domain's
 };
 
 /// A helper function, whose parameters and result are values.
@@ -38,7 +38,7 @@ struct Function {
   std::string name;
   Type result;
   std::vector<Variable> parameters;
-  std::function<Value(Frame&)> call;   ///< expects the arguments in the parameters' slots
+  std::function<Value(Frame&)> call;  ///< expects the arguments in the parameters' slots
 };
 
 struct Scope {

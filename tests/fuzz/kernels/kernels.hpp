@@ -48,7 +48,7 @@ class RandomKernel {
   std::vector<Parameter> parameters_;
   std::vector<std::int64_t> domain_;
   std::vector<HostStream> streams_;
-  std::vector<std::pair<int, Value>> constants_;   ///< slots and values of global constants
+  std::vector<std::pair<int, Value>> constants_;  ///< slots and values of global constants
   std::function<Flow(Frame&)> body_;
   int slots_ = 0;
   std::string text_;

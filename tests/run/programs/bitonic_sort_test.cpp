@@ -19,7 +19,8 @@ template <class T>
 void sort(sk::Stream<T>& items) {
   const auto n = static_cast<int>(items.size());
   for (int run = 1; run < n; run *= 2) {
-    bitonic_sort::exchange(2 * run - 1, items, items);   // compares each element with its mirror image in the other run
+    bitonic_sort::exchange(2 * run - 1, items,
+                           items);   // compares each element with its mirror image in the other run
     for (int distance = run / 2; distance > 0; distance /= 2) {
       bitonic_sort::exchange(distance, items, items);
     }

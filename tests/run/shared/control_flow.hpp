@@ -205,7 +205,7 @@ inline int doWhileEffect(int x, int y) {
 inline int doWhileContinue(int x, int y) {
   int i = 0, sum = 0;
   do {
-    if (i == x) continue;   // goes to the condition, whose side effect still happens
+    if (i == x) continue;  // goes to the condition, whose side effect still happens
     sum += i + y;
   } while (++i < 7);
   return sum * 10 + i;

@@ -36,7 +36,7 @@ inline int floatTests(float x, float y) {
 }
 inline int intFromSum(float x, float y) {
   int sum = 3;
-  sum += x;          // computed in float
+  sum += x;  // computed in float
   sum -= y;
   return sum;
 }

@@ -81,14 +81,14 @@ inline int compoundOperators(int x, int y) {
 
 inline int compoundRightFirst(int x, int y) {
   int a = x;
-  a += (a = y) + 1;        // C++17: the right side first
+  a += (a = y) + 1;  // C++17: the right side first
   return a;
 }
 
 inline int assignRightFirst(int x, int y) {
   int a[3] = {1, 2, 3};
   int i = 0;
-  a[i] = (i = 2) + x;      // into a[2]
+  a[i] = (i = 2) + x;  // into a[2]
   a[bump(i) - 2] = i + y;  // the right side sees i before the left side changes it
   return a[0] + 10 * a[1] + 100 * a[2] + 1000 * i;
 }
@@ -169,7 +169,7 @@ inline int three(int a, int b, int c) { return a + 10 * b + 100 * c; }
 inline int earlierArgumentKept(int x, int y) {
   int i = x;
   int first = i, second = i += y, third = i *= 2;
-  int braces[3] = {i, ++i, i++};   // braces evaluate from left to right
+  int braces[3] = {i, ++i, i++};  // braces evaluate from left to right
   return three(first, second, third) + 3 * braces[0] + 5 * braces[1] + 7 * braces[2] + i;
 }
 
@@ -194,7 +194,7 @@ inline int callInCondition(int x, int y) {
   return i * 100 + turns;
 }
 
-inline int tail(int& i) { return bump(i) + i * 10; }   // the left operand changes what the right one reads
+inline int tail(int& i) { return bump(i) + i * 10; }  // the left operand changes what the right one reads
 inline int callInReturn(int x, int y) {
   int i = x;
   int r = add(i, y);
@@ -245,7 +245,7 @@ inline int referenceMember(int x, int y) {
 inline int referenceAndResult(int x, int y) {
   int a = x;
   a = add(a, y) * 2;
-  a += bump(a);            // the right side first: (a + 1) + a
+  a += bump(a);  // the right side first: (a + 1) + a
   return a;
 }
 
@@ -266,7 +266,7 @@ inline int fill(int& a, int& b) {
 }
 inline int resultIntoArgument(int x, int y) {
   int a = x, b = y;
-  a = fill(a, b);          // the result is assigned last
+  a = fill(a, b);  // the result is assigned last
   return a * 100 + b;
 }
 
@@ -277,7 +277,7 @@ inline void setBoth(int& element, int& index) {
 inline int elementAndIndexByReference(int x, int y) {
   int a[3] = {x, y, 3};
   int i = 0;
-  setBoth(a[i], i);        // a[0], though i changes
+  setBoth(a[i], i);  // a[0], though i changes
   return a[0] + 100 * a[1] + 10000 * a[2] + i;
 }
 

@@ -35,7 +35,8 @@ inline int logic(float x, float y) {
   return inside + 2 * outside + 4 * !inside + 8 * !outside + 16 * (inside != (y < 0));
 }
 inline int orderOfMinimum(float x, float y) {
-  if (x != x || y != y) return 0;  // Mesa compiles `x < y ? x : y` to minNum, which ignores NaN, as GLSL allows
+  if (x != x || y != y)
+    return 0;  // Mesa compiles `x < y ? x : y` to minNum, which ignores NaN, as GLSL allows
   float least = x < y ? x : y, most = x < y ? y : x;
   return (least == x) + 2 * (most == x) + 4 * (least == y) + 8 * (most == y);
 }

@@ -16,9 +16,9 @@
 namespace sk {
 
 struct Layout {
-  assemble::RegionLayout whole;             ///< of all elements
-  assemble::TextureShape texture;        ///< of each plane; all 0 if the stream is empty
-  std::vector<assemble::Rect> draws;     ///< the rectangles of a pass over the whole stream
+  assemble::RegionLayout whole;  ///< of all elements
+  assemble::TextureShape texture;  ///< of each plane; all 0 if the stream is empty
+  std::vector<assemble::Rect> draws;  ///< the rectangles of a pass over the whole stream
 };
 
 /// The layout of a stream of this shape. `packed`: four elements per texel, if the stream is not empty; its

@@ -29,8 +29,8 @@ OutputTargets::OutputTargets(GlDevice& device, const program::Kernel& kernel,
     if (!isOutput(i)) {
       continue;
     }
-    if (wayOf(i) != Way::Direct) {
-      addAside(i);
+    if (placementOf(i) != Placement::Direct) {
+      addNewPlanes(i);
       continue;
     }
     for (RenderTarget& plane : operands_[i].planes) {
@@ -39,7 +39,7 @@ OutputTargets::OutputTargets(GlDevice& device, const program::Kernel& kernel,
   }
 }
 
-OutputTargets::Way OutputTargets::wayOf(std::size_t output) const {
+OutputTargets::Placement OutputTargets::placementOf(std::size_t output) const {
   bool isReadToo = false;
   bool isWrittenBefore = false;
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
@@ -51,21 +51,21 @@ OutputTargets::Way OutputTargets::wayOf(std::size_t output) const {
   const RegionLayout& regionLayout = operands_[output].regionLayout;
   const bool isSame = haveSameTexels(regionLayout, domain_);
   if (!isWrittenBefore && isSame && !isReadToo) {
-    return Way::Direct;
+    return Placement::Direct;
   }
   const bool isWhole = !regionLayout.view && !domain_.view;
-  return isWhole && !isWrittenBefore ? Way::Swap : Way::Copy;
+  return isWhole && !isWrittenBefore ? Placement::Swap : Placement::Copy;
 }
 
 /// Adds new planes with the layout of the domain, and prepares the copy from there, so that it cannot fail
 /// later.
-void OutputTargets::addAside(std::size_t output) {
+void OutputTargets::addNewPlanes(std::size_t output) {
   const program::Element& held = glStream(arguments_[output].region).held();
-  aside_.resize(arguments_.size());
-  const bool isSwapped = wayOf(output) == Way::Swap;
-  aside_[output] = std::make_unique<Aside>(device_);
-  if (isSwapped) aside_[output]->layout = layout_;
-  PlanesLease& drawn = aside_[output]->drawn;
+  newPlanes_.resize(arguments_.size());
+  const bool isSwapped = placementOf(output) == Placement::Swap;
+  newPlanes_[output] = std::make_unique<NewPlanes>(device_);
+  if (isSwapped) newPlanes_[output]->layout = layout_;
+  PlanesLease& drawn = newPlanes_[output]->drawn;
   drawn.add(domain_.packed ? assemble::fourOf(held.fields.front().scalar) : held, layout_.texture,
             "an output that the kernel reads too");
   for (RenderTarget& plane : drawn.planes) {
@@ -78,8 +78,8 @@ std::vector<std::span<RenderTarget>> OutputTargets::planesOfOutputs() const {
   std::vector<std::span<RenderTarget>> planes(arguments_.size());
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     if (isOutput(i)) {
-      const bool isAside = i < aside_.size() && aside_[i];
-      planes[i] = isAside ? std::span<RenderTarget>(aside_[i]->drawn.planes) : operands_[i].planes;
+      const bool isNew = i < newPlanes_.size() && newPlanes_[i];
+      planes[i] = isNew ? std::span<RenderTarget>(newPlanes_[i]->drawn.planes) : operands_[i].planes;
     }
   }
   return planes;
@@ -87,17 +87,17 @@ std::vector<std::span<RenderTarget>> OutputTargets::planesOfOutputs() const {
 
 void OutputTargets::begin() noexcept {
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
-    const bool isAside = i < aside_.size() && aside_[i];
-    if (isOutput(i) && !isAside) glStream(arguments_[i].region).isBroken = true;
+    const bool isNew = i < newPlanes_.size() && newPlanes_[i];
+    if (isOutput(i) && !isNew) glStream(arguments_[i].region).isBroken = true;
   }
 }
 
 void OutputTargets::copy() {
-  for (std::size_t i = 0; i < aside_.size(); ++i) {
-    if (!aside_[i] || wayOf(i) == Way::Swap) continue;
+  for (std::size_t i = 0; i < newPlanes_.size(); ++i) {
+    if (!newPlanes_[i] || placementOf(i) == Placement::Swap) continue;
     GlStream& stream = glStream(arguments_[i].region);
     stream.isBroken = true;
-    copyRegion(device_, stream.held(), aside_[i]->drawn.planes, domain_, stream.planes,
+    copyRegion(device_, stream.held(), newPlanes_[i]->drawn.planes, domain_, stream.planes,
                operands_[i].regionLayout);
   }
 }
@@ -106,9 +106,9 @@ void OutputTargets::exchange() noexcept {
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     if (!isOutput(i)) continue;
     GlStream& stream = glStream(arguments_[i].region);
-    if (i < aside_.size() && aside_[i] && wayOf(i) == Way::Swap) {
-      std::swap(stream.planes, aside_[i]->drawn.planes);
-      stream.layout = std::move(aside_[i]->layout);
+    if (i < newPlanes_.size() && newPlanes_[i] && placementOf(i) == Placement::Swap) {
+      std::swap(stream.planes, newPlanes_[i]->drawn.planes);
+      stream.layout = std::move(newPlanes_[i]->layout);
       stream.labelPlanes();
     }
     stream.setWritten();

@@ -52,7 +52,7 @@ class OutputTargets {
 
  private:
   /// How the elements of an output reach its stream.
-  enum class Way {
+  enum class Placement {
     Direct,  ///< drawn in place
     /// Drawn to new planes, which replace the stream's: the call reads these, or they have another layout.
     Swap,
@@ -65,14 +65,14 @@ class OutputTargets {
     return (role == program::Role::Output || role == program::Role::Accumulator) && isNeeded(i);
   }
   bool isNeeded(std::size_t i) const { return assemble::isNeeded(kernel_.parameters[i], specs_); }
-  Way wayOf(std::size_t output) const;
-  void addAside(std::size_t output);
+  Placement placementOf(std::size_t output) const;
+  void addNewPlanes(std::size_t output);
   /// The new planes of an output that is not drawn in place.
-  struct Aside {
-    explicit Aside(GlDevice& device) : drawn(device) {}
+  struct NewPlanes {
+    explicit NewPlanes(GlDevice& device) : drawn(device) {}
 
     PlanesLease drawn;
-    Layout layout;  ///< of the stream after Way::Swap
+    Layout layout;  ///< of the stream after Placement::Swap
   };
 
   GlDevice& device_;
@@ -84,7 +84,7 @@ class OutputTargets {
   const Layout& layout_;
   std::array<RenderTarget*, gl::maxDrawBuffers> targets_{};
   std::size_t count_ = 0;
-  std::vector<std::unique_ptr<Aside>> aside_;  ///< one per argument, null if drawn in place; or empty
+  std::vector<std::unique_ptr<NewPlanes>> newPlanes_;  ///< one per argument, null if drawn in place; or empty
 };
 
 }  // namespace sk

@@ -248,7 +248,7 @@ void ProgramCache::finish(KernelProgram& made, const program::Kernel& kernel, Pr
   if (!made.program) {
     log.clear();
     device_.throwIfLost();
-    gl::Program::build(device_.bound, {begun.sources().vertex, withTellingLines(begun.sources().main)}, log);
+    gl::Program::build(device_.bound, {begun.sources().vertex, withEncodedLines(begun.sources().main)}, log);
     throw Error(
         fmt::format("{}: the driver of '{}' refuses the kernel's {} program:\n{}", kernel.name,
                     device_.capabilities.renderer, profile_.name, withSourceNames(log, kernel.sources)),

@@ -48,7 +48,7 @@ std::string changeLines(std::string_view text, Change change) {
   return changed;
 }
 
-std::string withTellingLine(std::string_view text) {
+std::string withEncodedLine(std::string_view text) {
   std::string_view rest = text;
   if (take(rest, "#line ")) {
     const std::optional<std::uint32_t> line = takeNumber(rest);
@@ -86,7 +86,7 @@ std::string withSourceName(std::string_view text, std::span<const std::string_vi
 
 }  // namespace
 
-std::string withTellingLines(std::string_view program) { return changeLines(program, withTellingLine); }
+std::string withEncodedLines(std::string_view program) { return changeLines(program, withEncodedLine); }
 
 std::string withSourceNames(std::string_view log, std::span<const std::string_view> sources) {
   return changeLines(log, [&](std::string_view line) { return withSourceName(line, sources); });

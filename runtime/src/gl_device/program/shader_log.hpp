@@ -12,7 +12,7 @@
 namespace sk {
 
 /// The program with each `#line N K` replaced by `#line M`, where M encodes N and K.
-std::string withTellingLines(std::string_view program);
+std::string withEncodedLines(std::string_view program);
 
 /// The log of such a program with each source location at the start of a line replaced by "FILE:LINE". Source
 /// k is sources[k - 1], and source 0 is the assembled program itself. Supports the three notations of

@@ -12,7 +12,7 @@ const std::array<std::string_view, 2> sources{"heat.sk", "stencil.sk"};
 }  // namespace
 
 TEST_CASE("line directives tell the source in the line") {
-  CHECK(sk::withTellingLines("#version 330\n#line 7 1\nx\n#line 1 0\n#line 3\ny") ==
+  CHECK(sk::withEncodedLines("#version 330\n#line 7 1\nx\n#line 1 0\n#line 3\ny") ==
         "#version 330\n#line 1048583\nx\n#line 1\n#line 3\ny");
 }
 

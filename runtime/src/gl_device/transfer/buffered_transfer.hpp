@@ -75,9 +75,9 @@ void readToBuffer(GlDevice& device, RenderTarget& plane, const assemble::RegionL
                   std::size_t offset);
 
 /// Copies all elements of a region, row-major in host memory, to its planes, without waiting for the device.
-/// The caller may change `elements` afterwards. Throws sk::Error if memory is exhausted. Sets `isTorn` before
+/// The caller may change `elements` afterwards. Throws sk::Error if memory is exhausted. Sets `isBroken` before
 /// the planes change.
 void writeBuffered(GlDevice& device, const program::Element& element, std::span<RenderTarget> planes,
-                   const assemble::RegionLayout& region, const std::byte* elements, bool& isTorn);
+                   const assemble::RegionLayout& region, const std::byte* elements, bool& isBroken);
 
 }  // namespace sk

@@ -67,7 +67,7 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
   stream.write(region, given.data());
   {
     const DeviceScope scope(device);
-    const GlStream::Travelling what = stream.travelling(region);
+    const GlStream::TransferRegion what = stream.transferRegion(region);
     BufferedRead read(device);
     const std::size_t part = read.add(*what.element, stream.planes, what.place);
     const std::size_t again = read.add(*what.element, stream.planes, what.place);
@@ -85,7 +85,7 @@ void checkRegion(GlDevice& device, const program::Element& element, const Stream
   given = bitsOf(element, count);
   {
     const DeviceScope scope(device);
-    const GlStream::Travelling what = stream.travelling(region);
+    const GlStream::TransferRegion what = stream.transferRegion(region);
     writeBuffered(device, *what.element, stream.planes, what.place, given.data(), stream.isBroken);
     stream.isBroken = false;
   }

@@ -32,7 +32,7 @@ PendingRead::PendingRead(GlDevice& device, GlStream& stream, const StreamRegion&
     all_->list.push_back(this);
   }
   try {
-    const GlStream::Travelling what = stream.travelling(region);
+    const GlStream::TransferRegion what = stream.transferRegion(region);
     const program::Element& own = held_ ? held_->element : element_;  // the stream's may be destroyed first
     read_.emplace(device).add(what.element == &stream.held() ? own : *what.element, stream.planes,
                               what.place);

@@ -46,15 +46,15 @@ void forEachBand(const Rect& rect, std::size_t texelBytes, Visit&& visit) {
 /// Transfers the texels of one plane.
 class PlaneTransfer {
  public:
-  /// `isTorn`, which is set before texels are written, may be null if none are.
+  /// `isBroken`, which is set before texels are written, may be null if none are.
   PlaneTransfer(GlDevice& device, const Element& element, const Field& field, RenderTarget& renderTarget,
-                bool* isTorn)
+                bool* isBroken)
       : device_(device),
         element_(element),
         field_(field),
         renderTarget_(renderTarget),
         format_(renderTarget.texture.format()),
-        isTorn_(isTorn) {}
+        isBroken_(isBroken) {}
 
   void write(const Rect& rect, const std::byte* elements) {
     if (areTexels(element_)) {
@@ -125,7 +125,7 @@ class PlaneTransfer {
   }
 
   void writeTexels(const Rect& rect, const std::byte* texels) {
-    *isTorn_ = true;
+    *isBroken_ = true;
     forEachLayer(rect, layerRows(), [&](const Rect& part, std::int32_t layer, std::int32_t first) {
       renderTarget_.texture.write(device_.bound, part, layer, texels + bytesOfRows(rect, first));
     });
@@ -162,7 +162,7 @@ class PlaneTransfer {
   const Field& field_;
   RenderTarget& renderTarget_;
   const gl::Format& format_;
-  bool* isTorn_;
+  bool* isBroken_;
   std::vector<std::byte> rows_;
 };
 
@@ -193,9 +193,9 @@ bool readsByRows(const RegionLayout& region, std::size_t texelBytes) {
 }
 
 void upload(GlDevice& device, const Element& element, std::span<RenderTarget> planes,
-            const RegionLayout& region, const std::byte* elements, bool& isTorn) {
+            const RegionLayout& region, const std::byte* elements, bool& isBroken) {
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    PlaneTransfer plane(device, element, element.fields[i], planes[i], &isTorn);
+    PlaneTransfer plane(device, element, element.fields[i], planes[i], &isBroken);
     if (goesByRows(region, planes[i].texture.format().texelBytes(), uploadCost, 2)) {
       plane.writeByRows(region, elements);
     } else {

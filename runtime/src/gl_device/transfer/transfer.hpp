@@ -20,10 +20,10 @@ gl::Transfer readTransferOf(GlDevice& device, RenderTarget& plane);
 /// Whether reading the rows that contain a region is cheaper than reading each of its runs.
 bool readsByRows(const assemble::RegionLayout& region, std::size_t texelBytes);
 
-/// Copies all elements of a region, row-major in host memory, to its planes. Sets `isTorn` before they
+/// Copies all elements of a region, row-major in host memory, to its planes. Sets `isBroken` before they
 /// change.
 void upload(GlDevice& device, const program::Element& element, std::span<RenderTarget> planes,
-            const assemble::RegionLayout& region, const std::byte* elements, bool& isTorn);
+            const assemble::RegionLayout& region, const std::byte* elements, bool& isBroken);
 
 /// Copies all elements of a region from its planes to host memory, row-major. Waits for the device. Throws
 /// sk::Error like GlDevice::throwPendingError().
