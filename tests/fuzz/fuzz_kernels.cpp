@@ -83,10 +83,9 @@ void traceDeath(int signal) {
 bool isDriversDeath(const fuzz::Finding& finding) {
   std::istringstream frames(finding.log);
   for (std::string frame; std::getline(frames, frame);) {
-    if (frame.find("fuzz_kernels") != std::string::npos || frame.find("libc.so") != std::string::npos)
-      continue;
-    return frame.find("dri") != std::string::npos || frame.find("gallium") != std::string::npos ||
-           frame.find("libLLVM-1") != std::string::npos;
+    const std::string file = fs::path(frame.substr(0, frame.find('('))).filename().string();
+    if (file == "fuzz_kernels" || file.starts_with("libc.so")) continue;
+    return file.ends_with("_dri.so") || file.starts_with("libgallium") || file.starts_with("libLLVM-1");
   }
   return false;
 }
