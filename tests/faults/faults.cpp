@@ -6,7 +6,9 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <cstddef>
 #include <cstdlib>
+#include <limits>
 #include <new>
 #include <set>
 #include <string_view>
@@ -52,7 +54,7 @@ class InDriver {
   InDriver& operator=(const InDriver&) = delete;
 };
 
-// ---- the books -------------------------------------------------------------------------------------
+// ---- living objects ---------------------------------------------------------------------------------
 
 enum Object : std::uint8_t {
   Texture,
@@ -68,14 +70,15 @@ enum Object : std::uint8_t {
 constexpr std::array<std::string_view, 9> objectNames = {
     "texture", "framebuffer", "buffer", "sampler", "vertex array", "query", "shader", "program", "fence"};
 
-struct Books {
+struct Tracked {
   std::set<std::tuple<void*, Object, std::uintptr_t>> living;
   std::set<void*> contexts, lost;
   long wrong = 0, left = 0;
   GLenum error = GL_NO_ERROR;  ///< left by a fault, for glGetError
 };
-Books& books() {
-  static Books all;
+std::atomic<long> countedBlocks = 0;
+Tracked& tracked() {
+  static Tracked all;
   return all;
 }
 
@@ -119,11 +122,11 @@ void* currentContext() {
 
 /// Whether the current context is lost, be it by this call. If so, leaves an error.
 bool isLost() {
-  if (!armed.is && books().lost.empty()) return false;
+  if (!armed.is && tracked().lost.empty()) return false;
   const InDriver scope;
-  if (fails(Kind::Context)) books().lost.insert(currentContext());
-  if (!books().lost.contains(currentContext())) return false;
-  books().error = GL_CONTEXT_LOST;
+  if (fails(Kind::Context)) tracked().lost.insert(currentContext());
+  if (!tracked().lost.contains(currentContext())) return false;
+  tracked().error = GL_CONTEXT_LOST;
   return true;
 }
 
@@ -146,7 +149,7 @@ struct Failing<place, kind, R (*)(A...)> {
   static R call(A... arguments) {
     if (isLost()) return R();
     if (fails(kind)) {
-      books().error = GL_OUT_OF_MEMORY;
+      tracked().error = GL_OUT_OF_MEMORY;
       return R();
     }
     return Hook<place>::real(arguments...);
@@ -155,11 +158,11 @@ struct Failing<place, kind, R (*)(A...)> {
 
 void created(Object object, std::uintptr_t name) {
   const InDriver scope;
-  if (name != 0) books().living.emplace(currentContext(), object, name);
+  if (name != 0) tracked().living.emplace(currentContext(), object, name);
 }
 void deleted(Object object, std::uintptr_t name) {
   const InDriver scope;
-  if (name != 0 && books().living.erase({currentContext(), object, name}) == 0) ++books().wrong;
+  if (name != 0 && tracked().living.erase({currentContext(), object, name}) == 0) ++tracked().wrong;
 }
 
 template <auto* place, Object object>
@@ -182,14 +185,14 @@ void eraseOne(GLuint name) {
 // ---- functions with special behaviour --------------------------------------------------------------
 
 GLenum getError() {
-  if (books().error != GL_NO_ERROR) return std::exchange(books().error, GL_NO_ERROR);
+  if (tracked().error != GL_NO_ERROR) return std::exchange(tracked().error, GL_NO_ERROR);
   const InDriver scope;
-  return books().lost.contains(currentContext()) ? GL_NO_ERROR : Hook<&epoxy_glGetError>::real();
+  return tracked().lost.contains(currentContext()) ? GL_NO_ERROR : Hook<&epoxy_glGetError>::real();
 }
 
 GLenum getResetStatus() {
   const InDriver scope;
-  if (books().lost.contains(currentContext())) return GL_UNKNOWN_CONTEXT_RESET;
+  if (tracked().lost.contains(currentContext())) return GL_UNKNOWN_CONTEXT_RESET;
   return Hook<&epoxy_glGetGraphicsResetStatus>::real();
 }
 
@@ -250,15 +253,15 @@ GLenum checkFramebuffer(GLenum target) {
 EGLContext createContext(EGLDisplay display, EGLConfig config, EGLContext shared, const EGLint* attributes) {
   EGLContext const made = Hook<&epoxy_eglCreateContext>::real(display, config, shared, attributes);
   const InDriver scope;
-  if (made != EGL_NO_CONTEXT) books().contexts.insert(made);
+  if (made != EGL_NO_CONTEXT) tracked().contexts.insert(made);
   return made;
 }
 EGLBoolean destroyContext(EGLDisplay display, EGLContext context) {
   const InDriver scope;
-  books().contexts.erase(context);
-  books().lost.erase(context);
-  books().left += static_cast<long>(
-      std::erase_if(books().living, [&](const auto& object) { return std::get<0>(object) == context; }));
+  tracked().contexts.erase(context);
+  tracked().lost.erase(context);
+  tracked().left += static_cast<long>(
+      std::erase_if(tracked().living, [&](const auto& object) { return std::get<0>(object) == context; }));
   return Hook<&epoxy_eglDestroyContext>::real(display, context);
 }
 
@@ -275,15 +278,16 @@ struct PlainEgl<place, R (*)(A...)> {
   HOOK(glAttachShader)                                                                                       \
   HOOK(glBindBuffer)                                                                                         \
   HOOK(glBindBufferBase)                                                                                     \
-  HOOK(glBindBufferRange) HOOK(glBindFramebuffer) HOOK(glBindImageTexture) HOOK(glBindSampler)               \
-      HOOK(glBindTexture) HOOK(glBindVertexArray) HOOK(glBlendEquation) HOOK(glBlendEquationSeparate) HOOK(  \
-          glBlendEquationSeparatei) HOOK(glBlendFunc) HOOK(glBlendFuncSeparate) HOOK(glBlendFuncSeparatei)   \
-          HOOK(glClampColor) HOOK(glClipControl) HOOK(glClipControlEXT) HOOK(glColorMask) HOOK(              \
-              glColorMaski) HOOK(glDetachShader) HOOK(glDisable) HOOK(glDisablei) HOOK(glDrawBuffers)        \
-              HOOK(glEnable) HOOK(glEnablei) HOOK(glFinish) HOOK(glFlush) HOOK(glFramebufferTexture2D) HOOK( \
-                  glFramebufferTextureLayer) HOOK(glGetBooleani_v) HOOK(glGetBooleanv)                       \
-                  HOOK(glGetBufferParameteri64v) HOOK(glGetBufferSubData) HOOK(glGetFloati_v) HOOK(          \
-                      glGetFloatv) HOOK(glGetInteger64i_v) HOOK(glGetInteger64v) HOOK(glGetIntegeri_v)       \
+  HOOK(glBindBufferRange)                                                                                    \
+  HOOK(glBindFramebuffer)                                                                                    \
+  HOOK(glBindImageTexture) HOOK(glBindSampler) HOOK(glBindTexture) HOOK(glBindVertexArray) HOOK(             \
+      glBlendEquation) HOOK(glBlendEquationSeparate) HOOK(glBlendEquationSeparatei) HOOK(glBlendFunc)        \
+      HOOK(glBlendFuncSeparate) HOOK(glBlendFuncSeparatei) HOOK(glClampColor) HOOK(glClipControl) HOOK(      \
+          glClipControlEXT) HOOK(glColorMask) HOOK(glColorMaski) HOOK(glDetachShader) HOOK(glDisable)        \
+          HOOK(glDisablei) HOOK(glDrawBuffers) HOOK(glEnable) HOOK(glEnablei) HOOK(glFinish) HOOK(glFlush)   \
+              HOOK(glFramebufferTexture2D) HOOK(glFramebufferTextureLayer) HOOK(glGetBooleani_v) HOOK(       \
+                  glGetBooleanv) HOOK(glGetBufferParameteri64v) HOOK(glGetBufferSubData) HOOK(glGetFloati_v) \
+                  HOOK(glGetFloatv) HOOK(glGetInteger64i_v) HOOK(glGetInteger64v) HOOK(glGetIntegeri_v)      \
                       HOOK(glGetIntegerv) HOOK(glGetProgramBinary) HOOK(glGetProgramInfoLog) HOOK(           \
                           glGetProgramiv) HOOK(glGetQueryObjectui64v) HOOK(glGetQueryObjectuiv)              \
                           HOOK(glGetQueryiv) HOOK(glGetShaderInfoLog) HOOK(glGetShaderiv) HOOK(              \
@@ -306,14 +310,15 @@ struct PlainEgl<place, R (*)(A...)> {
                                                                           HOOK(glViewportIndexedf)           \
                                                                               HOOK(glViewportIndexedfv)
 
-#define PLAIN_EGL_FUNCTIONS                                                                                \
-  HOOK(eglBindAPI)                                                                                         \
-  HOOK(eglChooseConfig)                                                                                    \
-  HOOK(eglCreatePbufferSurface)                                                                            \
-  HOOK(eglDestroySurface)                                                                                  \
-  HOOK(eglGetCurrentContext) HOOK(eglGetCurrentDisplay) HOOK(eglGetCurrentSurface) HOOK(eglGetDisplay)     \
-      HOOK(eglGetError) HOOK(eglGetProcAddress) HOOK(eglInitialize) HOOK(eglMakeCurrent) HOOK(eglQueryAPI) \
-          HOOK(eglQueryString)
+#define PLAIN_EGL_FUNCTIONS                                                                \
+  HOOK(eglBindAPI)                                                                         \
+  HOOK(eglChooseConfig)                                                                    \
+  HOOK(eglCreatePbufferSurface)                                                            \
+  HOOK(eglDestroySurface)                                                                  \
+  HOOK(eglGetCurrentContext)                                                               \
+  HOOK(eglGetCurrentDisplay)                                                               \
+  HOOK(eglGetCurrentSurface) HOOK(eglGetDisplay) HOOK(eglGetError) HOOK(eglGetProcAddress) \
+      HOOK(eglInitialize) HOOK(eglMakeCurrent) HOOK(eglQueryAPI) HOOK(eglQueryString)
 
 }  // namespace
 
@@ -335,21 +340,23 @@ Fault::Fault(Kind kind, long number, bool isLasting) {
 }
 Fault::~Fault() {
   armed.is = mayFail = false;
-  if (books().lost.empty()) books().error = GL_NO_ERROR;
+  if (tracked().lost.empty()) tracked().error = GL_NO_ERROR;
 }
 bool Fault::hasFired() const { return armed.hasFired; }
 long Fault::passed() const { return armed.passed; }
 
-Census census() {
-  Census found{static_cast<long>(books().living.size()), static_cast<long>(books().contexts.size()),
-               books().wrong, books().left};
+LiveObjects liveObjects() {
+  LiveObjects found{static_cast<long>(tracked().living.size()), static_cast<long>(tracked().contexts.size()),
+                    tracked().wrong, tracked().left};
   std::array<int, objectNames.size()> counts{};
-  for (const auto& [context, object, name] : books().living) ++counts[object];
+  for (const auto& [context, object, name] : tracked().living) ++counts[object];
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] > 0) found.kinds += std::to_string(counts[i]) + " " + std::string(objectNames[i]) + " ";
   }
   return found;
 }
+
+long hostBlocks() { return countedBlocks; }
 
 void install() {
 #define HOOK(function) Hook<&epoxy_##function>::install(Plain<&epoxy_##function>::call);
@@ -413,10 +420,31 @@ bool failsForHost() noexcept {
   return armed.kind == Kind::HostOfAnyThread ? fails(armed.kind) : mayFail && fails(Kind::Host);
 }
 
+/// Precedes each block of operator new.
+struct alignas(std::max_align_t) BlockHeader {
+  bool isCounted = false;
+};
+
+void* allocateOrNull(std::size_t size) noexcept {
+  if (size > std::numeric_limits<std::size_t>::max() - sizeof(BlockHeader)) return nullptr;
+  void* const memory = std::malloc(sizeof(BlockHeader) + size);
+  if (memory == nullptr) return nullptr;
+  auto* const header = new (memory) BlockHeader{armed.is && mayFail && inDriver == 0};
+  countedBlocks += header->isCounted ? 1 : 0;
+  return header + 1;
+}
+
 void* allocate(std::size_t size) {
   if (failsForHost()) throw std::bad_alloc();
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  if (void* memory = allocateOrNull(size)) return memory;
   throw std::bad_alloc();
+}
+
+void deallocate(void* memory) noexcept {
+  if (memory == nullptr) return;
+  BlockHeader* const header = static_cast<BlockHeader*>(memory) - 1;
+  countedBlocks -= header->isCounted ? 1 : 0;
+  std::free(header);
 }
 
 }  // namespace
@@ -425,18 +453,16 @@ void* allocate(std::size_t size) {
 
 void* operator new(std::size_t size) { return faults::allocate(size); }
 void* operator new[](std::size_t size) { return faults::allocate(size); }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  return std::malloc(size == 0 ? 1 : size);
-}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return faults::allocateOrNull(size); }
 void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
-  return std::malloc(size == 0 ? 1 : size);
+  return faults::allocateOrNull(size);
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
-void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept { faults::deallocate(memory); }
+void operator delete[](void* memory) noexcept { faults::deallocate(memory); }
+void operator delete(void* memory, std::size_t) noexcept { faults::deallocate(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { faults::deallocate(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { faults::deallocate(memory); }
+void operator delete[](void* memory, const std::nothrow_t&) noexcept { faults::deallocate(memory); }
 
 // Native streams allocate their elements by it.
 extern "C" int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {

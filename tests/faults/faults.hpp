@@ -40,15 +40,19 @@ class Fault {
 /// Replaces the functions of GL and EGL. Call it once, before the first device.
 void install();
 
-struct Census {
+struct LiveObjects {
   long objects = 0;  ///< GL objects that are alive
   long contexts = 0;
   /// `wrong`: deletions of objects that were deleted before or belong to another context. `left`: objects that were not
   /// deleted before their context.
   long wrong = 0, left = 0;
   std::string kinds = {};  ///< how many objects of each kind are alive, as text
-  bool operator==(const Census&) const = default;
+  bool operator==(const LiveObjects&) const = default;
 };
-Census census();
+LiveObjects liveObjects();
+
+/// The number of blocks of host memory that operator new gave to the runtime on a test's thread while a fault was armed and that
+/// have not been freed.
+long hostBlocks();
 
 }  // namespace faults

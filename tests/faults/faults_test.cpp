@@ -169,19 +169,23 @@ sk::DeviceOptions optionsOf(const std::string& profile) {
 
 void tryOnGl(const std::string& profile, Kind kind, bool isLasting) {
   INFO(profile);
-  const Census before = census();
+  const LiveObjects before = liveObjects();
+  const long blocksBefore = hostBlocks();
   {
     sk::Device device(optionsOf(profile));
     sk::Device reference(optionsOf(profile));
     tryAll({device, reference}, kind, isLasting, true);
   }
-  CHECK(census() == before);
+  CHECK(liveObjects() == before);
+  CHECK(hostBlocks() == blocksBefore);
 }
 
 void tryToOpen(const sk::DeviceOptions& options, Kind kind, bool isLasting) {
-  const Census before = census();
+  const sk::Device first(options);  // makes what lives as long as the process
+  const LiveObjects before = liveObjects();
   for (long number = 1; number < 2000; ++number) {
     INFO(nameOf(kind) << " " << number);
+    const long blocksBefore = hostBlocks();
     std::optional<sk::Error> error;
     bool hasFired = false;
     {
@@ -191,9 +195,12 @@ void tryToOpen(const sk::DeviceOptions& options, Kind kind, bool isLasting) {
     }
     INFO((error ? error->what() : "no error"));
     CHECK((!error || error->kind() == ErrorKind::Device || mayThrow(kind, error->kind())));
-    CHECK(census() == before);
+    CHECK(liveObjects() == before);
+    const bool hasThrown = error.has_value();
+    error.reset();
+    CHECK(hostBlocks() == blocksBefore);
     if (hasFired) continue;
-    CHECK_FALSE(error);
+    CHECK_FALSE(hasThrown);
     CHECK(number > 1);
     return;
   }
@@ -229,9 +236,13 @@ TEST_CASE("a device with GL survives every lack of host memory", "[gl][host]") {
 
 TEST_CASE("a native device survives every lack of host memory", "[native][host]") {
   for (const bool isLasting : {false, true}) {
-    sk::Device device = sk::Device::native();
-    sk::Device reference = sk::Device::native();
-    tryAll({device, reference}, Kind::HostOfAnyThread, isLasting, false);
+    const long blocksBefore = hostBlocks();
+    {
+      sk::Device device = sk::Device::native();
+      sk::Device reference = sk::Device::native();
+      tryAll({device, reference}, Kind::HostOfAnyThread, isLasting, false);
+    }
+    CHECK(hostBlocks() == blocksBefore);
   }
 }
 
@@ -253,7 +264,7 @@ std::vector<std::function<void()>> usesOf(Scene& scene, const bool& isLost) {
 /// Loses the context at GL call `number`. False if there are fewer calls.
 bool loseContext(const std::string& profile, long number) {
   INFO("call " << number);
-  const Census before = census();
+  const LiveObjects before = liveObjects();
   {
     sk::Device device(optionsOf(profile));
     Scene scene(device, 8);
@@ -275,7 +286,7 @@ bool loseContext(const std::string& profile, long number) {
     const std::optional<sk::Error> atEnd = errorOf([&] { early.get(); });
     CHECK((!atEnd || atEnd->kind() == ErrorKind::Lost));
   }
-  CHECK(census() == before);
+  CHECK(liveObjects() == before);
   return true;
 }
 

@@ -138,7 +138,7 @@ TEST_CASE("a trace that cannot begin is an error of the device", "[disk]") {
   const Folder folder;
   const std::string file = folder.file("trace.json");
   const Variable trace("SK_TRACE", file);
-  const Census before = census();
+  const LiveObjects before = liveObjects();
   for (const char* name : {"native", "gl"}) {
     const FullDisk full(10);
     bool hasThrown = false;
@@ -151,7 +151,7 @@ TEST_CASE("a trace that cannot begin is an error of the device", "[disk]") {
     }
     CHECK(hasThrown);
   }
-  CHECK(census() == before);
+  CHECK(liveObjects() == before);
 }
 
 TEST_CASE("a trace stays whole where memory is lacking", "[disk][host]") {

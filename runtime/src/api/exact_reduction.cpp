@@ -101,7 +101,8 @@ void reduceExactly(const ResolvedReduction& call) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Parameter& parameter = call.reduction.fold.parameters[i];
     if (parameter.role != Role::Accumulator) continue;
-    values.emplace_back(call.device.createStream(*parameter.element, {1}, Storage::Single).release());
+    detail::StreamOwner value(call.device.createStream(*parameter.element, {1}, Storage::Single).release());
+    values.push_back(std::move(value));
     all[i] = {.region = detail::wholeRegion(values.back().get())};
   }
   reduceToStreams(call.of(call.reduction, all, {}));

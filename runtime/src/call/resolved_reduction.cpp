@@ -2,6 +2,7 @@
 #include "call/resolved_reduction.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "device/device_state.hpp"
 
@@ -25,8 +26,9 @@ Argument TemporaryResults::add(const program::Element& element) {
   if (call_.isToValues()) {
     values.push_back(bytes_.emplace_back(element.size).data());
   } else {
-    streams_.emplace_back(
+    detail::StreamOwner stream(
         call_.device.createStream(element, call_.shapeOfResults(), Storage::Single).release());
+    streams_.push_back(std::move(stream));
     argument.region = detail::wholeRegion(streams_.back().get());
   }
   arguments.push_back(argument);
