@@ -64,10 +64,18 @@ class SourceWriter {
 
   /// Registers the file before the application's static objects, such as devices, are constructed.
   void linkedFile() {
+    std::vector<std::string> kernels, tables;
+    for (const Unit& unit : program_.units()) kernels.push_back(quoted(unit.kernel.name));
+    for (const sk::program::Table* table : program_.tables()) {
+      if (table != nullptr) tables.push_back(quoted(table->function));
+    }
+    list("std::string_view", "kernelNames", kernels);
+    if (!tables.empty()) list("std::string_view", "tableNames", tables);
     const sk::program::Kernel& any = program_.units().front().kernel;
     text_ += fmt::format(
-        "[[gnu::init_priority(101)]] const LinkedFile linkedFile({{.glsl = {}, .native = {}}});\n\n",
-        any.drawn || any.dispatched, options_.native);
+        "\n[[gnu::init_priority(101)]] const LinkedFile linkedFile(\n    {{.glsl = {}, .native = {}}}, "
+        "kernelNames, {});\n\n",
+        any.drawn || any.dispatched, options_.native, tables.empty() ? "{}" : "tableNames");
   }
 
   /// Declares the functions in the object file that the descriptors point to.

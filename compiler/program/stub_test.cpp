@@ -169,7 +169,8 @@ TEST_CASE("native code computes in __float128 where that is asked for, and is le
 TEST_CASE("a stub registers the code that its kernels have") {
   const Module module = sampleModule();
   const auto registers = [](const Stub& stub, std::string_view code) {
-    return contains(stub.source, fmt::format("const LinkedFile linkedFile({{{}}});", code));
+    return contains(stub.source,
+                    fmt::format("const LinkedFile linkedFile(\n    {{{}}}, kernelNames, ", code));
   };
   const Program fragments(module, {.compute = false});
   CHECK(registers(emitStub(module, fragments, "heat.sk", {}), ".glsl = true, .native = true"));

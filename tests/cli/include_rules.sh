@@ -24,7 +24,7 @@ compiler/driver       support ir analysis split transforms native/native.hpp nat
 runtime/include/sk    sk
 runtime/src/support   sk support
 runtime/src/trace     sk trace
-runtime/src/device    sk toml trace device call/resolved_call.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp
+runtime/src/device    sk toml trace device call/resolved_call.hpp native/native_device.hpp native/native_stream.hpp assemble/glsl/tables.hpp assemble/nearest_word.hpp
 runtime/src/call      sk support device call assemble
 runtime/src/api       sk support trace device call api assemble gl_device/gl_device.hpp native/native_device.hpp probe/probe.hpp
 runtime/src/native    sk support trace device call native assemble probe/copy_bandwidth.hpp

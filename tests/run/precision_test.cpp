@@ -308,6 +308,23 @@ TEST_CASE("mistakes in a file are told with their line") {
         }).find("/nowhere.toml (option or SK_CONFIG)") == 0);
 }
 
+TEST_CASE("nearly right names in a file are mistakes, names of other programs are not") {
+  const auto errorIn = [](const std::string& text) {
+    const ConfigurationFile file(text);
+    return errorOf([&] { sk::Device({.device = "native", .configuration = file.path}); });
+  };
+  CHECK_THAT(
+      errorIn("\n[kernels.\"precision::summ\"]\nprecision = \"double\"\n"),
+      Catch::EndsWith(":2: the program has no kernel 'precision::summ'; did you mean 'precision::sum'?"));
+  CHECK_THAT(errorIn("[kernels.cancel]\n"), Catch::EndsWith("did you mean 'precision::cancel'?"));
+  CHECK_THAT(errorIn("[kernels.\"precison::cancel\"]\n"),
+             Catch::EndsWith("did you mean 'precision::cancel'?"));
+  CHECK(errorIn("[kernels.\"precision::cancel\"]\n") == "no error");
+  const std::string ofOthers =
+      "[kernels.\"ocean::waves\"]\n[tables.\"ocean::response\"]\n[streams.u]\nstorage = \"half\"\n";
+  CHECK(errorIn(ofOthers) == "no error");
+}
+
 TEST_CASE("exact and compensated sums are of floats") {
   onEveryProfile([](sk::Device& device) {
     const auto x = streamOf<float>(device, {1, 2});

@@ -113,7 +113,10 @@ DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, co
 /// Gives a device the configuration file and the trace that are named, if any.
 detail::DeviceOwner configured(std::unique_ptr<DeviceState> state, const std::string& file) {
   const std::string name = chosen(file, "SK_CONFIG");
-  if (!name.empty()) state->configuration = Configuration(name);
+  if (!name.empty()) {
+    state->configuration = Configuration(name);
+    state->configuration.checkNames(program::LinkedFile::namesOfAll());
+  }
   const std::string trace = chosen({}, "SK_TRACE");
   if (!trace.empty()) state->startTrace(trace);
   return detail::DeviceOwner(state.release());

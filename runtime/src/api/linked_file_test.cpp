@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "sk/linked_file.hpp"
 
+#include <array>
 #include <optional>
+#include <string_view>
 
 #include <catch2/catch.hpp>
 
@@ -21,4 +23,16 @@ TEST_CASE("a program has the code that each of its files has") {
   const LinkedFile nativeAlone({.glsl = false, .native = true});
   CHECK_FALSE(LinkedFile::ofAll().glsl);
   CHECK(LinkedFile::ofAll().native);
+}
+
+TEST_CASE("a program knows the names of each of its files") {
+  constexpr std::array<std::string_view, 2> kernels = {"heat::diffuse", "heat::total"};
+  constexpr std::array<std::string_view, 1> tables = {"heat::response"};
+  {
+    const LinkedFile unnamed({.glsl = true, .native = true});
+    const LinkedFile heat({.glsl = true, .native = true}, kernels, tables);
+    CHECK(LinkedFile::namesOfAll().kernels == std::vector<std::string>{"heat::diffuse", "heat::total"});
+    CHECK(LinkedFile::namesOfAll().tables == std::vector<std::string>{"heat::response"});
+  }
+  CHECK(LinkedFile::namesOfAll().kernels.empty());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The known word that is most similar to a mistyped one: for messages of the command lines of skc and sk.
+// The known word that is most similar to a mistyped one: for messages about command lines and configuration
+// files.
 #pragma once
 
 #include <span>

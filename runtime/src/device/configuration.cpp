@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "assemble/nearest_word.hpp"
 #include "sk/error.hpp"
 #include "toml/read_toml.hpp"
 
@@ -64,6 +66,10 @@ CallOptions optionsOf(const std::string& file, const toml::table& table) {
   return options;
 }
 
+std::string placeOf(const std::string& file, const toml::key& key) {
+  return fmt::format("{}:{}", file, key.source().begin.line);
+}
+
 /// A number of the file. Throws unless it is finite.
 float numberOf(const std::string& file, const toml::key& key, const toml::node& node) {
   const std::optional<double> value = node.value<double>();
@@ -76,7 +82,7 @@ float numberOf(const std::string& file, const toml::key& key, const toml::node& 
 }
 
 Configuration::RangeChoice rangeOf(const std::string& file, const toml::key& name, const toml::table& table) {
-  Configuration::RangeChoice choice{.place = fmt::format("{}:{}", file, name.source().begin.line)};
+  Configuration::RangeChoice choice{.place = placeOf(file, name)};
   for (const auto& [key, node] : table) {
     if (key == "low") {
       choice.low = numberOf(file, key, node);
@@ -139,6 +145,27 @@ CallOptions merged(CallOptions first, const CallOptions& second) {
   return first;
 }
 
+/// The namespaces of a qualified name, and the rest.
+std::pair<std::string_view, std::string_view> qualifierAndName(std::string_view qualified) {
+  const std::size_t end = qualified.rfind("::");
+  if (end == std::string_view::npos) return {{}, qualified};
+  return {qualified.substr(0, end), qualified.substr(end + 2)};
+}
+
+/// The linked name that was probably meant by an unknown one: it differs by little, in the namespaces alone or
+/// in the rest alone, or the namespaces were left out. "" if there is none.
+std::string_view linkedNameLike(std::string_view unknown, std::span<const std::string> linked) {
+  const auto [qualifier, name] = qualifierAndName(unknown);
+  if (qualifier.empty()) {
+    for (const std::string& other : linked) {
+      if (qualifierAndName(other).second == name) return other;
+    }
+  }
+  const std::string_view nearest = assemble::nearestWord(unknown, linked);
+  const auto [nearestQualifier, nearestName] = qualifierAndName(nearest);
+  return nearestQualifier == qualifier || nearestName == name ? nearest : std::string_view();
+}
+
 }  // namespace
 
 Configuration::Configuration(const std::string& file) {
@@ -159,13 +186,30 @@ Configuration::Configuration(const std::string& file) {
       }
       if (key == "kernels") {
         kernels_[std::string(name.str())] = optionsOf(file, *choices.as_table());
+        if (name != "*") mentionedKernels_.push_back({std::string(name.str()), placeOf(file, name)});
       } else if (key == "streams") {
         streams_[std::string(name.str())] = sk::storageOf(file, name, *choices.as_table());
       } else {
         tables_[std::string(name.str())] = sk::rangeOf(file, name, *choices.as_table());
+        mentionedTables_.push_back({std::string(name.str()), placeOf(file, name)});
       }
     }
   }
+}
+
+void Configuration::checkNames(const program::LinkedFile::Names& linked) const {
+  const auto check = [](std::string_view what, std::span<const Mention> mentions,
+                        std::span<const std::string> known) {
+    for (const auto& [name, place] : mentions) {
+      if (std::ranges::find(known, name) != known.end()) continue;
+      const std::string_view meant = linkedNameLike(name, known);
+      if (meant.empty()) continue;
+      throw Error(fmt::format("{}: the program has no {} '{}'; did you mean '{}'?", place, what, name, meant),
+                  Error::Kind::File);
+    }
+  };
+  check("kernel", mentionedKernels_, linked.kernels);
+  check("table of", mentionedTables_, linked.tables);
 }
 
 Storage Configuration::storageOf(std::string_view stream) const {

@@ -25,7 +25,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "sk/linked_file.hpp"
 #include "sk/options.hpp"
 #include "sk/program.hpp"
 
@@ -36,6 +38,10 @@ class Configuration {
   Configuration() = default;
   /// Throws sk::Error, which names the file, the line and the valid choices.
   explicit Configuration(const std::string& file);
+
+  /// Throws sk::Error if a kernel or a table of the file is not in the program but its name is nearly that of one
+  /// that is. Other unknown names are of other programs with the same file.
+  void checkNames(const program::LinkedFile::Names& linked) const;
 
   /// The options of a call: the call's own choices override the file's for the kernel, which override the
   /// file's for "*", which override the declaration's.
@@ -54,9 +60,15 @@ class Configuration {
   };
 
  private:
+  /// A name in the file, with its FILE:LINE.
+  struct Mention {
+    std::string name, place;
+  };
+
   std::map<std::string, CallOptions, std::less<>> kernels_;
   std::map<std::string, RangeChoice, std::less<>> tables_;
   std::map<std::string, Storage, std::less<>> streams_;
+  std::vector<Mention> mentionedKernels_, mentionedTables_;
 };
 
 }  // namespace sk
