@@ -16,8 +16,6 @@ using sk::native::Slot;
 
 namespace {
 
-constexpr std::int32_t farthest = 8;
-
 Slot slotOf(std::uint32_t param, bool isOutput) {
   return {.parameter = static_cast<std::uint8_t>(param), .row = {}, .reach = 0, .isOutput = isOutput};
 }
@@ -39,7 +37,7 @@ void addNeighbor(SlotPlan& plan, std::uint32_t param, const std::vector<std::int
 }  // namespace
 
 bool isNear(const std::vector<std::int32_t>& offset) {
-  return std::ranges::all_of(offset, [](std::int32_t d) { return std::abs(d) <= farthest; });
+  return std::ranges::all_of(offset, [](std::int32_t d) { return std::abs(d) <= sk::native::farthestSlot; });
 }
 
 std::optional<SlotPlan::Place> SlotPlan::find(std::uint32_t parameter, const std::int8_t (&row)[3]) const {

@@ -16,7 +16,7 @@ ChunkRunner::ChunkRunner(const SlotLayout& layout, const native::Entry& run, con
       frame_(frame),
       together_(run.rows),
       staged_(std::max(together_, rows) > 1 ? 2 * native::mostLanes : mostStaged),
-      arrays_(layout, staged_, layout.isDirect() ? 0 : staged_, std::max(together_, rows)),
+      arrays_(layout, staged_, layout.isDirect() && rows == 1 ? 0 : staged_, std::max(together_, rows)),
       hook_(std::move(hook)) {
   for (std::size_t row = 0; row < std::max(together_, rows); ++row) {
     chunks_[row].arrays = arrays_.get(row);
@@ -48,6 +48,7 @@ void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows
     for (std::int64_t x = begin; x < end; ++x) call(x, 1, lanes_);
     return;
   }
+  if (begin == 0 && end == layout_.width() && runRows()) return;
   const std::int64_t longest = layout_.isDirect() ? hook_.longest : std::min(staged_, hook_.longest);
   if (!layout_.hasGathers()) {
     runPart(begin, end, longest);
@@ -66,6 +67,25 @@ void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows
     runPart(left, right, longest);
   }
   runPart(right, end, staged_);
+}
+
+bool ChunkRunner::runRows() {
+  if (!layout_.isFreeOfOrder() || !layout_.isDirect() || hook_.after || together_ != 1 || wanted_ == 1)
+    return false;
+  const RowEnds ends = arrays_.ends();
+  const std::int64_t end = layout_.width() - ends.right;
+  const std::int64_t count = static_cast<std::int64_t>(wanted_) * ends.ofRow();
+  if (end - ends.left < lanes_ || count > std::min(staged_, layout_.width())) return false;
+  if (ends.left + ends.right > 0) {
+    arrays_.placeEnds(ends);
+    chunks_[0].count = count;
+    function_(frame_, &chunks_[0]);
+    arrays_.storeEnds(ends);
+  }
+  const std::int64_t whole = ends.left + ((end - ends.left) & -lanes_);
+  runInside(ends.left, whole, hook_.longest);
+  if (whole < end) runInside(end - lanes_, end, lanes_);
+  return true;
 }
 
 void ChunkRunner::runPart(std::int64_t begin, std::int64_t end, std::int64_t longest) {

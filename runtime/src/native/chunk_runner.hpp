@@ -52,6 +52,9 @@ class ChunkRunner {
 
  private:
   void moveTo(const native::Extents& first, std::size_t rows);
+  /// Computes whole rows: first their ends together, then the elements between them, the last of which may be
+  /// computed twice. False if that is not possible.
+  bool runRows();
   void runPart(std::int64_t begin, std::int64_t end, std::int64_t longest);
   /// For whole groups of lanes whose elements and neighbours are read in place.
   void runInside(std::int64_t begin, std::int64_t end, std::int64_t longest);

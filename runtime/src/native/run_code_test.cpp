@@ -188,14 +188,16 @@ TEST_CASE("the index in an input that is stretched is right for every element") 
 
 constexpr std::uint8_t stencilReach = 2;
 
-/// Neighbours at -2, 0 and 2 along x, the upper left and the lower right one, and one row to either side in z.
+/// Neighbours at -2, 0 and 2 along x, the upper left and the lower right one, one row to either side in z, and
+/// an element of another stream.
 void stencil(const Frame*, const Chunk* chunk) {
   const auto* u = arrayOf<float>(chunk, 0);
   const float* rows[4];
   for (std::size_t k = 0; k < 4; ++k) rows[k] = arrayOf<float>(chunk, k + 1);
-  auto* r = arrayOf<float>(chunk, 5);
+  const auto* own = arrayOf<float>(chunk, 5);
+  auto* r = arrayOf<float>(chunk, 6);
   for (std::int64_t i = 0; i < inGroups(chunk->count); ++i) {
-    r[i] = u[i] + 2 * u[i - stencilReach] + 3 * u[i + stencilReach];
+    r[i] = own[i] + u[i] + 2 * u[i - stencilReach] + 3 * u[i + stencilReach];
     r[i] += 4 * rows[0][i - 1] + 5 * rows[1][i + 1] + 6 * rows[2][i] + 7 * rows[3][i];
   }
 }
@@ -210,6 +212,8 @@ struct Stencil : TestKernel {
     u.boundary = boundary;
     u.rank = rank;
     u.usesNear = true;
+    u.reach = stencilReach;
+    add(Role::Input);
     add(Role::Output);
     slot(0, stencilReach);
     slot(0, 1, -1);
@@ -217,6 +221,7 @@ struct Stencil : TestKernel {
     slot(0, 0, 0, -1);
     slot(0, 0, 0, 1);
     slot(1);
+    slot(2);
     entries = {entry(EntryKind::Run, &stencil), entry(EntryKind::Borders, &borders)};
     finish();
   }
@@ -249,9 +254,11 @@ float gathered(const std::vector<float>& u, const Extents& extent, Boundary boun
 void checkStencil(Boundary boundary, int rank, const Extents& extent, const Extents& domain) {
   const Stencil f(boundary, static_cast<std::uint8_t>(rank));
   std::vector<float> u = someFloats(extent[0] * extent[1] * extent[2]);
-  std::vector<float> r(static_cast<std::size_t>(domain[0] * domain[1] * domain[2]));
+  std::vector<float> own = someFloats(domain[0] * domain[1] * domain[2]);
+  std::vector<float> r(own.size());
   TestOperands operands;
   operands.add(u, extent);
+  operands.add(own, domain);
   operands.add(r, domain);
   runCode(f.kernel, operands.call(domain), {});
   std::vector<float> expected;
@@ -261,8 +268,9 @@ void checkStencil(Boundary boundary, int rank, const Extents& extent, const Exte
         const auto at = [&](std::int64_t dx, std::int64_t dy, std::int64_t dz) {
           return gathered(u, extent, boundary, rank, {x + dx, y + dy, z + dz, 0});
         };
-        expected.push_back(at(0, 0, 0) + 2 * at(-stencilReach, 0, 0) + 3 * at(stencilReach, 0, 0) +
-                           4 * at(-1, -1, 0) + 5 * at(1, 1, 0) + 6 * at(0, 0, -1) + 7 * at(0, 0, 1));
+        expected.push_back(own[expected.size()] + at(0, 0, 0) + 2 * at(-stencilReach, 0, 0) +
+                           3 * at(stencilReach, 0, 0) + 4 * at(-1, -1, 0) + 5 * at(1, 1, 0) +
+                           6 * at(0, 0, -1) + 7 * at(0, 0, 1));
       }
     }
   }
@@ -280,6 +288,8 @@ TEST_CASE("neighbours outside are what the boundary says, in rows of every lengt
     }
     for (const std::int64_t height : {7, 8, 9, 16, 25}) {  // several rows are run at once
       checkStencil(boundary, 2, {70, height, 1, 1}, {70, height, 1, 1});
+      for (const std::int64_t width : {96, 97, 200, 301})  // and their ends together
+        checkStencil(boundary, 2, {width, height, 1, 1}, {width, height, 1, 1});
       checkStencil(boundary, 3, {33, height, 3, 1}, {33, height, 3, 1});
     }
   }
@@ -291,6 +301,8 @@ TEST_CASE("a gather may be smaller or larger than the domain") {
     checkStencil(boundary, 2, {1100, 6, 1, 1}, {33, 3, 1, 1});
     checkStencil(boundary, 2, {20, 4, 1, 1}, {300, 30, 1, 1});
     checkStencil(boundary, 2, {200, 40, 1, 1}, {90, 20, 1, 1});
+    checkStencil(boundary, 2, {200, 40, 1, 1}, {199, 20, 1, 1});
+    checkStencil(boundary, 2, {200, 10, 1, 1}, {205, 20, 1, 1});
     checkStencil(boundary, 1, {40, 1, 1, 1}, {40, 3, 1, 1});
   }
 }
@@ -299,7 +311,9 @@ TEST_CASE("a gather that is left out is zeros") {
   const Stencil f(Boundary::Clamp, 2);
   std::vector<float> r(300, -1);
   TestOperands operands;
+  std::vector<float> own(300);
   operands.addNone();
+  operands.add(own, {100, 3, 1, 1});
   operands.add(r, {100, 3, 1, 1});
   runCode(f.kernel, operands.call({100, 3, 1, 1}), {});
   CHECK(r == std::vector<float>(300, 0));

@@ -79,6 +79,7 @@ SlotLayout::SlotLayout(const program::Kernel& kernel, const native::Call& call, 
   arrays_.reserve(slots.size());
   for (const native::Slot& slot : slots) addSlot(kernel, call, frame, slot, choice.real);
   if (!hasGathers_) return;
+  isFreeOfOrder_ = findsFreedomOfOrder(kernel);
   for (Slot& slot : slots_) slot.below = slotBelow(slot);
   std::ranges::stable_sort(order_, std::ranges::greater(), [&](std::size_t s) { return slots_[s].row[0]; });
   readBorders(kernel, frame, choice);
@@ -105,6 +106,7 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   made.isInPlace = made.kind == Kind::Input ? made.isDirect : made.isGiven;
   if (made.kind == Kind::Gather) {
     hasGathers_ = true;
+    reach_ = std::max(reach_, made.reach);
     inside_ = {std::max(inside_.begin, made.reach), std::min(inside_.end, argument.extent[0] - made.reach)};
     made.firstBorder = firstBorderOf(kernel, slot.parameter);
   } else {
@@ -130,6 +132,28 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
                        {isWidened ? static_cast<std::uint8_t>(sizeof(float)) : read, read}});
   });
   made.arrayCount = arrays_.size() - made.firstArray;
+}
+
+bool SlotLayout::findsFreedomOfOrder(const program::Kernel& kernel) const {
+  if (kernel.usesIndex || kernel.code->isUneven != 0) return false;
+  for (const Parameter& parameter : kernel.parameters) {
+    const bool hasSlots = parameter.reach >= 0 && parameter.reach <= native::farthestSlot;
+    if (parameter.role == Role::Iterator || parameter.usesIndex || (parameter.usesNear && !hasSlots))
+      return false;
+  }
+  const auto arraysOf = [&](const Slot& slot) {
+    return std::span(arrays_).subspan(slot.firstArray, slot.arrayCount);
+  };
+  for (const Slot& output : slots_) {
+    if (output.kind != Kind::Output) continue;
+    for (const Slot& input : slots_) {
+      if (input.kind != Kind::Output &&
+          std::ranges::find_first_of(arraysOf(output), arraysOf(input), {}, &Array::held, &Array::held) !=
+              arraysOf(output).end())
+        return false;
+    }
+  }
+  return true;
 }
 
 std::optional<std::size_t> SlotLayout::slotBelow(const Slot& slot) const {
@@ -366,6 +390,73 @@ void SlotArrays::stageNeighbors(const Slot& slot, std::size_t begin, std::size_t
       if (length.count < length.room) padScalars(staged, bytes, neighbors.count, length.room + around);
       arrays[r * width] = staged + slot.reach * static_cast<std::int64_t>(bytes);
     }
+  }
+}
+
+RowEnds SlotArrays::ends() const {
+  const native::Range within = inside();
+  return {std::min(within.begin, layout_.width()), std::max<std::int64_t>(layout_.width() - within.end, 0),
+          2 * layout_.reach()};
+}
+
+void SlotArrays::placeEnds(const RowEnds& ends) {
+  for (const Slot& slot : layout_.slots()) {
+    for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
+      const std::size_t bytes = layout_.arrays()[a].bytes.read;
+      arrays_[a] = scratch_[a] + slot.reach * static_cast<std::int64_t>(bytes);
+      if (slot.kind == SlotLayout::Kind::Output) continue;
+      withScalar(bytes, [&]<class T> {
+        stageEnd<T>(slot, a, 0, ends.left, 0, ends);
+        stageEnd<T>(slot, a, layout_.width() - ends.right, ends.right, ends.firstRight(), ends);
+      });
+    }
+  }
+}
+
+/// Lays out `count` elements of each row from `x` on, with their neighbours. Those of the first row become
+/// elements `to` and following ones of the array.
+template <class T>
+void SlotArrays::stageEnd(const Slot& slot, std::size_t array, std::int64_t x, std::int64_t count,
+                          std::int64_t to, const RowEnds& ends) {
+  constexpr std::int64_t size = sizeof(T);
+  const void* const border = borderOf(slot, array - slot.firstArray);
+  const ArrayRow* const rows = &inRow_[array];
+  const std::size_t width = width_, wanted = wanted_;
+  const std::int64_t spacing = ends.ofRow() * size;
+  for (std::int64_t i = 0; i < count + 2 * slot.reach; ++i) {
+    const bool isNeighbor = slot.kind == SlotLayout::Kind::Gather;
+    const std::int64_t index =
+        isNeighbor ? broughtInside(slot.boundary, x + i - slot.reach, slot.argument->extent[0]) : x + i;
+    std::byte* staged = scratch_[array] + (to + i) * size;
+    for (std::size_t row = 0; row < wanted; ++row, staged += spacing)
+      std::memcpy(staged, index < 0 ? border : rows[row * width].first + index * size, sizeof(T));
+  }
+}
+
+void SlotArrays::storeEnds(const RowEnds& ends) {
+  for (const Slot& slot : layout_.slots()) {
+    if (slot.kind != SlotLayout::Kind::Output) continue;
+    for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
+      withScalar(layout_.arrays()[a].bytes.read, [&]<class T> {
+        storeEnd<T>(a, 0, ends.left, 0, ends);
+        storeEnd<T>(a, layout_.width() - ends.right, ends.right, ends.firstRight(), ends);
+      });
+    }
+  }
+}
+
+/// The reverse of stageEnd(), for an output.
+template <class T>
+void SlotArrays::storeEnd(std::size_t array, std::int64_t x, std::int64_t count, std::int64_t from,
+                          const RowEnds& ends) {
+  constexpr std::int64_t size = sizeof(T);
+  const ArrayRow* const rows = &inRow_[array];
+  const std::size_t width = width_, wanted = wanted_;
+  const std::int64_t spacing = ends.ofRow() * size;
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::byte* staged = scratch_[array] + (from + i) * size;
+    for (std::size_t row = 0; row < wanted; ++row, staged += spacing)
+      std::memcpy(rows[row * width].first + (x + i) * size, staged, sizeof(T));
   }
 }
 

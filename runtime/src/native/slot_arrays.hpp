@@ -78,6 +78,11 @@ class SlotLayout {
   bool hasGathers() const { return hasGathers_; }
   /// The elements of a row for which gathers read only neighbours in bounds along x.
   native::Range inside() const { return inside_; }
+  /// The largest reach of a gather.
+  std::int64_t reach() const { return reach_; }
+  /// True if elements may be computed twice, and together with elements of other rows: the code uses no
+  /// indices and ends after the same time for all values, and no output is also an input.
+  bool isFreeOfOrder() const { return isFreeOfOrder_; }
 
  private:
   struct alignas(mostScalarBytes) Value {
@@ -85,6 +90,7 @@ class SlotLayout {
   };
   void addSlot(const program::Kernel& kernel, const native::Call& call, const CodeFrame& frame,
                const native::Slot& slot, RealType real);
+  bool findsFreedomOfOrder(const program::Kernel& kernel) const;
   std::optional<std::size_t> slotBelow(const Slot& slot) const;
   void readBorders(const program::Kernel& kernel, const CodeFrame& frame, const CodeChoice& choice);
   std::size_t firstBorderOf(const program::Kernel& kernel, std::size_t parameter) const;
@@ -97,7 +103,18 @@ class SlotLayout {
   bool isDirect_ = true;
   bool needsElementwiseCalls_ = false;
   bool hasGathers_ = false;
+  bool isFreeOfOrder_ = false;
+  std::int64_t reach_ = 0;
   native::Range inside_{0, std::numeric_limits<std::int64_t>::max()};
+};
+
+/// The elements at the ends of rows whose neighbours may be out of bounds, laid out one row behind the other.
+struct RowEnds {
+  std::int64_t left, right;  ///< their numbers in each row
+  std::int64_t gap;  ///< elements left free behind each end, because two ends share no neighbours
+
+  std::int64_t ofRow() const { return left + right + 2 * gap; }  ///< elements from one row to the next
+  std::int64_t firstRight() const { return left + gap; }
 };
 
 /// The arrays of one thread, for one row of the domain or for several rows below each other.
@@ -126,6 +143,13 @@ class SlotArrays {
     for (std::size_t i = 0, count = placed_ * width_; i < count; ++i)
       to[i] = from[i].first + x * from[i].bytes;
   }
+  /// The ends of the rows.
+  RowEnds ends() const;
+  /// Lays out the ends of all wanted rows, with their neighbours, in the arrays of the first row. All slots must be
+  /// in place (SlotLayout::isDirect()), and ends.ofRow() elements of each row must be free.
+  void placeEnds(const RowEnds& ends);
+  /// Copies outputs at the ends of all wanted rows to their streams.
+  void storeEnds(const RowEnds& ends);
   /// Copies outputs that were not written in place to their streams.
   void storeOutputs(std::int64_t x, std::int64_t count);
 
@@ -156,6 +180,12 @@ class SlotArrays {
   void stageGather(std::size_t slot, std::int64_t x, const Length& length, bool areOutsideAlone);
   void stageNeighbors(const Slot& slot, std::size_t begin, std::size_t end, std::int64_t x,
                       const Length& length);
+  template <class T>
+  void stageEnd(const Slot& slot, std::size_t array, std::int64_t x, std::int64_t count, std::int64_t to,
+                const RowEnds& ends);
+  template <class T>
+  void storeEnd(std::size_t array, std::int64_t x, std::int64_t count, std::int64_t from,
+                const RowEnds& ends);
   void stageBorder(std::size_t row, const Slot& slot, std::int64_t room);
   const void* borderOf(const Slot& slot, std::size_t component) const;
   /// Makes the code use the slot's scratch memory.

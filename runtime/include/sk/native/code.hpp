@@ -25,6 +25,10 @@ inline constexpr std::int64_t mostLanes = 64;
 /// Most rows that a function computes together.
 inline constexpr std::size_t mostRows = 12;
 
+/// The largest component of a neighbour's offset for which a gather has a slot. Code finds neighbours that are
+/// farther away by the element's index.
+inline constexpr std::int32_t farthestSlot = 8;
+
 /// Records of values that elements push to a variable output or store to a scatter output. Groups of lanes
 /// are in order; records within a group are in the order in which its code appends them. The runtime sorts
 /// them by element (Code::isReordered) and carries out stores (ApplyFunction).
