@@ -57,9 +57,9 @@ class ParameterEditor {
   bool takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool hasLateQualifier(const Parts& parts);
   bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
-  static std::vector<Mend> addedBrackets(const Parts& parts);
-  static std::vector<Mend> removedBrackets(const Parts& parts);
-  static std::vector<Mend> asAccumulator(const Parts& parts);
+  static std::vector<FixIt> addedBrackets(const Parts& parts);
+  static std::vector<FixIt> removedBrackets(const Parts& parts);
+  static std::vector<FixIt> asAccumulator(const Parts& parts);
   bool resolveRole(Parts& parts, FunctionKind kind);
   bool resolveAppendOutput(Parts& parts, FunctionKind kind);
   std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place);
