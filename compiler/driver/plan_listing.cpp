@@ -31,7 +31,7 @@ class PlanPrinter {
     text_ = fmt::format("{}: {} draw buffers, {} texture units\n", name_, limits_.drawBuffers,
                         limits_.textureUnits);
     for (const Kernel& kernel : module_.kernels) {
-      if (kernel.pass || kernel.isMade) continue;
+      if (kernel.pass || kernel.isSynthesized) continue;
       text_ += fmt::format("\n{} {}{}: ", kernel.reduction ? "reduce" : "kernel", qualifier(kernel.scope),
                            kernel.name);
       kernel.reduction ? printReduce() : printKernel(kernel);

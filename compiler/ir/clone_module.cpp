@@ -18,7 +18,7 @@ Kernel clone(const Kernel& kernel) {
               .entry = kernel.entry,
               .params = {},
               .reduction = kernel.reduction,
-              .isMade = kernel.isMade,
+              .isSynthesized = kernel.isSynthesized,
               .isNativeOnly = kernel.isNativeOnly,
               .plans = kernel.plans,
               .pass = kernel.pass,

@@ -378,7 +378,7 @@ struct Kernel {
       ///< VariableOutput and Scatter AppendOutput
   std::vector<KernelParam> params;
   std::optional<Reduction> reduction;  ///< set for `reduce`
-  bool isMade = false;  ///< synthesized by a transform: C++ cannot call it
+  bool isSynthesized = false;  ///< synthesized by a transform: C++ cannot call it
   bool isNativeOnly = false;  ///< no GLSL program runs it
   std::vector<Plan> plans;  ///< for targets whose limits it exceeds, the most generous first
   std::optional<PassOf> pass;

@@ -108,7 +108,7 @@ struct Struct {
   std::vector<std::string> scope;    ///< enclosing namespaces, outermost first
   std::vector<StructField> fields;
   Loc loc;
-  bool isMade = false;               ///< synthesized by a transform: it does not exist in C++
+  bool isSynthesized = false;               ///< synthesized by a transform: it does not exist in C++
   std::vector<std::string> aliases = {};  ///< other names for it in its scope, by typedef or using
 };
 struct Array {

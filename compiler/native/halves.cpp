@@ -83,21 +83,21 @@ llvm::Function* outOfLine(Lanes& l, const char* name, Conversion* conversion, ll
   const std::string full = std::string("sk.") + name + (isVector ? "." + std::to_string(l.count()) : "");
   llvm::Module& code = *caller->getParent();
   if (llvm::Function* const known = code.getFunction(full)) return known;
-  llvm::Function* const made = llvm::Function::Create(llvm::FunctionType::get(result, {operand}, false),
-                                                      llvm::Function::InternalLinkage, full, code);
+  llvm::Function* const wrapper = llvm::Function::Create(llvm::FunctionType::get(result, {operand}, false),
+                                                         llvm::Function::InternalLinkage, full, code);
   if (llvm::Triple(code.getTargetTriple()).getArch() == llvm::Triple::x86_64)
-    made->setCallingConv(llvm::CallingConv::PreserveAll);
-  made->setDoesNotThrow();
-  made->setDoesNotAccessMemory();
-  made->addFnAttr(llvm::Attribute::NoInline);
-  if (caller->hasFnAttribute("target-cpu")) made->addFnAttr(caller->getFnAttribute("target-cpu"));
+    wrapper->setCallingConv(llvm::CallingConv::PreserveAll);
+  wrapper->setDoesNotThrow();
+  wrapper->setDoesNotAccessMemory();
+  wrapper->addFnAttr(llvm::Attribute::NoInline);
+  if (caller->hasFnAttribute("target-cpu")) wrapper->addFnAttr(caller->getFnAttribute("target-cpu"));
   const llvm::IRBuilderBase::InsertPointGuard guard(l.b);
   const llvm::DebugLoc place = l.b.getCurrentDebugLocation();
   l.b.SetCurrentDebugLocation({});
-  l.b.SetInsertPoint(llvm::BasicBlock::Create(code.getContext(), "entry", made));
-  l.b.CreateRet(conversion(l, made->getArg(0)));
+  l.b.SetInsertPoint(llvm::BasicBlock::Create(code.getContext(), "entry", wrapper));
+  l.b.CreateRet(conversion(l, wrapper->getArg(0)));
   l.b.SetCurrentDebugLocation(place);
-  return made;
+  return wrapper;
 }
 
 llvm::Value* converted(Lanes& l, const char* name, Conversion* conversion, llvm::Value* x,

@@ -90,9 +90,9 @@ class Widener {
       return b_.CreateSExt(constant, wordsOf(*mask));
     const auto known = words_.find(mask);
     if (known != words_.end()) return known->second;
-    llvm::Value* const made = make(mask);
-    words_[mask] = made;
-    return made;
+    llvm::Value* const wide = make(mask);
+    words_[mask] = wide;
+    return wide;
   }
 
   llvm::Value* make(llvm::Value* mask) {

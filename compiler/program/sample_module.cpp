@@ -92,7 +92,7 @@ void addPower(Module& module) {
   const auto power = static_cast<KernelId>(module.kernels.size() - 1);
   module.kernels[power].reduction = Reduction{power + 1, {0, 0}, false};
   KernelMaker combine(module, "power_combine", 24);
-  combine.kernel().isMade = true;
+  combine.kernel().isSynthesized = true;
   const VarId part = combine.input("total_part", floatType);
   const VarId whole = combine.accumulator("total", floatType);
   combine.finish(block(assign(combine.ref(whole), Add, combine.ref(part), atLine(24))));

@@ -53,7 +53,7 @@ class SourceWriter {
     text_ += "\nnamespace sk::program {\nnamespace {\n\n";
     sources();
     for (std::uint32_t i = 0; i < module_.structs.size(); ++i) {
-      if (module_.structs[i].isMade) madeElement(i);
+      if (module_.structs[i].isSynthesized) synthesizedElement(i);
     }
     for (TableId id = 0; id < tableNames_.size(); ++id) table(id);
     isWritten_.assign(names_.size(), false);
@@ -491,7 +491,7 @@ class SourceWriter {
   }
 
   /// Prints the element of a struct that does not exist in C++.
-  void madeElement(std::uint32_t index) {
+  void synthesizedElement(std::uint32_t index) {
     const TypeNames types(module_);
     const ElementLayout layout = elementLayout(module_, types, Type::structType(index));
     std::vector<std::string> fields;
@@ -552,7 +552,7 @@ class SourceWriter {
   }
 
   std::string elementOf(Type type) const {
-    if (type.kind == Type::Kind::Struct && module_.structs[type.index].isMade) {
+    if (type.kind == Type::Kind::Struct && module_.structs[type.index].isSynthesized) {
       return fmt::format("&{}Element", TypeNames(module_).structName(type.index));
     }
     const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";

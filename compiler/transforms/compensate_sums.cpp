@@ -13,8 +13,8 @@
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/made_kernel.hpp"
 #include "transforms/sum_terms.hpp"
+#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 namespace {
@@ -67,25 +67,25 @@ struct Losses {
 
 /// Adds statements that sum the rounding errors of additions.
 void addLosses(const Kernel& kernel, Function& entry, Block& block, const Losses& losses) {
-  Block made;
+  Block rewritten;
   for (Stmt& stmt : block) {
     forEachBlock(stmt, [&](Block& inner) { addLosses(kernel, entry, inner, losses); });
     const std::optional<FoldPart> part = foldedBy(kernel, stmt);
     const auto sum =
         std::ranges::find_if(losses.sums, [&](const FloatSum& one) { return part && one.holds(*part); });
     if (sum == losses.sums.end()) {
-      made.push_back(std::move(stmt));
+      rewritten.push_back(std::move(stmt));
       continue;
     }
     const auto& fold = std::get<Assign>(stmt.node);
     const auto k = static_cast<std::size_t>(sum - losses.sums.begin());
     if (!losses.lostOfPart.empty()) {
-      made.push_back(assign(inVariable(entry, *fold.place, losses.lost[k]), BinaryOp::Add,
-                            inVariable(entry, *fold.place, losses.lostOfPart[k])));
+      rewritten.push_back(assign(inVariable(entry, *fold.place, losses.lost[k]), BinaryOp::Add,
+                                 inVariable(entry, *fold.place, losses.lostOfPart[k])));
     }
-    for (Term& term : termsOf(fold)) addTerm(made, entry, *fold.place, losses.lost[k], std::move(term));
+    for (Term& term : termsOf(fold)) addTerm(rewritten, entry, *fold.place, losses.lost[k], std::move(term));
   }
-  block = std::move(made);
+  block = std::move(rewritten);
 }
 
 /// Replaces a sum's components of a synthesized identity, which constructs structs member by member, by -0.
@@ -109,11 +109,11 @@ class Maker {
   void make() {
     const KernelId fold = makeFold(makeCombination());
     const KernelId finish = makeFinish();
-    Compensated made{fold, finish, {}, {}};
-    if (kernel().reduction->commutative) made.term = onlyTerm(module_, kernel());
-    for (const FloatSum& sum : sums_) made.sums.push_back({sum.accumulator, sum.members});
+    Compensated compensated{fold, finish, {}, {}};
+    if (kernel().reduction->commutative) compensated.term = onlyTerm(module_, kernel());
+    for (const FloatSum& sum : sums_) compensated.sums.push_back({sum.accumulator, sum.members});
     module_.kernels[fold].reduction->commutative = module_.kernels[id_].reduction->commutative;
-    module_.kernels[id_].reduction->compensated = std::move(made);
+    module_.kernels[id_].reduction->compensated = std::move(compensated);
   }
 
  private:
@@ -160,7 +160,7 @@ class Maker {
   }
 
   KernelId makeFinish() {
-    MadeKernel made(kernel(), "_finish");
+    SynthesizedKernel synthesized(kernel(), "_finish");
     std::vector<VarId> accumulators;  // of the plain variant, each once
     for (const FloatSum& sum : sums_) {
       if (accumulators.empty() || accumulators.back() != sum.accumulator) {
@@ -169,26 +169,28 @@ class Maker {
     }
     const auto add = [&](VarId accumulator, std::string_view prefix, ParamRole role) {
       const KernelParam& param = kernel().params[accumulator];
-      return made.add(makeParam(std::string(prefix) + param.name, role, param.type, param.loc));
+      return synthesized.add(makeParam(std::string(prefix) + param.name, role, param.type, param.loc));
     };
     std::vector<VarId> inputs, lost, results;
     for (const VarId i : accumulators) inputs.push_back(add(i, "", ParamRole::Input));
     for (const FloatSum& sum : sums_) {
-      lost.push_back(made.add(makeParam(lostName(sum), ParamRole::Input, sum.type, kernel().loc)));
+      lost.push_back(synthesized.add(makeParam(lostName(sum), ParamRole::Input, sum.type, kernel().loc)));
     }
     for (const VarId i : accumulators) results.push_back(add(i, "r_", ParamRole::Output));
-    Block& body = made.entry.body;
+    Block& body = synthesized.entry.body;
     for (std::size_t i = 0; i < accumulators.size(); ++i) {
-      const bool hasMembers = made.kernel.params[inputs[i]].type.kind == Type::Kind::Struct;
-      if (hasMembers) body.push_back(assign(varRef(made.entry, results[i]), varRef(made.entry, inputs[i])));
+      const bool hasMembers = synthesized.kernel.params[inputs[i]].type.kind == Type::Kind::Struct;
+      if (hasMembers)
+        body.push_back(assign(varRef(synthesized.entry, results[i]), varRef(synthesized.entry, inputs[i])));
     }
     for (std::size_t k = 0; k < sums_.size(); ++k) {
       const auto i = static_cast<std::size_t>(std::ranges::find(accumulators, sums_[k].accumulator) -
                                               accumulators.begin());
-      body.push_back(assign(partOf(varRef(made.entry, results[i]), sums_[k]),
-                            finished(partOf(varRef(made.entry, inputs[i]), sums_[k]), made.entry, lost[k])));
+      body.push_back(assign(
+          partOf(varRef(synthesized.entry, results[i]), sums_[k]),
+          finished(partOf(varRef(synthesized.entry, inputs[i]), sums_[k]), synthesized.entry, lost[k])));
     }
-    return made.finish(module_);
+    return synthesized.finish(module_);
   }
 
   ExprPtr partOf(ExprPtr accumulator, const FloatSum& sum) const {
@@ -224,7 +226,7 @@ void compensateSums(Module& module, Diagnostics&) {
   const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     const Kernel& kernel = module.kernels[id];
-    if (!kernel.reduction || kernel.isMade || !hasIdentities(kernel)) continue;
+    if (!kernel.reduction || kernel.isSynthesized || !hasIdentities(kernel)) continue;
     std::vector<FloatSum> sums = floatSums(module, id);
     if (!sums.empty()) Maker(module, id, std::move(sums)).make();
   }

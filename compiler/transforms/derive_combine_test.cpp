@@ -294,7 +294,7 @@ TEST_CASE("several accumulators combine each with its own part, and uniforms nee
   REQUIRE(*kernel.reduction->combine == 1);
   CHECK(print(module, Function{}, *kernel.params[2].identity) == "0.0");
   CHECK(print(module, Function{}, *kernel.params[3].identity) == "-inf");
-  CHECK(module.kernels[1].isMade);
+  CHECK(module.kernels[1].isSynthesized);
   CHECK(print(module, module.functions[1]) ==
         "  s_part: element float\n  high_part: element float\n  s: inout float\n  high: inout float\n"
         "{\n  s += s_part;\n  high = max(high, high_part);\n}\n");

@@ -67,7 +67,7 @@ TEST_CASE("an imported function is valid where it comes to") {
   CHECK(to.functions.size() == 3);
   CHECK(to.functions[id].name == "twice");
   CHECK(to.structs.size() == 2);
-  CHECK(to.structs[1].isMade);
+  CHECK(to.structs[1].isSynthesized);
   CHECK(to.constants.size() == 2);
   CHECK(to.arrays.size() == 2);
 
