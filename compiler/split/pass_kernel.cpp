@@ -19,9 +19,9 @@ using namespace ir;
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-class Maker {
+class PassKernelBuilder {
  public:
-  Maker(Module& module, KernelId whole, const PlannedSplit& plan, const PlannedPass& pass)
+  PassKernelBuilder(Module& module, KernelId whole, const PlannedSplit& plan, const PlannedPass& pass)
       : module_(module),
         whole_(whole),
         plan_(plan),
@@ -207,7 +207,7 @@ class Maker {
 }  // namespace
 
 Pass makePassKernel(Module& module, KernelId whole, const PlannedSplit& plan, const PlannedPass& pass) {
-  return Maker(module, whole, plan, pass).run();
+  return PassKernelBuilder(module, whole, plan, pass).run();
 }
 
 }  // namespace skc::split

@@ -101,9 +101,9 @@ void startFromNegativeZero(ExprPtr& identity, const FloatSum& sum) {
   }
 }
 
-class Maker {
+class CompensatedVariantBuilder {
  public:
-  Maker(Module& module, KernelId id, std::vector<FloatSum> sums)
+  CompensatedVariantBuilder(Module& module, KernelId id, std::vector<FloatSum> sums)
       : module_(module), id_(id), sums_(std::move(sums)) {}
 
   void make() {
@@ -228,7 +228,7 @@ void compensateSums(Module& module, Diagnostics&) {
     const Kernel& kernel = module.kernels[id];
     if (!kernel.reduction || kernel.isSynthesized || !hasIdentities(kernel)) continue;
     std::vector<FloatSum> sums = floatSums(module, id);
-    if (!sums.empty()) Maker(module, id, std::move(sums)).make();
+    if (!sums.empty()) CompensatedVariantBuilder(module, id, std::move(sums)).make();
   }
 }
 

@@ -9,7 +9,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
 
@@ -20,7 +20,7 @@ using namespace ir;
 
 Module sumModule(BinaryOp op) {
   Module module = testModule();
-  KernelMaker k(module, "sum");
+  KernelBuilder k(module, "sum");
   const VarId x = k.input("x", floatType);
   const VarId total = k.accumulator("total", floatType);
   k.finish(block(assign(k.ref(total), op, k.ref(x))));

@@ -9,7 +9,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -24,14 +24,16 @@ using enum BinaryOp;
 /// A kernel with a gather `a`, a uniform `u`, an output `r`, and some locals.
 struct Sample {
   Module module = testModule();
-  KernelMaker k{module, "f"};
+  KernelBuilder k{module, "f"};
   VarId a = k.gather("a", floatType, 1);
   VarId u = k.uniform("u", intType);
   VarId r = k.output("r", floatType);
   VarId i = k.local("i", intType);
   VarId j = k.local("j", intType);
 
-  ExprPtr near(ExprPtr offset) { return neighborRead(floatType, KernelMaker::stream(a), std::move(offset)); }
+  ExprPtr near(ExprPtr offset) {
+    return neighborRead(floatType, KernelBuilder::stream(a), std::move(offset));
+  }
   Stmt add(ExprPtr value) { return assign(k.ref(r), Add, std::move(value)); }
   /// for (int v = from; v < to; ++v) body
   Stmt loop(VarId v, ExprPtr from, ExprPtr to, Block body, std::uint32_t line = 1) {

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -18,14 +18,14 @@ using namespace ir;
 
 /// r = a + t * g[0]
 KernelId addBlend(Module& module) {
-  KernelMaker maker(module, "blend");
-  const VarId t = maker.uniform("t", floatType);
-  const VarId a = maker.input("a", floatType);
-  const VarId g = maker.gather("g", floatType, 1, Boundary::Border, literal(0.5F));
-  const VarId r = maker.output("r", floatType);
+  KernelBuilder builder(module, "blend");
+  const VarId t = builder.uniform("t", floatType);
+  const VarId a = builder.input("a", floatType);
+  const VarId g = builder.gather("g", floatType, 1, Boundary::Border, literal(0.5F));
+  const VarId r = builder.output("r", floatType);
   ExprPtr read = gatherRead(floatType, {StreamRef::Space::KernelParameter, g}, literal(0));
-  ExprPtr sum = binary(BinaryOp::Add, maker.ref(a), binary(BinaryOp::Mul, maker.ref(t), std::move(read)));
-  return maker.finish(block(assign(maker.ref(r), std::move(sum))));
+  ExprPtr sum = binary(BinaryOp::Add, builder.ref(a), binary(BinaryOp::Mul, builder.ref(t), std::move(read)));
+  return builder.finish(block(assign(builder.ref(r), std::move(sum))));
 }
 
 std::string entryOf(const Module& module, KernelId id) {
@@ -53,11 +53,11 @@ TEST_CASE("a wide form computes in doubles and holds floats") {
 
 TEST_CASE("what doubles cannot do has no wide form, and says why") {
   Module module = testModule();
-  KernelMaker maker(module, "turned", 7);
-  const VarId m = maker.uniform("m", Type::matrix(2));
-  const VarId r = maker.output("r", floatType);
-  ExprPtr determinant = intrinsic(Intrinsic::Determinant, exprs(maker.ref(m)), atLine(8));
-  const KernelId id = maker.finish(block(assign(maker.ref(r), std::move(determinant))));
+  KernelBuilder builder(module, "turned", 7);
+  const VarId m = builder.uniform("m", Type::matrix(2));
+  const VarId r = builder.output("r", floatType);
+  ExprPtr determinant = intrinsic(Intrinsic::Determinant, exprs(builder.ref(m)), atLine(8));
+  const KernelId id = builder.finish(block(assign(builder.ref(r), std::move(determinant))));
   DiagnosticLog log;
   widenFloats(module, log);
   CHECK_FALSE(module.kernels[id].forms.wide);

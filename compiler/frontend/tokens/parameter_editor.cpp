@@ -115,7 +115,7 @@ std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind ki
       diagnostics_.report(Diag::EmptyParameter, locOf(following));
       continue;
     }
-    if (out.size() > 1) out.push_back(maker_.make(tok::comma, parameters[i].front().getLocation()));
+    if (out.size() > 1) out.push_back(builder_.make(tok::comma, parameters[i].front().getLocation()));
     editParameter(parameters[i], kind, out);
   }
   out.push_back(declared.back());
@@ -447,38 +447,38 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
   switch (syntax.role) {
     case ir::ParamRole::Gather:
       // The three tokens need distinct locations: Clang finds a template's name by its location
-      out.push_back(maker_.word(gatherTemplateName(syntax.rank), place));
-      out.push_back(maker_.make(tok::less, parts.open.getLocation()));
+      out.push_back(builder_.word(gatherTemplateName(syntax.rank), place));
+      out.push_back(builder_.make(tok::less, parts.open.getLocation()));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      out.push_back(maker_.make(tok::greater, parts.close.getLocation()));
+      out.push_back(builder_.make(tok::greater, parts.close.getLocation()));
       break;
     case ir::ParamRole::VariableOutput:
     case ir::ParamRole::Scatter:
-      out.push_back(maker_.word(appendTemplateName(syntax.rank), place));
-      out.push_back(maker_.make(tok::less, parts.open.getLocation()));
+      out.push_back(builder_.word(appendTemplateName(syntax.rank), place));
+      out.push_back(builder_.make(tok::less, parts.open.getLocation()));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      out.push_back(maker_.make(tok::greater, parts.close.getLocation()));
+      out.push_back(builder_.make(tok::greater, parts.close.getLocation()));
       break;
     case ir::ParamRole::Output:
     case ir::ParamRole::Accumulator:
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      out.push_back(maker_.make(tok::amp, place));
+      out.push_back(builder_.make(tok::amp, place));
       break;
     case ir::ParamRole::Input: inputs_.push_back({parts.type.front(), parts.name}); [[fallthrough]];
     case ir::ParamRole::Uniform:
     case ir::ParamRole::Iterator:
     case ir::ParamRole::Spec:
-      if (parts.type.front().isNot(tok::kw_const)) out.push_back(maker_.word("const", start));
+      if (parts.type.front().isNot(tok::kw_const)) out.push_back(builder_.word("const", start));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       break;
   }
   if (parts.length.empty()) {
     out.push_back(parts.name);
   } else {   // a reference, since C++ cannot pass arrays by value
-    out.push_back(maker_.make(tok::l_paren, place));
-    out.push_back(maker_.make(tok::amp, place));
+    out.push_back(builder_.make(tok::l_paren, place));
+    out.push_back(builder_.make(tok::amp, place));
     out.push_back(parts.name);
-    out.push_back(maker_.make(tok::r_paren, place));
+    out.push_back(builder_.make(tok::r_paren, place));
     out.insert(out.end(), parts.length.begin(), parts.length.end());
   }
   const bool isByIndex = syntax.role == ir::ParamRole::Gather || syntax.role == ir::ParamRole::Scatter ||
@@ -492,7 +492,7 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
 std::string ParameterEditor::generateConstant(const Tokens& type, const Tokens& value,
                                               clang::SourceLocation place) {
   std::string name = fmt::format("__sk_constant{}", constants_++);
-  maker_.constant(name, type, value, place, before_);
+  builder_.constant(name, type, value, place, before_);
   return name;
 }
 

@@ -11,7 +11,7 @@
 
 #include "frontend/tokens/comma_indices.hpp"
 #include "frontend/tokens/syntax.hpp"
-#include "frontend/tokens/token_maker.hpp"
+#include "frontend/tokens/token_builder.hpp"
 #include "support/diagnostics.hpp"
 
 namespace clang {
@@ -28,7 +28,7 @@ class ParameterEditor {
   ParameterEditor(clang::Preprocessor& preprocessor, Diagnostics& diagnostics, DeclarationSyntax& syntax,
                   int& constants, std::vector<clang::Token>& before)
       : preprocessor_(preprocessor),
-        maker_(preprocessor),
+        builder_(preprocessor),
         diagnostics_(diagnostics),
         syntax_(syntax),
         constants_(constants),
@@ -66,7 +66,7 @@ class ParameterEditor {
   void print(const Parts& parts, FunctionKind kind, Tokens& out);
 
   clang::Preprocessor& preprocessor_;
-  TokenMaker maker_;
+  TokenBuilder builder_;
   Diagnostics& diagnostics_;
   DeclarationSyntax& syntax_;
   int& constants_;

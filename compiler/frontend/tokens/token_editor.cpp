@@ -29,7 +29,7 @@ class Editor {
       : preprocessor_(preprocessor),
         diagnostics_(diagnostics),
         cursor_(tokens),
-        constructors_(TokenMaker(preprocessor)) {}
+        constructors_(TokenBuilder(preprocessor)) {}
 
   EditedTokens run() {
     copyPrelude();
@@ -126,7 +126,7 @@ class Editor {
   }
 
   void editStream() {
-    StreamEditor(TokenMaker(preprocessor_), diagnostics_, syntax_, constants_).edit(cursor_, out_);
+    StreamEditor(TokenBuilder(preprocessor_), diagnostics_, syntax_, constants_).edit(cursor_, out_);
   }
 
   /// Reports Brook's `iter float x<100> = iter(0, 1);`
@@ -171,7 +171,7 @@ class Editor {
     const Token attribute = cursor_.peek(2);
     const bool isTemplate = !out_.empty() && out_.back().is(tok::greater);
     const std::optional<TableSyntax> table =
-        takeTable(cursor_, behind, TokenMaker(preprocessor_), diagnostics_, constants_, out_);
+        takeTable(cursor_, behind, TokenBuilder(preprocessor_), diagnostics_, constants_, out_);
     const bool isKernel = atDeclarationWord("kernel") || atDeclarationWord("reduce");
     const std::optional<Token> name = isKernel || isTemplate ? std::nullopt : copyNamed();
     if (!name) {

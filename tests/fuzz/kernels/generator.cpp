@@ -16,9 +16,9 @@ constexpr std::int64_t fewTexels = 64 * 64;
 
 }  // namespace
 
-class RandomKernel::Maker {
+class RandomKernel::Generator {
  public:
-  Maker(RandomKernel& kernel, Random& random) : kernel_(kernel), random_(random) {}
+  Generator(RandomKernel& kernel, Random& random) : kernel_(kernel), random_(random) {}
 
   void make() {
     scope_.records = &kernel_.records_;
@@ -324,7 +324,7 @@ class RandomKernel::Maker {
 
 RandomKernel::RandomKernel(std::uint64_t seed, std::uint64_t number) {
   Random random(seed, number);
-  Maker(*this, random).make();
+  Generator(*this, random).make();
 }
 
 }  // namespace fuzz
