@@ -22,7 +22,7 @@ Kernel clone(const Kernel& kernel) {
               .isNativeOnly = kernel.isNativeOnly,
               .plans = kernel.plans,
               .pass = kernel.pass,
-              .forms = kernel.forms,
+              .variants = kernel.variants,
               .choices = kernel.choices,
               .loc = kernel.loc};
   for (const KernelParam& param : kernel.params) copy.params.push_back(ir::clone(param));

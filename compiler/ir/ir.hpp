@@ -294,7 +294,7 @@ struct Reduction {
 };
 
 /// Variants of a kernel for other precisions, with the same parameters: set by widen-floats and round-halves.
-struct Forms {
+struct PrecisionVariants {
   std::optional<KernelId> wide;  ///< computes in double wherever the kernel says float
   std::optional<KernelId> half;  ///< rounds every float that it computes to half
   std::string whyNotWide, whyNotHalf;  ///< why a kernel that computes floats has no such variant
@@ -382,7 +382,7 @@ struct Kernel {
   bool isNativeOnly = false;  ///< no GLSL program runs it
   std::vector<Plan> plans;  ///< for targets whose limits it exceeds, the most generous first
   std::optional<PassOf> pass;
-  Forms forms;
+  PrecisionVariants variants;
   Choices choices;
   std::vector<LoopNote> loops = {};  ///< loops whose counters index neighbours or array elements
   Loc loc;

@@ -185,7 +185,7 @@ void roundHalves(Module& module, Diagnostics&) {
     const std::optional<KernelId> combine =
         module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
     const KernelId half = roundKernel(module, id);
-    module.kernels[id].forms.half = half;
+    module.kernels[id].variants.half = half;
     if (!combine) continue;
     const KernelId halfCombine = *combine == id ? half : roundKernel(module, *combine);
     module.kernels[half].reduction->combine = halfCombine;

@@ -48,7 +48,7 @@ void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformO
   if (options.precisions) return transform(module, diagnostics);
   for (ir::Kernel& kernel : module.kernels) {
     if (!kernel.isSynthesized)
-      kernel.forms.whyNotWide = kernel.forms.whyNotHalf = "skc was told to leave it out";
+      kernel.variants.whyNotWide = kernel.variants.whyNotHalf = "skc was told to leave it out";
   }
 }
 

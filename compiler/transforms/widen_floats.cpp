@@ -316,11 +316,11 @@ void widenFloats(Module& module, Diagnostics&) {
         module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
     if (combine && obstacle.empty()) obstacle = obstacles.of(module.kernels[*combine]);
     if (!obstacle.empty()) {
-      module.kernels[id].forms.whyNotWide = std::move(obstacle);
+      module.kernels[id].variants.whyNotWide = std::move(obstacle);
       continue;
     }
     const KernelId wide = widener.widen(id, true);
-    module.kernels[id].forms.wide = wide;
+    module.kernels[id].variants.wide = wide;
     if (!combine) continue;
     // partial results are doubles, so even a fold that combines its own results has another variant for them
     const KernelId wideCombine = widener.widen(*combine, false);

@@ -39,14 +39,14 @@ TEST_CASE("a wide form computes in doubles and holds floats") {
   const KernelId id = addBlend(module);
   DiagnosticLog log;
   widenFloats(module, log);
-  REQUIRE(module.kernels[id].forms.wide);
-  const Kernel& wide = module.kernels[*module.kernels[id].forms.wide];
+  REQUIRE(module.kernels[id].variants.wide);
+  const Kernel& wide = module.kernels[*module.kernels[id].variants.wide];
   CHECK(wide.params[0].type == floatType);
   CHECK(wide.params[1].type == Type::of(Scalar::Double));
   CHECK(wide.params[1].held == floatType);
   CHECK(wide.params[2].border->type == Type::of(Scalar::Double));
   CHECK(validate(module, Stage::Specialized).empty());
-  const std::string text = entryOf(module, *module.kernels[id].forms.wide);
+  const std::string text = entryOf(module, *module.kernels[id].variants.wide);
   INFO(text);
   CHECK(text.find("t_wide") != std::string::npos);
 }
@@ -60,8 +60,8 @@ TEST_CASE("what doubles cannot do has no wide form, and says why") {
   const KernelId id = builder.finish(block(assign(builder.ref(r), std::move(determinant))));
   DiagnosticLog log;
   widenFloats(module, log);
-  CHECK_FALSE(module.kernels[id].forms.wide);
-  CHECK(module.kernels[id].forms.whyNotWide == "matrices are of floats (test.sk:7)");
+  CHECK_FALSE(module.kernels[id].variants.wide);
+  CHECK(module.kernels[id].variants.whyNotWide == "matrices are of floats (test.sk:7)");
 }
 
 TEST_CASE("a half form rounds what is read and what is computed, once") {
@@ -69,9 +69,9 @@ TEST_CASE("a half form rounds what is read and what is computed, once") {
   const KernelId id = addBlend(module);
   DiagnosticLog log;
   roundHalves(module, log);
-  REQUIRE(module.kernels[id].forms.half);
+  REQUIRE(module.kernels[id].variants.half);
   CHECK(validate(module, Stage::Specialized).empty());
-  const std::string text = entryOf(module, *module.kernels[id].forms.half);
+  const std::string text = entryOf(module, *module.kernels[id].variants.half);
   INFO(text);
   std::size_t roundings = 0;
   for (std::size_t at = text.find("half("); at != std::string::npos; at = text.find("half(", at + 1))
