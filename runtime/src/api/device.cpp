@@ -81,7 +81,7 @@ std::int32_t textureLimitOf(std::int32_t option) {
 }
 
 /// Whether doubles are pairs of floats. Guaranteed limits imply pairs, because profiles guarantee no doubles.
-bool wantsPairs(const std::string& doubles, bool guaranteedLimits) {
+bool usesPairs(const std::string& doubles, bool guaranteedLimits) {
   if (!doubles.empty() && doubles != "native" && doubles != "pairs") {
     throw Error(
         fmt::format("there are no doubles '{}'; choose native or pairs (option or SK_DOUBLES)", doubles));
@@ -106,7 +106,7 @@ std::optional<Barrier> barrierOf(const std::string& name) {
 DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles,
                         const std::string& barrier, const std::string& profile, bool sharesContext) {
   const bool guaranteedLimits = wantsGuaranteed(limits);
-  return {textureLimitOf(textureLimit), guaranteedLimits,  wantsPairs(doubles, guaranteedLimits),
+  return {textureLimitOf(textureLimit), guaranteedLimits,  usesPairs(doubles, guaranteedLimits),
           barrierOf(barrier),           targetOf(profile), sharesContext};
 }
 

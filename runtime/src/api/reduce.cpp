@@ -120,7 +120,7 @@ CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions&
   checkTables(reduction.fold, options);
   const bool isOfFloats =
       options.accumulate == Accumulate::Exact || options.accumulate == Accumulate::Compensated;
-  if (isOfFloats && takesForm(options)) {
+  if (isOfFloats && needsPrecisionVariant(options)) {
     fail(reduction.fold,
          "exact and compensated sums are of floats; call it in Precision::Single, or without Accumulate");
   }
@@ -196,14 +196,14 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
 /// Reduces with the variant that the options, the device and the results require.
 void reduceResolved(const ResolvedReduction& call) {
   if (isHeldOtherwise(call)) return reduceByFloats(call);
-  if (takesForm(call.options)) return reduceInForm(call);
+  if (needsPrecisionVariant(call.options)) return reduceInPrecision(call);
   const CompensatedReduction* second = compensated(call);
   if (isExact(call)) return reduceExactly(call);
   if (second == nullptr) return call.device.reduce(call);
   if (!isInDoubles(call, *second)) return reduceCompensated(call, *second);
   ResolvedReduction inDoubles = call;
   inDoubles.options.accumulate = Accumulate::Extended;
-  reduceInForm(inDoubles);
+  reduceInPrecision(inDoubles);
 }
 
 void checkAndReduce(const Reduction& reduction, std::span<const Argument> arguments,

@@ -156,10 +156,10 @@ std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& elem
 
 // Accumulate::Extended leaves the representation open: in software, doubles are more precise than pairs of
 // floats, and faster.
-bool GlDevice::takesPairs(const CallOptions& options) const {
-  const bool asksForPairs = options.precision == Precision::Extended;
+bool GlDevice::computesInPairs(const CallOptions& options) const {
+  const bool requiresPairs = options.precision == Precision::Extended;
   return isExtended(options) &&
-         (asksForPairs || !capabilities.isSoftware || profile.doubles == assemble::Doubles::Pairs);
+         (requiresPairs || !capabilities.isSoftware || profile.doubles == assemble::Doubles::Pairs);
 }
 
 bool GlDevice::mayDispatch(const program::Kernel& kernel) const {
@@ -203,7 +203,7 @@ std::vector<TargetTrial> GlDevice::trialTargets() {
 void GlDevice::choose(const CallOptions& options, assemble::Stage stage) {
   const ProgramChoice choice{.stage = stage,
                              .accurate = options.intrinsics != Intrinsics::Fast,
-                             .doubles = takesPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
+                             .doubles = computesInPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
                              .barrier = barrier,
                              .tables = options.tables != Tables::Off};
   if (programs_ != nullptr && choice == chosen_) {
@@ -313,7 +313,7 @@ void GlDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
 
 void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& options) {
   checkTarget(kernel, options.target);
-  if (takesPairs(options)) {
+  if (computesInPairs(options)) {
     needExactSums(kernel);
   }
   if (options.precision == Precision::Double && profile.doubles != assemble::Doubles::Native) {

@@ -73,7 +73,7 @@ class GlDevice final : public DeviceState {
   const Arithmetic& arithmetic() override;
   std::vector<TargetTrial> trialTargets() override;
   bool combinesScattered() const override { return capabilities.blendsFloats; }
-  bool takesForms() const override { return true; }
+  bool usesPrecisionVariants() const override { return true; }
   void checkProgram(const program::Kernel& kernel) override;
   void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
@@ -170,7 +170,7 @@ class GlDevice final : public DeviceState {
   bool hasDrawn = false;
 
  private:
-  bool takesPairs(const CallOptions& options) const;
+  bool computesInPairs(const CallOptions& options) const;
   assemble::Stage fasterFor(KernelClass kernels);
   bool mayDispatch(const program::Kernel& kernel) const;
   /// Throws sk::Error if a kernel cannot run on the target that a call requests.

@@ -379,7 +379,8 @@ std::vector<native::Table> NativeDevice::tablesOf(const Kernel& kernel, RealType
 
 void NativeDevice::run(const ResolvedCall& call) {
   checkTarget(call.kernel, call.options.target);
-  const Kernel& kernel = takesHalf(call.options) ? formOf(call.kernel, call.options) : call.kernel;
+  const Kernel& kernel =
+      computesInHalf(call.options) ? precisionVariant(call.kernel, call.options) : call.kernel;
   const RealType real = realOf(call.options);
   Operands operands(real, kernel, call.arguments, call.domain, tablesOf(kernel, real, call.options));
   {
@@ -393,7 +394,8 @@ void NativeDevice::run(const ResolvedCall& call) {
 
 void NativeDevice::reduce(const ResolvedReduction& call) {
   checkTarget(call.reduction.fold, call.options.target);
-  const program::Reduction& reduction = takesHalf(call.options) ? halfForm(call.reduction) : call.reduction;
+  const program::Reduction& reduction =
+      computesInHalf(call.options) ? halfVariant(call.reduction) : call.reduction;
   const RealType real = realOf(call.options);
   Folding folding(codeChoice(real, call.options), reduction, call.arguments, call.domain,
                   tablesOf(reduction.fold, real, call.options),
