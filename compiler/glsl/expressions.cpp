@@ -39,7 +39,7 @@ bool isBitPattern(std::uint32_t bits) {
 }
 
 Parts literalText(Type type, std::uint32_t bits) {
-  const Scalar scalar = carrierOf(type.scalar);
+  const Scalar scalar = arithmeticScalar(type.scalar);
   if (scalar == Scalar::Bool) return {bits != 0 ? "true" : "false"};
   if (scalar == Scalar::Int) {
     const auto value = static_cast<std::int32_t>(bits);
@@ -155,7 +155,7 @@ class GlslExpr {
   Parts print(Type type, const Binary& n) const { return binary(type, n.op, *n.lhs, *n.rhs); }
   Parts print(Type type, const Select& n) const {
     if (n.cond->type.isVector()) {
-      if (type.carrier().isFloat())
+      if (type.arithmeticType().isFloat())
         return {fmt::format("mix({}, {}, {})", text(*n.no), text(*n.yes), text(*n.cond))};
       return {fmt::format("{}({}, {}, {})", context_.polyfills.select(type), text(*n.cond), text(*n.yes),
                           text(*n.no))};
@@ -168,14 +168,14 @@ class GlslExpr {
     if (type.isDouble() || n.operand->type.isDouble()) {
       return {doubleConverted(context_.polyfills, n.operand->type, type, text(*n.operand))};
     }
-    const bool isCarried = carrierOf(n.operand->type.scalar) == carrierOf(type.scalar);
-    if (isCarried && !type.isNarrow()) return parts(*n.operand);
+    const bool keepsArithmetic = arithmeticScalar(n.operand->type.scalar) == arithmeticScalar(type.scalar);
+    if (keepsArithmetic && !type.isNarrow()) return parts(*n.operand);
     const std::string value = text(*n.operand);
     const std::string conversion = mayNotHold(context_.module, type, *n.operand)
                                        ? context_.polyfills.truncated(type)
                                        : context_.types.glsl(type);
-    const std::string carried = isCarried ? value : conversion + "(" + value + ")";
-    return {type.isNarrow() ? context_.polyfills.quantize(type) + "(" + carried + ")" : carried};
+    const std::string converted = keepsArithmetic ? value : conversion + "(" + value + ")";
+    return {type.isNarrow() ? context_.polyfills.quantize(type) + "(" + converted + ")" : converted};
   }
   Parts print(Type type, const Construct& n) const {
     if (type.isDouble()) return {doubleVector(context_.polyfills, type, typesOf(n.args), texts(n.args))};
@@ -262,7 +262,7 @@ class GlslExpr {
 
   /// The shift count modulo 32.
   std::string shiftCount(const Expr& count) const {
-    const bool isUint = carrierOf(count.type.scalar) == Scalar::Uint;
+    const bool isUint = arithmeticScalar(count.type.scalar) == Scalar::Uint;
     return operand(BinaryOp::BitAnd, count, Precedence::BitAnd) + (isUint ? " & 31u" : " & 31");
   }
 

@@ -38,7 +38,7 @@ ExprPtr literalOf(Type type, int value, Loc loc) {
   if (type.scalar == Scalar::Bool) return literal(value != 0, loc);
   if (type.scalar == Scalar::Uint) return literal(static_cast<std::uint32_t>(value), loc);
   if (type.scalar == Scalar::Double) return literal(static_cast<double>(value), loc);
-  const bool isInt = carrierOf(type.scalar) == Scalar::Int;
+  const bool isInt = arithmeticScalar(type.scalar) == Scalar::Int;
   ExprPtr result = isInt ? literal(std::int32_t{value}, loc) : literal(static_cast<float>(value), loc);
   result->type = type;
   return result;

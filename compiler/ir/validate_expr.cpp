@@ -188,11 +188,11 @@ class ExprChecker {
   void rule(Type type, const NeighborRead& n) const { read(type, n.stream, n.offset->type); }
   void rule(Type type, const Sample& n) const {
     const GatherType gather = gatherType(n.stream);
-    require(gather.element.carrier().isFloat() || gather.element.isDouble(),
+    require(gather.element.arithmeticType().isFloat() || gather.element.isDouble(),
             "a gather that holds no floats is interpolated");
     require(n.position->type == Type::of(type.isDouble() ? Scalar::Double : Scalar::Float, gather.rank),
             "the position in a gather is not of the interpolated type and its rank");
-    require(gather.element.carrier() == type,
+    require(gather.element.arithmeticType() == type,
             "an interpolated value has another type than the stream's element");
   }
   void rule(Type type, const IndexOf& n) const { shape(type, n.stream); }
@@ -321,7 +321,7 @@ void checkBinary(BinaryOp op, Type lhs, Type rhs, Type result) {
       return require(lhs == rhs, where + " has operands of different types");
     case BinaryOp::Equal:
     case BinaryOp::NotEqual:
-      require(!lhs.isNarrow(), where + " of a narrow type, whose carrier is compared");
+      require(!lhs.isNarrow(), where + " of a narrow type, whose arithmetic type is compared");
       return require(lhs == rhs, where + " has operands of different types");
     case BinaryOp::LogicalAnd:
     case BinaryOp::LogicalOr:

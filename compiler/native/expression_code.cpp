@@ -48,7 +48,7 @@ std::vector<Parts> FunctionCode::expressions(const std::vector<ExprPtr>& list) {
 
 Parts FunctionCode::parts(const Expr& expr, const Literal& n) {
   const Scalar scalar = expr.type.scalar;
-  switch (carrierOf(scalar)) {
+  switch (arithmeticScalar(scalar)) {
     case Scalar::Bool: return {{b.getInt1(n.bits != 0)}};
     case Scalar::Double: {
       const auto value = std::bit_cast<double>(std::uint64_t{n.high} << 32 | n.bits);
@@ -58,7 +58,7 @@ Parts FunctionCode::parts(const Expr& expr, const Literal& n) {
       const Part value = {l.number(l.real(), double{std::bit_cast<float>(n.bits)})};
       return {convert(l, Scalar::Float, scalar, value)};
     }
-    default: return {convert(l, carrierOf(scalar), scalar, {b.getInt32(n.bits)})};
+    default: return {convert(l, arithmeticScalar(scalar), scalar, {b.getInt32(n.bits)})};
   }
 }
 

@@ -106,7 +106,7 @@ std::string spellingOf(FoldOp op) {
 std::string number(double value, Scalar scalar) {
   if (scalar == Scalar::Bool) return value != 0 ? "true" : "false";
   if (std::isinf(value)) return value < 0 ? "-infinity" : "infinity";
-  return isReal(carrierOf(scalar)) ? fmt::format("{:.7g}", value) : fmt::format("{:.0f}", value);
+  return isReal(arithmeticScalar(scalar)) ? fmt::format("{:.7g}", value) : fmt::format("{:.0f}", value);
 }
 
 /// The position of an accumulator's component among its numbers.

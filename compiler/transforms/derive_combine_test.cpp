@@ -318,7 +318,7 @@ TEST_CASE("elements of the accumulators' types, one by one, are folded like them
   CHECK(crossed(true).kernels.size() == 2);
 }
 
-TEST_CASE("narrow accumulators are computed in their carriers") {
+TEST_CASE("narrow accumulators are computed in their arithmetic types") {
   const Type half = Type::of(Scalar::Half);
   const Outcome outcome = derive(floatType, half, nullptr, [](Module&, KernelBuilder& k) {
     ExprPtr sum = binary(Add, convert(Scalar::Float, k.ref(total)), k.ref(x));

@@ -13,11 +13,11 @@ namespace {
 using namespace ir;
 
 /// Removes conversions between a narrow type and its arithmetic type, which operators need.
-const Expr& withoutCarrier(const Expr& expr) {
+const Expr& withoutArithmeticConversion(const Expr& expr) {
   const auto* n = std::get_if<Convert>(&expr.node);
-  const bool isCarried = n != nullptr && (expr.type.isNarrow() || n->operand->type.isNarrow()) &&
-                         carrierOf(expr.type.scalar) == carrierOf(n->operand->type.scalar);
-  return isCarried ? *n->operand : expr;
+  const bool isConversion = n != nullptr && (expr.type.isNarrow() || n->operand->type.isNarrow()) &&
+                            arithmeticScalar(expr.type.scalar) == arithmeticScalar(n->operand->type.scalar);
+  return isConversion ? *n->operand : expr;
 }
 
 bool isCommutative(BinaryOp op) {
@@ -26,7 +26,9 @@ bool isCommutative(BinaryOp op) {
   return std::find(std::begin(all), std::end(all), op) != std::end(all);
 }
 
-bool isSame(const Expr& expr, const StaticPlace& place) { return staticPlace(withoutCarrier(expr)) == place; }
+bool isSame(const Expr& expr, const StaticPlace& place) {
+  return staticPlace(withoutArithmeticConversion(expr)) == place;
+}
 
 std::optional<FoldOp> minOrMax(Intrinsic intrinsic) {
   if (intrinsic == Intrinsic::Min || intrinsic == Intrinsic::Fmin) return Intrinsic::Min;
@@ -78,7 +80,8 @@ class Recogniser {
     if (n == nullptr) return std::nullopt;
     const std::optional<StaticPlace> place = placeOf(*n->place);
     if (!place) return std::nullopt;
-    const std::optional<FoldOp> op = n->op ? FoldOp(*n->op) : selfFold(withoutCarrier(*n->value), *place);
+    const std::optional<FoldOp> op =
+        n->op ? FoldOp(*n->op) : selfFold(withoutArithmeticConversion(*n->value), *place);
     if (!op) return std::nullopt;
     if (place->type.isMatrix() && op != FoldOp(BinaryOp::Add)) return std::nullopt;
     if (reads(*n->value) != (n->op ? 0 : 1)) return std::nullopt;
@@ -135,7 +138,7 @@ class Recogniser {
     const auto areBoth = [&](const Expr& a, const Expr& b) {
       return (isSame(a, *place) && isSame(b, element)) || (isSame(a, element) && isSame(b, *place));
     };
-    const Expr& value = withoutCarrier(*n->value);
+    const Expr& value = withoutArithmeticConversion(*n->value);
     if (const auto* b = std::get_if<Binary>(&value.node)) return areBoth(*b->lhs, *b->rhs);
     const auto* c = std::get_if<IntrinsicCall>(&value.node);
     return c != nullptr && areBoth(*c->args[0], *c->args[1]);

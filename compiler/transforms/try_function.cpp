@@ -21,17 +21,17 @@ struct CannotTry {};
 
 double wrapped(Scalar scalar, std::int64_t value) {
   const auto bits = static_cast<std::uint32_t>(value);
-  return carrierOf(scalar) == Scalar::Uint ? double{static_cast<double>(bits)}
-                                           : static_cast<double>(static_cast<std::int32_t>(bits));
+  return arithmeticScalar(scalar) == Scalar::Uint ? double{static_cast<double>(bits)}
+                                                  : static_cast<double>(static_cast<std::int32_t>(bits));
 }
 
 double converted(Scalar from, Scalar to, double value) {
   if (to == Scalar::Bool) return value != 0 ? 1 : 0;
-  const Scalar carrier = carrierOf(to);
-  if (isReal(carrier)) return value;
-  if (!isReal(carrierOf(from))) return wrapped(carrier, static_cast<std::int64_t>(value));
+  const Scalar arithmetic = arithmeticScalar(to);
+  if (isReal(arithmetic)) return value;
+  if (!isReal(arithmeticScalar(from))) return wrapped(arithmetic, static_cast<std::int64_t>(value));
   if (!(std::fabs(value) < 2147483648.0)) throw CannotTry{};
-  return wrapped(carrier, static_cast<std::int64_t>(value));
+  return wrapped(arithmetic, static_cast<std::int64_t>(value));
 }
 
 double comparison(BinaryOp op, double a, double b) {
@@ -377,7 +377,7 @@ class Interpreter {
   }
 
   static double literal(Scalar scalar, const Literal& n) {
-    switch (carrierOf(scalar)) {
+    switch (arithmeticScalar(scalar)) {
       case Scalar::Bool: return n.bits != 0;
       case Scalar::Int: return static_cast<std::int32_t>(n.bits);
       case Scalar::Uint: return n.bits;
@@ -388,7 +388,7 @@ class Interpreter {
 
   static Numbers unary(const Unary& n, Numbers value) {
     const Scalar scalar = n.operand->type.scalar;
-    const bool isIntegral = !isReal(carrierOf(scalar));
+    const bool isIntegral = !isReal(arithmeticScalar(scalar));
     for (double& v : value) {
       if (n.op == UnaryOp::LogicalNot) {
         v = v == 0;
@@ -414,7 +414,7 @@ class Interpreter {
     Numbers value(std::max(a.size(), b.size()));
     for (std::size_t i = 0; i < value.size(); ++i) {
       const double x = a.size() == 1 ? a[0] : a.at(i), y = b.size() == 1 ? b[0] : b.at(i);
-      value[i] = isReal(carrierOf(scalar)) ? ofReals(op, x, y) : ofIntegers(op, scalar, x, y);
+      value[i] = isReal(arithmeticScalar(scalar)) ? ofReals(op, x, y) : ofIntegers(op, scalar, x, y);
     }
     return value;
   }

@@ -250,10 +250,10 @@ class Widener {
     ExprPtr& operand = std::get<Convert>(slot->node).operand;
     const Type to = slot->type.isFloat() ? slot->type.withScalar(Scalar::Double) : slot->type;
     if (operand->type.isNarrow() && to.isDouble()) {
-      const Scalar carrier = operand->type.carrier().scalar;
-      operand = convert(carrier, std::move(operand), slot->loc);
+      const Scalar arithmetic = operand->type.arithmeticType().scalar;
+      operand = convert(arithmetic, std::move(operand), slot->loc);
     } else if (operand->type.isDouble() && to.isNarrow()) {
-      operand = convert(to.carrier().scalar, std::move(operand), slot->loc);
+      operand = convert(to.arithmeticType().scalar, std::move(operand), slot->loc);
     }
     if (operand->type == to) {
       ExprPtr value = std::move(operand);

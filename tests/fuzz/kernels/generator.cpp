@@ -206,7 +206,7 @@ class RandomKernel::Generator {
                   false};
     gather.hasNeighbors = gather.rank == static_cast<int>(kernel_.domain_.size());
     gather.boundary = static_cast<sk::program::Boundary>(random_.below(4));
-    const Type carrier{carrierOf(gather.type.scalar), gather.type.width};
+    const Type arithmetic{arithmeticScalar(gather.type.scalar), gather.type.width};
     std::string attribute;
     switch (gather.boundary) {
       case sk::program::Boundary::Clamp: attribute = random_.chance(1, 2) ? "[[clamp]] " : ""; break;
@@ -215,7 +215,7 @@ class RandomKernel::Generator {
       case sk::program::Boundary::Border:
         gather.border = randomValue({}, gather.type, random_);
         if (isNormalized(gather.type.scalar)) gather.border = {};
-        attribute = literal(carrier, gather.border);
+        attribute = literal(arithmetic, gather.border);
         if (isNarrow(gather.type.scalar))
           attribute = fmt::format("{}({})", spelling({}, gather.type), attribute);
         attribute = fmt::format("[[border({})]] ", attribute);

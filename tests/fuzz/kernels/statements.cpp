@@ -128,10 +128,10 @@ Statement Statements::assignment(const std::string& indent) {
 
 /// place op= value; or, for a float, an assignment that reduces the result to the bound `kept`.
 Statement Statements::compound(const Place& place, const std::string& indent) {
-  const Type type = place.type, carrier{carrierOf(type.scalar), type.width};
+  const Type type = place.type, arithmetic{arithmeticScalar(type.scalar), type.width};
   Expr old = expressions_.read(place);
-  Expr value = expressions_.make({carrier.scalar, type.width}, 2);
-  const bool isFloat = carrier.scalar == Scalar::Float;
+  Expr value = expressions_.make({arithmetic.scalar, type.width}, 2);
+  const bool isFloat = arithmetic.scalar == Scalar::Float;
   if (isFloat) value = expressions_.tamed(value);
   static constexpr char ofFloats[] = {'+', '-', '*'}, ofInts[] = {'+', '-', '*', '&', '|', '^'};
   const char op = isFloat ? random_.pick(ofFloats) : random_.pick(ofInts);
@@ -162,7 +162,7 @@ Statement Statements::compound(const Place& place, const std::string& indent) {
     made.text = fmt::format("{}{} {}= {};\n", indent, place.text, op, value.text);
     return made;
   }
-  Expr sum{carrier,
+  Expr sum{arithmetic,
            fmt::format("({} {} {})", old.text, op, value.text),
            combined,
            {2 * kept.magnitude, 2 * kept.fraction}};
