@@ -71,7 +71,7 @@ bool DivergenceWalk::jumps(const Stmt& stmt, Frame::Kind left) const {
   const bool isJump = left == Frame::Function ? std::holds_alternative<Return>(stmt.node)
                                               : std::holds_alternative<Continue>(stmt.node);
   if (isJump) return facts_.divergent.contains(&stmt);
-  if (left == Frame::Round && std::holds_alternative<Loop>(stmt.node)) return false;
+  if (left == Frame::Iteration && std::holds_alternative<Loop>(stmt.node)) return false;
   bool found = false;
   forEachBlock(stmt, [&](const Block& inner) {
     found = found || std::ranges::any_of(inner, [&](const Stmt& one) { return jumps(one, left); });
@@ -144,7 +144,7 @@ void DivergenceWalk::visit(const Stmt& stmt, const Loop& n) {
   if (facts_.divergent.contains(&stmt)) frames_.push_back({Frame::Loop, loops_.size()});
   loops_.push_back(&stmt);
   if (n.cond) calls(*n.cond);
-  block(n.body, Frame::Round);
+  block(n.body, Frame::Iteration);
   block(n.step);
   loops_.pop_back();
   frames_.resize(enclosing_.back().frames);
@@ -212,7 +212,7 @@ bool DivergenceWalk::isSeenOutside(const Frame& frame, const Declared& declared,
   switch (frame.kind) {
     case Frame::Branch: return true;
     case Frame::Function: return declared.isCallers;
-    case Frame::Round: return declared.loops <= frame.loop;
+    case Frame::Iteration: return declared.loops <= frame.loop;
     case Frame::Loop: break;
   }
   if (declared.loops > frame.loop) return false;

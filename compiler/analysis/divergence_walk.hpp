@@ -28,8 +28,8 @@ class DivergenceWalk {
  private:
   /// Why some lanes are inactive.
   struct Frame {
-    enum Kind : std::uint8_t { Branch, Loop, Round, Function } kind;
-    std::size_t loop = 0;  ///< Loop and Round: the number of loops around it
+    enum Kind : std::uint8_t { Branch, Loop, Iteration, Function } kind;
+    std::size_t loop = 0;  ///< Loop and Iteration: the number of loops around it
   };
   /// A statement that a jump can leave.
   struct Enclosing {

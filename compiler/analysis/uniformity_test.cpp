@@ -119,7 +119,7 @@ TEST_CASE("one that is read behind the loop is not") {
   CHECK(letters(found.of(s.entry(), i)) == "v");
 }
 
-TEST_CASE("a continue ends a round, and a return the loops around it") {
+TEST_CASE("a continue ends an iteration, and a return the loops around it") {
   Sample s;
   const VarId i = s.k.local("i", intType), j = s.k.local("j", intType);
   const Uniformity found = s.finish(

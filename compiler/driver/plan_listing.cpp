@@ -109,7 +109,8 @@ class PlanPrinter {
   }
 
   void printLoop(const LoopNote& loop) {
-    const std::string rounds = loop.rounds ? counted(static_cast<std::size_t>(*loop.rounds), "round") : "";
+    const std::string rounds =
+        loop.tripCount ? counted(static_cast<std::size_t>(*loop.tripCount), "round") : "";
     const std::string what =
         loop.whyNot.empty() ? rounds + ", unrolled" : "not unrolled, because " + loop.whyNot;
     text_ += wrapLine(fmt::format("  loop in line {}: {}", loop.loc.line, what), 100, 4) + "\n";

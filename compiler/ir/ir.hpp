@@ -364,7 +364,7 @@ struct Choices {
 /// A loop that unroll-loops has considered.
 struct LoopNote {
   Loc loc;
-  std::optional<std::int64_t> rounds;  ///< its trip count, if known
+  std::optional<std::int64_t> tripCount;  ///< if known
   std::string whyNot = {};  ///< why it stays a loop; empty if it was unrolled
 };
 

@@ -106,7 +106,7 @@ class Rounder {
     if (expr.type.isFloat() && isRounded(expr)) slot = rounded(std::move(slot));
   }
 
-  /// Rounds the part taken of a read, not the read itself, which may be a struct; indices are expressions.
+  /// CountedLoop the part taken of a read, not the read itself, which may be a struct; indices are expressions.
   void partOf(Expr& expr) {
     forEachOperand(expr, [&](ExprPtr& operand) {
       const bool isBase =
@@ -179,7 +179,7 @@ bool computesFloats(const Module& module, const Kernel& kernel) {
 }  // namespace
 
 void roundHalves(Module& module, Diagnostics&) {
-  const std::size_t declared = module.kernels.size();   // excludes kernels that this adds
+  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     if (module.kernels[id].isSynthesized || !computesFloats(module, module.kernels[id])) continue;
     const std::optional<KernelId> combine =

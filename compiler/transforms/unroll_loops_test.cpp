@@ -61,7 +61,7 @@ TEST_CASE("offsets of neighbours become constants") {
   CHECK(s.unrolled(block(s.loop(s.i, -1, 2, block(s.add(s.near(binary(Mul, s.k.ref(s.i), literal(2)))))))) ==
         "{\n  r += neighbor($0, -2);\n  r += neighbor($0, 0);\n  r += neighbor($0, 2);\n}\n");
   CHECK(s.note().whyNot.empty());
-  CHECK(s.note().rounds == 3);
+  CHECK(s.note().tripCount == 3);
 }
 
 TEST_CASE("loops in loops count together, also where the outer counter bounds the inner") {
@@ -73,7 +73,7 @@ TEST_CASE("loops in loops count together, also where the outer counter bounds th
         "{\n  r += neighbor($0, 0);\n  r += neighbor($0, -1);\n  r += neighbor($0, 0);\n}\n");
 }
 
-TEST_CASE("each round has locals of its own, and those of a known integer are gone") {
+TEST_CASE("each iteration has locals of its own, and those of a known integer are gone") {
   Sample s;
   const VarId t = s.k.local("t", floatType), d = s.k.local("d", intType);
   const std::string text = s.unrolled(
@@ -103,7 +103,7 @@ TEST_CASE("arithmetic on floats is left to the device") {
         "{\n  r += 1.0 * 0.1 * neighbor($0, 1);\n  r += 2.0 * 0.1 * neighbor($0, 2);\n}\n");
 }
 
-TEST_CASE("jumps that are decided are gone, and what continues skips the rest of its round") {
+TEST_CASE("jumps that are decided are gone, and what continues skips the rest of its iteration") {
   Sample s;
   CHECK(s.unrolled(block(
             s.loop(s.i, 0, 9,
@@ -125,7 +125,7 @@ TEST_CASE("a loop that elements leave stays, with its reason") {
   CHECK(s.note().whyNot.find("at different times") != std::string::npos);
 }
 
-TEST_CASE("a loop of unknown bounds, a changed counter or too many rounds stays, with its reason") {
+TEST_CASE("a loop of unknown bounds, a changed counter or too many iterations stays, with its reason") {
   const auto whyNot = [](const std::function<Block(Sample&)>& make) {
     Sample s;
     CHECK(s.unrolled(make(s)).find("for (int i") != std::string::npos);
