@@ -222,7 +222,7 @@ Parts FunctionCode::parts(const Expr& expr, const Construct& n) {
 // ---- parts of values ------------------------------------------------------------------------------
 
 Parts FunctionCode::parts(const Expr& expr, const Swizzle& n) {
-  if (const std::optional<Place> place = placeOf(expr)) return load(*place);
+  if (const std::optional<LValue> lvalue = lvalueOf(expr)) return load(*lvalue);
   const Parts base = expression(*n.base);
   Parts all;
   for (const std::uint8_t component : n.components) all.push_back(base[component]);
@@ -230,7 +230,7 @@ Parts FunctionCode::parts(const Expr& expr, const Swizzle& n) {
 }
 
 Parts FunctionCode::parts(const Expr& expr, const Member& n) {
-  if (const std::optional<Place> place = placeOf(expr)) return load(*place);
+  if (const std::optional<LValue> lvalue = lvalueOf(expr)) return load(*lvalue);
   const Parts base = expression(*n.base);
   const auto begin = base.begin() + componentsBefore(k.module, n.base->type, n.field);
   return {begin, begin + componentCount(k.module, expr.type)};
@@ -245,7 +245,7 @@ bool areConstants(const Parts& parts) {
 }  // namespace
 
 Parts FunctionCode::parts(const Expr& expr, const Index& n) {
-  if (const std::optional<Place> place = placeOf(expr)) return load(*place);
+  if (const std::optional<LValue> lvalue = lvalueOf(expr)) return load(*lvalue);
   const Parts base = expression(*n.base);
   const Type type = n.base->type;
   const std::uint32_t length =
@@ -323,11 +323,11 @@ Part FunctionCode::tableValue(llvm::Value* table, const Part& x) {
   const Part low = {field(offsetof(Table, low), l.real())};
   const Part perUnit = {field(offsetof(Table, perUnit), l.real())};
   const Part zero = {l.number(l.real(), 0)};
-  Part place = real(BinaryOp::Mul, real(BinaryOp::Sub, x, low), perUnit);
-  place = l.select(real(BinaryOp::Less, place, zero), zero, place);
-  place = l.select(real(BinaryOp::Less, end, place), end, place);
+  Part position = real(BinaryOp::Mul, real(BinaryOp::Sub, x, low), perUnit);
+  position = l.select(real(BinaryOp::Less, position, zero), zero, position);
+  position = l.select(real(BinaryOp::Less, end, position), end, position);
   const Part isNan = real(BinaryOp::NotEqual, x, x);
-  const Part safe = l.select(isNan, zero, place);
+  const Part safe = l.select(isNan, zero, position);
   const Part whole = convert(l, Scalar::Float, Scalar::Int, safe);
   const Part last = integer(BinaryOp::Sub, intervals, {l.integer(l.int32(), 1)});
   const Part interval = l.select(integer(BinaryOp::Less, last, whole), last, whole);
