@@ -95,14 +95,14 @@ std::optional<std::uint32_t> knownComponent(const Index& n) {
 
 /// True if GLSL can assign to the text of this lvalue. Components of double vectors are members of a struct:
 /// one known component is an lvalue, several or a computed one are not.
-bool isGlslPlace(const Expr& place) {
-  if (const auto* n = std::get_if<Swizzle>(&place.node)) {
-    return (!place.type.isDouble() || place.type.isScalar()) && isGlslPlace(*n->base);
+bool isGlslLValue(const Expr& lvalue) {
+  if (const auto* n = std::get_if<Swizzle>(&lvalue.node)) {
+    return (!lvalue.type.isDouble() || lvalue.type.isScalar()) && isGlslLValue(*n->base);
   }
-  if (const auto* n = std::get_if<Index>(&place.node)) {
-    return (!n->base->type.isDouble() || knownComponent(*n)) && isGlslPlace(*n->base);
+  if (const auto* n = std::get_if<Index>(&lvalue.node)) {
+    return (!n->base->type.isDouble() || knownComponent(*n)) && isGlslLValue(*n->base);
   }
-  if (const auto* n = std::get_if<Member>(&place.node)) return isGlslPlace(*n->base);
+  if (const auto* n = std::get_if<Member>(&lvalue.node)) return isGlslLValue(*n->base);
   return true;
 }
 
@@ -116,25 +116,25 @@ class GlslExpr {
     return whole.precedence < around ? "(" + whole.text + ")" : whole.text;
   }
 
-  /// If GLSL cannot assign to `place`, assigns to what contains it a copy with that part replaced.
-  std::string assigned(const Expr& place, const std::string& value) const {
-    if (isGlslPlace(place)) return text(place) + " = " + value;
-    if (const auto* n = std::get_if<Swizzle>(&place.node)) {
+  /// If GLSL cannot assign to `lvalue`, assigns to what contains it a copy with that part replaced.
+  std::string assigned(const Expr& lvalue, const std::string& value) const {
+    if (isGlslLValue(lvalue)) return text(lvalue) + " = " + value;
+    if (const auto* n = std::get_if<Swizzle>(&lvalue.node)) {
       return assigned(*n->base,
                       doubleWith(context_.polyfills, n->base->type, n->components, text(*n->base), value));
     }
-    const auto& n = std::get<Index>(place.node);
+    const auto& n = std::get<Index>(lvalue.node);
     return assigned(*n.base, doubleWithComponent(context_.polyfills, n.base->type, text(*n.base),
                                                  intText(*n.index), value));
   }
 
   /// "place += value", or its expansion if GLSL has no such operator for these operands.
-  std::string combined(BinaryOp op, const Expr& place, const Expr& value) const {
-    const bool isCall = place.type.isDouble() || takesQuotient(op, place, value);
+  std::string combined(BinaryOp op, const Expr& lvalue, const Expr& value) const {
+    const bool isCall = lvalue.type.isDouble() || takesQuotient(op, lvalue, value);
     if (!isCall && !mayShiftTooFar(context_.module, op, value)) {
-      return fmt::format("{} {}= {}", text(place), spelling(op), text(value));
+      return fmt::format("{} {}= {}", text(lvalue), spelling(op), text(value));
     }
-    return assigned(place, binary(place.type, op, place, value).text);
+    return assigned(lvalue, binary(lvalue.type, op, lvalue, value).text);
   }
 
  private:

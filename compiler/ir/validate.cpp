@@ -86,7 +86,7 @@ class FunctionChecker {
     visible_[n.var] = true;
   }
   void rule(const Assign& n) {
-    checkPlace(context_, *n.place);
+    checkLValue(context_, *n.place);
     checkExpr(context_, *n.value);
     if (!n.op) return require(n.place->type == n.value->type, "a value of another type is assigned");
     const bool isPlain =
@@ -97,7 +97,7 @@ class FunctionChecker {
   void rule(const CallStmt& n) {
     checkArguments(context_, n.callee, n.args, true);
     if (!n.result) return;
-    checkPlace(context_, *n.result);
+    checkLValue(context_, *n.result);
     require(n.result->type == context_.module.functions[n.callee].result, "a call's result has another type");
   }
   void rule(const If& n) {

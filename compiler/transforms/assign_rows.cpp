@@ -44,8 +44,8 @@ class RowWriter {
       if (auto* n = std::get_if<Assign>(&stmt.node)) through(*n->place, stmt.loc, rewritten, after);
       if (auto* n = std::get_if<CallStmt>(&stmt.node)) {
         for (std::size_t i = 0; i < n->args.size(); ++i) {
-          const bool isPlace = module_.functions[n->callee].variables[i].role == VarRole::InOut;
-          if (isPlace) through(*n->args[i], stmt.loc, rewritten, after);
+          const bool isLValue = module_.functions[n->callee].variables[i].role == VarRole::InOut;
+          if (isLValue) through(*n->args[i], stmt.loc, rewritten, after);
         }
         if (n->result) through(*n->result, stmt.loc, rewritten, after);
       }

@@ -109,11 +109,11 @@ bool areDisjoint(const ir::Expr& a, const ir::Expr& b) {
   return false;
 }
 
-bool isPlace(const ir::Expr& e) {
+bool isLValue(const ir::Expr& e) {
   if (std::holds_alternative<ir::VarRef>(e.node)) return true;
-  if (const auto* swizzle = std::get_if<ir::Swizzle>(&e.node)) return isPlace(*swizzle->base);
-  if (const auto* member = std::get_if<ir::Member>(&e.node)) return isPlace(*member->base);
-  if (const auto* index = std::get_if<ir::Index>(&e.node)) return isPlace(*index->base);
+  if (const auto* swizzle = std::get_if<ir::Swizzle>(&e.node)) return isLValue(*swizzle->base);
+  if (const auto* member = std::get_if<ir::Member>(&e.node)) return isLValue(*member->base);
+  if (const auto* index = std::get_if<ir::Index>(&e.node)) return isLValue(*index->base);
   return false;
 }
 
@@ -212,15 +212,15 @@ void FunctionLowering::spill(ExprPtr& e) {
 }
 
 /// Fixes which element an lvalue refers to, not its value: only its indices are saved in temporaries.
-void FunctionLowering::keepInPlace(ExprPtr& e) {
-  if (!isPlace(*e)) return spill(e);
+void FunctionLowering::pinLValue(ExprPtr& e) {
+  if (!isLValue(*e)) return spill(e);
   if (auto* index = std::get_if<ir::Index>(&e->node)) {
-    keepInPlace(index->base);
+    pinLValue(index->base);
     spill(index->index);
   } else if (auto* member = std::get_if<ir::Member>(&e->node)) {
-    keepInPlace(member->base);
+    pinLValue(member->base);
   } else if (auto* swizzle = std::get_if<ir::Swizzle>(&e->node)) {
-    keepInPlace(swizzle->base);
+    pinLValue(swizzle->base);
   }
 }
 
@@ -240,7 +240,7 @@ ExprPtr FunctionLowering::place(const clang::Expr* e) {
     const std::string& gather = function_.variables[read->stream.id].name;
     module_.fail(Diag::GatherAssigned, e->getBeginLoc(), {gather + "[...]", gather});
   }
-  if (!isPlace(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
+  if (!isLValue(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
   return result;
 }
 

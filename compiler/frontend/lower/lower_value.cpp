@@ -322,7 +322,7 @@ ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* i
   parts.push_back(valueInto(index, effects));
   if (!effects.empty()) {
     // the element is accessed after the index's effects; the array itself is not copied
-    keepInPlace(parts[0]);
+    pinLValue(parts[0]);
     for (ir::Stmt& s : effects) out_->push_back(std::move(s));
   }
   const ir::Type outer = parts[0]->type;
