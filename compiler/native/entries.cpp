@@ -25,7 +25,7 @@ class EntryWriter {
   EntryWriter(llvm::Module& code, const EntrySource& source, const std::string& name)
       : s_(source),
         b_(code.getContext()),
-        l_(b_, source.form),
+        l_(b_, source.options),
         streams_(l_, source.module, source.kernel, source.slots,
                  [this](const Expr& expr) { return constantParts(context_, expr); }),
         context_{l_, source.module, source.kernel, streams_, source.uniformity, source.debug},

@@ -126,7 +126,7 @@ Parts FunctionCode::either(llvm::Value* condition, const std::function<Parts()>&
 
 llvm::FastMathFlags FunctionCode::flagsOfText() const {
   llvm::FastMathFlags flags;
-  flags.setAllowContract(l.form().isContracted && !function_.isLibrary);
+  flags.setAllowContract(l.options().isContracted && !function_.isLibrary);
   return flags;
 }
 

@@ -186,7 +186,7 @@ void FunctionCode::write(const Loop& n) {
 /// If gathers of the loop can be read in blocks, emits code that does so while the elements of a block are in
 /// bounds, and then continues at `test`. Afterwards, the insertion point is where they are not.
 void FunctionCode::writeBlocks(const Loop& n, llvm::BasicBlock* test, llvm::BasicBlock* end) {
-  if (l.form().blockWidth == 0 || plan_ != nullptr) return;
+  if (l.options().blockWidth == 0 || plan_ != nullptr) return;
   const std::vector<BlockGather> gathers = blockGathers(k.module, k.kernel, *k.uniformity, id_, n);
   if (gathers.empty()) return;
   llvm::Value* const counter = expression(*std::get<Assign>(n.step.front().node).place)[0].value;

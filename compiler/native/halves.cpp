@@ -118,21 +118,21 @@ llvm::Value* inHardware(Lanes& l, llvm::Value* x) {
 Part floatOfHalf(Lanes& l, const Part& stored) {
   llvm::Value* const x = l.value(stored);
   llvm::Type* const real = l.sameShape(x, l.b.getFloatTy());
-  if (l.form().convertsHalves)
+  if (l.options().convertsHalves)
     return {l.b.CreateFPExt(l.b.CreateBitCast(x, l.sameShape(x, l.b.getHalfTy())), real)};
   return {converted(l, "float_of_half", expanded, x, real)};
 }
 
 Part roundedToHalf(Lanes& l, const Part& value) {
   llvm::Value* const x = l.value(value);
-  if (l.form().convertsHalves) return {l.b.CreateFPExt(inHardware(l, x), x->getType())};
+  if (l.options().convertsHalves) return {l.b.CreateFPExt(inHardware(l, x), x->getType())};
   return {converted(l, "rounded_to_half", roundedBits, x, x->getType())};
 }
 
 Part halfOfFloat(Lanes& l, const Part& value) {
   llvm::Value* const x = l.value(value);
   llvm::Type* const bits = l.sameShape(x, l.type(Scalar::Half));
-  if (l.form().convertsHalves) return {l.b.CreateBitCast(inHardware(l, x), bits)};
+  if (l.options().convertsHalves) return {l.b.CreateBitCast(inHardware(l, x), bits)};
   return {converted(l, "half_of_float", halfBits, x, bits)};
 }
 

@@ -19,7 +19,7 @@ using analysis::Shape;
 LeafMemory FunctionCode::memoryOf(const std::string& name, const Leaf& leaf, Shape shape) const {
   llvm::Type* element = leaf.dimensions.empty() ? l.type(leaf.scalar) : l.stored(leaf.scalar);
   const bool isMask = leaf.scalar == Scalar::Bool && leaf.dimensions.empty() && shape == Shape::Varying;
-  if (isMask && l.count() > 1 && !l.form().hasMaskRegisters) element = l.int32();
+  if (isMask && l.count() > 1 && !l.options().hasMaskRegisters) element = l.int32();
   if (shape == Shape::Varying) element = l.vector(element);
   llvm::Type* type = element;
   if (!leaf.dimensions.empty()) type = llvm::ArrayType::get(element, leaf.count());

@@ -476,9 +476,9 @@ llvm::Function* Streams::laneGather(std::uint32_t param) {
   llvm::BasicBlock* const entry = llvm::BasicBlock::Create(context, "entry", known);
   llvm::BasicBlock* const loop = llvm::BasicBlock::Create(context, "lane", known);
   llvm::BasicBlock* const end = llvm::BasicBlock::Create(context, "end", known);
-  Form form = l.form();
-  form.lanes = 1;
-  Lanes one(l.b, form);
+  CodegenOptions options = l.options();
+  options.lanes = 1;
+  Lanes one(l.b, options);
   Streams streams(one, module_, kernel_, slots_, value_);
   streams.begin(known->getArg(0), nullptr, entry);
   l.b.SetInsertPoint(loop);
