@@ -127,7 +127,7 @@ bool isAsGoodAs(FoldOp op, double given, double neutral) {
   return std::fabs(given) >= std::min(std::fabs(neutral), std::isinf(neutral) ? 1e9 : 536870912.0);
 }
 
-struct Given {
+struct IdentityCheck {
   const Module& module;
   const Kernel& kernel;
   Diagnostics& diagnostics;
@@ -167,7 +167,7 @@ bool checkIdentities(const Module& module, const Kernel& kernel, const FoldPatte
   for (const FoldPart& part : pattern.parts) {
     const ExprPtr& identity = kernel.params[part.accumulator].identity;
     const std::optional<Numbers> given = identity ? tryConstant(module, *identity) : std::nullopt;
-    if (given && !Given{module, kernel, diagnostics}.check(part, *given)) isRight = false;
+    if (given && !IdentityCheck{module, kernel, diagnostics}.check(part, *given)) isRight = false;
   }
   return isRight;
 }

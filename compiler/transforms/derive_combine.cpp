@@ -190,10 +190,10 @@ class State {
   }
   bool checkOwnCombination(const Kernel& kernel, KernelId id) {
     const std::optional<Loc> place = usesIndex(module_, kernel);
-    const bool isTold = std::any_of(  // it is the overload that combines for another
+    const bool isReported = std::any_of(  // it is the overload that combines for another
         module_.kernels.begin(), module_.kernels.end(),
         [&](const Kernel& other) { return other.reduction && other.reduction->combine == id; });
-    if (place && !isTold) diagnostics_.report(Diag::ReduceIndexCombine, *place, {kernel.name});
+    if (place && !isReported) diagnostics_.report(Diag::ReduceIndexCombine, *place, {kernel.name});
     return !place;
   }
 

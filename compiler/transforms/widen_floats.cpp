@@ -51,9 +51,9 @@ bool isOfBits(Intrinsic intrinsic) {
 // ---- what has no wide variant -------------------------------------------------------------------
 
 /// Looks for operations that doubles do not support.
-class Obstacles {
+class UnsupportedOperations {
  public:
-  Obstacles(const Module& module, WideTypes& types) : module_(module), types_(types) {}
+  UnsupportedOperations(const Module& module, WideTypes& types) : module_(module), types_(types) {}
 
   /// Returns the first obstacle, or "".
   std::string of(const Kernel& kernel) {
@@ -310,7 +310,7 @@ void widenFloats(Module& module, Diagnostics&) {
   const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     if (module.kernels[id].isSynthesized || !computesFloats(module, types, module.kernels[id])) continue;
-    Obstacles obstacles(module, types);
+    UnsupportedOperations obstacles(module, types);
     std::string obstacle = obstacles.of(module.kernels[id]);
     const std::optional<KernelId> combine =
         module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
