@@ -360,9 +360,9 @@ void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argu
   }
 }
 
-std::vector<RenderTarget> GlDevice::takePlanes(const program::Element& element,
-                                               const assemble::TextureShape& shape,
-                                               std::string_view whatFor) {
+std::vector<RenderTarget> GlDevice::acquirePlanes(const program::Element& element,
+                                                  const assemble::TextureShape& shape,
+                                                  std::string_view whatFor) {
   PlanesLease lease(*this);
   lease.add(element, shape, whatFor);
   return std::exchange(lease.planes, {});
@@ -373,7 +373,7 @@ void PlanesLease::add(const program::Element& element, const assemble::TextureSh
   planes.reserve(planes.size() + element.fields.size());
   for (const program::Field& field : element.fields) {
     const gl::Format& format = gl::formatOf(field);
-    RenderTarget plane = device_.pool.take(format, shape);
+    RenderTarget plane = device_.pool.acquire(format, shape);
     if (!plane) device_.failForPlanes(element, format, shape, whatFor);
     planes.push_back(std::move(plane));
     device_.labels.texture(planes.back().texture.name(), whatFor);
@@ -393,9 +393,9 @@ void GlDevice::failForPlanes(const program::Element& element, const gl::Format& 
       Error::Kind::Memory);
 }
 
-void GlDevice::givePlanes(std::vector<RenderTarget>& planes) noexcept {
+void GlDevice::releasePlanes(std::vector<RenderTarget>& planes) noexcept {
   for (RenderTarget& plane : planes) {
-    pool.give(std::move(plane));
+    pool.release(std::move(plane));
   }
   planes.clear();
   countBytes();

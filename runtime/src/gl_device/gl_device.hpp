@@ -85,11 +85,11 @@ class GlDevice final : public DeviceState {
   void run(const ResolvedCall& call) override;
   void reduce(const ResolvedReduction& call) override;
 
-  /// Takes the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
+  /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
   /// their purpose `whatFor`, if memory is exhausted.
-  std::vector<RenderTarget> takePlanes(const program::Element& element, const assemble::TextureShape& shape,
-                                       std::string_view whatFor);
-  void givePlanes(std::vector<RenderTarget>& planes) noexcept;
+  std::vector<RenderTarget> acquirePlanes(const program::Element& element,
+                                          const assemble::TextureShape& shape, std::string_view whatFor);
+  void releasePlanes(std::vector<RenderTarget>& planes) noexcept;
   [[noreturn]] void failForPlanes(const program::Element& element, const gl::Format& format,
                                   const assemble::TextureShape& shape, std::string_view whatFor);
   void countBytes() const noexcept {
@@ -211,11 +211,11 @@ class DeviceScope {
 class PlanesLease {
  public:
   explicit PlanesLease(GlDevice& device) : device_(device) {}
-  ~PlanesLease() { device_.givePlanes(planes); }
+  ~PlanesLease() { device_.releasePlanes(planes); }
   PlanesLease(const PlanesLease&) = delete;
   PlanesLease& operator=(const PlanesLease&) = delete;
 
-  /// Adds planes, like GlDevice::takePlanes().
+  /// Adds planes, like GlDevice::acquirePlanes().
   void add(const program::Element& element, const assemble::TextureShape& shape, std::string_view whatFor);
 
   std::vector<RenderTarget> planes;

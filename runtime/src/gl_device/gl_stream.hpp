@@ -79,7 +79,7 @@ class GlStream final : public StreamState {
   /// Transfer all elements of a region, of type held(), from and to host memory.
   void uploadHeld(const StreamRegion& region, const std::byte* elements);
   void downloadHeld(const StreamRegion& region, std::byte* elements);
-  std::vector<RenderTarget> takePlanesFor(const Layout& planned);
+  std::vector<RenderTarget> acquirePlanesFor(const Layout& planned);
 
   std::unique_ptr<assemble::HeldElement> held_;  ///< null if the storage is Single
   std::int64_t period_ = 0;  ///< of the device (GlDevice::period()), in which it was last written

@@ -55,8 +55,8 @@ double measureDevice(GlDevice& device) {
   const DeviceScope scope(device);
   PlanesLease from(device), to(device);
   try {
-    from.planes = device.takePlanes(element, layout.texture, "measuring how fast the device copies");
-    to.planes = device.takePlanes(element, layout.texture, "measuring how fast the device copies");
+    from.planes = device.acquirePlanes(element, layout.texture, "measuring how fast the device copies");
+    to.planes = device.acquirePlanes(element, layout.texture, "measuring how fast the device copies");
   } catch (const Error&) {
     return 0;
   }
