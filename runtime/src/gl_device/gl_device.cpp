@@ -88,7 +88,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
                     capabilities.renderer),
         Error::Kind::Device);
   }
-  choose({}, assemble::Stage::Fragment);
+  selectPrograms({}, assemble::Stage::Fragment);
   limits.textureSize = capabilities.textureSize;
   limits.textureLayers = capabilities.textureLayers;
   if (choices.textureLimit > 0 && choices.textureLimit < limits.textureSize) {
@@ -200,26 +200,26 @@ std::vector<TargetTrial> GlDevice::trialTargets() {
   return trials;
 }
 
-void GlDevice::choose(const CallOptions& options, assemble::Stage stage) {
-  const ProgramChoice choice{.stage = stage,
-                             .accurate = options.intrinsics != Intrinsics::Fast,
-                             .doubles = computesInPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
-                             .barrier = barrier,
-                             .tables = options.tables != Tables::Off};
-  if (programs_ != nullptr && choice == chosen_) {
+void GlDevice::selectPrograms(const CallOptions& options, assemble::Stage stage) {
+  const ProgramCacheKey key{.stage = stage,
+                            .accurate = options.intrinsics != Intrinsics::Fast,
+                            .doubles = computesInPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
+                            .barrier = barrier,
+                            .tables = options.tables != Tables::Off};
+  if (programs_ != nullptr && key == cacheKey_) {
     return;
   }
-  auto found = caches_.find(choice);
+  auto found = caches_.find(key);
   if (found == caches_.end()) {
-    assemble::Profile chosen = stage == assemble::Stage::Compute ? computeProfile : profile;
-    chosen.accurate = choice.accurate;
-    chosen.doubles = choice.doubles;
-    chosen.barrier = choice.barrier;
-    chosen.tables = choice.tables;
-    found = caches_.try_emplace(choice, *this, chosen).first;
+    assemble::Profile cacheProfile = stage == assemble::Stage::Compute ? computeProfile : profile;
+    cacheProfile.accurate = key.accurate;
+    cacheProfile.doubles = key.doubles;
+    cacheProfile.barrier = key.barrier;
+    cacheProfile.tables = key.tables;
+    found = caches_.try_emplace(key, *this, cacheProfile).first;
   }
   programs_ = &found->second;
-  chosen_ = choice;
+  cacheKey_ = key;
 }
 
 GLuint GlDevice::textureOf(const FunctionTable& table) {

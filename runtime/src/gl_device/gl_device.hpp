@@ -49,13 +49,13 @@ struct DeviceChoices {
 };
 
 /// The options of a call that affect all of its programs: a program cache's key.
-struct ProgramChoice {
+struct ProgramCacheKey {
   assemble::Stage stage = assemble::Stage::Fragment;
   bool accurate = true;
   assemble::Doubles doubles = assemble::Doubles::Native;
   Barrier barrier = Barrier::Xor;
   bool tables = true;
-  auto operator<=>(const ProgramChoice&) const = default;
+  auto operator<=>(const ProgramCacheKey&) const = default;
 };
 
 class GlDevice final : public DeviceState {
@@ -112,7 +112,7 @@ class GlDevice final : public DeviceState {
   void checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments,
                      const program::Plan* plan = nullptr) const;
   /// Selects the program cache for a call with these options, which programs() then returns.
-  void choose(const CallOptions& options, assemble::Stage stage);
+  void selectPrograms(const CallOptions& options, assemble::Stage stage);
   /// The stage that runs a kernel, or the fold of a reduction, in a call with these options. May measure
   /// which one is faster. No DeviceScope may be open.
   assemble::Stage stageOf(const program::Kernel& kernel, KernelClass kernels, const CallOptions& options);
@@ -180,10 +180,10 @@ class GlDevice final : public DeviceState {
 
   std::int64_t period_ = 1;
   const bool sharesContext_;
-  std::map<ProgramChoice, ProgramCache> caches_;
+  std::map<ProgramCacheKey, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
   ProgramCache* programs_ = nullptr;  ///< the selected cache
-  ProgramChoice chosen_;  ///< the key of the selected cache
+  ProgramCacheKey cacheKey_;  ///< the key of the selected cache
   std::optional<Arithmetic> arithmetic_;
   std::array<std::optional<assemble::Stage>, kernelClasses> faster_;
 };

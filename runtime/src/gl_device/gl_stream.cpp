@@ -67,7 +67,8 @@ void GlStream::unpack() {
 
 GlDevice& GlStream::owner() const { return static_cast<GlDevice&>(*device); }
 
-void GlStream::become(std::vector<RenderTarget>& elements, Layout&& list, RenderTarget* total) noexcept {
+void GlStream::replaceElements(std::vector<RenderTarget>& elements, Layout&& list,
+                               RenderTarget* total) noexcept {
   std::swap(planes, elements);
   layout = std::move(list);
   if (total_) {

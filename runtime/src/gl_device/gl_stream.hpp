@@ -64,7 +64,7 @@ class GlStream final : public StreamState {
   /// Swaps its planes for `elements`, the list that a kernel has pushed, of layout `list`. If their number is
   /// not known yet, `total` is HistoPyramid::totalTexture(), which is moved from, and the list has room for
   /// the largest possible number; otherwise `total` is null.
-  void become(std::vector<RenderTarget>& elements, Layout&& list, RenderTarget* total) noexcept;
+  void replaceElements(std::vector<RenderTarget>& elements, Layout&& list, RenderTarget* total) noexcept;
   /// The layout of the first `count` elements of a list.
   static Layout withSize(Layout list, std::int32_t count);
 

@@ -60,7 +60,7 @@ double measureDevice(GlDevice& device) {
   } catch (const Error&) {
     return 0;
   }
-  device.choose({}, stage);
+  device.selectPrograms({}, stage);
   const auto draw = [&](std::span<RenderTarget> source, std::span<RenderTarget> target) {
     const Operand operands[] = {{nullptr, layout.whole, source}, {}};
     RenderTarget* const targets[] = {&target.front()};

@@ -96,7 +96,7 @@ class AppendCall {
     }
     outputs.exchange();
     for (const std::unique_ptr<List>& list : lists) {
-      if (kernel_.parameters[list->appendOutput].role == Role::VariableOutput) become(*list);
+      if (kernel_.parameters[list->appendOutput].role == Role::VariableOutput) storeList(*list);
     }
   }
 
@@ -220,10 +220,11 @@ class AppendCall {
     program.tree.set(tree.plan());
   }
 
-  void become(List& list) noexcept {
+  void storeList(List& list) noexcept {
     const bool isKnown = list.total.planes.empty();
     glStream(arguments_[list.appendOutput].region)
-        .become(list.planes.planes, std::move(list.layout), isKnown ? nullptr : &list.total.planes.front());
+        .replaceElements(list.planes.planes, std::move(list.layout),
+                         isKnown ? nullptr : &list.total.planes.front());
     list.total.planes.clear();
   }
 
@@ -248,7 +249,7 @@ void runOverNothing(const ResolvedCall& call) {
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     if (call.kernel.parameters[i].role == Role::VariableOutput) {
       std::vector<RenderTarget> nothing;
-      glStream(call.arguments[i].region).become(nothing, listLayout(0, {1, 1}), nullptr);
+      glStream(call.arguments[i].region).replaceElements(nothing, listLayout(0, {1, 1}), nullptr);
     }
   }
 }

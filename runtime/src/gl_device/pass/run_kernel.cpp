@@ -182,7 +182,7 @@ void GlDevice::runUnchecked(const ResolvedCall& called) {
   const assemble::Stage stage = stageOf(call.kernel, classOf(call.kernel), call.options);
   const DeviceScope scope(*this);
   const gl::LabelGroup group(labels, called.kernel.name);
-  choose(call.options, stage);
+  selectPrograms(call.options, stage);
   checkStorages(call.kernel, call.arguments, call.plan);
   if (!hasAppendOutputs(call.kernel)) {
     KernelCall(*this, call).run();
