@@ -112,7 +112,7 @@ std::string appendListing(const Profile& profile, const sk::program::Kernel& ker
     if (sk::assemble::isCounted(appendOutput) && !hasTree) {
       hasTree = true;
       for (const bool ofCounts : {true, false}) {
-        programs.push_back(sk::assemble::treeProgram(profile, {.ofCounts = ofCounts}));
+        programs.push_back(sk::assemble::pyramidProgram(profile, {.ofCounts = ofCounts}));
       }
     }
     variant.task.appendOutput = static_cast<std::uint8_t>(i);

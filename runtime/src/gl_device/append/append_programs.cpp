@@ -13,7 +13,7 @@ namespace sk {
 
 using assemble::PointStep;
 
-gl::IntUniform& StepProgram::find(std::string_view name, bool isVector) {
+gl::IntUniform& AppendProgram::find(std::string_view name, bool isVector) {
   const auto found = std::find_if(uniforms_.begin(), uniforms_.end(),
                                   [&](const auto& known) { return known.first == name; });
   if (found != uniforms_.end()) {
@@ -23,8 +23,9 @@ gl::IntUniform& StepProgram::find(std::string_view name, bool isVector) {
   return uniforms_.emplace_back(kept, gl::IntUniform(program_.location(kept), isVector)).second;
 }
 
-std::unique_ptr<StepProgram> AppendPrograms::build(const std::string& vertexSource,
-                                                   const std::string& fragmentSource, std::string_view what) {
+std::unique_ptr<AppendProgram> AppendPrograms::build(const std::string& vertexSource,
+                                                     const std::string& fragmentSource,
+                                                     std::string_view what) {
   std::string log;
   gl::Program program = ProgramBuild(device_, {vertexSource, fragmentSource}).finish(device_, log);
   if (!program) {
@@ -34,23 +35,23 @@ std::unique_ptr<StepProgram> AppendPrograms::build(const std::string& vertexSour
                 Error::Kind::Compile);
   }
   device_.bound.program(program.name());
-  return std::make_unique<StepProgram>(std::move(program));
+  return std::make_unique<AppendProgram>(std::move(program));
 }
 
-StepProgram& AppendPrograms::tree(const assemble::PyramidTextures& textures) {
-  std::unique_ptr<StepProgram>& kept = trees_[textures];
+AppendProgram& AppendPrograms::pyramid(const assemble::PyramidTextures& textures) {
+  std::unique_ptr<AppendProgram>& kept = pyramids_[textures];
   if (!kept) {
     auto made = build(assemble::vertexProgram(device_.profile),
-                      assemble::treeProgram(device_.profile, textures), "sums of counts");
+                      assemble::pyramidProgram(device_.profile, textures), "sums of counts");
     made->program().setSampler("sk_below", 0);
     kept = std::move(made);
   }
   return *kept;
 }
 
-StepProgram& AppendPrograms::points(const program::Parameter& appendOutput, PointStep step,
-                                    const assemble::PointTextures& textures) {
-  std::unique_ptr<StepProgram>& kept = points_[{&appendOutput, step, textures}];
+AppendProgram& AppendPrograms::points(const program::Parameter& appendOutput, PointStep step,
+                                      const assemble::PointTextures& textures) {
+  std::unique_ptr<AppendProgram>& kept = points_[{&appendOutput, step, textures}];
   if (!kept) {
     const std::string vertexSource = assemble::hasPoints(step)
                                          ? assemble::pointVertexProgram(device_.profile, textures)

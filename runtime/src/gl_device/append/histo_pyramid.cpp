@@ -24,8 +24,8 @@ const program::Element& sums() { return ElementTraits<int4>::element(); }
 
 HistoPyramid::HistoPyramid(GlDevice& device, RenderTarget& counts, const Layout& layout)
     : device_(device),
-      plan_(assemble::planTree(static_cast<std::int32_t>(assemble::elements(layout.whole.extent)),
-                               device.textureLimits())),
+      plan_(assemble::planPyramid(static_cast<std::int32_t>(assemble::elements(layout.whole.extent)),
+                                  device.textureLimits())),
       odd_(device),
       even_(device) {
   odd_.planes = device.acquirePlanes(sums(), plan_.odd, whatFor);
@@ -42,8 +42,8 @@ HistoPyramid::HistoPyramid(GlDevice& device, RenderTarget& counts, const Layout&
 void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below, bool ofCounts,
                         std::int32_t belowRow) {
   const assemble::TextureShape& shape = below.texture.shape();
-  StepProgram& program =
-      device_.appendPrograms.tree({ofCounts, below.texture.isLayered(), plan_.isLayered()});
+  AppendProgram& program =
+      device_.appendPrograms.pyramid({ofCounts, below.texture.isLayered(), plan_.isLayered()});
   const auto number = static_cast<std::size_t>(&level - plan_.levels.data()) + 1;
   device_.bound.program(program.program().name());
   bindPlanes(device_, {&below, 1}, 0);

@@ -202,17 +202,17 @@ void ProgramCache::addDoubles(KernelProgram& made, std::size_t number, const std
 
 void ProgramCache::findListUniforms(KernelProgram& made, const program::Parameter& appendOutput) {
   made.target = LayoutUniforms(made.program, fmt::format("sk_*_{}", appendOutput.symbol));
-  made.tree.shift = {made.program.location("sk_tree_shift"), false};
-  made.tree.levels = {made.program.location("sk_levels"), false};
-  for (std::size_t level = 0; level < made.tree.rows.size(); ++level) {
-    made.tree.rows[level] = {made.program.location(fmt::format("sk_rows[{}]", level)), false};
+  made.pyramid.shift = {made.program.location("sk_tree_shift"), false};
+  made.pyramid.levels = {made.program.location("sk_levels"), false};
+  for (std::size_t level = 0; level < made.pyramid.rows.size(); ++level) {
+    made.pyramid.rows[level] = {made.program.location(fmt::format("sk_rows[{}]", level)), false};
   }
   device_.bound.program(made.program.name());
   made.program.setSampler("sk_odd", made.units);
   made.program.setSampler("sk_even", made.units + 1);
 }
 
-void KernelProgram::Tree::set(const assemble::PyramidPlan& plan) {
+void KernelProgram::Pyramid::set(const assemble::PyramidPlan& plan) {
   shift.set(plan.shift);
   levels.set(static_cast<std::int32_t>(plan.levels.size()));
   for (std::size_t level = 0; level < plan.levels.size(); ++level) {

@@ -52,7 +52,7 @@ struct KernelProgram {
   };
 
   /// The uniforms of a list's program for the pyramid (assemble/append/histo_pyramid.hpp).
-  struct Tree {
+  struct Pyramid {
     gl::IntUniform shift, levels;
     std::array<gl::IntUniform, assemble::mostPyramidLevels + 1> rows;
 
@@ -68,7 +68,7 @@ struct KernelProgram {
   LayoutUniforms domain;
   gl::IntUniform domainRow;  ///< layered domains: the first row of the drawn layer
   LayoutUniforms target;  ///< of the scatter output whose list it writes
-  Tree tree;  ///< its textures are on the units from `units` on
+  Pyramid pyramid;  ///< its textures are on the units from `units` on
   int units = 0;  ///< the number of units of reads, bundles and tables
   std::vector<Value> values;
   std::vector<Double> doubles;
