@@ -94,9 +94,9 @@ class Operands {
     return call(whole);
   }
   native::Call call(Extents& block) {
-    native::Call made = callAsItIs();
-    coalesce(kernel_, list_, made.domain, block);
-    return made;
+    native::Call call = callAsItIs();
+    coalesce(kernel_, list_, call.domain, block);
+    return call;
   }
   native::Call callAsItIs() const { return {list_, fastestFirst(domain_), tables_}; }
 
@@ -385,9 +385,9 @@ void NativeDevice::run(const ResolvedCall& call) {
   Operands operands(real, kernel, call.arguments, call.domain, tablesOf(kernel, real, call.options));
   {
     const NativePass traced(*this, kernel, {}, call.arguments, call.domain);
-    const native::Call made = operands.call();
+    const native::Call nativeCall = operands.call();
     operands.begin();
-    runCode(kernel, made, codeChoice(real, call.options));
+    runCode(kernel, nativeCall, codeChoice(real, call.options));
   }
   operands.settle();
 }

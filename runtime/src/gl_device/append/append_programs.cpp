@@ -19,8 +19,8 @@ gl::IntUniform& AppendProgram::find(std::string_view name, bool isVector) {
   if (found != uniforms_.end()) {
     return found->second;
   }
-  const std::string kept(name);
-  return uniforms_.emplace_back(kept, gl::IntUniform(program_.location(kept), isVector)).second;
+  const std::string owned(name);
+  return uniforms_.emplace_back(owned, gl::IntUniform(program_.location(owned), isVector)).second;
 }
 
 std::unique_ptr<AppendProgram> AppendPrograms::build(const std::string& vertexSource,
@@ -39,26 +39,27 @@ std::unique_ptr<AppendProgram> AppendPrograms::build(const std::string& vertexSo
 }
 
 AppendProgram& AppendPrograms::pyramid(const assemble::PyramidTextures& textures) {
-  std::unique_ptr<AppendProgram>& kept = pyramids_[textures];
-  if (!kept) {
-    auto made = build(assemble::vertexProgram(device_.profile),
-                      assemble::pyramidProgram(device_.profile, textures), "sums of counts");
-    made->program().setSampler("sk_below", 0);
-    kept = std::move(made);
+  std::unique_ptr<AppendProgram>& cached = pyramids_[textures];
+  if (!cached) {
+    auto appendProgram = build(assemble::vertexProgram(device_.profile),
+                               assemble::pyramidProgram(device_.profile, textures), "sums of counts");
+    appendProgram->program().setSampler("sk_below", 0);
+    cached = std::move(appendProgram);
   }
-  return *kept;
+  return *cached;
 }
 
 AppendProgram& AppendPrograms::points(const program::Parameter& appendOutput, PointStep step,
                                       const assemble::PointTextures& textures) {
-  std::unique_ptr<AppendProgram>& kept = points_[{&appendOutput, step, textures}];
-  if (!kept) {
+  std::unique_ptr<AppendProgram>& cached = points_[{&appendOutput, step, textures}];
+  if (!cached) {
     const std::string vertexSource = assemble::hasPoints(step)
                                          ? assemble::pointVertexProgram(device_.profile, textures)
                                          : assemble::vertexProgram(device_.profile);
-    auto made = build(vertexSource, assemble::pointProgram(device_.profile, appendOutput, step, textures),
-                      appendOutput.name);
-    const gl::Program& program = made->program();
+    auto appendProgram =
+        build(vertexSource, assemble::pointProgram(device_.profile, appendOutput, step, textures),
+              appendOutput.name);
+    const gl::Program& program = appendProgram->program();
     int unit = 0;
     program.setSampler("sk_targets", unit++);
     for (std::size_t plane = 0; plane < appendOutput.element->fields.size(); ++plane) {
@@ -71,9 +72,9 @@ AppendProgram& AppendPrograms::points(const program::Parameter& appendOutput, Po
     for (const char* name : {"sk_upper", "sk_lower"}) {
       program.setSampler(name, unit++);
     }
-    kept = std::move(made);
+    cached = std::move(appendProgram);
   }
-  return *kept;
+  return *cached;
 }
 
 }  // namespace sk

@@ -55,21 +55,21 @@ gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const O
     }
   }
   shape.layers *= count;
-  gl::Texture made(device.bound, gl::formatOf(bundle.scalar, bundle.width), shape);
-  if (made.name() == 0) {
+  gl::Texture texture(device.bound, gl::formatOf(bundle.scalar, bundle.width), shape);
+  if (texture.name() == 0) {
     device.throwIfLost();
     throw Error(fmt::format("'{}' has no room for inputs that share a texture: {} layers of {} x {} texels",
                             device.capabilities.renderer, shape.layers, shape.width, shape.height),
                 Error::Kind::Memory);
   }
   const assemble::Rect texels{0, 0, shape.width, shape.height * shape.layers};
-  const PassScope traced(device, {"copy", "to layers", "blit"}, texels, made.format().texelBytes());
+  const PassScope traced(device, {"copy", "to layers", "blit"}, texels, texture.format().texelBytes());
   for (std::int32_t i = 0; i < count; ++i) {
     if (RenderTarget* plane = planes[static_cast<std::size_t>(i)]) {
-      copyLayers(device, *plane, made, i, count);
+      copyLayers(device, *plane, texture, i, count);
     }
   }
-  return made;
+  return texture;
 }
 
 class PlanExecution {
