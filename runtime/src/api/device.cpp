@@ -173,8 +173,8 @@ constexpr std::string_view aDevice = "a new device";
 template <class Options>
 detail::DeviceOwner open(Options&& options) {
   return withHostMemory(aDevice, [&] {
-    const DeviceOptions asked = withEnvironment(options());
-    return configured(openState(asked), asked.configuration);
+    const DeviceOptions requested = withEnvironment(options());
+    return configured(openState(requested), requested.configuration);
   });
 }
 

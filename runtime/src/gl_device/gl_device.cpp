@@ -288,13 +288,13 @@ void GlDevice::checkProgram(const program::Reduction& reduction) {
   checkProgram(reduction.combine);
 }
 
-void GlDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
-  if (asked == Target::Native) {
+void GlDevice::checkTarget(const program::Kernel& kernel, Target requested) const {
+  if (requested == Target::Native) {
     fail(Error::Kind::Device, kernel,
          "its streams are on '{}'; native code runs on streams of sk::Device::native()", name());
   }
   constexpr std::string_view compileForBoth = "compile its .sk file with skc --target=fragment,compute";
-  const bool mustDispatch = asked == Target::Compute || !kernel.drawn;
+  const bool mustDispatch = requested == Target::Compute || !kernel.drawn;
   const std::string_view wayOut = kernel.drawn ? "call it without Target::Compute" : compileForBoth;
   if (mustDispatch && !capabilities.hasCompute) {
     fail(Error::Kind::Device, kernel, "'{}' runs no compute programs, which take OpenGL 4.3; {}", name(),
@@ -306,7 +306,7 @@ void GlDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
   if (mustDispatch && !kernel.dispatched) {
     fail(Error::Kind::Compile, kernel, "it has no compute programs; {}", compileForBoth);
   }
-  if (asked == Target::Fragment && !kernel.drawn) {
+  if (requested == Target::Fragment && !kernel.drawn) {
     fail(Error::Kind::Compile, kernel, "it has no fragment programs; {}", compileForBoth);
   }
 }

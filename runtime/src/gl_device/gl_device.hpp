@@ -174,7 +174,7 @@ class GlDevice final : public DeviceState {
   assemble::Stage fasterFor(KernelClass kernels);
   bool mayDispatch(const program::Kernel& kernel) const;
   /// Throws sk::Error if a kernel cannot run on the target that a call requests.
-  void checkTarget(const program::Kernel& kernel, Target asked) const;
+  void checkTarget(const program::Kernel& kernel, Target requested) const;
   void needExactSums(const program::Kernel& kernel);
   [[noreturn]] void failAsLost() const;
 

@@ -49,7 +49,7 @@ class NativeDevice final : public DeviceState {
  private:
   RealType realOf(const CallOptions& options) const;
   /// Throws sk::Error if a call asks for GLSL programs.
-  void checkTarget(const program::Kernel& kernel, Target asked) const;
+  void checkTarget(const program::Kernel& kernel, Target requested) const;
   /// True if a call takes the variant that rounds to halves. A reference does not.
   bool computesInHalf(const CallOptions& options) const {
     return options.precision == Precision::Half && !isReference();
