@@ -119,7 +119,7 @@ void DivergenceWalk::visit(const Stmt& stmt, const CallStmt& n) {
 
 void DivergenceWalk::assign(const Stmt& stmt, const Expr& place, Leaves value) {
   const VarId var = rootOf(place);
-  if (isSeenByOthers(var)) {
+  if (isVisibleToInactiveLanes(var)) {
     if (facts_.blended.insert({&stmt, var}).second) isNew_ = true;
     std::ranges::fill(value, Leaf(Shape::Varying));
   }
@@ -198,25 +198,26 @@ void DivergenceWalk::visit(const Stmt&, const Scope& n) { block(n.body); }
 
 // ---- visibility to inactive lanes ----------------------------------------------------------------
 
-bool DivergenceWalk::isSeenByOthers(VarId var) const {
+bool DivergenceWalk::isVisibleToInactiveLanes(VarId var) const {
   const Declared& declared = declared_[var];
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const bool isInside = frames_[i].kind == Frame::Branch && declared.frames > i;
-    if (!isInside && isSeenOutside(frames_[i], declared, var)) return true;
+    if (!isInside && isVisibleOutside(frames_[i], declared, var)) return true;
   }
   return false;
 }
 
 /// True if lanes that are inactive because of this frame may read the variable before it is declared again.
-bool DivergenceWalk::isSeenOutside(const Frame& frame, const Declared& declared, VarId var) const {
+bool DivergenceWalk::isVisibleOutside(const Frame& frame, const Declared& declared, VarId var) const {
   switch (frame.kind) {
     case Frame::Branch: return true;
-    case Frame::Function: return declared.isCallers;
+    case Frame::Function: return declared.isReadByCaller;
     case Frame::Iteration: return declared.loops <= frame.loop;
     case Frame::Loop: break;
   }
   if (declared.loops > frame.loop) return false;
-  return declared.isCallers || declared.loops < frame.loop || lastUses_.isUsedAfter(var, *loops_[frame.loop]);
+  return declared.isReadByCaller || declared.loops < frame.loop ||
+         lastUses_.isUsedAfter(var, *loops_[frame.loop]);
 }
 
 }  // namespace skc::analysis

@@ -154,9 +154,9 @@ Parts FunctionCode::parts(const Expr& expr, const Binary& n) {
   const Parts lhs = expression(*n.lhs);
   if (isLogical && lhs.size() == 1 && l.isUniform(lhs[0]) && isCostly(*n.rhs)) {
     const auto known = [&]() -> Parts { return {{b.getInt1(n.op == BinaryOp::LogicalOr)}}; };
-    const auto right = [&] { return expression(*n.rhs); };
-    return n.op == BinaryOp::LogicalAnd ? either(lhs[0].value, right, known)
-                                        : either(lhs[0].value, known, right);
+    const auto evaluated = [&] { return expression(*n.rhs); };
+    return n.op == BinaryOp::LogicalAnd ? either(lhs[0].value, evaluated, known)
+                                        : either(lhs[0].value, known, evaluated);
   }
   return arithmetic(n.op, expr.type, n.lhs->type, lhs, n.rhs->type, expression(*n.rhs));
 }

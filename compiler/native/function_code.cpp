@@ -90,7 +90,7 @@ void FunctionCode::block(const Block& statements) {
 }
 
 void FunctionCode::write(const Stmt& stmt) {
-  if (isInAllRows_ && !plan_->isJoint(stmt)) return writeInEachRow(stmt);
+  if (isInAllRows_ && !plan_->isEmittedOnce(stmt)) return writeInEachRow(stmt);
   match(stmt.node, [&](const auto& node) { write(node); });
 }
 

@@ -41,7 +41,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::Function function(const clang::FunctionDecl* declaration);
   /// True for a member function that returns `S&`, which can only end with `return *this;`. It is void in the
   /// IR, and a call's value is the object.
-  static bool givesItself(const clang::FunctionDecl* declaration);
+  static bool returnsThis(const clang::FunctionDecl* declaration);
   /// Lowers an initialiser outside any function; returns null if it has effects.
   ir::ExprPtr constantInitializer(const clang::Expr* init);
 
@@ -191,7 +191,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::Function function_;
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
   std::optional<ir::VarId> this_;
-  bool givesItself_ = false;
+  bool returnsThis_ = false;
   ir::Block* out_ = nullptr;  ///< receives statements
   int depth_ = 0;  ///< nesting of expressions and statements
 };

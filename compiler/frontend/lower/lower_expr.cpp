@@ -546,7 +546,7 @@ ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::Functi
   }
   if (!hasEffects) return make(target.result, where, ir::Call{id, std::move(arguments)});
   const Loc loc = module_.loc(where);
-  if (givesItself(callee)) {
+  if (returnsThis(callee)) {
     ExprPtr object = ir::clone(*arguments[0]);
     emit(loc, ir::CallStmt{id, std::move(arguments), nullptr});
     return object;

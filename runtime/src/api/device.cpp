@@ -56,7 +56,7 @@ Target targetOf(const std::string& profile) {
 }
 
 /// Whether the device must keep to the limits that its profile guarantees.
-bool wantsGuaranteed(const std::string& limits) {
+bool usesGuaranteedLimits(const std::string& limits) {
   if (!limits.empty() && limits != "device" && limits != "guaranteed") {
     throw Error(
         fmt::format("there are no limits '{}'; choose device or guaranteed (option or SK_LIMITS)", limits));
@@ -105,7 +105,7 @@ std::optional<Barrier> barrierOf(const std::string& name) {
 
 DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles,
                         const std::string& barrier, const std::string& profile, bool sharesContext) {
-  const bool guaranteedLimits = wantsGuaranteed(limits);
+  const bool guaranteedLimits = usesGuaranteedLimits(limits);
   return {textureLimitOf(textureLimit), guaranteedLimits,  usesPairs(doubles, guaranteedLimits),
           barrierOf(barrier),           targetOf(profile), sharesContext};
 }

@@ -414,7 +414,7 @@ void GlDevice::failAsLost() const {
 
 void GlDevice::throwIfLost() {
   bound.errors.setAside();
-  if (bound.errors.isLost() || (capabilities.tellsResets && bound.errors.askIfLost())) failAsLost();
+  if (bound.errors.isLost() || (capabilities.reportsResets && bound.errors.askIfLost())) failAsLost();
 }
 
 // In a shared context, errors other than exhausted memory and a lost context may be the application's own and

@@ -115,23 +115,24 @@ class Operands {
   /// Gives streams what was pushed to them and what was written to a copy or to spare arrays. What may throw
   /// comes first.
   void settle() {
-    struct Given {
+    struct PushedElements {
       NativeStream& stream;
       Components components;
       std::int64_t count;
     };
-    std::list<Given> given;
+    std::list<PushedElements> pushed;
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (list_[i].pushed == nullptr) continue;
       NativeStream& stream = nativeStream(arguments_[i].region);
       const std::int64_t count = list_[i].pushed->count;
-      given.push_back({stream, stream.heldOf(std::move(*list_[i].pushed), real_), count});
+      pushed.push_back({stream, stream.heldOf(std::move(*list_[i].pushed), real_), count});
     }
-    for (Given& one : given) one.stream.become(std::move(one.components), one.count);
+    for (PushedElements& one : pushed) one.stream.replaceElements(std::move(one.components), one.count);
     for (const auto& [stream, copy] : written_) stream->components.assign(copy, stream->shape.size());
     for (std::size_t i = 0; i < list_.size(); ++i) {
       const StreamRegion& region = arguments_[i].region;
-      if (region.stream != nullptr && isOutputOfAll(i) && isReplaced(region)) nativeStream(region).exchange();
+      if (region.stream != nullptr && writesWholeStream(i) && isReplaced(region))
+        nativeStream(region).exchange();
     }
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (isWritten(kernel_.parameters[i].role) && arguments_[i].region.stream != nullptr) {
@@ -236,12 +237,12 @@ class Operands {
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
       const StreamRegion& other = arguments_[i].region;
       if (other.stream != region.stream) continue;
-      isWhole = isWhole || isOutputOfAll(i);
+      isWhole = isWhole || writesWholeStream(i);
       isRead = isRead || isReadWhileWritten(i);
     }
     return isWhole && isRead;
   }
-  bool isOutputOfAll(std::size_t i) const {
+  bool writesWholeStream(std::size_t i) const {
     const Parameter& parameter = kernel_.parameters[i];
     const StreamRegion& region = arguments_[i].region;
     return parameter.role == Role::Output && assemble::isNeeded(parameter, specs_) &&

@@ -178,8 +178,8 @@ SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t
       arrays_(rows * width_, memory_.get()),
       scratch_(rows * width_, memory_.get()) {
   for (const Slot& slot : layout.slots()) {
-    const bool isAtEndsAlone = slot.isInPlace && slot.kind != SlotLayout::Kind::Gather;
-    const std::int64_t staged = std::min(layout.width(), isAtEndsAlone ? mostAtEnds : most);
+    const bool isStagedOnlyAtEnds = slot.isInPlace && slot.kind != SlotLayout::Kind::Gather;
+    const std::int64_t staged = std::min(layout.width(), isStagedOnlyAtEnds ? mostAtEnds : most);
     const std::int64_t elements = staged + native::mostLanes + 2 * slot.reach;
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
       const ScalarBytes bytes = layout.arrays()[a].bytes;
