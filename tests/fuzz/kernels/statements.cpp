@@ -48,8 +48,8 @@ Statement Statements::block(int count, int depth, const std::string& indent) {
 }
 
 Statement Statements::statement(int depth, const std::string& indent) {
-  if (!sinks_.empty() && random_.chance(1, 4)) {
-    return writeTo(random_.pick(sinks_), expressions_, *scope_.records, random_, indent);
+  if (!appendOutputs_.empty() && random_.chance(1, 4)) {
+    return writeTo(random_.pick(appendOutputs_), expressions_, *scope_.records, random_, indent);
   }
   switch (random_.below(depth > 0 ? 14 : 7)) {
     case 0: return declaration(indent);
