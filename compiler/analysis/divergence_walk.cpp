@@ -71,7 +71,7 @@ bool DivergenceWalk::jumps(const Stmt& stmt, Frame::Kind left) const {
   const bool isJump = left == Frame::Function ? std::holds_alternative<Return>(stmt.node)
                                               : std::holds_alternative<Continue>(stmt.node);
   if (isJump) return facts_.divergent.contains(&stmt);
-  if (left == Frame::Round && std::holds_alternative<Loop>(stmt.node)) return false;
+  if (left == Frame::Iteration && std::holds_alternative<Loop>(stmt.node)) return false;
   bool found = false;
   forEachBlock(stmt, [&](const Block& inner) {
     found = found || std::ranges::any_of(inner, [&](const Stmt& one) { return jumps(one, left); });
@@ -119,7 +119,7 @@ void DivergenceWalk::visit(const Stmt& stmt, const CallStmt& n) {
 
 void DivergenceWalk::assign(const Stmt& stmt, const Expr& place, Leaves value) {
   const VarId var = rootOf(place);
-  if (isSeenByOthers(var)) {
+  if (isVisibleToInactiveLanes(var)) {
     if (facts_.blended.insert({&stmt, var}).second) isNew_ = true;
     std::ranges::fill(value, Leaf(Shape::Varying));
   }
@@ -144,7 +144,7 @@ void DivergenceWalk::visit(const Stmt& stmt, const Loop& n) {
   if (facts_.divergent.contains(&stmt)) frames_.push_back({Frame::Loop, loops_.size()});
   loops_.push_back(&stmt);
   if (n.cond) calls(*n.cond);
-  block(n.body, Frame::Round);
+  block(n.body, Frame::Iteration);
   block(n.step);
   loops_.pop_back();
   frames_.resize(enclosing_.back().frames);
@@ -198,25 +198,26 @@ void DivergenceWalk::visit(const Stmt&, const Scope& n) { block(n.body); }
 
 // ---- visibility to inactive lanes ----------------------------------------------------------------
 
-bool DivergenceWalk::isSeenByOthers(VarId var) const {
+bool DivergenceWalk::isVisibleToInactiveLanes(VarId var) const {
   const Declared& declared = declared_[var];
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const bool isInside = frames_[i].kind == Frame::Branch && declared.frames > i;
-    if (!isInside && isSeenOutside(frames_[i], declared, var)) return true;
+    if (!isInside && isVisibleOutside(frames_[i], declared, var)) return true;
   }
   return false;
 }
 
 /// True if lanes that are inactive because of this frame may read the variable before it is declared again.
-bool DivergenceWalk::isSeenOutside(const Frame& frame, const Declared& declared, VarId var) const {
+bool DivergenceWalk::isVisibleOutside(const Frame& frame, const Declared& declared, VarId var) const {
   switch (frame.kind) {
     case Frame::Branch: return true;
-    case Frame::Function: return declared.isCallers;
-    case Frame::Round: return declared.loops <= frame.loop;
+    case Frame::Function: return declared.isReadByCaller;
+    case Frame::Iteration: return declared.loops <= frame.loop;
     case Frame::Loop: break;
   }
   if (declared.loops > frame.loop) return false;
-  return declared.isCallers || declared.loops < frame.loop || lastUses_.isUsedAfter(var, *loops_[frame.loop]);
+  return declared.isReadByCaller || declared.loops < frame.loop ||
+         lastUses_.isUsedAfter(var, *loops_[frame.loop]);
 }
 
 }  // namespace skc::analysis

@@ -28,8 +28,8 @@ class DivergenceWalk {
  private:
   /// Why some lanes are inactive.
   struct Frame {
-    enum Kind : std::uint8_t { Branch, Loop, Round, Function } kind;
-    std::size_t loop = 0;  ///< Loop and Round: the number of loops around it
+    enum Kind : std::uint8_t { Branch, Loop, Iteration, Function } kind;
+    std::size_t loop = 0;  ///< Loop and Iteration: the number of loops around it
   };
   /// A statement that a jump can leave.
   struct Enclosing {
@@ -39,7 +39,7 @@ class DivergenceWalk {
   };
   struct Declared {
     std::size_t frames, loops;  ///< numbers of frames and loops around the declaration
-    bool isCallers;  ///< the caller reads it after the function returns
+    bool isReadByCaller;  ///< the caller reads it after the function returns
   };
 
   void block(const ir::Block& statements, Frame::Kind leaves = Frame::Branch);
@@ -61,8 +61,8 @@ class DivergenceWalk {
   void calls(const ir::Expr& expr);
   void called(ir::FunctionId callee);
   void assign(const ir::Stmt& stmt, const ir::Expr& place, Leaves value);
-  bool isSeenByOthers(ir::VarId var) const;
-  bool isSeenOutside(const Frame& frame, const Declared& declared, ir::VarId var) const;
+  bool isVisibleToInactiveLanes(ir::VarId var) const;
+  bool isVisibleOutside(const Frame& frame, const Declared& declared, ir::VarId var) const;
   bool isDivergentJump(std::size_t frames, Frame::Kind allowed) const;
 
   Leaves shapes(const ir::Expr& expr) const { return exprs_.of(id_, expr); }

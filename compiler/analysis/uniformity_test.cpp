@@ -10,7 +10,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 
 namespace skc::analysis {
 namespace {
@@ -30,7 +30,7 @@ std::string letters(std::span<const Shape> shapes) {
 /// A kernel with a uniform u, an input x and an output r.
 struct Sample {
   Module module = testModule();
-  KernelMaker k{module, "f"};
+  KernelBuilder k{module, "f"};
   VarId u = k.uniform("u", intType), x = k.input("x", intType), r = k.output("r", intType);
 
   Uniformity finish(Block body) {
@@ -119,7 +119,7 @@ TEST_CASE("one that is read behind the loop is not") {
   CHECK(letters(found.of(s.entry(), i)) == "v");
 }
 
-TEST_CASE("a continue ends a round, and a return the loops around it") {
+TEST_CASE("a continue ends an iteration, and a return the loops around it") {
   Sample s;
   const VarId i = s.k.local("i", intType), j = s.k.local("j", intType);
   const Uniformity found = s.finish(
@@ -166,7 +166,7 @@ TEST_CASE("parameters are what all callers give, and results what comes back") {
 
 TEST_CASE("lanes of a fold stand apart along x") {
   Module module = testModule();
-  KernelMaker k(module, "total");
+  KernelBuilder k(module, "total");
   k.input("x", intType);
   const VarId sum = k.accumulator("sum", intType), p = k.local("p", int2Type);
   const KernelId id = k.finish(block(declare(p, swizzle(indexOf(domain), "xy"))));

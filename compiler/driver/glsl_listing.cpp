@@ -112,7 +112,7 @@ std::string appendListing(const Profile& profile, const sk::program::Kernel& ker
     if (sk::assemble::isCounted(appendOutput) && !hasTree) {
       hasTree = true;
       for (const bool ofCounts : {true, false}) {
-        programs.push_back(sk::assemble::treeProgram(profile, {.ofCounts = ofCounts}));
+        programs.push_back(sk::assemble::pyramidProgram(profile, {.ofCounts = ofCounts}));
       }
     }
     variant.task.appendOutput = static_cast<std::uint8_t>(i);
@@ -170,7 +170,7 @@ bool readsScalars(const sk::program::Kernel& fold) {
 std::string formListing(const Profile& profile, const sk::program::Reduction& reduction) {
   sk::assemble::RegionLayout input;
   input.extent = {1024, 1024, 1, 1};
-  const bool byIndex = sk::assemble::asksForPlace(reduction.fold);
+  const bool byIndex = sk::assemble::readsElementIndex(reduction.fold);
   input.packed = !byIndex && readsScalars(reduction.fold);
   const bool isCompute = profile.stage == sk::assemble::Stage::Compute;
   const sk::assemble::ReduceLimits limits{.texture = {16384, 256},

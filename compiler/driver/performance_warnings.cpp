@@ -174,7 +174,7 @@ void warnOfPerformance(const Module& module, Diagnostics& diagnostics) {
   const emit::Program program(module);
   for (const emit::Unit& unit : program.units()) {
     const Kernel& kernel = module.kernels[unit.id];
-    if (!kernel.isMade && !kernel.pass) advisor.kernel(kernel, unit.kernel);
+    if (!kernel.isSynthesized && !kernel.pass) advisor.kernel(kernel, unit.kernel);
   }
 }
 

@@ -31,7 +31,7 @@ class PlanPrinter {
     text_ = fmt::format("{}: {} draw buffers, {} texture units\n", name_, limits_.drawBuffers,
                         limits_.textureUnits);
     for (const Kernel& kernel : module_.kernels) {
-      if (kernel.pass || kernel.isMade) continue;
+      if (kernel.pass || kernel.isSynthesized) continue;
       text_ += fmt::format("\n{} {}{}: ", kernel.reduction ? "reduce" : "kernel", qualifier(kernel.scope),
                            kernel.name);
       kernel.reduction ? printReduce() : printKernel(kernel);
@@ -109,7 +109,8 @@ class PlanPrinter {
   }
 
   void printLoop(const LoopNote& loop) {
-    const std::string rounds = loop.rounds ? counted(static_cast<std::size_t>(*loop.rounds), "round") : "";
+    const std::string rounds =
+        loop.tripCount ? counted(static_cast<std::size_t>(*loop.tripCount), "round") : "";
     const std::string what =
         loop.whyNot.empty() ? rounds + ", unrolled" : "not unrolled, because " + loop.whyNot;
     text_ += wrapLine(fmt::format("  loop in line {}: {}", loop.loc.line, what), 100, 4) + "\n";

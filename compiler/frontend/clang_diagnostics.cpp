@@ -21,25 +21,25 @@ clang::DiagnosticIDs::Level levelOf(Severity severity, const clang::DiagnosticsE
   return engine.getWarningsAsErrors() ? clang::DiagnosticIDs::Error : clang::DiagnosticIDs::Warning;
 }
 
-clang::FixItHint hint(const Mend& mend, const clang::SourceManager& sources) {
-  const clang::SourceLocation first = clangLocation(mend.first);
-  switch (mend.kind) {
-    case Mend::Kind::Remove: return clang::FixItHint::CreateRemoval({first, clangLocation(mend.last)});
-    case Mend::Kind::Replace:
-      return clang::FixItHint::CreateReplacement(clang::SourceRange(first, clangLocation(mend.last)),
-                                                 mend.text);
-    case Mend::Kind::InsertBefore: return clang::FixItHint::CreateInsertion(first, mend.text);
-    case Mend::Kind::InsertAfter: break;
+clang::FixItHint hint(const FixIt& fixIt, const clang::SourceManager& sources) {
+  const clang::SourceLocation first = clangLocation(fixIt.first);
+  switch (fixIt.kind) {
+    case FixIt::Kind::Remove: return clang::FixItHint::CreateRemoval({first, clangLocation(fixIt.last)});
+    case FixIt::Kind::Replace:
+      return clang::FixItHint::CreateReplacement(clang::SourceRange(first, clangLocation(fixIt.last)),
+                                                 fixIt.text);
+    case FixIt::Kind::InsertBefore: return clang::FixItHint::CreateInsertion(first, fixIt.text);
+    case FixIt::Kind::InsertAfter: break;
   }
   const clang::SourceLocation end =
       clang::Lexer::getLocForEndOfToken(first, 0, sources, clang::LangOptions());
-  return clang::FixItHint::CreateInsertion(end, mend.text);
+  return clang::FixItHint::CreateInsertion(end, fixIt.text);
 }
 
 }  // namespace
 
 void ClangDiagnostics::report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments,
-                              const std::vector<Mend>& mends) {
+                              const std::vector<FixIt>& fixIts) {
   const DiagRow& entry = row(diag);
   const clang::DiagnosticIDs::Level level = levelOf(entry.severity, engine_);
   if (level == clang::DiagnosticIDs::Ignored) return;
@@ -47,7 +47,7 @@ void ClangDiagnostics::report(Diag diag, Loc loc, std::initializer_list<std::str
   const unsigned id = engine_.getDiagnosticIDs()->getCustomDiagID(level, "%0");
   const clang::DiagnosticBuilder message = engine_.Report(clangLocation(loc), id);
   message << format(diag, arguments);
-  for (const Mend& mend : mends) message << hint(mend, engine_.getSourceManager());
+  for (const FixIt& fixIt : fixIts) message << hint(fixIt, engine_.getSourceManager());
 }
 
 }  // namespace skc::frontend

@@ -17,7 +17,7 @@ class ClangDiagnostics : public Diagnostics {
     report(diag, loc, arguments, {});
   }
   void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments,
-              const std::vector<Mend>& mends) override;
+              const std::vector<FixIt>& fixIts) override;
   /// DiagnosticPrinter turns some warnings into errors, which the engine does not count.
   bool hasErrors() const override {
     return engine_.hasErrorOccurred() || engine_.getClient()->getNumErrors() != 0;

@@ -19,7 +19,7 @@ namespace {
 struct VectorFamily {
   std::string_view scalar;    ///< in .sk
   std::string_view element;   ///< Clang's type
-  std::string_view carrier;   ///< arithmetic type of intrinsics
+  std::string_view arithmetic;   ///< arithmetic type of intrinsics
 };
 
 // In Clang, vectors of `bool` have no swizzles. Their components are therefore char32_t, which nothing else
@@ -106,12 +106,12 @@ std::string vectorTypes() {
 }
 
 /// A class for values that are floats, or vectors of floats, stored with fewer bits.
-std::string normalizedType(std::string_view name, std::string_view carrier) {
+std::string normalizedType(std::string_view name, std::string_view arithmetic) {
   return fmt::format(
       "struct {0} {{\n"
       "  {0}() = default; constexpr {0}({1}) {{}} operator {1}() const;\n"
       "  void operator+=({1}); void operator-=({1}); void operator*=({1}); void operator/=({1});\n}};\n",
-      name, carrier);
+      name, arithmetic);
 }
 
 std::string normalizedTypes() {
@@ -169,7 +169,7 @@ std::string typeTraits() {
       text += fmt::format(
           "template <> struct __sk_traits<{0}{1}> {{ using F = {3}{1}; using f = {3}; using I = int{1}; "
           "using U = uint{1}; using B = bool{1}; using N = {2}{1}; }};\n",
-          family.scalar, suffix, family.carrier, real);
+          family.scalar, suffix, family.arithmetic, real);
     }
   }
   for (const std::string_view name : normalized) {

@@ -19,7 +19,7 @@ using namespace ir;
 bool isCall(const Module& module, const Expr& expr, const std::vector<bool>& isFunction) {
   if (expr.type.isDouble()) return true;
   if (const auto* n = std::get_if<Literal>(&expr.node)) {
-    return expr.type.carrier().isFloat() && !std::isfinite(std::bit_cast<float>(n->bits));
+    return expr.type.arithmeticType().isFloat() && !std::isfinite(std::bit_cast<float>(n->bits));
   }
   if (const auto* n = std::get_if<ConstantRef>(&expr.node)) return isFunction[n->constant];
   if (const auto* n = std::get_if<Binary>(&expr.node)) {

@@ -39,7 +39,7 @@ bool isBitPattern(std::uint32_t bits) {
 }
 
 Parts literalText(Type type, std::uint32_t bits) {
-  const Scalar scalar = carrierOf(type.scalar);
+  const Scalar scalar = arithmeticScalar(type.scalar);
   if (scalar == Scalar::Bool) return {bits != 0 ? "true" : "false"};
   if (scalar == Scalar::Int) {
     const auto value = static_cast<std::int32_t>(bits);
@@ -95,14 +95,14 @@ std::optional<std::uint32_t> knownComponent(const Index& n) {
 
 /// True if GLSL can assign to the text of this lvalue. Components of double vectors are members of a struct:
 /// one known component is an lvalue, several or a computed one are not.
-bool isGlslPlace(const Expr& place) {
-  if (const auto* n = std::get_if<Swizzle>(&place.node)) {
-    return (!place.type.isDouble() || place.type.isScalar()) && isGlslPlace(*n->base);
+bool isGlslLValue(const Expr& lvalue) {
+  if (const auto* n = std::get_if<Swizzle>(&lvalue.node)) {
+    return (!lvalue.type.isDouble() || lvalue.type.isScalar()) && isGlslLValue(*n->base);
   }
-  if (const auto* n = std::get_if<Index>(&place.node)) {
-    return (!n->base->type.isDouble() || knownComponent(*n)) && isGlslPlace(*n->base);
+  if (const auto* n = std::get_if<Index>(&lvalue.node)) {
+    return (!n->base->type.isDouble() || knownComponent(*n)) && isGlslLValue(*n->base);
   }
-  if (const auto* n = std::get_if<Member>(&place.node)) return isGlslPlace(*n->base);
+  if (const auto* n = std::get_if<Member>(&lvalue.node)) return isGlslLValue(*n->base);
   return true;
 }
 
@@ -116,25 +116,25 @@ class GlslExpr {
     return whole.precedence < around ? "(" + whole.text + ")" : whole.text;
   }
 
-  /// If GLSL cannot assign to `place`, assigns to what contains it a copy with that part replaced.
-  std::string assigned(const Expr& place, const std::string& value) const {
-    if (isGlslPlace(place)) return text(place) + " = " + value;
-    if (const auto* n = std::get_if<Swizzle>(&place.node)) {
+  /// If GLSL cannot assign to `lvalue`, assigns to what contains it a copy with that part replaced.
+  std::string assigned(const Expr& lvalue, const std::string& value) const {
+    if (isGlslLValue(lvalue)) return text(lvalue) + " = " + value;
+    if (const auto* n = std::get_if<Swizzle>(&lvalue.node)) {
       return assigned(*n->base,
                       doubleWith(context_.polyfills, n->base->type, n->components, text(*n->base), value));
     }
-    const auto& n = std::get<Index>(place.node);
+    const auto& n = std::get<Index>(lvalue.node);
     return assigned(*n.base, doubleWithComponent(context_.polyfills, n.base->type, text(*n.base),
                                                  intText(*n.index), value));
   }
 
   /// "place += value", or its expansion if GLSL has no such operator for these operands.
-  std::string combined(BinaryOp op, const Expr& place, const Expr& value) const {
-    const bool isCall = place.type.isDouble() || takesQuotient(op, place, value);
+  std::string combined(BinaryOp op, const Expr& lvalue, const Expr& value) const {
+    const bool isCall = lvalue.type.isDouble() || takesQuotient(op, lvalue, value);
     if (!isCall && !mayShiftTooFar(context_.module, op, value)) {
-      return fmt::format("{} {}= {}", text(place), spelling(op), text(value));
+      return fmt::format("{} {}= {}", text(lvalue), spelling(op), text(value));
     }
-    return assigned(place, binary(place.type, op, place, value).text);
+    return assigned(lvalue, binary(lvalue.type, op, lvalue, value).text);
   }
 
  private:
@@ -155,7 +155,7 @@ class GlslExpr {
   Parts print(Type type, const Binary& n) const { return binary(type, n.op, *n.lhs, *n.rhs); }
   Parts print(Type type, const Select& n) const {
     if (n.cond->type.isVector()) {
-      if (type.carrier().isFloat())
+      if (type.arithmeticType().isFloat())
         return {fmt::format("mix({}, {}, {})", text(*n.no), text(*n.yes), text(*n.cond))};
       return {fmt::format("{}({}, {}, {})", context_.polyfills.select(type), text(*n.cond), text(*n.yes),
                           text(*n.no))};
@@ -168,14 +168,14 @@ class GlslExpr {
     if (type.isDouble() || n.operand->type.isDouble()) {
       return {doubleConverted(context_.polyfills, n.operand->type, type, text(*n.operand))};
     }
-    const bool isCarried = carrierOf(n.operand->type.scalar) == carrierOf(type.scalar);
-    if (isCarried && !type.isNarrow()) return parts(*n.operand);
+    const bool keepsArithmetic = arithmeticScalar(n.operand->type.scalar) == arithmeticScalar(type.scalar);
+    if (keepsArithmetic && !type.isNarrow()) return parts(*n.operand);
     const std::string value = text(*n.operand);
     const std::string conversion = mayNotHold(context_.module, type, *n.operand)
                                        ? context_.polyfills.truncated(type)
                                        : context_.types.glsl(type);
-    const std::string carried = isCarried ? value : conversion + "(" + value + ")";
-    return {type.isNarrow() ? context_.polyfills.quantize(type) + "(" + carried + ")" : carried};
+    const std::string converted = keepsArithmetic ? value : conversion + "(" + value + ")";
+    return {type.isNarrow() ? context_.polyfills.quantize(type) + "(" + converted + ")" : converted};
   }
   Parts print(Type type, const Construct& n) const {
     if (type.isDouble()) return {doubleVector(context_.polyfills, type, typesOf(n.args), texts(n.args))};
@@ -262,7 +262,7 @@ class GlslExpr {
 
   /// The shift count modulo 32.
   std::string shiftCount(const Expr& count) const {
-    const bool isUint = carrierOf(count.type.scalar) == Scalar::Uint;
+    const bool isUint = arithmeticScalar(count.type.scalar) == Scalar::Uint;
     return operand(BinaryOp::BitAnd, count, Precedence::BitAnd) + (isUint ? " & 31u" : " & 31");
   }
 

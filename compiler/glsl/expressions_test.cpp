@@ -10,7 +10,7 @@
 
 #include "glsl/float_intrinsics.hpp"
 #include "ir/intrinsics.hpp"
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 
 namespace skc::emit {
 namespace {
@@ -25,7 +25,7 @@ const Type bool2 = Type::of(Scalar::Bool, 2);
 /// A kernel with parameters of several types, and the text of expressions in it.
 struct Fixture {
   Module module = testModule();
-  KernelMaker k{module, "k"};
+  KernelBuilder k{module, "k"};
   VarId f = k.uniform("f", floatType), i = k.uniform("i", intType), v = k.uniform("v", float2),
         w = k.uniform("w", int3), b = k.uniform("b", bool2), x = k.input("x", floatType),
         u = k.gather("u", floatType, 2), r = k.output("r", floatType);

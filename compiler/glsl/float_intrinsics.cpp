@@ -37,7 +37,7 @@ constexpr std::array rows = {
 }  // namespace
 
 std::optional<Defined> definedIntrinsic(const ir::IntrinsicCall& call) {
-  const auto isFloat = [](const ir::ExprPtr& arg) { return arg->type.carrier().isFloat(); };
+  const auto isFloat = [](const ir::ExprPtr& arg) { return arg->type.arithmeticType().isFloat(); };
   const auto row = std::ranges::find(rows, call.intrinsic, &Row::intrinsic);
   if (row == rows.end() || !std::ranges::all_of(call.args, isFloat)) return std::nullopt;
   return row->defined;

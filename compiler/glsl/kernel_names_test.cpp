@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "glsl/words.hpp"
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 
 namespace skc::emit {
 namespace {
@@ -64,7 +64,7 @@ TEST_CASE("only what GLSL forbids is changed") {
 
 struct Sample {
   Module module = testModule();
-  KernelMaker k{module, "f"};
+  KernelBuilder k{module, "f"};
   KernelNames names() {
     const TypeNames types(module);
     return KernelNames(module, module.kernels.back(), types);

@@ -29,8 +29,8 @@ bool isBelow32(std::uint32_t bits) { return bits < 32; }
 }  // namespace
 
 bool mayDivideBadly(const Module& module, BinaryOp op, const Expr& lhs, const Expr& rhs) {
-  if ((op != BinaryOp::Div && op != BinaryOp::Rem) || !lhs.type.carrier().isInteger()) return false;
-  const bool isInt = carrierOf(lhs.type.scalar) == Scalar::Int;
+  if ((op != BinaryOp::Div && op != BinaryOp::Rem) || !lhs.type.arithmeticType().isInteger()) return false;
+  const bool isInt = arithmeticScalar(lhs.type.scalar) == Scalar::Int;
   return !isKnown(module, rhs,
                   [&](std::uint32_t bits) { return bits != 0 && !(isInt && bits == 0xffffffffU); });
 }
@@ -45,9 +45,9 @@ bool mayShiftTooFar(const Module& module, BinaryOp op, const Expr& count) {
 
 bool mayNotHold(const Module& module, Type to, const Expr& operand) {
   const Scalar from = operand.type.scalar;
-  if (!to.carrier().isInteger() || carrierOf(from) != Scalar::Float) return false;
+  if (!to.arithmeticType().isInteger() || arithmeticScalar(from) != Scalar::Float) return false;
   if (from == Scalar::Unorm8 || from == Scalar::Unorm16) return false;
-  const bool isInt = carrierOf(to.scalar) == Scalar::Int;
+  const bool isInt = arithmeticScalar(to.scalar) == Scalar::Int;
   if (isInt && (from == Scalar::Snorm8 || from == Scalar::Snorm16)) return false;
   return !isKnown(module, operand, [&](std::uint32_t bits) {
     const auto value = std::bit_cast<float>(bits);

@@ -130,7 +130,7 @@ std::string Polyfills::quotient(BinaryOp op, Type lhs, Type rhs) {
 }
 
 std::string Polyfills::truncated(Type to) {
-  const bool isInt = carrierOf(to.scalar) == Scalar::Int;
+  const bool isInt = arithmeticScalar(to.scalar) == Scalar::Int;
   const std::string name = isInt ? "sk_int" : "sk_uint";
   add(isInt ? "int sk_int(float x) {\n"
               "  if (x >= 2147483648.0) return 2147483647;\n"
@@ -138,8 +138,9 @@ std::string Polyfills::truncated(Type to) {
               "}\n"
             : "uint sk_uint(float x) { return x >= 4294967296.0 ? 0xffffffffu : x > 0.0 ? uint(x) : 0u; }\n");
   if (to.isVector()) {
-    add(fmt::format("{0} {1}({2} x) {{ return {0}({3}); }}\n", glslSpelling(carrierOf(to.scalar), to.width),
-                    name, glslSpelling(Scalar::Float, to.width), byComponent(name + "(x.@)", to.width)));
+    add(fmt::format("{0} {1}({2} x) {{ return {0}({3}); }}\n",
+                    glslSpelling(arithmeticScalar(to.scalar), to.width), name,
+                    glslSpelling(Scalar::Float, to.width), byComponent(name + "(x.@)", to.width)));
   }
   return name;
 }

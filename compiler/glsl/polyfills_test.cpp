@@ -10,7 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include "glsl/tool_folder.hpp"
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 
 namespace skc::emit {
 namespace {

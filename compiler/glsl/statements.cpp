@@ -126,17 +126,17 @@ class FunctionWriter {
   }
 
   /// True if the .sk file has no line for the "}" after a simple body.
-  static bool isBare(const Block& body, Loc head, std::uint32_t next) {
+  static bool omitsBraces(const Block& body, Loc head, std::uint32_t next) {
     const std::uint32_t line = body[0].loc.line;
     return line == head.line || (next != 0 && next <= line + 1);
   }
 
   void bodyOf(const Block& body, int depth, Loc head, std::uint32_t next) {
-    if (isSimple(body) && isBare(body, head, next)) return bareBody(body, depth, next);
+    if (isSimple(body) && omitsBraces(body, head, next)) return unbracedBody(body, depth, next);
     braces(body, depth, next);
   }
 
-  void bareBody(const Block& body, int depth, std::uint32_t next) {
+  void unbracedBody(const Block& body, int depth, std::uint32_t next) {
     const bool wasSplit = std::exchange(isSplit_, false);  // the body may stay on its head's line
     statement(body[0], depth + 1, next);
     isSplit_ = wasSplit;
@@ -152,19 +152,19 @@ class FunctionWriter {
   }
 
   /// True if an `if` with an `else`, and every `if` in its chain, prints without braces.
-  bool isBareChain(const If& n, Loc loc, std::uint32_t next) const {
+  bool chainOmitsBraces(const If& n, Loc loc, std::uint32_t next) const {
     if (!isSimple(n.then)) return false;
-    if (n.otherwise.empty()) return isBare(n.then, loc, next);
+    if (n.otherwise.empty()) return omitsBraces(n.then, loc, next);
     const Loc elseLoc = n.otherwise[0].loc;
     if (const If* inner = chained(n.otherwise)) {
-      return isBare(n.then, loc, elseLoc.line) && isBareChain(*inner, elseLoc, next);
+      return omitsBraces(n.then, loc, elseLoc.line) && chainOmitsBraces(*inner, elseLoc, next);
     }
-    return isSimple(n.otherwise) && isBare(n.otherwise, loc, next);
+    return isSimple(n.otherwise) && omitsBraces(n.otherwise, loc, next);
   }
 
   void ifRest(const If& n, int depth, Loc loc, std::uint32_t next) {
     if (n.otherwise.empty()) return bodyOf(n.then, depth, loc, next);
-    if (isBareChain(n, loc, next)) return bareIfElse(n, depth, next);
+    if (chainOmitsBraces(n, loc, next)) return bareIfElse(n, depth, next);
     const Loc elseLoc = n.otherwise[0].loc;
     braces(n.then, depth, elseLoc.line);
     if (const If* inner = chained(n.otherwise)) {
@@ -184,7 +184,7 @@ class FunctionWriter {
 
   void bareIfElse(const If& n, int depth, std::uint32_t next) {
     const std::uint32_t openedAt = writer_.row();
-    bareBody(n.then, depth, next);
+    unbracedBody(n.then, depth, next);
     if (n.otherwise.empty()) return;
     const If* inner = chained(n.otherwise);
     const std::string word = inner != nullptr ? "else " + ifHead(*inner) : "else";
@@ -197,7 +197,7 @@ class FunctionWriter {
       writer_.put(depth, inner != nullptr || writer_.isNext(loc) ? loc : nowhere, word);
     }
     if (inner != nullptr) return bareIfElse(*inner, depth, next);
-    bareBody(n.otherwise, depth, next);
+    unbracedBody(n.otherwise, depth, next);
   }
 
   // ---- loops ------------------------------------------------------------------------------------

@@ -46,7 +46,7 @@ TypeNames::TypeNames(const Module& module) : module_(&module) {
 std::string glslSpelling(Scalar scalar, int width) {
   constexpr std::array<std::string_view, 5> scalars = {"bool", "int", "uint", "float", "sk_double"};
   constexpr std::array<std::string_view, 5> vectors = {"bvec", "ivec", "uvec", "vec", "sk_double"};
-  const auto row = static_cast<std::size_t>(carrierOf(scalar));
+  const auto row = static_cast<std::size_t>(arithmeticScalar(scalar));
   return width == 1 ? std::string(scalars[row]) : std::string(vectors[row]) + std::to_string(width);
 }
 

@@ -38,7 +38,7 @@ ExprPtr literalOf(Type type, int value, Loc loc) {
   if (type.scalar == Scalar::Bool) return literal(value != 0, loc);
   if (type.scalar == Scalar::Uint) return literal(static_cast<std::uint32_t>(value), loc);
   if (type.scalar == Scalar::Double) return literal(static_cast<double>(value), loc);
-  const bool isInt = carrierOf(type.scalar) == Scalar::Int;
+  const bool isInt = arithmeticScalar(type.scalar) == Scalar::Int;
   ExprPtr result = isInt ? literal(std::int32_t{value}, loc) : literal(static_cast<float>(value), loc);
   result->type = type;
   return result;
@@ -290,23 +290,23 @@ Type arrayOf(Module& module, Type element, std::uint32_t length) {
 }
 
 KernelParam clone(const KernelParam& param) {
-  KernelParam made;
-  made.name = param.name;
-  made.role = param.role;
-  made.type = param.type;
-  made.held = param.held;
-  made.rank = param.rank;
-  made.boundary = param.boundary;
-  made.border = clone(param.border);
-  made.filter = param.filter;
-  made.identity = clone(param.identity);
-  made.firstPlane = param.firstPlane;
-  made.planeCount = param.planeCount;
-  made.loc = param.loc;
-  made.scatter = param.scatter;
-  made.pushes = param.pushes;
-  made.neededIf = clone(param.neededIf);
-  return made;
+  KernelParam copy;
+  copy.name = param.name;
+  copy.role = param.role;
+  copy.type = param.type;
+  copy.held = param.held;
+  copy.rank = param.rank;
+  copy.boundary = param.boundary;
+  copy.border = clone(param.border);
+  copy.filter = param.filter;
+  copy.identity = clone(param.identity);
+  copy.firstPlane = param.firstPlane;
+  copy.planeCount = param.planeCount;
+  copy.loc = param.loc;
+  copy.scatter = param.scatter;
+  copy.pushes = param.pushes;
+  copy.neededIf = clone(param.neededIf);
+  return copy;
 }
 
 Function clone(const Function& function) {

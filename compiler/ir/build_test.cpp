@@ -10,7 +10,7 @@
 
 #include "ir/clone_module.hpp"
 #include "ir/evaluate.hpp"
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/walk.hpp"
 
@@ -47,7 +47,7 @@ TEST_CASE("arrays are entered once") {
 /// A module with every kind of statement and most kinds of expressions.
 Module everything() {
   Module module = testModule();
-  KernelMaker k(module, "all");
+  KernelBuilder k(module, "all");
   const VarId u = k.gather("u", floatType, 1);
   const VarId x = k.input("x", floatType);
   const VarId r = k.output("r", floatType);
@@ -55,7 +55,7 @@ Module everything() {
   const VarId s = k.local("s", floatType);
   Block loopBody =
       block(ifStmt(binary(BinaryOp::Less, k.ref(i), literal(2)), block(continueStmt()), block(breakStmt())),
-            assign(k.ref(s), BinaryOp::Add, gatherRead(floatType, KernelMaker::stream(u), k.ref(i))));
+            assign(k.ref(s), BinaryOp::Add, gatherRead(floatType, KernelBuilder::stream(u), k.ref(i))));
   std::vector<Case> cases;
   cases.push_back({{1, 2}, false, block(breakStmt()), {}});
   cases.push_back({{}, true, block(scope(block(assign(k.ref(s), unary(UnaryOp::Negate, k.ref(x)))))), {}});
@@ -64,11 +64,11 @@ Module everything() {
       forLoop(block(declare(i, literal(0))), binary(BinaryOp::Less, k.ref(i), literal(9)),
               block(assign(k.ref(i), BinaryOp::Add, literal(1))), std::move(loopBody)),
       whileLoop(literal(false),
-                block(assign(k.ref(s), neighborRead(floatType, KernelMaker::stream(u), literal(1))))),
+                block(assign(k.ref(s), neighborRead(floatType, KernelBuilder::stream(u), literal(1))))),
       doWhileLoop(
-          block(assign(k.ref(s), convert(Scalar::Float, swizzle(indexOf(KernelMaker::stream(x)), "x")))),
+          block(assign(k.ref(s), convert(Scalar::Float, swizzle(indexOf(KernelBuilder::stream(x)), "x")))),
           literal(false)),
-      switchStmt(swizzle(extentOf(KernelMaker::stream(u)), "x"), std::move(cases)),
+      switchStmt(swizzle(extentOf(KernelBuilder::stream(u)), "x"), std::move(cases)),
       assign(k.ref(r), select(literal(true), k.ref(s), k.ref(x))), returnStmt()));
   return module;
 }

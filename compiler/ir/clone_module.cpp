@@ -18,11 +18,11 @@ Kernel clone(const Kernel& kernel) {
               .entry = kernel.entry,
               .params = {},
               .reduction = kernel.reduction,
-              .isMade = kernel.isMade,
+              .isSynthesized = kernel.isSynthesized,
               .isNativeOnly = kernel.isNativeOnly,
               .plans = kernel.plans,
               .pass = kernel.pass,
-              .forms = kernel.forms,
+              .variants = kernel.variants,
               .choices = kernel.choices,
               .loc = kernel.loc};
   for (const KernelParam& param : kernel.params) copy.params.push_back(ir::clone(param));

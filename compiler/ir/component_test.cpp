@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 
 namespace skc::ir {

@@ -59,11 +59,11 @@ std::optional<std::int64_t> stepsTo(BinaryOp op, std::int64_t distance, std::int
 
 bool isCounted(const Module& module, const Loop& loop) { return headOf(module, loop).has_value(); }
 
-ExprPtr Rounds::value(std::int64_t round, Loc loc) const {
-  return makeExpr(type, Literal{static_cast<std::uint32_t>(first + round * step)}, loc);
+ExprPtr CountedLoop::value(std::int64_t iteration, Loc loc) const {
+  return makeExpr(type, Literal{static_cast<std::uint32_t>(first + iteration * step)}, loc);
 }
 
-std::optional<Rounds> roundsIn(const Module& module, const Loop& loop) {
+std::optional<CountedLoop> countedLoop(const Module& module, const Loop& loop) {
   const std::optional<Head> head = headOf(module, loop);
   if (!head || !head->type.isScalar() || !head->type.isInteger()) return std::nullopt;
   if (head->stepOp != BinaryOp::Add && head->stepOp != BinaryOp::Sub) return std::nullopt;
@@ -81,12 +81,12 @@ std::optional<Rounds> roundsIn(const Module& module, const Loop& loop) {
   const auto [low, high] = isSigned ? std::pair{-(std::int64_t{1} << 31), (std::int64_t{1} << 31) - 1}
                                     : std::pair{std::int64_t{0}, (std::int64_t{1} << 32) - 1};
   if (end < low || end > high) return std::nullopt;
-  return Rounds{head->counter, head->type, from, by, *count};
+  return CountedLoop{head->counter, head->type, from, by, *count};
 }
 
-std::optional<std::int64_t> roundsOf(const Module& module, const Loop& loop) {
-  const std::optional<Rounds> rounds = roundsIn(module, loop);
-  return rounds ? std::optional(rounds->count) : std::nullopt;
+std::optional<std::int64_t> tripCount(const Module& module, const Loop& loop) {
+  const std::optional<CountedLoop> counted = countedLoop(module, loop);
+  return counted ? std::optional(counted->count) : std::nullopt;
 }
 
 }  // namespace skc::ir

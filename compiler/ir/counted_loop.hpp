@@ -14,20 +14,20 @@ namespace skc::ir {
 bool isCounted(const Module& module, const Loop& loop);
 
 /// The counter of a counted loop over integers: `first`, first + step, ..., `count` values in all.
-struct Rounds {
+struct CountedLoop {
   VarId counter;
   Type type;
   std::int64_t first, step, count;
 
-  /// The counter's value in iteration `round`, from 0, as an expression.
-  ExprPtr value(std::int64_t round, Loc loc = {}) const;
+  /// The counter's value in iteration `iteration`, from 0, as an expression.
+  ExprPtr value(std::int64_t iteration, Loc loc = {}) const;
 };
 
 /// Returns nullopt if the loop is not counted or does not end.
-std::optional<Rounds> roundsIn(const Module& module, const Loop& loop);
+std::optional<CountedLoop> countedLoop(const Module& module, const Loop& loop);
 
 /// The trip count of a counted loop over integers, unless it is left early; nullopt if the loop is not
 /// counted or does not end.
-std::optional<std::int64_t> roundsOf(const Module& module, const Loop& loop);
+std::optional<std::int64_t> tripCount(const Module& module, const Loop& loop);
 
 }  // namespace skc::ir

@@ -106,10 +106,11 @@ Bits fromFloat(Scalar to, float value) {
 }
 
 Bits convertBits(Scalar from, Scalar to, std::uint32_t bits) {
-  if (isNarrow(from)) return from == to ? Bits(bits) : convertBits(carrierOf(from), to, bits);
+  if (isNarrow(from)) return from == to ? Bits(bits) : convertBits(arithmeticScalar(from), to, bits);
   if (isNarrow(to)) {
-    const Bits carried = from == carrierOf(to) ? Bits(bits) : convertBits(from, carrierOf(to), bits);
-    return carried ? Bits(quantize(to, *carried)) : std::nullopt;
+    const Bits converted =
+        from == arithmeticScalar(to) ? Bits(bits) : convertBits(from, arithmeticScalar(to), bits);
+    return converted ? Bits(quantize(to, *converted)) : std::nullopt;
   }
   if (from == to) return bits;
   if (to == Scalar::Bool) return boolBits(from == Scalar::Float ? asFloat(bits) != 0 : bits != 0);

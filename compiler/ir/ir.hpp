@@ -13,7 +13,7 @@
 //     Comparisons of vectors are componentwise and give a bool vector.
 //   * Narrow scalars (half, char ... snorm16) and their vectors are storage types: no operator
 //     takes them but Convert, Select, Construct, Swizzle and Index. A Convert to one quantises, as
-//     quantize.hpp says; a Convert to its arithmetic type (carrierOf) changes no value.
+//     quantize.hpp says; a Convert to its arithmetic type (arithmeticScalar) changes no value.
 //   * Matrices are lists of rows: an Index gives a row, Construct takes all of them. They support
 //     + - * == !=, * and / with a scalar, and * with a vector on the right, which is a column.
 //   * A place (an lvalue: left side, or argument of an InOut parameter) is a VarRef of a mutable
@@ -294,7 +294,7 @@ struct Reduction {
 };
 
 /// Variants of a kernel for other precisions, with the same parameters: set by widen-floats and round-halves.
-struct Forms {
+struct PrecisionVariants {
   std::optional<KernelId> wide;  ///< computes in double wherever the kernel says float
   std::optional<KernelId> half;  ///< rounds every float that it computes to half
   std::string whyNotWide, whyNotHalf;  ///< why a kernel that computes floats has no such variant
@@ -364,7 +364,7 @@ struct Choices {
 /// A loop that unroll-loops has considered.
 struct LoopNote {
   Loc loc;
-  std::optional<std::int64_t> rounds;  ///< its trip count, if known
+  std::optional<std::int64_t> tripCount;  ///< if known
   std::string whyNot = {};  ///< why it stays a loop; empty if it was unrolled
 };
 
@@ -378,11 +378,11 @@ struct Kernel {
       ///< VariableOutput and Scatter AppendOutput
   std::vector<KernelParam> params;
   std::optional<Reduction> reduction;  ///< set for `reduce`
-  bool isMade = false;  ///< synthesized by a transform: C++ cannot call it
+  bool isSynthesized = false;  ///< synthesized by a transform: C++ cannot call it
   bool isNativeOnly = false;  ///< no GLSL program runs it
   std::vector<Plan> plans;  ///< for targets whose limits it exceeds, the most generous first
   std::optional<PassOf> pass;
-  Forms forms;
+  PrecisionVariants variants;
   Choices choices;
   std::vector<LoopNote> loops = {};  ///< loops whose counters index neighbours or array elements
   Loc loc;

@@ -160,8 +160,8 @@ std::string printKernel(const Module& module, const Kernel& kernel) {
   if (kernel.reduction && kernel.reduction->finish) {
     text += fmt::format(", finished by @{}", module.kernels[*kernel.reduction->finish].entry);
   }
-  if (kernel.forms.wide) text += fmt::format(", wide @{}", module.kernels[*kernel.forms.wide].entry);
-  if (kernel.forms.half) text += fmt::format(", half @{}", module.kernels[*kernel.forms.half].entry);
+  if (kernel.variants.wide) text += fmt::format(", wide @{}", module.kernels[*kernel.variants.wide].entry);
+  if (kernel.variants.half) text += fmt::format(", half @{}", module.kernels[*kernel.variants.half].entry);
   if (kernel.reduction) {
     for (const ExactSum& sum : kernel.reduction->exact) {
       text += fmt::format(", exactly by @{}, @{}", module.kernels[sum.fold].entry,

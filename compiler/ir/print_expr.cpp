@@ -23,7 +23,7 @@ std::string nameOf(const Function& function, VarId var) {
 }
 
 std::string literalText(Type type, std::uint32_t bits) {
-  if (type.isNarrow()) return spelling(type.scalar) + "(" + literalText(type.carrier(), bits) + ")";
+  if (type.isNarrow()) return spelling(type.scalar) + "(" + literalText(type.arithmeticType(), bits) + ")";
   if (type.scalar == Scalar::Bool) return bits != 0 ? "true" : "false";
   if (type.scalar == Scalar::Int) return std::to_string(static_cast<std::int32_t>(bits));
   if (type.scalar == Scalar::Uint) return std::to_string(bits) + "u";

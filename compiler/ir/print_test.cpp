@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 
 namespace skc::ir {
 namespace {
@@ -36,7 +36,7 @@ TEST_CASE("special floats have names") {
 
 TEST_CASE("a kernel is shown with its parameters and its function") {
   Module module = testModule();
-  KernelMaker k(module, "axpy");
+  KernelBuilder k(module, "axpy");
   k.kernel().scope = {"blas"};
   const VarId a = k.uniform("a", floatType);
   const VarId u = k.gather("u", floatType, 2, Boundary::Border, literal(0.5F));
@@ -45,7 +45,7 @@ TEST_CASE("a kernel is shown with its parameters and its function") {
   const Type int2 = Type::of(Scalar::Int, 2);
   ExprPtr index = construct(int2, exprs(k.ref(i), literal(0)));
   ExprPtr value =
-      binary(BinaryOp::Mul, k.ref(a), gatherRead(floatType, KernelMaker::stream(u), std::move(index)));
+      binary(BinaryOp::Mul, k.ref(a), gatherRead(floatType, KernelBuilder::stream(u), std::move(index)));
   Block body = block(assign(k.ref(r), BinaryOp::Add, std::move(value)));
   k.finish(block(forLoop(block(declare(i, literal(0))), binary(BinaryOp::Less, k.ref(i), literal(3)),
                          block(assign(k.ref(i), BinaryOp::Add, literal(1))), std::move(body))));
@@ -72,7 +72,7 @@ function @0 axpy -> void
 
 TEST_CASE("variables of one name are told apart") {
   Module module = testModule();
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId r = k.output("r", floatType);
   const VarId a = k.local("a", floatType);
   const VarId b = k.local("a", floatType);

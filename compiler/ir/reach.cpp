@@ -57,10 +57,10 @@ std::optional<Loc> usesIndex(const Module& module, const Kernel& kernel) {
       const bool isOfGather = extent != nullptr &&
                               extent->stream.space == StreamRef::Space::KernelParameter &&
                               kernel.params[extent->stream.id].role == ParamRole::Gather;
-      const bool isPlace = std::holds_alternative<IndexOf>(expr.node) ||
-                           std::holds_alternative<NeighborRead>(expr.node) ||
-                           (extent != nullptr && !isOfGather);
-      if (isPlace && !found) found = expr.loc;
+      const bool readsIndex = std::holds_alternative<IndexOf>(expr.node) ||
+                              std::holds_alternative<NeighborRead>(expr.node) ||
+                              (extent != nullptr && !isOfGather);
+      if (readsIndex && !found) found = expr.loc;
     });
   }
   return found;

@@ -34,7 +34,7 @@ constexpr bool isNarrow(Scalar scalar) { return scalar >= Scalar::Half; }
 constexpr bool isReal(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Double; }
 
 /// The arithmetic type of a scalar: Int or Float for a narrow one, else the scalar itself.
-constexpr Scalar carrierOf(Scalar scalar) {
+constexpr Scalar arithmeticScalar(Scalar scalar) {
   switch (scalar) {
     case Scalar::Bool:
     case Scalar::Int:
@@ -87,7 +87,7 @@ struct Type {
   Type component() const { return of(scalar); }
   /// The type of an element of a vector, or a row of a matrix.
   Type indexed() const { return isMatrix() ? of(scalar, width) : of(scalar); }
-  Type carrier() const { return isNarrow() ? withScalar(carrierOf(scalar)) : *this; }
+  Type arithmeticType() const { return isNarrow() ? withScalar(arithmeticScalar(scalar)) : *this; }
   bool operator==(const Type&) const = default;
 };
 
@@ -108,7 +108,7 @@ struct Struct {
   std::vector<std::string> scope;    ///< enclosing namespaces, outermost first
   std::vector<StructField> fields;
   Loc loc;
-  bool isMade = false;               ///< synthesized by a transform: it does not exist in C++
+  bool isSynthesized = false;               ///< synthesized by a transform: it does not exist in C++
   std::vector<std::string> aliases = {};  ///< other names for it in its scope, by typedef or using
 };
 struct Array {

@@ -86,7 +86,7 @@ class FunctionChecker {
     visible_[n.var] = true;
   }
   void rule(const Assign& n) {
-    checkPlace(context_, *n.place);
+    checkLValue(context_, *n.place);
     checkExpr(context_, *n.value);
     if (!n.op) return require(n.place->type == n.value->type, "a value of another type is assigned");
     const bool isPlain =
@@ -97,7 +97,7 @@ class FunctionChecker {
   void rule(const CallStmt& n) {
     checkArguments(context_, n.callee, n.args, true);
     if (!n.result) return;
-    checkPlace(context_, *n.result);
+    checkLValue(context_, *n.result);
     require(n.result->type == context_.module.functions[n.callee].result, "a call's result has another type");
   }
   void rule(const If& n) {
@@ -274,16 +274,17 @@ void checkReduction(const Module& module, const Kernel& kernel) {
 void checkPlan(const Module& module, const Kernel& kernel, const Plan& plan) {
   for (const Pass& pass : plan.passes) {
     require(pass.kernel < module.kernels.size(), "a pass is not in the table");
-    const Kernel& made = module.kernels[pass.kernel];
-    require(made.pass && &module.kernels[made.pass->whole] == &kernel, "a pass belongs to another kernel");
-    require(made.params.size() == pass.operands.size(), "a pass has too many or too few operands");
-    for (std::size_t i = 0; i < made.params.size(); ++i) {
+    const Kernel& passKernel = module.kernels[pass.kernel];
+    require(passKernel.pass && &module.kernels[passKernel.pass->whole] == &kernel,
+            "a pass belongs to another kernel");
+    require(passKernel.params.size() == pass.operands.size(), "a pass has too many or too few operands");
+    for (std::size_t i = 0; i < passKernel.params.size(); ++i) {
       const PassOperand& operand = pass.operands[i];
       require(operand.index < (operand.isTemporary ? plan.temporaries.size() : kernel.params.size()),
               "an operand of a pass is not there");
       const Type type =
           operand.isTemporary ? plan.temporaries[operand.index].type : kernel.params[operand.index].type;
-      require(type == made.params[i].type, "an operand of a pass has another type");
+      require(type == passKernel.params[i].type, "an operand of a pass has another type");
     }
   }
 }

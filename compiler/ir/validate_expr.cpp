@@ -188,11 +188,11 @@ class ExprChecker {
   void rule(Type type, const NeighborRead& n) const { read(type, n.stream, n.offset->type); }
   void rule(Type type, const Sample& n) const {
     const GatherType gather = gatherType(n.stream);
-    require(gather.element.carrier().isFloat() || gather.element.isDouble(),
+    require(gather.element.arithmeticType().isFloat() || gather.element.isDouble(),
             "a gather that holds no floats is interpolated");
     require(n.position->type == Type::of(type.isDouble() ? Scalar::Double : Scalar::Float, gather.rank),
             "the position in a gather is not of the interpolated type and its rank");
-    require(gather.element.carrier() == type,
+    require(gather.element.arithmeticType() == type,
             "an interpolated value has another type than the stream's element");
   }
   void rule(Type type, const IndexOf& n) const { shape(type, n.stream); }
@@ -321,7 +321,7 @@ void checkBinary(BinaryOp op, Type lhs, Type rhs, Type result) {
       return require(lhs == rhs, where + " has operands of different types");
     case BinaryOp::Equal:
     case BinaryOp::NotEqual:
-      require(!lhs.isNarrow(), where + " of a narrow type, whose carrier is compared");
+      require(!lhs.isNarrow(), where + " of a narrow type, whose arithmetic type is compared");
       return require(lhs == rhs, where + " has operands of different types");
     case BinaryOp::LogicalAnd:
     case BinaryOp::LogicalOr:
@@ -335,17 +335,17 @@ void checkAppendOutput(const ExprContext& context, StreamRef stream, Type value,
   ExprChecker(context).appendOutput(stream, value, rank);
 }
 
-VarId checkPlace(const ExprContext& context, const Expr& expr) {
+VarId checkLValue(const ExprContext& context, const Expr& expr) {
   checkExpr(context, expr);
-  if (const auto* n = std::get_if<Member>(&expr.node)) return checkPlace(context, *n->base);
-  if (const auto* n = std::get_if<Index>(&expr.node)) return checkPlace(context, *n->base);
+  if (const auto* n = std::get_if<Member>(&expr.node)) return checkLValue(context, *n->base);
+  if (const auto* n = std::get_if<Index>(&expr.node)) return checkLValue(context, *n->base);
   if (const auto* n = std::get_if<Swizzle>(&expr.node)) {
     unsigned seen = 0;
     for (std::uint8_t component : n->components) {
       require((seen & (1U << component)) == 0, "a component is assigned twice");
       seen |= 1U << component;
     }
-    return checkPlace(context, *n->base);
+    return checkLValue(context, *n->base);
   }
   const auto* ref = std::get_if<VarRef>(&expr.node);
   require(ref != nullptr, "a value that is no place is assigned to");
@@ -372,7 +372,7 @@ void checkArguments(const ExprContext& context, FunctionId callee, const std::ve
       require(parameter.role == VarRole::Gather || allowInOut, where + "an expression writes a stream");
     } else if (parameter.role == VarRole::InOut) {
       require(allowInOut, where + "an expression has an effect");
-      const VarId root = checkPlace(context, *args[i]);
+      const VarId root = checkLValue(context, *args[i]);
       for (VarId other : bound)
         require(other != root, where + "one variable is bound to two InOut parameters");
       bound.push_back(root);

@@ -32,7 +32,7 @@ void checkExpr(const ExprContext& context, const Expr& expr);
 /// Checks the target of a Push (rank 0) or a Scatter, and the type of the value.
 void checkAppendOutput(const ExprContext& context, StreamRef stream, Type value, std::uint8_t rank);
 /// Checks that the expression is an lvalue; returns the variable at its root.
-VarId checkPlace(const ExprContext& context, const Expr& expr);
+VarId checkLValue(const ExprContext& context, const Expr& expr);
 /// Checks arguments against the callee's parameters; InOut parameters need `allowInOut`.
 void checkArguments(const ExprContext& context, FunctionId callee, const std::vector<ExprPtr>& args,
                     bool allowInOut);

@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 
 namespace skc::ir {
@@ -17,9 +17,9 @@ const Type float2 = Type::of(Scalar::Float, 2);
 
 /// The result of validate for a kernel `void k(float a, float x<>, float u[], out float r<>)` with a local
 /// float `t`, a local int `i` and this body.
-std::string verdict(const std::function<Block(KernelMaker&)>& body) {
+std::string verdict(const std::function<Block(KernelBuilder&)>& body) {
   Module module = testModule();
-  KernelMaker k(module, "k");
+  KernelBuilder k(module, "k");
   k.uniform("a", floatType);
   k.input("x", floatType);
   k.gather("u", floatType, 1);
@@ -35,19 +35,19 @@ constexpr VarId a = 0, x = 1, u = 2, r = 3, t = 4, i = 5;
 
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
-#define CHECK_VIOLATION(part, ...)                                                        \
-  CHECK_THAT(verdict([]([[maybe_unused]] KernelMaker& k) { return block(__VA_ARGS__); }), \
+#define CHECK_VIOLATION(part, ...)                                                          \
+  CHECK_THAT(verdict([]([[maybe_unused]] KernelBuilder& k) { return block(__VA_ARGS__); }), \
              Catch::Contains(part))
 #define CHECK_VALID(...) \
-  CHECK(verdict([]([[maybe_unused]] KernelMaker& k) { return block(__VA_ARGS__); }).empty())
+  CHECK(verdict([]([[maybe_unused]] KernelBuilder& k) { return block(__VA_ARGS__); }).empty())
 
 TEST_CASE("a valid body passes") {
-  CHECK_VALID(declare(t, gatherRead(floatType, KernelMaker::stream(u), literal(3))),
+  CHECK_VALID(declare(t, gatherRead(floatType, KernelBuilder::stream(u), literal(3))),
               assign(k.ref(r), binary(BinaryOp::Mul, k.ref(t), binary(BinaryOp::Add, k.ref(a), k.ref(x)))));
 }
 
 TEST_CASE("the violation says where it is") {
-  const std::string text = verdict([](KernelMaker& k) {
+  const std::string text = verdict([](KernelBuilder& k) {
     Stmt stmt = assign(k.ref(r), literal(1));
     stmt.loc.line = 7;
     return block(std::move(stmt));
@@ -71,7 +71,7 @@ TEST_CASE("a scalar may stand beside a vector, but not in a comparison") {
   CHECK_VALID(assign(k.ref(r), intrinsic(Intrinsic::Length,
                                          exprs(binary(BinaryOp::Mul, literal(2.0F), literalOf(float2, 1))))));
   Module module = testModule();
-  KernelMaker k(module, "k");
+  KernelBuilder k(module, "k");
   k.output("r", Type::of(Scalar::Bool, 2));
   k.finish(block(assign(k.ref(0), binary(BinaryOp::Less, vector(), literal(1.0F)))));
   CHECK(contains(validate(module, Stage::Lowered), "operands of different types"));
@@ -82,7 +82,7 @@ TEST_CASE("places are mutable variables and parts of them") {
   CHECK_VIOLATION("constant 'x' is assigned to", assign(k.ref(x), literal(1.0F)));
   CHECK_VIOLATION("no place", assign(literal(1.0F), literal(1.0F)));
   Module module = testModule();
-  KernelMaker k(module, "k");
+  KernelBuilder k(module, "k");
   k.output("r", float2);
   k.finish(block(assign(swizzle(k.ref(0), "xx"), literalOf(float2, 0))));
   CHECK(contains(validate(module, Stage::Lowered), "assigned twice"));
@@ -100,13 +100,13 @@ TEST_CASE("variables are declared once and used where they are visible") {
 TEST_CASE("gathers are read by index only") {
   CHECK_VIOLATION("gather 'u' is used as a value", assign(k.ref(r), k.ref(u)));
   CHECK_VIOLATION("no gather is read by index",
-                  assign(k.ref(r), gatherRead(floatType, KernelMaker::stream(x), literal(1))));
+                  assign(k.ref(r), gatherRead(floatType, KernelBuilder::stream(x), literal(1))));
   CHECK_VIOLATION("not int of its rank",
-                  assign(k.ref(r), gatherRead(floatType, KernelMaker::stream(u), literal(1U))));
+                  assign(k.ref(r), gatherRead(floatType, KernelBuilder::stream(u), literal(1U))));
   CHECK_VIOLATION("too early", assign(k.ref(r), gatherRead(floatType, {StreamRef::Space::KernelParameter, u},
                                                            literal(1))));
   CHECK_VIOLATION("no gather, element or append output",
-                  declare(i, swizzle(indexOf(KernelMaker::stream(a)), "x")));
+                  declare(i, swizzle(indexOf(KernelBuilder::stream(a)), "x")));
   CHECK_VALID(declare(i, swizzle(indexOf({StreamRef::Space::Domain, 0}), "x")));
 }
 
@@ -125,11 +125,11 @@ TEST_CASE("a switch is over integers, each case once") {
     list.push_back({std::move(second), false, {}, {}});
     return list;
   };
-  CHECK(contains(verdict([&](KernelMaker&) { return block(switchStmt(literal(1), cases({1}, {2, 1}))); }),
+  CHECK(contains(verdict([&](KernelBuilder&) { return block(switchStmt(literal(1), cases({1}, {2, 1}))); }),
                  "a case twice"));
-  CHECK(contains(verdict([&](KernelMaker& k) { return block(switchStmt(k.ref(x), cases({1}, {2}))); }),
+  CHECK(contains(verdict([&](KernelBuilder& k) { return block(switchStmt(k.ref(x), cases({1}, {2}))); }),
                  "no int or uint"));
-  CHECK(verdict([&](KernelMaker&) { return block(switchStmt(literal(1), cases({1}, {2}))); }).empty());
+  CHECK(verdict([&](KernelBuilder&) { return block(switchStmt(literal(1), cases({1}, {2}))); }).empty());
 }
 
 /// void twice(inout float p, inout float q)
@@ -144,8 +144,8 @@ FunctionId addTwice(Module& module) {
 TEST_CASE("calls fit their functions") {
   Module module = testModule();
   const FunctionId twice = addTwice(module);
-  const auto check = [&](std::string_view part, const std::function<Stmt(KernelMaker&)>& make) {
-    KernelMaker k(module, "k");
+  const auto check = [&](std::string_view part, const std::function<Stmt(KernelBuilder&)>& make) {
+    KernelBuilder k(module, "k");
     k.output("r", floatType);
     k.output("s", floatType);
     module.kernels.clear();
@@ -154,11 +154,11 @@ TEST_CASE("calls fit their functions") {
     k.finish(block(std::move(stmt)));
     CHECK_THAT(validate(module, Stage::Lowered), Catch::Contains(std::string(part)));
   };
-  check("too many or too few", [&](KernelMaker& k) { return callStmt(twice, exprs(k.ref(0))); });
-  check("bound to two InOut", [&](KernelMaker& k) { return callStmt(twice, exprs(k.ref(0), k.ref(0))); });
-  check("no place", [&](KernelMaker& k) { return callStmt(twice, exprs(k.ref(0), literal(1.0F))); });
-  check("has another type", [&](KernelMaker& k) { return callStmt(twice, exprs(k.ref(0), literal(1))); });
-  check("has an effect", [&](KernelMaker& k) {
+  check("too many or too few", [&](KernelBuilder& k) { return callStmt(twice, exprs(k.ref(0))); });
+  check("bound to two InOut", [&](KernelBuilder& k) { return callStmt(twice, exprs(k.ref(0), k.ref(0))); });
+  check("no place", [&](KernelBuilder& k) { return callStmt(twice, exprs(k.ref(0), literal(1.0F))); });
+  check("has another type", [&](KernelBuilder& k) { return callStmt(twice, exprs(k.ref(0), literal(1))); });
+  check("has an effect", [&](KernelBuilder& k) {
     return assign(k.ref(0), makeExpr(floatType, Call{twice, exprs(k.ref(0), k.ref(1))}));
   });
 }
@@ -205,7 +205,7 @@ TEST_CASE("constructors are given what they need") {
 TEST_CASE("kernels and their entries agree") {
   const auto change = [](const std::function<void(Module&)>& edit) {
     Module module = testModule();
-    KernelMaker k(module, "sum");
+    KernelBuilder k(module, "sum");
     k.input("x", floatType);
     k.accumulator("total", floatType, literal(0.0F));
     k.finish({});
@@ -222,7 +222,7 @@ TEST_CASE("kernels and their entries agree") {
 
 TEST_CASE("after specialize-gathers, streams are parameters and functions have one owner") {
   Module module = testModule();
-  KernelMaker k(module, "k");
+  KernelBuilder k(module, "k");
   const VarId g = k.gather("u", floatType, 1);
   const VarId out = k.output("r", floatType);
   k.finish(
@@ -244,7 +244,7 @@ TEST_CASE("after specialize-gathers, streams are parameters and functions have o
 
 TEST_CASE("masks and questions to other lanes come with predicate, and so does an entry's mask") {
   Module module = testModule();
-  KernelMaker k(module, "k");
+  KernelBuilder k(module, "k");
   const VarId value = k.input("x", floatType), out = k.variableOutput("out", floatType);
   k.finish(block(push({StreamRef::Space::KernelParameter, out}, k.ref(value))));
   CHECK(validate(module, Stage::Specialized).empty());

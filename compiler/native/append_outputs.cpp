@@ -292,7 +292,7 @@ llvm::Value* Streams::storeRecords(const std::vector<Column>& columns, llvm::Val
     return l.b.CreateAdd(count, l.integer(l.int64(), l.count()));
   };
   if (l.count() == 1) return storeAll();
-  if (l.form().hasMaskRegisters && l.count() * 32 >= leastCompressed) {
+  if (l.options().hasMaskRegisters && l.count() * 32 >= leastCompressed) {
     for (const Column& column : columns) storeCompressed(l, column.values, column.array, bits, count);
     llvm::Value* const added = l.b.CreateUnaryIntrinsic(llvm::Intrinsic::ctpop, bits);
     return l.b.CreateAdd(count, l.b.CreateZExt(added, l.int64()));

@@ -167,13 +167,13 @@ Part fromNarrow(Lanes& l, Scalar narrow, const Part& stored) {
     default: return asReal(l, floatOfNormalized(l, narrow, stored));
   }
 }
-Part toNarrow(Lanes& l, Scalar narrow, const Part& carrier) {
-  if (carrierOf(narrow) == Scalar::Int) {
-    llvm::Value* const word = l.value(carrier);
+Part toNarrow(Lanes& l, Scalar narrow, const Part& number) {
+  if (arithmeticScalar(narrow) == Scalar::Int) {
+    llvm::Value* const word = l.value(number);
     return {l.b.CreateTrunc(word, l.sameShape(word, l.type(narrow)))};
   }
-  return narrow == Scalar::Half ? halfOfFloat(l, asFloat(l, carrier))
-                                : normalizedOfFloat(l, narrow, asFloat(l, carrier));
+  return narrow == Scalar::Half ? halfOfFloat(l, asFloat(l, number))
+                                : normalizedOfFloat(l, narrow, asFloat(l, number));
 }
 
 }  // namespace
@@ -214,8 +214,8 @@ static llvm::Value* saturatedInts(Lanes& l, llvm::Value* x) {
 
 Part convert(Lanes& l, Scalar from, Scalar to, const Part& operand) {
   if (from == to) return operand;
-  if (isNarrow(from)) return convert(l, carrierOf(from), to, fromNarrow(l, from, operand));
-  if (isNarrow(to)) return toNarrow(l, to, convert(l, from, carrierOf(to), operand));
+  if (isNarrow(from)) return convert(l, arithmeticScalar(from), to, fromNarrow(l, from, operand));
+  if (isNarrow(to)) return toNarrow(l, to, convert(l, from, arithmeticScalar(to), operand));
   const bool areWords =
       (from == Scalar::Int || from == Scalar::Uint) && (to == Scalar::Int || to == Scalar::Uint);
   if (areWords) return operand;

@@ -163,7 +163,7 @@ class LoopGathers {
 
 std::vector<BlockGather> blockGathers(const Module& module, const Kernel& kernel,
                                       const Uniformity& uniformity, FunctionId function, const Loop& loop) {
-  const std::optional<std::int64_t> iterations = roundsOf(module, loop);
+  const std::optional<std::int64_t> iterations = tripCount(module, loop);
   if (iterations && *iterations < Streams::blockLength) return {};
   std::vector<BlockGather> found = LoopGathers(module, kernel, uniformity, function, loop).find();
   if (!found.empty() && !sizeOf(module, loop.body)) found.clear();

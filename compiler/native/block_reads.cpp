@@ -103,7 +103,7 @@ void Streams::storeTransposed(llvm::Type* element, const std::vector<llvm::Value
                               llvm::Value* block) const {
   llvm::Type* const four = llvm::FixedVectorType::get(element, 4);
   const llvm::Align align(element->getPrimitiveSizeInBits() / 8);
-  const std::uint32_t width = l.form().blockWidth;
+  const std::uint32_t width = l.options().blockWidth;
   for (std::uint32_t group = 0; group < l.count(); group += width) {
     for (std::uint32_t first = 0; first < blockLength; first += 4) {
       std::array<llvm::Value*, 4> rows{};

@@ -14,13 +14,13 @@ namespace skc::native {
 
 namespace {
 
-/// Transforms one loop, which must have a preheader and a single latch.
-class Carrier {
+/// Predictive commoning of one loop, which must have a preheader and a single latch.
+class Commoning {
  public:
-  Carrier(const llvm::Loop& loop, const llvm::DominatorTree& dominators)
+  Commoning(const llvm::Loop& loop, const llvm::DominatorTree& dominators)
       : loop_(loop), dominators_(dominators), entry_(loop.getLoopPreheader()), latch_(loop.getLoopLatch()) {}
 
-  bool carry() {
+  bool run() {
     if (entry_ == nullptr || latch_ == nullptr) return false;
     bool changed = false;
     for (llvm::Instruction& instruction : llvm::make_early_inc_range(*loop_.getHeader())) {
@@ -112,7 +112,7 @@ llvm::PreservedAnalyses CarriedValues::run(llvm::Function& function,
   const auto& dominators = analyses.getResult<llvm::DominatorTreeAnalysis>(function);
   bool changed = false;
   for (const llvm::Loop* const loop : analyses.getResult<llvm::LoopAnalysis>(function).getLoopsInPreorder()) {
-    changed = Carrier(*loop, dominators).carry() || changed;
+    changed = Commoning(*loop, dominators).run() || changed;
   }
   if (!changed) return llvm::PreservedAnalyses::all();
   llvm::PreservedAnalyses kept;

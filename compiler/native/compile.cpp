@@ -110,7 +110,7 @@ class Compilation {
 
  private:
   /// The kind of an entry, and what it is compiled for.
-  struct EntryForm {
+  struct EntryVariant {
     EntryKind kind;
     Real real;
     const CpuLevel& level;
@@ -155,25 +155,25 @@ class Compilation {
   }
 
   void addEntry(CodeTable& table, const KernelRequest& request, const SlotPlan& slots,
-                const EntryForm& made) {
-    const auto& [kind, real, level, isContracted, rowPlan] = made;
+                const EntryVariant& variant) {
+    const auto& [kind, real, level, isContracted, rowPlan] = variant;
     const Kernel& kernel = plain_.kernels[request.kernel];
     // debuggers cannot show vectors of single bits
     const bool hasMaskRegisters = level.hasMaskRegisters && options_.optimizes;
-    Form form{.lanes = 1,
-              .real = real,
-              .hasMaskRegisters = hasMaskRegisters,
-              .convertsHalves = level.convertsHalves,
-              .isContracted = isContracted};
+    CodegenOptions codegen{.lanes = 1,
+                           .real = real,
+                           .hasMaskRegisters = hasMaskRegisters,
+                           .convertsHalves = level.convertsHalves,
+                           .isContracted = isContracted};
     const RowBlock block = rowPlan != nullptr ? blockFor(level, rowPlan->carried()) : RowBlock{1, 1};
     if (rowPlan != nullptr) {
-      form.lanes = options_.lanes != 0 ? options_.lanes : block.lanes;
+      codegen.lanes = options_.lanes != 0 ? options_.lanes : block.lanes;
     } else if (isInLanes(kind, real)) {
-      form.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, kind, real, level);
+      codegen.lanes = options_.lanes != 0 ? options_.lanes : laneCount(plain_, kernel, kind, real, level);
     }
-    const bool isPredicated = form.lanes > 1;
-    if (form.lanes >= 4 && real == Real::Float && options_.optimizes)
-      form.blockWidth = std::min(level.vectorBits / 32, form.lanes);
+    const bool isPredicated = codegen.lanes > 1;
+    if (codegen.lanes >= 4 && real == Real::Float && options_.optimizes)
+      codegen.blockWidth = std::min(level.vectorBits / 32, codegen.lanes);
     const Version& version = versionFor(real);
     const Module& module = isPredicated ? version.predicated : version.plain;
     std::optional<analysis::Uniformity> uniformity;
@@ -184,12 +184,12 @@ class Compilation {
                              uniformity ? &*uniformity : nullptr,
                              rowPlan,
                              block.rows,
-                             form,
+                             codegen,
                              level,
                              debug_ ? &*debug_ : nullptr};
-    const std::string name = request.symbol + suffix(made);
+    const std::string name = request.symbol + suffix(variant);
     table.entries.push_back({writeEntry(code_, source, kind, name), kind, real, level.level, isContracted,
-                             form.lanes, block.rows});
+                             codegen.lanes, block.rows});
   }
 
   const Version& versionFor(Real real) {
@@ -203,14 +203,15 @@ class Compilation {
     return kind == EntryKind::Run || kind == EntryKind::Fold || kind == EntryKind::Combine;
   }
 
-  static std::string suffix(const EntryForm& made) {
+  static std::string suffix(const EntryVariant& variant) {
     static constexpr const char* kinds[] = {".run",     ".fold",  ".combine", ".identity",
                                             ".borders", ".apply", ".rows"};
     static constexpr const char* reals[] = {"", ".double", ".quad"};
     static constexpr const char* levels[] = {"", ".v3", ".v4"};
-    return std::string(kinds[static_cast<std::size_t>(made.kind)]) +
-           reals[static_cast<std::size_t>(made.real)] + levels[static_cast<std::size_t>(made.level.level)] +
-           (made.isContracted ? ".contracted" : "");
+    return std::string(kinds[static_cast<std::size_t>(variant.kind)]) +
+           reals[static_cast<std::size_t>(variant.real)] +
+           levels[static_cast<std::size_t>(variant.level.level)] +
+           (variant.isContracted ? ".contracted" : "");
   }
 
   const Options& options_;

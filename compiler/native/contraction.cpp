@@ -47,8 +47,8 @@ class Operations {
   }
 
   void add(Intrinsic intrinsic, const Type& type) {
-    const bool isCarriedExactly = intrinsic >= Intrinsic::RoundedSum && intrinsic <= Intrinsic::ExactRounded;
-    isExact_ = isExact_ || isCarriedExactly;
+    const bool isExactSum = intrinsic >= Intrinsic::RoundedSum && intrinsic <= Intrinsic::ExactRounded;
+    isExact_ = isExact_ || isExactSum;
     if (!isReal(type.scalar) || (intrinsic != Intrinsic::Fma && intrinsic != Intrinsic::Dot)) return;
     ++products_;
     ++sums_;

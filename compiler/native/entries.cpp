@@ -25,7 +25,7 @@ class EntryWriter {
   EntryWriter(llvm::Module& code, const EntrySource& source, const std::string& name)
       : s_(source),
         b_(code.getContext()),
-        l_(b_, source.form),
+        l_(b_, source.options),
         streams_(l_, source.module, source.kernel, source.slots,
                  [this](const Expr& expr) { return constantParts(context_, expr); }),
         context_{l_, source.module, source.kernel, streams_, source.uniformity, source.debug},
@@ -201,10 +201,10 @@ class EntryWriter {
     State state;
     for (const std::uint32_t i : paramsOf(ParamRole::Accumulator)) {
       for (const Scalar scalar : scalarsOf(s_.module, s_.kernel.params[i].type)) {
-        llvm::Value* const place =
+        llvm::Value* const address =
             l_.at(b_.getPtrTy(), pointers, number(static_cast<std::int64_t>(state.arrays.size())));
         state.scalars.push_back(scalar);
-        state.arrays.push_back(b_.CreateLoad(b_.getPtrTy(), place));
+        state.arrays.push_back(b_.CreateLoad(b_.getPtrTy(), address));
       }
     }
     return state;
@@ -390,9 +390,9 @@ class EntryWriter {
     const Parts parts = make();
     const std::vector<Scalar> scalars = scalarsOfAll(role);
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      llvm::Value* const place =
+      llvm::Value* const address =
           l_.at(b_.getPtrTy(), function_->getArg(1), number(static_cast<std::int64_t>(i)));
-      l_.storeOne(scalars[i], parts[i].value, b_.CreateLoad(b_.getPtrTy(), place));
+      l_.storeOne(scalars[i], parts[i].value, b_.CreateLoad(b_.getPtrTy(), address));
     }
     end();
   }

@@ -28,7 +28,7 @@ struct EntrySource {
   const analysis::Uniformity* uniformity;  ///< null with one lane
   const RowPlan* rowPlan;  ///< null except for RunRows
   std::uint32_t rows;  ///< rows computed together
-  Form form;
+  CodegenOptions options;
   CpuLevel level;
   DebugInfo* debug;
 };

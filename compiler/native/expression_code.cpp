@@ -48,7 +48,7 @@ std::vector<Parts> FunctionCode::expressions(const std::vector<ExprPtr>& list) {
 
 Parts FunctionCode::parts(const Expr& expr, const Literal& n) {
   const Scalar scalar = expr.type.scalar;
-  switch (carrierOf(scalar)) {
+  switch (arithmeticScalar(scalar)) {
     case Scalar::Bool: return {{b.getInt1(n.bits != 0)}};
     case Scalar::Double: {
       const auto value = std::bit_cast<double>(std::uint64_t{n.high} << 32 | n.bits);
@@ -58,7 +58,7 @@ Parts FunctionCode::parts(const Expr& expr, const Literal& n) {
       const Part value = {l.number(l.real(), double{std::bit_cast<float>(n.bits)})};
       return {convert(l, Scalar::Float, scalar, value)};
     }
-    default: return {convert(l, carrierOf(scalar), scalar, {b.getInt32(n.bits)})};
+    default: return {convert(l, arithmeticScalar(scalar), scalar, {b.getInt32(n.bits)})};
   }
 }
 
@@ -126,7 +126,7 @@ Parts FunctionCode::either(llvm::Value* condition, const std::function<Parts()>&
 
 llvm::FastMathFlags FunctionCode::flagsOfText() const {
   llvm::FastMathFlags flags;
-  flags.setAllowContract(l.form().isContracted && !function_.isLibrary);
+  flags.setAllowContract(l.options().isContracted && !function_.isLibrary);
   return flags;
 }
 
@@ -154,9 +154,9 @@ Parts FunctionCode::parts(const Expr& expr, const Binary& n) {
   const Parts lhs = expression(*n.lhs);
   if (isLogical && lhs.size() == 1 && l.isUniform(lhs[0]) && isCostly(*n.rhs)) {
     const auto known = [&]() -> Parts { return {{b.getInt1(n.op == BinaryOp::LogicalOr)}}; };
-    const auto asked = [&] { return expression(*n.rhs); };
-    return n.op == BinaryOp::LogicalAnd ? either(lhs[0].value, asked, known)
-                                        : either(lhs[0].value, known, asked);
+    const auto evaluated = [&] { return expression(*n.rhs); };
+    return n.op == BinaryOp::LogicalAnd ? either(lhs[0].value, evaluated, known)
+                                        : either(lhs[0].value, known, evaluated);
   }
   return arithmetic(n.op, expr.type, n.lhs->type, lhs, n.rhs->type, expression(*n.rhs));
 }
@@ -222,7 +222,7 @@ Parts FunctionCode::parts(const Expr& expr, const Construct& n) {
 // ---- parts of values ------------------------------------------------------------------------------
 
 Parts FunctionCode::parts(const Expr& expr, const Swizzle& n) {
-  if (const std::optional<Place> place = placeOf(expr)) return load(*place);
+  if (const std::optional<LValue> lvalue = lvalueOf(expr)) return load(*lvalue);
   const Parts base = expression(*n.base);
   Parts all;
   for (const std::uint8_t component : n.components) all.push_back(base[component]);
@@ -230,7 +230,7 @@ Parts FunctionCode::parts(const Expr& expr, const Swizzle& n) {
 }
 
 Parts FunctionCode::parts(const Expr& expr, const Member& n) {
-  if (const std::optional<Place> place = placeOf(expr)) return load(*place);
+  if (const std::optional<LValue> lvalue = lvalueOf(expr)) return load(*lvalue);
   const Parts base = expression(*n.base);
   const auto begin = base.begin() + componentsBefore(k.module, n.base->type, n.field);
   return {begin, begin + componentCount(k.module, expr.type)};
@@ -245,7 +245,7 @@ bool areConstants(const Parts& parts) {
 }  // namespace
 
 Parts FunctionCode::parts(const Expr& expr, const Index& n) {
-  if (const std::optional<Place> place = placeOf(expr)) return load(*place);
+  if (const std::optional<LValue> lvalue = lvalueOf(expr)) return load(*lvalue);
   const Parts base = expression(*n.base);
   const Type type = n.base->type;
   const std::uint32_t length =
@@ -323,11 +323,11 @@ Part FunctionCode::tableValue(llvm::Value* table, const Part& x) {
   const Part low = {field(offsetof(Table, low), l.real())};
   const Part perUnit = {field(offsetof(Table, perUnit), l.real())};
   const Part zero = {l.number(l.real(), 0)};
-  Part place = real(BinaryOp::Mul, real(BinaryOp::Sub, x, low), perUnit);
-  place = l.select(real(BinaryOp::Less, place, zero), zero, place);
-  place = l.select(real(BinaryOp::Less, end, place), end, place);
+  Part position = real(BinaryOp::Mul, real(BinaryOp::Sub, x, low), perUnit);
+  position = l.select(real(BinaryOp::Less, position, zero), zero, position);
+  position = l.select(real(BinaryOp::Less, end, position), end, position);
   const Part isNan = real(BinaryOp::NotEqual, x, x);
-  const Part safe = l.select(isNan, zero, place);
+  const Part safe = l.select(isNan, zero, position);
   const Part whole = convert(l, Scalar::Float, Scalar::Int, safe);
   const Part last = integer(BinaryOp::Sub, intervals, {l.integer(l.int32(), 1)});
   const Part interval = l.select(integer(BinaryOp::Less, last, whole), last, whole);

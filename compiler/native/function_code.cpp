@@ -53,7 +53,7 @@ std::vector<CallResult> FunctionCode::write(const std::vector<std::vector<Parts>
   std::vector<CallResult> called(rows);
   for (std::size_t row = 0; row < rows; ++row) {
     selectRow(row);
-    Place result{function_.result, {}};
+    LValue result{function_.result, {}};
     for (const LeafMemory& memory : result_) result.leaves.push_back({&memory, {l.integer(l.int32(), 0)}, 0});
     called[row].result = load(result);
     for (VarId i = 0; i < function_.parameterCount; ++i) {
@@ -90,7 +90,7 @@ void FunctionCode::block(const Block& statements) {
 }
 
 void FunctionCode::write(const Stmt& stmt) {
-  if (isInAllRows_ && !plan_->isJoint(stmt)) return writeInEachRow(stmt);
+  if (isInAllRows_ && !plan_->isEmittedOnce(stmt)) return writeInEachRow(stmt);
   match(stmt.node, [&](const auto& node) { write(node); });
 }
 
@@ -112,13 +112,13 @@ void FunctionCode::writeInEachRow(const Stmt& stmt) {
 llvm::Value* FunctionCode::condition(const Expr& expr) { return expression(expr)[0].value; }
 
 void FunctionCode::write(const Declare& n) {
-  const Place place = variable(n.var);
-  if (n.init) return store(place, expression(*n.init));
+  const LValue lvalue = variable(n.var);
+  if (n.init) return store(lvalue, expression(*n.init));
   Parts zero;
-  for (const Scalar scalar : scalarsOf(k.module, place.type)) {
+  for (const Scalar scalar : scalarsOf(k.module, lvalue.type)) {
     zero.push_back({llvm::Constant::getNullValue(l.type(scalar))});
   }
-  store(place, zero);
+  store(lvalue, zero);
 }
 
 void FunctionCode::write(const Assign& n) {
@@ -186,7 +186,7 @@ void FunctionCode::write(const Loop& n) {
 /// If gathers of the loop can be read in blocks, emits code that does so while the elements of a block are in
 /// bounds, and then continues at `test`. Afterwards, the insertion point is where they are not.
 void FunctionCode::writeBlocks(const Loop& n, llvm::BasicBlock* test, llvm::BasicBlock* end) {
-  if (l.form().blockWidth == 0 || plan_ != nullptr) return;
+  if (l.options().blockWidth == 0 || plan_ != nullptr) return;
   const std::vector<BlockGather> gathers = blockGathers(k.module, k.kernel, *k.uniformity, id_, n);
   if (gathers.empty()) return;
   llvm::Value* const counter = expression(*std::get<Assign>(n.step.front().node).place)[0].value;
@@ -264,7 +264,7 @@ void FunctionCode::write(const Continue&) {
 
 void FunctionCode::write(const Return& n) {
   if (n.value) {
-    Place result{function_.result, {}};
+    LValue result{function_.result, {}};
     for (const LeafMemory& memory : result_) result.leaves.push_back({&memory, {l.integer(l.int32(), 0)}, 0});
     store(result, expression(*n.value));
   }

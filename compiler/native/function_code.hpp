@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Emits a function of the IR into an LLVM function in place of each call: statements here, expressions in
-// expression_code.cpp, variables in places.cpp. Control flow must be uniform, which `predicate` ensures; with
+// expression_code.cpp, variables in lvalues.cpp. Control flow must be uniform, which `predicate` ensures; with
 // one lane, it always is.
 #pragma once
 
@@ -52,7 +52,7 @@ std::vector<CallResult> inlineRows(const KernelContext& context, const RowPlan& 
 /// The value of an expression without variables: a constant, a border value, an identity.
 Parts constantParts(const KernelContext& context, const ir::Expr& expr);
 
-// ---- shared by function_code.cpp, expression_code.cpp and places.cpp ---------------------------------
+// ---- shared by function_code.cpp, expression_code.cpp and lvalues.cpp ---------------------------------
 
 /// The memory of one leaf of a variable; an array if arrays contain the leaf.
 struct LeafMemory {
@@ -64,7 +64,7 @@ struct LeafMemory {
 };
 
 /// An lvalue: leaves of a variable, and how far into their arrays it is.
-struct Place {
+struct LValue {
   struct Leaf {
     const LeafMemory* memory;
     Part offset;  ///< an int, in elements
@@ -84,20 +84,20 @@ class FunctionCode {
   Parts expression(const ir::Expr& expr);
 
  private:
-  // ---- variables and lvalues (places.cpp)
+  // ---- variables and lvalues (lvalues.cpp)
   void declareAll(std::size_t rows);
   LeafMemory memoryOf(const std::string& name, const Leaf& leaf, analysis::Shape shape) const;
   const std::vector<LeafMemory>& memoryOf(ir::VarId var) const;
-  std::optional<Place> placeOf(const ir::Expr& expr);
-  Place variable(ir::VarId var) const;
+  std::optional<LValue> lvalueOf(const ir::Expr& expr);
+  LValue variable(ir::VarId var) const;
   Part indexInside(const ir::Expr& index, std::uint32_t length);
-  Parts load(const Place& place);
-  void store(const Place& place, const Parts& value);
-  Part loadComponent(const Place::Leaf& leaf, std::uint32_t offset);
-  void storeComponent(const Place::Leaf& leaf, std::uint32_t offset, const Part& value);
-  llvm::Value* addressOf(const Place::Leaf& leaf, std::uint32_t offset, bool* isScattered);
-  void assign(const ir::Expr& place, const Parts& value);
-  void assignComponent(const ir::Index& place, const Parts& value);
+  Parts load(const LValue& lvalue);
+  void store(const LValue& lvalue, const Parts& value);
+  Part loadComponent(const LValue::Leaf& leaf, std::uint32_t offset);
+  void storeComponent(const LValue::Leaf& leaf, std::uint32_t offset, const Part& value);
+  llvm::Value* addressOf(const LValue::Leaf& leaf, std::uint32_t offset, bool* isScattered);
+  void assign(const ir::Expr& lvalue, const Parts& value);
+  void assignComponent(const ir::Index& lvalue, const Parts& value);
 
   // ---- statements (function_code.cpp)
   void block(const ir::Block& statements);

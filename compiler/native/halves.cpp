@@ -83,21 +83,21 @@ llvm::Function* outOfLine(Lanes& l, const char* name, Conversion* conversion, ll
   const std::string full = std::string("sk.") + name + (isVector ? "." + std::to_string(l.count()) : "");
   llvm::Module& code = *caller->getParent();
   if (llvm::Function* const known = code.getFunction(full)) return known;
-  llvm::Function* const made = llvm::Function::Create(llvm::FunctionType::get(result, {operand}, false),
-                                                      llvm::Function::InternalLinkage, full, code);
+  llvm::Function* const wrapper = llvm::Function::Create(llvm::FunctionType::get(result, {operand}, false),
+                                                         llvm::Function::InternalLinkage, full, code);
   if (llvm::Triple(code.getTargetTriple()).getArch() == llvm::Triple::x86_64)
-    made->setCallingConv(llvm::CallingConv::PreserveAll);
-  made->setDoesNotThrow();
-  made->setDoesNotAccessMemory();
-  made->addFnAttr(llvm::Attribute::NoInline);
-  if (caller->hasFnAttribute("target-cpu")) made->addFnAttr(caller->getFnAttribute("target-cpu"));
+    wrapper->setCallingConv(llvm::CallingConv::PreserveAll);
+  wrapper->setDoesNotThrow();
+  wrapper->setDoesNotAccessMemory();
+  wrapper->addFnAttr(llvm::Attribute::NoInline);
+  if (caller->hasFnAttribute("target-cpu")) wrapper->addFnAttr(caller->getFnAttribute("target-cpu"));
   const llvm::IRBuilderBase::InsertPointGuard guard(l.b);
   const llvm::DebugLoc place = l.b.getCurrentDebugLocation();
   l.b.SetCurrentDebugLocation({});
-  l.b.SetInsertPoint(llvm::BasicBlock::Create(code.getContext(), "entry", made));
-  l.b.CreateRet(conversion(l, made->getArg(0)));
+  l.b.SetInsertPoint(llvm::BasicBlock::Create(code.getContext(), "entry", wrapper));
+  l.b.CreateRet(conversion(l, wrapper->getArg(0)));
   l.b.SetCurrentDebugLocation(place);
-  return made;
+  return wrapper;
 }
 
 llvm::Value* converted(Lanes& l, const char* name, Conversion* conversion, llvm::Value* x,
@@ -118,21 +118,21 @@ llvm::Value* inHardware(Lanes& l, llvm::Value* x) {
 Part floatOfHalf(Lanes& l, const Part& stored) {
   llvm::Value* const x = l.value(stored);
   llvm::Type* const real = l.sameShape(x, l.b.getFloatTy());
-  if (l.form().convertsHalves)
+  if (l.options().convertsHalves)
     return {l.b.CreateFPExt(l.b.CreateBitCast(x, l.sameShape(x, l.b.getHalfTy())), real)};
   return {converted(l, "float_of_half", expanded, x, real)};
 }
 
 Part roundedToHalf(Lanes& l, const Part& value) {
   llvm::Value* const x = l.value(value);
-  if (l.form().convertsHalves) return {l.b.CreateFPExt(inHardware(l, x), x->getType())};
+  if (l.options().convertsHalves) return {l.b.CreateFPExt(inHardware(l, x), x->getType())};
   return {converted(l, "rounded_to_half", roundedBits, x, x->getType())};
 }
 
 Part halfOfFloat(Lanes& l, const Part& value) {
   llvm::Value* const x = l.value(value);
   llvm::Type* const bits = l.sameShape(x, l.type(Scalar::Half));
-  if (l.form().convertsHalves) return {l.b.CreateBitCast(inHardware(l, x), bits)};
+  if (l.options().convertsHalves) return {l.b.CreateBitCast(inHardware(l, x), bits)};
   return {converted(l, "half_of_float", halfBits, x, bits)};
 }
 

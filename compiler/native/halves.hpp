@@ -13,7 +13,7 @@ namespace skc::native {
 Part floatOfHalf(Lanes& lanes, const Part& bits);
 /// The bits of the half nearest to a float.
 Part halfOfFloat(Lanes& lanes, const Part& value);
-/// Rounds a float to half precision; the result is a float.
+/// CountedLoop a float to half precision; the result is a float.
 Part roundedToHalf(Lanes& lanes, const Part& value);
 
 }  // namespace skc::native

@@ -20,10 +20,10 @@ llvm::Type* Lanes::type(Scalar scalar) const {
     case Scalar::Int:
     case Scalar::Uint: return b.getInt32Ty();
     case Scalar::Float:
-      if (form_.real == Real::Float) return b.getFloatTy();
+      if (options_.real == Real::Float) return b.getFloatTy();
       [[fallthrough]];
     case Scalar::Double:
-      return form_.real == Real::Quad ? llvm::Type::getFP128Ty(b.getContext()) : b.getDoubleTy();
+      return options_.real == Real::Quad ? llvm::Type::getFP128Ty(b.getContext()) : b.getDoubleTy();
     case Scalar::Char:
     case Scalar::Uchar:
     case Scalar::Unorm8:

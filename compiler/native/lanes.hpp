@@ -23,7 +23,7 @@ struct Part {
 using Parts = std::vector<Part>;
 
 /// What code is generated for: the number of lanes, the type that represents float, the CPU's features.
-struct Form {
+struct CodegenOptions {
   std::uint32_t lanes = 1;
   sk::native::Real real = sk::native::Real::Float;
   bool hasMaskRegisters = false;  ///< keeping vectors of bool costs nothing (AVX-512)
@@ -35,11 +35,11 @@ struct Form {
 
 class Lanes {
  public:
-  Lanes(llvm::IRBuilder<>& builder, const Form& form) : b(builder), form_(form) {}
+  Lanes(llvm::IRBuilder<>& builder, const CodegenOptions& options) : b(builder), options_(options) {}
 
   llvm::IRBuilder<>& b;
-  const Form& form() const { return form_; }
-  std::uint32_t count() const { return form_.lanes; }
+  const CodegenOptions& options() const { return options_; }
+  std::uint32_t count() const { return options_.lanes; }
 
   // ---- types ------------------------------------------------------------------------------------
 
@@ -107,12 +107,12 @@ class Lanes {
   Part gather(ir::Scalar scalar, llvm::Value* base, llvm::Value* index) const;
   void scatter(ir::Scalar scalar, const Part& part, llvm::Value* base, llvm::Value* index) const;
 
-  /// Converts between a value and its form in arrays.
+  /// Converts between a value and its representation in arrays.
   llvm::Value* toStored(ir::Scalar scalar, llvm::Value* value) const;
   llvm::Value* fromStored(ir::Scalar scalar, llvm::Value* value) const;
 
  private:
-  Form form_;
+  CodegenOptions options_;
 };
 
 }  // namespace skc::native

@@ -39,11 +39,11 @@ void forEachAssigned(const Module& module, const Stmt& stmt, Visit&& visit) {
 
 /// Calls visit(loop) for each loop that all rows run through together, including inner ones.
 template <class Visit>
-void forEachJointLoop(const RowPlan& plan, const Block& body, Visit&& visit) {
+void forEachLoopEmittedOnce(const RowPlan& plan, const Block& body, Visit&& visit) {
   for (const Stmt& stmt : body) {
-    if (!isControl(stmt) || !plan.isJoint(stmt)) continue;
+    if (!isControl(stmt) || !plan.isEmittedOnce(stmt)) continue;
     if (std::holds_alternative<Loop>(stmt.node)) visit(stmt);
-    forEachBlock(stmt, [&](const Block& inner) { forEachJointLoop(plan, inner, visit); });
+    forEachBlock(stmt, [&](const Block& inner) { forEachLoopEmittedOnce(plan, inner, visit); });
   }
 }
 
@@ -69,9 +69,9 @@ RowPlan::RowPlan(const Module& module, const Kernel& kernel)
 
 void RowPlan::addAssigned(const Block& body, bool isDivergent) {
   for (const Stmt& stmt : body) {
-    if (isDivergent || !isJoint(stmt)) addAssignedBy(stmt);
+    if (isDivergent || !isEmittedOnce(stmt)) addAssignedBy(stmt);
     forEachBlock(stmt, [&](const Block& inner) {
-      addAssigned(inner, isDivergent || (isControl(stmt) && !isJoint(stmt)));
+      addAssigned(inner, isDivergent || (isControl(stmt) && !isEmittedOnce(stmt)));
     });
   }
 }
@@ -80,11 +80,11 @@ void RowPlan::addAssignedBy(const Stmt& stmt) {
   forEachAssigned(module_, stmt, [&](VarId var) { perRow_.insert(var); });
 }
 
-bool RowPlan::isJoint(const Stmt& stmt) const {
+bool RowPlan::isEmittedOnce(const Stmt& stmt) const {
   if (isControl(stmt)) return !rows_.diverges(kernel_.entry, stmt) && !rows_.skips(kernel_.entry, stmt);
-  bool isJoint = true;
-  forEachAssigned(module_, stmt, [&](VarId var) { isJoint = isJoint && !isPerRow(var); });
-  return isJoint;
+  bool isEmittedOnce = true;
+  forEachAssigned(module_, stmt, [&](VarId var) { isEmittedOnce = isEmittedOnce && !isPerRow(var); });
+  return isEmittedOnce;
 }
 
 bool RowPlan::isShared(const Expr& expr) const { return rows_.of(kernel_.entry, expr) == Shape::Uniform; }
@@ -96,7 +96,7 @@ bool RowPlan::pays(const Uniformity& lanes) const {
       });
   if (!isElementwise || rows_.returnsEarly(kernel_.entry)) return false;
   bool saves = false;
-  forEachJointLoop(*this, entry_.body, [&](const Stmt& loop) {
+  forEachLoopEmittedOnce(*this, entry_.body, [&](const Stmt& loop) {
     for (const Stmt& stmt : std::get<Loop>(loop.node).body) {
       forEachOperand(stmt, [&](const ExprPtr& operand) {
         walkExprs(*operand, [&](const Expr& expr) {
@@ -111,7 +111,7 @@ bool RowPlan::pays(const Uniformity& lanes) const {
 
 std::uint32_t RowPlan::carried() const {
   std::set<VarId> assigned, inner;
-  forEachJointLoop(*this, entry_.body, [&](const Stmt& loop) {
+  forEachLoopEmittedOnce(*this, entry_.body, [&](const Stmt& loop) {
     walkStmts(std::get<Loop>(loop.node).body, [&](const Stmt& stmt) {
       if (const auto* n = std::get_if<Declare>(&stmt.node)) inner.insert(n->var);
       forEachAssigned(module_, stmt, [&](VarId var) { assigned.insert(var); });

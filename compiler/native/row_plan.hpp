@@ -33,7 +33,7 @@ class RowPlan {
   /// True if a variable of the entry has its own value in each row.
   bool isPerRow(ir::VarId var) const { return perRow_.contains(var); }
   /// True if a statement is emitted once for all rows; statements in it may still depend on the row.
-  bool isJoint(const ir::Stmt& stmt) const;
+  bool isEmittedOnce(const ir::Stmt& stmt) const;
   /// True if an expression of the entry has the same value in all rows.
   bool isShared(const ir::Expr& expr) const;
 

@@ -18,7 +18,7 @@ Parts Streams::weighted(std::uint32_t param, const Parts& low, const Parts& weig
     const Parts element = gather(param, low);
     Parts parts;
     for (std::size_t c = 0; c < element.size(); ++c) {
-      parts.push_back(convert(l, scalars(param)[c], carrierOf(scalars(param)[c]), element[c]));
+      parts.push_back(convert(l, scalars(param)[c], arithmeticScalar(scalars(param)[c]), element[c]));
     }
     return parts;
   }

@@ -40,10 +40,10 @@ bool isNear(const std::vector<std::int32_t>& offset) {
   return std::ranges::all_of(offset, [](std::int32_t d) { return std::abs(d) <= sk::native::farthestSlot; });
 }
 
-std::optional<SlotPlan::Place> SlotPlan::find(std::uint32_t parameter, const std::int8_t (&row)[3]) const {
+std::optional<SlotPlan::Location> SlotPlan::find(std::uint32_t parameter, const std::int8_t (&row)[3]) const {
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (slots[i].parameter == parameter && std::ranges::equal(slots[i].row, row))
-      return Place{i, firstArrays[i]};
+      return Location{i, firstArrays[i]};
   }
   return std::nullopt;
 }

@@ -17,12 +17,12 @@ struct SlotPlan {
   std::vector<sk::native::Slot> slots;
 
   /// A slot and its first array.
-  struct Place {
+  struct Location {
     std::size_t slot;
     std::size_t firstArray;
   };
   /// The slot of this parameter and row.
-  std::optional<Place> find(std::uint32_t parameter, const std::int8_t (&row)[3]) const;
+  std::optional<Location> find(std::uint32_t parameter, const std::int8_t (&row)[3]) const;
   std::vector<std::size_t> firstArrays;  ///< the first array of each slot
 };
 

@@ -97,20 +97,21 @@ Parts Streams::uniform(std::uint32_t param) {
 }
 
 Parts Streams::input(std::uint32_t param) {
-  const SlotPlan::Place place = *slots_.find(param, {});
+  const SlotPlan::Location location = *slots_.find(param, {});
   Parts parts;
   for (std::size_t c = 0; c < scalars(param).size(); ++c) {
     const Scalar scalar = scalars(param)[c];
-    parts.push_back(l.loadNeighbors(scalar, l.at(l.stored(scalar), array(place.firstArray + c), element_)));
+    parts.push_back(
+        l.loadNeighbors(scalar, l.at(l.stored(scalar), array(location.firstArray + c), element_)));
   }
   return parts;
 }
 
 void Streams::storeOutput(std::uint32_t param, const Parts& value) {
-  const SlotPlan::Place place = *slots_.find(param, {});
+  const SlotPlan::Location location = *slots_.find(param, {});
   for (std::size_t c = 0; c < value.size(); ++c) {
     const Scalar scalar = scalars(param)[c];
-    l.storeNeighbors(scalar, value[c], l.at(l.stored(scalar), array(place.firstArray + c), element_));
+    l.storeNeighbors(scalar, value[c], l.at(l.stored(scalar), array(location.firstArray + c), element_));
   }
 }
 
@@ -475,9 +476,9 @@ llvm::Function* Streams::laneGather(std::uint32_t param) {
   llvm::BasicBlock* const entry = llvm::BasicBlock::Create(context, "entry", known);
   llvm::BasicBlock* const loop = llvm::BasicBlock::Create(context, "lane", known);
   llvm::BasicBlock* const end = llvm::BasicBlock::Create(context, "end", known);
-  Form form = l.form();
-  form.lanes = 1;
-  Lanes one(l.b, form);
+  CodegenOptions options = l.options();
+  options.lanes = 1;
+  Lanes one(l.b, options);
   Streams streams(one, module_, kernel_, slots_, value_);
   streams.begin(known->getArg(0), nullptr, entry);
   l.b.SetInsertPoint(loop);
@@ -519,12 +520,13 @@ Parts Streams::neighbor(std::uint32_t param, const Parts& offset,
   if (constant && isNear(*constant) && !kernel_.reduction) {
     std::int8_t row[3] = {};
     for (std::size_t d = 1; d < constant->size(); ++d) row[d - 1] = static_cast<std::int8_t>((*constant)[d]);
-    const SlotPlan::Place place = *slots_.find(param, row);
+    const SlotPlan::Location location = *slots_.find(param, row);
     llvm::Value* const element = l.b.CreateAdd(element_, l.integer(l.int64(), (*constant)[0]));
     Parts parts;
     for (std::size_t c = 0; c < scalars(param).size(); ++c) {
       const Scalar scalar = scalars(param)[c];
-      parts.push_back(l.loadNeighbors(scalar, l.at(l.stored(scalar), array(place.firstArray + c), element)));
+      parts.push_back(
+          l.loadNeighbors(scalar, l.at(l.stored(scalar), array(location.firstArray + c), element)));
     }
     return parts;
   }

@@ -43,7 +43,7 @@ class Widener {
       if (isComputed(instruction)) {
         computed_.insert(&instruction);
       } else {
-        given_.push_back(&instruction);
+        sources_.push_back(&instruction);
       }
       anyLivesOn = anyLivesOn || llvm::isa<llvm::PHINode>(instruction) || isUsedElsewhere(instruction);
       if (llvm::isa<llvm::CmpInst>(instruction)) {
@@ -51,11 +51,11 @@ class Widener {
       }
     }
     word_ = b_.getIntNTy(narrowest == 64 ? 64 : 32);
-    if (!anyLivesOn) computed_.clear(), given_.clear();
+    if (!anyLivesOn) computed_.clear(), sources_.clear();
   }
 
   bool widen() {
-    if (computed_.empty() && given_.empty()) return false;
+    if (computed_.empty() && sources_.empty()) return false;
     for (llvm::Instruction* const mask : computed_) {
       auto* const phi = llvm::dyn_cast<llvm::PHINode>(mask);
       if (phi == nullptr) continue;
@@ -73,7 +73,7 @@ class Widener {
       }
     }
     for (llvm::Instruction* const mask : computed_) replaceUses(*mask, /*everywhere=*/true);
-    for (llvm::Instruction* const mask : given_) replaceUses(*mask, /*everywhere=*/false);
+    for (llvm::Instruction* const mask : sources_) replaceUses(*mask, /*everywhere=*/false);
     for (llvm::Instruction* const mask : computed_) mask->dropAllReferences();
     for (llvm::Instruction* const mask : computed_) mask->eraseFromParent();
     return true;
@@ -90,9 +90,9 @@ class Widener {
       return b_.CreateSExt(constant, wordsOf(*mask));
     const auto known = words_.find(mask);
     if (known != words_.end()) return known->second;
-    llvm::Value* const made = make(mask);
-    words_[mask] = made;
-    return made;
+    llvm::Value* const wide = make(mask);
+    words_[mask] = wide;
+    return wide;
   }
 
   llvm::Value* make(llvm::Value* mask) {
@@ -135,32 +135,32 @@ class Widener {
   void replaceUses(llvm::Instruction& mask, bool everywhere) {
     llvm::SmallSetVector<llvm::Instruction*, 8> users;
     for (llvm::User* const user : mask.users()) {
-      auto* const taker = llvm::cast<llvm::Instruction>(user);
-      if (!computed_.contains(taker) && (everywhere || taker->getParent() != mask.getParent()))
-        users.insert(taker);
+      auto* const instruction = llvm::cast<llvm::Instruction>(user);
+      if (!computed_.contains(instruction) && (everywhere || instruction->getParent() != mask.getParent()))
+        users.insert(instruction);
     }
     users.remove_if([&](llvm::Instruction* user) { return words_.contains(&mask) && words_[&mask] == user; });
     for (llvm::Instruction* const user : users) {
       llvm::Value* const wide = words(&mask);
       b_.SetInsertPoint(user);
       b_.SetCurrentDebugLocation(user->getDebugLoc());
-      if (asks(*user, wide) || counts(*user, wide)) continue;
+      if (replaceAnyTest(*user, wide) || replaceConversion(*user, wide)) continue;
       user->replaceUsesOfWith(&mask, bits(wide));
     }
   }
 
   /// Turns a test whether any bit is set into a test of the words; false if `user` is no such test.
-  bool asks(llvm::Instruction& user, llvm::Value* wide) {
+  bool replaceAnyTest(llvm::Instruction& user, llvm::Value* wide) {
     using namespace llvm::PatternMatch;
     if (!llvm::isa<llvm::BitCastInst>(user) || !user.getType()->isIntegerTy()) return false;
-    const auto isZeroTest = [](const llvm::User* asker) {
-      const auto* const test = llvm::dyn_cast<llvm::ICmpInst>(asker);
+    const auto isZeroTest = [](const llvm::User* comparison) {
+      const auto* const test = llvm::dyn_cast<llvm::ICmpInst>(comparison);
       return test != nullptr && test->isEquality() && match(test->getOperand(1), m_Zero());
     };
     if (!llvm::all_of(user.users(), isZeroTest)) return false;
     llvm::Value* const any = b_.CreateOrReduce(wide);
-    for (llvm::User* const asker : llvm::make_early_inc_range(user.users())) {
-      auto* const test = llvm::cast<llvm::ICmpInst>(asker);
+    for (llvm::User* const comparison : llvm::make_early_inc_range(user.users())) {
+      auto* const test = llvm::cast<llvm::ICmpInst>(comparison);
       b_.SetInsertPoint(test);
       test->replaceAllUsesWith(b_.CreateICmp(test->getPredicate(), any, llvm::ConstantInt::get(word_, 0)));
       test->eraseFromParent();
@@ -171,7 +171,7 @@ class Widener {
 
   /// Turns a conversion of a mask to numbers into the words, which are -1 where the mask is true: adding 1
   /// becomes subtracting them. False if `user` is no such conversion.
-  bool counts(llvm::Instruction& user, llvm::Value* wide) {
+  bool replaceConversion(llvm::Instruction& user, llvm::Value* wide) {
     if (user.getType() != wide->getType()) return false;
     if (llvm::isa<llvm::SExtInst>(user)) {
       user.replaceAllUsesWith(wide);
@@ -179,8 +179,8 @@ class Widener {
       return true;
     }
     if (!llvm::isa<llvm::ZExtInst>(user)) return false;
-    for (llvm::User* const taker : llvm::make_early_inc_range(user.users())) {
-      auto* const sum = llvm::dyn_cast<llvm::BinaryOperator>(taker);
+    for (llvm::User* const consumer : llvm::make_early_inc_range(user.users())) {
+      auto* const sum = llvm::dyn_cast<llvm::BinaryOperator>(consumer);
       if (sum == nullptr || sum->getOpcode() != llvm::Instruction::Add ||
           sum->getOperand(0) == sum->getOperand(1))
         continue;
@@ -201,7 +201,7 @@ class Widener {
   llvm::IRBuilder<> b_;
   llvm::IntegerType* word_ = nullptr;
   llvm::SmallSetVector<llvm::Instruction*, 16> computed_;
-  llvm::SmallVector<llvm::Instruction*, 16> given_;  ///< comparisons and other sources of masks
+  llvm::SmallVector<llvm::Instruction*, 16> sources_;  ///< comparisons and other sources of masks
   llvm::DenseMap<llvm::Value*, llvm::Value*> words_;
 };
 

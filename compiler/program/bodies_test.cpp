@@ -8,7 +8,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
 #include "program/descriptors.hpp"
 #include "program/sample_module.hpp"
@@ -51,9 +51,9 @@ TEST_CASE("structs are declarations, and a function on one line stays there") {
 }
 
 /// The body of `void f(float x, out float r)` at line 1, with locals i, j (int) and t (float).
-std::string body(const std::function<Block(KernelMaker&)>& make) {
+std::string body(const std::function<Block(KernelBuilder&)>& make) {
   Module module = testModule();
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   k.input("x", floatType);
   k.output("r", floatType);
   k.local("i", intType);
@@ -71,33 +71,33 @@ std::string body(const std::function<Block(KernelMaker&)>& make) {
 
 constexpr VarId x = 0, r = 1, i = 2, j = 3, t = 4;
 
-Stmt set(KernelMaker& k, float value, std::uint32_t line) {
+Stmt set(KernelBuilder& k, float value, std::uint32_t line) {
   return assign(k.ref(r), literal(value), atLine(line));
 }
-ExprPtr positive(KernelMaker& k) { return binary(Greater, k.ref(x), literal(0.0F)); }
+ExprPtr positive(KernelBuilder& k) { return binary(Greater, k.ref(x), literal(0.0F)); }
 
 TEST_CASE("braces stand where the .sk file has a line for them") {
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           return block(ifStmt(positive(k), block(set(k, 1, 3)), {}, atLine(2)), set(k, 2, 5));
         }) == "\n  if (x > 0.0) {\n    r = 1.0;\n  }\n  r = 2.0;\n}\n");
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           return block(ifStmt(positive(k), block(set(k, 1, 3)), {}, atLine(2)), set(k, 2, 4));
         }) == "\n  if (x > 0.0)\n    r = 1.0;\n  r = 2.0;\n}\n");
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           return block(ifStmt(positive(k), block(set(k, 1, 2)), {}, atLine(2)), set(k, 2, 3));
         }) == "\n  if (x > 0.0) r = 1.0;\n  r = 2.0;\n}\n");
 }
 
 TEST_CASE("else, and chains of them") {
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           return block(ifStmt(positive(k), block(set(k, 1, 3)), block(set(k, 2, 5)), atLine(2)),
                        set(k, 3, 7));
         }) == "\n  if (x > 0.0) {\n    r = 1.0;\n  } else {\n    r = 2.0;\n  }\n  r = 3.0;\n}\n");
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           return block(ifStmt(positive(k), block(set(k, 1, 2)), block(set(k, 2, 2)), atLine(2)),
                        set(k, 3, 3));
         }) == "\n  if (x > 0.0) r = 1.0; else r = 2.0;\n  r = 3.0;\n}\n");
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           Stmt inner = ifStmt(positive(k), block(set(k, 2, 5)), block(set(k, 3, 7)), atLine(4));
           return block(ifStmt(positive(k), block(set(k, 1, 3)), block(std::move(inner)), atLine(2)));
         }) ==
@@ -106,16 +106,16 @@ TEST_CASE("else, and chains of them") {
 }
 
 TEST_CASE("chains on one line, and lines of their own without braces") {
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           Stmt inner = ifStmt(positive(k), block(set(k, 2, 2)), {}, atLine(2));
           return block(ifStmt(positive(k), block(set(k, 1, 2)), block(std::move(inner)), atLine(2)),
                        set(k, 3, 3));
         }) == "\n  if (x > 0.0) r = 1.0; else if (x > 0.0) r = 2.0;\n  r = 3.0;\n}\n");
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           return block(ifStmt(positive(k), block(set(k, 1, 3)), block(set(k, 2, 5)), atLine(2)),
                        set(k, 3, 6));
         }) == "\n  if (x > 0.0)\n    r = 1.0;\n  else\n    r = 2.0;\n  r = 3.0;\n}\n");
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           return block(ifStmt(positive(k), block(set(k, 1, 2)), block(set(k, 2, 3)), atLine(2)),
                        set(k, 3, 4));
         }) == "\n  if (x > 0.0) r = 1.0;\n  else r = 2.0;\n  r = 3.0;\n}\n");
@@ -123,7 +123,7 @@ TEST_CASE("chains on one line, and lines of their own without braces") {
 
 TEST_CASE("a block on one line that does not fit there gets a line for each statement") {
   const auto make = [](int count) {
-    return [count](KernelMaker& k) {
+    return [count](KernelBuilder& k) {
       Block inner;
       for (int n = 0; n < count; ++n) inner.push_back(set(k, 1, 2));
       Block once = block(ifStmt(positive(k), std::move(inner), {}, atLine(2)));
@@ -139,25 +139,25 @@ TEST_CASE("a block on one line that does not fit there gets a line for each stat
 }
 
 TEST_CASE("loops keep their form") {
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           Block init = block(declare(i, literal(0), atLine(2)), declare(j, literal(9), atLine(2)));
           Block step = block(assign(k.ref(i), Add, literal(1)), assign(k.ref(j), Sub, literal(2)));
           return block(forLoop(std::move(init), binary(Less, k.ref(i), k.ref(j)), std::move(step),
                                block(set(k, 1, 3)), atLine(2)));
         }) == "\n  for (int i = 0, j = 9; i < j; ++i, j -= 2) {\n    r = 1.0;\n  }\n}\n");
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           return block(whileLoop(nullptr, block(breakStmt(atLine(3))), atLine(2)), set(k, 1, 5));
         }) == "\n  while (true) {\n    break;\n  }\n  r = 1.0;\n}\n");
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           return block(doWhileLoop(block(set(k, 1, 3)), positive(k), atLine(2)));
         }) == "\n  do {\n    r = 1.0;\n  } while (x > 0.0);\n}\n");
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           return block(forLoop({}, nullptr, {}, block(breakStmt(atLine(2))), atLine(2)), set(k, 1, 3));
         }) == "\n  for (;;) break;\n  r = 1.0;\n}\n");
 }
 
 TEST_CASE("a head that GLSL has no form for moves into the loop, and continue still leads to the step") {
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           Block init = block(declare(i, literal(0), atLine(2)), declare(t, literal(0.0F), atLine(2)));
           Block step =
               block(ifStmt(positive(k), block(assign(k.ref(i), Add, literal(1), atLine(2))), {}, atLine(2)));
@@ -177,7 +177,7 @@ TEST_CASE("a head that GLSL has no form for moves into the loop, and continue st
 }
 
 TEST_CASE("switches fall through, and the last label has a statement") {
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           std::vector<Case> cases;
           cases.push_back({{1, 2}, false, block(set(k, 1, 4)), atLine(3)});
           cases.push_back({{-3}, false, block(set(k, 2, 5), breakStmt(atLine(5))), atLine(5)});
@@ -189,7 +189,7 @@ TEST_CASE("switches fall through, and the last label has a statement") {
 }
 
 TEST_CASE("an empty block is no statement for the last label") {
-  CHECK(body([](KernelMaker&) {
+  CHECK(body([](KernelBuilder&) {
           std::vector<Case> cases;
           cases.push_back({{1}, false, block(scope({}, atLine(3))), atLine(3)});
           return block(switchStmt(literal(2), std::move(cases), atLine(2)));
@@ -197,7 +197,7 @@ TEST_CASE("an empty block is no statement for the last label") {
 }
 
 TEST_CASE("a bracket does not close on a line that only #line numbers alike") {
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           Stmt inner = ifStmt(positive(k), block(set(k, 1, 4)), {}, atLine(3));
           return block(ifStmt(positive(k), block(std::move(inner)), block(set(k, 2, 5)), atLine(2)),
                        set(k, 3, 6));
@@ -205,7 +205,7 @@ TEST_CASE("a bracket does not close on a line that only #line numbers alike") {
 }
 
 TEST_CASE("a block of a case closes under its label") {
-  CHECK(body([](KernelMaker& k) {
+  CHECK(body([](KernelBuilder& k) {
           std::vector<Case> cases;
           cases.push_back(
               {{1}, false, block(scope(block(set(k, 1, 4)), atLine(3)), breakStmt(atLine(6))), atLine(3)});
@@ -215,14 +215,14 @@ TEST_CASE("a block of a case closes under its label") {
 
 TEST_CASE("a head of several lines ends right before its body") {
   Module module = testModule();
-  KernelMaker k(module, "f", 10);
+  KernelBuilder k(module, "f", 10);
   k.output("r", floatType);
   k.finish(block(assign(k.ref(0), literal(1.0F), atLine(13))));
   CHECK(Program(module).units()[0].kernel.body == "#line 12 1\nvoid f(out float r) {\n  r = 1.0;\n}\n");
 }
 
 TEST_CASE("long statements are wrapped") {
-  const std::string text = body([](KernelMaker& k) {
+  const std::string text = body([](KernelBuilder& k) {
     ExprPtr sum = k.ref(x);
     for (int n = 0; n < 20; ++n)
       sum = binary(Add, std::move(sum), intrinsic(Intrinsic::Sin, exprs(k.ref(x))));

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 
 namespace skc::emit {
 namespace {
@@ -23,7 +23,7 @@ TEST_CASE("names of the C library are known, with their float and long forms") {
 }
 
 void addKernel(Module& module, std::string name, Type type, std::vector<std::string> scope = {}) {
-  KernelMaker k(module, std::move(name));
+  KernelBuilder k(module, std::move(name));
   k.kernel().scope = std::move(scope);
   k.output("r", type);
   k.finish({});

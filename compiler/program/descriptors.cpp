@@ -86,21 +86,21 @@ class Builder {
  private:
   void add(KernelId id) {
     const Kernel& kernel = module_.kernels[id];
-    if (kernel.pass || kernel.isMade) return;
+    if (kernel.pass || kernel.isSynthesized) return;
     Unit unit{.id = id, .kernel = whole(kernel)};
     unit.kernel.options = {.accumulate = static_cast<sk::Accumulate>(kernel.choices.accumulate),
                            .precision = static_cast<sk::Precision>(kernel.choices.precision),
                            .intrinsics = static_cast<sk::Intrinsics>(kernel.choices.intrinsics),
                            .tables = static_cast<sk::Tables>(kernel.choices.tables),
                            .contraction = static_cast<sk::Contraction>(kernel.choices.contraction)};
-    unit.kernel.whyNotHalf = storage_.keep(kernel.forms.whyNotHalf);
-    unit.kernel.whyNotWide = storage_.keep(kernel.forms.whyNotWide);
+    unit.kernel.whyNotHalf = storage_.keep(kernel.variants.whyNotHalf);
+    unit.kernel.whyNotWide = storage_.keep(kernel.variants.whyNotWide);
     if (kernel.reduction) {
       unit.reduction = &storage_.reductions.emplace_back(reduction(kernel, unit.kernel));
       addForms(kernel, storage_.reductions.back());
     } else {
-      if (kernel.forms.half) unit.kernel.half = &form(*kernel.forms.half);
-      if (kernel.forms.wide) unit.kernel.wide = &form(*kernel.forms.wide);
+      if (kernel.variants.half) unit.kernel.half = &form(*kernel.variants.half);
+      if (kernel.variants.wide) unit.kernel.wide = &form(*kernel.variants.wide);
     }
     storage_.units.push_back(unit);
   }
@@ -125,14 +125,14 @@ class Builder {
   }
 
   void addForms(const Kernel& kernel, sk::program::Reduction& made) {
-    if (kernel.forms.half) {
-      const Kernel& half = module_.kernels[*kernel.forms.half];
+    if (kernel.variants.half) {
+      const Kernel& half = module_.kernels[*kernel.variants.half];
       sk::program::Reduction& form = storage_.reductions.emplace_back(reduction(half, describe(half)));
       form.commutative = made.commutative;
       made.half = &form;
     }
-    if (kernel.forms.wide) {
-      const Kernel& wide = module_.kernels[*kernel.forms.wide];
+    if (kernel.variants.wide) {
+      const Kernel& wide = module_.kernels[*kernel.variants.wide];
       sk::program::WideReduction& form = storage_.wide.emplace_back(sk::program::WideReduction{
           reduction(wide, describe(wide)), whole(module_.kernels[*wide.reduction->finish])});
       form.reduction.commutative = made.commutative;

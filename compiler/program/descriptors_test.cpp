@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "program/elements.hpp"
 #include "program/sample_module.hpp"
 
@@ -71,7 +71,7 @@ TEST_CASE("the reach of neighbours is known only if every offset is constant") {
   const auto reach = [](bool second) {
     Module module = testModule();
     module.constants.push_back({"radius", intType, literal(3), {}});
-    KernelMaker k(module, "f");
+    KernelBuilder k(module, "f");
     const VarId n = k.uniform("n", intType);
     const VarId u = k.gather("u", floatType, 1);
     const VarId r = k.output("r", floatType);
@@ -124,7 +124,7 @@ TEST_CASE("structs are laid out as C++ lays them out, nested ones flattened") {
 TEST_CASE("borders and identities are constant expressions, with their constants among the declarations") {
   Module module = testModule();
   module.constants.push_back({"outside", floatType, literal(2.0F), {}});
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId u = k.gather("u", floatType, 1, Boundary::Border, constantRef(module, 0));
   const VarId r = k.output("r", floatType);
   k.finish(

@@ -10,7 +10,7 @@
 #include "assemble/assemble.hpp"
 #include "assemble/reduce/reduce_program.hpp"
 #include "glsl/tool_folder.hpp"
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "program/descriptors.hpp"
@@ -50,7 +50,7 @@ TEST_CASE("the sample file") { CHECK(glslangOn(sampleModule(), "sample") == "");
 
 TEST_CASE("every overload of every intrinsic") {
   Module module = testModule();
-  KernelMaker k(module, "all");
+  KernelBuilder k(module, "all");
   VarId values[5][5];
   for (Scalar scalar : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float, Scalar::Double}) {
     for (int width = 1; width <= 4; ++width) {
@@ -84,7 +84,7 @@ TEST_CASE("every overload of every intrinsic") {
 
 TEST_CASE("every operator on every type that has it") {
   Module module = testModule();
-  KernelMaker k(module, "operators");
+  KernelBuilder k(module, "operators");
   std::vector<std::pair<VarId, Type>> values;
   for (Scalar scalar : {Scalar::Bool, Scalar::Int, Scalar::Uint, Scalar::Float, Scalar::Double}) {
     for (int width = 1; width <= 4; ++width) {
@@ -123,7 +123,7 @@ TEST_CASE("every operator on every type that has it") {
 
 TEST_CASE("every operator on matrices, and every conversion to a narrow type") {
   Module module = testModule();
-  KernelMaker k(module, "narrow");
+  KernelBuilder k(module, "narrow");
   std::vector<VarId> matrices, vectors;
   for (int size = 2; size <= 4; ++size) {
     matrices.push_back(k.uniform(fmt::format("m{}", size), Type::matrix(size)));
@@ -190,7 +190,7 @@ TEST_CASE("every kind of statement, arrays, structs, constants") {
   const FunctionId swap = addSwap(module, array);
   const FunctionId weights = addWeights(module, array);
 
-  KernelMaker k(module, "statements");
+  KernelBuilder k(module, "statements");
   const auto makeOuter = [&](ExprPtr id) {
     ExprPtr inner = construct(Type::structType(0), exprs(literalOf(float3, 1), literal(true)));
     return construct(outer, exprs(std::move(inner), std::move(id)));

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
 
 namespace skc::emit {
@@ -39,7 +39,7 @@ FunctionId addAverage(Module& module) {
 
 void addDiffuse(Module& module) {
   const FunctionId average = addAverage(module);
-  KernelMaker k(module, "diffuse", 14);
+  KernelBuilder k(module, "diffuse", 14);
   k.kernel().scope = {"heat"};
   const VarId factor = k.uniform("k", floatType);
   const VarId u = k.gather("u", floatType, 2, Boundary::Wrap);
@@ -64,7 +64,7 @@ void combineByItself(Module& module, bool seeded) {
 }
 
 void addSum(Module& module) {
-  KernelMaker k(module, "sum", 20);
+  KernelBuilder k(module, "sum", 20);
   const VarId x = k.input("x", floatType);
   const VarId total = k.accumulator("total", floatType, literal(0.0F));
   k.finish(block(assign(k.ref(total), Add, k.ref(x), atLine(20))),
@@ -74,7 +74,7 @@ void addSum(Module& module) {
 
 void addNearest(Module& module) {
   const Type hit = Type::structType(0);
-  KernelMaker k(module, "nearest", 22);
+  KernelBuilder k(module, "nearest", 22);
   const VarId h = k.input("h", hit);
   const VarId best = k.accumulator("best", hit);
   ExprPtr nearer = binary(Less, member(module, k.ref(h), 0), member(module, k.ref(best), 0));
@@ -84,15 +84,15 @@ void addNearest(Module& module) {
 }
 
 void addPower(Module& module) {
-  KernelMaker k(module, "power", 24);
+  KernelBuilder k(module, "power", 24);
   const VarId x = k.input("x", floatType);
   const VarId total = k.accumulator("total", floatType, literal(0.0F));
   k.finish(block(assign(k.ref(total), Add, binary(Mul, k.ref(x), k.ref(x)), atLine(24))),
            "reduce void power(float x<>, reduce float total<>)");
   const auto power = static_cast<KernelId>(module.kernels.size() - 1);
   module.kernels[power].reduction = Reduction{power + 1, {0, 0}, false};
-  KernelMaker combine(module, "power_combine", 24);
-  combine.kernel().isMade = true;
+  KernelBuilder combine(module, "power_combine", 24);
+  combine.kernel().isSynthesized = true;
   const VarId part = combine.input("total_part", floatType);
   const VarId whole = combine.accumulator("total", floatType);
   combine.finish(block(assign(combine.ref(whole), Add, combine.ref(part), atLine(24))));

@@ -21,7 +21,7 @@ class Structs {
  public:
   explicit Structs(const Module& module) : module_(module) {
     for (const Kernel& kernel : module.kernels) {
-      if (kernel.isMade) continue;
+      if (kernel.isSynthesized) continue;
       for (const KernelParam& param : kernel.params) add(param.type);
     }
     for (const DeclaredStream& stream : module.streams) add(stream.type);
@@ -195,8 +195,9 @@ class HeaderWriter {
 
   /// True if a reduce returns several values.
   bool usesTuples() const {
-    return std::any_of(module_.kernels.begin(), module_.kernels.end(),
-                       [](const Kernel& kernel) { return !kernel.isMade && accumulatorsOf(kernel) > 1; });
+    return std::any_of(module_.kernels.begin(), module_.kernels.end(), [](const Kernel& kernel) {
+      return !kernel.isSynthesized && accumulatorsOf(kernel) > 1;
+    });
   }
 
   /// The declaration in the .sk file, as a comment whose lines all start alike.

@@ -53,7 +53,7 @@ class SourceWriter {
     text_ += "\nnamespace sk::program {\nnamespace {\n\n";
     sources();
     for (std::uint32_t i = 0; i < module_.structs.size(); ++i) {
-      if (module_.structs[i].isMade) madeElement(i);
+      if (module_.structs[i].isSynthesized) synthesizedElement(i);
     }
     for (TableId id = 0; id < tableNames_.size(); ++id) table(id);
     isWritten_.assign(names_.size(), false);
@@ -116,8 +116,8 @@ class SourceWriter {
     const Kernel& declared = kernelOf(unit);
     const sk::program::Kernel& whole = program_.units()[unit].kernel;
     if (whole.half != nullptr)
-      kernel(*whole.half, *declared.forms.half, names_[unit] + "Half", inFloats(Speed::Any));
-    if (whole.wide != nullptr) kernel(*whole.wide, *declared.forms.wide, names_[unit] + "Wide", {});
+      kernel(*whole.half, *declared.variants.half, names_[unit] + "Half", inFloats(Speed::Any));
+    if (whole.wide != nullptr) kernel(*whole.wide, *declared.variants.wide, names_[unit] + "Wide", {});
     kernel(whole, program_.units()[unit].id, names_[unit], inAnyReal(Speed::Best));
     if (const sk::program::Reduction* made = program_.units()[unit].reduction) {
       const std::string combine = combination(unit, *made);
@@ -155,11 +155,11 @@ class SourceWriter {
   /// Prints a reduction's variants: NAMEHalfReduction and NAMEWide.
   void forms(const sk::program::Reduction& made, const Kernel& declared, const std::string& name) {
     if (made.half != nullptr)
-      reductionForm(*made.half, *declared.forms.half, name + "Half", inFloats(Speed::Any));
+      reductionForm(*made.half, *declared.variants.half, name + "Half", inFloats(Speed::Any));
     if (made.wide == nullptr) return;
-    reductionForm(made.wide->reduction, *declared.forms.wide, name + "Wide", {});
-    kernel(made.wide->finish, *module_.kernels[*declared.forms.wide].reduction->finish, name + "WideFinish",
-           {});
+    reductionForm(made.wide->reduction, *declared.variants.wide, name + "Wide", {});
+    kernel(made.wide->finish, *module_.kernels[*declared.variants.wide].reduction->finish,
+           name + "WideFinish", {});
     text_ +=
         fmt::format("constexpr WideReduction {0}Wide = {{{0}WideReduction, {0}WideFinishKernel}};\n\n", name);
   }
@@ -491,7 +491,7 @@ class SourceWriter {
   }
 
   /// Prints the element of a struct that does not exist in C++.
-  void madeElement(std::uint32_t index) {
+  void synthesizedElement(std::uint32_t index) {
     const TypeNames types(module_);
     const ElementLayout layout = elementLayout(module_, types, Type::structType(index));
     std::vector<std::string> fields;
@@ -552,7 +552,7 @@ class SourceWriter {
   }
 
   std::string elementOf(Type type) const {
-    if (type.kind == Type::Kind::Struct && module_.structs[type.index].isMade) {
+    if (type.kind == Type::Kind::Struct && module_.structs[type.index].isSynthesized) {
       return fmt::format("&{}Element", TypeNames(module_).structName(type.index));
     }
     const std::string scope = type.kind == Type::Kind::Struct ? "::" : "";

@@ -10,7 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include "glsl/tool_folder.hpp"
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "program/sample_module.hpp"
 
 namespace skc::emit {
@@ -228,12 +228,12 @@ Module awkwardModule() {
                             {{"first", Type::structType(0)}, {"count", Type::of(Scalar::Uint)}},
                             {}});
   for (Type type : {Type::structType(1), floatType, Type::of(Scalar::Bool, 3)}) {
-    KernelMaker k(module, "exp", 2);
+    KernelBuilder k(module, "exp", 2);
     const VarId a = k.uniform("arguments", type);
     const VarId r = k.output("value", type);
     k.finish(block(assign(k.ref(r), k.ref(a), atLine(3))), "kernel void exp(T arguments, out T value<>)");
   }
-  KernelMaker k(module, "count", 9);
+  KernelBuilder k(module, "count", 9);
   k.kernel().scope = {"geometry"};
   const VarId x = k.input("value", Type::of(Scalar::Int, 2));
   const VarId n = k.accumulator("arguments", Type::of(Scalar::Int, 2));
@@ -331,7 +331,7 @@ TEST_CASE("a C++ compiler takes the stubs without a warning") {
 
 TEST_CASE("long bodies are cut after lines") {
   Module module = testModule();
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId r = k.output("r", floatType);
   Block body;
   for (std::uint32_t line = 2; line < 2000; ++line)

@@ -14,7 +14,7 @@ namespace {
 using namespace ir;
 
 /// Assumed trip count of a data-dependent loop.
-constexpr double unknownRounds = 16;
+constexpr double unknownTripCount = 16;
 constexpr double intrinsicCost = 4;
 constexpr double doubleCost = 6;   // per operation: 2 in native GLSL doubles, 9 to 15 in pairs of floats
 constexpr double addressCost = 4;
@@ -102,9 +102,9 @@ double CostModel::statement(const Stmt& stmt, const Slice* slice) const {
       [&](const CallStmt& n) { return once + functions_[n.callee]; },
       [&](const If& n) { return once + block(n.then, slice) + block(n.otherwise, slice); },
       [&](const Loop& n) {
-        const std::optional<std::int64_t> known = roundsOf(module_, n);
-        const double rounds = known ? static_cast<double>(*known) : unknownRounds;
-        return block(n.init, slice) + rounds * (once + block(n.step, slice) + block(n.body, slice));
+        const std::optional<std::int64_t> known = tripCount(module_, n);
+        const double iterations = known ? static_cast<double>(*known) : unknownTripCount;
+        return block(n.init, slice) + iterations * (once + block(n.step, slice) + block(n.body, slice));
       },
       [&](const Switch& n) {
         double cases = 0;

@@ -19,9 +19,9 @@ using namespace ir;
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-class Maker {
+class PassKernelBuilder {
  public:
-  Maker(Module& module, KernelId whole, const PlannedSplit& plan, const PlannedPass& pass)
+  PassKernelBuilder(Module& module, KernelId whole, const PlannedSplit& plan, const PlannedPass& pass)
       : module_(module),
         whole_(whole),
         plan_(plan),
@@ -130,17 +130,17 @@ class Maker {
 
   /// The sliced body, still in terms of the whole kernel's variables.
   Block body() {
-    Block made = std::move(declarations_);
+    Block result = std::move(declarations_);
     for (Stmt& stmt : slicer_.copy(pass_.slice)) {
       auto* n = std::get_if<Declare>(&stmt.node);
       if (n == nullptr || newVars_[n->var] >= entry_.parameterCount) {
-        made.push_back(std::move(stmt));
+        result.push_back(std::move(stmt));
       } else if (n->init) {   // temporaries written by this pass are outputs, declared already
-        made.push_back(assign(varRef(source(), n->var, stmt.loc), std::move(n->init), stmt.loc));
+        result.push_back(assign(varRef(source(), n->var, stmt.loc), std::move(n->init), stmt.loc));
       }
     }
-    for (Stmt& stmt : made) renumber(stmt);
-    return made;
+    for (Stmt& stmt : result) renumber(stmt);
+    return result;
   }
 
   void renumber(Expr& whole) const {
@@ -182,10 +182,10 @@ class Maker {
   FunctionId copyOf(FunctionId id) {
     const auto known = copies_.find(id);
     if (known != copies_.end()) return known->second;
-    Function made = clone(module_.functions[id]);
-    bind(made.body);
+    Function function = clone(module_.functions[id]);
+    bind(function.body);
     const auto copy = static_cast<FunctionId>(module_.functions.size());
-    module_.functions.push_back(std::move(made));
+    module_.functions.push_back(std::move(function));
     copies_.emplace(id, copy);
     return copy;
   }
@@ -207,7 +207,7 @@ class Maker {
 }  // namespace
 
 Pass makePassKernel(Module& module, KernelId whole, const PlannedSplit& plan, const PlannedPass& pass) {
-  return Maker(module, whole, plan, pass).run();
+  return PassKernelBuilder(module, whole, plan, pass).run();
 }
 
 }  // namespace skc::split

@@ -163,11 +163,11 @@ Stmt copyKept(const Stmt& stmt, const Slice& slice) {
         return Loop{n.kind, blockOf(n.init), clone(n.cond), blockOf(n.step), blockOf(n.body)};
       },
       [&](const Switch& n) -> Stmt::Node {
-        Switch made{clone(n.value), {}};
+        Switch result{clone(n.value), {}};
         for (const Case& one : n.cases) {
-          made.cases.push_back({one.values, one.isDefault, blockOf(one.body), one.loc});
+          result.cases.push_back({one.values, one.isDefault, blockOf(one.body), one.loc});
         }
-        return made;
+        return result;
       },
       [&](const Scope& n) -> Stmt::Node { return Scope{blockOf(n.body)}; },
       [&](const auto&) -> Stmt::Node { return clone(stmt).node; });
@@ -175,11 +175,11 @@ Stmt copyKept(const Stmt& stmt, const Slice& slice) {
 }
 
 Block copyKept(const Block& block, const Slice& slice) {
-  Block made;
+  Block result;
   for (const Stmt& stmt : block) {
-    if (slice.kept.contains(&stmt)) made.push_back(copyKept(stmt, slice));
+    if (slice.kept.contains(&stmt)) result.push_back(copyKept(stmt, slice));
   }
-  return made;
+  return result;
 }
 
 }  // namespace
@@ -202,8 +202,8 @@ Slicer::Slicer(const Module& module, const Function& function)
 Slice Slicer::slice(const VarSet& wanted, VarSet loadable) const {
   for (;;) {
     std::optional<VarId> early;
-    Slice made = Marker(module_, function_, *this, wanted, loadable).run(early);
-    if (!early) return made;
+    Slice result = Marker(module_, function_, *this, wanted, loadable).run(early);
+    if (!early) return result;
     loadable[*early] = false;
   }
 }

@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 
 namespace skc::split {
@@ -18,7 +18,7 @@ using enum BinaryOp;
 /// A body to slice, with float s and t, outputs a and b, an input x and an int n.
 struct Sample {
   Module module = testModule();
-  KernelMaker k{module, "sample"};
+  KernelBuilder k{module, "sample"};
   VarId x = k.input("x", floatType), n = k.input("n", intType);
   VarId a = k.output("a", floatType), b = k.output("b", floatType);
   VarId s = k.local("s", floatType), t = k.local("t", floatType), i = k.local("i", intType);

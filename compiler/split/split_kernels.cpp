@@ -53,7 +53,7 @@ Plan makePlan(Module& module, KernelId whole, const Limits& limits) {
   }
   for (std::uint32_t number = 1; const PlannedPass& pass : planned.passes) {
     plan.passes.push_back(makePassKernel(module, whole, planned, pass));
-    module.kernels.back().isMade = module.kernels[whole].isMade;
+    module.kernels.back().isSynthesized = module.kernels[whole].isSynthesized;
     module.kernels.back().pass = {whole, number++, static_cast<std::uint32_t>(planned.passes.size())};
   }
   return plan;

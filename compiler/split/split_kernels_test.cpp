@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
 #include "split/demand.hpp"
 
@@ -21,7 +21,7 @@ constexpr Limits narrow = {4, 16};
 /// `outputs` outputs, each t plus a number; t is x, multiplied by itself `rounds` times.
 Module sharedValue(int outputs, std::int32_t rounds) {
   Module module = testModule();
-  KernelMaker k(module, "shared");
+  KernelBuilder k(module, "shared");
   const VarId x = k.input("x", floatType);
   std::vector<VarId> r;
   for (int i = 0; i < outputs; ++i) r.push_back(k.output("r" + std::to_string(i), floatType));
@@ -93,7 +93,7 @@ TEST_CASE("what is cheap is computed again") {
 
 TEST_CASE("outputs of unlike inputs go apart") {
   Module module = testModule();
-  KernelMaker k(module, "pairs");
+  KernelBuilder k(module, "pairs");
   std::vector<VarId> x, r;
   for (int i = 0; i < 20; ++i) x.push_back(k.input("x" + std::to_string(i), floatType));
   for (int i = 0; i < 2; ++i) r.push_back(k.output("r" + std::to_string(i), floatType));
@@ -113,7 +113,7 @@ TEST_CASE("outputs of unlike inputs go apart") {
 
 TEST_CASE("planes share a unit where no division helps") {
   Module module = testModule();
-  KernelMaker k(module, "many");
+  KernelBuilder k(module, "many");
   std::vector<VarId> x;
   for (int i = 0; i < 20; ++i) x.push_back(k.input("x" + std::to_string(i), i < 3 ? intType : floatType));
   const VarId r = k.output("r", floatType);

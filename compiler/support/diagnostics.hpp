@@ -32,22 +32,22 @@ struct DiagRow {
 const DiagRow& row(Diag diag);
 
 /// A fix-it: an edit of the source that surely corrects the mistake.
-struct Mend {
+struct FixIt {
   enum class Kind : std::uint8_t { Remove, Replace, InsertBefore, InsertAfter };
   Kind kind;
   Loc first;           ///< the token that is edited; Remove and Replace: the first one
   Loc last;            ///< Remove and Replace: the last token
   std::string text;    ///< the inserted or replacing text
 
-  static Mend remove(Loc first, Loc last) { return {Kind::Remove, first, last, {}}; }
-  static Mend replace(Loc token, std::string text) { return replace(token, token, std::move(text)); }
-  static Mend replace(Loc first, Loc last, std::string text) {
+  static FixIt remove(Loc first, Loc last) { return {Kind::Remove, first, last, {}}; }
+  static FixIt replace(Loc token, std::string text) { return replace(token, token, std::move(text)); }
+  static FixIt replace(Loc first, Loc last, std::string text) {
     return {Kind::Replace, first, last, std::move(text)};
   }
-  static Mend insertBefore(Loc token, std::string text) {
+  static FixIt insertBefore(Loc token, std::string text) {
     return {Kind::InsertBefore, token, {}, std::move(text)};
   }
-  static Mend insertAfter(Loc token, std::string text) {
+  static FixIt insertAfter(Loc token, std::string text) {
     return {Kind::InsertAfter, token, {}, std::move(text)};
   }
 };
@@ -58,7 +58,7 @@ class Diagnostics {
   virtual void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments = {}) = 0;
   /// Also takes fix-its, for implementations that can show them.
   virtual void report(Diag diag, Loc loc, std::initializer_list<std::string_view> arguments,
-                      const std::vector<Mend>& /*mends*/) {
+                      const std::vector<FixIt>& /*fixIts*/) {
     report(diag, loc, arguments);
   }
   virtual bool hasErrors() const = 0;

@@ -37,22 +37,22 @@ class RowWriter {
   RowWriter(const Module& module, Function& function) : module_(module), function_(function) {}
 
   void rewrite(Block& block) {
-    Block made;
+    Block rewritten;
     for (Stmt& stmt : block) {
       forEachBlock(stmt, [&](Block& inner) { rewrite(inner); });
       Block after;
-      if (auto* n = std::get_if<Assign>(&stmt.node)) through(*n->place, stmt.loc, made, after);
+      if (auto* n = std::get_if<Assign>(&stmt.node)) through(*n->place, stmt.loc, rewritten, after);
       if (auto* n = std::get_if<CallStmt>(&stmt.node)) {
         for (std::size_t i = 0; i < n->args.size(); ++i) {
-          const bool isPlace = module_.functions[n->callee].variables[i].role == VarRole::InOut;
-          if (isPlace) through(*n->args[i], stmt.loc, made, after);
+          const bool isLValue = module_.functions[n->callee].variables[i].role == VarRole::InOut;
+          if (isLValue) through(*n->args[i], stmt.loc, rewritten, after);
         }
-        if (n->result) through(*n->result, stmt.loc, made, after);
+        if (n->result) through(*n->result, stmt.loc, rewritten, after);
       }
-      made.push_back(std::move(stmt));
-      for (Stmt& write : after) made.push_back(std::move(write));
+      rewritten.push_back(std::move(stmt));
+      for (Stmt& write : after) rewritten.push_back(std::move(write));
     }
-    block = std::move(made);
+    block = std::move(rewritten);
   }
 
  private:

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -22,14 +22,14 @@ constexpr Type row = Type::of(Scalar::Float, 2);
 struct Sample {
   Module module = testModule();
   FunctionId grow;
-  KernelMaker maker;
+  KernelBuilder builder;
   VarId i, r;
 
   Sample()
       : grow(addGrow(module)),
-        maker(module, "k"),
-        i(maker.input("i", intType)),
-        r(maker.output("r", matrix)) {}
+        builder(module, "k"),
+        i(builder.input("i", intType)),
+        r(builder.output("r", matrix)) {}
 
   static FunctionId addGrow(Module& module) {
     Function function;
@@ -39,7 +39,7 @@ struct Sample {
     return addFunction(module, std::move(function), std::move(body));
   }
 
-  ExprPtr at(ExprPtr number) { return index(module, maker.ref(r), std::move(number)); }
+  ExprPtr at(ExprPtr number) { return index(module, builder.ref(r), std::move(number)); }
   ExprPtr zero() {
     return construct(matrix,
                      exprs(construct(row, exprs(literal(0.0F))), construct(row, exprs(literal(0.0F)))));
@@ -47,7 +47,7 @@ struct Sample {
 
   /// The statements after the transform, as text without indentation.
   std::string rewritten(Stmt stmt) {
-    maker.finish(block(assign(maker.ref(r), zero()), std::move(stmt)));
+    builder.finish(block(assign(builder.ref(r), zero()), std::move(stmt)));
     DiagnosticLog log;
     assignRows(module, log);
     CHECK(validate(module, Stage::Lowered) == "");
@@ -59,7 +59,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 TEST_CASE("a component of a computed row is written with the row") {
   Sample s;
-  const std::string text = s.rewritten(assign(swizzle(s.at(s.maker.ref(s.i)), "x"), literal(1.0F)));
+  const std::string text = s.rewritten(assign(swizzle(s.at(s.builder.ref(s.i)), "x"), literal(1.0F)));
   INFO(text);
   CHECK(has(text, "r_index"));
   CHECK(has(text, "r_row"));
@@ -68,7 +68,7 @@ TEST_CASE("a component of a computed row is written with the row") {
 
 TEST_CASE("a component that a function changes is written back") {
   Sample s;
-  const std::string text = s.rewritten(callStmt(s.grow, exprs(swizzle(s.at(s.maker.ref(s.i)), "y"))));
+  const std::string text = s.rewritten(callStmt(s.grow, exprs(swizzle(s.at(s.builder.ref(s.i)), "y"))));
   INFO(text);
   CHECK(has(text, "r_row"));
   CHECK_FALSE(has(text, "].y"));
@@ -77,7 +77,7 @@ TEST_CASE("a component that a function changes is written back") {
 TEST_CASE("whole rows and rows that are known stay") {
   Sample whole;
   ExprPtr value = construct(row, exprs(literal(1.0F)));
-  CHECK_FALSE(has(whole.rewritten(assign(whole.at(whole.maker.ref(whole.i)), std::move(value))), "r_row"));
+  CHECK_FALSE(has(whole.rewritten(assign(whole.at(whole.builder.ref(whole.i)), std::move(value))), "r_row"));
   Sample known;
   CHECK_FALSE(has(known.rewritten(assign(swizzle(known.at(literal(1)), "x"), literal(1.0F))), "r_row"));
 }

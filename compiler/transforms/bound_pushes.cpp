@@ -54,7 +54,7 @@ class Counter {
   Bound count(const CallStmt& n) { return function(n.callee); }
   Bound count(const If& n) { return larger(block(n.then), block(n.otherwise)); }
   Bound count(const Loop& n) {
-    return sum(block(n.init), product(roundsOf(module_, n), sum(block(n.body), block(n.step))));
+    return sum(block(n.init), product(tripCount(module_, n), sum(block(n.body), block(n.step))));
   }
   /// All cases may run, by falling through.
   Bound count(const Switch& n) {

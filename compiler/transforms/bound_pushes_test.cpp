@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "support/diagnostic_log.hpp"
 
 namespace skc {
@@ -21,7 +21,7 @@ Stmt pushOne() { return push(appendOutput, literal(1.0F)); }
 /// The bound of a kernel with this body, in which variable 2 is an int.
 std::int32_t boundOf(Block body) {
   Module module = testModule();
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   k.input("x", floatType);
   k.variableOutput("r", floatType);
   k.local("i", Type::of(Scalar::Int));
@@ -59,7 +59,7 @@ TEST_CASE("a call counts as its callee") {
   Function helper;
   helper.name = "twice";
   const FunctionId id = addFunction(module, std::move(helper), block(pushOne(), pushOne()));
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   k.input("x", floatType);
   k.variableOutput("r", floatType);
   k.finish(block(callStmt(id, {}), callStmt(id, {}), pushOne()));
@@ -71,7 +71,7 @@ TEST_CASE("a call counts as its callee") {
 TEST_CASE("a scatter output takes one kind of operation") {
   for (const ScatterOp second : {ScatterOp::Add, ScatterOp::Store}) {
     Module module = testModule();
-    KernelMaker k(module, "f");
+    KernelBuilder k(module, "f");
     k.input("x", floatType);
     k.scatterOutput("r", floatType, 1);
     k.finish(block(scatter(appendOutput, ScatterOp::Add, literal(0), literal(1.0F)),

@@ -11,7 +11,7 @@
 #include "ir/value_size.hpp"
 #include "ir/walk.hpp"
 #include "transforms/fold_identity.hpp"
-#include "transforms/static_place.hpp"
+#include "transforms/static_lvalue.hpp"
 #include "transforms/try_fold.hpp"
 #include "transforms/try_function.hpp"
 
@@ -28,9 +28,9 @@ bool areNonNegative(const std::vector<ExprPtr>& all) {
   return std::ranges::all_of(all, [](const ExprPtr& e) { return isNonNegative(*e); });
 }
 
-bool isSamePlace(const Expr& a, const Expr& b) {
-  const std::optional<StaticPlace> place = staticPlace(a);
-  return place && place == staticPlace(b);
+bool isSameLValue(const Expr& a, const Expr& b) {
+  const std::optional<StaticLValue> lvalue = staticLValue(a);
+  return lvalue && lvalue == staticLValue(b);
 }
 
 bool isNonNegative(const IntrinsicCall& n) {
@@ -43,7 +43,7 @@ bool isNonNegative(const IntrinsicCall& n) {
     case Intrinsic::Exp:
     case Intrinsic::Exp2:
     case Intrinsic::Saturate: return true;
-    case Intrinsic::Dot: return isSamePlace(*n.args[0], *n.args[1]);
+    case Intrinsic::Dot: return isSameLValue(*n.args[0], *n.args[1]);
     case Intrinsic::Max:
     case Intrinsic::Fmax: return isNonNegative(*n.args[0]) || isNonNegative(*n.args[1]);
     case Intrinsic::Min:
@@ -68,7 +68,7 @@ bool isNonNegative(const Expr& expr) {
   if (const auto* n = std::get_if<Select>(&expr.node)) return isNonNegative(*n->yes) && isNonNegative(*n->no);
   if (const auto* n = std::get_if<IntrinsicCall>(&expr.node)) return isNonNegative(*n);
   if (const auto* n = std::get_if<Binary>(&expr.node)) {
-    if (n->op == BinaryOp::Mul && isSamePlace(*n->lhs, *n->rhs)) return true;
+    if (n->op == BinaryOp::Mul && isSameLValue(*n->lhs, *n->rhs)) return true;
     const bool keeps = n->op == BinaryOp::Add || n->op == BinaryOp::Mul || n->op == BinaryOp::Div;
     return keeps && isNonNegative(*n->lhs) && isNonNegative(*n->rhs);
   }
@@ -85,12 +85,12 @@ bool foldsNonNegatives(const Module& module, const Kernel& kernel, const FoldPar
     const Expr* value = std::get<Assign>(stmt.node).value.get();
     if (const auto* n = std::get_if<Convert>(&value->node)) value = n->operand.get();
     const auto* max = std::get_if<IntrinsicCall>(&value->node);
-    const std::optional<StaticPlace> place = staticPlace(*std::get<Assign>(stmt.node).place);
+    const std::optional<StaticLValue> lvalue = staticLValue(*std::get<Assign>(stmt.node).place);
     if (max == nullptr) return void(holds = false);
     for (const ExprPtr& arg : max->args) {
       const Expr* folded = arg.get();
       if (const auto* n = std::get_if<Convert>(&folded->node)) folded = n->operand.get();
-      holds = holds && (staticPlace(*folded) == place || isNonNegative(*folded));
+      holds = holds && (staticLValue(*folded) == lvalue || isNonNegative(*folded));
     }
   });
   return holds;
@@ -106,7 +106,7 @@ std::string spellingOf(FoldOp op) {
 std::string number(double value, Scalar scalar) {
   if (scalar == Scalar::Bool) return value != 0 ? "true" : "false";
   if (std::isinf(value)) return value < 0 ? "-infinity" : "infinity";
-  return isReal(carrierOf(scalar)) ? fmt::format("{:.7g}", value) : fmt::format("{:.0f}", value);
+  return isReal(arithmeticScalar(scalar)) ? fmt::format("{:.7g}", value) : fmt::format("{:.0f}", value);
 }
 
 /// The position of an accumulator's component among its numbers.
@@ -127,7 +127,7 @@ bool isAsGoodAs(FoldOp op, double given, double neutral) {
   return std::fabs(given) >= std::min(std::fabs(neutral), std::isinf(neutral) ? 1e9 : 536870912.0);
 }
 
-struct Given {
+struct IdentityCheck {
   const Module& module;
   const Kernel& kernel;
   Diagnostics& diagnostics;
@@ -167,7 +167,7 @@ bool checkIdentities(const Module& module, const Kernel& kernel, const FoldPatte
   for (const FoldPart& part : pattern.parts) {
     const ExprPtr& identity = kernel.params[part.accumulator].identity;
     const std::optional<Numbers> given = identity ? tryConstant(module, *identity) : std::nullopt;
-    if (given && !Given{module, kernel, diagnostics}.check(part, *given)) isRight = false;
+    if (given && !IdentityCheck{module, kernel, diagnostics}.check(part, *given)) isRight = false;
   }
   return isRight;
 }

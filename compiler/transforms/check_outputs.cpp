@@ -44,10 +44,10 @@ Path either(const Path& a, const Path& b) {
 }
 
 /// Definite assignment in one function. `isSpec` marks spec parameters; `summaries` has what callees write.
-class Follower {
+class DefiniteAssignment {
  public:
-  Follower(const ir::Module& module, const ir::Function& function, std::vector<bool> isSpec,
-           const std::vector<Written>& summaries)
+  DefiniteAssignment(const ir::Module& module, const ir::Function& function, std::vector<bool> isSpec,
+                     const std::vector<Written>& summaries)
       : module_(module), function_(function), isSpec_(std::move(isSpec)), summaries_(summaries) {}
 
   Written run() {
@@ -57,7 +57,7 @@ class Follower {
         start[var].assign(width(function_.variables[var].type), false);
       }
     }
-    const Path end = both(follow(function_.body, start), returned_);
+    const Path end = both(assigned(function_.body, start), returned_);
     if (end) return *end;
     neverReturns_ = true;
     for (auto& [var, components] : start) components.assign(components.size(), true);
@@ -116,7 +116,7 @@ class Follower {
 
   static Path join(bool isSpec, const Path& a, const Path& b) { return isSpec ? either(a, b) : both(a, b); }
 
-  Path follow(const ir::Block& block, Path path) {
+  Path assigned(const ir::Block& block, Path path) {
     for (const ir::Stmt& stmt : block) {
       if (!path) return path;
       path = match(stmt.node, [&](const auto& node) { return step(node, std::move(path)); });
@@ -141,12 +141,12 @@ class Follower {
     return path;
   }
   Path step(const ir::If& branch, Path path) {
-    const Path otherwise = follow(branch.otherwise, path);
-    const Path then = follow(branch.then, std::move(path));
+    const Path otherwise = assigned(branch.otherwise, path);
+    const Path then = assigned(branch.then, std::move(path));
     // an output that spec parameters disable need not be written when disabled
     return join(isSpecOnly(*branch.cond, isSpec_), then, otherwise);
   }
-  Path step(const ir::Scope& scope, Path path) { return follow(scope.body, std::move(path)); }
+  Path step(const ir::Scope& scope, Path path) { return assigned(scope.body, std::move(path)); }
   Path step(const ir::Return&, Path path) {
     returned_ = both(returned_, path);
     return std::nullopt;
@@ -161,10 +161,10 @@ class Follower {
   }
 
   Path step(const ir::Loop& loop, Path path) {
-    path = follow(loop.init, std::move(path));
+    path = assigned(loop.init, std::move(path));
     Exits exits;
     Exits* outer = std::exchange(exits_, &exits);
-    const Path once = both(follow(loop.body, path), exits.continued);
+    const Path once = both(assigned(loop.body, path), exits.continued);
     exits_ = outer;
     if (isAlways(loop.cond)) return exits.broken;  // only `break` leaves it
     const bool entered = loop.kind == ir::LoopKind::DoWhile || entersAtOnce(loop);
@@ -180,7 +180,7 @@ class Follower {
     bool hasDefault = false;
     for (const ir::Case& one : choice.cases) {
       hasDefault = hasDefault || one.isDefault;
-      falling = follow(one.body, both(path, falling));
+      falling = assigned(one.body, both(path, falling));
     }
     exits_ = outer;
     if (exits_) exits_->continued = exits.continued;
@@ -251,9 +251,9 @@ void checkOutputs(const ir::Module& module, Diagnostics& diagnostics) {
   std::vector<Written> summaries;
   std::vector<std::vector<bool>> spec = specVariables(module);
   for (const ir::Function& function : module.functions) {
-    Follower follower(module, function, std::move(spec[summaries.size()]), summaries);
-    summaries.push_back(follower.run());
-    if (follower.neverReturns()) diagnostics.report(Diag::NeverReturns, function.loc, {function.name});
+    DefiniteAssignment analysis(module, function, std::move(spec[summaries.size()]), summaries);
+    summaries.push_back(analysis.run());
+    if (analysis.neverReturns()) diagnostics.report(Diag::NeverReturns, function.loc, {function.name});
   }
   const std::vector<UnwrittenReads> reads = unwrittenReads(module);
   for (const ir::Kernel& kernel : module.kernels) {

@@ -32,7 +32,7 @@ Stmt combinePart(const Module& module, const Function& function, const FoldPart&
     return value->type.isMatrix() ? std::move(value) : convert(scalar, std::move(value), part.loc);
   };
   const auto read = [&](VarId var) {   // operators take arithmetic types only
-    return as(carrierOf(part.type.scalar), access(module, function, var, part));
+    return as(arithmeticScalar(part.type.scalar), access(module, function, var, part));
   };
   ExprPtr place = access(module, function, total, part);
   if (const auto* n = std::get_if<Intrinsic>(&part.op)) {

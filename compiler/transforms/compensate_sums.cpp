@@ -13,8 +13,8 @@
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/made_kernel.hpp"
 #include "transforms/sum_terms.hpp"
+#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 namespace {
@@ -36,7 +36,7 @@ ExprPtr inVariable(const Function& function, const Expr& place, VarId var) {
 }
 
 /// place_lost += sumError(place, value) + productError(value, factor); place = roundedSum(place, value * factor)
-void addTerm(Block& body, Function& function, const Expr& place, VarId lost, Term term) {
+void addTerm(Block& body, Function& function, const Expr& place, VarId errorTotal, Term term) {
   const Type type = place.type;
   ExprPtr value = ofType(type, std::move(term.value));
   ExprPtr error;
@@ -53,39 +53,40 @@ void addTerm(Block& body, Function& function, const Expr& place, VarId lost, Ter
   }
   ExprPtr sumError = intrinsic(Intrinsic::SumError, exprs(clone(place), clone(value)));
   if (error) sumError = binary(BinaryOp::Add, std::move(sumError), std::move(error));
-  body.push_back(assign(inVariable(function, place, lost), BinaryOp::Add, std::move(sumError)));
+  body.push_back(assign(inVariable(function, place, errorTotal), BinaryOp::Add, std::move(sumError)));
   body.push_back(
       assign(clone(place), intrinsic(Intrinsic::RoundedSum, exprs(clone(place), std::move(value)))));
 }
 
 /// The accumulators that hold the rounding errors of a reduce's sums, one per sum; a combining reduce also
 /// has inputs with the errors of its parts.
-struct Losses {
+struct RoundingErrors {
   std::vector<FloatSum> sums;
-  std::vector<VarId> lost, lostOfPart;
+  std::vector<VarId> totals, parts;
 };
 
 /// Adds statements that sum the rounding errors of additions.
-void addLosses(const Kernel& kernel, Function& entry, Block& block, const Losses& losses) {
-  Block made;
+void addRoundingErrors(const Kernel& kernel, Function& entry, Block& block, const RoundingErrors& errors) {
+  Block rewritten;
   for (Stmt& stmt : block) {
-    forEachBlock(stmt, [&](Block& inner) { addLosses(kernel, entry, inner, losses); });
+    forEachBlock(stmt, [&](Block& inner) { addRoundingErrors(kernel, entry, inner, errors); });
     const std::optional<FoldPart> part = foldedBy(kernel, stmt);
     const auto sum =
-        std::ranges::find_if(losses.sums, [&](const FloatSum& one) { return part && one.holds(*part); });
-    if (sum == losses.sums.end()) {
-      made.push_back(std::move(stmt));
+        std::ranges::find_if(errors.sums, [&](const FloatSum& one) { return part && one.holds(*part); });
+    if (sum == errors.sums.end()) {
+      rewritten.push_back(std::move(stmt));
       continue;
     }
     const auto& fold = std::get<Assign>(stmt.node);
-    const auto k = static_cast<std::size_t>(sum - losses.sums.begin());
-    if (!losses.lostOfPart.empty()) {
-      made.push_back(assign(inVariable(entry, *fold.place, losses.lost[k]), BinaryOp::Add,
-                            inVariable(entry, *fold.place, losses.lostOfPart[k])));
+    const auto k = static_cast<std::size_t>(sum - errors.sums.begin());
+    if (!errors.parts.empty()) {
+      rewritten.push_back(assign(inVariable(entry, *fold.place, errors.totals[k]), BinaryOp::Add,
+                                 inVariable(entry, *fold.place, errors.parts[k])));
     }
-    for (Term& term : termsOf(fold)) addTerm(made, entry, *fold.place, losses.lost[k], std::move(term));
+    for (Term& term : termsOf(fold))
+      addTerm(rewritten, entry, *fold.place, errors.totals[k], std::move(term));
   }
-  block = std::move(made);
+  block = std::move(rewritten);
 }
 
 /// Replaces a sum's components of a synthesized identity, which constructs structs member by member, by -0.
@@ -101,26 +102,26 @@ void startFromNegativeZero(ExprPtr& identity, const FloatSum& sum) {
   }
 }
 
-class Maker {
+class CompensatedVariantBuilder {
  public:
-  Maker(Module& module, KernelId id, std::vector<FloatSum> sums)
+  CompensatedVariantBuilder(Module& module, KernelId id, std::vector<FloatSum> sums)
       : module_(module), id_(id), sums_(std::move(sums)) {}
 
   void make() {
     const KernelId fold = makeFold(makeCombination());
     const KernelId finish = makeFinish();
-    Compensated made{fold, finish, {}, {}};
-    if (kernel().reduction->commutative) made.term = onlyTerm(module_, kernel());
-    for (const FloatSum& sum : sums_) made.sums.push_back({sum.accumulator, sum.members});
+    Compensated compensated{fold, finish, {}, {}};
+    if (kernel().reduction->commutative) compensated.term = onlyTerm(module_, kernel());
+    for (const FloatSum& sum : sums_) compensated.sums.push_back({sum.accumulator, sum.members});
     module_.kernels[fold].reduction->commutative = module_.kernels[id_].reduction->commutative;
-    module_.kernels[id_].reduction->compensated = std::move(made);
+    module_.kernels[id_].reduction->compensated = std::move(compensated);
   }
 
  private:
   const Kernel& kernel() const { return module_.kernels[id_]; }
 
   /// "m_sum_lost" of m.sum.
-  std::string lostName(const FloatSum& sum) const {
+  std::string errorName(const FloatSum& sum) const {
     const KernelParam& param = kernel().params[sum.accumulator];
     std::string name = param.name;
     Type type = param.type;
@@ -134,13 +135,13 @@ class Maker {
 
   KernelId makeFold(KernelId combine) {
     FoldCopy copy(module_, id_, "_compensated");
-    Losses losses{sums_, {}, {}};
+    RoundingErrors errors{sums_, {}, {}};
     for (const FloatSum& sum : sums_) {
       // if the plain variant starts with its first element, this one starts with -0 + element
       if (kernel().reduction->seeded) startFromNegativeZero(copy.param(sum.accumulator).identity, sum);
-      losses.lost.push_back(copy.addAccumulator(lostName(sum), sum.type, everywhere(sum.type, 0.0F)));
+      errors.totals.push_back(copy.addAccumulator(errorName(sum), sum.type, everywhere(sum.type, 0.0F)));
     }
-    addLosses(kernel(), copy.entry(), copy.entry().body, losses);
+    addRoundingErrors(kernel(), copy.entry(), copy.entry().body, errors);
     return copy.finish(combine);
   }
 
@@ -148,19 +149,19 @@ class Maker {
   KernelId makeCombination() {
     const KernelId plain = *kernel().reduction->combine;
     FoldCopy copy(module_, plain, plain == id_ ? "_combine" : "_compensated");
-    Losses losses;
+    RoundingErrors errors;
     for (const FloatSum& sum : sums_) {
-      losses.sums.push_back(sum);
-      losses.sums.back().accumulator = sameAccumulator(kernel(), sum.accumulator, module_.kernels[plain]);
-      losses.lostOfPart.push_back(copy.addInput(lostName(sum) + "_part", sum.type));
-      losses.lost.push_back(copy.addAccumulator(lostName(sum), sum.type));
+      errors.sums.push_back(sum);
+      errors.sums.back().accumulator = sameAccumulator(kernel(), sum.accumulator, module_.kernels[plain]);
+      errors.parts.push_back(copy.addInput(errorName(sum) + "_part", sum.type));
+      errors.totals.push_back(copy.addAccumulator(errorName(sum), sum.type));
     }
-    addLosses(module_.kernels[plain], copy.entry(), copy.entry().body, losses);
+    addRoundingErrors(module_.kernels[plain], copy.entry(), copy.entry().body, errors);
     return copy.finishCombination();
   }
 
   KernelId makeFinish() {
-    MadeKernel made(kernel(), "_finish");
+    SynthesizedKernel synthesized(kernel(), "_finish");
     std::vector<VarId> accumulators;  // of the plain variant, each once
     for (const FloatSum& sum : sums_) {
       if (accumulators.empty() || accumulators.back() != sum.accumulator) {
@@ -169,26 +170,28 @@ class Maker {
     }
     const auto add = [&](VarId accumulator, std::string_view prefix, ParamRole role) {
       const KernelParam& param = kernel().params[accumulator];
-      return made.add(makeParam(std::string(prefix) + param.name, role, param.type, param.loc));
+      return synthesized.add(makeParam(std::string(prefix) + param.name, role, param.type, param.loc));
     };
-    std::vector<VarId> inputs, lost, results;
+    std::vector<VarId> inputs, errors, results;
     for (const VarId i : accumulators) inputs.push_back(add(i, "", ParamRole::Input));
     for (const FloatSum& sum : sums_) {
-      lost.push_back(made.add(makeParam(lostName(sum), ParamRole::Input, sum.type, kernel().loc)));
+      errors.push_back(synthesized.add(makeParam(errorName(sum), ParamRole::Input, sum.type, kernel().loc)));
     }
     for (const VarId i : accumulators) results.push_back(add(i, "r_", ParamRole::Output));
-    Block& body = made.entry.body;
+    Block& body = synthesized.entry.body;
     for (std::size_t i = 0; i < accumulators.size(); ++i) {
-      const bool hasMembers = made.kernel.params[inputs[i]].type.kind == Type::Kind::Struct;
-      if (hasMembers) body.push_back(assign(varRef(made.entry, results[i]), varRef(made.entry, inputs[i])));
+      const bool hasMembers = synthesized.kernel.params[inputs[i]].type.kind == Type::Kind::Struct;
+      if (hasMembers)
+        body.push_back(assign(varRef(synthesized.entry, results[i]), varRef(synthesized.entry, inputs[i])));
     }
     for (std::size_t k = 0; k < sums_.size(); ++k) {
       const auto i = static_cast<std::size_t>(std::ranges::find(accumulators, sums_[k].accumulator) -
                                               accumulators.begin());
-      body.push_back(assign(partOf(varRef(made.entry, results[i]), sums_[k]),
-                            finished(partOf(varRef(made.entry, inputs[i]), sums_[k]), made.entry, lost[k])));
+      body.push_back(assign(
+          partOf(varRef(synthesized.entry, results[i]), sums_[k]),
+          finished(partOf(varRef(synthesized.entry, inputs[i]), sums_[k]), synthesized.entry, errors[k])));
     }
-    return made.finish(module_);
+    return synthesized.finish(module_);
   }
 
   ExprPtr partOf(ExprPtr accumulator, const FloatSum& sum) const {
@@ -198,12 +201,12 @@ class Maker {
   }
 
   /// Adds a sum's error. Keeps the sum if it is not finite, as its error is NaN; keeps -0 if the error is 0.
-  static ExprPtr finished(ExprPtr total, const Function& entry, VarId lostVariable) {
-    const auto lost = [&] { return varRef(entry, lostVariable); };
-    ExprPtr isNothing = binary(BinaryOp::Equal, lost(), everywhere(total->type, 0.0F));
-    ExprPtr sum = binary(BinaryOp::Add, clone(total), lost());
-    sum = select(std::move(isNothing), clone(total), std::move(sum));
-    return select(intrinsic(Intrinsic::Isfinite, exprs(lost())), std::move(sum), std::move(total));
+  static ExprPtr finished(ExprPtr total, const Function& entry, VarId errorVariable) {
+    const auto error = [&] { return varRef(entry, errorVariable); };
+    ExprPtr isExact = binary(BinaryOp::Equal, error(), everywhere(total->type, 0.0F));
+    ExprPtr sum = binary(BinaryOp::Add, clone(total), error());
+    sum = select(std::move(isExact), clone(total), std::move(sum));
+    return select(intrinsic(Intrinsic::Isfinite, exprs(error())), std::move(sum), std::move(total));
   }
 
   Module& module_;
@@ -224,9 +227,9 @@ void compensateSums(Module& module, Diagnostics&) {
   const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     const Kernel& kernel = module.kernels[id];
-    if (!kernel.reduction || kernel.isMade || !hasIdentities(kernel)) continue;
+    if (!kernel.reduction || kernel.isSynthesized || !hasIdentities(kernel)) continue;
     std::vector<FloatSum> sums = floatSums(module, id);
-    if (!sums.empty()) Maker(module, id, std::move(sums)).make();
+    if (!sums.empty()) CompensatedVariantBuilder(module, id, std::move(sums)).make();
   }
 }
 

@@ -9,7 +9,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
 #include "transforms/derive_combine.hpp"
@@ -23,16 +23,16 @@ using namespace ir;
 /// reduce void r(T x<>, float weights[], reduce T total<>) { total op= x * T(weights[0]); }
 Module reduceModule(Type type, BinaryOp op, bool withGather = false) {
   Module module = testModule();
-  KernelMaker maker(module, "r");
-  const VarId x = maker.input("x", type);
-  const VarId weights = withGather ? maker.gather("weights", floatType, 1) : 0;
-  const VarId total = maker.accumulator("total", type);
-  ExprPtr value = maker.ref(x);
+  KernelBuilder builder(module, "r");
+  const VarId x = builder.input("x", type);
+  const VarId weights = withGather ? builder.gather("weights", floatType, 1) : 0;
+  const VarId total = builder.accumulator("total", type);
+  ExprPtr value = builder.ref(x);
   if (withGather) {
     value = binary(BinaryOp::Mul, std::move(value),
-                   gatherRead(floatType, KernelMaker::stream(weights), literal(0)));
+                   gatherRead(floatType, KernelBuilder::stream(weights), literal(0)));
   }
-  maker.finish(block(assign(maker.ref(total), op, std::move(value))));
+  builder.finish(block(assign(builder.ref(total), op, std::move(value))));
   return module;
 }
 
@@ -76,10 +76,11 @@ TEST_CASE("functions that the fold calls are copied for the second form") {
   const VarId v = addVariable(twice, "v", floatType, VarRole::In);
   Block body = block(returnStmt(binary(BinaryOp::Mul, varRef(twice, v), literal(2.0F))));
   const FunctionId helper = addFunction(module, std::move(twice), std::move(body));
-  KernelMaker maker(module, "r");
-  const VarId x = maker.input("x", floatType);
-  const VarId total = maker.accumulator("total", floatType);
-  maker.finish(block(assign(maker.ref(total), BinaryOp::Add, call(module, helper, exprs(maker.ref(x))))));
+  KernelBuilder builder(module, "r");
+  const VarId x = builder.input("x", floatType);
+  const VarId total = builder.accumulator("total", floatType);
+  builder.finish(
+      block(assign(builder.ref(total), BinaryOp::Add, call(module, helper, exprs(builder.ref(x))))));
   transform(module);   // validates that each function belongs to one kernel
   CHECK(second(module) != nullptr);
 }
@@ -93,11 +94,11 @@ TEST_CASE("vectors of floats are summed so, too") {
 TEST_CASE("an element that adds one input, or the product of two, tells these") {
   const auto termOf = [](auto&& value) {
     Module module = testModule();
-    KernelMaker maker(module, "r");
-    const VarId x = maker.input("x", floatType);
-    const VarId y = maker.input("y", floatType);
-    const VarId total = maker.accumulator("total", floatType);
-    maker.finish(block(assign(maker.ref(total), BinaryOp::Add, value(maker.ref(x), maker.ref(y)))));
+    KernelBuilder builder(module, "r");
+    const VarId x = builder.input("x", floatType);
+    const VarId y = builder.input("y", floatType);
+    const VarId total = builder.accumulator("total", floatType);
+    builder.finish(block(assign(builder.ref(total), BinaryOp::Add, value(builder.ref(x), builder.ref(y)))));
     transform(module);
     REQUIRE(second(module) != nullptr);
     return second(module)->term;
@@ -121,23 +122,25 @@ Type addStats(Module& module) {
   module.structs.push_back({"Stats", {}, {{"sum", floatType}, {"v", vector}, {"count", intType}}, {}});
   return Type::structType(static_cast<std::uint32_t>(module.structs.size() - 1));
 }
-ExprPtr field(const Module& module, const KernelMaker& maker, VarId var, std::uint32_t number) {
-  return member(module, maker.ref(var), number);
+ExprPtr field(const Module& module, const KernelBuilder& builder, VarId var, std::uint32_t number) {
+  return member(module, builder.ref(var), number);
 }
 
 TEST_CASE("members that are only added to are summed so, others are folded as ever") {
   Module module = testModule();
   const Type stats = addStats(module);
-  KernelMaker maker(module, "r");
-  const VarId x = maker.input("x", floatType);
-  const VarId total = maker.accumulator("total", stats);
-  const auto component = [&](std::string_view name) { return swizzle(field(module, maker, total, 1), name); };
+  KernelBuilder builder(module, "r");
+  const VarId x = builder.input("x", floatType);
+  const VarId total = builder.accumulator("total", stats);
+  const auto component = [&](std::string_view name) {
+    return swizzle(field(module, builder, total, 1), name);
+  };
   Block body;
-  body.push_back(assign(field(module, maker, total, 0), BinaryOp::Add, maker.ref(x)));
-  body.push_back(assign(component("xz"), BinaryOp::Add, maker.ref(x)));
-  body.push_back(assign(component("y"), intrinsic(Intrinsic::Max, exprs(component("y"), maker.ref(x)))));
-  body.push_back(assign(field(module, maker, total, 2), BinaryOp::Add, literal(1)));
-  maker.finish(std::move(body));
+  body.push_back(assign(field(module, builder, total, 0), BinaryOp::Add, builder.ref(x)));
+  body.push_back(assign(component("xz"), BinaryOp::Add, builder.ref(x)));
+  body.push_back(assign(component("y"), intrinsic(Intrinsic::Max, exprs(component("y"), builder.ref(x)))));
+  body.push_back(assign(field(module, builder, total, 2), BinaryOp::Add, literal(1)));
+  builder.finish(std::move(body));
   transform(module);
   const Compensated* made = second(module);
   REQUIRE(made != nullptr);
@@ -157,11 +160,11 @@ Module combinedBy(Combine&& combine) {
     return construct(
         stats, exprs(literal(0.0F), construct(Type::of(Scalar::Float, 3), exprs(literal(0.0F))), literal(0)));
   };
-  KernelMaker maker(module, "r");
-  const VarId x = maker.input("x", floatType);
-  const VarId total = maker.accumulator("total", stats, identity());
-  maker.finish(block(assign(field(module, maker, total, 0), BinaryOp::Add, maker.ref(x))));
-  KernelMaker other(module, "r");
+  KernelBuilder builder(module, "r");
+  const VarId x = builder.input("x", floatType);
+  const VarId total = builder.accumulator("total", stats, identity());
+  builder.finish(block(assign(field(module, builder, total, 0), BinaryOp::Add, builder.ref(x))));
+  KernelBuilder other(module, "r");
   const VarId part = other.input("part", stats);
   const VarId whole = other.accumulator("total", stats, identity());
   Block body;
@@ -187,17 +190,18 @@ TEST_CASE("the author's combination counts where it adds the part and no more") 
 TEST_CASE("what is read besides, or added to in the head of a loop, is no sum") {
   for (const bool isRead : {true, false}) {
     Module module = testModule();
-    KernelMaker maker(module, "r");
-    const VarId x = maker.input("x", floatType);
-    const VarId total = maker.accumulator("total", floatType, literal(0.0F));
-    const VarId i = maker.local("i", intType);
-    Block add = block(assign(maker.ref(total), BinaryOp::Add, maker.ref(x)));
+    KernelBuilder builder(module, "r");
+    const VarId x = builder.input("x", floatType);
+    const VarId total = builder.accumulator("total", floatType, literal(0.0F));
+    const VarId i = builder.local("i", intType);
+    Block add = block(assign(builder.ref(total), BinaryOp::Add, builder.ref(x)));
     if (isRead) {
-      maker.finish(block(ifStmt(binary(BinaryOp::Less, maker.ref(total), maker.ref(x)), std::move(add))));
+      builder.finish(
+          block(ifStmt(binary(BinaryOp::Less, builder.ref(total), builder.ref(x)), std::move(add))));
     } else {
-      maker.finish(
-          block(forLoop(block(declare(i, literal(0))), binary(BinaryOp::Less, maker.ref(i), literal(1)),
-                        std::move(add), block(assign(maker.ref(i), BinaryOp::Add, literal(1))))));
+      builder.finish(
+          block(forLoop(block(declare(i, literal(0))), binary(BinaryOp::Less, builder.ref(i), literal(1)),
+                        std::move(add), block(assign(builder.ref(i), BinaryOp::Add, literal(1))))));
     }
     transform(module);
     CHECK(second(module) == nullptr);

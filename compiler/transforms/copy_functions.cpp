@@ -12,14 +12,14 @@ using namespace ir;
 
 FunctionId copyFunction(Module& module, FunctionId id, FunctionCopies& copies) {
   if (const auto known = copies.find(id); known != copies.end()) return known->second;
-  Function made = clone(module.functions[id]);
-  walkStmts(made.body, [&](Stmt& stmt) {
+  Function copy = clone(module.functions[id]);
+  walkStmts(copy.body, [&](Stmt& stmt) {
     if (auto* n = std::get_if<CallStmt>(&stmt.node)) n->callee = copyFunction(module, n->callee, copies);
   });
-  walkExprs(made.body, [&](Expr& expr) {
+  walkExprs(copy.body, [&](Expr& expr) {
     if (auto* n = std::get_if<Call>(&expr.node)) n->callee = copyFunction(module, n->callee, copies);
   });
-  module.functions.push_back(std::move(made));
+  module.functions.push_back(std::move(copy));
   return copies[id] = static_cast<FunctionId>(module.functions.size() - 1);
 }
 

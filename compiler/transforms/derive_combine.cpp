@@ -12,7 +12,7 @@
 #include "transforms/combine_part.hpp"
 #include "transforms/fold_identity.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/made_kernel.hpp"
+#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 namespace {
@@ -71,8 +71,8 @@ ExprPtr identityOf(const Module& module, const FoldPattern& pattern, MemberPath 
 /// Builds the reduce that combines the results of a known pattern: `total op= total_part` for each part.
 KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern) {
   const Kernel& kernel = module.kernels[id];
-  MadeKernel made(kernel, "_combine");
-  made.kernel.name = made.entry.name;
+  SynthesizedKernel synthesized(kernel, "_combine");
+  synthesized.kernel.name = synthesized.entry.name;
   std::vector<VarId> accumulators;
   for (VarId i = 0; i < kernel.params.size(); ++i) {
     if (kernel.params[i].role == ParamRole::Accumulator) accumulators.push_back(i);
@@ -80,7 +80,7 @@ KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern
   for (const ParamRole role : {ParamRole::Input, ParamRole::Accumulator}) {
     for (const VarId i : accumulators) {
       const KernelParam& param = kernel.params[i];
-      made.add(
+      synthesized.add(
           makeParam(param.name + (role == ParamRole::Input ? "_part" : ""), role, param.type, param.loc));
     }
   }
@@ -88,9 +88,9 @@ KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern
     const auto found = std::find(accumulators.begin(), accumulators.end(), part.accumulator);
     const auto partial = static_cast<VarId>(found - accumulators.begin());
     const auto total = static_cast<VarId>(accumulators.size()) + partial;
-    made.entry.body.push_back(combinePart(module, made.entry, part, partial, total));
+    synthesized.entry.body.push_back(combinePart(module, synthesized.entry, part, partial, total));
   }
-  return made.finishCombination(module);
+  return synthesized.finishCombination(module);
 }
 
 // ---- the cases --------------------------------------------------------------------------------
@@ -141,9 +141,9 @@ class State {
       if (!pattern && !checkByTrial(module_, kernel, diagnostics_)) return;
       combineByItself(kernel, id, !isGiven);
     } else if (pattern) {
-      const KernelId made = makeCombination(module_, id, *pattern);
-      std::vector<std::uint32_t> operands(module_.kernels[made].params.size());
-      module_.kernels[id].reduction = Reduction{made, std::move(operands), false};
+      const KernelId combine = makeCombination(module_, id, *pattern);
+      std::vector<std::uint32_t> operands(module_.kernels[combine].params.size());
+      module_.kernels[id].reduction = Reduction{combine, std::move(operands), false};
     } else {
       return needCombine(kernel);
     }
@@ -190,10 +190,10 @@ class State {
   }
   bool checkOwnCombination(const Kernel& kernel, KernelId id) {
     const std::optional<Loc> place = usesIndex(module_, kernel);
-    const bool isTold = std::any_of(  // it is the overload that combines for another
+    const bool isReported = std::any_of(  // it is the overload that combines for another
         module_.kernels.begin(), module_.kernels.end(),
         [&](const Kernel& other) { return other.reduction && other.reduction->combine == id; });
-    if (place && !isTold) diagnostics_.report(Diag::ReduceIndexCombine, *place, {kernel.name});
+    if (place && !isReported) diagnostics_.report(Diag::ReduceIndexCombine, *place, {kernel.name});
     return !place;
   }
 

@@ -8,7 +8,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -28,13 +28,13 @@ struct Outcome {
   std::string error = {};
 };
 
-using Body = std::function<Block(Module&, KernelMaker&)>;
+using Body = std::function<Block(Module&, KernelBuilder&)>;
 
 Outcome derive(Type element, Type accumulator, ExprPtr identity, const Body& body,
                const std::function<void(Module&)>& prepare = {}) {
   Module module = testModule();
   module.structs.push_back({"Stats", {}, {{"sum", floatType}, {"low", floatType}, {"count", intType}}, {}});
-  KernelMaker k(module, "fold", 3);
+  KernelBuilder k(module, "fold", 3);
   k.input("x", element);
   k.accumulator("total", accumulator, std::move(identity));
   k.local("y", floatType);
@@ -57,29 +57,29 @@ Outcome derive(Type element, Type accumulator, ExprPtr identity, const Body& bod
 }
 
 Outcome derive(const Body& body) { return derive(floatType, floatType, nullptr, body); }
-Block fold(KernelMaker& k, BinaryOp op, ExprPtr value) {
+Block fold(KernelBuilder& k, BinaryOp op, ExprPtr value) {
   return block(assign(k.ref(total), op, std::move(value)));
 }
 
 TEST_CASE("x itself: the entry combines, and without an identity the fold starts with its first element") {
-  const Outcome sum = derive([](Module&, KernelMaker& k) { return fold(k, Add, k.ref(x)); });
+  const Outcome sum = derive([](Module&, KernelBuilder& k) { return fold(k, Add, k.ref(x)); });
   CHECK(sum.combine == "entry");
   CHECK(sum.seeded);
   CHECK(sum.identity == "0.0");
   const Outcome given = derive(floatType, floatType, literal(0.0F),
-                               [](Module&, KernelMaker& k) { return fold(k, Add, k.ref(x)); });
+                               [](Module&, KernelBuilder& k) { return fold(k, Add, k.ref(x)); });
   CHECK(given.combine == "entry");
   CHECK_FALSE(given.seeded);
 }
 
 TEST_CASE("the other ways to write it") {
-  const Body bodies[] = {[](Module&, KernelMaker& k) {
+  const Body bodies[] = {[](Module&, KernelBuilder& k) {
                            return block(assign(k.ref(total), binary(Mul, k.ref(total), k.ref(x))));
                          },
-                         [](Module&, KernelMaker& k) {
+                         [](Module&, KernelBuilder& k) {
                            return block(assign(k.ref(total), binary(Mul, k.ref(x), k.ref(total))));
                          },
-                         [](Module&, KernelMaker& k) { return fold(k, Mul, k.ref(x)); }};
+                         [](Module&, KernelBuilder& k) { return fold(k, Mul, k.ref(x)); }};
   for (const Body& body : bodies) {
     const Outcome outcome = derive(body);
     CHECK(outcome.combine == "entry");
@@ -89,7 +89,7 @@ TEST_CASE("the other ways to write it") {
 
 TEST_CASE("chains of sums and differences; more than x itself is not combined by the entry") {
   const auto chain = [](BinaryOp second, bool isNested) {
-    return [=](Module&, KernelMaker& k) {
+    return [=](Module&, KernelBuilder& k) {
       ExprPtr sum = binary(Add, k.ref(total), literal(1.0F));
       ExprPtr value =
           isNested ? binary(second, k.ref(x), std::move(sum)) : binary(second, std::move(sum), k.ref(x));
@@ -104,7 +104,7 @@ TEST_CASE("chains of sums and differences; more than x itself is not combined by
 
 TEST_CASE("min and max") {
   const auto body = [](Intrinsic intrinsicId) {
-    return [intrinsicId](Module&, KernelMaker& k) {
+    return [intrinsicId](Module&, KernelBuilder& k) {
       return block(assign(k.ref(total), intrinsic(intrinsicId, exprs(k.ref(total), k.ref(x)))));
     };
   };
@@ -120,14 +120,15 @@ TEST_CASE("min and max") {
 
 TEST_CASE("bits and truth") {
   const auto bits = [](BinaryOp op) {
-    return derive(intType, intType, nullptr, [op](Module&, KernelMaker& k) { return fold(k, op, k.ref(x)); });
+    return derive(intType, intType, nullptr,
+                  [op](Module&, KernelBuilder& k) { return fold(k, op, k.ref(x)); });
   };
   CHECK(bits(BitAnd).identity == "-1");
   CHECK(bits(BitOr).identity == "0");
   CHECK(bits(BitXor).identity == "0");
   const auto truth = [](BinaryOp op) {
     const Type boolType = Type::of(Scalar::Bool);
-    return derive(floatType, boolType, nullptr, [op](Module&, KernelMaker& k) {
+    return derive(floatType, boolType, nullptr, [op](Module&, KernelBuilder& k) {
       ExprPtr test = binary(Less, k.ref(x), literal(0.0F));
       return block(assign(k.ref(total), binary(op, k.ref(total), std::move(test))));
     });
@@ -139,14 +140,14 @@ TEST_CASE("bits and truth") {
 
 TEST_CASE("something made from x: a function combines, and runs start with the identity") {
   const Outcome outcome =
-      derive([](Module&, KernelMaker& k) { return fold(k, Add, binary(Mul, k.ref(x), k.ref(x))); });
+      derive([](Module&, KernelBuilder& k) { return fold(k, Add, binary(Mul, k.ref(x), k.ref(x))); });
   CHECK(outcome.combine == "{\n  total += total_part;\n}\n");
   CHECK(outcome.identity == "0.0");
   CHECK_FALSE(outcome.seeded);
 }
 
 TEST_CASE("through locals, branches and loops") {
-  const Outcome outcome = derive([](Module&, KernelMaker& k) {
+  const Outcome outcome = derive([](Module&, KernelBuilder& k) {
     const VarId y = 2;
     return block(declare(y, binary(Mul, k.ref(x), k.ref(x))),
                  ifStmt(binary(Less, k.ref(y), literal(1.0F)), block(assign(k.ref(total), Add, k.ref(y)))));
@@ -156,7 +157,7 @@ TEST_CASE("through locals, branches and loops") {
 
 TEST_CASE("another type of accumulator, member by member") {
   const Type stats = Type::structType(0);
-  const Body body = [](Module& m, KernelMaker& k) {
+  const Body body = [](Module& m, KernelBuilder& k) {
     const auto field = [&](std::uint32_t i) { return member(m, k.ref(total), i); };
     return block(assign(field(0), Add, k.ref(x)),
                  assign(field(1), intrinsic(Intrinsic::Min, exprs(field(1), k.ref(x)))),
@@ -172,7 +173,7 @@ TEST_CASE("another type of accumulator, member by member") {
 
 TEST_CASE("the same type, member by member: still x itself") {
   const Type stats = Type::structType(0);
-  const Body body = [](Module& m, KernelMaker& k) {
+  const Body body = [](Module& m, KernelBuilder& k) {
     const auto field = [&](VarId var, std::uint32_t i) { return member(m, k.ref(var), i); };
     return block(assign(field(total, 1), intrinsic(Intrinsic::Min, exprs(field(total, 1), field(x, 1)))),
                  assign(field(total, 0), Add, field(x, 0)));
@@ -181,7 +182,7 @@ TEST_CASE("the same type, member by member: still x itself") {
   CHECK(outcome.combine == "entry");
   CHECK(outcome.seeded);
   CHECK(outcome.identity.empty());   // the initial value of `count` is unknown
-  const Outcome crossed = derive(stats, stats, nullptr, [](Module& m, KernelMaker& k) {
+  const Outcome crossed = derive(stats, stats, nullptr, [](Module& m, KernelBuilder& k) {
     return block(assign(member(m, k.ref(total), 0), Add, member(m, k.ref(x), 1)));
   });
   CHECK(crossed.error.find("needs a value to start from") != std::string::npos);
@@ -190,27 +191,27 @@ TEST_CASE("the same type, member by member: still x itself") {
 TEST_CASE("vectors, whole and by component") {
   const Type float2 = Type::of(Scalar::Float, 2);
   const Outcome whole =
-      derive(floatType, float2, nullptr, [](Module&, KernelMaker& k) { return fold(k, Add, k.ref(x)); });
+      derive(floatType, float2, nullptr, [](Module&, KernelBuilder& k) { return fold(k, Add, k.ref(x)); });
   CHECK(whole.combine == "{\n  total += total_part;\n}\n");
   CHECK(whole.identity == "float2{0.0}");
-  const Outcome parts = derive(floatType, float2, nullptr, [](Module&, KernelMaker& k) {
+  const Outcome parts = derive(floatType, float2, nullptr, [](Module&, KernelBuilder& k) {
     return block(assign(swizzle(k.ref(total), "x"), Add, k.ref(x)),
                  assign(swizzle(k.ref(total), "y"), Mul, k.ref(x)));
   });
   CHECK(parts.combine == "{\n  total.x += total_part.x;\n  total.y *= total_part.y;\n}\n");
   CHECK(parts.identity == "float2{0.0, 1.0}");
-  const auto swapped = [](Module&, KernelMaker& k) {
+  const auto swapped = [](Module&, KernelBuilder& k) {
     return block(assign(k.ref(total), Add, swizzle(k.ref(x), "yx")));
   };
   CHECK(derive(float2, float2, nullptr, swapped).combine == "{\n  total += total_part;\n}\n");
-  const auto turned = [](Module&, KernelMaker& k) {
+  const auto turned = [](Module&, KernelBuilder& k) {
     return block(assign(k.ref(total), binary(Add, swizzle(k.ref(total), "yx"), k.ref(x))));
   };
   CHECK(derive(float2, float2, nullptr, turned).identity.empty());  // it does not assign what it adds to
 }
 
 TEST_CASE("a general body on one type combines by itself; without an identity it starts with an element") {
-  const Body last = [](Module&, KernelMaker& k) {
+  const Body last = [](Module&, KernelBuilder& k) {
     return block(ifStmt(binary(Less, k.ref(x), k.ref(total)), block(assign(k.ref(total), k.ref(x)))));
   };
   const Outcome outcome = derive(last);
@@ -222,7 +223,7 @@ TEST_CASE("a general body on one type combines by itself; without an identity it
 
 TEST_CASE("subtraction and division are errors that say what to do") {
   const auto error = [](BinaryOp op) {
-    return derive([op](Module&, KernelMaker& k) { return fold(k, op, k.ref(x)); }).error;
+    return derive([op](Module&, KernelBuilder& k) { return fold(k, op, k.ref(x)); }).error;
   };
   CHECK(error(Sub) ==
         "'-' is not associative, so it cannot fold into 'total'; write 'total += ...' and subtract once, "
@@ -230,14 +231,14 @@ TEST_CASE("subtraction and division are errors that say what to do") {
   CHECK(error(Div) ==
         "'/' is not associative, so it cannot fold into 'total'; write 'total *= ...' and divide once, by "
         "the result");
-  const Outcome written = derive([](Module&, KernelMaker& k) {
+  const Outcome written = derive([](Module&, KernelBuilder& k) {
     return block(assign(k.ref(total), binary(Sub, k.ref(total), k.ref(x))));
   });
   CHECK(written.error.find("'-' is not associative") == 0);
 }
 
 TEST_CASE("a general body on two types needs an overload or an identity") {
-  const Body general = [](Module&, KernelMaker& k) {
+  const Body general = [](Module&, KernelBuilder& k) {
     return block(ifStmt(binary(Less, convert(Scalar::Float, k.ref(x)), k.ref(total)),
                         block(assign(k.ref(total), convert(Scalar::Float, k.ref(x))))));
   };
@@ -250,7 +251,7 @@ TEST_CASE("a general body on two types needs an overload or an identity") {
 
 /// reduce void fold(float a<>, reduce float b<>) { b += a; }, as the author's overload.
 void addOverload(Module& module) {
-  KernelMaker k(module, "fold", 9);
+  KernelBuilder k(module, "fold", 9);
   const VarId a = k.input("a", floatType);
   const VarId b = k.accumulator("b", floatType);
   k.finish(block(assign(k.ref(b), Add, k.ref(a))));
@@ -258,7 +259,7 @@ void addOverload(Module& module) {
 }
 
 TEST_CASE("the author's overload stays, and an identity must be there or follow") {
-  const Body general = [](Module&, KernelMaker& k) {
+  const Body general = [](Module&, KernelBuilder& k) {
     return block(assign(k.ref(total), binary(Sub, k.ref(total), convert(Scalar::Float, k.ref(x)))),
                  assign(k.ref(total), k.ref(total)));
   };
@@ -282,7 +283,7 @@ Module derived(const std::function<void(Module&)>& make) {
 
 TEST_CASE("several accumulators combine each with its own part, and uniforms need not come along") {
   const Module module = derived([](Module& m) {
-    KernelMaker k(m, "stats");
+    KernelBuilder k(m, "stats");
     const VarId p = k.uniform("p", floatType);
     const VarId element = k.input("x", floatType);
     const VarId s = k.accumulator("s", floatType);
@@ -294,7 +295,7 @@ TEST_CASE("several accumulators combine each with its own part, and uniforms nee
   REQUIRE(*kernel.reduction->combine == 1);
   CHECK(print(module, Function{}, *kernel.params[2].identity) == "0.0");
   CHECK(print(module, Function{}, *kernel.params[3].identity) == "-inf");
-  CHECK(module.kernels[1].isMade);
+  CHECK(module.kernels[1].isSynthesized);
   CHECK(print(module, module.functions[1]) ==
         "  s_part: element float\n  high_part: element float\n  s: inout float\n  high: inout float\n"
         "{\n  s += s_part;\n  high = max(high, high_part);\n}\n");
@@ -303,7 +304,7 @@ TEST_CASE("several accumulators combine each with its own part, and uniforms nee
 TEST_CASE("elements of the accumulators' types, one by one, are folded like them") {
   const auto crossed = [](bool isCrossed) {
     return derived([&](Module& m) {
-      KernelMaker k(m, "both");
+      KernelBuilder k(m, "both");
       const VarId a = k.input("a", floatType);
       const VarId b = k.input("b", floatType);
       const VarId s = k.accumulator("s", floatType);
@@ -317,16 +318,16 @@ TEST_CASE("elements of the accumulators' types, one by one, are folded like them
   CHECK(crossed(true).kernels.size() == 2);
 }
 
-TEST_CASE("narrow accumulators are computed in their carriers") {
+TEST_CASE("narrow accumulators are computed in their arithmetic types") {
   const Type half = Type::of(Scalar::Half);
-  const Outcome outcome = derive(floatType, half, nullptr, [](Module&, KernelMaker& k) {
+  const Outcome outcome = derive(floatType, half, nullptr, [](Module&, KernelBuilder& k) {
     ExprPtr sum = binary(Add, convert(Scalar::Float, k.ref(total)), k.ref(x));
     return block(assign(k.ref(total), convert(Scalar::Half, std::move(sum))));
   });
   CHECK(outcome.combine == "{\n  total = half(float(total) + float(total_part));\n}\n");
   CHECK(outcome.identity == "half(0.0)");
   const Type uchar = Type::of(Scalar::Uchar);
-  const Outcome least = derive(intType, uchar, nullptr, [](Module&, KernelMaker& k) {
+  const Outcome least = derive(intType, uchar, nullptr, [](Module&, KernelBuilder& k) {
     ExprPtr low = intrinsic(Intrinsic::Min, exprs(convert(Scalar::Int, k.ref(total)), k.ref(x)));
     return block(assign(k.ref(total), convert(Scalar::Uchar, std::move(low))));
   });
@@ -336,7 +337,7 @@ TEST_CASE("narrow accumulators are computed in their carriers") {
 TEST_CASE("sums of matrices are known, products are not") {
   const Type matrix = Type::matrix(2);
   const auto with = [&](BinaryOp op) {
-    return derive(floatType, matrix, nullptr, [op](Module&, KernelMaker& k) {
+    return derive(floatType, matrix, nullptr, [op](Module&, KernelBuilder& k) {
       ExprPtr rows =
           construct(Type::matrix(2), exprs(construct(Type::of(Scalar::Float, 2), exprs(k.ref(x))),
                                            construct(Type::of(Scalar::Float, 2), exprs(k.ref(x)))));
@@ -349,12 +350,12 @@ TEST_CASE("sums of matrices are known, products are not") {
 }
 
 TEST_CASE("an index belongs to an element, not to a partial result") {
-  const Body asks = [](Module&, KernelMaker& k) {
+  const Body asks = [](Module&, KernelBuilder& k) {
     ExprPtr at = convert(Scalar::Float, swizzle(indexOf({StreamRef::Space::KernelParameter, x}), "x"));
     return block(ifStmt(binary(Less, k.ref(x), k.ref(total)), block(assign(k.ref(total), std::move(at)))));
   };
   CHECK(derive(asks).error.find("'fold' asks for the index of an element") == 0);
-  const Outcome last = derive(floatType, intType, nullptr, [](Module&, KernelMaker& k) {
+  const Outcome last = derive(floatType, intType, nullptr, [](Module&, KernelBuilder& k) {
     ExprPtr at = swizzle(indexOf({StreamRef::Space::KernelParameter, x}), "x");
     return block(assign(k.ref(total), intrinsic(Intrinsic::Max, exprs(k.ref(total), std::move(at)))));
   });

@@ -77,16 +77,16 @@ class TermKernel {
 
  private:
   void rewrite(Block& block) {
-    Block made;
+    Block rewritten;
     for (Stmt& stmt : block) {
       forEachBlock(stmt, [&](Block& inner) { rewrite(inner); });
       if (!foldedBy(reduce_, stmt)) {
-        made.push_back(std::move(stmt));
+        rewritten.push_back(std::move(stmt));
         continue;
       }
-      for (Term& term : termsOf(reduce_, stmt, sum_)) write(std::move(term), stmt.loc, made);
+      for (Term& term : termsOf(reduce_, stmt, sum_)) write(std::move(term), stmt.loc, rewritten);
     }
-    block = std::move(made);
+    block = std::move(rewritten);
   }
 
   void write(Term term, Loc loc, Block& block) {

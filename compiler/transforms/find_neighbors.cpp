@@ -22,7 +22,7 @@ using namespace ir;
 constexpr std::int64_t farthest = 1 << 20;
 
 /// An integer that is a constant, or component `dimension` of the domain's index plus a constant.
-struct Place {
+struct AffineIndex {
   std::optional<std::uint8_t> dimension;
   std::int64_t offset = 0;
 };
@@ -52,42 +52,42 @@ class Finder {
   ExprPtr offsetOf(const Expr& index) const {
     std::vector<ExprPtr> offsets;
     for (std::uint8_t d = 0; d < index.type.width; ++d) {
-      const std::optional<Place> place = placeOf(*componentOf(index, d));
-      if (!place || place->dimension != d || std::abs(place->offset) > farthest) return nullptr;
-      offsets.push_back(literal(static_cast<std::int32_t>(place->offset), index.loc));
+      const std::optional<AffineIndex> affine = affineIndex(*componentOf(index, d));
+      if (!affine || affine->dimension != d || std::abs(affine->offset) > farthest) return nullptr;
+      offsets.push_back(literal(static_cast<std::int32_t>(affine->offset), index.loc));
     }
     if (offsets.size() == 1) return std::move(offsets.front());
     return construct(index.type, std::move(offsets), index.loc);
   }
 
-  std::optional<Place> placeOf(const Expr& scalar) const {
+  std::optional<AffineIndex> affineIndex(const Expr& scalar) const {
     if (const auto bits = evaluate(module_, scalar, Constants::LookThrough)) {
-      return Place{{}, static_cast<std::int32_t>(*bits)};
+      return AffineIndex{{}, static_cast<std::int32_t>(*bits)};
     }
-    if (const auto* n = std::get_if<Binary>(&scalar.node)) return placeOfSum(*n);
+    if (const auto* n = std::get_if<Binary>(&scalar.node)) return affineSum(*n);
     if (const auto* n = std::get_if<VarRef>(&scalar.node)) {
-      return values_[n->var] ? placeOf(*values_[n->var]) : std::nullopt;
+      return values_[n->var] ? affineIndex(*values_[n->var]) : std::nullopt;
     }
     const auto* n = std::get_if<Swizzle>(&scalar.node);
-    return n == nullptr ? std::nullopt : placeOfComponent(*n->base, n->components.front());
+    return n == nullptr ? std::nullopt : affineComponent(*n->base, n->components.front());
   }
 
-  std::optional<Place> placeOfSum(const Binary& n) const {
+  std::optional<AffineIndex> affineSum(const Binary& n) const {
     if ((n.op != BinaryOp::Add && n.op != BinaryOp::Sub) || n.lhs->type.scalar != Scalar::Int)
       return std::nullopt;
-    const std::optional<Place> lhs = placeOf(*n.lhs), rhs = placeOf(*n.rhs);
+    const std::optional<AffineIndex> lhs = affineIndex(*n.lhs), rhs = affineIndex(*n.rhs);
     if (!lhs || !rhs || (rhs->dimension && (lhs->dimension || n.op == BinaryOp::Sub))) return std::nullopt;
     const std::int64_t offset = n.op == BinaryOp::Add ? lhs->offset + rhs->offset : lhs->offset - rhs->offset;
-    return Place{lhs->dimension ? lhs->dimension : rhs->dimension, offset};
+    return AffineIndex{lhs->dimension ? lhs->dimension : rhs->dimension, offset};
   }
 
   /// For a vector that componentOf() cannot decompose.
-  std::optional<Place> placeOfComponent(const Expr& vector, std::uint8_t component) const {
+  std::optional<AffineIndex> affineComponent(const Expr& vector, std::uint8_t component) const {
     if (const auto* n = std::get_if<IndexOf>(&vector.node)) {
-      return isDomain(n->stream) ? std::optional(Place{component}) : std::nullopt;
+      return isDomain(n->stream) ? std::optional(AffineIndex{component}) : std::nullopt;
     }
     const auto* n = std::get_if<VarRef>(&vector.node);
-    return n != nullptr && values_[n->var] ? placeOf(*componentOf(*values_[n->var], component))
+    return n != nullptr && values_[n->var] ? affineIndex(*componentOf(*values_[n->var], component))
                                            : std::nullopt;
   }
 

@@ -8,7 +8,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -27,10 +27,10 @@ ExprPtr pair(ExprPtr x, ExprPtr y) { return construct(int2, exprs(std::move(x), 
 
 /// The value of `r` after the transform, where `make` builds the index of a gather of rank 2 from locals `p`,
 /// initialised with `pValue`, and `x`, an input.
-std::string read(const std::function<ExprPtr(KernelMaker&, VarId p, VarId x)>& make, ExprPtr pValue = here(),
-                 bool changes = false) {
+std::string read(const std::function<ExprPtr(KernelBuilder&, VarId p, VarId x)>& make,
+                 ExprPtr pValue = here(), bool changes = false) {
   Module module = testModule();
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId a = k.gather("a", floatType, 2);
   const VarId x = k.input("x", intType);
   const VarId r = k.output("r", floatType);
@@ -49,42 +49,43 @@ std::string read(const std::function<ExprPtr(KernelMaker&, VarId p, VarId x)>& m
 }
 
 TEST_CASE("an index of the domain plus constants is a neighbour") {
-  CHECK(read([](KernelMaker& k, VarId p, VarId) { return k.ref(p); }) == "neighbor($0, int2{0, 0})");
-  CHECK(read([](KernelMaker& k, VarId p, VarId) {
+  CHECK(read([](KernelBuilder& k, VarId p, VarId) { return k.ref(p); }) == "neighbor($0, int2{0, 0})");
+  CHECK(read([](KernelBuilder& k, VarId p, VarId) {
           return pair(binary(Sub, swizzle(k.ref(p), "x"), literal(1)),
                       binary(Add, literal(2), swizzle(k.ref(p), "y")));
         }) == "neighbor($0, int2{-1, 2})");
-  CHECK(read([](KernelMaker& k, VarId p, VarId) {
+  CHECK(read([](KernelBuilder& k, VarId p, VarId) {
           return binary(Add, k.ref(p), pair(literal(3), literal(-4)));
         }) == "neighbor($0, int2{3, -4})");
-  CHECK(read([](KernelMaker& k, VarId p, VarId) { return k.ref(p); },
+  CHECK(read([](KernelBuilder& k, VarId p, VarId) { return k.ref(p); },
              binary(Sub, here(), construct(int2, exprs(literal(1))))) == "neighbor($0, int2{-1, -1})");
-  CHECK(read([](KernelMaker&, VarId, VarId) { return pair(here("x"), here("y")); }) ==
+  CHECK(read([](KernelBuilder&, VarId, VarId) { return pair(here("x"), here("y")); }) ==
         "neighbor($0, int2{0, 0})");
 }
 
 TEST_CASE("other indices stay") {
   const auto stays = [](const std::string& text) { return text.starts_with("$0["); };
-  CHECK(stays(read([](KernelMaker& k, VarId p, VarId) { return swizzle(k.ref(p), "yx"); })));
-  CHECK(stays(read([](KernelMaker& k, VarId p, VarId) { return pair(swizzle(k.ref(p), "x"), literal(0)); })));
-  CHECK(stays(read([](KernelMaker& k, VarId p, VarId) { return binary(Mul, k.ref(p), literal(2)); })));
-  CHECK(stays(read([](KernelMaker& k, VarId p, VarId) { return unary(UnaryOp::Negate, k.ref(p)); })));
+  CHECK(stays(read([](KernelBuilder& k, VarId p, VarId) { return swizzle(k.ref(p), "yx"); })));
+  CHECK(
+      stays(read([](KernelBuilder& k, VarId p, VarId) { return pair(swizzle(k.ref(p), "x"), literal(0)); })));
+  CHECK(stays(read([](KernelBuilder& k, VarId p, VarId) { return binary(Mul, k.ref(p), literal(2)); })));
+  CHECK(stays(read([](KernelBuilder& k, VarId p, VarId) { return unary(UnaryOp::Negate, k.ref(p)); })));
   CHECK(stays(read(
-      [](KernelMaker& k, VarId p, VarId) { return binary(Sub, pair(literal(1), literal(1)), k.ref(p)); })));
-  CHECK(stays(read([](KernelMaker& k, VarId p, VarId x) {
+      [](KernelBuilder& k, VarId p, VarId) { return binary(Sub, pair(literal(1), literal(1)), k.ref(p)); })));
+  CHECK(stays(read([](KernelBuilder& k, VarId p, VarId x) {
     return pair(binary(Add, swizzle(k.ref(p), "x"), k.ref(x)), swizzle(k.ref(p), "y"));
   })));
-  CHECK(stays(read([](KernelMaker& k, VarId p, VarId) { return k.ref(p); }, here(), true)));
+  CHECK(stays(read([](KernelBuilder& k, VarId p, VarId) { return k.ref(p); }, here(), true)));
 }
 
 TEST_CASE("an input's index may be another than the domain's") {
-  CHECK(read([](KernelMaker& k, VarId p, VarId) { return k.ref(p); },
+  CHECK(read([](KernelBuilder& k, VarId p, VarId) { return k.ref(p); },
              swizzle(indexOf({StreamRef::Space::KernelParameter, 1}), "xy"))
             .starts_with("$0["));
 }
 
 TEST_CASE("an offset that might overflow stays an index") {
-  CHECK(read([](KernelMaker& k, VarId p, VarId) {
+  CHECK(read([](KernelBuilder& k, VarId p, VarId) {
           return pair(binary(Add, swizzle(k.ref(p), "x"), literal(1 << 30)), swizzle(k.ref(p), "y"));
         }).starts_with("$0["));
 }

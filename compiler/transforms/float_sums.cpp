@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "ir/walk.hpp"
-#include "transforms/static_place.hpp"
+#include "transforms/static_lvalue.hpp"
 
 namespace skc {
 namespace {
@@ -19,11 +19,11 @@ bool isAccumulator(const Kernel& kernel, VarId var) {
 }
 
 /// True if a sum and an lvalue share components, such as a struct and its member.
-bool overlap(const FloatSum& sum, const StaticPlace& place) {
-  if (sum.accumulator != place.root) return false;
-  const std::size_t common = std::min(sum.members.size(), place.members.size());
-  if (!std::equal(sum.members.begin(), sum.members.begin() + common, place.members.begin())) return false;
-  return place.members.size() < sum.members.size() || (sum.components & place.mask()) != 0;
+bool overlap(const FloatSum& sum, const StaticLValue& lvalue) {
+  if (sum.accumulator != lvalue.root) return false;
+  const std::size_t common = std::min(sum.members.size(), lvalue.members.size());
+  if (!std::equal(sum.members.begin(), sum.members.begin() + common, lvalue.members.begin())) return false;
+  return lvalue.members.size() < sum.members.size() || (sum.components & lvalue.mask()) != 0;
 }
 
 /// Collects what one reduce adds to, and which accumulators it reads or writes otherwise.
@@ -37,7 +37,7 @@ class Uses {
   std::vector<FloatSum> sums() const {
     std::vector<FloatSum> result;
     for (const FloatSum& sum : added_) {
-      if (std::ranges::none_of(taken_, [&](const StaticPlace& place) { return overlap(sum, place); })) {
+      if (std::ranges::none_of(taken_, [&](const StaticLValue& lvalue) { return overlap(sum, lvalue); })) {
         result.push_back(sum);
       }
     }
@@ -62,8 +62,8 @@ class Uses {
   }
 
   void take(const Expr& expr) {
-    if (const std::optional<StaticPlace> place = staticPlace(expr)) {
-      if (isAccumulator(kernel_, place->root)) taken_.push_back(*place);
+    if (const std::optional<StaticLValue> lvalue = staticLValue(expr)) {
+      if (isAccumulator(kernel_, lvalue->root)) taken_.push_back(*lvalue);
     } else {
       forEachOperand(expr, [&](const ExprPtr& operand) { take(*operand); });
     }
@@ -82,15 +82,15 @@ class Uses {
   bool addsItsPart(const Assign& fold) const {
     const std::vector<Summand> summands = summandsOf(fold);
     if (summands.size() != 1 || summands[0].isNegative) return false;
-    StaticPlace part = *staticPlace(*fold.place);
+    StaticLValue part = *staticLValue(*fold.place);
     part.root = elementOf(kernel_, part.root);
-    return staticPlace(*summands[0].value) == part;
+    return staticLValue(*summands[0].value) == part;
   }
 
   const Kernel& kernel_;
   const bool ofParts_;
   std::vector<FloatSum> added_;
-  std::vector<StaticPlace> taken_;
+  std::vector<StaticLValue> taken_;
 };
 
 }  // namespace

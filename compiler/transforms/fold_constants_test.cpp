@@ -8,7 +8,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -82,11 +82,11 @@ TEST_CASE("an operand that decides ends && and ||; a neutral one goes") {
 }
 
 /// The body of a kernel with constants `periodic = false` and `n = 4`, after folding.
-std::string body(const std::function<Block(Module&, KernelMaker&)>& make) {
+std::string body(const std::function<Block(Module&, KernelBuilder&)>& make) {
   Module module = testModule();
   module.constants.push_back({"periodic", Type::of(Scalar::Bool), literal(false), {}});
   module.constants.push_back({"n", intType, literal(4), {}});
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   k.input("x", floatType);
   k.output("r", floatType);
   k.local("t", floatType);
@@ -100,14 +100,14 @@ std::string body(const std::function<Block(Module&, KernelMaker&)>& make) {
 }
 
 TEST_CASE("names of constants stay in values and decide branches") {
-  CHECK(body([](Module& m, KernelMaker& k) {
+  CHECK(body([](Module& m, KernelBuilder& k) {
           return block(assign(k.ref(1), convert(Scalar::Float, binary(Mul, constantRef(m, 1), literal(2)))));
         }) == "{\n  r = float(n * 2);\n}\n");
-  CHECK(body([](Module& m, KernelMaker& k) {
+  CHECK(body([](Module& m, KernelBuilder& k) {
           return block(ifStmt(binary(LogicalAnd, constantRef(m, 0), binary(Less, k.ref(0), literal(1.0F))),
                               block(assign(k.ref(1), literal(1.0F))), block(assign(k.ref(1), k.ref(0)))));
         }) == "{\n  r = x;\n}\n");
-  CHECK(body([](Module& m, KernelMaker& k) {
+  CHECK(body([](Module& m, KernelBuilder& k) {
           return block(
               assign(k.ref(1), select(binary(Less, constantRef(m, 1), literal(3)), k.ref(0), literal(0.0F))));
         }) == "{\n  r = 0.0;\n}\n");
@@ -115,7 +115,7 @@ TEST_CASE("names of constants stay in values and decide branches") {
 
 TEST_CASE("components of vectors have names, where their numbers are known") {
   const Type float3 = Type::of(Scalar::Float, 3);
-  CHECK(body([&](Module& m, KernelMaker& k) {
+  CHECK(body([&](Module& m, KernelBuilder& k) {
           const VarId v = k.local("v", float3);
           return block(declare(v), assign(index(m, k.ref(v), literal(0U)), Add, k.ref(0)),
                        assign(index(m, k.ref(v), binary(Sub, constantRef(m, 1), literal(2))), k.ref(0)),
@@ -124,16 +124,16 @@ TEST_CASE("components of vectors have names, where their numbers are known") {
 }
 
 TEST_CASE("a branch that declares something stays a scope") {
-  CHECK(body([](Module&, KernelMaker& k) {
+  CHECK(body([](Module&, KernelBuilder& k) {
           return block(ifStmt(literal(true), block(declare(2, k.ref(0)), assign(k.ref(1), k.ref(2)))));
         }) == "{\n  {\n    float t = x;\n    r = t;\n  }\n}\n");
 }
 
 TEST_CASE("a loop that never runs goes; one that runs once by `do` stays") {
-  CHECK(body([](Module&, KernelMaker& k) {
+  CHECK(body([](Module&, KernelBuilder& k) {
           return block(whileLoop(literal(false), block(assign(k.ref(1), literal(1.0F)))));
         }) == "{\n}\n");
-  CHECK(body([](Module&, KernelMaker& k) {
+  CHECK(body([](Module&, KernelBuilder& k) {
           return block(doWhileLoop(block(assign(k.ref(1), literal(1.0F))), literal(false)));
         }).find("do {") != std::string::npos);
 }
@@ -143,7 +143,7 @@ TEST_CASE("a function that only a branch calls which is gone may stay, with its 
   Function push;
   push.name = "push_b";
   const VarId value = addVariable(push, "x", floatType, VarRole::In);
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId x = k.input("x", floatType), b = k.variableOutput("b", floatType);
   Block pushes = block(ir::push({StreamRef::Space::KernelParameter, b}, varRef(push, value)));
   const FunctionId helper = addFunction(module, std::move(push), std::move(pushes));

@@ -7,7 +7,7 @@
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
-#include "transforms/made_kernel.hpp"
+#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 
@@ -43,7 +43,7 @@ StreamRef* streamOf(Expr& expr) {
 FoldCopy::FoldCopy(Module& module, KernelId of, std::string_view suffix)
     : module_(module), before_(module.kernels[of].params.size()) {
   const Kernel& original = module.kernels[of];
-  kernel_ = madeFor(original);
+  kernel_ = synthesizedFor(original);
   operands_ = original.reduction->operands;
   for (const KernelParam& param : original.params) kernel_.params.push_back(copyOf(param));
   kernel_.entry = copyFunction(module, original.entry, copies_);
@@ -118,7 +118,7 @@ void FoldCopy::renumber() {
   for (KernelParam& param : kernel_.params) {
     if (param.neededIf) walkExprs(*param.neededIf, variable);
   }
-  for (const auto& [old, made] : copies_) walkExprs(module_.functions[made].body, stream);
+  for (const auto& [old, copy] : copies_) walkExprs(module_.functions[copy].body, stream);
 }
 
 KernelId FoldCopy::addToModule() {

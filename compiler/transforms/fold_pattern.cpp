@@ -5,7 +5,7 @@
 
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
-#include "transforms/static_place.hpp"
+#include "transforms/static_lvalue.hpp"
 
 namespace skc {
 namespace {
@@ -13,11 +13,11 @@ namespace {
 using namespace ir;
 
 /// Removes conversions between a narrow type and its arithmetic type, which operators need.
-const Expr& withoutCarrier(const Expr& expr) {
+const Expr& withoutArithmeticConversion(const Expr& expr) {
   const auto* n = std::get_if<Convert>(&expr.node);
-  const bool isCarried = n != nullptr && (expr.type.isNarrow() || n->operand->type.isNarrow()) &&
-                         carrierOf(expr.type.scalar) == carrierOf(n->operand->type.scalar);
-  return isCarried ? *n->operand : expr;
+  const bool isConversion = n != nullptr && (expr.type.isNarrow() || n->operand->type.isNarrow()) &&
+                            arithmeticScalar(expr.type.scalar) == arithmeticScalar(n->operand->type.scalar);
+  return isConversion ? *n->operand : expr;
 }
 
 bool isCommutative(BinaryOp op) {
@@ -26,7 +26,9 @@ bool isCommutative(BinaryOp op) {
   return std::find(std::begin(all), std::end(all), op) != std::end(all);
 }
 
-bool isSame(const Expr& expr, const StaticPlace& place) { return staticPlace(withoutCarrier(expr)) == place; }
+bool isSame(const Expr& expr, const StaticLValue& lvalue) {
+  return staticLValue(withoutArithmeticConversion(expr)) == lvalue;
+}
 
 std::optional<FoldOp> minOrMax(Intrinsic intrinsic) {
   if (intrinsic == Intrinsic::Min || intrinsic == Intrinsic::Fmin) return Intrinsic::Min;
@@ -36,20 +38,20 @@ std::optional<FoldOp> minOrMax(Intrinsic intrinsic) {
 
 /// The operator if `value` is `place op f`, or a chain `place op f op g`; + for a chain of sums and
 /// differences.
-std::optional<FoldOp> selfFold(const Expr& value, const StaticPlace& place) {
+std::optional<FoldOp> selfFold(const Expr& value, const StaticLValue& lvalue) {
   if (const auto* n = std::get_if<Binary>(&value.node)) {
     if (isComparison(n->op)) return std::nullopt;
     const bool hasMatrix = n->lhs->type.isMatrix() || n->rhs->type.isMatrix();
     if (hasMatrix && n->op != BinaryOp::Add) return std::nullopt;  // products of matrices do not commute
-    const std::optional<FoldOp> left = selfFold(*n->lhs, place);
-    if (isSame(*n->lhs, place) || left == FoldOp(n->op)) return n->op;
-    if (isCommutative(n->op) && (isSame(*n->rhs, place) || selfFold(*n->rhs, place) == FoldOp(n->op)))
+    const std::optional<FoldOp> left = selfFold(*n->lhs, lvalue);
+    if (isSame(*n->lhs, lvalue) || left == FoldOp(n->op)) return n->op;
+    if (isCommutative(n->op) && (isSame(*n->rhs, lvalue) || selfFold(*n->rhs, lvalue) == FoldOp(n->op)))
       return n->op;
     if (n->op == BinaryOp::Sub && left == FoldOp(BinaryOp::Add)) return BinaryOp::Add;
   }
   if (const auto* n = std::get_if<IntrinsicCall>(&value.node)) {
     const std::optional<FoldOp> op = minOrMax(n->intrinsic);
-    if (op && (isSame(*n->args[0], place) || isSame(*n->args[1], place))) return op;
+    if (op && (isSame(*n->args[0], lvalue) || isSame(*n->args[1], lvalue))) return op;
   }
   return std::nullopt;
 }
@@ -76,13 +78,14 @@ class Recogniser {
   std::optional<FoldPart> foldOf(const Stmt& stmt) const {
     const auto* n = std::get_if<Assign>(&stmt.node);
     if (n == nullptr) return std::nullopt;
-    const std::optional<StaticPlace> place = placeOf(*n->place);
-    if (!place) return std::nullopt;
-    const std::optional<FoldOp> op = n->op ? FoldOp(*n->op) : selfFold(withoutCarrier(*n->value), *place);
+    const std::optional<StaticLValue> lvalue = lvalueOf(*n->place);
+    if (!lvalue) return std::nullopt;
+    const std::optional<FoldOp> op =
+        n->op ? FoldOp(*n->op) : selfFold(withoutArithmeticConversion(*n->value), *lvalue);
     if (!op) return std::nullopt;
-    if (place->type.isMatrix() && op != FoldOp(BinaryOp::Add)) return std::nullopt;
+    if (lvalue->type.isMatrix() && op != FoldOp(BinaryOp::Add)) return std::nullopt;
     if (reads(*n->value) != (n->op ? 0 : 1)) return std::nullopt;
-    return FoldPart{place->root, place->members, place->type, place->mask(), *op, stmt.loc};
+    return FoldPart{lvalue->root, lvalue->members, lvalue->type, lvalue->mask(), *op, stmt.loc};
   }
 
   std::optional<FoldPattern> run(const Block& body) const {
@@ -118,24 +121,24 @@ class Recogniser {
   }
 
   /// The lvalue if it is part of an accumulator; nullopt for other expressions.
-  std::optional<StaticPlace> placeOf(const Expr& expr) const {
-    std::optional<StaticPlace> place = staticPlace(expr);
-    return place && isAccumulator(place->root) ? place : std::nullopt;
+  std::optional<StaticLValue> lvalueOf(const Expr& expr) const {
+    std::optional<StaticLValue> lvalue = staticLValue(expr);
+    return lvalue && isAccumulator(lvalue->root) ? lvalue : std::nullopt;
   }
 
   /// True for `place op= its element`, in any form, with the same member of the element.
   bool isPlain(const Stmt& stmt) const {
     const auto* n = std::get_if<Assign>(&stmt.node);
     if (n == nullptr) return false;
-    const std::optional<StaticPlace> place = placeOf(*n->place);
-    if (!place) return false;
-    StaticPlace element = *place;
-    element.root = elementOf(kernel_, place->root);
+    const std::optional<StaticLValue> lvalue = lvalueOf(*n->place);
+    if (!lvalue) return false;
+    StaticLValue element = *lvalue;
+    element.root = elementOf(kernel_, lvalue->root);
     if (n->op) return isSame(*n->value, element);
     const auto areBoth = [&](const Expr& a, const Expr& b) {
-      return (isSame(a, *place) && isSame(b, element)) || (isSame(a, element) && isSame(b, *place));
+      return (isSame(a, *lvalue) && isSame(b, element)) || (isSame(a, element) && isSame(b, *lvalue));
     };
-    const Expr& value = withoutCarrier(*n->value);
+    const Expr& value = withoutArithmeticConversion(*n->value);
     if (const auto* b = std::get_if<Binary>(&value.node)) return areBoth(*b->lhs, *b->rhs);
     const auto* c = std::get_if<IntrinsicCall>(&value.node);
     return c != nullptr && areBoth(*c->args[0], *c->args[1]);
@@ -149,12 +152,12 @@ class Recogniser {
 namespace {
 
 /// Adds the summands of `place + f - g` except the place itself.
-void addSummands(const Expr& value, const StaticPlace& place, bool isNegative, std::vector<Summand>& all) {
-  if (isSame(value, place)) return;
-  if (!selfFold(value, place)) return all.push_back({&value, isNegative});
+void addSummands(const Expr& value, const StaticLValue& lvalue, bool isNegative, std::vector<Summand>& all) {
+  if (isSame(value, lvalue)) return;
+  if (!selfFold(value, lvalue)) return all.push_back({&value, isNegative});
   const auto& n = std::get<Binary>(value.node);
-  addSummands(*n.lhs, place, isNegative, all);
-  addSummands(*n.rhs, place, isNegative != (n.op == BinaryOp::Sub), all);
+  addSummands(*n.lhs, lvalue, isNegative, all);
+  addSummands(*n.rhs, lvalue, isNegative != (n.op == BinaryOp::Sub), all);
 }
 
 }  // namespace
@@ -168,7 +171,7 @@ std::vector<Summand> summandsOf(const Assign& fold) {
   if (fold.op) {
     all.push_back({fold.value.get(), false});
   } else {
-    addSummands(*fold.value, *staticPlace(*fold.place), false, all);
+    addSummands(*fold.value, *staticLValue(*fold.place), false, all);
   }
   return all;
 }

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -17,7 +17,7 @@ using namespace ir;
 
 struct Sample {
   Module module = testModule();
-  KernelMaker k{module, "f"};
+  KernelBuilder k{module, "f"};
   VarId x = k.input("x", intType);
   VarId r = k.output("r", intType);
 

@@ -74,9 +74,9 @@ std::vector<bool> changedVariables(const Module& module, const Function& functio
 }
 
 /// Analyses one kernel and collects, for each parameter, the conditions of its uses.
-class Follower {
+class UseAnalysis {
  public:
-  Follower(const Module& module, const Kernel& kernel)
+  UseAnalysis(const Module& module, const Kernel& kernel)
       : module_(module), kernel_(kernel), uses_(kernel.params.size()) {}
 
   std::vector<AnyOf> run() {
@@ -85,7 +85,7 @@ class Follower {
     for (VarId i = 0; i < kernel_.params.size(); ++i) {
       if (kernel_.params[i].role == ParamRole::Spec) values[i] = varRef(entry, i);
     }
-    follow(kernel_.entry, std::move(values), *literal(true));
+    analyse(kernel_.entry, std::move(values), *literal(true));
     return std::move(uses_);
   }
 
@@ -98,7 +98,7 @@ class Follower {
     Values values;
   };
 
-  void follow(FunctionId id, Values values, const Expr& guard) {
+  void analyse(FunctionId id, Values values, const Expr& guard) {
     const Function& function = module_.functions[id];
     if (++calls_ > mostCalls) {
       for (AnyOf& use : uses_) use.add(*literal(true));
@@ -239,7 +239,7 @@ class Follower {
   void call(Frame& frame, FunctionId callee, const std::vector<ExprPtr>& args, const Expr& guard) {
     Values values(module_.functions[callee].variables.size());
     for (std::size_t i = 0; i < args.size(); ++i) values[i] = value(frame, *args[i]);
-    follow(callee, std::move(values), guard);
+    analyse(callee, std::move(values), guard);
   }
 
   /// A scalar in terms of the kernel's Spec variables; null if it depends on anything else.
@@ -293,7 +293,7 @@ void guardStreams(Module& module, Diagnostics&) {
     const bool hasSpec = std::any_of(kernel.params.begin(), kernel.params.end(),
                                      [](const KernelParam& param) { return param.role == ParamRole::Spec; });
     if (!hasSpec) continue;
-    std::vector<AnyOf> uses = Follower(module, kernel).run();
+    std::vector<AnyOf> uses = UseAnalysis(module, kernel).run();
     for (std::size_t i = 0; i < uses.size(); ++i) {
       if (isStream(kernel.params[i])) kernel.params[i].neededIf = uses[i].take();
     }

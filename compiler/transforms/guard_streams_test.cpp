@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -21,7 +21,7 @@ constexpr Type boolType = Type::of(Scalar::Bool);
 /// A kernel with a flag, a number, two inputs and an output; each case builds its own body.
 struct Sample {
   Module module = testModule();
-  KernelMaker k{module, "f"};
+  KernelBuilder k{module, "f"};
   VarId flag = k.spec("flag", boolType);
   VarId n = k.spec("n", intType);
   VarId x = k.input("x", floatType);

@@ -10,7 +10,7 @@
 #include "ir/build.hpp"
 #include "ir/walk.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/static_place.hpp"
+#include "transforms/static_lvalue.hpp"
 
 namespace skc {
 namespace {
@@ -127,8 +127,8 @@ class Inliner {
     const auto* end = std::get_if<Return>(&callee.body.back().node);
     const auto* result = end != nullptr && end->value ? std::get_if<VarRef>(&end->value->node) : nullptr;
     if (result == nullptr || result->var >= callee.parameterCount) return std::nullopt;
-    const std::optional<StaticPlace> place = staticPlace(*assign.place);
-    if (!place || !isAccumulator(place->root) || staticPlace(*call.args[result->var]) != place)
+    const std::optional<StaticLValue> lvalue = staticLValue(*assign.place);
+    if (!lvalue || !isAccumulator(lvalue->root) || staticLValue(*call.args[result->var]) != lvalue)
       return std::nullopt;
     return body(call.callee, call.args, result->var, nullptr, loc);
   }
@@ -197,8 +197,8 @@ class Inliner {
 
   /// `e = e + f(x, e)` and similar, where f is a single expression.
   std::optional<Block> valueOfCall(const Stmt& stmt, const Assign& assignment) {
-    const std::optional<StaticPlace> place = staticPlace(*assignment.place);
-    if (!place || !isAccumulator(place->root)) return std::nullopt;
+    const std::optional<StaticLValue> lvalue = staticLValue(*assignment.place);
+    if (!lvalue || !isAccumulator(lvalue->root)) return std::nullopt;
     Block before;
     bool isDone = false;
     ExprPtr value = clone(*assignment.value);
@@ -248,7 +248,7 @@ class Inliner {
     walkStmts(callee.body, [&](const Stmt& stmt) {
       forEachOperand(stmt, [&](const ExprPtr& operand) { count += uses(*operand, var); });
     });
-    const bool isSimple = staticPlace(arg) || std::holds_alternative<Literal>(arg.node);
+    const bool isSimple = staticLValue(arg) || std::holds_alternative<Literal>(arg.node);
     if (count <= 1 || isSimple || namesAccumulator(arg)) return clone(arg);
     const VarId local = addVariable(function_, callee.variables[var].name, arg.type, VarRole::Local, loc);
     assigned_.push_back(false);

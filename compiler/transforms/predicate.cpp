@@ -25,13 +25,14 @@ using namespace ir;
 namespace {
 
 /// True if a statement would have side effects, or might not end, in inactive lanes.
-bool wantsMask(const analysis::Uniformity& uniformity, FunctionId id, const Stmt& stmt) {
+bool needsMask(const analysis::Uniformity& uniformity, FunctionId id, const Stmt& stmt) {
   if (std::holds_alternative<Push>(stmt.node) || std::holds_alternative<Scatter>(stmt.node)) return true;
   return std::holds_alternative<Loop>(stmt.node) && uniformity.diverges(id, stmt);
 }
 
 /// True if a mask lets a function skip a long branch that no active lane takes.
-bool gainsByMask(const analysis::Uniformity& uniformity, BlendCost& cost, FunctionId id, const Stmt& stmt) {
+bool profitsFromMask(const analysis::Uniformity& uniformity, BlendCost& cost, FunctionId id,
+                     const Stmt& stmt) {
   const bool isBranch = std::holds_alternative<If>(stmt.node) || std::holds_alternative<Switch>(stmt.node);
   return isBranch && uniformity.diverges(id, stmt) && !cost.isShort({&stmt, 1});
 }
@@ -47,25 +48,25 @@ bool anyStmt(const Block& block, Fn&& fn) {
 std::set<FunctionId> maskedFunctions(const Module& module, const Kernel& kernel,
                                      const analysis::Uniformity& uniformity, BlendCost& cost,
                                      const std::vector<FunctionId>& functions) {
-  std::set<FunctionId> wanting, masked;
-  bool entryWants = false;
+  std::set<FunctionId> needing, masked;
+  bool entryNeedsMask = false;
   for (const FunctionId id : functions) {
     const Function& function = module.functions[id];
     const bool must =
-        anyStmt(function.body, [&](const Stmt& stmt) { return wantsMask(uniformity, id, stmt); });
-    entryWants = entryWants || must;
-    const bool gains =
-        anyStmt(function.body, [&](const Stmt& stmt) { return gainsByMask(uniformity, cost, id, stmt); });
-    const bool callsWanting =
-        std::ranges::any_of(callees(function), [&](FunctionId callee) { return wanting.contains(callee); });
-    if (must || gains || callsWanting) wanting.insert(id);
+        anyStmt(function.body, [&](const Stmt& stmt) { return needsMask(uniformity, id, stmt); });
+    entryNeedsMask = entryNeedsMask || must;
+    const bool profits =
+        anyStmt(function.body, [&](const Stmt& stmt) { return profitsFromMask(uniformity, cost, id, stmt); });
+    const bool callsNeeding =
+        std::ranges::any_of(callees(function), [&](FunctionId callee) { return needing.contains(callee); });
+    if (must || profits || callsNeeding) needing.insert(id);
   }
-  if (entryWants) masked.insert(kernel.entry);
+  if (entryNeedsMask) masked.insert(kernel.entry);
   for (const FunctionId id : functions | std::views::reverse) {
-    if (id != kernel.entry && wanting.contains(id) && uniformity.isCalledDivergently(id)) masked.insert(id);
+    if (id != kernel.entry && needing.contains(id) && uniformity.isCalledDivergently(id)) masked.insert(id);
     if (!masked.contains(id)) continue;
     for (const FunctionId callee : callees(module.functions[id])) {
-      if (wanting.contains(callee)) masked.insert(callee);
+      if (needing.contains(callee)) masked.insert(callee);
     }
   }
   return masked;

@@ -11,7 +11,7 @@
 
 #include "analysis/validate_predicated.hpp"
 #include "ir/clone_module.hpp"
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "transforms/lane_evaluator.hpp"
@@ -74,7 +74,7 @@ void checkLanes(const Module& module) {
 /// A kernel with a uniform u, an input x and an output r, initially 0; and its body after predicate.
 struct Sample {
   Module module = testModule();
-  KernelMaker k{module, "f"};
+  KernelBuilder k{module, "f"};
   VarId u = k.uniform("u", intType), x = k.input("x", intType), r = k.output("r", intType);
 
   ExprPtr isSmall() const { return binary(BinaryOp::Less, k.ref(x), literal(3)); }

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 
 namespace skc {
 
@@ -17,10 +17,10 @@ namespace {
 constexpr Type int2Type = Type::of(Scalar::Int, 2);
 
 /// Generates the body of a function. Each of its loops has at most three iterations.
-class BodyMaker {
+class BodyGenerator {
  public:
-  BodyMaker(Module& module, Function& function, std::mt19937& random, std::vector<FunctionId> pure,
-            std::vector<FunctionId> changing)
+  BodyGenerator(Module& module, Function& function, std::mt19937& random, std::vector<FunctionId> pure,
+                std::vector<FunctionId> changing)
       : module_(module),
         function_(function),
         random_(random),
@@ -251,10 +251,10 @@ FunctionId addRandom(Module& module, std::mt19937& random, bool changes, const s
   Function function{.name = name, .result = intType, .variables = {}, .body = {}, .loc = {}};
   const VarId n = addVariable(function, "n", intType, VarRole::In);
   if (changes) addVariable(function, "changed", intType, VarRole::InOut);
-  BodyMaker maker(module, function, random, pure, changing);
-  maker.knows(n, true);
-  if (changes) maker.knows(n + 1, true);
-  Block body = maker.body();
+  BodyGenerator builder(module, function, random, pure, changing);
+  builder.knows(n, true);
+  if (changes) builder.knows(n + 1, true);
+  Block body = builder.body();
   return addFunction(module, std::move(function), std::move(body));
 }
 
@@ -268,18 +268,18 @@ Module randomKernel(std::uint32_t seed) {
   pure.push_back(addRandom(module, random, false, pure, changing));
   changing.push_back(addRandom(module, random, true, pure, changing));
   changing.push_back(addRandom(module, random, true, pure, changing));
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId u = k.uniform("u", intType), x = k.input("x", intType), r = k.output("r", intType);
   const VarId out = k.variableOutput("out", intType);
   const VarId y = k.local("y", intType);
-  BodyMaker maker(module, k.function(), random, pure, changing);
-  maker.knows(u, true);
-  maker.knows(x, false);
-  maker.knows(r, true);
-  maker.knows(y, true);
-  if (random() % 2 == 0) maker.pushesTo(out);
+  BodyGenerator builder(module, k.function(), random, pure, changing);
+  builder.knows(u, true);
+  builder.knows(x, false);
+  builder.knows(r, true);
+  builder.knows(y, true);
+  if (random() % 2 == 0) builder.pushesTo(out);
   Block body = block(declare(y, k.ref(u)), assign(k.ref(r), literal(0)));
-  for (Stmt& stmt : maker.body()) body.push_back(std::move(stmt));
+  for (Stmt& stmt : builder.body()) body.push_back(std::move(stmt));
   k.finish(std::move(body));
   return module;
 }

@@ -18,7 +18,7 @@ using namespace ir;
 // ---- locals -----------------------------------------------------------------------------------
 
 /// Marks variables that evaluating an lvalue reads: those in indices, not the root.
-void markPlace(const Expr& place, std::vector<bool>& read);
+void markLValue(const Expr& lvalue, std::vector<bool>& read);
 
 void markRead(const Expr& expr, std::vector<bool>& read) {
   walkExprs(expr, [&](const Expr& inner) {
@@ -26,14 +26,14 @@ void markRead(const Expr& expr, std::vector<bool>& read) {
   });
 }
 
-void markPlace(const Expr& place, std::vector<bool>& read) {
-  if (const auto* n = std::get_if<Index>(&place.node)) {
+void markLValue(const Expr& lvalue, std::vector<bool>& read) {
+  if (const auto* n = std::get_if<Index>(&lvalue.node)) {
     markRead(*n->index, read);
-    markPlace(*n->base, read);
-  } else if (const auto* m = std::get_if<Member>(&place.node)) {
-    markPlace(*m->base, read);
-  } else if (const auto* s = std::get_if<Swizzle>(&place.node)) {
-    markPlace(*s->base, read);
+    markLValue(*n->base, read);
+  } else if (const auto* m = std::get_if<Member>(&lvalue.node)) {
+    markLValue(*m->base, read);
+  } else if (const auto* s = std::get_if<Swizzle>(&lvalue.node)) {
+    markLValue(*s->base, read);
   }
 }
 
@@ -43,7 +43,7 @@ std::vector<bool> readVariables(const Function& function) {
   std::vector<bool> read(function.variables.size(), false);
   walkStmts(function.body, [&](const Stmt& stmt) {
     if (const auto* n = std::get_if<Assign>(&stmt.node)) {
-      markPlace(*n->place, read);
+      markLValue(*n->place, read);
       markRead(*n->value, read);
       return;
     }

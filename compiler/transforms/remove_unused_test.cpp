@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -47,7 +47,7 @@ FunctionId addIncrement(Module& module) {
 
 TEST_CASE("a local that is never read goes with its writes, and what only it used goes too") {
   Module module = testModule();
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId x = k.input("x", floatType);
   const VarId r = k.output("r", floatType);
   const VarId a = k.local("a", floatType);
@@ -61,7 +61,7 @@ TEST_CASE("a local that is never read goes with its writes, and what only it use
 TEST_CASE("a local that a call writes to stays") {
   Module module = testModule();
   const FunctionId increment = addIncrement(module);
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId r = k.output("r", floatType);
   const VarId a = k.local("a", floatType);
   k.finish(block(declare(a, literal(0.0F)), callStmt(increment, exprs(k.ref(a))),
@@ -73,7 +73,7 @@ TEST_CASE("a local that a call writes to stays") {
 TEST_CASE("an index on the way to a dead place is dead as well; on the way to a live one it is read") {
   Module module = testModule();
   const Type array = arrayOf(module, floatType, 2);
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId r = k.output("r", floatType);
   const VarId w = k.local("w", array);
   const VarId i = k.local("i", intType);
@@ -94,7 +94,7 @@ TEST_CASE("functions, constants and types without use go, and the others are ren
   module.constants.push_back({"used", floatType, constantRef(module, 1), {}});
   addIdentity(module, "unused");
   const FunctionId used = addIdentity(module, "used");
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId o = k.input("o", Type::structType(2));
   const VarId r = k.output("r", floatType);
   ExprPtr leaf = member(module, member(module, k.ref(o), 0), 0);
@@ -113,11 +113,11 @@ TEST_CASE("functions, constants and types without use go, and the others are ren
 TEST_CASE("the combining kernel's function and the constants of borders and identities are needed") {
   Module module = testModule();
   module.constants.push_back({"zero", floatType, literal(0.0F), {}});
-  KernelMaker k(module, "sum");
+  KernelBuilder k(module, "sum");
   const VarId x = k.input("x", intType);
   const VarId total = k.accumulator("total", floatType, constantRef(module, 0));
   k.finish(block(assign(k.ref(total), BinaryOp::Add, convert(Scalar::Float, k.ref(x)))));
-  KernelMaker combine(module, "sum");
+  KernelBuilder combine(module, "sum");
   const VarId a = combine.input("a", floatType);
   const VarId b = combine.accumulator("b", floatType);
   combine.finish(block(assign(combine.ref(b), BinaryOp::Add, combine.ref(a))));

@@ -12,7 +12,7 @@
 #include "ir/walk.hpp"
 #include "support/overloaded.hpp"
 #include "transforms/copy_functions.hpp"
-#include "transforms/made_kernel.hpp"
+#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 namespace {
@@ -106,7 +106,7 @@ class Rounder {
     if (expr.type.isFloat() && isRounded(expr)) slot = rounded(std::move(slot));
   }
 
-  /// Rounds the part taken of a read, not the read itself, which may be a struct; indices are expressions.
+  /// CountedLoop the part taken of a read, not the read itself, which may be a struct; indices are expressions.
   void partOf(Expr& expr) {
     forEachOperand(expr, [&](ExprPtr& operand) {
       const bool isBase =
@@ -154,16 +154,16 @@ KernelId roundKernel(Module& module, KernelId id) {
   const FunctionId entry = copyFunction(module, module.kernels[id].entry, copies);
   dropTables(module, copies);
   const Kernel& kernel = module.kernels[id];
-  Kernel made = madeFor(kernel);
-  made.signature = kernel.signature;
-  made.entry = entry;
-  for (const KernelParam& param : kernel.params) made.params.push_back(clone(param));
+  Kernel variant = synthesizedFor(kernel);
+  variant.signature = kernel.signature;
+  variant.entry = entry;
+  for (const KernelParam& param : kernel.params) variant.params.push_back(clone(param));
   if (kernel.reduction) {
-    made.reduction = Reduction{{}, kernel.reduction->operands, kernel.reduction->seeded};
-    made.reduction->commutative = kernel.reduction->commutative;
+    variant.reduction = Reduction{{}, kernel.reduction->operands, kernel.reduction->seeded};
+    variant.reduction->commutative = kernel.reduction->commutative;
   }
-  for (const auto& [from, to] : copies) Rounder(module, to == entry ? &made : nullptr).run(to);
-  module.kernels.push_back(std::move(made));
+  for (const auto& [from, to] : copies) Rounder(module, to == entry ? &variant : nullptr).run(to);
+  module.kernels.push_back(std::move(variant));
   return static_cast<KernelId>(module.kernels.size() - 1);
 }
 
@@ -179,13 +179,13 @@ bool computesFloats(const Module& module, const Kernel& kernel) {
 }  // namespace
 
 void roundHalves(Module& module, Diagnostics&) {
-  const std::size_t declared = module.kernels.size();   // excludes kernels that this adds
+  const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
-    if (module.kernels[id].isMade || !computesFloats(module, module.kernels[id])) continue;
+    if (module.kernels[id].isSynthesized || !computesFloats(module, module.kernels[id])) continue;
     const std::optional<KernelId> combine =
         module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
     const KernelId half = roundKernel(module, id);
-    module.kernels[id].forms.half = half;
+    module.kernels[id].variants.half = half;
     if (!combine) continue;
     const KernelId halfCombine = *combine == id ? half : roundKernel(module, *combine);
     module.kernels[half].reduction->combine = halfCombine;

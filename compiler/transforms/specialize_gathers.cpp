@@ -56,7 +56,7 @@ class State {
 
   void run() {
     for (Kernel& kernel : module_.kernels) specialize(kernel);
-    module_.functions = std::move(made_);
+    module_.functions = std::move(functions_);
   }
 
  private:
@@ -65,7 +65,7 @@ class State {
   struct Instance {
     FunctionId source;
     Binding binding;
-    FunctionId made;
+    FunctionId specialized;
   };
 
   void specialize(Kernel& kernel) {
@@ -86,11 +86,11 @@ class State {
       if (!uses[i]) binding[i] = domain;
     }
     for (const Instance& instance : instances_) {
-      if (instance.source == source && instance.binding == binding) return instance.made;
+      if (instance.source == source && instance.binding == binding) return instance.specialized;
     }
-    const FunctionId made = make(source, binding, false);
-    instances_.push_back({source, std::move(binding), made});
-    return made;
+    const FunctionId specialized = make(source, binding, false);
+    instances_.push_back({source, std::move(binding), specialized});
+    return specialized;
   }
 
   /// Copies a function with its streams bound. An entry keeps its parameters, other functions lose gathers
@@ -111,8 +111,8 @@ class State {
       callee = bindCall(function, binding, callee, args);
     });
     if (!isEntry) dropStreams(function);
-    made_.push_back(std::move(function));
-    return static_cast<FunctionId>(made_.size() - 1);
+    functions_.push_back(std::move(function));
+    return static_cast<FunctionId>(functions_.size() - 1);
   }
 
   /// The instance that a call needs; removes gathers and append outputs from its arguments.
@@ -162,7 +162,7 @@ class State {
         return other.source == instance.source;
       });
       if (copies == 1) continue;
-      std::string& name = made_[instance.made].name;
+      std::string& name = functions_[instance.specialized].name;
       const std::vector<bool>& uses = usesOf(instance.source);
       for (std::size_t i = 0; i < instance.binding.size(); ++i) {
         const StreamRef stream = instance.binding[i];
@@ -173,7 +173,7 @@ class State {
   }
 
   Module& module_;
-  std::vector<Function> made_;
+  std::vector<Function> functions_;
   std::vector<Instance> instances_;        ///< of the current kernel, without its entry
   std::vector<std::vector<bool>> uses_;    ///< per function, computed at first use
 };

@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -40,7 +40,7 @@ FunctionId addPairSum(Module& module) {
   f.variables[a].rank = 1;
   const VarId i = addVariable(f, "i", intType, VarRole::In);
   const auto read = [&](ExprPtr index) {
-    return gatherRead(floatType, KernelMaker::stream(a), std::move(index));
+    return gatherRead(floatType, KernelBuilder::stream(a), std::move(index));
   };
   ExprPtr next = binary(BinaryOp::Add, varRef(f, i), literal(1));
   ExprPtr sum = binary(BinaryOp::Add, read(varRef(f, i)), read(std::move(next)));
@@ -50,7 +50,7 @@ FunctionId addPairSum(Module& module) {
 TEST_CASE("one stream: the function keeps its name and loses the parameter") {
   Module module = testModule();
   const FunctionId pairSum = addPairSum(module);
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId u = k.gather("u", floatType, 1);
   const VarId r = k.output("r", floatType);
   k.finish(block(assign(k.ref(r), call(module, pairSum, exprs(literal(0), k.ref(u), literal(7))))));
@@ -63,7 +63,7 @@ TEST_CASE("one stream: the function keeps its name and loses the parameter") {
 TEST_CASE("two streams: two copies that say what they read; the same stream twice: one") {
   Module module = testModule();
   const FunctionId pairSum = addPairSum(module);
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId u = k.gather("u", floatType, 1);
   const VarId v = k.gather("v", floatType, 1);
   const VarId r = k.output("r", floatType);
@@ -82,7 +82,7 @@ TEST_CASE("each kernel has its own copies") {
   Module module = testModule();
   const FunctionId pairSum = addPairSum(module);
   for (const char* name : {"f", "g"}) {
-    KernelMaker k(module, name);
+    KernelBuilder k(module, name);
     const VarId u = k.gather("u", floatType, 1);
     const VarId r = k.output("r", floatType);
     k.finish(block(assign(k.ref(r), call(module, pairSum, exprs(literal(0), k.ref(u), literal(7))))));
@@ -93,10 +93,10 @@ TEST_CASE("each kernel has its own copies") {
 
 /// kernel void place(float x<>, out float r<>) { r = x + float(indexof(x).x); }
 FunctionId addPlace(Module& module) {
-  KernelMaker k(module, "place");
+  KernelBuilder k(module, "place");
   const VarId x = k.input("x", floatType);
   const VarId r = k.output("r", floatType);
-  ExprPtr index = convert(Scalar::Float, swizzle(indexOf(KernelMaker::stream(x)), "x"));
+  ExprPtr index = convert(Scalar::Float, swizzle(indexOf(KernelBuilder::stream(x)), "x"));
   k.finish(block(assign(k.ref(r), binary(BinaryOp::Add, k.ref(x), std::move(index)))));
   return module.kernels.back().entry;
 }
@@ -104,7 +104,7 @@ FunctionId addPlace(Module& module) {
 TEST_CASE("an element's index is its stream's; of a computed value, the domain's") {
   Module module = testModule();
   const FunctionId place = addPlace(module);
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId y = k.input("y", floatType);
   const VarId r = k.output("r", floatType);
   const VarId s = k.output("s", floatType);
@@ -118,12 +118,12 @@ TEST_CASE("an element's index is its stream's; of a computed value, the domain's
 
 TEST_CASE("streams that a function does not ask about make no copies") {
   Module module = testModule();
-  KernelMaker inner(module, "twice");
+  KernelBuilder inner(module, "twice");
   const VarId a = inner.input("a", floatType);
   const VarId b = inner.output("b", floatType);
   inner.finish(block(assign(inner.ref(b), binary(BinaryOp::Add, inner.ref(a), inner.ref(a)))));
   const FunctionId twice = module.kernels.back().entry;
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   const VarId x = k.input("x", floatType);
   const VarId y = k.input("y", floatType);
   const VarId r = k.output("r", floatType);
@@ -143,7 +143,7 @@ TEST_CASE("streams are followed through several calls") {
   f.variables[a].rank = 1;
   ExprPtr inner = call(module, pairSum, exprs(literal(0), varRef(f, a), literal(1)));
   const FunctionId outer = addFunction(module, std::move(f), block(returnStmt(std::move(inner))));
-  KernelMaker k(module, "f");
+  KernelBuilder k(module, "f");
   k.gather("u", floatType, 1);
   const VarId v = k.gather("v", floatType, 1);
   const VarId r = k.output("r", floatType);

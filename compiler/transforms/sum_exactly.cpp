@@ -15,9 +15,9 @@
 #include "transforms/float_sums.hpp"
 #include "transforms/fold_copy.hpp"
 #include "transforms/fold_pattern.hpp"
-#include "transforms/made_kernel.hpp"
 #include "transforms/scalar_sum.hpp"
 #include "transforms/sum_terms.hpp"
+#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 namespace {
@@ -80,9 +80,10 @@ void add(Block& block, const Function& function, const Digits& digits, const For
 }
 
 /// Adds parameters that hold digits.
-Digits addDigits(MadeKernel& made, const Format& format, ParamRole role, const std::string& suffix = {}) {
+Digits addDigits(SynthesizedKernel& synthesized, const Format& format, ParamRole role,
+                 const std::string& suffix = {}) {
   const auto add = [&](const std::string& name, Type type) {
-    return made.add(makeParam(name + suffix, role, type, made.kernel.loc));
+    return synthesized.add(makeParam(name + suffix, role, type, synthesized.kernel.loc));
   };
   Digits digits;
   for (std::uint32_t i = 0; i < format.groups; ++i) {
@@ -99,14 +100,14 @@ class State {
   void sum(KernelId id, const ScalarSum& scalar) {
     const bool areProducts = hasProducts(id, scalar);
     const Format& format = areProducts ? ofProducts : ofFloats;
-    ExactSum made{.fold = makeFold(id, scalar, format),
-                  .finish = makeFinish(id, scalar, format),
-                  .accumulator = scalar.whole.accumulator,
-                  .members = scalar.whole.members,
-                  .component = scalar.component,
-                  .ofProducts = areProducts,
-                  .term = exactTerm(module_, id, scalar, areProducts)};
-    module_.kernels[id].reduction->exact.push_back(std::move(made));
+    ExactSum exact{.fold = makeFold(id, scalar, format),
+                   .finish = makeFinish(id, scalar, format),
+                   .accumulator = scalar.whole.accumulator,
+                   .members = scalar.whole.members,
+                   .component = scalar.component,
+                   .ofProducts = areProducts,
+                   .term = exactTerm(module_, id, scalar, areProducts)};
+    module_.kernels[id].reduction->exact.push_back(std::move(exact));
   }
 
  private:
@@ -149,22 +150,22 @@ class State {
     /// Returns the number of terms that an element adds without settling.
     int rewrite(Function& entry, Block& block, bool inLoop) const {
       int terms = 0;
-      Block made;
+      Block rewritten;
       for (Stmt& stmt : block) {
         const bool isLoop = std::holds_alternative<Loop>(stmt.node);
         forEachBlock(stmt, [&](Block& inner) { terms += rewrite(entry, inner, inLoop || isLoop); });
         if (!foldedBy(kernel, stmt)) {
-          made.push_back(std::move(stmt));
+          rewritten.push_back(std::move(stmt));
           continue;
         }
         // this variant does not have the other accumulators
         for (const Term& term : termsOf(kernel, stmt, sum)) {
-          if (inLoop) settle(made, entry, digits);
-          add(made, entry, digits, format, *term.value, term.factor.get());
+          if (inLoop) settle(rewritten, entry, digits);
+          add(rewritten, entry, digits, format, *term.value, term.factor.get());
           terms += inLoop ? 0 : 1;
         }
       }
-      block = std::move(made);
+      block = std::move(rewritten);
       return terms;
     }
   };
@@ -173,36 +174,37 @@ class State {
   KernelId combination(const Format& format) {
     std::optional<KernelId>& known = combinations_[format.groups];
     if (known) return *known;
-    MadeKernel made(format.groups == ofProducts.groups ? "exact_products" : "exact_sums");
-    const Digits parts = addDigits(made, format, ParamRole::Input, "_part");
-    const Digits totals = addDigits(made, format, ParamRole::Accumulator);
-    Block& body = made.entry.body;
+    SynthesizedKernel synthesized(format.groups == ofProducts.groups ? "exact_products" : "exact_sums");
+    const Digits parts = addDigits(synthesized, format, ParamRole::Input, "_part");
+    const Digits totals = addDigits(synthesized, format, ParamRole::Accumulator);
+    Block& body = synthesized.entry.body;
     Digits settled;   // inputs must not change
     for (const VarId part : parts.groups) {
       settled.groups.push_back(
-          addVariable(made.entry, fmt::format("part_{}", settled.groups.size()), digitsType));
-      body.push_back(declare(settled.groups.back(), varRef(made.entry, part)));
+          addVariable(synthesized.entry, fmt::format("part_{}", settled.groups.size()), digitsType));
+      body.push_back(declare(settled.groups.back(), varRef(synthesized.entry, part)));
     }
-    settle(body, made.entry, settled);
-    settle(body, made.entry, totals);
+    settle(body, synthesized.entry, settled);
+    settle(body, synthesized.entry, totals);
     for (std::uint32_t i = 0; i < format.groups; ++i) {
-      body.push_back(
-          assign(varRef(made.entry, totals.groups[i]), BinaryOp::Add, varRef(made.entry, settled.groups[i])));
+      body.push_back(assign(varRef(synthesized.entry, totals.groups[i]), BinaryOp::Add,
+                            varRef(synthesized.entry, settled.groups[i])));
     }
-    body.push_back(
-        assign(varRef(made.entry, totals.flags), BinaryOp::BitOr, varRef(made.entry, parts.flags)));
-    known = made.finishCombination(module_);
+    body.push_back(assign(varRef(synthesized.entry, totals.flags), BinaryOp::BitOr,
+                          varRef(synthesized.entry, parts.flags)));
+    known = synthesized.finishCombination(module_);
     return *known;
   }
 
   KernelId makeFinish(KernelId id, const ScalarSum& sum, const Format& format) {
     const Kernel& kernel = module_.kernels[id];
     const KernelParam& param = kernel.params[sum.whole.accumulator];
-    MadeKernel made(kernel, "_finish");
-    const VarId plain = made.add(makeParam(param.name, ParamRole::Input, param.type, kernel.loc));
-    const Digits digits = addDigits(made, format, ParamRole::Input);
-    const VarId result = made.add(makeParam("r_" + param.name, ParamRole::Output, param.type, kernel.loc));
-    Function& entry = made.entry;
+    SynthesizedKernel synthesized(kernel, "_finish");
+    const VarId plain = synthesized.add(makeParam(param.name, ParamRole::Input, param.type, kernel.loc));
+    const Digits digits = addDigits(synthesized, format, ParamRole::Input);
+    const VarId result =
+        synthesized.add(makeParam("r_" + param.name, ParamRole::Output, param.type, kernel.loc));
+    Function& entry = synthesized.entry;
     Digits total;
     for (const VarId group : digits.groups) {
       total.groups.push_back(addVariable(entry, fmt::format("sum_{}", total.groups.size()), digitsType));
@@ -226,7 +228,7 @@ class State {
     entry.body.push_back(assign(varRef(entry, result), varRef(entry, plain)));
     entry.body.push_back(
         assign(scalarOf(varRef(entry, result), sum), intrinsic(Intrinsic::ExactRounded, std::move(args))));
-    return made.finish(module_);
+    return synthesized.finish(module_);
   }
 
   /// Replaces settled digits by their magnitude's; returns the variable that is true if the sum was negative.
@@ -273,7 +275,7 @@ void sumExactly(Module& module, Diagnostics&) {
   const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
     const Kernel& kernel = module.kernels[id];
-    if (!kernel.reduction || kernel.isMade) continue;
+    if (!kernel.reduction || kernel.isSynthesized) continue;
     // otherwise other statements use the accumulators, which the variant with digits does not have
     if (!recogniseFold(kernel, module.functions[kernel.entry])) continue;
     for (const ScalarSum& sum : scalarSums(module, id)) state.sum(id, sum);

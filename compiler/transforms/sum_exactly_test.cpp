@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
 #include "transforms/compensate_sums.hpp"
@@ -34,12 +34,12 @@ const std::vector<ExactSum>& transform(Module& module) {
 template <class Value>
 Module reduceModule(Type type, BinaryOp op, Value&& value) {
   Module module = testModule();
-  KernelMaker maker(module, "r");
-  const VarId total = maker.accumulator("total", type);
-  const VarId x = maker.input("x", type);
-  const VarId weights = maker.gather("weights", floatType, 1);
-  ExprPtr weight = gatherRead(floatType, KernelMaker::stream(weights), literal(0));
-  maker.finish(block(assign(maker.ref(total), op, value(maker.ref(x), std::move(weight)))));
+  KernelBuilder builder(module, "r");
+  const VarId total = builder.accumulator("total", type);
+  const VarId x = builder.input("x", type);
+  const VarId weights = builder.gather("weights", floatType, 1);
+  ExprPtr weight = gatherRead(floatType, KernelBuilder::stream(weights), literal(0));
+  builder.finish(block(assign(builder.ref(total), op, value(builder.ref(x), std::move(weight)))));
   return module;
 }
 
@@ -81,11 +81,11 @@ std::size_t outputs(const Module& module, KernelId id) {
 template <class Body>
 Module moduleAround(Body&& body) {
   Module module = testModule();
-  KernelMaker maker(module, "r");
-  const VarId total = maker.accumulator("total", floatType);
-  const VarId x = maker.input("x", floatType);
-  const auto isPositive = [&] { return binary(BinaryOp::Greater, maker.ref(x), literal(0.0F)); };
-  maker.finish(body(assign(maker.ref(total), BinaryOp::Add, maker.ref(x)), isPositive()));
+  KernelBuilder builder(module, "r");
+  const VarId total = builder.accumulator("total", floatType);
+  const VarId x = builder.input("x", floatType);
+  const auto isPositive = [&] { return binary(BinaryOp::Greater, builder.ref(x), literal(0.0F)); };
+  builder.finish(body(assign(builder.ref(total), BinaryOp::Add, builder.ref(x)), isPositive()));
   return module;
 }
 

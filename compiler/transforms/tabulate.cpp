@@ -7,7 +7,7 @@
 #include "ir/build.hpp"
 #include "ir/reach.hpp"
 #include "transforms/copy_functions.hpp"
-#include "transforms/made_kernel.hpp"
+#include "transforms/synthesized_kernel.hpp"
 
 namespace skc {
 namespace {
@@ -30,16 +30,16 @@ KernelId makeKernel(Module& module, TableId table, FunctionId function) {
   FunctionCopies copies;
   const FunctionId computed = copyFunction(module, function, copies);
   dropTables(module, copies);
-  MadeKernel made(module.tables[table].name);   // the name in messages
-  made.kernel.scope = module.tables[table].scope;
-  made.kernel.loc = made.entry.loc = module.functions[function].loc;
-  made.entry.name = made.kernel.name + "_values";
+  SynthesizedKernel synthesized(module.tables[table].name);   // the name in messages
+  synthesized.kernel.scope = module.tables[table].scope;
+  synthesized.kernel.loc = synthesized.entry.loc = module.functions[function].loc;
+  synthesized.entry.name = synthesized.kernel.name + "_values";
   const Type type = Type::of(Scalar::Float);
-  const VarId x = made.add(makeParam("x", ParamRole::Input, type, made.kernel.loc));
-  const VarId value = made.add(makeParam("value", ParamRole::Output, type, made.kernel.loc));
-  made.entry.body.push_back(
-      assign(varRef(made.entry, value), call(module, computed, exprs(varRef(made.entry, x)))));
-  return made.finish(module);
+  const VarId x = synthesized.add(makeParam("x", ParamRole::Input, type, synthesized.kernel.loc));
+  const VarId value = synthesized.add(makeParam("value", ParamRole::Output, type, synthesized.kernel.loc));
+  synthesized.entry.body.push_back(
+      assign(varRef(synthesized.entry, value), call(module, computed, exprs(varRef(synthesized.entry, x)))));
+  return synthesized.finish(module);
 }
 
 }  // namespace

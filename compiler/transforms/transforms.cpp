@@ -47,7 +47,8 @@ template <void (*transform)(ir::Module&, Diagnostics&)>
 void ofPrecisions(ir::Module& module, Diagnostics& diagnostics, const TransformOptions& options) {
   if (options.precisions) return transform(module, diagnostics);
   for (ir::Kernel& kernel : module.kernels) {
-    if (!kernel.isMade) kernel.forms.whyNotWide = kernel.forms.whyNotHalf = "skc was told to leave it out";
+    if (!kernel.isSynthesized)
+      kernel.variants.whyNotWide = kernel.variants.whyNotHalf = "skc was told to leave it out";
   }
 }
 

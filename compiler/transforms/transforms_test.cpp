@@ -9,7 +9,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
 
@@ -20,7 +20,7 @@ using namespace ir;
 
 Module sumModule(BinaryOp op) {
   Module module = testModule();
-  KernelMaker k(module, "sum");
+  KernelBuilder k(module, "sum");
   const VarId x = k.input("x", floatType);
   const VarId total = k.accumulator("total", floatType);
   k.finish(block(assign(k.ref(total), op, k.ref(x))));
@@ -30,24 +30,25 @@ Module sumModule(BinaryOp op) {
 TEST_CASE("every transform is told once, in order, with a valid module") {
   Module module = sumModule(BinaryOp::Add);
   DiagnosticLog log;
-  std::vector<std::string> told;
+  std::vector<std::string> visited;
   runTransforms(module, log, {.after = [&](std::string_view name, const Module& now) {
-                  told.emplace_back(name);
+                  visited.emplace_back(name);
                   CHECK(validate(now, Stage::Specialized).empty());
                 }});
-  CHECK(told == std::vector<std::string>(transformNames().begin(), transformNames().end()));
-  CHECK(told.size() == 17);
+  CHECK(visited == std::vector<std::string>(transformNames().begin(), transformNames().end()));
+  CHECK(visited.size() == 17);
 }
 
 TEST_CASE("nothing runs after an error") {
   Module module = sumModule(BinaryOp::Sub);
   DiagnosticLog log;
-  std::vector<std::string> told;
+  std::vector<std::string> visited;
   runTransforms(module, log,
-                {.after = [&](std::string_view name, const Module&) { told.emplace_back(name); }});
+                {.after = [&](std::string_view name, const Module&) { visited.emplace_back(name); }});
   CHECK(log.hasErrors());
-  CHECK(told == std::vector<std::string>{"specialize-gathers", "tabulate", "fold-constants", "unroll-loops",
-                                         "find-neighbors", "guard-streams", "bound-pushes", "inline-folds"});
+  CHECK(visited == std::vector<std::string>{"specialize-gathers", "tabulate", "fold-constants",
+                                            "unroll-loops", "find-neighbors", "guard-streams", "bound-pushes",
+                                            "inline-folds"});
 }
 
 TEST_CASE("builds with tests check assertions and validate the IR", "[transforms]") {

@@ -63,9 +63,9 @@ void addSample(const Module& module, Type type, int sample, int& number, Numbers
 /// The values of several accumulators, or of the elements folded into them.
 using Values = std::vector<Numbers>;
 
-class Trial {
+class FoldEvaluator {
  public:
-  Trial(const Module& module, const Kernel& kernel) : module_(module), kernel_(kernel) {}
+  FoldEvaluator(const Module& module, const Kernel& kernel) : module_(module), kernel_(kernel) {}
 
   Values element(int sample, int which) const {
     Values values;
@@ -159,45 +159,47 @@ void count(FoldTrial& trial, const std::optional<Values>& one, const std::option
 }  // namespace
 
 FoldTrial tryAssociativity(const Module& module, const Kernel& kernel) {
-  const Trial run(module, kernel);
+  const FoldEvaluator evaluator(module, kernel);
   FoldTrial trial;
   for (int sample = 0; sample < samples; ++sample) {
-    const Values a = run.element(sample, 0), b = run.element(sample, 1), c = run.element(sample, 2);
-    const std::optional<Values> ab = run.fold(a, b, sample), bc = run.fold(b, c, sample);
+    const Values a = evaluator.element(sample, 0), b = evaluator.element(sample, 1),
+                 c = evaluator.element(sample, 2);
+    const std::optional<Values> ab = evaluator.fold(a, b, sample), bc = evaluator.fold(b, c, sample);
     if (!ab || !bc) return {};
-    const std::optional<Values> left = run.fold(*ab, c, sample), right = run.fold(a, *bc, sample);
+    const std::optional<Values> left = evaluator.fold(*ab, c, sample), right = evaluator.fold(a, *bc, sample);
     count(trial, left, right, [&] {
       return fmt::format(
           "{}, {} and {} give {} where the first two are folded first, and {} where the last two are",
-          run.words(a), run.words(b), run.words(c), run.words(*left), run.words(*right));
+          evaluator.words(a), evaluator.words(b), evaluator.words(c), evaluator.words(*left),
+          evaluator.words(*right));
     });
   }
   return trial;
 }
 
 IdentityTrial tryIdentity(const Module& module, const Kernel& kernel) {
-  const Trial run(module, kernel);
+  const FoldEvaluator evaluator(module, kernel);
   IdentityTrial trial;
-  const std::optional<Values> identity = run.identities();
+  const std::optional<Values> identity = evaluator.identities();
   if (!identity) return trial;
   for (int sample = 0; sample < samples / 2; ++sample) {
-    const Values element = run.element(sample, 0);
-    const std::optional<Values> folded = run.fold(*identity, element, sample);
+    const Values element = evaluator.element(sample, 0);
+    const std::optional<Values> folded = evaluator.fold(*identity, element, sample);
     count(trial, folded, element, [&] {
-      return fmt::format("{} folded into {} gives {}", run.words(element), run.words(*identity),
-                         run.words(*folded));
+      return fmt::format("{} folded into {} gives {}", evaluator.words(element), evaluator.words(*identity),
+                         evaluator.words(*folded));
     });
   }
-  const std::optional<Values> twice = run.fold(*identity, *identity, 0);
+  const std::optional<Values> twice = evaluator.fold(*identity, *identity, 0);
   trial.isIdempotent = twice && differ(*twice, *identity) == false;
   return trial;
 }
 
 bool computesWithOthers(const Module& module, const Kernel& kernel) {
-  const Trial run(module, kernel);
+  const FoldEvaluator evaluator(module, kernel);
   for (int sample = 0; sample < samples; ++sample) {
-    const Values a = run.element(sample, 0), b = run.element(sample, 1);
-    const std::optional<Values> one = run.fold(a, b, 0), other = run.fold(a, b, 1 + sample);
+    const Values a = evaluator.element(sample, 0), b = evaluator.element(sample, 1);
+    const std::optional<Values> one = evaluator.fold(a, b, 0), other = evaluator.fold(a, b, 1 + sample);
     if (!one || !other) return false;
     const auto chooses = [&](const Values& result) {
       return differ(result, a) == false || differ(result, b) == false;

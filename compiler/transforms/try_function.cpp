@@ -17,21 +17,21 @@ namespace {
 using namespace ir;
 
 /// Thrown if a function cannot be tried; it does not leave this file.
-struct CannotTry {};
+struct CannotEvaluate {};
 
 double wrapped(Scalar scalar, std::int64_t value) {
   const auto bits = static_cast<std::uint32_t>(value);
-  return carrierOf(scalar) == Scalar::Uint ? double{static_cast<double>(bits)}
-                                           : static_cast<double>(static_cast<std::int32_t>(bits));
+  return arithmeticScalar(scalar) == Scalar::Uint ? double{static_cast<double>(bits)}
+                                                  : static_cast<double>(static_cast<std::int32_t>(bits));
 }
 
 double converted(Scalar from, Scalar to, double value) {
   if (to == Scalar::Bool) return value != 0 ? 1 : 0;
-  const Scalar carrier = carrierOf(to);
-  if (isReal(carrier)) return value;
-  if (!isReal(carrierOf(from))) return wrapped(carrier, static_cast<std::int64_t>(value));
-  if (!(std::fabs(value) < 2147483648.0)) throw CannotTry{};
-  return wrapped(carrier, static_cast<std::int64_t>(value));
+  const Scalar arithmetic = arithmeticScalar(to);
+  if (isReal(arithmetic)) return value;
+  if (!isReal(arithmeticScalar(from))) return wrapped(arithmetic, static_cast<std::int64_t>(value));
+  if (!(std::fabs(value) < 2147483648.0)) throw CannotEvaluate{};
+  return wrapped(arithmetic, static_cast<std::int64_t>(value));
 }
 
 double comparison(BinaryOp op, double a, double b) {
@@ -55,7 +55,7 @@ double comparison(BinaryOp op, double a, double b) {
     case BinaryOp::ShiftLeft:
     case BinaryOp::ShiftRight: break;
   }
-  throw CannotTry{};
+  throw CannotEvaluate{};
 }
 
 double ofIntegers(BinaryOp op, Scalar scalar, double x, double y) {
@@ -167,17 +167,17 @@ class Interpreter {
 
   void tick() {
     constexpr int mostSteps = 20'000;
-    if (++steps_ > mostSteps) throw CannotTry{};
+    if (++steps_ > mostSteps) throw CannotEvaluate{};
   }
 
   std::size_t size(Type type) const {
     const std::uint64_t count = numbersIn(module_, type);
-    if (count > 256) throw CannotTry{};
+    if (count > 256) throw CannotEvaluate{};
     return static_cast<std::size_t>(count);
   }
 
   std::vector<Numbers> call(FunctionId id, std::vector<Numbers> arguments, Numbers& result) {
-    if (++depth_ > 32) throw CannotTry{};
+    if (++depth_ > 32) throw CannotEvaluate{};
     Frame frame{&module_.functions[id], std::move(arguments), {}};
     for (std::size_t i = frame.variables.size(); i < frame.function->variables.size(); ++i) {
       frame.variables.emplace_back(size(frame.function->variables[i].type), 0.0);
@@ -221,8 +221,9 @@ class Interpreter {
           if (n.value) frame.result = of(frame, *n.value);
           return Flow::Return;
         },
-        [&](const Scope& n) { return block(frame, n.body); }, [](const Push&) -> Flow { throw CannotTry{}; },
-        [](const Scatter&) -> Flow { throw CannotTry{}; });
+        [&](const Scope& n) { return block(frame, n.body); },
+        [](const Push&) -> Flow { throw CannotEvaluate{}; },
+        [](const Scatter&) -> Flow { throw CannotEvaluate{}; });
   }
 
   Flow callStatement(Frame& frame, const CallStmt& n) {
@@ -303,7 +304,7 @@ class Interpreter {
       base.numbers = std::move(chosen);
       return base;
     }
-    throw CannotTry{};
+    throw CannotEvaluate{};
   }
 
   std::size_t offset(Type type, std::uint32_t field) const {
@@ -364,11 +365,11 @@ class Interpreter {
           return result;
         },
         [&](const IntrinsicCall& n) { return intrinsic(frame, n, expr.type); },
-        [](const GatherRead&) -> Numbers { throw CannotTry{}; },
-        [](const NeighborRead&) -> Numbers { throw CannotTry{}; },
-        [](const Sample&) -> Numbers { throw CannotTry{}; },
-        [](const IndexOf&) -> Numbers { throw CannotTry{}; },
-        [](const ExtentOf&) -> Numbers { throw CannotTry{}; });
+        [](const GatherRead&) -> Numbers { throw CannotEvaluate{}; },
+        [](const NeighborRead&) -> Numbers { throw CannotEvaluate{}; },
+        [](const Sample&) -> Numbers { throw CannotEvaluate{}; },
+        [](const IndexOf&) -> Numbers { throw CannotEvaluate{}; },
+        [](const ExtentOf&) -> Numbers { throw CannotEvaluate{}; });
   }
 
   Numbers part(const Numbers& all, std::size_t from, Type type) const {
@@ -377,7 +378,7 @@ class Interpreter {
   }
 
   static double literal(Scalar scalar, const Literal& n) {
-    switch (carrierOf(scalar)) {
+    switch (arithmeticScalar(scalar)) {
       case Scalar::Bool: return n.bits != 0;
       case Scalar::Int: return static_cast<std::int32_t>(n.bits);
       case Scalar::Uint: return n.bits;
@@ -388,7 +389,7 @@ class Interpreter {
 
   static Numbers unary(const Unary& n, Numbers value) {
     const Scalar scalar = n.operand->type.scalar;
-    const bool isIntegral = !isReal(carrierOf(scalar));
+    const bool isIntegral = !isReal(arithmeticScalar(scalar));
     for (double& v : value) {
       if (n.op == UnaryOp::LogicalNot) {
         v = v == 0;
@@ -414,7 +415,7 @@ class Interpreter {
     Numbers value(std::max(a.size(), b.size()));
     for (std::size_t i = 0; i < value.size(); ++i) {
       const double x = a.size() == 1 ? a[0] : a.at(i), y = b.size() == 1 ? b[0] : b.at(i);
-      value[i] = isReal(carrierOf(scalar)) ? ofReals(op, x, y) : ofIntegers(op, scalar, x, y);
+      value[i] = isReal(arithmeticScalar(scalar)) ? ofReals(op, x, y) : ofIntegers(op, scalar, x, y);
     }
     return value;
   }
@@ -448,7 +449,7 @@ class Interpreter {
       value.insert(value.end(), numbers.begin(), numbers.end());
     }
     if (value.size() == 1) value.resize(size(type), value[0]);
-    if (value.size() != size(type)) throw CannotTry{};
+    if (value.size() != size(type)) throw CannotEvaluate{};
     return value;
   }
 
@@ -483,7 +484,7 @@ class Interpreter {
       };
       const std::optional<double> v =
           args.size() == 1 ? ofOne(n.intrinsic, at(0)) : ofSeveral(n.intrinsic, at(0), at(1), at(2));
-      if (!v) throw CannotTry{};
+      if (!v) throw CannotEvaluate{};
       value[i] = *v;
     }
     return value;
@@ -499,7 +500,7 @@ std::optional<std::vector<Numbers>> tryFunction(const Module& module, FunctionId
                                                 std::vector<Numbers> arguments) {
   try {
     return Interpreter(module).call(id, std::move(arguments));
-  } catch (const CannotTry&) {
+  } catch (const CannotEvaluate&) {
     return std::nullopt;
   } catch (const std::out_of_range&) {
     return std::nullopt;
@@ -509,7 +510,7 @@ std::optional<std::vector<Numbers>> tryFunction(const Module& module, FunctionId
 std::optional<Numbers> tryConstant(const Module& module, const Expr& expr) {
   try {
     return Interpreter(module).constant(expr);
-  } catch (const CannotTry&) {
+  } catch (const CannotEvaluate&) {
     return std::nullopt;
   } catch (const std::out_of_range&) {
     return std::nullopt;

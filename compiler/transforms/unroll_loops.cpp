@@ -14,7 +14,7 @@
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "transforms/fold_constants.hpp"
-#include "transforms/leave_rounds.hpp"
+#include "transforms/remove_jumps.hpp"
 
 namespace skc {
 namespace {
@@ -25,9 +25,9 @@ using namespace ir;
 constexpr std::int64_t tinyExpressions = 24;
 
 /// Variables whose values depend on a loop's counter, or on anything else that the loop changes.
-class Followers {
+class LoopVariantVariables {
  public:
-  explicit Followers(const Loop& loop) {
+  explicit LoopVariantVariables(const Loop& loop) {
     for (const Stmt& stmt : loop.init) follow(stmt, true);
     walkStmts(loop.step, [&](const Stmt& stmt) { follow(stmt, true); });
     // a `while` loop counts in its body
@@ -82,7 +82,7 @@ class Unroller {
 
   void run(Function& function) {
     function_ = &function;
-    if (asksForValues(function.body)) foldWholeNumbers(module_, function);
+    if (needsKnownValues(function.body)) foldWholeNumbers(module_, function);
     do {
       hasUnrolled_ = false;
       block(function.body);
@@ -93,18 +93,18 @@ class Unroller {
  private:
   /// The iterations of a loop, or the reason why it stays.
   struct Attempt {
-    Block rounds;
+    Block iterations;
     std::string whyNot;
   };
 
   /// True if a loop would be unrolled if its bounds, which may be locals with known values, were constants.
-  bool asksForValues(const Block& statements) const {
-    bool asks = false;
+  bool needsKnownValues(const Block& statements) const {
+    bool needs = false;
     walkStmts(statements, [&](const Stmt& stmt) {
       const auto* loop = std::get_if<Loop>(&stmt.node);
-      asks = asks || (loop != nullptr && !roundsIn(module_, *loop) && makesIndices(*loop));
+      needs = needs || (loop != nullptr && !countedLoop(module_, *loop) && makesIndices(*loop));
     });
-    return asks;
+    return needs;
   }
 
   void block(Block& statements) {
@@ -123,14 +123,14 @@ class Unroller {
   /// Appends all iterations of a loop and of the loops in it; or nothing, and returns false.
   bool unrollNest(const Loop& loop, Loc loc, Block& result) {
     const std::size_t variables = function_->variables.size();
-    rounds_ = 0;
+    iterations_ = 0;
     inner_.clear();
     Attempt attempt = written(loop, loc);
-    const std::int64_t expressions = written_ + expressionsIn(attempt.rounds);
+    const std::int64_t expressions = written_ + expressionsIn(attempt.iterations);
     if (attempt.whyNot.empty() && expressions > mostUnrolledExpressions)
       attempt.whyNot = tooLong(expressions);
-    const std::optional<Rounds> rounds = roundsIn(module_, loop);
-    note({loc, rounds ? std::optional(rounds->count) : std::nullopt, attempt.whyNot});
+    const std::optional<CountedLoop> counted = countedLoop(module_, loop);
+    note({loc, counted ? std::optional(counted->count) : std::nullopt, attempt.whyNot});
     if (!attempt.whyNot.empty()) {
       function_->variables.resize(variables);
       return false;
@@ -138,24 +138,25 @@ class Unroller {
     written_ = expressions;
     hasUnrolled_ = true;
     for (LoopNote& one : inner_) note(std::move(one));
-    std::ranges::move(attempt.rounds, std::back_inserter(result));
+    std::ranges::move(attempt.iterations, std::back_inserter(result));
     return true;
   }
 
   bool isWanted(const Loop& loop) const {
     if (makesIndices(loop)) return true;
-    const std::optional<std::int64_t> rounds = roundsOf(module_, loop);
-    return rounds && *rounds * expressionsIn(loop.body) <= tinyExpressions && *rounds <= tinyExpressions;
+    const std::optional<std::int64_t> count = tripCount(module_, loop);
+    return count && *count * expressionsIn(loop.body) <= tinyExpressions && *count <= tinyExpressions;
   }
 
   /// True if indices depend on the loop's counter, but not on the counter of a surrounding loop that stays.
   bool makesIndices(const Loop& loop) const {
-    const Followers followers(loop);
+    const LoopVariantVariables variant(loop);
     bool makes = false;
     forEachIndex(loop.body, [&](const Expr& index) {
-      makes = makes || (followers.mentions(index) && std::ranges::none_of(around_, [&](const Followers& one) {
-                          return one.mentions(index);
-                        }));
+      makes = makes ||
+              (variant.mentions(index) && std::ranges::none_of(around_, [&](const LoopVariantVariables& one) {
+                 return one.mentions(index);
+               }));
     });
     return makes;
   }
@@ -180,26 +181,26 @@ class Unroller {
   // ---- iterations ---------------------------------------------------------------------------------
 
   Attempt written(const Loop& loop, Loc loc) {
-    const std::optional<Rounds> rounds = roundsIn(module_, loop);
-    if (!rounds) return {{}, whyUnknown(loop)};
-    rounds_ += rounds->count;
-    if (rounds_ > mostUnrolledRounds) {
+    const std::optional<CountedLoop> counted = countedLoop(module_, loop);
+    if (!counted) return {{}, whyUnknown(loop)};
+    iterations_ += counted->count;
+    if (iterations_ > mostUnrolledIterations) {
       return {{},
               fmt::format("with the loops in it, it takes {} rounds or more, and at most {} are unrolled",
-                          rounds_, mostUnrolledRounds)};
+                          iterations_, mostUnrolledIterations)};
     }
-    const std::int64_t expressions = rounds->count * expressionsIn(loop.body);
+    const std::int64_t expressions = counted->count * expressionsIn(loop.body);
     if (expressions > mostUnrolledExpressions) return {{}, tooLong(expressions)};
     Attempt result;
-    for (std::int64_t round = 0; round < rounds->count; ++round) {
-      Block body = bodyOf(loop, *rounds, round);
-      const RoundEnd end = leaveRound(module_, body);
-      if (end == RoundEnd::Unknown)
+    for (std::int64_t iteration = 0; iteration < counted->count; ++iteration) {
+      Block body = bodyOf(loop, *counted, iteration);
+      const IterationEnd end = removeJumps(module_, body);
+      if (end == IterationEnd::Unknown)
         return {{}, "elements may leave it, or a part of a round, at different times"};
       result.whyNot = writeInner(body);
       if (!result.whyNot.empty()) return result;
-      append(result.rounds, std::move(body), loc);
-      if (end == RoundEnd::LeavesLoop) break;
+      append(result.iterations, std::move(body), loc);
+      if (end == IterationEnd::LeavesLoop) break;
     }
     return result;
   }
@@ -218,8 +219,8 @@ class Unroller {
       } else {
         Attempt attempt = written(*loop, stmt.loc);
         whyNot = std::move(attempt.whyNot);
-        inner_.push_back({stmt.loc, roundsOf(module_, *loop)});
-        std::ranges::move(attempt.rounds, std::back_inserter(result));
+        inner_.push_back({stmt.loc, tripCount(module_, *loop)});
+        std::ranges::move(attempt.iterations, std::back_inserter(result));
       }
       if (!whyNot.empty()) return whyNot;
     }
@@ -228,10 +229,10 @@ class Unroller {
   }
 
   /// The body with a literal for the counter; all iterations but the first have locals of their own.
-  Block bodyOf(const Loop& loop, const Rounds& rounds, std::int64_t round) {
+  Block bodyOf(const Loop& loop, const CountedLoop& counted, std::int64_t iteration) {
     Block body = clone(loop.body);
     std::map<VarId, VarId> locals;
-    if (round > 0) {
+    if (iteration > 0) {
       walkStmts(body, [&](Stmt& stmt) {
         if (auto* n = std::get_if<Declare>(&stmt.node)) n->var = locals[n->var] = copyOf(n->var);
       });
@@ -239,8 +240,8 @@ class Unroller {
     rewriteExprs(body, [&](ExprPtr& slot) {
       auto* ref = std::get_if<VarRef>(&slot->node);
       if (ref == nullptr) return;
-      if (ref->var == rounds.counter) {
-        slot = rounds.value(round, slot->loc);
+      if (ref->var == counted.counter) {
+        slot = counted.value(iteration, slot->loc);
       } else if (const auto local = locals.find(ref->var); local != locals.end()) {
         ref->var = local->second;
       }
@@ -255,13 +256,13 @@ class Unroller {
   }
 
   /// Appends an iteration, in a scope if it declares anything.
-  static void append(Block& result, Block&& round, Loc loc) {
+  static void append(Block& result, Block&& iteration, Loc loc) {
     const bool declares = std::ranges::any_of(
-        round, [](const Stmt& stmt) { return std::holds_alternative<Declare>(stmt.node); });
+        iteration, [](const Stmt& stmt) { return std::holds_alternative<Declare>(stmt.node); });
     if (declares) {
-      result.push_back(scope(std::move(round), loc));
+      result.push_back(scope(std::move(iteration), loc));
     } else {
-      std::ranges::move(round, std::back_inserter(result));
+      std::ranges::move(iteration, std::back_inserter(result));
     }
   }
 
@@ -282,9 +283,9 @@ class Unroller {
   Function* function_ = nullptr;
   std::int64_t written_ = 0;  ///< expressions in all unrolled code
   bool hasUnrolled_ = false;
-  std::int64_t rounds_ = 0;  ///< of the loop being unrolled and the loops in it
+  std::int64_t iterations_ = 0;  ///< of the loop being unrolled and the loops in it
   std::vector<LoopNote> inner_;
-  std::vector<Followers> around_;  ///< of the loops around the current block that stay
+  std::vector<LoopVariantVariables> around_;  ///< of the loops around the current block that stay
 };
 
 }  // namespace

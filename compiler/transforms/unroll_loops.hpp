@@ -26,7 +26,7 @@
 namespace skc {
 
 /// Limits: iterations of a loop including the loops in it, and expressions in all unrolled loops of a kernel.
-constexpr std::int64_t mostUnrolledRounds = 64;
+constexpr std::int64_t mostUnrolledIterations = 64;
 constexpr std::int64_t mostUnrolledExpressions = 1000;
 
 void unrollLoops(ir::Module& module, Diagnostics& diagnostics);

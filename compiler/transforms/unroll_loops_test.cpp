@@ -9,7 +9,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -24,14 +24,16 @@ using enum BinaryOp;
 /// A kernel with a gather `a`, a uniform `u`, an output `r`, and some locals.
 struct Sample {
   Module module = testModule();
-  KernelMaker k{module, "f"};
+  KernelBuilder k{module, "f"};
   VarId a = k.gather("a", floatType, 1);
   VarId u = k.uniform("u", intType);
   VarId r = k.output("r", floatType);
   VarId i = k.local("i", intType);
   VarId j = k.local("j", intType);
 
-  ExprPtr near(ExprPtr offset) { return neighborRead(floatType, KernelMaker::stream(a), std::move(offset)); }
+  ExprPtr near(ExprPtr offset) {
+    return neighborRead(floatType, KernelBuilder::stream(a), std::move(offset));
+  }
   Stmt add(ExprPtr value) { return assign(k.ref(r), Add, std::move(value)); }
   /// for (int v = from; v < to; ++v) body
   Stmt loop(VarId v, ExprPtr from, ExprPtr to, Block body, std::uint32_t line = 1) {
@@ -59,7 +61,7 @@ TEST_CASE("offsets of neighbours become constants") {
   CHECK(s.unrolled(block(s.loop(s.i, -1, 2, block(s.add(s.near(binary(Mul, s.k.ref(s.i), literal(2)))))))) ==
         "{\n  r += neighbor($0, -2);\n  r += neighbor($0, 0);\n  r += neighbor($0, 2);\n}\n");
   CHECK(s.note().whyNot.empty());
-  CHECK(s.note().rounds == 3);
+  CHECK(s.note().tripCount == 3);
 }
 
 TEST_CASE("loops in loops count together, also where the outer counter bounds the inner") {
@@ -71,7 +73,7 @@ TEST_CASE("loops in loops count together, also where the outer counter bounds th
         "{\n  r += neighbor($0, 0);\n  r += neighbor($0, -1);\n  r += neighbor($0, 0);\n}\n");
 }
 
-TEST_CASE("each round has locals of its own, and those of a known integer are gone") {
+TEST_CASE("each iteration has locals of its own, and those of a known integer are gone") {
   Sample s;
   const VarId t = s.k.local("t", floatType), d = s.k.local("d", intType);
   const std::string text = s.unrolled(
@@ -101,7 +103,7 @@ TEST_CASE("arithmetic on floats is left to the device") {
         "{\n  r += 1.0 * 0.1 * neighbor($0, 1);\n  r += 2.0 * 0.1 * neighbor($0, 2);\n}\n");
 }
 
-TEST_CASE("jumps that are decided are gone, and what continues skips the rest of its round") {
+TEST_CASE("jumps that are decided are gone, and what continues skips the rest of its iteration") {
   Sample s;
   CHECK(s.unrolled(block(
             s.loop(s.i, 0, 9,
@@ -123,7 +125,7 @@ TEST_CASE("a loop that elements leave stays, with its reason") {
   CHECK(s.note().whyNot.find("at different times") != std::string::npos);
 }
 
-TEST_CASE("a loop of unknown bounds, a changed counter or too many rounds stays, with its reason") {
+TEST_CASE("a loop of unknown bounds, a changed counter or too many iterations stays, with its reason") {
   const auto whyNot = [](const std::function<Block(Sample&)>& make) {
     Sample s;
     CHECK(s.unrolled(make(s)).find("for (int i") != std::string::npos);

@@ -30,12 +30,12 @@ Type WideTypes::of(Type type) {
   }
   Struct wide = module_.structs[type.index];
   wide.name += "_wide";
-  wide.isMade = true;
+  wide.isSynthesized = true;
   for (StructField& field : wide.fields) field.type = of(field.type);
   module_.structs.push_back(std::move(wide));
-  const auto made = static_cast<std::uint32_t>(module_.structs.size() - 1);
-  structs_[type.index] = made;
-  return Type::structType(made);
+  const auto index = static_cast<std::uint32_t>(module_.structs.size() - 1);
+  structs_[type.index] = index;
+  return Type::structType(index);
 }
 
 ExprPtr WideTypes::widened(ExprPtr value) {

@@ -15,7 +15,7 @@
 #include "ir/reach.hpp"
 #include "ir/walk.hpp"
 #include "transforms/copy_functions.hpp"
-#include "transforms/made_kernel.hpp"
+#include "transforms/synthesized_kernel.hpp"
 #include "transforms/wide_types.hpp"
 
 namespace skc {
@@ -51,9 +51,9 @@ bool isOfBits(Intrinsic intrinsic) {
 // ---- what has no wide variant -------------------------------------------------------------------
 
 /// Looks for operations that doubles do not support.
-class Obstacles {
+class UnsupportedOperations {
  public:
-  Obstacles(const Module& module, WideTypes& types) : module_(module), types_(types) {}
+  UnsupportedOperations(const Module& module, WideTypes& types) : module_(module), types_(types) {}
 
   /// Returns the first obstacle, or "".
   std::string of(const Kernel& kernel) {
@@ -119,24 +119,24 @@ class Widener {
   KernelId widen(KernelId id, bool holdsFloats) {
     FunctionCopies copies;
     const FunctionId entry = copyFunction(module_, module_.kernels[id].entry, copies);
-    Kernel made = madeFor(module_.kernels[id]);
-    made.signature = module_.kernels[id].signature;
-    made.entry = entry;
+    Kernel variant = synthesizedFor(module_.kernels[id]);
+    variant.signature = module_.kernels[id].signature;
+    variant.entry = entry;
     if (const std::optional<Reduction>& plain = module_.kernels[id].reduction) {
-      made.reduction = Reduction{{}, plain->operands, plain->seeded};
+      variant.reduction = Reduction{{}, plain->operands, plain->seeded};
     }
     for (std::size_t i = 0; i < module_.kernels[id].params.size(); ++i) {
-      made.params.push_back(param(module_.kernels[id].params[i], holdsFloats));
+      variant.params.push_back(param(module_.kernels[id].params[i], holdsFloats));
     }
     dropTables(module_, copies);
-    for (const auto& [from, to] : copies) function(to, made);
-    module_.kernels.push_back(std::move(made));
+    for (const auto& [from, to] : copies) function(to, variant);
+    module_.kernels.push_back(std::move(variant));
     return static_cast<KernelId>(module_.kernels.size() - 1);
   }
 
   /// A kernel that converts a reduce's accumulators, in order, from doubles to floats.
   KernelId finish(KernelId id) {
-    MadeKernel made(module_.kernels[id], "_finish");
+    SynthesizedKernel synthesized(module_.kernels[id], "_finish");
     std::vector<VarId> inputs;
     for (const bool isResult : {false, true}) {
       for (const KernelParam& accumulator : module_.kernels[id].params) {
@@ -145,34 +145,34 @@ class Widener {
                                       isResult ? ParamRole::Output : ParamRole::Input,
                                       types_.of(accumulator.type), accumulator.loc);
         if (isResult && param.type != accumulator.type) param.held = accumulator.type;
-        const VarId var = made.add(std::move(param));
+        const VarId var = synthesized.add(std::move(param));
         if (isResult) {
-          made.entry.body.push_back(
-              assign(varRef(made.entry, var), varRef(made.entry, inputs[var - inputs.size()])));
+          synthesized.entry.body.push_back(
+              assign(varRef(synthesized.entry, var), varRef(synthesized.entry, inputs[var - inputs.size()])));
         } else {
           inputs.push_back(var);
         }
       }
     }
-    return made.finish(module_);
+    return synthesized.finish(module_);
   }
 
  private:
   KernelParam param(const KernelParam& plain, bool holdsFloats) {
-    KernelParam made = clone(plain);
-    made.type = isStreamOfValues(plain.role) ? types_.of(plain.type) : plain.type;
+    KernelParam wide = clone(plain);
+    wide.type = isStreamOfValues(plain.role) ? types_.of(plain.type) : plain.type;
     const bool isPartial = plain.role == ParamRole::Accumulator || !holdsFloats;
-    if (made.type != plain.type && (!isPartial || plain.role == ParamRole::Gather)) made.held = plain.type;
-    made.filter = false;
-    made.border = wideConstant(plain.border);
-    made.identity = wideConstant(plain.identity);
-    return made;
+    if (wide.type != plain.type && (!isPartial || plain.role == ParamRole::Gather)) wide.held = plain.type;
+    wide.filter = false;
+    wide.border = wideConstant(plain.border);
+    wide.identity = wideConstant(plain.identity);
+    return wide;
   }
 
   ExprPtr wideConstant(const ExprPtr& plain) {
-    ExprPtr made = clone(plain);
-    if (made) rewrite(made, {});
-    return made;
+    ExprPtr wide = clone(plain);
+    if (wide) rewrite(wide, {});
+    return wide;
   }
 
   /// Rewrites a function of `kernel`. The entry converts its non-stream values at its start.
@@ -199,14 +199,14 @@ class Widener {
     }
     module_.functions[id].result = types_.of(module_.functions[id].result);
     Block body = std::move(module_.functions[id].body);
-    const Function& made = module_.functions[id];
+    const Function& function = module_.functions[id];
     walkStmts(body, [&](Stmt& stmt) {
-      forEachOperand(stmt, [&](ExprPtr& slot) { rewrite(slot, {&made, &wideOf}); });
+      forEachOperand(stmt, [&](ExprPtr& slot) { rewrite(slot, {&function, &wideOf}); });
       // append outputs keep their element types
       if (auto* n = std::get_if<Push>(&stmt.node))
-        n->value = toAppendOutput(made, n->stream, std::move(n->value), kernel);
+        n->value = toAppendOutput(function, n->stream, std::move(n->value), kernel);
       if (auto* n = std::get_if<Scatter>(&stmt.node))
-        n->value = toAppendOutput(made, n->stream, std::move(n->value), kernel);
+        n->value = toAppendOutput(function, n->stream, std::move(n->value), kernel);
     });
     body.insert(body.begin(), std::make_move_iterator(start.begin()), std::make_move_iterator(start.end()));
     module_.functions[id].body = std::move(body);
@@ -250,10 +250,10 @@ class Widener {
     ExprPtr& operand = std::get<Convert>(slot->node).operand;
     const Type to = slot->type.isFloat() ? slot->type.withScalar(Scalar::Double) : slot->type;
     if (operand->type.isNarrow() && to.isDouble()) {
-      const Scalar carrier = operand->type.carrier().scalar;
-      operand = convert(carrier, std::move(operand), slot->loc);
+      const Scalar arithmetic = operand->type.arithmeticType().scalar;
+      operand = convert(arithmetic, std::move(operand), slot->loc);
     } else if (operand->type.isDouble() && to.isNarrow()) {
-      operand = convert(to.carrier().scalar, std::move(operand), slot->loc);
+      operand = convert(to.arithmeticType().scalar, std::move(operand), slot->loc);
     }
     if (operand->type == to) {
       ExprPtr value = std::move(operand);
@@ -274,12 +274,12 @@ class Widener {
   ConstantId wideOf(ConstantId plain) {
     if (!types_.holdsFloat(module_.constants[plain].type)) return plain;
     if (const auto known = constants_.find(plain); known != constants_.end()) return known->second;
-    Constant made;
-    made.name = module_.constants[plain].name + "_wide";
-    made.type = types_.of(module_.constants[plain].type);
-    made.loc = module_.constants[plain].loc;
-    made.value = wideConstant(module_.constants[plain].value);
-    module_.constants.push_back(std::move(made));
+    Constant wide;
+    wide.name = module_.constants[plain].name + "_wide";
+    wide.type = types_.of(module_.constants[plain].type);
+    wide.loc = module_.constants[plain].loc;
+    wide.value = wideConstant(module_.constants[plain].value);
+    module_.constants.push_back(std::move(wide));
     return constants_[plain] = static_cast<ConstantId>(module_.constants.size() - 1);
   }
 
@@ -309,18 +309,18 @@ void widenFloats(Module& module, Diagnostics&) {
   Widener widener(module, types, constants);
   const std::size_t declared = module.kernels.size();  // excludes kernels that this adds
   for (KernelId id = 0; id < declared; ++id) {
-    if (module.kernels[id].isMade || !computesFloats(module, types, module.kernels[id])) continue;
-    Obstacles obstacles(module, types);
+    if (module.kernels[id].isSynthesized || !computesFloats(module, types, module.kernels[id])) continue;
+    UnsupportedOperations obstacles(module, types);
     std::string obstacle = obstacles.of(module.kernels[id]);
     const std::optional<KernelId> combine =
         module.kernels[id].reduction ? module.kernels[id].reduction->combine : std::nullopt;
     if (combine && obstacle.empty()) obstacle = obstacles.of(module.kernels[*combine]);
     if (!obstacle.empty()) {
-      module.kernels[id].forms.whyNotWide = std::move(obstacle);
+      module.kernels[id].variants.whyNotWide = std::move(obstacle);
       continue;
     }
     const KernelId wide = widener.widen(id, true);
-    module.kernels[id].forms.wide = wide;
+    module.kernels[id].variants.wide = wide;
     if (!combine) continue;
     // partial results are doubles, so even a fold that combines its own results has another variant for them
     const KernelId wideCombine = widener.widen(*combine, false);

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 #include "support/diagnostic_log.hpp"
@@ -18,14 +18,14 @@ using namespace ir;
 
 /// r = a + t * g[0]
 KernelId addBlend(Module& module) {
-  KernelMaker maker(module, "blend");
-  const VarId t = maker.uniform("t", floatType);
-  const VarId a = maker.input("a", floatType);
-  const VarId g = maker.gather("g", floatType, 1, Boundary::Border, literal(0.5F));
-  const VarId r = maker.output("r", floatType);
+  KernelBuilder builder(module, "blend");
+  const VarId t = builder.uniform("t", floatType);
+  const VarId a = builder.input("a", floatType);
+  const VarId g = builder.gather("g", floatType, 1, Boundary::Border, literal(0.5F));
+  const VarId r = builder.output("r", floatType);
   ExprPtr read = gatherRead(floatType, {StreamRef::Space::KernelParameter, g}, literal(0));
-  ExprPtr sum = binary(BinaryOp::Add, maker.ref(a), binary(BinaryOp::Mul, maker.ref(t), std::move(read)));
-  return maker.finish(block(assign(maker.ref(r), std::move(sum))));
+  ExprPtr sum = binary(BinaryOp::Add, builder.ref(a), binary(BinaryOp::Mul, builder.ref(t), std::move(read)));
+  return builder.finish(block(assign(builder.ref(r), std::move(sum))));
 }
 
 std::string entryOf(const Module& module, KernelId id) {
@@ -39,29 +39,29 @@ TEST_CASE("a wide form computes in doubles and holds floats") {
   const KernelId id = addBlend(module);
   DiagnosticLog log;
   widenFloats(module, log);
-  REQUIRE(module.kernels[id].forms.wide);
-  const Kernel& wide = module.kernels[*module.kernels[id].forms.wide];
+  REQUIRE(module.kernels[id].variants.wide);
+  const Kernel& wide = module.kernels[*module.kernels[id].variants.wide];
   CHECK(wide.params[0].type == floatType);
   CHECK(wide.params[1].type == Type::of(Scalar::Double));
   CHECK(wide.params[1].held == floatType);
   CHECK(wide.params[2].border->type == Type::of(Scalar::Double));
   CHECK(validate(module, Stage::Specialized).empty());
-  const std::string text = entryOf(module, *module.kernels[id].forms.wide);
+  const std::string text = entryOf(module, *module.kernels[id].variants.wide);
   INFO(text);
   CHECK(text.find("t_wide") != std::string::npos);
 }
 
 TEST_CASE("what doubles cannot do has no wide form, and says why") {
   Module module = testModule();
-  KernelMaker maker(module, "turned", 7);
-  const VarId m = maker.uniform("m", Type::matrix(2));
-  const VarId r = maker.output("r", floatType);
-  ExprPtr determinant = intrinsic(Intrinsic::Determinant, exprs(maker.ref(m)), atLine(8));
-  const KernelId id = maker.finish(block(assign(maker.ref(r), std::move(determinant))));
+  KernelBuilder builder(module, "turned", 7);
+  const VarId m = builder.uniform("m", Type::matrix(2));
+  const VarId r = builder.output("r", floatType);
+  ExprPtr determinant = intrinsic(Intrinsic::Determinant, exprs(builder.ref(m)), atLine(8));
+  const KernelId id = builder.finish(block(assign(builder.ref(r), std::move(determinant))));
   DiagnosticLog log;
   widenFloats(module, log);
-  CHECK_FALSE(module.kernels[id].forms.wide);
-  CHECK(module.kernels[id].forms.whyNotWide == "matrices are of floats (test.sk:7)");
+  CHECK_FALSE(module.kernels[id].variants.wide);
+  CHECK(module.kernels[id].variants.whyNotWide == "matrices are of floats (test.sk:7)");
 }
 
 TEST_CASE("a half form rounds what is read and what is computed, once") {
@@ -69,9 +69,9 @@ TEST_CASE("a half form rounds what is read and what is computed, once") {
   const KernelId id = addBlend(module);
   DiagnosticLog log;
   roundHalves(module, log);
-  REQUIRE(module.kernels[id].forms.half);
+  REQUIRE(module.kernels[id].variants.half);
   CHECK(validate(module, Stage::Specialized).empty());
-  const std::string text = entryOf(module, *module.kernels[id].forms.half);
+  const std::string text = entryOf(module, *module.kernels[id].variants.half);
   INFO(text);
   std::size_t roundings = 0;
   for (std::size_t at = text.find("half("); at != std::string::npos; at = text.find("half(", at + 1))

@@ -32,9 +32,9 @@ std::int64_t inside(std::int64_t i, std::int64_t extent, Boundary boundary) {
 }
 
 program::Parameter gatherOf(Boundary boundary, int rank) {
-  program::Parameter made = gather<float>("a", rank, boundary);
-  made.border = "-7.0";
-  return made;
+  program::Parameter parameter = gather<float>("a", rank, boundary);
+  parameter.border = "-7.0";
+  return parameter;
 }
 
 /// Reads the neighbour (dx, dy) of each element: by sk_near_a if `near`, else by sk_at_a.

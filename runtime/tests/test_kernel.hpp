@@ -21,9 +21,9 @@ inline const std::vector<std::string> profileNames{"glsl330", "essl300"};
 
 template <class T>
 program::Parameter parameter(std::string_view name, program::Role role) {
-  program::Parameter made{
+  program::Parameter result{
       .name = name, .symbol = name, .role = role, .element = &ElementTraits<T>::element()};
-  return made;
+  return result;
 }
 template <class T>
 program::Parameter uniform(std::string_view name) {
@@ -40,18 +40,18 @@ program::Parameter output(std::string_view name) {
 template <class T>
 program::Parameter gather(std::string_view name, int rank,
                           program::Boundary boundary = program::Boundary::Clamp) {
-  program::Parameter made = parameter<T>(name, program::Role::Gather);
-  made.rank = static_cast<std::uint8_t>(rank);
-  made.boundary = boundary;
-  return made;
+  program::Parameter result = parameter<T>(name, program::Role::Gather);
+  result.rank = static_cast<std::uint8_t>(rank);
+  result.boundary = boundary;
+  return result;
 }
 /// A scatter output to which each element writes `pushes` values.
 template <class T>
 program::Parameter scatter(std::string_view name, int rank, std::int32_t pushes) {
-  program::Parameter made = parameter<T>(name, program::Role::Scatter);
-  made.rank = static_cast<std::uint8_t>(rank);
-  made.pushes = pushes;
-  return made;
+  program::Parameter result = parameter<T>(name, program::Role::Scatter);
+  result.rank = static_cast<std::uint8_t>(rank);
+  result.pushes = pushes;
+  return result;
 }
 template <class T>
 program::Parameter variableOutput(std::string_view name) {
@@ -59,9 +59,9 @@ program::Parameter variableOutput(std::string_view name) {
 }
 template <class T>
 program::Parameter accumulator(std::string_view name, std::string_view identity = {}) {
-  program::Parameter made = parameter<T>(name, program::Role::Accumulator);
-  made.identity = identity;
-  return made;
+  program::Parameter result = parameter<T>(name, program::Role::Accumulator);
+  result.identity = identity;
+  return result;
 }
 
 template <class T>

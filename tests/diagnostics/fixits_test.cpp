@@ -80,7 +80,7 @@ std::size_t errorsIn(const std::string& messages) {
 
 }  // namespace
 
-TEST_CASE("every mend that is proposed mends", "[fixits]") {
+TEST_CASE("every fix-it that is proposed fixes its mistake", "[fixits]") {
   const fs::path folder = fs::path(FIXITS_OUTPUT);
   fs::create_directories(folder);
   int files = 0;
@@ -94,9 +94,9 @@ TEST_CASE("every mend that is proposed mends", "[fixits]") {
       INFO(before.messages);
       CHECK(before.status == 1);
       CHECK(changes.size() == errorsIn(before.messages));
-      const fs::path mended = folder / entry.path().filename();
-      std::ofstream(mended) << changed(text, changes);
-      const Outcome after = compile(mended);
+      const fs::path fixed = folder / entry.path().filename();
+      std::ofstream(fixed) << changed(text, changes);
+      const Outcome after = compile(fixed);
       INFO(after.messages);
       CHECK(after.status == 0);
     }

@@ -56,9 +56,9 @@ struct Pair {
 };
 
 /// Tries all faults of a kind in one call.
-class Trial {
+class FaultTest {
  public:
-  Trial(const Pair& pair, const Scenario& scenario, Kind kind, bool isLasting, std::int64_t& size)
+  FaultTest(const Pair& pair, const Scenario& scenario, Kind kind, bool isLasting, std::int64_t& size)
       : pair_(pair), scenario_(scenario), kind_(kind), isLasting_(isLasting), size_(size) {}
 
   void run() {
@@ -88,14 +88,14 @@ class Trial {
 
   /// Names the streams with wrong elements. After an error, a stream must have its elements from before the call, or be
   /// lost if the call writes it; after success, it must have the elements that the call gives.
-  std::string tornStreams(const Scene::Elements& found, bool hasThrown) const {
-    std::string torn;
+  std::string inconsistentStreams(const Scene::Elements& found, bool hasThrown) const {
+    std::string inconsistent;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const bool mayBeLost = hasThrown && (scenario_.moves || before_[i] != after_[i]);
       const auto& expected = hasThrown ? before_[i] : after_[i];
-      if (found[i] ? found[i] != expected : !mayBeLost) torn += " stream " + std::to_string(i);
+      if (found[i] ? found[i] != expected : !mayBeLost) inconsistent += " stream " + std::to_string(i);
     }
-    return torn;
+    return inconsistent;
   }
 
   /// Tries the next fault. False if there is none.
@@ -120,7 +120,7 @@ class Trial {
     INFO((error ? error->what() : "no error"));
     CHECK((!error || mayThrow(kind_, error->kind())));
     const Scene::Elements found = scene_->elements();
-    CHECK(tornStreams(found, error.has_value()) == "");
+    CHECK(inconsistentStreams(found, error.has_value()) == "");
     for (const auto& stream : found) lost += stream ? 0 : 1;
     if (scenario_.overwrites && !staysCold()) {
       scenario_.call(*scene_);  // also where the results are lost
@@ -152,13 +152,13 @@ void tryAll(const Pair& pair, Kind kind, bool isLasting, bool isGl) {
   long faults = 0;
   for (const Scenario& scenario : scenarios()) {
     if (scenario.needsGl && !isGl) continue;
-    Trial trial(pair, scenario, kind, isLasting, size);
-    trial.run();
+    FaultTest test(pair, scenario, kind, isLasting, size);
+    test.run();
     if (std::getenv("SK_FAULTS_TELL") != nullptr) {
       std::printf("%-12s %-36s %4ld faults, %4ld errors, %4ld lost\n", nameOf(kind).c_str(),
-                  scenario.name.c_str(), trial.faults, trial.thrown, trial.lost);
+                  scenario.name.c_str(), test.faults, test.thrown, test.lost);
     }
-    faults += trial.faults;
+    faults += test.faults;
   }
   CHECK(faults > 0);
 }

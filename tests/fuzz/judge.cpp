@@ -14,12 +14,12 @@ namespace {
 
 using skc::driver::Emit;
 
-struct Form {
+struct OutputKind {
   Emit emit;
   const char* profile;
   const char* name;
 };
-constexpr Form forms[] = {
+constexpr OutputKind outputKinds[] = {
     {Emit::Glsl, "glsl330", "glsl for glsl330"}, {Emit::Glsl, "essl300", "glsl for essl300"},
     {Emit::Stubs, "glsl330", "stubs"},           {Emit::Plan, "glsl330", "plan for glsl330"},
     {Emit::Plan, "essl300", "plan for essl300"}, {Emit::Ir, "glsl330", "ir"}};
@@ -51,14 +51,14 @@ Verdict compile(const Program& program, bool withGlslang) {
     return {mistake, tally};
   }
   std::vector<std::string> listings;
-  for (const Form& form : forms) {
-    options.emit = form.emit;
-    options.profile = form.profile;
+  for (const OutputKind& kind : outputKinds) {
+    options.emit = kind.emit;
+    options.profile = kind.profile;
     const std::string text = emitText(options, *module);
-    if (text.empty() && !mayBeEmpty(form.emit, *module)) {
-      return {std::string("accepted, but emits no ") + form.name, tally};
+    if (text.empty() && !mayBeEmpty(kind.emit, *module)) {
+      return {std::string("accepted, but emits no ") + kind.name, tally};
     }
-    if (form.emit == Emit::Glsl) listings.push_back(text);
+    if (kind.emit == Emit::Glsl) listings.push_back(text);
   }
   return {withGlslang ? glslComplaint(listings) : "", tally};
 }

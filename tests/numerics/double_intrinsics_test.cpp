@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Promises: functions of doubles have the error bounds and special cases of docs/accuracy.md in every form: GLSL's doubles,
+// Promises: functions of doubles have the error bounds and special cases of docs/accuracy.md in every representation: GLSL's doubles,
 // pairs of floats with `precise` and with a uniform, and native code. The reference is the C library in long double, whose
 // error is about 1e-3 ulp of a double. Bounds are measured errors with some room.
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 #include "double_intrinsics.sk.hpp"
 #include "sk/sk.hpp"
-#include "support/double_forms.hpp"
+#include "support/double_configs.hpp"
 #include "support/values.hpp"
 
 namespace run_tests {
@@ -41,9 +41,9 @@ double to48(double x) {
   return std::ldexp(std::trunc(std::ldexp(mantissa, 48)), e - 48);
 }
 
-/// A quarter of the inputs have random exponents in the range of the form's numbers; the others are from the ranges.
-std::vector<double> inputs(const Form& form, const std::vector<Range>& ranges, std::uint32_t seed) {
-  const double exponents = form.isNative() ? 1000 : 60;
+/// A quarter of the inputs have random exponents in the range of the representation; the others are from the ranges.
+std::vector<double> inputs(const DoubleConfig& config, const std::vector<Range>& ranges, std::uint32_t seed) {
+  const double exponents = config.isNative() ? 1000 : 60;
   std::vector<double> x(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto number = static_cast<std::uint32_t>(i) + seed * 0x10000U;
@@ -52,26 +52,27 @@ std::vector<double> inputs(const Form& form, const std::vector<Range>& ranges, s
     x[i] = range.low + (range.high - range.low) * t;
     if (i < count / 4)
       x[i] = (i % 2 ? -1 : 1) * std::exp2(exponents * (2 * t - 1)) * (1 + random01(number ^ 0x5555U));
-    if (!form.isNative()) x[i] = to48(x[i]);
+    if (!config.isNative()) x[i] = to48(x[i]);
   }
   return x;
 }
 
 /// Results below smallest() may have an absolute error of leastError().
-double smallest(const Form& form) { return form.isNative() ? 0x1p-1022 : 0x1p-78; }
-double leastError(const Form& form) { return form.isNative() ? 0x1p-1022 : 0x1p-124; }
-double largest(const Form& form) {
-  return form.isNative() ? std::numeric_limits<double>::max() : 0x1.fffffcp127;
+double smallest(const DoubleConfig& config) { return config.isNative() ? 0x1p-1022 : 0x1p-78; }
+double leastError(const DoubleConfig& config) { return config.isNative() ? 0x1p-1022 : 0x1p-124; }
+double largest(const DoubleConfig& config) {
+  return config.isNative() ? std::numeric_limits<double>::max() : 0x1.fffffcp127;
 }
 
-/// The relative error; infinite if only one of the two is NaN or too large for the form. Results too small for the form have
+/// The relative error; infinite if only one of the two is NaN or too large for the configuration. Results too small for it have
 /// an absolute bound instead.
-double errorOf(const Form& form, double got, long double exact) {
+double errorOf(const DoubleConfig& config, double got, long double exact) {
   if (std::isnan(exact) || std::isnan(got)) return std::isnan(exact) == std::isnan(got) ? 0 : inf;
   const auto size = static_cast<double>(std::fabs(exact));
-  if (size >= largest(form))
-    return std::fabs(got) >= largest(form) && std::signbit(got) == std::signbit(exact) ? 0 : inf;
-  if (size < smallest(form)) return std::fabs(static_cast<double>(got - exact)) <= leastError(form) ? 0 : inf;
+  if (size >= largest(config))
+    return std::fabs(got) >= largest(config) && std::signbit(got) == std::signbit(exact) ? 0 : inf;
+  if (size < smallest(config))
+    return std::fabs(static_cast<double>(got - exact)) <= leastError(config) ? 0 : inf;
   return static_cast<double>(std::fabs((got - exact) / exact));
 }
 
@@ -138,38 +139,38 @@ const Case cases[] = {
 };
 // clang-format on
 
-double boundOf(const Form& form, double native, double pairs) {
-  return 0x1p-53 * (form.profile == "native" ? 4 : form.isNative() ? native : pairs);
+double boundOf(const DoubleConfig& config, double native, double pairs) {
+  return 0x1p-53 * (config.profile == "native" ? 4 : config.isNative() ? native : pairs);
 }
 
 TEST_CASE("functions of one double, over all of them") {
-  onEveryForm([](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([](sk::Device& device, const DoubleConfig& config) {
     for (const Case& one : cases) {
-      const std::vector<double> x = inputs(form, one.ranges, static_cast<std::uint32_t>(&one - cases) + 1);
+      const std::vector<double> x = inputs(config, one.ranges, static_cast<std::uint32_t>(&one - cases) + 1);
       auto r = device.stream<double>({side, side});
       one.run(streamOf<double>(device, {side, side}, x), r);
       const std::vector<double> got = r.read();
       Worst worst;
       for (std::size_t i = 0; i < count; ++i) {
         const long double exact = one.exact(x[i]);
-        worst.add(errorOf(form, got[i], exact), got[i], exact, x[i]);
+        worst.add(errorOf(config, got[i], exact), got[i], exact, x[i]);
       }
       INFO(told(one.name, worst));
-      CHECK(worst.error <= boundOf(form, one.native, one.pairs));
+      CHECK(worst.error <= boundOf(config, one.native, one.pairs));
     }
   });
 }
 
 TEST_CASE("powers and angles") {
-  onEveryForm([](sk::Device& device, const Form& form) {
-    const double most = form.isNative() ? 1e300 : 1e37;
+  onEveryDoubleConfig([](sk::Device& device, const DoubleConfig& config) {
+    const double most = config.isNative() ? 1e300 : 1e37;
     const std::vector<std::pair<Range, Range>> ranges = {
         {{1e-3, 1e3}, {-12, 12}},      {{1e-18, 2e-18}, {1e12, 2e12}}, {{0.5, 2}, {-120, 120}},
         {{0.99, 1.01}, {-8000, 8000}}, {{1, 1.0000001}, {1e6, 1e9}},   {{1, most}, {-1, 1}},
         {{0.6, 0.8}, {-700, 700}}};
     for (const auto& [xs, ys] : ranges) {
       const auto seed = static_cast<std::uint32_t>(&xs - &ranges[0].first) + 40;
-      std::vector<double> x = inputs(form, {xs}, seed), y = inputs(form, {ys}, seed + 100);
+      std::vector<double> x = inputs(config, {xs}, seed), y = inputs(config, {ys}, seed + 100);
       auto r = device.stream<double>({side, side}), a = device.stream<double>({side, side});
       const auto in = streamOf<double>(device, {side, side}, x);
       const auto by = streamOf<double>(device, {side, side}, y);
@@ -179,14 +180,14 @@ TEST_CASE("powers and angles") {
       Worst power, angle;
       for (std::size_t i = 0; i < count; ++i) {
         const long double p = std::pow(static_cast<long double>(x[i]), static_cast<long double>(y[i]));
-        power.add(errorOf(form, powers[i], p), powers[i], p, x[i], y[i]);
+        power.add(errorOf(config, powers[i], p), powers[i], p, x[i], y[i]);
         const long double t = std::atan2(static_cast<long double>(x[i]), static_cast<long double>(y[i]));
-        angle.add(errorOf(form, angles[i], t), angles[i], t, x[i], y[i]);
+        angle.add(errorOf(config, angles[i], t), angles[i], t, x[i], y[i]);
       }
       INFO(told("pow", power));
-      CHECK(power.error <= boundOf(form, 4, 128));
+      CHECK(power.error <= boundOf(config, 4, 128));
       INFO(told("atan2", angle));
-      CHECK(angle.error <= boundOf(form, 4, 128));
+      CHECK(angle.error <= boundOf(config, 4, 128));
     }
   });
 }
@@ -200,7 +201,7 @@ TEST_CASE("the special cases of C99, of doubles") {
       y.push_back(b);
     }
   }
-  onEveryForm([&](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     const auto n = static_cast<std::int64_t>(x.size());
     const auto in = streamOf<double>(device, x);
     auto r = device.stream<double>({n});
@@ -209,8 +210,8 @@ TEST_CASE("the special cases of C99, of doubles") {
       for (std::size_t i = 0; i < x.size(); ++i) {
         const auto wanted = static_cast<double>(exact(x[i], y[i]));
         INFO(name << "(" << x[i] << ", " << y[i] << ") = " << got[i] << ", not " << wanted);
-        CHECK(errorOf(form, got[i], wanted) <= 0x1p-44);
-        if (!std::isnan(wanted) && std::fabs(wanted) >= smallest(form))
+        CHECK(errorOf(config, got[i], wanted) <= 0x1p-44);
+        if (!std::isnan(wanted) && std::fabs(wanted) >= smallest(config))
           CHECK(std::signbit(got[i]) == std::signbit(wanted));
         if (wanted == 0) CHECK(std::signbit(got[i]) == std::signbit(wanted));
       }
@@ -229,8 +230,8 @@ TEST_CASE("the special cases of C99, of doubles") {
 }
 
 TEST_CASE("vectors, functions of two results, floats beside doubles, and reductions") {
-  onEveryForm([](sk::Device& device, const Form& form) {
-    const double bound = boundOf(form, 8, 1024);
+  onEveryDoubleConfig([](sk::Device& device, const DoubleConfig& config) {
+    const double bound = boundOf(config, 8, 1024);
     const std::vector<sk::double3> x{{0.125, -20, 3}, {1, 2.5, -100}};
     const std::vector<float> f{0.5F, -2.25F};
     auto e = device.stream<sk::double3>({2});
@@ -241,21 +242,21 @@ TEST_CASE("vectors, functions of two results, floats beside doubles, and reducti
     const auto ps = p.read();
     const auto gs = g.read();
     for (std::size_t i = 0; i < x.size(); ++i) {
-      CHECK(errorOf(form, es[i].x, std::exp(static_cast<long double>(x[i].x))) <= bound);
-      CHECK(errorOf(form, es[i].y, std::exp(static_cast<long double>(x[i].y))) <= bound);
-      CHECK(errorOf(form, es[i].z, 1) <= bound);
-      CHECK(errorOf(form, ps[i].y, std::pow(std::fabs(static_cast<long double>(x[i].y)), 2.5L)) <= bound);
+      CHECK(errorOf(config, es[i].x, std::exp(static_cast<long double>(x[i].x))) <= bound);
+      CHECK(errorOf(config, es[i].y, std::exp(static_cast<long double>(x[i].y))) <= bound);
+      CHECK(errorOf(config, es[i].z, 1) <= bound);
+      CHECK(errorOf(config, ps[i].y, std::pow(std::fabs(static_cast<long double>(x[i].y)), 2.5L)) <= bound);
       CHECK(std::fabs(gs[i] - (std::sin(f[i]) + std::tanh(f[i]))) <= 0x1p-21F);
     }
     const std::vector<double> terms{1.5, 2.25, 1e10, 0.001};
     long double sum = 0;
     for (const double term : terms) sum += std::log(static_cast<long double>(term));
-    CHECK(errorOf(form, likelihood(streamOf<double>(device, terms)), sum) <= bound);
+    CHECK(errorOf(config, likelihood(streamOf<double>(device, terms)), sum) <= bound);
   });
 }
 
 TEST_CASE("parts of doubles") {
-  onEveryForm([](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([](sk::Device& device, const DoubleConfig&) {
     std::vector<double> x = {0.0, -0.0, 1.0, -3.75, 0x1p100, -0x1.8p-20, 1234567.875, inf, -inf, nan};
     for (const double more : randomDoubles(500, 3)) x.push_back(more);
     const auto n = static_cast<std::int64_t>(x.size());
@@ -278,8 +279,8 @@ TEST_CASE("parts of doubles") {
 }
 
 TEST_CASE("rays of doubles") {
-  onEveryForm([](sk::Device& device, const Form& form) {
-    const double tolerance = form.isNative() ? 0x1p-50 : 0x1p-43;
+  onEveryDoubleConfig([](sk::Device& device, const DoubleConfig& config) {
+    const double tolerance = config.isNative() ? 0x1p-50 : 0x1p-43;
     const std::vector<sk::double3> i{{0.6, -0.8, 0}, {0, 1, 0}, {0.36, 0.48, -0.8}}, n(3, {0, 1, 0});
     auto mirrored = device.stream<sk::double3>({3}), bent = device.stream<sk::double3>({3}),
          facing = device.stream<sk::double3>({3});

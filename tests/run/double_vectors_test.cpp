@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Vectors, structs, arrays, uniforms, gathers, reduces, variable and scatter outputs of doubles, in every form. Values are
+// Vectors, structs, arrays, uniforms, gathers, reduces, variable and scatter outputs of doubles, in every representation. Values are
 // small multiples of 1/256, so that sums and products are exact even in pairs of floats; other tests state their bound.
 #include "doubles.sk.hpp"
 
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "support/double_forms.hpp"
+#include "support/double_configs.hpp"
 #include "support/values.hpp"
 
 using namespace run_tests;
@@ -39,7 +39,7 @@ TEST_CASE("swizzles and components of vectors of doubles") {
   const auto v = vectorsOf<sk::double4>(count, 1);
   std::vector<int> n(count);
   std::iota(n.begin(), n.end(), 0);
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto r = device.stream<sk::double4>({extent});
     auto s = device.stream<sk::double3>({extent});
     swizzles(streamOf<sk::double4>(device, v), streamOf<int>(device, n), r, s);
@@ -68,7 +68,7 @@ TEST_CASE("masks choose among doubles") {
   auto a = vectorsOf<sk::double3>(count, 2);
   const auto b = vectorsOf<sk::double3>(count, 3);
   for (std::size_t i = 0; i < count; i += 3) a[i].y = b[i].y;
-  onEveryForm([&](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     auto r = device.stream<sk::double3>({extent});
     auto counts = device.stream<int>({extent});
     auto some = device.stream<bool>({extent});
@@ -79,7 +79,7 @@ TEST_CASE("masks choose among doubles") {
     const auto one = [](double x, double y) { return x == y ? 0.1 : x < y ? x : y; };
     for (std::size_t i = 0; i < count; ++i) {
       INFO(i);
-      const double error = form.isNative() ? 0 : 0.1 * 0x1p-47;
+      const double error = config.isNative() ? 0 : 0.1 * 0x1p-47;
       CHECK(std::fabs(actual[i].x - one(a[i].x, b[i].x)) <= error);
       CHECK(std::fabs(actual[i].y - one(a[i].y, b[i].y)) <= error);
       CHECK(std::fabs(actual[i].z - one(a[i].z, b[i].z)) <= error);
@@ -92,7 +92,7 @@ TEST_CASE("masks choose among doubles") {
 
 TEST_CASE("geometry of doubles") {
   const auto a = vectorsOf<sk::double3>(count, 4), b = vectorsOf<sk::double3>(count, 5);
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto r = device.stream<sk::double4>({extent});
     auto c = device.stream<sk::double3>({extent});
     geometry(streamOf<sk::double3>(device, a), streamOf<sk::double3>(device, b), r, c);
@@ -116,7 +116,7 @@ TEST_CASE("geometry of doubles") {
 TEST_CASE("conversions of vectors of doubles") {
   const auto d = vectorsOf<sk::double2>(count, 6);
   const auto i = values<sk::int2>(extent);
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto f = device.stream<sk::float2>({extent});
     auto n = device.stream<sk::int2>({extent});
     auto r = device.stream<sk::double2>({extent});
@@ -140,7 +140,7 @@ TEST_CASE("structs with doubles") {
   for (std::size_t i = 0; i < count; ++i) {
     bodies[i] = {positions[i], 0.5f, spins[i], positions[i].y, static_cast<int>(i)};
   }
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto r = device.stream<Body>({extent});
     moved(0.25, streamOf<Body>(device, bodies), r);
     const auto actual = r.read();
@@ -163,7 +163,7 @@ TEST_CASE("uniforms with doubles") {
   const std::array<sk::double3, 2> v = {{{1.5, 2.5, 3.5}, {4.5, 5.5, 6.5}}};
   std::vector<int> i(count);
   std::iota(i.begin(), i.end(), 0);
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto r = device.stream<double>({extent});
     for (const double last : {1e-3, 17.0}) {
       fromUniforms(s, w, v, {0, 0, 0, last}, streamOf<int>(device, i), r);
@@ -179,7 +179,7 @@ TEST_CASE("uniforms with doubles") {
 }
 
 TEST_CASE("gathers of doubles") {
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     for (const auto& [height, width] : {std::pair{1, 1}, std::pair{13, 29}, std::pair{3, 64}}) {
       const auto n = static_cast<std::size_t>(height * width);
       const auto u = smallDoubles(n, 9);
@@ -203,7 +203,7 @@ TEST_CASE("gathers of doubles") {
 
 TEST_CASE("kernels of doubles call each other") {
   const auto x = smallDoubles(count, 11);
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto r = device.stream<double>({extent});
     auto s = device.stream<sk::double2>({extent});
     chain(streamOf<double>(device, x), r, s);
@@ -220,7 +220,7 @@ TEST_CASE("kernels of doubles call each other") {
 }
 
 TEST_CASE("reduces of doubles") {
-  onEveryForm([&](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     CHECK(sum(device.stream<double>({0})) == 0);
     for (const std::size_t n : {std::size_t{1}, std::size_t{31}, std::size_t{10007}}) {
       const auto x = randomDoubles(n, 12, 8);
@@ -231,7 +231,7 @@ TEST_CASE("reduces of doubles") {
         size += std::fabs(static_cast<long double>(v));
       }
       // No element passes through more than 200 additions on its way to the root.
-      const long double error = 200 * precisionOf(form) * size;
+      const long double error = 200 * precisionOf(config) * size;
       CHECK(std::fabs(sum(stream) - total) <= error);
       CHECK(largest(stream) == *std::max_element(x.begin(), x.end()));
       const sk::double2 ends = range(stream);
@@ -258,7 +258,7 @@ TEST_CASE("reduces of floats to doubles, with uniforms, gathers and several accu
   const auto x = values<float>(extent, 21);
   const auto y = vectorsOf<sk::double2>(count, 22);
   const auto w = smallDoubles(count, 23);
-  onEveryForm([&](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     double wanted = 0, size = 0;
     sk::double3 most = {-1e30, -1e30, -1e30};
     for (std::size_t i = 0; i < count; ++i) {
@@ -268,7 +268,7 @@ TEST_CASE("reduces of floats to doubles, with uniforms, gathers and several accu
     }
     const auto [total, ends, n] = weighed(0.3, streamOf<float>(device, x), streamOf<sk::double2>(device, y),
                                           streamOf<double>(device, w));
-    CHECK(std::fabs(total - wanted) <= 100 * static_cast<double>(precisionOf(form)) * size);
+    CHECK(std::fabs(total - wanted) <= 100 * static_cast<double>(precisionOf(config)) * size);
     CHECK(ends == most);
     CHECK(n == static_cast<int>(count));
   });
@@ -279,7 +279,7 @@ TEST_CASE("variable and scatter outputs of doubles") {
   const auto v = vectorsOf<sk::double2>(count, 16);
   std::vector<int> to(count);
   for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<int>((i * 7) % count);
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto found = device.stream<double>({1});
     onlyPositive(streamOf<double>(device, x), found);
     std::vector<double> wanted;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Doubles in every form: GLSL's doubles, and pairs of floats with `precise` and with a uniform. Streams hold 64 bits in
-// every form. Native arithmetic is that of IEEE 754. A pair has 48 bits; its sums, products, quotients and roots have
+// Doubles in every representation: GLSL's doubles, and pairs of floats with `precise` and with a uniform. Streams hold 64 bits in
+// every representation. Native arithmetic is that of IEEE 754. A pair has 48 bits; its sums, products, quotients and roots have
 // relative errors below 2^-45: Joldes, Muller and Popescu (2017) bound sums and products by 2^-46.4 and 2^-45.6, and long
 // division and one Newton step give quotients and roots.
 #include "doubles.sk.hpp"
@@ -12,7 +12,7 @@
 #include <cstring>
 #include <limits>
 
-#include "support/double_forms.hpp"
+#include "support/double_configs.hpp"
 #include "support/values.hpp"
 
 using namespace run_tests;
@@ -78,8 +78,8 @@ const std::vector<sk::Shape> shapes = {{0}, {1}, {7}, {1031}, {20000}, {37, 53},
 
 }  // namespace
 
-TEST_CASE("streams hold the bits of doubles in every form") {
-  onEveryForm([](sk::Device& device, const Form&) {
+TEST_CASE("streams hold the bits of doubles in every representation") {
+  onEveryDoubleConfig([](sk::Device& device, const DoubleConfig&) {
     const std::vector<double> x = specials();
     CHECK(bitsDiffer(streamOf<double>(device, x).read(), x) == "");
     const std::vector<sk::double3> v = {{x[9], x[10], x[6]}, {x[1], x[7], x[8]}};
@@ -89,11 +89,11 @@ TEST_CASE("streams hold the bits of doubles in every form") {
 }
 
 TEST_CASE("a copy is exact where doubles are native, and of 48 bits in pairs") {
-  onEveryForm([](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([](sk::Device& device, const DoubleConfig& config) {
     auto r = device.stream<double>({16});
     keep(streamOf<double>(device, specials()), r);
     const std::vector<double> result = r.read();
-    if (form.isNative()) {
+    if (config.isNative()) {
       CHECK(bitsDiffer(result, specials()) == "");
       return;
     }
@@ -114,7 +114,7 @@ TEST_CASE("a copy is exact where doubles are native, and of 48 bits in pairs") {
 }
 
 TEST_CASE("every shape, and vectors") {
-  onEveryForm([](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([](sk::Device& device, const DoubleConfig& config) {
     for (const sk::Shape& shape : shapes) {
       const auto n = static_cast<std::size_t>(shape.size());
       const std::vector<double> x = randomDoubles(4 * n, 5);
@@ -143,7 +143,7 @@ TEST_CASE("every shape, and vectors") {
       const std::vector<double> sums = s.read();
       for (std::size_t i = 0; i < n; ++i) {
         const double error =
-            static_cast<double>(precisionOf(form)) * 3 * (std::fabs(0.1 * u[i]) + std::fabs(v[i]));
+            static_cast<double>(precisionOf(config)) * 3 * (std::fabs(0.1 * u[i]) + std::fabs(v[i]));
         if (std::fabs(sums[i] - (0.1 * u[i] + v[i])) > error) FAIL_CHECK("element " << i);
       }
     }
@@ -153,14 +153,14 @@ TEST_CASE("every shape, and vectors") {
 TEST_CASE("arithmetic of doubles keeps its bound") {
   std::vector<double> x = randomDoubles(20000, 11), y = randomDoubles(20000, 12);
   addAdversaries(x, y);
-  onEveryForm([&](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     const auto n = static_cast<std::int64_t>(x.size());
     std::array<sk::Stream<double>, 4> r = {device.stream<double>({n}), device.stream<double>({n}),
                                            device.stream<double>({n}), device.stream<double>({n})};
     arithmetic(streamOf<double>(device, x), streamOf<double>(device, y), r[0], r[1], r[2], r[3]);
     const auto a = [&](std::size_t i) -> long double { return x[i]; };
     const auto b = [&](std::size_t i) -> long double { return y[i]; };
-    const long double u = precisionOf(form);
+    const long double u = precisionOf(config);
     CHECK(farFrom(r[0].read(), [&](std::size_t i) { return a(i) + b(i); }, u) == "");
     CHECK(farFrom(r[1].read(), [&](std::size_t i) { return a(i) - b(i); }, u) == "");
     CHECK(farFrom(r[2].read(), [&](std::size_t i) { return a(i) * b(i); }, u) == "");
@@ -183,7 +183,7 @@ TEST_CASE("arithmetic of doubles keeps its bound") {
 TEST_CASE("infinities, NaN and zeros go through arithmetic") {
   const std::vector<double> x = {infinity, infinity, 1, -1, 0, 3e38, infinity, -0.0, 1};
   const std::vector<double> y = {1, -infinity, 0, 0, 0, 3e38, infinity, -0.0, infinity};
-  onEveryForm([&](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     std::array<sk::Stream<double>, 4> r = {device.stream<double>({9}), device.stream<double>({9}),
                                            device.stream<double>({9}), device.stream<double>({9})};
     arithmetic(streamOf<double>(device, x), streamOf<double>(device, y), r[0], r[1], r[2], r[3]);
@@ -191,7 +191,7 @@ TEST_CASE("infinities, NaN and zeros go through arithmetic") {
     CHECK(total[0] == infinity);
     CHECK(std::isnan(total[1]));
     CHECK(total[2] == 1);
-    CHECK((form.isNative() ? total[5] == 6e38 : total[5] == infinity));
+    CHECK((config.isNative() ? total[5] == 6e38 : total[5] == infinity));
     CHECK(product[0] == infinity);
     CHECK(product[6] == infinity);
     CHECK(quotient[2] == infinity);
@@ -204,12 +204,12 @@ TEST_CASE("infinities, NaN and zeros go through arithmetic") {
 TEST_CASE("literals take the precision of their place") {
   const std::vector<double> x = randomDoubles(500, 21, 3);
   const std::vector<float> f = values<float>(500);
-  onEveryForm([&](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     auto r0 = device.stream<double>({500}), r1 = device.stream<double>({500}),
          r2 = device.stream<double>({500});
     auto r3 = device.stream<float>({500});
     literals(streamOf<double>(device, x), streamOf<float>(device, f), r0, r1, r2, r3);
-    const long double u = precisionOf(form) * 8;
+    const long double u = precisionOf(config) * 8;
     CHECK(farFrom(r0.read(), [&](std::size_t i) { return 0.1 + (f[i] > 0 ? 0.2 : -0.3); }, u) == "");
     CHECK(farFrom(
               r2.read(),
@@ -237,7 +237,7 @@ TEST_CASE("literals take the precision of their place") {
     auto w = device.stream<double>({5});
     table(streamOf<int>(device, {0, 1, 2, 3, 4}), w);
     const std::vector<double> weights = w.read();
-    if (form.isNative()) {
+    if (config.isNative()) {
       CHECK(bitsDiffer(weights, {0.1, 0.2, 1e300, -0.0, 0x1.fffffffffffffp-3}) == "");
     } else {
       CHECK(std::fabs(weights[0] - 0.1) < 0.1 * 0x1p-47);
@@ -255,7 +255,7 @@ TEST_CASE("conversions to and from doubles are exact") {
   for (const int n : i) u.push_back(static_cast<unsigned>(n));
   for (const unsigned n : u)
     f.push_back(std::isnormal(std::bit_cast<float>(n)) ? std::bit_cast<float>(n) : 1.5f);
-  onEveryForm([&](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     const auto n = static_cast<std::int64_t>(i.size());
     auto a = device.stream<double>({n}), b = device.stream<double>({n}), c = device.stream<double>({n});
     auto d = device.stream<double>({n});
@@ -287,7 +287,7 @@ TEST_CASE("conversions to and from doubles are exact") {
     for (std::size_t k = 0; k < sums.size(); ++k) {
       const double product = small[k] * y[k];
       if (std::fabs(sums[k] - (product + 1)) >
-          static_cast<double>(2 * precisionOf(form)) * (std::fabs(product) + 1)) {
+          static_cast<double>(2 * precisionOf(config)) * (std::fabs(product) + 1)) {
         FAIL_CHECK("element " << k);
       }
     }
@@ -304,7 +304,7 @@ TEST_CASE("comparisons of doubles are exact") {
       y.push_back(b);
     }
   }
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     auto r = device.stream<int>({static_cast<std::int64_t>(x.size())});
     compared(streamOf<double>(device, x), streamOf<double>(device, y), r);
     CHECK(difference(r.read(), [&](std::size_t i) {
@@ -331,7 +331,7 @@ TEST_CASE("doubles are rounded to integers exactly") {
                            -8388609.5, -8388610.5,    123456789.25,  -123456789.75, 0x1p47 - 1,  infinity,
                            -infinity};
   for (const double v : randomDoubles(2000, 41, 40)) x.push_back(v);
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     const auto n = static_cast<std::int64_t>(x.size());
     auto r = device.stream<Rounded>({n});
     rounded(streamOf<double>(device, x), r);
@@ -348,7 +348,7 @@ TEST_CASE("doubles are rounded to integers exactly") {
 
 TEST_CASE("simple functions of doubles") {
   const std::vector<double> x = randomDoubles(1000, 51, 2), y = randomDoubles(1000, 52, 2);
-  onEveryForm([&](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     std::array<sk::Stream<double>, 4> r = {device.stream<double>({1000}), device.stream<double>({1000}),
                                            device.stream<double>({1000}), device.stream<double>({1000})};
     simple(streamOf<double>(device, x), streamOf<double>(device, y), r[0], r[1], r[2], r[3]);
@@ -360,7 +360,7 @@ TEST_CASE("simple functions of doubles") {
                                std::clamp(a, -1.0, 1.0) + (b < 0.25 ? 0 : 1) + std::clamp(a, 0.0, 1.0),
                                a * 0.75 + b * 0.25 + a * b + 0.5};
       const double error =
-          static_cast<double>(precisionOf(form)) * 8 * (1 + std::fabs(a) + std::fabs(b) + std::fabs(a * b));
+          static_cast<double>(precisionOf(config)) * 8 * (1 + std::fabs(a) + std::fabs(b) + std::fabs(a * b));
       for (std::size_t k = 0; k < 4; ++k) {
         INFO("result " << k << " of " << a << ", " << b);
         CHECK(std::fabs(results[k][i] - wanted[k]) <= error);
@@ -378,7 +378,7 @@ TEST_CASE("remainders, smooth steps and powers of two of doubles") {
     const double t = std::clamp((v - low) / (high - low), 0.0, 1.0);
     return t * t * (3 - 2 * t);
   };
-  onEveryForm([&](sk::Device& device, const Form& form) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig& config) {
     auto r0 = device.stream<double>({1000}), r1 = device.stream<double>({1000}),
          r2 = device.stream<double>({1000});
     auto r3 = device.stream<sk::double2>({1000});
@@ -390,11 +390,11 @@ TEST_CASE("remainders, smooth steps and powers of two of doubles") {
       const double a = x[i], b = y[i];
       INFO(a << ", " << b << ", " << e[i]);
       // The error of the quotient is multiplied by the divisor, which gives about |a|.
-      const double error = static_cast<double>(precisionOf(form)) * 8 * (1 + std::fabs(a) + std::fabs(b));
+      const double error = static_cast<double>(precisionOf(config)) * 8 * (1 + std::fabs(a) + std::fabs(b));
       CHECK(std::fabs(mods[i] - (mod(a, b) + mod(b, 0.75))) <= error);
       CHECK(std::fabs(fmods[i] - std::fmod(a, b)) <= error);
       CHECK(std::fabs(powers[i] - std::ldexp(a, e[i])) <=
-            static_cast<double>(precisionOf(form)) * std::ldexp(std::fabs(a), e[i]));
+            static_cast<double>(precisionOf(config)) * std::ldexp(std::fabs(a), e[i]));
       // The slope of smoothstep is at most 1.5.
       CHECK(std::fabs(steps[i].x - (smooth(-1, 2, a) + smooth(b, b + 1, a))) <= 4 * error);
       CHECK(std::fabs(steps[i].y - (smooth(-1, 2, b) + smooth(0, 3, a))) <= 4 * error);
@@ -406,7 +406,7 @@ TEST_CASE("powers of two beyond the range of doubles") {
   constexpr double inf = std::numeric_limits<double>::infinity();
   const std::vector<double> x = {1.5, -3.25, 0x1p-120, 0x1p120, 0.0, inf, -inf, std::nan(""), 7, 7};
   const std::vector<int> e = {100, -100, 240, -240, 5000, -5000, 3, 4, 5000, -5000};
-  onEveryForm([&](sk::Device& device, const Form&) {
+  onEveryDoubleConfig([&](sk::Device& device, const DoubleConfig&) {
     const auto n = static_cast<std::int64_t>(x.size());
     auto r0 = device.stream<double>({n}), r1 = device.stream<double>({n}), r2 = device.stream<double>({n});
     auto r3 = device.stream<sk::double2>({n});

@@ -127,7 +127,7 @@ TEST_CASE("structs and vectors") {
   });
 }
 
-TEST_CASE("sinks, bits and narrow types") {
+TEST_CASE("append outputs, bits and narrow types") {
   onEveryProfile([](sk::Device& device) {
     const std::vector<float> a = numbers(300, 5, 0, 9);
     for (const Precision precision : widePrecisions(device)) {

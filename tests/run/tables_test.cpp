@@ -196,13 +196,13 @@ TEST_CASE("a function that is not finite in its range has no table") {
 
 TEST_CASE("ranges that floats cannot divide have no table") {
   onEveryProfile([](sk::Device& device) {
-    const auto isTold = [&](const auto& kernel, const std::string& what) {
+    const auto isNamed = [&](const auto& kernel, const std::string& what) {
       const std::string error = errorOf([&] { called(device, kernel, {0, 1e38F}); });
       return error.find(what) != std::string::npos &&
              error.find("64 interval(s) are too wide or too narrow for floats") != std::string::npos;
     };
-    CHECK(isTold(table::wides, "the table of 'table::wide' over [-3e+38, 3e+38]"));
-    CHECK(isTold(table::narrows, "the table of 'table::narrow' over [0, 1.2e-38]"));
+    CHECK(isNamed(table::wides, "the table of 'table::wide' over [-3e+38, 3e+38]"));
+    CHECK(isNamed(table::narrows, "the table of 'table::narrow' over [0, 1.2e-38]"));
   });
 }
 

@@ -87,8 +87,8 @@ std::vector<std::vector<Complaint>> complaintsOf(const std::vector<std::string>&
       complaints[current].push_back({std::stoi(parts[1]), std::stoi(parts[2]), parts[3]});
     }
   }
-  const bool isTold = std::ranges::any_of(complaints, [](const auto& one) { return !one.empty(); });
-  if (outcome.status != 0 && !isTold && !programs.empty()) {
+  const bool hasMessages = std::ranges::any_of(complaints, [](const auto& one) { return !one.empty(); });
+  if (outcome.status != 0 && !hasMessages && !programs.empty()) {
     complaints[0].push_back({0, 0, "glslang failed: " + outcome.output});
   }
   return complaints;

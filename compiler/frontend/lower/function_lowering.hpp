@@ -41,7 +41,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::Function function(const clang::FunctionDecl* declaration);
   /// True for a member function that returns `S&`, which can only end with `return *this;`. It is void in the
   /// IR, and a call's value is the object.
-  static bool givesItself(const clang::FunctionDecl* declaration);
+  static bool returnsThis(const clang::FunctionDecl* declaration);
   /// Lowers an initialiser outside any function; returns null if it has effects.
   ir::ExprPtr constantInitializer(const clang::Expr* init);
 
@@ -103,7 +103,7 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr valueInto(const clang::Expr* e, ir::Block& block, bool asDouble = false);
   Exprs valuesInOrder(llvm::ArrayRef<const clang::Expr*> expressions, bool asDoubles = false);
   void spill(ir::ExprPtr& e);
-  void keepInPlace(ir::ExprPtr& e);
+  void pinLValue(ir::ExprPtr& e);
   ir::ExprPtr place(const clang::Expr* e);
   struct Sides {
     ir::ExprPtr target, right;
@@ -177,21 +177,21 @@ class FunctionLowering : public clang::ConstStmtVisitor<FunctionLowering, ir::Ex
   ir::ExprPtr push(const clang::CallExpr* e);
   /// Lowers the expression if it writes an element of a scatter output; returns whether it does.
   bool scatters(const clang::Expr* e);
-  struct ScatterPlace {
+  struct ScatterTarget {
     Subscripts subscripts;
     ir::VarId stream;
   };
-  std::optional<ScatterPlace> scatterPlace(const clang::Expr* e) const;
-  void scatterStore(const ScatterPlace& place, const clang::Expr* left, const clang::Expr* right);
-  void scatterCompound(const ScatterPlace& place, const clang::CompoundAssignOperator* e);
-  void scatter(const ScatterPlace& place, ir::ScatterOp op, ir::ExprPtr value);
-  ir::ExprPtr combinedValue(const ScatterPlace& place, ir::ExprPtr value, clang::SourceLocation where);
+  std::optional<ScatterTarget> scatterTarget(const clang::Expr* e) const;
+  void scatterStore(const ScatterTarget& target, const clang::Expr* left, const clang::Expr* right);
+  void scatterCompound(const ScatterTarget& target, const clang::CompoundAssignOperator* e);
+  void scatter(const ScatterTarget& target, ir::ScatterOp op, ir::ExprPtr value);
+  ir::ExprPtr combinedValue(const ScatterTarget& target, ir::ExprPtr value, clang::SourceLocation where);
 
   ModuleLowering& module_;
   ir::Function function_;
   std::unordered_map<const clang::Decl*, ir::VarId> variables_;
   std::optional<ir::VarId> this_;
-  bool givesItself_ = false;
+  bool returnsThis_ = false;
   ir::Block* out_ = nullptr;  ///< receives statements
   int depth_ = 0;  ///< nesting of expressions and statements
 };

@@ -35,42 +35,42 @@ ExprPtr FunctionLowering::push(const clang::CallExpr* e) {
 
 // ---- scatter outputs ----------------------------------------------------------------------------
 
-std::optional<FunctionLowering::ScatterPlace> FunctionLowering::scatterPlace(const clang::Expr* e) const {
+std::optional<FunctionLowering::ScatterTarget> FunctionLowering::scatterTarget(const clang::Expr* e) const {
   const auto* call = llvm::dyn_cast<clang::CXXOperatorCallExpr>(e->IgnoreParenImpCasts());
   if (!call || call->getOperator() != clang::OO_Subscript) return std::nullopt;
   Subscripts subscripts = subscriptsOf(call);
   const auto stream = streamVariable(subscripts.object);
   if (!stream || function_.variables[*stream].role != ir::VarRole::AppendOutput) return std::nullopt;
-  return ScatterPlace{std::move(subscripts), *stream};
+  return ScatterTarget{std::move(subscripts), *stream};
 }
 
 bool FunctionLowering::scatters(const clang::Expr* e) {
-  const auto at = [&](const clang::Expr* left) { return scatterPlace(left); };
+  const auto at = [&](const clang::Expr* left) { return scatterTarget(left); };
   if (const auto* compound = llvm::dyn_cast<clang::CompoundAssignOperator>(e)) {
-    const auto place = at(compound->getLHS());
-    if (place) scatterCompound(*place, compound);
-    return place.has_value();
+    const auto target = at(compound->getLHS());
+    if (target) scatterCompound(*target, compound);
+    return target.has_value();
   }
   if (const auto* operation = llvm::dyn_cast<clang::BinaryOperator>(e);
       operation && operation->getOpcode() == clang::BO_Assign) {
-    const auto place = at(operation->getLHS());
-    if (place) scatterStore(*place, operation->getLHS(), operation->getRHS());
-    return place.has_value();
+    const auto target = at(operation->getLHS());
+    if (target) scatterStore(*target, operation->getLHS(), operation->getRHS());
+    return target.has_value();
   }
   if (const auto* call = llvm::dyn_cast<clang::CXXOperatorCallExpr>(e);
       call && call->getOperator() == clang::OO_Equal) {   // assignment of a struct
-    const auto place = at(call->getArg(0));
-    if (place) scatterStore(*place, call->getArg(0), call->getArg(1));
-    return place.has_value();
+    const auto target = at(call->getArg(0));
+    if (target) scatterStore(*target, call->getArg(0), call->getArg(1));
+    return target.has_value();
   }
   if (const auto* operation = llvm::dyn_cast<clang::UnaryOperator>(e);
       operation && operation->isIncrementDecrementOp()) {
-    const auto place = at(operation->getSubExpr());
-    if (!place) return false;
-    const ir::Type type = function_.variables[place->stream].type;
+    const auto target = at(operation->getSubExpr());
+    if (!target) return false;
+    const ir::Type type = function_.variables[target->stream].type;
     const Loc loc = module_.loc(operation->getOperatorLoc());
     ExprPtr one = ir::literalOf(type, operation->isIncrementOp() ? 1 : -1, loc);
-    scatter(*place, ir::ScatterOp::Add, combinedValue(*place, std::move(one), operation->getOperatorLoc()));
+    scatter(*target, ir::ScatterOp::Add, combinedValue(*target, std::move(one), operation->getOperatorLoc()));
     return true;
   }
   return false;
@@ -87,7 +87,7 @@ std::optional<ir::ScatterOp> extremeOf(llvm::StringRef name) {
 }  // namespace
 
 /// `r[i] = v`, or `r[i] = min(r[i], v)`, where both lvalues must be the same expression.
-void FunctionLowering::scatterStore(const ScatterPlace& place, const clang::Expr* left,
+void FunctionLowering::scatterStore(const ScatterTarget& target, const clang::Expr* left,
                                     const clang::Expr* right) {
   const auto isSame = [&](const clang::Expr* e) {
     llvm::FoldingSetNodeID a, b;
@@ -102,29 +102,29 @@ void FunctionLowering::scatterStore(const ScatterPlace& place, const clang::Expr
     const bool isFirst = op && isSame(call->getArg(0));
     if (isFirst || (op && isSame(call->getArg(1)))) {
       const clang::Expr* other = call->getArg(isFirst ? 1 : 0);
-      return scatter(place, *op, combinedValue(place, value(other), call->getBeginLoc()));
+      return scatter(target, *op, combinedValue(target, value(other), call->getBeginLoc()));
     }
   }
-  scatter(place, ir::ScatterOp::Store, value(right));
+  scatter(target, ir::ScatterOp::Store, value(right));
 }
 
-void FunctionLowering::scatterCompound(const ScatterPlace& place, const clang::CompoundAssignOperator* e) {
+void FunctionLowering::scatterCompound(const ScatterTarget& target, const clang::CompoundAssignOperator* e) {
   const SourceLocation where = e->getOperatorLoc();
   const bool isSum = e->getOpcode() == clang::BO_AddAssign;
   const ir::Type computed = module_.type(e->getComputationResultType(), where);
-  const ir::Variable& appendOutput = function_.variables[place.stream];
+  const ir::Variable& appendOutput = function_.variables[target.stream];
   if ((!isSum && e->getOpcode() != clang::BO_SubAssign) || !computed.isArithmetic() ||
       computed.scalar != appendOutput.type.scalar) {
     module_.fail(Diag::ScatterOperation, where, {appendOutput.name, module_.spelling(appendOutput.type)});
   }
-  ExprPtr added = combinedValue(place, value(e->getRHS()), where);
+  ExprPtr added = combinedValue(target, value(e->getRHS()), where);
   if (!isSum) added = ir::unary(ir::UnaryOp::Negate, std::move(added), module_.loc(where));
-  scatter(place, ir::ScatterOp::Add, std::move(added));
+  scatter(target, ir::ScatterOp::Add, std::move(added));
 }
 
 /// Checks a value to combine with elements: of their component type, one number for all or one each.
-ExprPtr FunctionLowering::combinedValue(const ScatterPlace& place, ExprPtr value, SourceLocation where) {
-  const ir::Variable& appendOutput = function_.variables[place.stream];
+ExprPtr FunctionLowering::combinedValue(const ScatterTarget& target, ExprPtr value, SourceLocation where) {
+  const ir::Variable& appendOutput = function_.variables[target.stream];
   const ir::Type type = appendOutput.type;
   if (type.isDouble()) module_.fail(Diag::DoubleScatter, where, {appendOutput.name});
   const bool isNumber = type.isFloat() || type.isInteger();
@@ -136,12 +136,12 @@ ExprPtr FunctionLowering::combinedValue(const ScatterPlace& place, ExprPtr value
 }
 
 /// Evaluates the value before the index, as in any assignment.
-void FunctionLowering::scatter(const ScatterPlace& place, ir::ScatterOp op, ExprPtr value) {
+void FunctionLowering::scatter(const ScatterTarget& target, ir::ScatterOp op, ExprPtr value) {
   ir::Block effects;
   ir::Block* outer = std::exchange(out_, &effects);
   ExprPtr index;
   try {
-    index = indexFrom(place.subscripts, place.stream);
+    index = indexFrom(target.subscripts, target.stream);
   } catch (const Abandoned&) {
     out_ = outer;
     throw;
@@ -151,8 +151,8 @@ void FunctionLowering::scatter(const ScatterPlace& place, ir::ScatterOp op, Expr
     spill(value);
     for (ir::Stmt& s : effects) out_->push_back(std::move(s));
   }
-  emit(module_.loc(place.subscripts.where),
-       ir::Scatter{{ir::StreamRef::Space::Variable, place.stream}, op, std::move(index), std::move(value)});
+  emit(module_.loc(target.subscripts.where),
+       ir::Scatter{{ir::StreamRef::Space::Variable, target.stream}, op, std::move(index), std::move(value)});
 }
 
 }  // namespace skc::frontend

@@ -87,7 +87,7 @@ ExprPtr FunctionLowering::classAssignment(ir::BinaryOp op, const clang::CXXOpera
     for (ir::Stmt& s : effects) out_->push_back(std::move(s));
   }
   const ir::Type type = target->type;
-  ExprPtr left = convert(ir::clone(*target), ir::carrierOf(type.scalar));
+  ExprPtr left = convert(ir::clone(*target), ir::arithmeticScalar(type.scalar));
   ExprPtr result = ir::binary(op, std::move(left), std::move(right), loc);
   emit(loc, ir::Assign{std::move(target), std::nullopt, convert(std::move(result), type.scalar)});
   return ir::literal(false, loc);   // never used: the call is void
@@ -150,7 +150,7 @@ constexpr int impossible = 1000;
 
 /// The cost of converting an argument; as in C++, a conversion may lose no more than a rounding error.
 int conversionCost(ir::Type from, ir::Type to) {
-  from = from.carrier();
+  from = from.arithmeticType();
   if (from == to) return 0;
   if (!from.isArithmetic() || !to.isArithmetic()) return impossible;
   int cost = 0;
@@ -367,7 +367,7 @@ ExprPtr FunctionLowering::sample(const clang::CallExpr* e) {
   const SourceLocation where = e->getBeginLoc();
   const ir::VarId stream = gatherVariable(e->getArg(0));
   const ir::Variable gather = function_.variables[stream];
-  const ir::Type type = gather.type.carrier();
+  const ir::Type type = gather.type.arithmeticType();
   if (!type.isFloat()) module_.fail(Diag::SampleType, where, {gather.name, module_.spelling(gather.type)});
   return make(type, where, ir::Sample{{ir::StreamRef::Space::Variable, stream}, value(e->getArg(1))});
 }

@@ -109,11 +109,11 @@ bool areDisjoint(const ir::Expr& a, const ir::Expr& b) {
   return false;
 }
 
-bool isPlace(const ir::Expr& e) {
+bool isLValue(const ir::Expr& e) {
   if (std::holds_alternative<ir::VarRef>(e.node)) return true;
-  if (const auto* swizzle = std::get_if<ir::Swizzle>(&e.node)) return isPlace(*swizzle->base);
-  if (const auto* member = std::get_if<ir::Member>(&e.node)) return isPlace(*member->base);
-  if (const auto* index = std::get_if<ir::Index>(&e.node)) return isPlace(*index->base);
+  if (const auto* swizzle = std::get_if<ir::Swizzle>(&e.node)) return isLValue(*swizzle->base);
+  if (const auto* member = std::get_if<ir::Member>(&e.node)) return isLValue(*member->base);
+  if (const auto* index = std::get_if<ir::Index>(&e.node)) return isLValue(*index->base);
   return false;
 }
 
@@ -212,15 +212,15 @@ void FunctionLowering::spill(ExprPtr& e) {
 }
 
 /// Fixes which element an lvalue refers to, not its value: only its indices are saved in temporaries.
-void FunctionLowering::keepInPlace(ExprPtr& e) {
-  if (!isPlace(*e)) return spill(e);
+void FunctionLowering::pinLValue(ExprPtr& e) {
+  if (!isLValue(*e)) return spill(e);
   if (auto* index = std::get_if<ir::Index>(&e->node)) {
-    keepInPlace(index->base);
+    pinLValue(index->base);
     spill(index->index);
   } else if (auto* member = std::get_if<ir::Member>(&e->node)) {
-    keepInPlace(member->base);
+    pinLValue(member->base);
   } else if (auto* swizzle = std::get_if<ir::Swizzle>(&e->node)) {
-    keepInPlace(swizzle->base);
+    pinLValue(swizzle->base);
   }
 }
 
@@ -240,7 +240,7 @@ ExprPtr FunctionLowering::place(const clang::Expr* e) {
     const std::string& gather = function_.variables[read->stream.id].name;
     module_.fail(Diag::GatherAssigned, e->getBeginLoc(), {gather + "[...]", gather});
   }
-  if (!isPlace(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
+  if (!isLValue(*result)) module_.fail(Diag::NotAPlace, e->getBeginLoc());
   return result;
 }
 
@@ -298,7 +298,7 @@ ExprPtr FunctionLowering::increment(const clang::UnaryOperator* e, bool wantValu
   }
   const ir::BinaryOp op = e->isIncrementOp() ? ir::BinaryOp::Add : ir::BinaryOp::Sub;
   const ir::Type type = target->type;
-  ExprPtr one = ir::literalOf(type.carrier().component(), 1, loc);
+  ExprPtr one = ir::literalOf(type.arithmeticType().component(), 1, loc);
   if (wantValue && e->isPrefix()) result = ir::clone(*target);
   if (type.isNarrow()) {
     ExprPtr wide = binary(op, ir::clone(*target), std::move(one), e->getOperatorLoc());
@@ -322,7 +322,7 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
     case clang::UO_Minus: {
       ExprPtr operand = value(e->getSubExpr());
       const ir::Type written = operand->type;
-      operand = convert(std::move(operand), ir::carrierOf(written.scalar));
+      operand = convert(std::move(operand), ir::arithmeticScalar(written.scalar));
       if (const auto* constant = std::get_if<ir::Literal>(&operand->node);
           constant && !operand->type.isBool()) {
         // reads -1 as a literal: flips the sign bit of a float, negates an integer with wrap-around
@@ -330,7 +330,7 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
           return make(operand->type, where, ir::Literal{constant->bits, constant->high ^ 0x80000000u});
         }
         const std::uint32_t bits =
-            operand->type.carrier().isFloat() ? constant->bits ^ 0x80000000u : 0u - constant->bits;
+            operand->type.arithmeticType().isFloat() ? constant->bits ^ 0x80000000u : 0u - constant->bits;
         return literal(operand->type, bits, where);
       }
       const ir::Type type = operand->type;
@@ -340,7 +340,7 @@ ExprPtr FunctionLowering::VisitUnaryOperator(const clang::UnaryOperator* e) {
     case clang::UO_Not: {
       ExprPtr operand = value(e->getSubExpr());
       const ir::Type written = operand->type;
-      operand = convert(std::move(operand), ir::carrierOf(written.scalar));
+      operand = convert(std::move(operand), ir::arithmeticScalar(written.scalar));
       const ir::Type type = operand->type;
       const ir::UnaryOp op = type.isBool() ? ir::UnaryOp::LogicalNot : ir::UnaryOp::BitNot;
       return convert(make(type, where, ir::Unary{op, std::move(operand)}), written.scalar);
@@ -389,8 +389,8 @@ ExprPtr FunctionLowering::VisitCompoundAssignOperator(const clang::CompoundAssig
 
 ExprPtr FunctionLowering::binary(ir::BinaryOp op, ExprPtr lhs, ExprPtr rhs, SourceLocation where) {
   assert(lhs->type.isArithmetic() && rhs->type.isArithmetic());  // otherwise Clang finds no operator
-  lhs = convert(std::move(lhs), ir::carrierOf(lhs->type.scalar));
-  rhs = convert(std::move(rhs), ir::carrierOf(rhs->type.scalar));
+  lhs = convert(std::move(lhs), ir::arithmeticScalar(lhs->type.scalar));
+  rhs = convert(std::move(rhs), ir::arithmeticScalar(rhs->type.scalar));
   if (isArithmeticOp(op) && lhs->type.isVector()) {
     // keep `2 * v` as written; two splats stay vectors
     ExprPtr bare = withoutSplat(std::move(rhs));
@@ -546,7 +546,7 @@ ExprPtr FunctionLowering::userCall(const clang::CallExpr* e, const clang::Functi
   }
   if (!hasEffects) return make(target.result, where, ir::Call{id, std::move(arguments)});
   const Loc loc = module_.loc(where);
-  if (givesItself(callee)) {
+  if (returnsThis(callee)) {
     ExprPtr object = ir::clone(*arguments[0]);
     emit(loc, ir::CallStmt{id, std::move(arguments), nullptr});
     return object;

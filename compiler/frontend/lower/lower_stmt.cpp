@@ -47,7 +47,7 @@ std::string functionName(const clang::FunctionDecl* declaration) {
 
 }  // namespace
 
-bool FunctionLowering::givesItself(const clang::FunctionDecl* declaration) {
+bool FunctionLowering::returnsThis(const clang::FunctionDecl* declaration) {
   const auto* method = llvm::dyn_cast<clang::CXXMethodDecl>(declaration);
   const clang::QualType result = declaration->getReturnType();
   return method && method->isInstance() && result->isLValueReferenceType() &&
@@ -57,12 +57,12 @@ bool FunctionLowering::givesItself(const clang::FunctionDecl* declaration) {
 ir::Function FunctionLowering::function(const clang::FunctionDecl* declaration) {
   function_.name = functionName(declaration);
   function_.loc = module_.loc(declaration->getLocation());
-  givesItself_ = givesItself(declaration);
-  if (declaration->getReturnType()->isReferenceType() && !givesItself_) {
+  returnsThis_ = returnsThis(declaration);
+  if (declaration->getReturnType()->isReferenceType() && !returnsThis_) {
     module_.fail(Diag::ReferenceType, declaration->getLocation(),
                  {declaration->getReturnType().getAsString()});
   }
-  function_.result = givesItself_ ? ir::Type::voidType()
+  function_.result = returnsThis_ ? ir::Type::voidType()
                                   : module_.type(declaration->getReturnType(), declaration->getLocation());
   parameters(declaration);
   function_.parameterCount = static_cast<std::uint32_t>(function_.variables.size());
@@ -418,7 +418,7 @@ bool isThisObject(const clang::Expr* e) {
 bool isCallOnThisObject(const clang::Expr* e) {
   const auto* call = llvm::dyn_cast<clang::CallExpr>(e->IgnoreParenImpCasts());
   const clang::FunctionDecl* callee = call ? call->getDirectCallee() : nullptr;
-  if (!callee || !FunctionLowering::givesItself(callee)) return false;
+  if (!callee || !FunctionLowering::returnsThis(callee)) return false;
   if (const auto* member = llvm::dyn_cast<clang::CXXMemberCallExpr>(call)) {
     return isThisObject(member->getImplicitObjectArgument());
   }
@@ -429,7 +429,7 @@ bool isCallOnThisObject(const clang::Expr* e) {
 
 void FunctionLowering::returnStatement(const clang::ReturnStmt* s) {
   ir::Return result;
-  if (givesItself_) {
+  if (returnsThis_) {
     if (isCallOnThisObject(s->getRetValue())) {
       discarded(s->getRetValue());
     } else if (!isThisObject(s->getRetValue())) {

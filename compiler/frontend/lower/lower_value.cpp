@@ -175,8 +175,8 @@ ExprPtr FunctionLowering::vectorBitCast(const clang::CastExpr* e) {
   const bool isImplicit = llvm::isa<clang::ImplicitCastExpr>(e);
   const bool mixesSigns =
       isImplicit && !from.isBool() && !to.isBool();  // int4 / uint4 would get the left type
-  const bool areIntegers =
-      !from.carrier().isFloat() && !to.carrier().isFloat() && !from.isDouble() && !to.isDouble();
+  const bool areIntegers = !from.arithmeticType().isFloat() && !to.arithmeticType().isFloat() &&
+                           !from.isDouble() && !to.isDouble();
   if (!from.isVector() || !to.isVector() || from.width != to.width || !areIntegers || mixesSigns) {
     module_.fail(isImplicit ? Diag::MixedVectors : Diag::BitCast, e->getBeginLoc(), {module_.spelling(to)});
   }
@@ -215,27 +215,27 @@ ExprPtr FunctionLowering::convert(ExprPtr e, ir::Scalar scalar) {
   if (!e->type.isArithmetic() || e->type.scalar == scalar) return e;
   if (scalar == ir::Scalar::Bool) return toBool(std::move(e));
   const Loc loc = e->loc;
-  if (ir::isReal(ir::carrierOf(scalar)) && maskedBool(*e)) {
+  if (ir::isReal(ir::arithmeticScalar(scalar)) && maskedBool(*e)) {
     module_.diagnostics().report(Diag::MaskConverted, loc,
                                  {module_.spelling(ir::Type::of(scalar, e->type.width))});
   }
   if ((e->type.isNarrow() && scalar == ir::Scalar::Double) || (e->type.isDouble() && ir::isNarrow(scalar))) {
-    const ir::Scalar carrier = ir::carrierOf(e->type.isNarrow() ? e->type.scalar : scalar);
-    return convert(convert(std::move(e), carrier), scalar);
+    const ir::Scalar arithmetic = ir::arithmeticScalar(e->type.isNarrow() ? e->type.scalar : scalar);
+    return convert(convert(std::move(e), arithmetic), scalar);
   }
   if (auto* construct = std::get_if<ir::Construct>(&e->node);
       construct && e->type.isVector() && construct->args.size() == 1 && construct->args[0]->type.isScalar()) {
     return splat(convert(std::move(construct->args[0]), scalar), e->type.width);  // `2.0` with a vector
   }
   if (auto* constant = std::get_if<ir::Literal>(&e->node)) {
-    const ir::Scalar carrier = ir::carrierOf(scalar);
+    const ir::Scalar arithmetic = ir::arithmeticScalar(scalar);
     if (scalar == ir::Scalar::Double) return widened(e->type.scalar, constant->bits, loc);
     if (e->type.isNarrow()) {  // has its arithmetic type's bits
-      e->type = e->type.carrier();
+      e->type = e->type.arithmeticType();
       return convert(std::move(e), scalar);
     }
-    if (ir::isNarrow(scalar) && e->type.scalar != carrier) {
-      return convert(convert(std::move(e), carrier), scalar);
+    if (ir::isNarrow(scalar) && e->type.scalar != arithmetic) {
+      return convert(convert(std::move(e), arithmetic), scalar);
     }
     if (ir::isNarrow(scalar)) {
       constant->bits = ir::quantize(scalar, constant->bits);
@@ -322,7 +322,7 @@ ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* i
   parts.push_back(valueInto(index, effects));
   if (!effects.empty()) {
     // the element is accessed after the index's effects; the array itself is not copied
-    keepInPlace(parts[0]);
+    pinLValue(parts[0]);
     for (ir::Stmt& s : effects) out_->push_back(std::move(s));
   }
   const ir::Type outer = parts[0]->type;
@@ -331,8 +331,8 @@ ExprPtr FunctionLowering::indexed(const clang::Expr* array, const clang::Expr* i
   }
   const bool isArray = outer.kind == ir::Type::Kind::Array;
   const ir::Type type = isArray ? module_.arrayAt(outer.index).element : outer.indexed();
-  const ir::Scalar carrier = ir::carrierOf(parts[1]->type.scalar);
-  parts[1] = convert(std::move(parts[1]), carrier == ir::Scalar::Bool ? ir::Scalar::Int : carrier);
+  const ir::Scalar arithmetic = ir::arithmeticScalar(parts[1]->type.scalar);
+  parts[1] = convert(std::move(parts[1]), arithmetic == ir::Scalar::Bool ? ir::Scalar::Int : arithmetic);
   return make(type, where, ir::Index{std::move(parts[0]), std::move(parts[1])});
 }
 

@@ -55,11 +55,11 @@ void refuseCommaIndices(const Tokens& body, const std::vector<IndexedParameter>&
     if (parameter == nullptr || parameter->rank < 2 || body[i + 1].isNot(tok::l_square)) continue;
     const Subscripts subscripts = subscriptsAt(body, i + 1);
     if (subscripts.commas.empty()) continue;
-    std::vector<Mend> mends;
+    std::vector<FixIt> fixIts;
     if (subscripts.indices == parameter->rank) {
-      for (const Token& comma : subscripts.commas) mends.push_back(Mend::replace(locOf(comma), "]["));
+      for (const Token& comma : subscripts.commas) fixIts.push_back(FixIt::replace(locOf(comma), "]["));
     }
-    diagnostics.report(Diag::CommaIndex, locOf(subscripts.commas.front()), {nameOf(parameter->name)}, mends);
+    diagnostics.report(Diag::CommaIndex, locOf(subscripts.commas.front()), {nameOf(parameter->name)}, fixIts);
   }
 }
 

@@ -33,13 +33,13 @@ void ConstructorEditor::copy(TokenCursor& cursor, Tokens& out) {
     const std::string vector = vectorNamed(name);
     if (!vector.empty()) {
       out.resize(name.begin);
-      out.push_back(maker_.word(vectorConstructorName(vector), token.getLocation()));
+      out.push_back(builder_.word(vectorConstructorName(vector), token.getLocation()));
       out.back().setLength(token.getLength());
       return;
     }
     if (initialisesVariable(cursor, out)) {
-      out.push_back(maker_.make(tok::equal, token.getLocation()));
-      out.push_back(maker_.word(vectorConstructorName(declared_), token.getLocation()));
+      out.push_back(builder_.make(tok::equal, token.getLocation()));
+      out.push_back(builder_.word(vectorConstructorName(declared_), token.getLocation()));
       return;
     }
   }

@@ -13,14 +13,14 @@
 
 #include <clang/Lex/Token.h>
 
+#include "frontend/tokens/token_builder.hpp"
 #include "frontend/tokens/token_cursor.hpp"
-#include "frontend/tokens/token_maker.hpp"
 
 namespace skc::frontend {
 
 class ConstructorEditor {
  public:
-  explicit ConstructorEditor(TokenMaker maker) : maker_(maker) {}
+  explicit ConstructorEditor(TokenBuilder builder) : builder_(builder) {}
 
   /// Takes one token and appends its replacement.
   void copy(TokenCursor& cursor, std::vector<clang::Token>& out);
@@ -51,7 +51,7 @@ class ConstructorEditor {
   void noteDeclaration(const TokenCursor& cursor, const Tokens& out);
   bool initialisesVariable(const TokenCursor& cursor, const Tokens& out) const;
 
-  TokenMaker maker_;
+  TokenBuilder builder_;
   std::vector<Alias> aliases_;
   std::vector<Brace> braces_;     ///< open ones
   int bracesSeen_ = 0;

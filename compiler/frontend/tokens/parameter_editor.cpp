@@ -77,9 +77,9 @@ std::vector<Token> borderValue(const std::vector<Token>& parenthesized) {
 }
 
 /// A fix-it that removes the tokens from `at` to the bracket `close`.
-std::vector<Mend> removal(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind close) {
+std::vector<FixIt> removal(const std::vector<Token>& tokens, std::size_t at, tok::TokenKind close) {
   for (std::size_t i = at; i < tokens.size(); ++i) {
-    if (tokens[i].is(close)) return {Mend::remove(locOf(tokens[at]), locOf(tokens[i - 1]))};
+    if (tokens[i].is(close)) return {FixIt::remove(locOf(tokens[at]), locOf(tokens[i - 1]))};
   }
   return {};
 }
@@ -115,7 +115,7 @@ std::vector<Token> ParameterEditor::edit(const Tokens& declared, FunctionKind ki
       diagnostics_.report(Diag::EmptyParameter, locOf(following));
       continue;
     }
-    if (out.size() > 1) out.push_back(maker_.make(tok::comma, parameters[i].front().getLocation()));
+    if (out.size() > 1) out.push_back(builder_.make(tok::comma, parameters[i].front().getLocation()));
     editParameter(parameters[i], kind, out);
   }
   out.push_back(declared.back());
@@ -264,7 +264,7 @@ bool ParameterEditor::hasLateQualifier(const Parts& parts) {
   for (auto token = parts.type.begin(); token + 1 != parts.type.end(); ++token)
     reordered += " " + preprocessor_.getSpelling(*token);
   diagnostics_.report(Diag::QualifierOrder, locOf(last), {nameOf(last), nameOf(parts.name)},
-                      {Mend::replace(locOf(parts.type.front()), locOf(last), std::move(reordered))});
+                      {FixIt::replace(locOf(parts.type.front()), locOf(last), std::move(reordered))});
   return true;
 }
 
@@ -275,8 +275,8 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
     parts.open = parameter[at++];
     if (!isKind(parameter, at, tok::greater) && !isKind(parameter, at, tok::greaterequal)) {
       const Token& place = at < parameter.size() ? parameter[at] : parameter.back();
-      const std::vector<Mend> mends = removal(parameter, at, tok::greater);
-      diagnostics_.report(Diag::StreamBrackets, locOf(place), {name}, mends);
+      const std::vector<FixIt> fixIts = removal(parameter, at, tok::greater);
+      diagnostics_.report(Diag::StreamBrackets, locOf(place), {name}, fixIts);
       return false;
     }
     parts.close = parameter[at];
@@ -326,21 +326,21 @@ bool ParameterEditor::takeSuffix(const Tokens& parameter, std::size_t& at, Parts
 }
 
 /// A fix-it that adds `<>` after the name of a parameter without brackets.
-std::vector<Mend> ParameterEditor::addedBrackets(const Parts& parts) {
+std::vector<FixIt> ParameterEditor::addedBrackets(const Parts& parts) {
   if (parts.rank > 0 || parts.isElement || !parts.length.empty()) return {};
-  return {Mend::insertAfter(locOf(parts.name), "<>")};
+  return {FixIt::insertAfter(locOf(parts.name), "<>")};
 }
 
 /// A fix-it that removes the `<>` of a parameter that has no other brackets.
-std::vector<Mend> ParameterEditor::removedBrackets(const Parts& parts) {
+std::vector<FixIt> ParameterEditor::removedBrackets(const Parts& parts) {
   if (!parts.isElement || parts.rank > 0) return {};
-  return {Mend::remove(locOf(parts.open), locOf(parts.close))};
+  return {FixIt::remove(locOf(parts.open), locOf(parts.close))};
 }
 
 /// A fix-it that changes `out` to `reduce`, for a parameter that is an accumulator otherwise.
-std::vector<Mend> ParameterEditor::asAccumulator(const Parts& parts) {
+std::vector<FixIt> ParameterEditor::asAccumulator(const Parts& parts) {
   if (!parts.isElement || parts.rank > 0) return {};
-  return {Mend::replace(locOf(parts.qualifier), "reduce")};
+  return {FixIt::replace(locOf(parts.qualifier), "reduce")};
 }
 
 /// Derives the role from qualifier, `<>` and brackets together, as the language's table of parameters says.
@@ -348,8 +348,8 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
   const Loc place = locOf(parts.name);
   const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments,
-                        const std::vector<Mend>& mends = {}) {
-    diagnostics_.report(diag, place, arguments, mends);
+                        const std::vector<FixIt>& fixIts = {}) {
+    diagnostics_.report(diag, place, arguments, fixIts);
     return false;
   };
   const std::string qualifier = parts.hasQualifier ? nameOf(parts.qualifier) : "";
@@ -416,8 +416,8 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
 bool ParameterEditor::resolveAppendOutput(Parts& parts, FunctionKind kind) {
   const std::string name = nameOf(parts.name);
   const auto fail = [&](Diag diag, std::initializer_list<std::string_view> arguments,
-                        const std::vector<Mend>& mends = {}) {
-    diagnostics_.report(diag, locOf(parts.name), arguments, mends);
+                        const std::vector<FixIt>& fixIts = {}) {
+    diagnostics_.report(diag, locOf(parts.name), arguments, fixIts);
     return false;
   };
   const bool isVariable = nameOf(parts.qualifier) == "vout";
@@ -447,38 +447,38 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
   switch (syntax.role) {
     case ir::ParamRole::Gather:
       // The three tokens need distinct locations: Clang finds a template's name by its location
-      out.push_back(maker_.word(gatherTemplateName(syntax.rank), place));
-      out.push_back(maker_.make(tok::less, parts.open.getLocation()));
+      out.push_back(builder_.word(gatherTemplateName(syntax.rank), place));
+      out.push_back(builder_.make(tok::less, parts.open.getLocation()));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      out.push_back(maker_.make(tok::greater, parts.close.getLocation()));
+      out.push_back(builder_.make(tok::greater, parts.close.getLocation()));
       break;
     case ir::ParamRole::VariableOutput:
     case ir::ParamRole::Scatter:
-      out.push_back(maker_.word(appendTemplateName(syntax.rank), place));
-      out.push_back(maker_.make(tok::less, parts.open.getLocation()));
+      out.push_back(builder_.word(appendTemplateName(syntax.rank), place));
+      out.push_back(builder_.make(tok::less, parts.open.getLocation()));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      out.push_back(maker_.make(tok::greater, parts.close.getLocation()));
+      out.push_back(builder_.make(tok::greater, parts.close.getLocation()));
       break;
     case ir::ParamRole::Output:
     case ir::ParamRole::Accumulator:
       out.insert(out.end(), parts.type.begin(), parts.type.end());
-      out.push_back(maker_.make(tok::amp, place));
+      out.push_back(builder_.make(tok::amp, place));
       break;
     case ir::ParamRole::Input: inputs_.push_back({parts.type.front(), parts.name}); [[fallthrough]];
     case ir::ParamRole::Uniform:
     case ir::ParamRole::Iterator:
     case ir::ParamRole::Spec:
-      if (parts.type.front().isNot(tok::kw_const)) out.push_back(maker_.word("const", start));
+      if (parts.type.front().isNot(tok::kw_const)) out.push_back(builder_.word("const", start));
       out.insert(out.end(), parts.type.begin(), parts.type.end());
       break;
   }
   if (parts.length.empty()) {
     out.push_back(parts.name);
   } else {   // a reference, since C++ cannot pass arrays by value
-    out.push_back(maker_.make(tok::l_paren, place));
-    out.push_back(maker_.make(tok::amp, place));
+    out.push_back(builder_.make(tok::l_paren, place));
+    out.push_back(builder_.make(tok::amp, place));
     out.push_back(parts.name);
-    out.push_back(maker_.make(tok::r_paren, place));
+    out.push_back(builder_.make(tok::r_paren, place));
     out.insert(out.end(), parts.length.begin(), parts.length.end());
   }
   const bool isByIndex = syntax.role == ir::ParamRole::Gather || syntax.role == ir::ParamRole::Scatter ||
@@ -492,7 +492,7 @@ void ParameterEditor::print(const Parts& parts, FunctionKind kind, Tokens& out) 
 std::string ParameterEditor::generateConstant(const Tokens& type, const Tokens& value,
                                               clang::SourceLocation place) {
   std::string name = fmt::format("__sk_constant{}", constants_++);
-  maker_.constant(name, type, value, place, before_);
+  builder_.constant(name, type, value, place, before_);
   return name;
 }
 

@@ -11,7 +11,7 @@
 
 #include "frontend/tokens/comma_indices.hpp"
 #include "frontend/tokens/syntax.hpp"
-#include "frontend/tokens/token_maker.hpp"
+#include "frontend/tokens/token_builder.hpp"
 #include "support/diagnostics.hpp"
 
 namespace clang {
@@ -28,7 +28,7 @@ class ParameterEditor {
   ParameterEditor(clang::Preprocessor& preprocessor, Diagnostics& diagnostics, DeclarationSyntax& syntax,
                   int& constants, std::vector<clang::Token>& before)
       : preprocessor_(preprocessor),
-        maker_(preprocessor),
+        builder_(preprocessor),
         diagnostics_(diagnostics),
         syntax_(syntax),
         constants_(constants),
@@ -57,16 +57,16 @@ class ParameterEditor {
   bool takeDeclarator(const Tokens& parameter, std::size_t& at, Parts& parts);
   bool hasLateQualifier(const Parts& parts);
   bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
-  static std::vector<Mend> addedBrackets(const Parts& parts);
-  static std::vector<Mend> removedBrackets(const Parts& parts);
-  static std::vector<Mend> asAccumulator(const Parts& parts);
+  static std::vector<FixIt> addedBrackets(const Parts& parts);
+  static std::vector<FixIt> removedBrackets(const Parts& parts);
+  static std::vector<FixIt> asAccumulator(const Parts& parts);
   bool resolveRole(Parts& parts, FunctionKind kind);
   bool resolveAppendOutput(Parts& parts, FunctionKind kind);
   std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place);
   void print(const Parts& parts, FunctionKind kind, Tokens& out);
 
   clang::Preprocessor& preprocessor_;
-  TokenMaker maker_;
+  TokenBuilder builder_;
   Diagnostics& diagnostics_;
   DeclarationSyntax& syntax_;
   int& constants_;

@@ -45,10 +45,10 @@ bool StreamEditor::takeDeclarator(TokenCursor& cursor, const Tokens& type, Token
   StreamSyntax stream;
   for (const Tokens& written : extents) stream.extents.push_back(extent(written, out));
   syntax_.add(name.getLocation(), std::move(stream));
-  out.push_back(maker_.word("extern", name.getLocation()));
+  out.push_back(builder_.word("extern", name.getLocation()));
   out.insert(out.end(), type.begin(), type.end());
   out.push_back(name);
-  out.push_back(maker_.make(tok::semi, name.getLocation()));
+  out.push_back(builder_.make(tok::semi, name.getLocation()));
   return true;
 }
 
@@ -82,7 +82,7 @@ ExtentSyntax StreamEditor::extent(const Tokens& written, Tokens& out) {
     return {place, written.front().getIdentifierInfo(), {}};
   }
   ExtentSyntax extent{place, nullptr, fmt::format("__sk_constant{}", constants_++)};
-  maker_.constant(extent.constant, {maker_.word("auto", place)}, written, place, out);
+  builder_.constant(extent.constant, {builder_.word("auto", place)}, written, place, out);
   return extent;
 }
 

@@ -14,8 +14,8 @@
 #include <clang/Lex/Token.h>
 
 #include "frontend/tokens/syntax.hpp"
+#include "frontend/tokens/token_builder.hpp"
 #include "frontend/tokens/token_cursor.hpp"
-#include "frontend/tokens/token_maker.hpp"
 #include "support/diagnostics.hpp"
 
 namespace skc::frontend {
@@ -23,8 +23,8 @@ namespace skc::frontend {
 class StreamEditor {
  public:
   /// `constants` numbers the generated constants.
-  StreamEditor(TokenMaker maker, Diagnostics& diagnostics, DeclarationSyntax& syntax, int& constants)
-      : maker_(maker), diagnostics_(diagnostics), syntax_(syntax), constants_(constants) {}
+  StreamEditor(TokenBuilder builder, Diagnostics& diagnostics, DeclarationSyntax& syntax, int& constants)
+      : builder_(builder), diagnostics_(diagnostics), syntax_(syntax), constants_(constants) {}
 
   /// Takes the declaration, from `stream` to its `;`, and appends its replacement. Reports a wrong
   /// declaration, and appends nothing for it.
@@ -38,7 +38,7 @@ class StreamEditor {
   ExtentSyntax extent(const Tokens& written, Tokens& out);
   bool fail(Diag diag, const clang::Token& place, std::initializer_list<std::string_view> arguments = {});
 
-  TokenMaker maker_;
+  TokenBuilder builder_;
   Diagnostics& diagnostics_;
   DeclarationSyntax& syntax_;
   int& constants_;

@@ -46,7 +46,7 @@ bool areRight(const std::vector<std::vector<Token>>& arguments) {
 
 bool namesTable(const TokenCursor& cursor) { return isWord(cursor.peek(2), "table"); }
 
-std::optional<TableSyntax> takeTable(TokenCursor& cursor, std::size_t tokens, const TokenMaker& maker,
+std::optional<TableSyntax> takeTable(TokenCursor& cursor, std::size_t tokens, const TokenBuilder& builder,
                                      Diagnostics& diagnostics, int& constants, std::vector<Token>& out) {
   std::vector<Token> attribute;
   for (std::size_t i = 0; i < tokens; ++i) attribute.push_back(cursor.take());
@@ -61,10 +61,10 @@ std::optional<TableSyntax> takeTable(TokenCursor& cursor, std::size_t tokens, co
     return std::nullopt;
   }
   const auto constant = [&](llvm::StringRef type, const std::vector<Token>& value) {
-    const std::string made = fmt::format("__sk_constant{}", constants++);
-    maker.constant(made, {maker.word(type, value.front().getLocation())}, value, value.front().getLocation(),
-                   out);
-    return made;
+    const std::string name = fmt::format("__sk_constant{}", constants++);
+    builder.constant(name, {builder.word(type, value.front().getLocation())}, value,
+                     value.front().getLocation(), out);
+    return name;
   };
   TableSyntax table;
   table.low = constant("float", arguments[0]);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "frontend/tokens/syntax.hpp"
+#include "frontend/tokens/token_builder.hpp"
 #include "frontend/tokens/token_cursor.hpp"
-#include "frontend/tokens/token_maker.hpp"
 #include "support/diagnostics.hpp"
 
 namespace skc::frontend {
@@ -19,7 +19,7 @@ bool namesTable(const TokenCursor& cursor);
 
 /// Consumes `tokens` attribute tokens and appends the constants to `out`; returns nullopt after reporting an
 /// error. `constants` numbers the file's generated constants.
-std::optional<TableSyntax> takeTable(TokenCursor& cursor, std::size_t tokens, const TokenMaker& maker,
+std::optional<TableSyntax> takeTable(TokenCursor& cursor, std::size_t tokens, const TokenBuilder& builder,
                                      Diagnostics& diagnostics, int& constants,
                                      std::vector<clang::Token>& out);
 

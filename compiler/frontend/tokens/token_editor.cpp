@@ -29,7 +29,7 @@ class Editor {
       : preprocessor_(preprocessor),
         diagnostics_(diagnostics),
         cursor_(tokens),
-        constructors_(TokenMaker(preprocessor)) {}
+        constructors_(TokenBuilder(preprocessor)) {}
 
   EditedTokens run() {
     copyPrelude();
@@ -126,7 +126,7 @@ class Editor {
   }
 
   void editStream() {
-    StreamEditor(TokenMaker(preprocessor_), diagnostics_, syntax_, constants_).edit(cursor_, out_);
+    StreamEditor(TokenBuilder(preprocessor_), diagnostics_, syntax_, constants_).edit(cursor_, out_);
   }
 
   /// Reports Brook's `iter float x<100> = iter(0, 1);`
@@ -157,7 +157,7 @@ class Editor {
 
   void refuseStream(std::size_t name) {
     diagnostics_.report(Diag::StreamKeyword, locOf(cursor_.peek(name)), {nameOf(cursor_.peek(name))},
-                        {Mend::insertBefore(locOf(cursor_.peek()), "stream ")});
+                        {FixIt::insertBefore(locOf(cursor_.peek()), "stream ")});
     skipDeclaration();
   }
 
@@ -171,7 +171,7 @@ class Editor {
     const Token attribute = cursor_.peek(2);
     const bool isTemplate = !out_.empty() && out_.back().is(tok::greater);
     const std::optional<TableSyntax> table =
-        takeTable(cursor_, behind, TokenMaker(preprocessor_), diagnostics_, constants_, out_);
+        takeTable(cursor_, behind, TokenBuilder(preprocessor_), diagnostics_, constants_, out_);
     const bool isKernel = atDeclarationWord("kernel") || atDeclarationWord("reduce");
     const std::optional<Token> name = isKernel || isTemplate ? std::nullopt : copyNamed();
     if (!name) {
@@ -249,7 +249,7 @@ class Editor {
     }
     if (!isNamed) return;
     diagnostics_.report(Diag::InputAssigned, locOf(input.name), {nameOf(input.name)},
-                        {Mend::insertBefore(locOf(input.first), "out ")});
+                        {FixIt::insertBefore(locOf(input.first), "out ")});
   }
 
   /// True for `x = ` or `x.y = ` at the start of a statement.
@@ -350,7 +350,7 @@ class Editor {
       if (token.isNot(tok::comma) || depth != 1) continue;
       return diagnostics_.report(
           Diag::VectorCast, locOf(type), {nameOf(type)},
-          {Mend::replace(locOf(cursor_.peek()), locOf(cursor_.peek(2)), nameOf(type))});
+          {FixIt::replace(locOf(cursor_.peek()), locOf(cursor_.peek(2)), nameOf(type))});
     }
   }
 
@@ -358,8 +358,8 @@ class Editor {
     const Token& operand = cursor_.peek(1);
     if (!atWord(word) || operand.isNot(tok::identifier)) return;
     diagnostics_.report(Diag::IndexOfWithout, locOf(cursor_.peek()), {word.str(), nameOf(operand)},
-                        {Mend::replace(locOf(cursor_.peek()), locOf(operand),
-                                       fmt::format("{}({})", word.str(), nameOf(operand)))});
+                        {FixIt::replace(locOf(cursor_.peek()), locOf(operand),
+                                        fmt::format("{}({})", word.str(), nameOf(operand)))});
   }
 
   void copyToken() { constructors_.copy(cursor_, out_); }

@@ -51,24 +51,24 @@ class KernelCalls {
     const auto [known, isNew] = ofVectors_.try_emplace({intrinsic, widths}, 0);
     if (!isNew) return known->second;
     const FunctionId component = copyFunction(module_, scalars, copies_);
-    Function made;
-    made.name = fmt::format("{}_{}", module_.functions[component].name, result.width);
-    made.result = result;
-    made.loc = module_.functions[component].loc;
-    for (const Type& type : types) addVariable(made, "x", type, VarRole::In);
+    Function wrapper;
+    wrapper.name = fmt::format("{}_{}", module_.functions[component].name, result.width);
+    wrapper.result = result;
+    wrapper.loc = module_.functions[component].loc;
+    for (const Type& type : types) addVariable(wrapper, "x", type, VarRole::In);
     std::vector<ExprPtr> components;
     for (std::uint8_t i = 0; i < result.width; ++i) {
       std::vector<ExprPtr> args;
       for (VarId var = 0; var < types.size(); ++var) {
-        ExprPtr whole = varRef(made, var);
+        ExprPtr whole = varRef(wrapper, var);
         args.push_back(types[var].isScalar()
                            ? std::move(whole)
                            : makeExpr(types[var].component(), Swizzle{std::move(whole), {i}}));
       }
       components.push_back(call(module_, component, std::move(args)));
     }
-    made.body.push_back(returnStmt(construct(result, std::move(components))));
-    module_.functions.push_back(std::move(made));
+    wrapper.body.push_back(returnStmt(construct(result, std::move(components))));
+    module_.functions.push_back(std::move(wrapper));
     return known->second = static_cast<FunctionId>(module_.functions.size() - 1);
   }
 

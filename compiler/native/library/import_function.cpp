@@ -46,7 +46,7 @@ std::uint32_t FunctionImporter::importStruct(std::uint32_t index) {
   Struct copy = from_.structs[index];
   for (StructField& field : copy.fields) field.type = importType(field.type);
   copy.loc = {};
-  copy.isMade = true;  // not a type of the user's program
+  copy.isSynthesized = true;  // not a type of the user's program
   to_.structs.push_back(std::move(copy));
   return structs_[index] = static_cast<std::uint32_t>(to_.structs.size() - 1);
 }

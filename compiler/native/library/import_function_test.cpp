@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ir/kernel_maker.hpp"
+#include "ir/kernel_builder.hpp"
 #include "ir/print.hpp"
 #include "ir/validate.hpp"
 
@@ -50,7 +50,7 @@ Module target() {
   arrayOf(module, intType, 7);
   module.structs.push_back({"Own", {}, {{"x", floatType}}, {}});
   module.constants.push_back({"own", floatType, literal(1.0F), {}});
-  KernelMaker k(module, "own");
+  KernelBuilder k(module, "own");
   const VarId r = k.output("r", floatType);
   k.finish(block(assign(k.ref(r), literal(1.0F))));
   return module;
@@ -67,12 +67,12 @@ TEST_CASE("an imported function is valid where it comes to") {
   CHECK(to.functions.size() == 3);
   CHECK(to.functions[id].name == "twice");
   CHECK(to.structs.size() == 2);
-  CHECK(to.structs[1].isMade);
+  CHECK(to.structs[1].isSynthesized);
   CHECK(to.constants.size() == 2);
   CHECK(to.arrays.size() == 2);
 
   // a kernel that calls it, so that validation checks it
-  KernelMaker k(to, "f");
+  KernelBuilder k(to, "f");
   const VarId r = k.output("r", floatType);
   k.finish(block(assign(k.ref(r), call(to, id, {}))));
   CHECK(validate(to, Stage::Specialized).empty());

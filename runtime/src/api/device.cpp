@@ -56,7 +56,7 @@ Target targetOf(const std::string& profile) {
 }
 
 /// Whether the device must keep to the limits that its profile guarantees.
-bool wantsGuaranteed(const std::string& limits) {
+bool usesGuaranteedLimits(const std::string& limits) {
   if (!limits.empty() && limits != "device" && limits != "guaranteed") {
     throw Error(
         fmt::format("there are no limits '{}'; choose device or guaranteed (option or SK_LIMITS)", limits));
@@ -81,7 +81,7 @@ std::int32_t textureLimitOf(std::int32_t option) {
 }
 
 /// Whether doubles are pairs of floats. Guaranteed limits imply pairs, because profiles guarantee no doubles.
-bool wantsPairs(const std::string& doubles, bool guaranteedLimits) {
+bool usesPairs(const std::string& doubles, bool guaranteedLimits) {
   if (!doubles.empty() && doubles != "native" && doubles != "pairs") {
     throw Error(
         fmt::format("there are no doubles '{}'; choose native or pairs (option or SK_DOUBLES)", doubles));
@@ -105,8 +105,8 @@ std::optional<Barrier> barrierOf(const std::string& name) {
 
 DeviceChoices choicesOf(std::int32_t textureLimit, const std::string& limits, const std::string& doubles,
                         const std::string& barrier, const std::string& profile, bool sharesContext) {
-  const bool guaranteedLimits = wantsGuaranteed(limits);
-  return {textureLimitOf(textureLimit), guaranteedLimits,  wantsPairs(doubles, guaranteedLimits),
+  const bool guaranteedLimits = usesGuaranteedLimits(limits);
+  return {textureLimitOf(textureLimit), guaranteedLimits,  usesPairs(doubles, guaranteedLimits),
           barrierOf(barrier),           targetOf(profile), sharesContext};
 }
 
@@ -173,8 +173,8 @@ constexpr std::string_view aDevice = "a new device";
 template <class Options>
 detail::DeviceOwner open(Options&& options) {
   return withHostMemory(aDevice, [&] {
-    const DeviceOptions asked = withEnvironment(options());
-    return configured(openState(asked), asked.configuration);
+    const DeviceOptions requested = withEnvironment(options());
+    return configured(openState(requested), requested.configuration);
   });
 }
 

@@ -25,19 +25,19 @@ struct Sum {
 
 /// Folds to rounded floats or to digits, with one element for each element of the result.
 Sum fold(const ExactSum& sum, const ResolvedReduction& call) {
-  Sum made;
-  made.rounded = call.device.sumExactly(call, sum);
-  if (made.rounded) return made;
-  made.digits = std::make_unique<TemporaryResults>(call);
+  Sum folded;
+  folded.rounded = call.device.sumExactly(call, sum);
+  if (folded.rounded) return folded;
+  folded.digits = std::make_unique<TemporaryResults>(call);
   std::vector<Argument> all;
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     if (call.reduction.fold.parameters[i].role != Role::Accumulator) all.push_back(call.arguments[i]);
   }
   for (const Parameter& parameter : sum.reduction.fold.parameters) {
-    if (parameter.role == Role::Accumulator) all.push_back(made.digits->add(*parameter.element));
+    if (parameter.role == Role::Accumulator) all.push_back(folded.digits->add(*parameter.element));
   }
   call.device.reduce(call.of(sum.reduction, all, {}));
-  return made;
+  return folded;
 }
 
 /// Stores a sum in its result.

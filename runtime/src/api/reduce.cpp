@@ -30,21 +30,21 @@ using program::Role;
 /// identity.
 const CompensatedReduction* compensated(const ResolvedReduction& call) {
   const Reduction& reduction = call.reduction;
-  const Accumulate asked = call.options.accumulate;
+  const Accumulate requested = call.options.accumulate;
   const CompensatedReduction* second = reduction.compensated;
-  if (asked == Accumulate::Exact && reduction.exact.empty()) {
+  if (requested == Accumulate::Exact && reduction.exact.empty()) {
     fail(reduction.fold, "it has no sum of floats to add exactly; call it without Accumulate::Exact");
   }
-  if (asked == Accumulate::Compensated && second == nullptr) {
+  if (requested == Accumulate::Compensated && second == nullptr) {
     fail(reduction.fold,
          "it has no sum of floats to compensate, one that elements and partial results are added to and no "
          "more; call it without Accumulate::Compensated");
   }
-  if (asked == Accumulate::Tree || second == nullptr || call.domain.size() == 0) {
+  if (requested == Accumulate::Tree || second == nullptr || call.domain.size() == 0) {
     return nullptr;
   }
   if (!call.device.arithmetic().exactSums) {
-    if (asked == Accumulate::Compensated) {
+    if (requested == Accumulate::Compensated) {
       fail(Error::Kind::Device, reduction.fold,
            "its sums cannot be compensated on '{}', whose compiler simplifies their rounding errors away; "
            "call it without Accumulate::Compensated, or on another device (SK_DEVICE=native)",
@@ -54,7 +54,7 @@ const CompensatedReduction* compensated(const ResolvedReduction& call) {
   }
   const auto room = static_cast<std::size_t>(call.device.limits.textureUnits);
   const bool fits = planesRead(second->reduction.combine, specsOf(reduction.fold, call.arguments)) <= room;
-  return fits || asked == Accumulate::Compensated ? second : nullptr;
+  return fits || requested == Accumulate::Compensated ? second : nullptr;
 }
 
 /// Adds rounding errors to floats in host memory.
@@ -71,7 +71,7 @@ void addFloats(void* to, const void* from, std::size_t bytes) {
 }
 
 /// The accumulators of rounding errors, in the order of the sums.
-std::span<const Parameter> accumulatorsOfLosses(const CompensatedReduction& second) {
+std::span<const Parameter> errorAccumulators(const CompensatedReduction& second) {
   return second.reduction.fold.parameters.last(second.sums.size());
 }
 
@@ -120,7 +120,7 @@ CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions&
   checkTables(reduction.fold, options);
   const bool isOfFloats =
       options.accumulate == Accumulate::Exact || options.accumulate == Accumulate::Compensated;
-  if (isOfFloats && takesForm(options)) {
+  if (isOfFloats && needsPrecisionVariant(options)) {
     fail(reduction.fold,
          "exact and compensated sums are of floats; call it in Precision::Single, or without Accumulate");
   }
@@ -128,7 +128,7 @@ CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions&
 }
 
 /// Whether a result stream stores its floats as halves or doubles.
-bool isHeldOtherwise(const ResolvedReduction& call) {
+bool isStoredInOtherPrecision(const ResolvedReduction& call) {
   if (call.isToValues()) return false;
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     if (call.reduction.fold.parameters[i].role == Role::Accumulator &&
@@ -167,24 +167,24 @@ void reduceByFloats(const ResolvedReduction& call) {
 
 /// Computes the sums in the results and the rounding errors in temporaries, then adds both.
 void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction& second) {
-  TemporaryResults lost(call);
+  TemporaryResults errors(call);
   std::vector<Argument> all(call.arguments.begin(), call.arguments.end());
-  for (const Parameter& parameter : accumulatorsOfLosses(second)) all.push_back(lost.add(*parameter.element));
+  for (const Parameter& parameter : errorAccumulators(second)) all.push_back(errors.add(*parameter.element));
   std::vector<void*> values(call.values.begin(), call.values.end());
-  values.insert(values.end(), lost.values.begin(), lost.values.end());
+  values.insert(values.end(), errors.values.begin(), errors.values.end());
   checkReduction(second.reduction, all, values);
   call.device.reduce(call.of(second.reduction, all, values));
-  for (std::size_t k = 0; k < lost.values.size(); ++k) {
+  for (std::size_t k = 0; k < errors.values.size(); ++k) {
     const auto& [accumulator, offset] = second.sums[k];
     auto* const result = static_cast<std::byte*>(call.values[resultOf(call.reduction.fold, accumulator)]);
-    const std::size_t bytes = accumulatorsOfLosses(second)[k].element->size;
-    addFloats(result + offset, lost.values[k], bytes);
+    const std::size_t bytes = errorAccumulators(second)[k].element->size;
+    addFloats(result + offset, errors.values[k], bytes);
   }
   if (call.isToValues()) return;
   writeInSteps(call.reduction, call.arguments, true, [&] {
     const std::vector<Argument> results = resultsWithSums(second, call.arguments);
     std::vector<Argument> finished = results;
-    finished.insert(finished.end(), lost.arguments.begin(), lost.arguments.end());
+    finished.insert(finished.end(), errors.arguments.begin(), errors.arguments.end());
     finished.insert(finished.end(), results.begin(), results.end());
     run(second.finish, finished,
         {.precision = Precision::Single,
@@ -195,15 +195,15 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
 
 /// Reduces with the variant that the options, the device and the results require.
 void reduceResolved(const ResolvedReduction& call) {
-  if (isHeldOtherwise(call)) return reduceByFloats(call);
-  if (takesForm(call.options)) return reduceInForm(call);
+  if (isStoredInOtherPrecision(call)) return reduceByFloats(call);
+  if (needsPrecisionVariant(call.options)) return reduceInPrecision(call);
   const CompensatedReduction* second = compensated(call);
   if (isExact(call)) return reduceExactly(call);
   if (second == nullptr) return call.device.reduce(call);
   if (!isInDoubles(call, *second)) return reduceCompensated(call, *second);
   ResolvedReduction inDoubles = call;
   inDoubles.options.accumulate = Accumulate::Extended;
-  reduceInForm(inDoubles);
+  reduceInPrecision(inDoubles);
 }
 
 void checkAndReduce(const Reduction& reduction, std::span<const Argument> arguments,

@@ -119,7 +119,7 @@ enum class Work : std::uint8_t {
 struct Task {
   Work work = Work::Elements;
   std::uint8_t appendOutput = 0;  ///< List: the parameter
-  bool treeLayered = false;  ///< List: the pyramid of a counted append output has layers
+  bool pyramidLayered = false;  ///< List: the pyramid of a counted append output has layers
   auto operator<=>(const Task&) const = default;
 };
 

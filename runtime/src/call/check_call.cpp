@@ -93,12 +93,12 @@ void checkPlanes(const Kernel& kernel, const DeviceState& device, std::size_t wr
 struct AppendPlanes {
   std::size_t counts = 0;
   std::size_t list = 0;
-  std::size_t tree = 0;
+  std::size_t pyramid = 0;
 
   void add(const Parameter& appendOutput) {
     const bool isCounted = assemble::isCounted(appendOutput);
     counts += isCounted ? 1 : 0;
-    tree = isCounted ? 2 : tree;
+    pyramid = isCounted ? 2 : pyramid;
     const std::size_t texels = appendOutput.role == Role::Scatter ? 1 : 0;
     list = std::max(list, appendOutput.element->fields.size() + texels);
   }
@@ -188,7 +188,7 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
   if (call.plan == nullptr) {
     checkUniforms(kernel, device);
     checkPlanes(kernel, device, std::max(written + appendOutputs.counts, appendOutputs.list),
-                read + appendOutputs.tree);
+                read + appendOutputs.pyramid);
   }
   const bool hasAppendOutputs = appendOutputs.list > 0;  // these are emptied if the domain is empty
   if (domain.size() == 0 && !hasAppendOutputs) return std::nullopt;

@@ -19,13 +19,14 @@ using program::Reduction;
 using program::Role;
 using program::WideReduction;
 
-[[noreturn]] void failWithoutForm(const Kernel& kernel, std::string_view form, std::string_view why) {
-  fail(Error::Kind::Compile, kernel, "it has no form in {}: {}; call it in Precision::Single", form, why);
+[[noreturn]] void failWithoutVariant(const Kernel& kernel, std::string_view precision, std::string_view why) {
+  fail(Error::Kind::Compile, kernel, "it has no form in {}: {}; call it in Precision::Single", precision,
+       why);
 }
 
-const WideReduction* wideForm(const Reduction& reduction) {
+const WideReduction* wideVariant(const Reduction& reduction) {
   if (reduction.wide == nullptr && !reduction.fold.whyNotWide.empty()) {
-    failWithoutForm(reduction.fold, "doubles", reduction.fold.whyNotWide);
+    failWithoutVariant(reduction.fold, "doubles", reduction.fold.whyNotWide);
   }
   return reduction.wide;
 }
@@ -45,39 +46,39 @@ void checkPlanes(const Reduction& plain, const Reduction& wide, const DeviceLimi
 
 }  // namespace
 
-const Reduction& halfForm(const Reduction& reduction) {
+const Reduction& halfVariant(const Reduction& reduction) {
   if (reduction.half != nullptr) return *reduction.half;
   if (!reduction.fold.whyNotHalf.empty())
-    failWithoutForm(reduction.fold, "half precision", reduction.fold.whyNotHalf);
+    failWithoutVariant(reduction.fold, "half precision", reduction.fold.whyNotHalf);
   return reduction;
 }
 
-const Kernel& formOf(const Kernel& kernel, const CallOptions& options) {
+const Kernel& precisionVariant(const Kernel& kernel, const CallOptions& options) {
   if (options.precision == Precision::Half) {
     if (kernel.half == nullptr && !kernel.whyNotHalf.empty()) {
-      failWithoutForm(kernel, "half precision", kernel.whyNotHalf);
+      failWithoutVariant(kernel, "half precision", kernel.whyNotHalf);
     }
     return kernel.half != nullptr ? *kernel.half : kernel;
   }
   if (!isWide(options)) return kernel;
   if (kernel.wide == nullptr && !kernel.whyNotWide.empty())
-    failWithoutForm(kernel, "doubles", kernel.whyNotWide);
+    failWithoutVariant(kernel, "doubles", kernel.whyNotWide);
   return kernel.wide != nullptr ? *kernel.wide : kernel;
 }
 
 void checkTables(const Kernel& kernel, const CallOptions& options) {
-  if (options.tables == Tables::On && takesForm(options)) {
+  if (options.tables == Tables::On && needsPrecisionVariant(options)) {
     fail(kernel, "tables have the precision of floats; call it in Precision::Single, or without Tables::On");
   }
 }
 
-void reduceInForm(const ResolvedReduction& call) {
+void reduceInPrecision(const ResolvedReduction& call) {
   const Reduction& reduction = call.reduction;
-  const bool isPlain = !call.device.takesForms() || call.domain.size() == 0;
-  const WideReduction* wide = isPlain || !isWide(call.options) ? nullptr : wideForm(reduction);
+  const bool isPlain = !call.device.usesPrecisionVariants() || call.domain.size() == 0;
+  const WideReduction* wide = isPlain || !isWide(call.options) ? nullptr : wideVariant(reduction);
   if (wide == nullptr) {
-    const Reduction& form = isPlain || isWide(call.options) ? reduction : halfForm(reduction);
-    call.device.reduce(call.of(form, call.arguments, call.values));
+    const Reduction& variant = isPlain || isWide(call.options) ? reduction : halfVariant(reduction);
+    call.device.reduce(call.of(variant, call.arguments, call.values));
     return;
   }
   checkPlanes(reduction, wide->reduction, call.device.limits);

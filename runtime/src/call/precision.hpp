@@ -25,22 +25,22 @@ constexpr bool isExtended(const CallOptions& options) {
 }
 
 /// Whether the call needs another variant than the one that computes in floats.
-constexpr bool takesForm(const CallOptions& options) {
+constexpr bool needsPrecisionVariant(const CallOptions& options) {
   return isWide(options) || options.precision == Precision::Half;
 }
 
 /// The kernel's variant for a call; the kernel itself for floats, or if it has no floats. Throws sk::Error if
 /// there is none.
-const program::Kernel& formOf(const program::Kernel& kernel, const CallOptions& options);
+const program::Kernel& precisionVariant(const program::Kernel& kernel, const CallOptions& options);
 
 /// The reduction's variant in half; the reduction itself if it has no floats. Throws sk::Error if there is
 /// none.
-const program::Reduction& halfForm(const program::Reduction& reduction);
+const program::Reduction& halfVariant(const program::Reduction& reduction);
 
 /// Throws sk::Error if a call requests tables in a precision other than float.
 void checkTables(const program::Kernel& kernel, const CallOptions& options);
 
 /// Reduces with the variant that the options select. Throws sk::Error if there is none.
-void reduceInForm(const ResolvedReduction& call);
+void reduceInPrecision(const ResolvedReduction& call);
 
 }  // namespace sk

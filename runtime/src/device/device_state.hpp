@@ -57,7 +57,7 @@ class DeviceState {
   /// Whether scatter outputs may combine a new value with the stored one.
   virtual bool combinesScattered() const = 0;
   /// Whether other precisions than float need variants of a kernel: native code computes in any real type.
-  virtual bool takesForms() const = 0;
+  virtual bool usesPrecisionVariants() const = 0;
   /// Whether summing in doubles is cheaper than compensated sums of floats.
   virtual bool sumsInDoubles() const { return false; }
   /// Whether it computes in double wherever kernels say float.

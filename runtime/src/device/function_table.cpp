@@ -146,8 +146,8 @@ double predictedError(const Samples& samples, const TableRange& range, bool isCu
   return truncation + place + 3 * roundoff * samples.largestValue();
 }
 
-void measure(const Table& table, FunctionTable& made) {
-  const TableRange& range = made.report.range;
+void measure(const Table& table, FunctionTable& result) {
+  const TableRange& range = result.report.range;
   const std::size_t count = static_cast<std::size_t>(range.intervals) * parts;
   const double width = double{range.high} - range.low;
   std::vector<double> arguments(count);
@@ -156,13 +156,13 @@ void measure(const Table& table, FunctionTable& made) {
     arguments[j] = std::clamp(static_cast<float>(x), range.low, range.high);
   }
   const std::vector<double> right = valuesAt(table, arguments);
-  const native::Table looked = made.native();
+  const native::Table looked = result.native();
   for (std::size_t j = 0; j < count; ++j) {
     const auto x = static_cast<float>(arguments[j]);
     const double error = std::abs(double{looked.at(x)} - right[j]);
-    if (error <= made.report.measured) continue;
-    made.report.measured = error;
-    made.report.worst = x;
+    if (error <= result.report.measured) continue;
+    result.report.measured = error;
+    result.report.worst = x;
   }
 }
 
@@ -177,12 +177,12 @@ FunctionTable buildTable(const Table& table, const TableRange& range) {
   const float scale = perUnit(table, range);
   const Samples samples(table, range);
   const bool isCubic = table.interpolation == Interpolation::Cubic;
-  FunctionTable made{.report = {std::string(table.function), range, table.interpolation,
-                                predictedError(samples, range, isCubic), 0, range.low},
-                     .coefficients = coefficientsFor(samples, range.intervals, table.interpolation),
-                     .perUnit = scale};
-  measure(table, made);
-  return made;
+  FunctionTable result{.report = {std::string(table.function), range, table.interpolation,
+                                  predictedError(samples, range, isCubic), 0, range.low},
+                       .coefficients = coefficientsFor(samples, range.intervals, table.interpolation),
+                       .perUnit = scale};
+  measure(table, result);
+  return result;
 }
 
 const FunctionTable& FunctionTables::of(const Table& table, const Configuration& configuration) {

@@ -98,7 +98,7 @@ Capabilities readCapabilities() {
       found.version >= (found.api == Api::Gl ? 43 : 32) || epoxy_has_gl_extension("GL_KHR_debug");
   found.isDebugged = epoxy_has_gl_extension("GL_EXT_debug_tool") ||
                      (found.hasLabels && (integerOf(GL_CONTEXT_FLAGS) & GL_CONTEXT_FLAG_DEBUG_BIT) != 0);
-  found.tellsResets =
+  found.reportsResets =
       found.version >= (found.api == Api::Gl ? 45 : 32) || epoxy_has_gl_extension("GL_KHR_robustness");
   found.binaryFormats = binaryFormats(found);
   if (found.api == Api::Gl && found.version >= 32) {

@@ -26,7 +26,7 @@ struct Capabilities {
   bool hasCompute = false;  ///< has compute programs of GLSL 4.30, within the limits below
   bool hasClipControl = false;  ///< the origin of y can be chosen
   bool hasLabels = false;  ///< has names of objects for debuggers (KHR_debug)
-  bool tellsResets = false;  ///< has glGetGraphicsResetStatus
+  bool reportsResets = false;  ///< has glGetGraphicsResetStatus
   bool isDebugged = false;  ///< a debugger is attached, or the context is a debug context
   std::vector<GLenum> binaryFormats;  ///< formats of program binaries that the driver supports; may be empty
   std::string renderer;

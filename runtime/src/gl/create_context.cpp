@@ -61,8 +61,8 @@ EGLConfig chooseConfig(EGLDisplay display, Api api) {
   return EGL_NO_CONFIG_KHR;
 }
 
-/// `tellsResets`: creates a context that a GPU reset makes lost, which the driver reports.
-EGLContext createHighest(EGLDisplay display, EGLConfig config, Api api, bool tellsResets) {
+/// `reportsResets`: creates a context that a GPU reset makes lost, which the driver reports.
+EGLContext createHighest(EGLDisplay display, EGLConfig config, Api api, bool reportsResets) {
   const std::span<const Version> versions =
       api == Api::Gl ? std::span<const Version>(glVersions) : std::span<const Version>(esVersions);
   for (const auto& [major, minor] : versions) {
@@ -71,7 +71,7 @@ EGLContext createHighest(EGLDisplay display, EGLConfig config, Api api, bool tel
       attributes.insert(attributes.end(),
                         {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
     }
-    if (tellsResets) {
+    if (reportsResets) {
       attributes.insert(attributes.end(),
                         {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
     }
@@ -99,8 +99,8 @@ std::optional<Context> createContext(EGLDisplay display, Api api, std::string& w
     return std::nullopt;
   }
   EGLContext context =
-      isEgl15(display) ? createHighest(display, config, api, /*tellsResets=*/true) : EGL_NO_CONTEXT;
-  if (context == EGL_NO_CONTEXT) context = createHighest(display, config, api, /*tellsResets=*/false);
+      isEgl15(display) ? createHighest(display, config, api, /*reportsResets=*/true) : EGL_NO_CONTEXT;
+  if (context == EGL_NO_CONTEXT) context = createHighest(display, config, api, /*reportsResets=*/false);
   if (context == EGL_NO_CONTEXT) {
     why = fmt::format("it gives no context of version {} or later ({})", api == Api::Gl ? "3.3 core" : "3.0",
                       eglErrorName(eglGetError()));

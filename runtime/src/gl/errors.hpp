@@ -27,7 +27,7 @@ class Errors {
 
   /// Whether the context is known to be lost; it then stays lost.
   bool isLost() const { return isLost_; }
-  /// Queries the driver. The context must be current and have a reset status (Capabilities::tellsResets).
+  /// Queries the driver. The context must be current and have a reset status (Capabilities::reportsResets).
   bool askIfLost() {
     isLost_ = isLost_ || glGetGraphicsResetStatus() != GL_NO_ERROR;
     return isLost_;

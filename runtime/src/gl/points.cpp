@@ -25,8 +25,8 @@ GLenum equationOf(Blend blend) {
 
 }  // namespace
 
-Blending::Blending(const Capabilities& capabilities, Blend blend, bool isApplications)
-    : capabilities_(capabilities), isOn_(blend != Blend::None), isKept_(isOn_ && isApplications) {
+Blending::Blending(const Capabilities& capabilities, Blend blend, bool isApplicationContext)
+    : capabilities_(capabilities), isOn_(blend != Blend::None), isKept_(isOn_ && isApplicationContext) {
   if (!isOn_) {
     return;
   }

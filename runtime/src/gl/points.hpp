@@ -17,7 +17,7 @@ enum class Blend { None, Add, Min, Max };
 /// context; in our own, nothing else blends.
 class Blending {
  public:
-  Blending(const Capabilities& capabilities, Blend blend, bool isApplications);
+  Blending(const Capabilities& capabilities, Blend blend, bool isApplicationContext);
   ~Blending();
   Blending(const Blending&) = delete;
   Blending& operator=(const Blending&) = delete;

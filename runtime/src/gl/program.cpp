@@ -77,7 +77,7 @@ ProgramBinary Program::binary() const {
   return binary;
 }
 
-PendingProgram::PendingProgram(BoundState& bound, const ProgramSources& sources, bool isKept) {
+PendingProgram::PendingProgram(BoundState& bound, const ProgramSources& sources, bool isRetrievable) {
   bound.errors.setAside();
   program_ = Program(bound);
   main_ = newShader(bound, sources.isCompute() ? GL_COMPUTE_SHADER : GL_FRAGMENT_SHADER);
@@ -89,7 +89,7 @@ PendingProgram::PendingProgram(BoundState& bound, const ProgramSources& sources,
   }
   if (vertex_) addShader(vertex_.get(), sources.vertex);
   addShader(main_.get(), sources.main);
-  if (isKept) {
+  if (isRetrievable) {
     glProgramParameteri(program_.name(), GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
   }
   glLinkProgram(program_.name());

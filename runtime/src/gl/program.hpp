@@ -39,7 +39,7 @@ class Program {
   /// Empty if the driver rejects the binary. The driver must know the format.
   static Program load(BoundState& bound, GLenum format, std::span<const std::byte> bytes);
 
-  /// Requires a program that was started with `isKept`.
+  /// Requires a program that was started with `isRetrievable`.
   ProgramBinary binary() const;
 
   GLuint name() const { return name_.get(); }
@@ -63,8 +63,8 @@ class Program {
 class PendingProgram {
  public:
   PendingProgram() = default;
-  /// Returns without waiting. `isKept`: binary() will be called.
-  PendingProgram(BoundState& bound, const ProgramSources& sources, bool isKept);
+  /// Returns without waiting. `isRetrievable`: binary() will be called.
+  PendingProgram(BoundState& bound, const ProgramSources& sources, bool isRetrievable);
 
   /// Waits. If the driver rejects the program, the result is empty and `log` has its messages.
   Program finish(std::string& log);

@@ -10,12 +10,12 @@ bool ValueBuffer::bind(BoundState& bound) {
     bound.storage(name_.get());
     return true;
   }
-  ObjectName<deleteBuffer> made(bound.deletions, [] { return generated(glGenBuffers); });
-  bound.storage(made.get());
+  ObjectName<deleteBuffer> buffer(bound.deletions, [] { return generated(glGenBuffers); });
+  bound.storage(buffer.get());
   bound.errors.setAside();
   glBufferData(GL_SHADER_STORAGE_BUFFER, bytes, nullptr, GL_STREAM_READ);
   if (bound.errors.takeNew() != GL_NO_ERROR) return false;
-  name_ = std::move(made);
+  name_ = std::move(buffer);
   return true;
 }
 

@@ -88,7 +88,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
                     capabilities.renderer),
         Error::Kind::Device);
   }
-  choose({}, assemble::Stage::Fragment);
+  selectPrograms({}, assemble::Stage::Fragment);
   limits.textureSize = capabilities.textureSize;
   limits.textureLayers = capabilities.textureLayers;
   if (choices.textureLimit > 0 && choices.textureLimit < limits.textureSize) {
@@ -156,10 +156,10 @@ std::unique_ptr<StreamState> GlDevice::createStream(const program::Element& elem
 
 // Accumulate::Extended leaves the representation open: in software, doubles are more precise than pairs of
 // floats, and faster.
-bool GlDevice::takesPairs(const CallOptions& options) const {
-  const bool asksForPairs = options.precision == Precision::Extended;
+bool GlDevice::computesInPairs(const CallOptions& options) const {
+  const bool requiresPairs = options.precision == Precision::Extended;
   return isExtended(options) &&
-         (asksForPairs || !capabilities.isSoftware || profile.doubles == assemble::Doubles::Pairs);
+         (requiresPairs || !capabilities.isSoftware || profile.doubles == assemble::Doubles::Pairs);
 }
 
 bool GlDevice::mayDispatch(const program::Kernel& kernel) const {
@@ -200,26 +200,26 @@ std::vector<TargetTrial> GlDevice::trialTargets() {
   return trials;
 }
 
-void GlDevice::choose(const CallOptions& options, assemble::Stage stage) {
-  const ProgramChoice choice{.stage = stage,
-                             .accurate = options.intrinsics != Intrinsics::Fast,
-                             .doubles = takesPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
-                             .barrier = barrier,
-                             .tables = options.tables != Tables::Off};
-  if (programs_ != nullptr && choice == chosen_) {
+void GlDevice::selectPrograms(const CallOptions& options, assemble::Stage stage) {
+  const ProgramCacheKey key{.stage = stage,
+                            .accurate = options.intrinsics != Intrinsics::Fast,
+                            .doubles = computesInPairs(options) ? assemble::Doubles::Pairs : profile.doubles,
+                            .barrier = barrier,
+                            .tables = options.tables != Tables::Off};
+  if (programs_ != nullptr && key == cacheKey_) {
     return;
   }
-  auto found = caches_.find(choice);
+  auto found = caches_.find(key);
   if (found == caches_.end()) {
-    assemble::Profile chosen = stage == assemble::Stage::Compute ? computeProfile : profile;
-    chosen.accurate = choice.accurate;
-    chosen.doubles = choice.doubles;
-    chosen.barrier = choice.barrier;
-    chosen.tables = choice.tables;
-    found = caches_.try_emplace(choice, *this, chosen).first;
+    assemble::Profile cacheProfile = stage == assemble::Stage::Compute ? computeProfile : profile;
+    cacheProfile.accurate = key.accurate;
+    cacheProfile.doubles = key.doubles;
+    cacheProfile.barrier = key.barrier;
+    cacheProfile.tables = key.tables;
+    found = caches_.try_emplace(key, *this, cacheProfile).first;
   }
   programs_ = &found->second;
-  chosen_ = choice;
+  cacheKey_ = key;
 }
 
 GLuint GlDevice::textureOf(const FunctionTable& table) {
@@ -288,13 +288,13 @@ void GlDevice::checkProgram(const program::Reduction& reduction) {
   checkProgram(reduction.combine);
 }
 
-void GlDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
-  if (asked == Target::Native) {
+void GlDevice::checkTarget(const program::Kernel& kernel, Target requested) const {
+  if (requested == Target::Native) {
     fail(Error::Kind::Device, kernel,
          "its streams are on '{}'; native code runs on streams of sk::Device::native()", name());
   }
   constexpr std::string_view compileForBoth = "compile its .sk file with skc --target=fragment,compute";
-  const bool mustDispatch = asked == Target::Compute || !kernel.drawn;
+  const bool mustDispatch = requested == Target::Compute || !kernel.drawn;
   const std::string_view wayOut = kernel.drawn ? "call it without Target::Compute" : compileForBoth;
   if (mustDispatch && !capabilities.hasCompute) {
     fail(Error::Kind::Device, kernel, "'{}' runs no compute programs, which take OpenGL 4.3; {}", name(),
@@ -306,14 +306,14 @@ void GlDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
   if (mustDispatch && !kernel.dispatched) {
     fail(Error::Kind::Compile, kernel, "it has no compute programs; {}", compileForBoth);
   }
-  if (asked == Target::Fragment && !kernel.drawn) {
+  if (requested == Target::Fragment && !kernel.drawn) {
     fail(Error::Kind::Compile, kernel, "it has no fragment programs; {}", compileForBoth);
   }
 }
 
 void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& options) {
   checkTarget(kernel, options.target);
-  if (takesPairs(options)) {
+  if (computesInPairs(options)) {
     needExactSums(kernel);
   }
   if (options.precision == Precision::Double && profile.doubles != assemble::Doubles::Native) {
@@ -360,9 +360,9 @@ void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argu
   }
 }
 
-std::vector<RenderTarget> GlDevice::takePlanes(const program::Element& element,
-                                               const assemble::TextureShape& shape,
-                                               std::string_view whatFor) {
+std::vector<RenderTarget> GlDevice::acquirePlanes(const program::Element& element,
+                                                  const assemble::TextureShape& shape,
+                                                  std::string_view whatFor) {
   PlanesLease lease(*this);
   lease.add(element, shape, whatFor);
   return std::exchange(lease.planes, {});
@@ -373,7 +373,7 @@ void PlanesLease::add(const program::Element& element, const assemble::TextureSh
   planes.reserve(planes.size() + element.fields.size());
   for (const program::Field& field : element.fields) {
     const gl::Format& format = gl::formatOf(field);
-    RenderTarget plane = device_.pool.take(format, shape);
+    RenderTarget plane = device_.pool.acquire(format, shape);
     if (!plane) device_.failForPlanes(element, format, shape, whatFor);
     planes.push_back(std::move(plane));
     device_.labels.texture(planes.back().texture.name(), whatFor);
@@ -393,9 +393,9 @@ void GlDevice::failForPlanes(const program::Element& element, const gl::Format& 
       Error::Kind::Memory);
 }
 
-void GlDevice::givePlanes(std::vector<RenderTarget>& planes) noexcept {
+void GlDevice::releasePlanes(std::vector<RenderTarget>& planes) noexcept {
   for (RenderTarget& plane : planes) {
-    pool.give(std::move(plane));
+    pool.release(std::move(plane));
   }
   planes.clear();
   countBytes();
@@ -414,7 +414,7 @@ void GlDevice::failAsLost() const {
 
 void GlDevice::throwIfLost() {
   bound.errors.setAside();
-  if (bound.errors.isLost() || (capabilities.tellsResets && bound.errors.askIfLost())) failAsLost();
+  if (bound.errors.isLost() || (capabilities.reportsResets && bound.errors.askIfLost())) failAsLost();
 }
 
 // In a shared context, errors other than exhausted memory and a lost context may be the application's own and

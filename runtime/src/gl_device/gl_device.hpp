@@ -49,13 +49,13 @@ struct DeviceChoices {
 };
 
 /// The options of a call that affect all of its programs: a program cache's key.
-struct ProgramChoice {
+struct ProgramCacheKey {
   assemble::Stage stage = assemble::Stage::Fragment;
   bool accurate = true;
   assemble::Doubles doubles = assemble::Doubles::Native;
   Barrier barrier = Barrier::Xor;
   bool tables = true;
-  auto operator<=>(const ProgramChoice&) const = default;
+  auto operator<=>(const ProgramCacheKey&) const = default;
 };
 
 class GlDevice final : public DeviceState {
@@ -73,7 +73,7 @@ class GlDevice final : public DeviceState {
   const Arithmetic& arithmetic() override;
   std::vector<TargetTrial> trialTargets() override;
   bool combinesScattered() const override { return capabilities.blendsFloats; }
-  bool takesForms() const override { return true; }
+  bool usesPrecisionVariants() const override { return true; }
   void checkProgram(const program::Kernel& kernel) override;
   void checkProgram(const program::Reduction& reduction) override;
   std::unique_ptr<StreamState> createStream(const program::Element& element, const Shape& shape,
@@ -85,11 +85,11 @@ class GlDevice final : public DeviceState {
   void run(const ResolvedCall& call) override;
   void reduce(const ResolvedReduction& call) override;
 
-  /// Takes the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
+  /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
   /// their purpose `whatFor`, if memory is exhausted.
-  std::vector<RenderTarget> takePlanes(const program::Element& element, const assemble::TextureShape& shape,
-                                       std::string_view whatFor);
-  void givePlanes(std::vector<RenderTarget>& planes) noexcept;
+  std::vector<RenderTarget> acquirePlanes(const program::Element& element,
+                                          const assemble::TextureShape& shape, std::string_view whatFor);
+  void releasePlanes(std::vector<RenderTarget>& planes) noexcept;
   [[noreturn]] void failForPlanes(const program::Element& element, const gl::Format& format,
                                   const assemble::TextureShape& shape, std::string_view whatFor);
   void countBytes() const noexcept {
@@ -112,7 +112,7 @@ class GlDevice final : public DeviceState {
   void checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments,
                      const program::Plan* plan = nullptr) const;
   /// Selects the program cache for a call with these options, which programs() then returns.
-  void choose(const CallOptions& options, assemble::Stage stage);
+  void selectPrograms(const CallOptions& options, assemble::Stage stage);
   /// The stage that runs a kernel, or the fold of a reduction, in a call with these options. May measure
   /// which one is faster. No DeviceScope may be open.
   assemble::Stage stageOf(const program::Kernel& kernel, KernelClass kernels, const CallOptions& options);
@@ -170,20 +170,20 @@ class GlDevice final : public DeviceState {
   bool hasDrawn = false;
 
  private:
-  bool takesPairs(const CallOptions& options) const;
+  bool computesInPairs(const CallOptions& options) const;
   assemble::Stage fasterFor(KernelClass kernels);
   bool mayDispatch(const program::Kernel& kernel) const;
   /// Throws sk::Error if a kernel cannot run on the target that a call requests.
-  void checkTarget(const program::Kernel& kernel, Target asked) const;
+  void checkTarget(const program::Kernel& kernel, Target requested) const;
   void needExactSums(const program::Kernel& kernel);
   [[noreturn]] void failAsLost() const;
 
   std::int64_t period_ = 1;
   const bool sharesContext_;
-  std::map<ProgramChoice, ProgramCache> caches_;
+  std::map<ProgramCacheKey, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
   ProgramCache* programs_ = nullptr;  ///< the selected cache
-  ProgramChoice chosen_;  ///< the key of the selected cache
+  ProgramCacheKey cacheKey_;  ///< the key of the selected cache
   std::optional<Arithmetic> arithmetic_;
   std::array<std::optional<assemble::Stage>, kernelClasses> faster_;
 };
@@ -211,11 +211,11 @@ class DeviceScope {
 class PlanesLease {
  public:
   explicit PlanesLease(GlDevice& device) : device_(device) {}
-  ~PlanesLease() { device_.givePlanes(planes); }
+  ~PlanesLease() { device_.releasePlanes(planes); }
   PlanesLease(const PlanesLease&) = delete;
   PlanesLease& operator=(const PlanesLease&) = delete;
 
-  /// Adds planes, like GlDevice::takePlanes().
+  /// Adds planes, like GlDevice::acquirePlanes().
   void add(const program::Element& element, const assemble::TextureShape& shape, std::string_view whatFor);
 
   std::vector<RenderTarget> planes;

@@ -28,7 +28,7 @@ GlStream::GlStream(GlDevice& on, const program::Element& type, const Shape& exte
     held_ = std::make_unique<assemble::HeldElement>(type, storage);
   }
   layout = layoutOf(extents, on.textureLimits(), canPack());
-  planes = takePlanesFor(layout);
+  planes = acquirePlanesFor(layout);
 }
 
 GlStream::~GlStream() {
@@ -36,19 +36,19 @@ GlStream::~GlStream() {
     return;
   }
   if (total_) {
-    owner().pool.give(std::move(total_));
+    owner().pool.release(std::move(total_));
   }
-  owner().givePlanes(planes);
+  owner().releasePlanes(planes);
 }
 
-std::vector<RenderTarget> GlStream::takePlanesFor(const Layout& planned) {
+std::vector<RenderTarget> GlStream::acquirePlanesFor(const Layout& planned) {
   if (planned.texture.width == 0) {
     return {};
   }
   const program::Element& texel =
       planned.whole.packed ? assemble::fourOf(held().fields.front().scalar) : held();
-  return owner().takePlanes(texel, planned.texture,
-                            fmt::format("a stream of {} of shape {}", element->name, toString(shape)));
+  return owner().acquirePlanes(texel, planned.texture,
+                               fmt::format("a stream of {} of shape {}", element->name, toString(shape)));
 }
 
 void GlStream::unpack() {
@@ -57,7 +57,7 @@ void GlStream::unpack() {
   }
   Layout wanted = layoutOf(shape, owner().textureLimits());
   PlanesLease lease(owner());
-  lease.planes = takePlanesFor(wanted);
+  lease.planes = acquirePlanesFor(wanted);
   copyRegion(owner(), held(), planes, layout.whole, lease.planes, wanted.whole);
   std::swap(planes, lease.planes);
   layout = std::move(wanted);
@@ -67,11 +67,12 @@ void GlStream::unpack() {
 
 GlDevice& GlStream::owner() const { return static_cast<GlDevice&>(*device); }
 
-void GlStream::become(std::vector<RenderTarget>& elements, Layout&& list, RenderTarget* total) noexcept {
+void GlStream::replaceElements(std::vector<RenderTarget>& elements, Layout&& list,
+                               RenderTarget* total) noexcept {
   std::swap(planes, elements);
   layout = std::move(list);
   if (total_) {
-    owner().pool.give(std::move(total_));
+    owner().pool.release(std::move(total_));
     total_ = {};
   }
   if (total != nullptr) {
@@ -95,7 +96,7 @@ void GlStream::settle() {
   const std::int32_t count = isBroken ? 0 : readTotal(owner(), total_);
   layout = withSize(layout, count);
   shape = Shape(count);
-  owner().pool.give(std::move(total_));
+  owner().pool.release(std::move(total_));
   total_ = {};
 }
 
@@ -244,7 +245,7 @@ void GlStream::fill(const StreamRegion& region, const std::byte* value) {
     std::copy_n(texel.begin(), held().size, texel.begin() + static_cast<std::ptrdiff_t>(at));
   }
   PlanesLease one(owner());
-  one.planes = owner().takePlanes(*what.element, {1, 1}, "the value of fill()");
+  one.planes = owner().acquirePlanes(*what.element, {1, 1}, "the value of fill()");
   const RegionLayout single{.extent = {1, 1, 1, 1}};
   bool ignored = false;
   upload(owner(), *what.element, one.planes, single, texel.data(), ignored);
@@ -276,7 +277,7 @@ bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   prepareCopy(owner(), held(), sourcePlace, place);
   PlanesLease before(owner());
   if (&source == this) {  // the regions may overlap: reads from a copy of the stream
-    before.planes = takePlanesFor(layout);
+    before.planes = acquirePlanesFor(layout);
     copyRegion(owner(), held(), planes, layout.whole, before.planes, layout.whole);
   }
   isBroken = true;

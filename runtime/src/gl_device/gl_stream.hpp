@@ -64,7 +64,7 @@ class GlStream final : public StreamState {
   /// Swaps its planes for `elements`, the list that a kernel has pushed, of layout `list`. If their number is
   /// not known yet, `total` is HistoPyramid::totalTexture(), which is moved from, and the list has room for
   /// the largest possible number; otherwise `total` is null.
-  void become(std::vector<RenderTarget>& elements, Layout&& list, RenderTarget* total) noexcept;
+  void replaceElements(std::vector<RenderTarget>& elements, Layout&& list, RenderTarget* total) noexcept;
   /// The layout of the first `count` elements of a list.
   static Layout withSize(Layout list, std::int32_t count);
 
@@ -79,7 +79,7 @@ class GlStream final : public StreamState {
   /// Transfer all elements of a region, of type held(), from and to host memory.
   void uploadHeld(const StreamRegion& region, const std::byte* elements);
   void downloadHeld(const StreamRegion& region, std::byte* elements);
-  std::vector<RenderTarget> takePlanesFor(const Layout& planned);
+  std::vector<RenderTarget> acquirePlanesFor(const Layout& planned);
 
   std::unique_ptr<assemble::HeldElement> held_;  ///< null if the storage is Single
   std::int64_t period_ = 0;  ///< of the device (GlDevice::period()), in which it was last written

@@ -26,10 +26,10 @@ std::size_t nextPlace() {
   return number++ * 21 * cacheLine % smallPage;
 }
 
-/// `asked` is the size for the error message: what the caller was asked for, without the offset in the page.
-std::byte* aligned(std::size_t alignment, std::size_t bytes, std::size_t asked) {
+/// `requested` is the size for the error message: what the caller was requested for, without the offset in the page.
+std::byte* aligned(std::size_t alignment, std::size_t bytes, std::size_t requested) {
   void* memory = nullptr;
-  if (posix_memalign(&memory, alignment, bytes) != 0) throw NoMemory(asked);
+  if (posix_memalign(&memory, alignment, bytes) != 0) throw NoMemory(requested);
   return static_cast<std::byte*>(memory);
 }
 

@@ -94,9 +94,9 @@ class Operands {
     return call(whole);
   }
   native::Call call(Extents& block) {
-    native::Call made = callAsItIs();
-    coalesce(kernel_, list_, made.domain, block);
-    return made;
+    native::Call call = callAsItIs();
+    coalesce(kernel_, list_, call.domain, block);
+    return call;
   }
   native::Call callAsItIs() const { return {list_, fastestFirst(domain_), tables_}; }
 
@@ -115,23 +115,24 @@ class Operands {
   /// Gives streams what was pushed to them and what was written to a copy or to spare arrays. What may throw
   /// comes first.
   void settle() {
-    struct Given {
+    struct PushedElements {
       NativeStream& stream;
       Components components;
       std::int64_t count;
     };
-    std::list<Given> given;
+    std::list<PushedElements> pushed;
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (list_[i].pushed == nullptr) continue;
       NativeStream& stream = nativeStream(arguments_[i].region);
       const std::int64_t count = list_[i].pushed->count;
-      given.push_back({stream, stream.heldOf(std::move(*list_[i].pushed), real_), count});
+      pushed.push_back({stream, stream.heldOf(std::move(*list_[i].pushed), real_), count});
     }
-    for (Given& one : given) one.stream.become(std::move(one.components), one.count);
+    for (PushedElements& one : pushed) one.stream.replaceElements(std::move(one.components), one.count);
     for (const auto& [stream, copy] : written_) stream->components.assign(copy, stream->shape.size());
     for (std::size_t i = 0; i < list_.size(); ++i) {
       const StreamRegion& region = arguments_[i].region;
-      if (region.stream != nullptr && isOutputOfAll(i) && isReplaced(region)) nativeStream(region).exchange();
+      if (region.stream != nullptr && writesWholeStream(i) && isReplaced(region))
+        nativeStream(region).exchange();
     }
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (isWritten(kernel_.parameters[i].role) && arguments_[i].region.stream != nullptr) {
@@ -236,12 +237,12 @@ class Operands {
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
       const StreamRegion& other = arguments_[i].region;
       if (other.stream != region.stream) continue;
-      isWhole = isWhole || isOutputOfAll(i);
+      isWhole = isWhole || writesWholeStream(i);
       isRead = isRead || isReadWhileWritten(i);
     }
     return isWhole && isRead;
   }
-  bool isOutputOfAll(std::size_t i) const {
+  bool writesWholeStream(std::size_t i) const {
     const Parameter& parameter = kernel_.parameters[i];
     const StreamRegion& region = arguments_[i].region;
     return parameter.role == Role::Output && assemble::isNeeded(parameter, specs_) &&
@@ -379,21 +380,23 @@ std::vector<native::Table> NativeDevice::tablesOf(const Kernel& kernel, RealType
 
 void NativeDevice::run(const ResolvedCall& call) {
   checkTarget(call.kernel, call.options.target);
-  const Kernel& kernel = takesHalf(call.options) ? formOf(call.kernel, call.options) : call.kernel;
+  const Kernel& kernel =
+      computesInHalf(call.options) ? precisionVariant(call.kernel, call.options) : call.kernel;
   const RealType real = realOf(call.options);
   Operands operands(real, kernel, call.arguments, call.domain, tablesOf(kernel, real, call.options));
   {
     const NativePass traced(*this, kernel, {}, call.arguments, call.domain);
-    const native::Call made = operands.call();
+    const native::Call nativeCall = operands.call();
     operands.begin();
-    runCode(kernel, made, codeChoice(real, call.options));
+    runCode(kernel, nativeCall, codeChoice(real, call.options));
   }
   operands.settle();
 }
 
 void NativeDevice::reduce(const ResolvedReduction& call) {
   checkTarget(call.reduction.fold, call.options.target);
-  const program::Reduction& reduction = takesHalf(call.options) ? halfForm(call.reduction) : call.reduction;
+  const program::Reduction& reduction =
+      computesInHalf(call.options) ? halfVariant(call.reduction) : call.reduction;
   const RealType real = realOf(call.options);
   Folding folding(codeChoice(real, call.options), reduction, call.arguments, call.domain,
                   tablesOf(reduction.fold, real, call.options),

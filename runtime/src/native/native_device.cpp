@@ -64,12 +64,12 @@ void NativeDevice::checkProgram(const program::Kernel& kernel) { checkCode(kerne
 
 void NativeDevice::checkProgram(const program::Reduction& reduction) { checkCode(reduction.fold, real_); }
 
-void NativeDevice::checkTarget(const program::Kernel& kernel, Target asked) const {
-  if (asked == Target::Fragment || asked == Target::Compute) {
+void NativeDevice::checkTarget(const program::Kernel& kernel, Target requested) const {
+  if (requested == Target::Fragment || requested == Target::Compute) {
     fail(Error::Kind::Device, kernel,
          "its streams are on '{}', which runs native code; {} programs run on streams of a device with GL "
          "(SK_DEVICE=gl)",
-         name_, asked == Target::Fragment ? "fragment" : "compute");
+         name_, requested == Target::Fragment ? "fragment" : "compute");
   }
 }
 

@@ -29,7 +29,7 @@ class NativeDevice final : public DeviceState {
   bool isSoftware() const override { return true; }
   const Arithmetic& arithmetic() override { return arithmetic_; }
   bool combinesScattered() const override { return true; }
-  bool takesForms() const override { return false; }
+  bool usesPrecisionVariants() const override { return false; }
   bool sumsInDoubles() const override { return real_ == RealType::Float; }
   bool isReference() const override { return real_ != RealType::Float; }
   void checkProgram(const program::Kernel& kernel) override;
@@ -49,9 +49,9 @@ class NativeDevice final : public DeviceState {
  private:
   RealType realOf(const CallOptions& options) const;
   /// Throws sk::Error if a call asks for GLSL programs.
-  void checkTarget(const program::Kernel& kernel, Target asked) const;
+  void checkTarget(const program::Kernel& kernel, Target requested) const;
   /// True if a call takes the variant that rounds to halves. A reference does not.
-  bool takesHalf(const CallOptions& options) const {
+  bool computesInHalf(const CallOptions& options) const {
     return options.precision == Precision::Half && !isReference();
   }
   /// The tables of a call's tabulated functions; empty if it computes them.

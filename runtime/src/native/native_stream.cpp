@@ -184,7 +184,7 @@ Components NativeStream::heldOf(native::Pushed pushed, RealType real) const {
   return real == components.real() ? std::move(given) : given.clone(count, components.real());
 }
 
-void NativeStream::become(Components&& pushed, std::int64_t count) noexcept {
+void NativeStream::replaceElements(Components&& pushed, std::int64_t count) noexcept {
   components = std::move(pushed);
   spare_ = {};
   shape = Shape(count);

@@ -36,8 +36,8 @@ class NativeStream final : public StreamState {
   /// Converts what a kernel has pushed, with floats in type `real`, to the types of this stream. Throws
   /// sk::Error if it is too much.
   Components heldOf(native::Pushed pushed, RealType real) const;
-  /// Takes over `count` elements that were pushed, in place of its own; its shape becomes {count}.
-  void become(Components&& pushed, std::int64_t count) noexcept;
+  /// Replaces the elements by `count` elements that were pushed; the shape becomes {count}.
+  void replaceElements(Components&& pushed, std::int64_t count) noexcept;
 
   /// Rounds floats to half precision if that is the stream's storage. Must follow every write.
   void keepStorage();

@@ -100,7 +100,7 @@ class CodeRun {
 
   /// True if scatters are logged. Logs cost time per record, so that few threads gain only if elements take
   /// long to compute.
-  bool keepsLogs(std::int64_t threads) const {
+  bool logsScatters(std::int64_t threads) const {
     constexpr std::int64_t enoughForAll = 8;
     return has(Role::Scatter) && threads >= (kernel_.code->isLight != 0 ? enoughForAll : 2);
   }
@@ -110,7 +110,7 @@ class CodeRun {
   void record() const {
     PushParts pushes;
     const std::int64_t threads = native::threadsFor(pieces_.count(), costOfPiece());
-    if (keepsLogs(threads)) {
+    if (logsScatters(threads)) {
       Scatters scatters(kernel_, frame_, choice_);
       const std::int64_t batch = std::max<std::int64_t>(1, threads * elementsOfLog / pieces_.elementsOfOne());
       for (std::int64_t begin = 0; begin < pieces_.count(); begin += batch) {

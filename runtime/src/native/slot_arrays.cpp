@@ -90,48 +90,50 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   const Parameter& parameter = kernel.parameters[slot.parameter];
   const native::Operand& operand = call.operands[slot.parameter];
   const Argument& argument = frame.arguments()[slot.parameter];
-  Slot& made = slots_.emplace_back();
-  made.kind = slot.isOutput != 0 ? Kind::Output : parameter.role == Role::Gather ? Kind::Gather : Kind::Input;
-  made.isGiven = argument.components != nullptr;
-  made.boundary = parameter.boundary;
-  made.rank = parameter.rank;
-  std::ranges::copy(slot.row, made.row);
-  made.reach = slot.reach;
-  made.argument = &argument;
-  made.firstArray = arrays_.size();
+  Slot& added = slots_.emplace_back();
+  added.kind = slot.isOutput != 0               ? Kind::Output
+               : parameter.role == Role::Gather ? Kind::Gather
+                                                : Kind::Input;
+  added.isGiven = argument.components != nullptr;
+  added.boundary = parameter.boundary;
+  added.rank = parameter.rank;
+  std::ranges::copy(slot.row, added.row);
+  added.reach = slot.reach;
+  added.argument = &argument;
+  added.firstArray = arrays_.size();
   // if a row has one element, it does not matter how an input repeats or skips along x
   const bool isFitted = width_ != 1 && (argument.multiply[0] != 1 || argument.divide[0] != 1);
-  made.isDirect =
-      made.isGiven && !operand.holdsFloats && !isFitted && (width_ == 1 || argument.stride[0] == 1);
-  made.isInPlace = made.kind == Kind::Input ? made.isDirect : made.isGiven;
-  if (made.kind == Kind::Gather) {
+  added.isDirect =
+      added.isGiven && !operand.holdsFloats && !isFitted && (width_ == 1 || argument.stride[0] == 1);
+  added.isInPlace = added.kind == Kind::Input ? added.isDirect : added.isGiven;
+  if (added.kind == Kind::Gather) {
     hasGathers_ = true;
-    reach_ = std::max(reach_, made.reach);
-    inside_ = {std::max(inside_.begin, made.reach), std::min(inside_.end, argument.extent[0] - made.reach)};
-    made.firstBorder = firstBorderOf(kernel, slot.parameter);
+    reach_ = std::max(reach_, added.reach);
+    inside_ = {std::max(inside_.begin, added.reach), std::min(inside_.end, argument.extent[0] - added.reach)};
+    added.firstBorder = firstBorderOf(kernel, slot.parameter);
   } else {
-    isDirect_ = isDirect_ && made.isInPlace;
+    isDirect_ = isDirect_ && added.isInPlace;
     needsElementwiseCalls_ =
-        needsElementwiseCalls_ || (made.kind == Kind::Input && parameter.usesIndex && isFitted);
+        needsElementwiseCalls_ || (added.kind == Kind::Input && parameter.usesIndex && isFitted);
   }
   constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
-  if (made.kind == Kind::Gather) {
-    const bool isRow = made.rank == 1;
-    made.rowStep = isRow ? 0 : argument.stride[1];
-    made.evenRows = isRow ? Range{least, most} : Range{1 - made.row[0], argument.extent[1] - made.row[0]};
+  if (added.kind == Kind::Gather) {
+    const bool isRow = added.rank == 1;
+    added.rowStep = isRow ? 0 : argument.stride[1];
+    added.evenRows = isRow ? Range{least, most} : Range{1 - added.row[0], argument.extent[1] - added.row[0]};
   } else {
-    made.rowStep = argument.multiply[1] * argument.stride[1];
-    made.evenRows = argument.divide[1] == 1 ? Range{least, most} : Range{0, 0};
+    added.rowStep = argument.multiply[1] * argument.stride[1];
+    added.evenRows = argument.divide[1] == 1 ? Range{least, most} : Range{0, 0};
   }
   order_.push_back(slots_.size() - 1);
   forEachScalar(*parameter.element, real, [&](std::size_t number, std::size_t bytes, program::Scalar scalar) {
     const auto read = static_cast<std::uint8_t>(bytes);
     const bool isWidened = operand.holdsFloats && scalar == program::Scalar::Float;
-    arrays_.push_back({made.isGiven ? static_cast<std::byte*>(argument.components[number]) : nullptr,
+    arrays_.push_back({added.isGiven ? static_cast<std::byte*>(argument.components[number]) : nullptr,
                        {isWidened ? static_cast<std::uint8_t>(sizeof(float)) : read, read}});
   });
-  made.arrayCount = arrays_.size() - made.firstArray;
+  added.arrayCount = arrays_.size() - added.firstArray;
 }
 
 bool SlotLayout::findsFreedomOfOrder(const program::Kernel& kernel) const {
@@ -200,8 +202,8 @@ SlotArrays::SlotArrays(const SlotLayout& layout, std::int64_t most, std::int64_t
       arrays_(rows * width_, memory_.get()),
       scratch_(rows * width_, memory_.get()) {
   for (const Slot& slot : layout.slots()) {
-    const bool isAtEndsAlone = slot.isInPlace && slot.kind != SlotLayout::Kind::Gather;
-    const std::int64_t staged = std::min(layout.width(), isAtEndsAlone ? mostAtEnds : most);
+    const bool isStagedOnlyAtEnds = slot.isInPlace && slot.kind != SlotLayout::Kind::Gather;
+    const std::int64_t staged = std::min(layout.width(), isStagedOnlyAtEnds ? mostAtEnds : most);
     const std::int64_t elements = staged + native::mostLanes + 2 * slot.reach;
     for (std::size_t a = slot.firstArray; a < slot.firstArray + slot.arrayCount; ++a) {
       const ScalarBytes bytes = layout.arrays()[a].bytes;

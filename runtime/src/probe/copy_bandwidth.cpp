@@ -55,12 +55,12 @@ double measureDevice(GlDevice& device) {
   const DeviceScope scope(device);
   PlanesLease from(device), to(device);
   try {
-    from.planes = device.takePlanes(element, layout.texture, "measuring how fast the device copies");
-    to.planes = device.takePlanes(element, layout.texture, "measuring how fast the device copies");
+    from.planes = device.acquirePlanes(element, layout.texture, "measuring how fast the device copies");
+    to.planes = device.acquirePlanes(element, layout.texture, "measuring how fast the device copies");
   } catch (const Error&) {
     return 0;
   }
-  device.choose({}, stage);
+  device.selectPrograms({}, stage);
   const auto draw = [&](std::span<RenderTarget> source, std::span<RenderTarget> target) {
     const Operand operands[] = {{nullptr, layout.whole, source}, {}};
     RenderTarget* const targets[] = {&target.front()};

@@ -48,40 +48,40 @@ const program::Kernel& exactSums() {
 }  // namespace
 
 std::vector<float2> trialPairs(std::size_t count) {
-  std::vector<float2> made{{1, 0x1p-24F},
-                           {1, -0x1p-25F},
-                           {1, 0x1.000002p-24F},
-                           {0x1.fffffep0F, 0x1p-24F},
-                           {1, 0},
-                           {0, 0x1.234568p5F},
-                           {0x1.234568p5F, -0x1.234568p5F},
-                           {0x1p24F, 1},
-                           {0x1p24F, 3},
-                           {0x1p25F, 0x1.8p1F},
-                           {0x1.fffffep62F, 0x1p38F},
-                           {0x1p63F, -0x1.fffffep62F},
-                           {0x1.fffffep127F, 0x1p-24F},
-                           {0x1p-78F, 0x1.fffffep0F},
-                           {0x1.555556p-1F, 3},
-                           {0x1.99999ap-4F, 10},
-                           {0x1.921fb6p1F, 0x1.5bf0a8p1F},
-                           {0x1.fffffep0F, 0x1.fffffep0F},
-                           {16777215, 16777215},
-                           {-16777215, 16777213}};
+  std::vector<float2> operands{{1, 0x1p-24F},
+                               {1, -0x1p-25F},
+                               {1, 0x1.000002p-24F},
+                               {0x1.fffffep0F, 0x1p-24F},
+                               {1, 0},
+                               {0, 0x1.234568p5F},
+                               {0x1.234568p5F, -0x1.234568p5F},
+                               {0x1p24F, 1},
+                               {0x1p24F, 3},
+                               {0x1p25F, 0x1.8p1F},
+                               {0x1.fffffep62F, 0x1p38F},
+                               {0x1p63F, -0x1.fffffep62F},
+                               {0x1.fffffep127F, 0x1p-24F},
+                               {0x1p-78F, 0x1.fffffep0F},
+                               {0x1.555556p-1F, 3},
+                               {0x1.99999ap-4F, 10},
+                               {0x1.921fb6p1F, 0x1.5bf0a8p1F},
+                               {0x1.fffffep0F, 0x1.fffffep0F},
+                               {16777215, 16777215},
+                               {-16777215, 16777213}};
   std::mt19937 random(2004);
   const auto number = [&](int exponent) {
     const std::uint32_t bits = static_cast<std::uint32_t>(random());
     const float mantissa = std::bit_cast<float>((bits & 0x807fffffU) | 0x3f800000U);
     return std::ldexp(mantissa, exponent);
   };
-  while (made.size() < count) {
-    const int i = static_cast<int>(made.size());
+  while (operands.size() < count) {
+    const int i = static_cast<int>(operands.size());
     const int exponent =
         i % 4 == 0 ? static_cast<int>(random() % 100) - 38 : static_cast<int>(random() % 41) - 20;
-    made.push_back({number(exponent), number(exponent / 4 - static_cast<int>(random() % 30))});
-    if (i % 2 == 0) std::swap(made.back().x, made.back().y);
+    operands.push_back({number(exponent), number(exponent / 4 - static_cast<int>(random() % 30))});
+    if (i % 2 == 0) std::swap(operands.back().x, operands.back().y);
   }
-  return made;
+  return operands;
 }
 
 // A double represents every product of two floats exactly.

@@ -80,8 +80,8 @@ void Trace::countBytes(std::int64_t used, std::int64_t kept) noexcept {
 }
 
 void Trace::throwFailure() {
-  if (!file_.failure().empty() && !isTold_) {
-    isTold_ = true;
+  if (!file_.failure().empty() && !isReported_) {
+    isReported_ = true;
     throw Error(file_.failure(), Error::Kind::File);
   }
 }

@@ -78,7 +78,7 @@ class Trace {
   std::vector<std::int64_t> threads_;  ///< threads that have a name in the file
   std::vector<Open> open_;
   std::string events_;  ///< not yet written
-  bool isTold_ = false;  ///< a failure of the file has been reported
+  bool isReported_ = false;  ///< a failure of the file has been reported
 };
 
 /// A slice of the calling thread's track that lasts as long as this object; does nothing if `trace` is null.

@@ -209,7 +209,7 @@ Expr Expressions::makeKept(Type type, int depth) {
   const Records& records = *scope_.records;
   if (type.isMatrix) return matrix(type.width, depth);
   if (type.record < 0) {
-    Expr expr = make({carrierOf(type.scalar), type.width}, depth);
+    Expr expr = make({arithmeticScalar(type.scalar), type.width}, depth);
     if (type.scalar == Scalar::Float || type.scalar == Scalar::Half) expr = tamed(expr);
     // Storage types need an explicit conversion. So does bool: in braces, Clang does not accept a component of a bool vector.
     const bool isBool = type == Type{Scalar::Bool, 1};
@@ -249,7 +249,7 @@ Expr Expressions::makeKept(Type type, int depth) {
 std::optional<Expr> Expressions::call(Type type, int depth) {
   std::vector<const Function*> candidates;
   for (const Function& function : scope_.functions) {
-    if (function.result.record < 0 && carrierOf(function.result.scalar) == type.scalar &&
+    if (function.result.record < 0 && arithmeticScalar(function.result.scalar) == type.scalar &&
         !isNarrow(function.result.scalar))
       candidates.push_back(&function);
   }
@@ -279,7 +279,8 @@ std::optional<Expr> Expressions::call(Type type, int depth) {
 std::optional<Expr> Expressions::gatherRead(Type type, int depth) {
   std::vector<const Gather*> candidates;
   for (const Gather& gather : scope_.gathers) {
-    const Scalar scalar = isNormalized(gather.type.scalar) ? Scalar::Int : carrierOf(gather.type.scalar);
+    const Scalar scalar =
+        isNormalized(gather.type.scalar) ? Scalar::Int : arithmeticScalar(gather.type.scalar);
     if (gather.type.record < 0 && !gather.type.isMatrix && scalar == type.scalar)
       candidates.push_back(&gather);
   }
@@ -306,9 +307,9 @@ std::optional<Expr> Expressions::gatherRead(Type type, int depth) {
     return gathered(gather, (*frame.streams)[static_cast<std::size_t>(gather.stream)], place);
   };
   const Place place{gather.type, text, {}, false};
-  Expr carrier = read(place);
+  Expr result = read(place);
   const Type elementType = gather.type;
-  carrier.value = [element, elementType](Frame& frame) {
+  result.value = [element, elementType](Frame& frame) {
     Value value = element(frame);
     if (!isNormalized(elementType.scalar)) return value;
     for (int i = 0; i < elementType.width; ++i) {
@@ -317,7 +318,7 @@ std::optional<Expr> Expressions::gatherRead(Type type, int depth) {
     }
     return value;
   };
-  return fit(carrier, type.width, depth);
+  return fit(result, type.width, depth);
 }
 
 }  // namespace fuzz

@@ -73,10 +73,10 @@ sk::Shape shapeOf(const std::vector<std::int64_t>& extents) {
 }
 
 std::string show(Scalar scalar, std::uint32_t bits) {
-  const Scalar carrier = carrierOf(scalar);
-  if (carrier == Scalar::Float) return fmt::format("{}", std::bit_cast<float>(bits));
-  return carrier == Scalar::Uint ? fmt::format("{}", bits)
-                                 : fmt::format("{}", static_cast<std::int32_t>(bits));
+  const Scalar arithmetic = arithmeticScalar(scalar);
+  if (arithmetic == Scalar::Float) return fmt::format("{}", std::bit_cast<float>(bits));
+  return arithmetic == Scalar::Uint ? fmt::format("{}", bits)
+                                    : fmt::format("{}", static_cast<std::int32_t>(bits));
 }
 
 class Run {

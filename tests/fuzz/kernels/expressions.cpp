@@ -163,10 +163,10 @@ Expr Expressions::read(const Place& place) {
     return value;
   };
   if (type.record >= 0 || type.isMatrix) return {type, place.text, load, kept};
-  const Type carrier{carrierOf(type.scalar), type.width};
+  const Type arithmetic{arithmeticScalar(type.scalar), type.width};
   if (!isNarrow(type.scalar)) return {type, place.text, load, kept};
-  const std::string wide = fmt::format("{}({})", spelling({}, carrier), place.text);
-  if (!isNormalized(type.scalar)) return {carrier, wide, load, kept};
+  const std::string wide = fmt::format("{}({})", spelling({}, arithmetic), place.text);
+  if (!isNormalized(type.scalar)) return {arithmetic, wide, load, kept};
   // The stored integer, which is exact.
   const float scale = scaleOf(type.scalar);
   Expr number{{Scalar::Int, type.width},
@@ -245,7 +245,8 @@ Expr Expressions::leaf(Type type, int depth) {
     for (int tries = 0; tries < 4 && fitting.empty(); ++tries) {
       for (const Place& part : partsOf(whole(random_.pick(scope_.variables), std::max(depth, 0)))) {
         if (part.type.record >= 0 || part.type.isMatrix) continue;
-        const Scalar scalar = isNormalized(part.type.scalar) ? Scalar::Int : carrierOf(part.type.scalar);
+        const Scalar scalar =
+            isNormalized(part.type.scalar) ? Scalar::Int : arithmeticScalar(part.type.scalar);
         if (scalar == type.scalar) fitting.push_back(part);
       }
     }

@@ -66,7 +66,7 @@ std::vector<HostStream> RandomKernel::results() const {
   }
   Frame frame;
   frame.streams = &streams_;
-  frame.sinks = &results;
+  frame.appendOutputs = &results;
   for (std::size_t d = 0; d < domain_.size(); ++d) {
     frame.extent[domain_.size() - 1 - d] = static_cast<int>(domain_[d]);
   }

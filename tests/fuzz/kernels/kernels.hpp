@@ -42,7 +42,7 @@ class RandomKernel {
   std::vector<HostStream> results() const;
 
  private:
-  class Maker;
+  class Generator;
 
   Records records_;
   std::vector<Parameter> parameters_;

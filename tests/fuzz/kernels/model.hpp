@@ -64,7 +64,8 @@ struct Frame {
   std::vector<Value> slots;
   std::array<int, 4> index{}, extent{1, 1, 1, 1};  ///< index in the domain and extents of the domain, x first
   const std::vector<HostStream>* streams = nullptr;  ///< one per parameter
-  std::vector<HostStream>* sinks = nullptr;  ///< one per parameter: what has been pushed and scattered so far
+  std::vector<HostStream>* appendOutputs =
+      nullptr;  ///< one per parameter: what has been pushed and scattered so far
 };
 
 struct Bound {

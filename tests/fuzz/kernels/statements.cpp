@@ -48,8 +48,8 @@ Statement Statements::block(int count, int depth, const std::string& indent) {
 }
 
 Statement Statements::statement(int depth, const std::string& indent) {
-  if (!sinks_.empty() && random_.chance(1, 4)) {
-    return writeTo(random_.pick(sinks_), expressions_, *scope_.records, random_, indent);
+  if (!appendOutputs_.empty() && random_.chance(1, 4)) {
+    return writeTo(random_.pick(appendOutputs_), expressions_, *scope_.records, random_, indent);
   }
   switch (random_.below(depth > 0 ? 14 : 7)) {
     case 0: return declaration(indent);
@@ -128,10 +128,10 @@ Statement Statements::assignment(const std::string& indent) {
 
 /// place op= value; or, for a float, an assignment that reduces the result to the bound `kept`.
 Statement Statements::compound(const Place& place, const std::string& indent) {
-  const Type type = place.type, carrier{carrierOf(type.scalar), type.width};
+  const Type type = place.type, arithmetic{arithmeticScalar(type.scalar), type.width};
   Expr old = expressions_.read(place);
-  Expr value = expressions_.make({carrier.scalar, type.width}, 2);
-  const bool isFloat = carrier.scalar == Scalar::Float;
+  Expr value = expressions_.make({arithmetic.scalar, type.width}, 2);
+  const bool isFloat = arithmetic.scalar == Scalar::Float;
   if (isFloat) value = expressions_.tamed(value);
   static constexpr char ofFloats[] = {'+', '-', '*'}, ofInts[] = {'+', '-', '*', '&', '|', '^'};
   const char op = isFloat ? random_.pick(ofFloats) : random_.pick(ofInts);
@@ -162,7 +162,7 @@ Statement Statements::compound(const Place& place, const std::string& indent) {
     made.text = fmt::format("{}{} {}= {};\n", indent, place.text, op, value.text);
     return made;
   }
-  Expr sum{carrier,
+  Expr sum{arithmetic,
            fmt::format("({} {} {})", old.text, op, value.text),
            combined,
            {2 * kept.magnitude, 2 * kept.fraction}};

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/append_outputs.hpp"
 #include "kernels/expressions.hpp"
 #include "kernels/model.hpp"
-#include "kernels/sinks.hpp"
 
 namespace fuzz {
 
@@ -24,14 +24,15 @@ struct Names {
 class Statements {
  public:
   /// Declarations enter the scope and leave it at the end of their block. `canReturn`: a plain `return;` may stand
-  /// anywhere. Some statements write to the sinks, if there are any.
-  Statements(Scope& scope, Names& names, Random& random, bool canReturn, std::vector<Sink> sinks = {})
+  /// anywhere. Some statements write to the append outputs, if there are any.
+  Statements(Scope& scope, Names& names, Random& random, bool canReturn,
+             std::vector<AppendOutput> appendOutputs = {})
       : scope_(scope),
         names_(names),
         random_(random),
         expressions_(scope, random),
         canReturn_(canReturn),
-        sinks_(std::move(sinks)) {}
+        appendOutputs_(std::move(appendOutputs)) {}
 
   /// `count` statements, each on its own lines.
   Statement block(int count, int depth, const std::string& indent);
@@ -55,7 +56,7 @@ class Statements {
   Random& random_;
   Expressions expressions_;
   const bool canReturn_;
-  const std::vector<Sink> sinks_;
+  const std::vector<AppendOutput> appendOutputs_;
   int loops_ = 0;  ///< number of loops around the current statement
   int breakables_ = 0;  ///< number of loops and switches around it
 };

@@ -42,7 +42,7 @@ std::uint32_t quantized(Scalar scalar, std::uint32_t bits) {
 }
 
 std::uint32_t randomBits(Scalar scalar, Random& random) {
-  if (carrierOf(scalar) == Scalar::Float) {
+  if (arithmeticScalar(scalar) == Scalar::Float) {
     const int most = isNormalized(scalar) ? 24 : 1 << kept.bits();
     const float value = static_cast<float>(random.between(-most, most)) / (1 << kept.fraction);
     return quantized(scalar, std::bit_cast<std::uint32_t>(value));
@@ -57,7 +57,7 @@ std::uint32_t randomBits(Scalar scalar, Random& random) {
 bool isNarrow(Scalar scalar) { return scalar >= Scalar::Half; }
 bool isNormalized(Scalar scalar) { return scalar >= Scalar::Unorm8; }
 
-Scalar carrierOf(Scalar scalar) {
+Scalar arithmeticScalar(Scalar scalar) {
   if (!isNarrow(scalar)) return scalar;
   return scalar == Scalar::Half || isNormalized(scalar) ? Scalar::Float : Scalar::Int;
 }

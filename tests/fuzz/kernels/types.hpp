@@ -16,7 +16,7 @@ using Records = std::vector<Record>;
 bool isNarrow(Scalar scalar);
 bool isNormalized(Scalar scalar);
 /// The arithmetic type of a storage type; other types themselves.
-Scalar carrierOf(Scalar scalar);
+Scalar arithmeticScalar(Scalar scalar);
 /// The integer that stands for 1: 255, 127, 65535 or 32767.
 float scaleOf(Scalar normalized);
 

@@ -99,7 +99,7 @@ void defineIgnored(ProgramText& program, const Parameter& appendOutput) {
   program.function(signatureOf(appendOutput), {});
 }
 
-void findEntry(ProgramText& program, DomainText& domain, const Parameter& appendOutput, bool treeLayered) {
+void findEntry(ProgramText& program, DomainText& domain, const Parameter& appendOutput, bool pyramidLayered) {
   program.variable("int", "sk_wanted");
   program.prologue(fmt::format("int sk_entry = {};", domain.texelNumber()));
   if (!isCounted(appendOutput)) {
@@ -110,12 +110,12 @@ void findEntry(ProgramText& program, DomainText& domain, const Parameter& append
                             : fmt::format("sk_wanted = sk_entry - sk_element * {};", slotsOf(appendOutput)));
     return;
   }
-  program.uniform(samplerType("isampler2D", treeLayered), "sk_odd");
-  program.uniform(samplerType("isampler2D", treeLayered), "sk_even");
+  program.uniform(samplerType("isampler2D", pyramidLayered), "sk_odd");
+  program.uniform(samplerType("isampler2D", pyramidLayered), "sk_even");
   program.uniform("int", "sk_tree_shift");
   program.uniform("int", fmt::format("sk_rows[{}]", mostPyramidLevels + 1));
   program.uniform("int", "sk_levels");
-  const std::string node = place(program, {"sk_t", treeLayered ? "sk_tree_shift" : ""});
+  const std::string node = place(program, {"sk_t", pyramidLayered ? "sk_tree_shift" : ""});
   program.function(
       "ivec4 sk_node(int sk_l, int sk_n)",
       {"ivec2 sk_t = ivec2(sk_n & ((1 << sk_tree_shift) - 1), (sk_n >> sk_tree_shift) + sk_rows[sk_l]);",

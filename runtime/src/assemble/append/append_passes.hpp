@@ -40,7 +40,7 @@ void defineIgnored(ProgramText& program, const program::Parameter& appendOutput)
 /// Work::List: computes `sk_element`, the number of the element, and `sk_wanted`, the number of the push, for
 /// the entry of the fragment; placed in front of main().
 void findEntry(ProgramText& program, DomainText& domain, const program::Parameter& appendOutput,
-               bool treeLayered);
+               bool pyramidLayered);
 
 /// Work::List, for the append output itself: its outputs and the function that the body calls; then the
 /// stores.

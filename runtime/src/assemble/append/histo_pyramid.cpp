@@ -24,7 +24,7 @@ TextureShape lowestNodes(std::int64_t count, const TextureLimits& limits) {
 
 }  // namespace
 
-PyramidPlan planTree(std::int32_t count, const TextureLimits& limits) {
+PyramidPlan planPyramid(std::int32_t count, const TextureLimits& limits) {
   assert(count > 0);
   PyramidPlan plan;
   const TextureShape lowest = lowestNodes(count, limits);
@@ -51,7 +51,7 @@ PyramidPlan planTree(std::int32_t count, const TextureLimits& limits) {
   return plan;
 }
 
-std::string treeProgram(const Profile& profile, const PyramidTextures& textures) {
+std::string pyramidProgram(const Profile& profile, const PyramidTextures& textures) {
   const bool ofCounts = textures.ofCounts;
   ProgramText program;
   program.uniform(samplerType("isampler2D", textures.belowLayered), "sk_below");

@@ -42,7 +42,7 @@ struct PyramidPlan {
 };
 
 /// Plans the pyramid over `count` elements, at least 1.
-PyramidPlan planTree(std::int32_t count, const TextureLimits& limits);
+PyramidPlan planPyramid(std::int32_t count, const TextureLimits& limits);
 
 /// Which textures are array textures.
 struct PyramidTextures {
@@ -60,6 +60,6 @@ struct PyramidTextures {
 ///   sk_below_row              first row of the level below       (otherwise)
 ///   sk_tree_shift sk_row      of this level
 ///   sk_domain_row             first row of the layer that is drawn (`layered`)
-std::string treeProgram(const Profile& profile, const PyramidTextures& textures);
+std::string pyramidProgram(const Profile& profile, const PyramidTextures& textures);
 
 }  // namespace sk::assemble

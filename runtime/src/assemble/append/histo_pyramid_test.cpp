@@ -18,7 +18,7 @@ std::int64_t texelsOf(const std::vector<Rect>& rects) {
 TEST_CASE("levels narrow to a root") {
   for (const std::int32_t count : {1, 2, 4, 5, 16, 17, 64, 65, 1009, 4096, 1 << 20, (1 << 28) - 3}) {
     INFO(count);
-    const PyramidPlan plan = planTree(count, {16384, 256});
+    const PyramidPlan plan = planPyramid(count, {16384, 256});
     std::int32_t children = count;
     for (const PyramidLevel& level : plan.levels) {
       CHECK(level.children == children);
@@ -32,10 +32,10 @@ TEST_CASE("levels narrow to a root") {
   }
 }
 
-TEST_CASE("a tree too large for a texture has layers, in both of its textures") {
+TEST_CASE("a pyramid too large for a texture has layers, in both of its textures") {
   for (const std::int32_t count : {4096 * 4, 4096 * 4 + 1, 64 * 64 * 200, 64 * 64 * 256}) {
     INFO(count);
-    const PyramidPlan plan = planTree(count, {64, 256});
+    const PyramidPlan plan = planPyramid(count, {64, 256});
     CHECK(plan.isLayered());
     CHECK(plan.even.layers > 0);
     for (const TextureShape& texture : {plan.odd, plan.even}) {
@@ -46,12 +46,12 @@ TEST_CASE("a tree too large for a texture has layers, in both of its textures") 
     }
     CHECK(plan.levels.front().draws.back().y < plan.odd.height * plan.odd.layers);
   }
-  CHECK_FALSE(planTree(64 * 64 * 2, {64, 256}).isLayered());
-  CHECK(planTree((std::int64_t{1} << 31) - 1, {16384, 256}).levels.size() <= mostPyramidLevels);
+  CHECK_FALSE(planPyramid(64 * 64 * 2, {64, 256}).isLayered());
+  CHECK(planPyramid((std::int64_t{1} << 31) - 1, {16384, 256}).levels.size() <= mostPyramidLevels);
 }
 
 TEST_CASE("levels of one texture lie below each other") {
-  const PyramidPlan plan = planTree(100000, {64 * 16, 256});
+  const PyramidPlan plan = planPyramid(100000, {64 * 16, 256});
   for (std::size_t level = 0; level < plan.levels.size(); ++level) {
     const PyramidLevel& one = plan.levels[level];
     const bool isOdd = level % 2 == 0;

@@ -52,22 +52,22 @@ std::string doubleConstant(Doubles form, double value) {
 }
 
 std::string withConstants(Doubles form, std::string_view text) {
-  std::string made;
+  std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool begins =
         text[i] == 'D' && text.substr(i, 2) == "D(" &&
         (i == 0 || !(std::isalnum(static_cast<unsigned char>(text[i - 1])) || text[i - 1] == '_'));
     if (!begins) {
-      made += text[i];
+      result += text[i];
       continue;
     }
     const std::size_t end = text.find(')', i);
     double value = 0;
     std::from_chars(text.data() + i + 2, text.data() + end, value);
-    made += doubleConstant(form, value);
+    result += doubleConstant(form, value);
     i = end;
   }
-  return made;
+  return result;
 }
 
 std::string polynomialText(Doubles form, const Polynomial& polynomial) {

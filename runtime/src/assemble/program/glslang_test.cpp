@@ -184,8 +184,8 @@ TEST_CASE("glslang accepts layers, of what is drawn and of what is read") {
             reduceProgram(profile, samples::firstHit,
                           {.walk = Walk::Partials, .sourceLayered = source, .domainLayered = domain}));
         if (profile.stage == Stage::Compute) continue;
-        programs.add(treeProgram(profile, {true, source, domain}));
-        programs.add(treeProgram(profile, {false, source, domain}));
+        programs.add(pyramidProgram(profile, {true, source, domain}));
+        programs.add(pyramidProgram(profile, {false, source, domain}));
       }
     }
   }

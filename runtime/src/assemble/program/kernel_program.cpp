@@ -97,7 +97,8 @@ class KernelText {
     assert(profile_.stage == Stage::Fragment || variant_.task.work == Work::Elements);
     if (profile_.relaysUniforms && !isList()) relayUniforms();
     if (isList())
-      findEntry(program_, domain_, kernel_.parameters[variant_.task.appendOutput], variant_.task.treeLayered);
+      findEntry(program_, domain_, kernel_.parameters[variant_.task.appendOutput],
+                variant_.task.pyramidLayered);
     if (kernel_.usesLoops && !variant_.domainEven) domain_.leaveOutside();
     if (kernel_.usesIndex) domain_.index();
     if (kernel_.usesExtent) {

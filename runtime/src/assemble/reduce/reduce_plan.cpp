@@ -375,7 +375,7 @@ bool mayEndInBuffer(const program::Reduction& reduction) {
   return planes <= mostPlanes;
 }
 
-bool asksForPlace(const program::Kernel& fold) {
+bool readsElementIndex(const program::Kernel& fold) {
   using program::Role;
   return fold.usesIndex || std::ranges::any_of(fold.parameters, [](const program::Parameter& parameter) {
            return parameter.role == Role::Iterator || parameter.usesNear ||

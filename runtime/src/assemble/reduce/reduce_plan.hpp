@@ -65,8 +65,8 @@ bool foldsInGroups(const program::Reduction& reduction);
 /// than every device can write at once.
 bool mayEndInBuffer(const program::Reduction& reduction);
 
-/// Whether a fold needs the index of its elements.
-bool asksForPlace(const program::Kernel& fold);
+/// Whether a fold reads the index of its elements.
+bool readsElementIndex(const program::Kernel& fold);
 
 /// How the elements are divided into blocks and addressed.
 struct Division {

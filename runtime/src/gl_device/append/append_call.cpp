@@ -96,7 +96,7 @@ class AppendCall {
     }
     outputs.exchange();
     for (const std::unique_ptr<List>& list : lists) {
-      if (kernel_.parameters[list->appendOutput].role == Role::VariableOutput) become(*list);
+      if (kernel_.parameters[list->appendOutput].role == Role::VariableOutput) storeList(*list);
     }
   }
 
@@ -154,20 +154,20 @@ class AppendCall {
     const std::int64_t elements = assemble::elements(layout_.whole.extent);
     auto list = std::make_unique<List>(device_);
     list->appendOutput = i;
-    std::optional<HistoPyramid> tree;
+    std::optional<HistoPyramid> pyramid;
     std::int64_t length = elements * appendOutput.pushes;
     if (counts != nullptr) {
-      tree.emplace(device_, *counts, layout_);
+      pyramid.emplace(device_, *counts, layout_);
       if (hasRoom(appendOutput, elements)) {
-        list->total.planes = tree->totalTexture();
+        list->total.planes = pyramid->totalTexture();
       } else {
-        length = tree->total();
+        length = pyramid->total();
         if (length > mostPushes) failForPushes(appendOutput);
       }
     }
     list->layout = listLayout(length, device_.textureLimits());
     if (length > 0) {
-      drawList(*list, tree ? &*tree : nullptr);
+      drawList(*list, pyramid ? &*pyramid : nullptr);
     }
     return list;
   }
@@ -184,7 +184,7 @@ class AppendCall {
            appendOutput.pushes <= mostRoom && elements * appendOutput.pushes <= most;
   }
 
-  void drawList(List& list, HistoPyramid* tree) {
+  void drawList(List& list, HistoPyramid* pyramid) {
     const Parameter& appendOutput = kernel_.parameters[list.appendOutput];
     const auto take = [&](const program::Element& element) {
       list.planes.add(element, list.layout.texture, "what a kernel pushes or scatters");
@@ -205,25 +205,26 @@ class AppendCall {
     domain.layered = list.layout.whole.layered;
     domain.shift = list.layout.whole.shift;
     const Task task{Work::List, static_cast<std::uint8_t>(list.appendOutput),
-                    tree != nullptr && tree->plan().isLayered()};
-    if (tree != nullptr) {
-      bindTree(task, domain, *tree);
+                    pyramid != nullptr && pyramid->plan().isLayered()};
+    if (pyramid != nullptr) {
+      bindPyramid(task, domain, *pyramid);
     }
     runKernel(device_, kernel_, operands_, domain, list.layout.draws, targets, {}, task);
   }
 
-  void bindTree(const Task& task, const assemble::RegionLayout& domain, HistoPyramid& tree) {
+  void bindPyramid(const Task& task, const assemble::RegionLayout& domain, HistoPyramid& pyramid) {
     KernelProgram& program = device_.programs().kernelProgram(kernel_, operands_, domain, task);
     device_.bound.program(program.program.name());
-    bindPlanes(device_, {&tree.odd(), 1}, program.units);
-    bindPlanes(device_, {&tree.even(), 1}, program.units + 1);
-    program.tree.set(tree.plan());
+    bindPlanes(device_, {&pyramid.odd(), 1}, program.units);
+    bindPlanes(device_, {&pyramid.even(), 1}, program.units + 1);
+    program.pyramid.set(pyramid.plan());
   }
 
-  void become(List& list) noexcept {
+  void storeList(List& list) noexcept {
     const bool isKnown = list.total.planes.empty();
     glStream(arguments_[list.appendOutput].region)
-        .become(list.planes.planes, std::move(list.layout), isKnown ? nullptr : &list.total.planes.front());
+        .replaceElements(list.planes.planes, std::move(list.layout),
+                         isKnown ? nullptr : &list.total.planes.front());
     list.total.planes.clear();
   }
 
@@ -248,7 +249,7 @@ void runOverNothing(const ResolvedCall& call) {
   for (std::size_t i = 0; i < call.arguments.size(); ++i) {
     if (call.kernel.parameters[i].role == Role::VariableOutput) {
       std::vector<RenderTarget> nothing;
-      glStream(call.arguments[i].region).become(nothing, listLayout(0, {1, 1}), nullptr);
+      glStream(call.arguments[i].region).replaceElements(nothing, listLayout(0, {1, 1}), nullptr);
     }
   }
 }

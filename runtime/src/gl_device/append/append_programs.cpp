@@ -13,18 +13,19 @@ namespace sk {
 
 using assemble::PointStep;
 
-gl::IntUniform& StepProgram::find(std::string_view name, bool isVector) {
+gl::IntUniform& AppendProgram::find(std::string_view name, bool isVector) {
   const auto found = std::find_if(uniforms_.begin(), uniforms_.end(),
                                   [&](const auto& known) { return known.first == name; });
   if (found != uniforms_.end()) {
     return found->second;
   }
-  const std::string kept(name);
-  return uniforms_.emplace_back(kept, gl::IntUniform(program_.location(kept), isVector)).second;
+  const std::string owned(name);
+  return uniforms_.emplace_back(owned, gl::IntUniform(program_.location(owned), isVector)).second;
 }
 
-std::unique_ptr<StepProgram> AppendPrograms::build(const std::string& vertexSource,
-                                                   const std::string& fragmentSource, std::string_view what) {
+std::unique_ptr<AppendProgram> AppendPrograms::build(const std::string& vertexSource,
+                                                     const std::string& fragmentSource,
+                                                     std::string_view what) {
   std::string log;
   gl::Program program = ProgramBuild(device_, {vertexSource, fragmentSource}).finish(device_, log);
   if (!program) {
@@ -34,30 +35,31 @@ std::unique_ptr<StepProgram> AppendPrograms::build(const std::string& vertexSour
                 Error::Kind::Compile);
   }
   device_.bound.program(program.name());
-  return std::make_unique<StepProgram>(std::move(program));
+  return std::make_unique<AppendProgram>(std::move(program));
 }
 
-StepProgram& AppendPrograms::tree(const assemble::PyramidTextures& textures) {
-  std::unique_ptr<StepProgram>& kept = trees_[textures];
-  if (!kept) {
-    auto made = build(assemble::vertexProgram(device_.profile),
-                      assemble::treeProgram(device_.profile, textures), "sums of counts");
-    made->program().setSampler("sk_below", 0);
-    kept = std::move(made);
+AppendProgram& AppendPrograms::pyramid(const assemble::PyramidTextures& textures) {
+  std::unique_ptr<AppendProgram>& cached = pyramids_[textures];
+  if (!cached) {
+    auto appendProgram = build(assemble::vertexProgram(device_.profile),
+                               assemble::pyramidProgram(device_.profile, textures), "sums of counts");
+    appendProgram->program().setSampler("sk_below", 0);
+    cached = std::move(appendProgram);
   }
-  return *kept;
+  return *cached;
 }
 
-StepProgram& AppendPrograms::points(const program::Parameter& appendOutput, PointStep step,
-                                    const assemble::PointTextures& textures) {
-  std::unique_ptr<StepProgram>& kept = points_[{&appendOutput, step, textures}];
-  if (!kept) {
+AppendProgram& AppendPrograms::points(const program::Parameter& appendOutput, PointStep step,
+                                      const assemble::PointTextures& textures) {
+  std::unique_ptr<AppendProgram>& cached = points_[{&appendOutput, step, textures}];
+  if (!cached) {
     const std::string vertexSource = assemble::hasPoints(step)
                                          ? assemble::pointVertexProgram(device_.profile, textures)
                                          : assemble::vertexProgram(device_.profile);
-    auto made = build(vertexSource, assemble::pointProgram(device_.profile, appendOutput, step, textures),
-                      appendOutput.name);
-    const gl::Program& program = made->program();
+    auto appendProgram =
+        build(vertexSource, assemble::pointProgram(device_.profile, appendOutput, step, textures),
+              appendOutput.name);
+    const gl::Program& program = appendProgram->program();
     int unit = 0;
     program.setSampler("sk_targets", unit++);
     for (std::size_t plane = 0; plane < appendOutput.element->fields.size(); ++plane) {
@@ -70,9 +72,9 @@ StepProgram& AppendPrograms::points(const program::Parameter& appendOutput, Poin
     for (const char* name : {"sk_upper", "sk_lower"}) {
       program.setSampler(name, unit++);
     }
-    kept = std::move(made);
+    cached = std::move(appendProgram);
   }
-  return *kept;
+  return *cached;
 }
 
 }  // namespace sk

@@ -23,9 +23,9 @@ namespace sk {
 class GlDevice;
 
 /// A program with integer uniforms, which are set by name. It must be bound to set them.
-class StepProgram {
+class AppendProgram {
  public:
-  explicit StepProgram(gl::Program&& program) : program_(std::move(program)) {}
+  explicit AppendProgram(gl::Program&& program) : program_(std::move(program)) {}
 
   void set(std::string_view uniform, std::int32_t value) { find(uniform, false).set(value); }
   void set(std::string_view uniform, const gl::Int4& value) { find(uniform, true).set(value); }
@@ -46,22 +46,22 @@ class AppendPrograms {
 
   /// The program of a pyramid's level, which reads from texture unit 0. Throws sk::Error if the driver
   /// rejects it.
-  StepProgram& tree(const assemble::PyramidTextures& textures);
+  AppendProgram& pyramid(const assemble::PyramidTextures& textures);
   /// The program of a step. Its texture units: 0 has the target texels of the list; the next ones have the
   /// planes of the list's values, or of the stored elements; then come the results of earlier steps. Throws
   /// sk::Error if the driver rejects it.
-  StepProgram& points(const program::Parameter& appendOutput, assemble::PointStep step,
-                      const assemble::PointTextures& textures);
+  AppendProgram& points(const program::Parameter& appendOutput, assemble::PointStep step,
+                        const assemble::PointTextures& textures);
 
  private:
   using PointKey = std::tuple<const program::Parameter*, assemble::PointStep, assemble::PointTextures>;
 
-  std::unique_ptr<StepProgram> build(const std::string& vertexSource, const std::string& fragmentSource,
-                                     std::string_view what);
+  std::unique_ptr<AppendProgram> build(const std::string& vertexSource, const std::string& fragmentSource,
+                                       std::string_view what);
 
   GlDevice& device_;
-  std::map<assemble::PyramidTextures, std::unique_ptr<StepProgram>> trees_;
-  std::map<PointKey, std::unique_ptr<StepProgram>> points_;
+  std::map<assemble::PyramidTextures, std::unique_ptr<AppendProgram>> pyramids_;
+  std::map<PointKey, std::unique_ptr<AppendProgram>> points_;
 };
 
 }  // namespace sk

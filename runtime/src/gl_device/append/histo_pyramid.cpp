@@ -24,13 +24,13 @@ const program::Element& sums() { return ElementTraits<int4>::element(); }
 
 HistoPyramid::HistoPyramid(GlDevice& device, RenderTarget& counts, const Layout& layout)
     : device_(device),
-      plan_(assemble::planTree(static_cast<std::int32_t>(assemble::elements(layout.whole.extent)),
-                               device.textureLimits())),
+      plan_(assemble::planPyramid(static_cast<std::int32_t>(assemble::elements(layout.whole.extent)),
+                                  device.textureLimits())),
       odd_(device),
       even_(device) {
-  odd_.planes = device.takePlanes(sums(), plan_.odd, whatFor);
+  odd_.planes = device.acquirePlanes(sums(), plan_.odd, whatFor);
   if (plan_.even.height > 0) {
-    even_.planes = device.takePlanes(sums(), plan_.even, whatFor);
+    even_.planes = device.acquirePlanes(sums(), plan_.even, whatFor);
   }
   draw(plan_.levels.front(), counts, true, 0);
   for (std::size_t level = 2; level <= plan_.levels.size(); ++level) {
@@ -42,8 +42,8 @@ HistoPyramid::HistoPyramid(GlDevice& device, RenderTarget& counts, const Layout&
 void HistoPyramid::draw(const assemble::PyramidLevel& level, RenderTarget& below, bool ofCounts,
                         std::int32_t belowRow) {
   const assemble::TextureShape& shape = below.texture.shape();
-  StepProgram& program =
-      device_.appendPrograms.tree({ofCounts, below.texture.isLayered(), plan_.isLayered()});
+  AppendProgram& program =
+      device_.appendPrograms.pyramid({ofCounts, below.texture.isLayered(), plan_.isLayered()});
   const auto number = static_cast<std::size_t>(&level - plan_.levels.data()) + 1;
   device_.bound.program(program.program().name());
   bindPlanes(device_, {&below, 1}, 0);
@@ -70,7 +70,7 @@ std::int32_t HistoPyramid::total() {
 }
 
 std::vector<RenderTarget> HistoPyramid::totalTexture() {
-  std::vector<RenderTarget> total = device_.takePlanes(sums(), {1, 1}, whatFor);
+  std::vector<RenderTarget> total = device_.acquirePlanes(sums(), {1, 1}, whatFor);
   gl::Framebuffer& from = ofLevel(plan_.levels.size()).framebufferIn(device_.bound);
   const GLuint to = total.front().framebufferIn(device_.bound).name();
   std::int32_t row = plan_.levels.back().row;

@@ -112,8 +112,8 @@ void Scatterer::takeFloats(PlanesLease& lease, int width) {
 /// Binds planes from unit 2 on, behind the two of a list, or of the elements. Returns the next unit.
 int Scatterer::bindAfterElements(std::span<RenderTarget> planes) { return bindPlanes(device_, planes, 2); }
 
-StepProgram& Scatterer::programOf(PointStep step) {
-  StepProgram& program =
+AppendProgram& Scatterer::programOf(PointStep step) {
+  AppendProgram& program =
       device_.appendPrograms.points(appendOutput_, step, {listLayout_.layered, regionLayout_.layered});
   device_.bound.program(program.program().name());
   program.set("sk_domain_shift", regionLayout_.shift);
@@ -131,7 +131,7 @@ DrawTarget Scatterer::target(std::span<RenderTarget> planes) {
 /// Draws every point to every layer: it is clipped in all layers but its own.
 void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> targets, std::int32_t first,
                        std::int32_t count) {
-  StepProgram& program = programOf(step);
+  AppendProgram& program = programOf(step);
   const DrawTarget drawn = target(targets);
   bindPlanes(device_, list_, 0);
   const gl::Texture& texture = targets.front().texture;
@@ -155,7 +155,7 @@ void Scatterer::points(PointStep step, gl::Blend blend, std::span<RenderTarget> 
 
 /// Draws a step over the region. Steps that draw to the elements' own planes do not read them.
 void Scatterer::region(PointStep step, std::span<RenderTarget> targets) {
-  StepProgram& program = programOf(step);
+  AppendProgram& program = programOf(step);
   const DrawTarget drawn = target(targets);
   bindPlanes(device_, planes_, 1);
   const PassScope traced(device_, {appendOutput_.name, "scatter"}, std::span<const RenderTarget>(planes_),

@@ -22,9 +22,9 @@ gl::Framebuffer* FramebufferCache::framebufferOf(std::span<const GLuint> texture
     return &found->second;
   }
   if (framebuffers_.size() >= capacity) framebuffers_.clear();
-  gl::Framebuffer made(bound_, textures, isLayered);
+  gl::Framebuffer framebuffer(bound_, textures, isLayered);
   if (!gl::Framebuffer::isComplete()) return nullptr;
-  return &framebuffers_.emplace(key, std::move(made)).first->second;
+  return &framebuffers_.emplace(key, std::move(framebuffer)).first->second;
 }
 
 void FramebufferCache::dropTexture(GLuint texture) {

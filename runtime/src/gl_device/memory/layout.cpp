@@ -16,7 +16,7 @@ namespace {
 /// squares of texels wastes most of each square.
 constexpr std::int64_t longestRow = 256;
 
-bool liesAsItIs(const Shape& shape, std::int32_t longest) {
+bool fitsTexture(const Shape& shape, std::int32_t longest) {
   if (shape.rank() > 2 || (shape.rank() == 1 && shape[0] > longestRow)) {
     return false;
   }
@@ -85,7 +85,7 @@ Layout layoutOf(const Shape& shape, const assemble::TextureLimits& limits, bool 
     return packedLayout(shape, limits);
   }
   Layout layout;
-  if (liesAsItIs(shape, limits.size)) {
+  if (fitsTexture(shape, limits.size)) {
     layout.whole.extent = xFirst(shape);
     layout.texture = {layout.whole.extent[0], layout.whole.extent[1]};
   } else {

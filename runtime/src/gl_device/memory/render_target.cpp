@@ -22,9 +22,9 @@ std::uint64_t TexturePool::key(const gl::Format& format, const assemble::Texture
          static_cast<std::uint64_t>(shape.height);
 }
 
-RenderTarget TexturePool::take(const gl::Format& format, const assemble::TextureShape& shape) {
-  const std::uint64_t place = key(format, shape);
-  RenderTarget renderTarget = takeIdle(place);
+RenderTarget TexturePool::acquire(const gl::Format& format, const assemble::TextureShape& shape) {
+  const std::uint64_t shapeKey = key(format, shape);
+  RenderTarget renderTarget = acquireIdle(shapeKey);
   if (!renderTarget) renderTarget.texture = gl::Texture(bound_, format, shape);
   if (!renderTarget && bytes_ > 0) {
     deleteOlderThan(clock_ + 1);
@@ -32,16 +32,16 @@ RenderTarget TexturePool::take(const gl::Format& format, const assemble::Texture
     renderTarget.texture = gl::Texture(bound_, format, shape);
   }
   if (!renderTarget) return renderTarget;
-  Shelf& shelf = shelves_[place];
-  shelf.idle.reserve(shelf.idle.size() + shelf.taken + 1);
-  ++shelf.taken;
+  Bucket& bucket = buckets_[shapeKey];
+  bucket.idle.reserve(bucket.idle.size() + bucket.acquired + 1);
+  ++bucket.acquired;
   used_ += static_cast<std::int64_t>(renderTarget.texture.bytes());
   return renderTarget;
 }
 
-RenderTarget TexturePool::takeIdle(std::uint64_t place) {
-  const auto found = shelves_.find(place);
-  if (found == shelves_.end() || found->second.idle.empty()) return {};
+RenderTarget TexturePool::acquireIdle(std::uint64_t shapeKey) {
+  const auto found = buckets_.find(shapeKey);
+  if (found == buckets_.end() || found->second.idle.empty()) return {};
   std::vector<Idle>& idle = found->second.idle;
   RenderTarget renderTarget = std::move(idle.back().renderTarget);
   idle.pop_back();
@@ -49,19 +49,19 @@ RenderTarget TexturePool::takeIdle(std::uint64_t place) {
   return renderTarget;
 }
 
-void TexturePool::give(RenderTarget&& renderTarget) noexcept {
+void TexturePool::release(RenderTarget&& renderTarget) noexcept {
   const gl::Texture& texture = renderTarget.texture;
   const std::size_t bytes = texture.bytes();
-  Shelf& shelf = shelves_.find(key(texture.format(), texture.shape()))->second;
-  shelf.idle.push_back({std::move(renderTarget), clock_});
-  --shelf.taken;
+  Bucket& bucket = buckets_.find(key(texture.format(), texture.shape()))->second;
+  bucket.idle.push_back({std::move(renderTarget), clock_});
+  --bucket.acquired;
   used_ -= static_cast<std::int64_t>(bytes);
   bytes_ += bytes;
 }
 
 void TexturePool::deleteOlderThan(std::int64_t time) {
-  for (auto shelf = shelves_.begin(); shelf != shelves_.end();) {
-    std::vector<Idle>& idle = shelf->second.idle;
+  for (auto bucket = buckets_.begin(); bucket != buckets_.end();) {
+    std::vector<Idle>& idle = bucket->second.idle;
     std::erase_if(idle, [&](const Idle& one) {
       if (one.since >= time) {
         return false;
@@ -70,8 +70,8 @@ void TexturePool::deleteOlderThan(std::int64_t time) {
       framebuffers_.dropTexture(one.renderTarget.texture.name());
       return true;
     });
-    const bool isUsed = !idle.empty() || shelf->second.taken > 0;
-    shelf = isUsed ? std::next(shelf) : shelves_.erase(shelf);
+    const bool isUsed = !idle.empty() || bucket->second.acquired > 0;
+    bucket = isUsed ? std::next(bucket) : buckets_.erase(bucket);
   }
 }
 

@@ -33,9 +33,9 @@ class TexturePool {
 
   /// Returns a render target with undefined texels, or an empty one if memory is exhausted. The context must
   /// be current.
-  RenderTarget take(const gl::Format& format, const assemble::TextureShape& shape);
-  /// Returns a render target from take() to the pool. Never allocates, and does not call GL.
-  void give(RenderTarget&& renderTarget) noexcept;
+  RenderTarget acquire(const gl::Format& format, const assemble::TextureShape& shape);
+  /// Returns a render target from acquire() to the pool. Never allocates, and does not call GL.
+  void release(RenderTarget&& renderTarget) noexcept;
 
   /// Deletes the render targets that have been idle for a number of calls, if idle ones take much memory.
   /// Must be called once per call.
@@ -54,21 +54,21 @@ class TexturePool {
     RenderTarget renderTarget;
     std::int64_t since;
   };
-  struct Shelf {
-    std::vector<Idle> idle;  ///< has capacity for the taken ones as well
-    std::size_t taken = 0;
+  struct Bucket {
+    std::vector<Idle> idle;  ///< has capacity for the acquired ones as well
+    std::size_t acquired = 0;
   };
   static constexpr std::size_t keptBytes = std::size_t{256} << 20;
   static constexpr std::int64_t keptCalls = 16;
 
   static std::uint64_t key(const gl::Format& format, const assemble::TextureShape& shape);
   /// Returns an empty render target if no idle one has this key.
-  RenderTarget takeIdle(std::uint64_t place);
+  RenderTarget acquireIdle(std::uint64_t shapeKey);
   void deleteOlderThan(std::int64_t time);
 
   gl::BoundState& bound_;
   FramebufferCache& framebuffers_;
-  std::unordered_map<std::uint64_t, Shelf> shelves_;
+  std::unordered_map<std::uint64_t, Bucket> buckets_;
   std::size_t bytes_ = 0;
   std::int64_t used_ = 0;
   std::int64_t clock_ = 0;

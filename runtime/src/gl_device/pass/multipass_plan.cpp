@@ -55,26 +55,26 @@ gl::Texture copyBundle(GlDevice& device, const Bundle& bundle, std::span<const O
     }
   }
   shape.layers *= count;
-  gl::Texture made(device.bound, gl::formatOf(bundle.scalar, bundle.width), shape);
-  if (made.name() == 0) {
+  gl::Texture texture(device.bound, gl::formatOf(bundle.scalar, bundle.width), shape);
+  if (texture.name() == 0) {
     device.throwIfLost();
     throw Error(fmt::format("'{}' has no room for inputs that share a texture: {} layers of {} x {} texels",
                             device.capabilities.renderer, shape.layers, shape.width, shape.height),
                 Error::Kind::Memory);
   }
   const assemble::Rect texels{0, 0, shape.width, shape.height * shape.layers};
-  const PassScope traced(device, {"copy", "to layers", "blit"}, texels, made.format().texelBytes());
+  const PassScope traced(device, {"copy", "to layers", "blit"}, texels, texture.format().texelBytes());
   for (std::int32_t i = 0; i < count; ++i) {
     if (RenderTarget* plane = planes[static_cast<std::size_t>(i)]) {
-      copyLayers(device, *plane, made, i, count);
+      copyLayers(device, *plane, texture, i, count);
     }
   }
-  return made;
+  return texture;
 }
 
-class PlanRun {
+class PlanExecution {
  public:
-  PlanRun(GlDevice& device, const Plan& plan, const PlannedCall& call) : device_(device), call_(call) {
+  PlanExecution(GlDevice& device, const Plan& plan, const PlannedCall& call) : device_(device), call_(call) {
     for (const program::Element* element : plan.temporaries) {
       temporaries_.emplace_back(device).add(*element, call.layout.texture, "a value saved between passes");
     }
@@ -82,24 +82,24 @@ class PlanRun {
       bundles_.push_back(copyBundle(device, bundle, call.operands));
     }
   }
-  PlanRun(const PlanRun&) = delete;
-  PlanRun& operator=(const PlanRun&) = delete;
+  PlanExecution(const PlanExecution&) = delete;
+  PlanExecution& operator=(const PlanExecution&) = delete;
 
   /// Makes the driver start compiling the program of a pass. False if the program exists already.
   bool start(const Pass& pass) {
-    choose(pass);
+    selectOperands(pass);
     return targets_.empty() || device_.programs().startKernelProgram(pass.kernel, operands_, call_.domain);
   }
 
   /// Prepares everything that draw() needs. Throws sk::Error if the driver rejects something.
   void prepare(const Pass& pass) {
-    choose(pass);
+    selectOperands(pass);
     if (targets_.empty()) return;
     preparedPass(device_, device_.programs().kernelProgram(pass.kernel, operands_, call_.domain), targets_);
   }
 
   void draw(const Pass& pass) {
-    choose(pass);
+    selectOperands(pass);
     if (targets_.empty()) {   // all of its outputs are omitted
       return;
     }
@@ -107,7 +107,7 @@ class PlanRun {
   }
 
  private:
-  void choose(const Pass& pass) {
+  void selectOperands(const Pass& pass) {
     operands_.clear();
     targets_.clear();
     for (std::size_t i = 0; i < pass.operands.size(); ++i) {
@@ -151,14 +151,14 @@ class PlanRun {
 
 void runPlan(GlDevice& device, const Plan& plan, const PlannedCall& call,
              const std::function<void()>& begin) {
-  PlanRun run(device, plan, call);
+  PlanExecution execution(device, plan, call);
   for (const Pass& pass : plan.passes) {
-    if (!run.start(pass)) break;   // then the other programs exist, too
+    if (!execution.start(pass)) break;   // then the other programs exist, too
   }
-  for (const Pass& pass : plan.passes) run.prepare(pass);
+  for (const Pass& pass : plan.passes) execution.prepare(pass);
   begin();
   for (const Pass& pass : plan.passes) {
-    run.draw(pass);
+    execution.draw(pass);
   }
 }
 

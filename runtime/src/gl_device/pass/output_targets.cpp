@@ -40,17 +40,17 @@ OutputTargets::OutputTargets(GlDevice& device, const program::Kernel& kernel,
 }
 
 OutputTargets::Placement OutputTargets::placementOf(std::size_t output) const {
-  bool isReadToo = false;
+  bool isAlsoRead = false;
   bool isWrittenBefore = false;
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     const Role role = kernel_.parameters[i].role;
     const bool isSame = arguments_[i].region.stream == arguments_[output].region.stream;
-    isReadToo = isReadToo || (isSame && isNeeded(i) && (role == Role::Input || role == Role::Gather));
+    isAlsoRead = isAlsoRead || (isSame && isNeeded(i) && (role == Role::Input || role == Role::Gather));
     isWrittenBefore = isWrittenBefore || (isSame && isOutput(i) && i < output);
   }
   const RegionLayout& regionLayout = operands_[output].regionLayout;
   const bool isSame = haveSameTexels(regionLayout, domain_);
-  if (!isWrittenBefore && isSame && !isReadToo) {
+  if (!isWrittenBefore && isSame && !isAlsoRead) {
     return Placement::Direct;
   }
   const bool isWhole = !regionLayout.view && !domain_.view;

@@ -93,14 +93,14 @@ DrawTarget targetOf(GlDevice& device, std::span<RenderTarget* const> planes) {
     names[i] = planes[i]->texture.name();
   }
   const bool isLayered = first.texture.isLayered();
-  gl::Framebuffer* const made =
+  gl::Framebuffer* const framebuffer =
       device.framebuffers.framebufferOf(std::span(names).first(planes.size()), isLayered);
-  if (made == nullptr) {
+  if (framebuffer == nullptr) {
     device.throwIfLost();
     throw Error("the driver cannot draw to these textures at once; write fewer outputs in one kernel",
                 Error::Kind::Device);
   }
-  return {made, isLayered ? first.texture.shape().height : 0};
+  return {framebuffer, isLayered ? first.texture.shape().height : 0};
 }
 
 PreparedPass preparedPass(GlDevice& device, KernelProgram& program, std::span<RenderTarget* const> planes) {

@@ -136,7 +136,7 @@ void GlDevice::reduce(const ResolvedReduction& call) {
   const assemble::Stage stage = stageOf(fold, KernelClass::Reduces, call.options);
   const DeviceScope scope(*this);
   const gl::LabelGroup group(labels, fold.name);
-  choose(call.options, stage);
+  selectPrograms(call.options, stage);
   if (call.isToValues()) {
     reduceToValues(*this, call);
   } else {

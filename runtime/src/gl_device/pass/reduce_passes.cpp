@@ -190,7 +190,7 @@ bool ReducePasses::isRead(std::size_t i) const {
 }
 
 bool ReducePasses::foldsByIndex() const {
-  bool byIndex = assemble::asksForPlace(reduction_.fold);
+  bool byIndex = assemble::readsElementIndex(reduction_.fold);
   for (std::size_t i = 0; i < operands_.size(); ++i) {
     byIndex = byIndex || (isRead(i) && !haveSameTexels(operands_[i].regionLayout, elements_));
   }

@@ -31,7 +31,7 @@ std::vector<RenderTarget*> pointersTo(std::span<RenderTarget> planes);
 class ReducePasses {
  public:
   /// Unpacks the inputs unless the reduction can read all of them by packed texels. A DeviceScope must be
-  /// open, and GlDevice::choose() must have been called.
+  /// open, and GlDevice::selectPrograms() must have been called.
   ReducePasses(GlDevice& device, const ResolvedReduction& call);
 
   /// The operands of the fold, one per parameter.

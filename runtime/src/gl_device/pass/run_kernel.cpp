@@ -95,12 +95,12 @@ class KernelCall {
     GlStream& stream = glStream(region);
     const bool packs = mayWritePacked();
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
-      if (keepsScalars(i) || (!packs && isWrittenInPlace(i))) glStream(arguments_[i].region).unpack();
+      if (needsUnpacked(i) || (!packs && isWrittenInPlace(i))) glStream(arguments_[i].region).unpack();
     }
     layout_ = &stream.layout;
     if (stream.layout.whole.packed != packs) {
-      made_ = layoutOf(stream.shape, device_.textureLimits(), packs);
-      layout_ = &made_;
+      newLayout_ = layoutOf(stream.shape, device_.textureLimits(), packs);
+      layout_ = &newLayout_;
     }
     domain_ = regionLayoutOf(region, *layout_);
   }
@@ -129,7 +129,7 @@ class KernelCall {
 
   /// Whether an argument must be unpacked before it is read: plans and linear filters do not support packed
   /// texels.
-  bool keepsScalars(std::size_t i) const {
+  bool needsUnpacked(std::size_t i) const {
     const Role role = kernel_.parameters[i].role;
     const bool isRead = (role == Role::Input || role == Role::Gather) && isNeeded(i);
     return isRead && (plan_ != nullptr || assemble::mayFilter(kernel_.parameters[i]));
@@ -160,7 +160,7 @@ class KernelCall {
   const program::Plan* const plan_;  ///< null if one pass is enough
   std::vector<Operand>& operands_;
   std::size_t first_ = 0;  ///< the first output, whose region is the domain
-  Layout made_;
+  Layout newLayout_;
   const Layout* layout_ = nullptr;  ///< of the first output's stream, after the call
   RegionLayout domain_;
 };
@@ -178,11 +178,11 @@ void GlDevice::runUnchecked(const Kernel& kernel, std::span<const Argument> argu
 }
 
 void GlDevice::runUnchecked(const ResolvedCall& called) {
-  const ResolvedCall call = called.of(formOf(called.kernel, called.options), limits);
+  const ResolvedCall call = called.of(precisionVariant(called.kernel, called.options), limits);
   const assemble::Stage stage = stageOf(call.kernel, classOf(call.kernel), call.options);
   const DeviceScope scope(*this);
   const gl::LabelGroup group(labels, called.kernel.name);
-  choose(call.options, stage);
+  selectPrograms(call.options, stage);
   checkStorages(call.kernel, call.arguments, call.plan);
   if (!hasAppendOutputs(call.kernel)) {
     KernelCall(*this, call).run();

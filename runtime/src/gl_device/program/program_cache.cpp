@@ -72,10 +72,10 @@ KernelProgram& ProgramCache::kernelProgram(const program::Kernel& kernel, std::s
     const assemble::Variant variant =
         chooseVariant(kernel, operands, domain, task, device_.capabilities.filtersFloats);
     auto started = startedKernels_.extract(key);
-    auto made = makeKernelProgram(kernel, variant,
-                                  started.empty() ? begin(kernel, variant) : std::move(started.mapped()));
+    auto result = makeKernelProgram(kernel, variant,
+                                    started.empty() ? begin(kernel, variant) : std::move(started.mapped()));
     makeRoom(kernels_, [&](const ProgramKey& other) { return other.kernel == &kernel; });
-    return *kernels_.insert_or_assign(key, Kept<KernelProgram>{std::move(made), ++clock_})
+    return *kernels_.insert_or_assign(key, Kept<KernelProgram>{std::move(result), ++clock_})
                 .first->second.program;
   }
   found->second.used = ++clock_;
@@ -99,22 +99,22 @@ bool ProgramCache::startKernelProgram(const program::Kernel& kernel, std::span<c
 std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Kernel& kernel,
                                                                const assemble::Variant& variant,
                                                                ProgramBuild&& begun) {
-  auto made = std::make_unique<KernelProgram>();
-  made->isPacked = variant.domainPacked;
-  finish(*made, kernel, std::move(begun));
-  made->domain = LayoutUniforms(made->program, "sk_domain_*");
-  findParameters(*made, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
-  for (KernelProgram::Read& read : made->reads) {
+  auto result = std::make_unique<KernelProgram>();
+  result->isPacked = variant.domainPacked;
+  finish(*result, kernel, std::move(begun));
+  result->domain = LayoutUniforms(result->program, "sk_domain_*");
+  findParameters(*result, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
+  for (KernelProgram::Read& read : result->reads) {
     const bool isFiltered = variant.access[read.parameter].filtered;
     read.sampler = isFiltered ? device_.samplers.linear(kernel.parameters[read.parameter].boundary) : 0;
   }
   if (variant.task.work == assemble::Work::List) {
-    findListUniforms(*made, kernel.parameters[variant.task.appendOutput]);
+    findListUniforms(*result, kernel.parameters[variant.task.appendOutput]);
   }
-  return made;
+  return result;
 }
 
-void ProgramCache::findParameters(KernelProgram& made, const program::Kernel& kernel,
+void ProgramCache::findParameters(KernelProgram& result, const program::Kernel& kernel,
                                   const assemble::SpecValues& specs) {
   int unit = 0;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
@@ -125,30 +125,30 @@ void ProgramCache::findParameters(KernelProgram& made, const program::Kernel& ke
     if (parameter.role == program::Role::Iterator) {
       const program::Field& field = parameter.element->fields.front();
       const auto find = [&](std::string_view kind) {
-        return gl::FieldUniform(made.program.location(fmt::format("sk_{}_{}", kind, parameter.symbol)),
+        return gl::FieldUniform(result.program.location(fmt::format("sk_{}_{}", kind, parameter.symbol)),
                                 {&field, 1});
       };
-      made.values.push_back({i, find("begin")});
-      made.steps.push_back({i, find("step")});
-      made.reads.push_back(readOf(made.program, i, parameter));
+      result.values.push_back({i, find("begin")});
+      result.steps.push_back({i, find("step")});
+      result.reads.push_back(readOf(result.program, i, parameter));
     } else if (parameter.role == program::Role::Uniform) {
-      findValue(made, i, parameter);
+      findValue(result, i, parameter);
     } else if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather) {
-      made.reads.push_back(readOf(made.program, i, parameter));
-      bindSamplers(made.program, parameter, unit);
+      result.reads.push_back(readOf(result.program, i, parameter));
+      bindSamplers(result.program, parameter, unit);
     }
   }
-  made.bundles = bundlesOf(kernel);
-  for (const std::size_t bundle : made.bundles) {
-    made.program.setSampler(assemble::bundleName(bundle), unit++);
+  result.bundles = bundlesOf(kernel);
+  for (const std::size_t bundle : result.bundles) {
+    result.program.setSampler(assemble::bundleName(bundle), unit++);
   }
   if (profile_.tables) {
-    findTables(made, kernel, unit);
+    findTables(result, kernel, unit);
   }
-  made.units = unit;
+  result.units = unit;
 }
 
-void ProgramCache::findTables(KernelProgram& made, const program::Kernel& kernel, int& unit) {
+void ProgramCache::findTables(KernelProgram& result, const program::Kernel& kernel, int& unit) {
   static constexpr program::Field range{"", program::Scalar::Float, 3, 0};
   const int units = unit + static_cast<int>(kernel.tables.size());
   if (!kernel.tables.empty() && units > device_.limits.textureUnits) {
@@ -161,58 +161,58 @@ void ProgramCache::findTables(KernelProgram& made, const program::Kernel& kernel
   }
   for (const program::TableUse& use : kernel.tables) {
     const FunctionTable& table = device_.tables.of(*use.table, device_.configuration);
-    made.tables.push_back(
+    result.tables.push_back(
         {device_.textureOf(table),
-         gl::FieldUniform(made.program.location(assemble::rangeName(use.name)), {&range, 1}),
+         gl::FieldUniform(result.program.location(assemble::rangeName(use.name)), {&range, 1}),
          {table.report.range.low, table.perUnit, static_cast<float>(table.report.range.intervals)}});
-    device_.bound.program(made.program.name());
-    made.program.setSampler(assemble::tableName(use.name), unit++);
+    device_.bound.program(result.program.name());
+    result.program.setSampler(assemble::tableName(use.name), unit++);
   }
 }
 
-void ProgramCache::findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter) {
+void ProgramCache::findValue(KernelProgram& result, std::size_t number, const program::Parameter& parameter) {
   for (const auto parts : valuesOf(*parameter.element)) {
     const program::Field& first = parts.front();
     const bool isMember = !first.path.empty() && first.path.front() != '[';
     const std::string name = fmt::format("sk_arg_{}{}{}", parameter.symbol, isMember ? "." : "", first.path);
     if (first.scalar == program::Scalar::Double) {
-      addDoubles(made, number, name, parts);
+      addDoubles(result, number, name, parts);
     } else {
-      made.values.push_back({number, gl::FieldUniform(made.program.location(name), parts)});
+      result.values.push_back({number, gl::FieldUniform(result.program.location(name), parts)});
     }
   }
 }
 
 /// In GLSL, a double is a struct of its bits or of two floats, and a vector of doubles is a struct of
 /// doubles.
-void ProgramCache::addDoubles(KernelProgram& made, std::size_t number, const std::string& name,
+void ProgramCache::addDoubles(KernelProgram& result, std::size_t number, const std::string& name,
                               std::span<const program::Field> parts) const {
-  const auto location = [&](const std::string& member) { return made.program.location(member); };
+  const auto location = [&](const std::string& member) { return result.program.location(member); };
   std::size_t width = 0;
   for (const program::Field& part : parts) width += part.width;
   for (std::size_t c = 0; c < width; ++c) {
     const std::string one = width == 1 ? name : fmt::format("{}.{}", name, "xyzw"[c]);
     const auto offset = static_cast<std::uint32_t>(parts.front().offset + c * sizeof(double));
     const bool isNative = profile_.doubles == assemble::Doubles::Native;
-    made.doubles.push_back(
+    result.doubles.push_back(
         {number, isNative ? gl::DoubleUniform::bits(location(one + ".bits"), offset)
                           : gl::DoubleUniform::pair(location(one + ".hi"), location(one + ".lo"), offset)});
   }
 }
 
-void ProgramCache::findListUniforms(KernelProgram& made, const program::Parameter& appendOutput) {
-  made.target = LayoutUniforms(made.program, fmt::format("sk_*_{}", appendOutput.symbol));
-  made.tree.shift = {made.program.location("sk_tree_shift"), false};
-  made.tree.levels = {made.program.location("sk_levels"), false};
-  for (std::size_t level = 0; level < made.tree.rows.size(); ++level) {
-    made.tree.rows[level] = {made.program.location(fmt::format("sk_rows[{}]", level)), false};
+void ProgramCache::findListUniforms(KernelProgram& result, const program::Parameter& appendOutput) {
+  result.target = LayoutUniforms(result.program, fmt::format("sk_*_{}", appendOutput.symbol));
+  result.pyramid.shift = {result.program.location("sk_tree_shift"), false};
+  result.pyramid.levels = {result.program.location("sk_levels"), false};
+  for (std::size_t level = 0; level < result.pyramid.rows.size(); ++level) {
+    result.pyramid.rows[level] = {result.program.location(fmt::format("sk_rows[{}]", level)), false};
   }
-  device_.bound.program(made.program.name());
-  made.program.setSampler("sk_odd", made.units);
-  made.program.setSampler("sk_even", made.units + 1);
+  device_.bound.program(result.program.name());
+  result.program.setSampler("sk_odd", result.units);
+  result.program.setSampler("sk_even", result.units + 1);
 }
 
-void KernelProgram::Tree::set(const assemble::PyramidPlan& plan) {
+void KernelProgram::Pyramid::set(const assemble::PyramidPlan& plan) {
   shift.set(plan.shift);
   levels.set(static_cast<std::int32_t>(plan.levels.size()));
   for (std::size_t level = 0; level < plan.levels.size(); ++level) {
@@ -242,10 +242,10 @@ ProgramBuild ProgramCache::begin(const program::Reduction& reduction,
            assemble::reduceProgram(profile_, reduction, variant)}};
 }
 
-void ProgramCache::finish(KernelProgram& made, const program::Kernel& kernel, ProgramBuild&& begun) {
+void ProgramCache::finish(KernelProgram& result, const program::Kernel& kernel, ProgramBuild&& begun) {
   std::string log;
-  made.program = begun.finish(device_, log);
-  if (!made.program) {
+  result.program = begun.finish(device_, log);
+  if (!result.program) {
     log.clear();
     device_.throwIfLost();
     gl::Program::build(device_.bound, {begun.sources().vertex, withEncodedLines(begun.sources().main)}, log);
@@ -254,12 +254,12 @@ void ProgramCache::finish(KernelProgram& made, const program::Kernel& kernel, Pr
                     device_.capabilities.renderer, profile_.name, withSourceNames(log, kernel.sources)),
         Error::Kind::Compile);
   }
-  device_.labels.program(made.program.name(), kernel.name);
-  made.stage = profile_.stage;
-  made.domainRow = {made.program.location("sk_domain_row"), false};
-  if (made.stage == assemble::Stage::Compute) {
-    made.rect = {made.program.location("sk_rect"), true};
-    made.workGroup = made.program.workGroup();
+  device_.labels.program(result.program.name(), kernel.name);
+  result.stage = profile_.stage;
+  result.domainRow = {result.program.location("sk_domain_row"), false};
+  if (result.stage == assemble::Stage::Compute) {
+    result.rect = {result.program.location("sk_rect"), true};
+    result.workGroup = result.program.workGroup();
   }
 }
 
@@ -281,17 +281,17 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
   const auto found = reductions_.find(key);
   if (found == reductions_.end()) {
     const TraceScope traced(device_.trace.get(), "program", reduction.fold.name);
-    auto made = std::make_unique<ReduceProgram>();
+    auto result = std::make_unique<ReduceProgram>();
     const bool isPartial = assemble::isOfPartials(variant.walk);
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
     auto started = startedReductions_.extract(key);
-    finish(made->kernel, kernel, started.empty() ? begin(reduction, variant) : std::move(started.mapped()));
-    made->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials;
+    finish(result->kernel, kernel, started.empty() ? begin(reduction, variant) : std::move(started.mapped()));
+    result->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials;
     if (variant.walk != assemble::Walk::Nothing) {
-      findParameters(made->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
+      findParameters(result->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
     }
     makeRoom(reductions_, [&](const ReduceKey& other) { return other.first == &reduction; });
-    return *reductions_.insert_or_assign(key, Kept<ReduceProgram>{std::move(made), ++clock_})
+    return *reductions_.insert_or_assign(key, Kept<ReduceProgram>{std::move(result), ++clock_})
                 .first->second.program;
   }
   found->second.used = ++clock_;

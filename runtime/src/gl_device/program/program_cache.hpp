@@ -52,7 +52,7 @@ struct KernelProgram {
   };
 
   /// The uniforms of a list's program for the pyramid (assemble/append/histo_pyramid.hpp).
-  struct Tree {
+  struct Pyramid {
     gl::IntUniform shift, levels;
     std::array<gl::IntUniform, assemble::mostPyramidLevels + 1> rows;
 
@@ -68,7 +68,7 @@ struct KernelProgram {
   LayoutUniforms domain;
   gl::IntUniform domainRow;  ///< layered domains: the first row of the drawn layer
   LayoutUniforms target;  ///< of the scatter output whose list it writes
-  Tree tree;  ///< its textures are on the units from `units` on
+  Pyramid pyramid;  ///< its textures are on the units from `units` on
   int units = 0;  ///< the number of units of reads, bundles and tables
   std::vector<Value> values;
   std::vector<Double> doubles;
@@ -113,17 +113,18 @@ class ProgramCache {
 
   std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
                                                    const assemble::Variant& variant, ProgramBuild&& begun);
-  void findParameters(KernelProgram& made, const program::Kernel& kernel, const assemble::SpecValues& specs);
-  void findTables(KernelProgram& made, const program::Kernel& kernel, int& unit);
-  void findValue(KernelProgram& made, std::size_t number, const program::Parameter& parameter);
-  void addDoubles(KernelProgram& made, std::size_t number, const std::string& name,
+  void findParameters(KernelProgram& result, const program::Kernel& kernel,
+                      const assemble::SpecValues& specs);
+  void findTables(KernelProgram& result, const program::Kernel& kernel, int& unit);
+  void findValue(KernelProgram& result, std::size_t number, const program::Parameter& parameter);
+  void addDoubles(KernelProgram& result, std::size_t number, const std::string& name,
                   std::span<const program::Field> parts) const;
-  void findListUniforms(KernelProgram& made, const program::Parameter& appendOutput);
+  void findListUniforms(KernelProgram& result, const program::Parameter& appendOutput);
   bool isCompute() const { return profile_.stage == assemble::Stage::Compute; }
   ProgramBuild begin(const program::Kernel& kernel, const assemble::Variant& variant);
   ProgramBuild begin(const program::Reduction& reduction, const assemble::ReduceVariant& variant);
   /// Throws sk::Error, with the driver's messages, if the driver rejects the program.
-  void finish(KernelProgram& made, const program::Kernel& kernel, ProgramBuild&& begun);
+  void finish(KernelProgram& result, const program::Kernel& kernel, ProgramBuild&& begun);
   void bindSamplers(const gl::Program& program, const program::Parameter& parameter, int& unit);
 
   /// A program, and the time of its last use.

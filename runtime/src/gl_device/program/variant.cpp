@@ -216,7 +216,7 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
                std::uint64_t{isDomainView(domain)} << 3,
            4);
   bits.add(static_cast<std::uint64_t>(task.work) | std::uint64_t{domain.packed} << 2 |
-               std::uint64_t{task.treeLayered} << 3,
+               std::uint64_t{task.pyramidLayered} << 3,
            4);
   bits.add(task.appendOutput & 15u, 4);
   bits.add(task.appendOutput >> 4, 4);

@@ -5,27 +5,27 @@
 
 namespace sk {
 
-TransferBuffer TransferBuffers::take() {
+TransferBuffer TransferBuffers::acquire() {
   const std::lock_guard lock(mutex_);
-  idle_.reserve(idle_.size() + taken_ + 1);
-  TransferBuffer taken;
+  idle_.reserve(idle_.size() + acquired_ + 1);
+  TransferBuffer acquired;
   if (idle_.empty()) {
-    taken.buffer = gl::PixelBuffer(deletions_);
+    acquired.buffer = gl::PixelBuffer(deletions_);
   } else {
-    taken = std::move(idle_.back().buffer);
+    acquired = std::move(idle_.back().buffer);
     idle_.pop_back();
-    bytes_ -= taken.bytes;
-    taken.fence = {};
+    bytes_ -= acquired.bytes;
+    acquired.fence = {};
   }
-  ++taken_;
-  return taken;
+  ++acquired_;
+  return acquired;
 }
 
-void TransferBuffers::give(TransferBuffer&& buffer) noexcept {
+void TransferBuffers::release(TransferBuffer&& buffer) noexcept {
   const std::lock_guard lock(mutex_);
   bytes_ += buffer.bytes;
   idle_.push_back({std::move(buffer), clock_});
-  --taken_;
+  --acquired_;
   countIdle();
 }
 

@@ -32,9 +32,9 @@ class TransferBuffers {
   explicit TransferBuffers(gl::Deletions& deletions) : deletions_(deletions) {}
 
   /// Returns an idle buffer or a new one, without a fence. The context must be current.
-  TransferBuffer take();
-  /// Returns a buffer from take() to the pool. Thread-safe: it does not call GL, and it never allocates.
-  void give(TransferBuffer&& buffer) noexcept;
+  TransferBuffer acquire();
+  /// Returns a buffer from acquire() to the pool. Thread-safe: it does not call GL, and it never allocates.
+  void release(TransferBuffer&& buffer) noexcept;
 
   /// Deletes the buffers that have been idle for a number of calls, if idle ones are many or large. Must be
   /// called once per call, while the context is current.
@@ -58,18 +58,18 @@ class TransferBuffers {
 
   gl::Deletions& deletions_;
   std::mutex mutex_;
-  std::vector<Idle> idle_;  ///< has capacity for the taken ones as well
-  std::size_t taken_ = 0;
+  std::vector<Idle> idle_;  ///< has capacity for the acquired ones as well
+  std::size_t acquired_ = 0;
   std::size_t bytes_ = 0;
   std::atomic<std::int64_t> clock_ = 0;
   std::atomic<bool> hasMany_ = false;  ///< spares calls the lock if there are few idle buffers
 };
 
-/// Holds a buffer of the pool and gives it back when it is destroyed, on any thread.
+/// Holds a buffer of the pool and releases it when it is destroyed, on any thread.
 class TransferBufferLease {
  public:
-  explicit TransferBufferLease(TransferBuffers& pool) : held(pool.take()), pool_(pool) {}
-  ~TransferBufferLease() { pool_.give(std::move(held)); }
+  explicit TransferBufferLease(TransferBuffers& pool) : held(pool.acquire()), pool_(pool) {}
+  ~TransferBufferLease() { pool_.release(std::move(held)); }
   TransferBufferLease(const TransferBufferLease&) = delete;
   TransferBufferLease& operator=(const TransferBufferLease&) = delete;
 

@@ -68,8 +68,8 @@ std::string caseText(const Json& one) {
 std::string worstOf(const Experiment& experiment) {
   std::string text;
   for (const Row& row : experiment.rows) {
-    const bool isTold = !row.isRefused() && row.grade.worst.contains("result") && row.grade.error() > 0;
-    if (isTold) text += fmt::format("    {:<17}{}\n", row.mode, caseText(row.grade.worst));
+    const bool hasWorst = !row.isRefused() && row.grade.worst.contains("result") && row.grade.error() > 0;
+    if (hasWorst) text += fmt::format("    {:<17}{}\n", row.mode, caseText(row.grade.worst));
   }
   return text.empty() ? "" : "  the largest error\n" + text;
 }

@@ -19,10 +19,10 @@ constexpr std::size_t count = 1 << 12;
 /// Doubles that pairs of floats also represent, to 48 bits.
 std::vector<double> operands(unsigned seed) {
   Numbers numbers(seed);
-  std::vector<double> made(count);
-  for (double& x : made)
+  std::vector<double> operands(count);
+  for (double& x : operands)
     x = (1 + numbers.unit() + 0x1p-32 * numbers.unit()) * std::exp2(std::floor(40 * numbers.unit()) - 20);
-  return made;
+  return operands;
 }
 
 /// -log2 of the largest relative error.

@@ -22,9 +22,9 @@ constexpr sk::CallOptions fast{.intrinsics = sk::Intrinsics::Fast};
 /// Numbers of all magnitudes whose products, quotients and sums are normal.
 std::vector<float> floatOperands(unsigned seed) {
   Numbers numbers(seed);
-  std::vector<float> made(operandCount);
-  for (float& x : made) x = numbers.anySign(numbers.logarithmic(0x1p-30, 0x1p30));
-  return made;
+  std::vector<float> operands(operandCount);
+  for (float& x : operands) x = numbers.anySign(numbers.logarithmic(0x1p-30, 0x1p30));
+  return operands;
 }
 
 /// The errors of an operation's results relative to `reference(i)`, which the host computes in double.

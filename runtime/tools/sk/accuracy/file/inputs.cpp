@@ -159,7 +159,7 @@ class Drawing {
   /// First makes each scalar extreme alone, with each of its extremes; later several at once. Gathers have
   /// few extremes, because other elements read their neighbours.
   bool takesExtreme(const Parameter& parameter, std::size_t element, std::size_t place) {
-    if (!isTold(element)) return false;
+    if (!identifiesResult(element)) return false;
     const std::size_t number = numberOf(element);
     if (number < places_ * mostExtremes) return number % places_ == place;
     return numbers_.unit() < (parameter.role == Role::Gather ? 0.125 : 0.5);
@@ -172,7 +172,7 @@ class Drawing {
 
   /// Only the element that identifies its block's result is extreme.
   std::int64_t block() const { return extent_.domain.size() / extent_.results.size(); }
-  bool isTold(std::size_t element) const {
+  bool identifiesResult(std::size_t element) const {
     if (extremes_ == Extremes::InValues || block() == 1) return true;
     const auto at = static_cast<std::int64_t>(element);
     return at / block() < extent_.results.size() && elementOf(at / block()) == at;

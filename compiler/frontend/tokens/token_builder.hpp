@@ -14,9 +14,9 @@ class Preprocessor;
 
 namespace skc::frontend {
 
-class TokenMaker {
+class TokenBuilder {
  public:
-  explicit TokenMaker(clang::Preprocessor& preprocessor) : preprocessor_(preprocessor) {}
+  explicit TokenBuilder(clang::Preprocessor& preprocessor) : preprocessor_(preprocessor) {}
 
   clang::Token make(clang::tok::TokenKind kind, clang::SourceLocation place) const;
   /// An identifier or keyword with this spelling.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
 // Variable and scatter outputs with every kind of element, against plain C++. All results are exact.
-#include "sinks.sk.hpp"
+#include "append_outputs.sk.hpp"
 
 #include "support/devices.hpp"
 #include "support/values.hpp"
 
 using namespace run_tests;
-using sinks::Dot;
+using append_outputs::Dot;
 using sk::half, sk::int2, sk::float3;
 
 namespace {
@@ -48,8 +48,8 @@ TEST_CASE("structs of narrow types and matrices are pushed and scattered") {
   onEveryLayout([&](sk::Device& device) {
     const auto d = streamOf<Dot>(device, dots);
     auto r = device.stream<Dot>({0}), s = device.stream<Dot>({count});
-    sinks::kept(d, r);
-    sinks::placed(streamOf<int>(device, at), d, s);
+    append_outputs::kept(d, r);
+    append_outputs::placed(streamOf<int>(device, at), d, s);
     const auto pushed = r.read(), scattered = s.read();
     CHECK(std::equal(pushed.begin(), pushed.end(), kept.begin(), kept.end(), isSameDot));
     CHECK(std::equal(scattered.begin(), scattered.end(), placed.begin(), placed.end(), isSameDot));
@@ -71,8 +71,8 @@ TEST_CASE("what is pushed or stored in a narrow type is converted to it") {
     auto s = device.stream<std::int16_t>({12, 20});
     auto t = device.stream<std::uint8_t>({0});
     auto u = device.stream<half>({0});
-    sinks::wrapped(streamOf<int2>(device, at), streamOf<sk::char4>(device, x),
-                   streamOf<std::int16_t>(device, y), r, s, t, u);
+    append_outputs::wrapped(streamOf<int2>(device, at), streamOf<sk::char4>(device, x),
+                            streamOf<std::int16_t>(device, y), r, s, t, u);
     const auto from = [](std::size_t k) { return (11 - k / 20) * 20 + k % 20; };
     CHECK(difference(r.read(), [&](std::size_t k) {
             const auto c = static_cast<std::int8_t>(2 * x[from(k)].x);
@@ -88,7 +88,7 @@ TEST_CASE("what is pushed or stored in a narrow type is converted to it") {
   });
 }
 
-TEST_CASE("templates with sinks, for each value of a constant") {
+TEST_CASE("templates with append outputs, for each value of a constant") {
   const auto f = values<float>(count);
   std::vector<sk::half3> h;
   std::vector<sk::float3x3> m;
@@ -100,11 +100,11 @@ TEST_CASE("templates with sinks, for each value of a constant") {
     auto r = device.stream<float>({0});
     auto s = device.stream<sk::half3>({0});
     auto t = device.stream<sk::float3x3>({0});
-    sinks::everyNth(streamOf<float>(device, f), 1, r);
+    append_outputs::everyNth(streamOf<float>(device, f), 1, r);
     CHECK(r.read() == f);
-    sinks::everyNth(streamOf<float>(device, f), 3, r);
-    sinks::everyNth(streamOf<sk::half3>(device, h), 3, s);
-    sinks::everyNth(streamOf<sk::float3x3>(device, m), 3, t);
+    append_outputs::everyNth(streamOf<float>(device, f), 3, r);
+    append_outputs::everyNth(streamOf<sk::half3>(device, h), 3, s);
+    append_outputs::everyNth(streamOf<sk::float3x3>(device, m), 3, t);
     CHECK(r.read() == everyThird(f));
     CHECK(s.read() == everyThird(h));
     CHECK(t.read() == everyThird(m));
@@ -128,22 +128,22 @@ TEST_CASE("scatters of templates") {
     const auto a = streamOf<int>(device, at);
     auto r = streamOf<std::uint32_t>(device, std::vector<std::uint32_t>(7));
     auto s = streamOf<int2>(device, std::vector<int2>(7));
-    sinks::added(a, streamOf<std::uint32_t>(device, u), r);
-    sinks::added(a, streamOf<int2>(device, v), s);
+    append_outputs::added(a, streamOf<std::uint32_t>(device, u), r);
+    append_outputs::added(a, streamOf<int2>(device, v), s);
     CHECK(r.read() == sums);
     CHECK(s.read() == pairs);
   });
 }
 
-TEST_CASE("sinks of a domain that only iterators know") {
+TEST_CASE("append outputs of a domain that only iterators know") {
   constexpr std::int64_t height = 9, width = 13;
   onEveryLayout([&](sk::Device& device) {
     for (const unsigned kind : {0u, 1u, 2u}) {   // Pushes, Sums, Both
       INFO("kind " << kind);
       auto r = device.stream<float3>({0});
       auto s = streamOf<int2>(device, std::vector<int2>(width));
-      sinks::ramps(kind, sk::iter(int2{0, 0}, int2{width, height}, {height, width}), sk::iter(0.0f, 117.0f),
-                   r, s);
+      append_outputs::ramps(kind, sk::iter(int2{0, 0}, int2{width, height}, {height, width}),
+                            sk::iter(0.0f, 117.0f), r, s);
       const bool pushes = kind != 1, sums = kind != 0;
       CHECK(r.size() == (pushes ? height * width : 0));
       CHECK(difference(r.read(), [&](std::size_t i) {

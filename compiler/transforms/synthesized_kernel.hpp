@@ -15,17 +15,17 @@ namespace skc {
 ir::KernelParam makeParam(std::string name, ir::ParamRole role, ir::Type type, Loc loc = {});
 
 /// A kernel with the name, scope and location of `of`. It has no entry, parameters or reduction yet.
-ir::Kernel madeFor(const ir::Kernel& of);
+ir::Kernel synthesizedFor(const ir::Kernel& of);
 
 /// A kernel builder, whose entry has a variable for each parameter. Add locals after all parameters.
-struct MadeKernel {
+struct SynthesizedKernel {
   ir::Kernel kernel;
   ir::Function entry;
 
   /// Builds a kernel for `of`, whose entry is named after it, with the suffix.
-  MadeKernel(const ir::Kernel& of, std::string_view suffix);
+  SynthesizedKernel(const ir::Kernel& of, std::string_view suffix);
   /// Builds a kernel that serves several.
-  explicit MadeKernel(const std::string& name);
+  explicit SynthesizedKernel(const std::string& name);
 
   /// Adds an Input, an Output or an Accumulator; returns its variable.
   ir::VarId add(ir::KernelParam param);

@@ -17,10 +17,10 @@ using sk::program::ScatterOp;
 /// The smallest extent of a scatter output; most indices are below it.
 inline constexpr int leastScattered = 8;
 
-struct Sink {
+struct AppendOutput {
   std::string name;
   Type type;
-  int stream = 0;  ///< index into Frame::sinks
+  int stream = 0;  ///< index into Frame::appendOutputs
   int rank = 0;  ///< rank of a scatter output; 0 for a variable output
   ScatterOp op = ScatterOp::Store;
 };
@@ -29,7 +29,7 @@ struct Sink {
 ScatterOp randomScatterOp(const Type& type, Random& random);
 
 /// `push(r, v);`, `r[i] = v;`, `r[i] += v;`, `r[i] = min(r[i], v);` ...
-Statement writeTo(const Sink& sink, Expressions& expressions, const Records& records, Random& random,
-                  const std::string& indent);
+Statement writeTo(const AppendOutput& output, Expressions& expressions, const Records& records,
+                  Random& random, const std::string& indent);
 
 }  // namespace fuzz

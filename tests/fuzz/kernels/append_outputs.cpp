@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/sinks.hpp"
+#include "kernels/append_outputs.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -27,9 +27,9 @@ std::uint32_t combined(ScatterOp op, Scalar scalar, std::uint32_t old, std::uint
   return static_cast<std::uint32_t>(isMin ? std::min(a, b) : std::max(a, b));
 }
 
-std::string written(const Sink& sink, const std::string& index, const std::string& value) {
-  const std::string place = fmt::format("{}[{}]", sink.name, index);
-  switch (sink.op) {
+std::string written(const AppendOutput& output, const std::string& index, const std::string& value) {
+  const std::string place = fmt::format("{}[{}]", output.name, index);
+  switch (output.op) {
     case ScatterOp::Store: return fmt::format("{} = {};", place, value);
     case ScatterOp::Add: return fmt::format("{} += {};", place, value);
     case ScatterOp::Min: return fmt::format("{} = min({}, {});", place, place, value);
@@ -61,34 +61,34 @@ ScatterOp randomScatterOp(const Type& type, Random& random) {
   return type.scalar == Scalar::Float ? random.pick(ofFloats) : random.pick(ofIntegers);
 }
 
-Statement writeTo(const Sink& sink, Expressions& expressions, const Records& records, Random& random,
-                  const std::string& indent) {
-  const Expr value = expressions.makeKept(sink.type, depth);
-  const auto stream = static_cast<std::size_t>(sink.stream);
-  if (sink.rank == 0) {
-    return {fmt::format("{}push({}, {});\n", indent, sink.name, value.text),
+Statement writeTo(const AppendOutput& output, Expressions& expressions, const Records& records,
+                  Random& random, const std::string& indent) {
+  const Expr value = expressions.makeKept(output.type, depth);
+  const auto stream = static_cast<std::size_t>(output.stream);
+  if (output.rank == 0) {
+    return {fmt::format("{}push({}, {});\n", indent, output.name, value.text),
             [stream, made = value.value](Frame& frame) {
-              (*frame.sinks)[stream].elements.push_back(made(frame));
+              (*frame.appendOutputs)[stream].elements.push_back(made(frame));
               return Flow::Next;
             }};
   }
-  Expr index = expressions.make({Scalar::Int, sink.rank}, depth);
+  Expr index = expressions.make({Scalar::Int, output.rank}, depth);
   const bool isNear = random.chance(3, 4);
   const std::string at = isNear ? fmt::format("{} & {}", index.text, leastScattered - 1) : index.text;
-  const int count = componentsOf(records, sink.type);
-  return {fmt::format("{}{}\n", indent, written(sink, at, value.text)),
-          [stream, sink, isNear, count, where = index.value, made = value.value](Frame& frame) {
+  const int count = componentsOf(records, output.type);
+  return {fmt::format("{}{}\n", indent, written(output, at, value.text)),
+          [stream, output, isNear, count, where = index.value, made = value.value](Frame& frame) {
             Value place = where(frame);
             if (isNear) {
-              for (int i = 0; i < sink.rank; ++i) place.set(i, place.asUint(i) & (leastScattered - 1u));
+              for (int i = 0; i < output.rank; ++i) place.set(i, place.asUint(i) & (leastScattered - 1u));
             }
             const Value comes = made(frame);
-            HostStream& target = (*frame.sinks)[stream];
+            HostStream& target = (*frame.appendOutputs)[stream];
             const std::optional<std::size_t> number = placeIn(target, place);
             if (!number) return Flow::Next;
             Value& element = target.elements[*number];
             for (int i = 0; i < count; ++i) {
-              element.set(i, combined(sink.op, sink.type.scalar, element.asUint(i), comes.asUint(i)));
+              element.set(i, combined(output.op, output.type.scalar, element.asUint(i), comes.asUint(i)));
             }
             return Flow::Next;
           }};

@@ -16,9 +16,9 @@ constexpr std::int64_t fewTexels = 64 * 64;
 
 }  // namespace
 
-class RandomKernel::Maker {
+class RandomKernel::Generator {
  public:
-  Maker(RandomKernel& kernel, Random& random) : kernel_(kernel), random_(random) {}
+  Generator(RandomKernel& kernel, Random& random) : kernel_(kernel), random_(random) {}
 
   void make() {
     scope_.records = &kernel_.records_;
@@ -117,9 +117,11 @@ class RandomKernel::Maker {
   // ---- parameters -------------------------------------------------------------------------------
 
   void makeParameters() {
-    // Some kernels are too large for one pass, others have sinks; kernels with sinks are never split.
-    const bool hasSinks = random_.chance(1, 4), isLarge = !hasSinks && random_.chance(1, 3);
-    const auto streamType = [&] { return hasSinks ? randomVector(random_) : randomType(records(), random_); };
+    // Some kernels are too large for one pass, others have append outputs; kernels with those are never split.
+    const bool hasAppendOutputs = random_.chance(1, 4), isLarge = !hasAppendOutputs && random_.chance(1, 3);
+    const auto streamType = [&] {
+      return hasAppendOutputs ? randomVector(random_) : randomType(records(), random_);
+    };
     std::vector<Role> roles;
     const auto add = [&](Role role, int least, int most) {
       roles.insert(roles.end(), static_cast<std::size_t>(random_.between(least, most)), role);
@@ -129,8 +131,8 @@ class RandomKernel::Maker {
     add(Role::Input, isLarge ? 3 : 1, isLarge ? 8 : 4);
     add(Role::Gather, 0, 3);
     add(Role::Iterator, 0, random_.between(0, 1));
-    add(Role::Output, isLarge ? 4 : 1, isLarge ? 9 : hasSinks ? 2 : 4);
-    if (hasSinks) add(random_.chance(1, 2) ? Role::VariableOutput : Role::Scatter, 1, 2);
+    add(Role::Output, isLarge ? 4 : 1, isLarge ? 9 : hasAppendOutputs ? 2 : 4);
+    if (hasAppendOutputs) add(random_.chance(1, 2) ? Role::VariableOutput : Role::Scatter, 1, 2);
     std::string list;
     for (const Role role : roles) {
       const std::size_t before = kernel_.parameters_.size();
@@ -206,7 +208,7 @@ class RandomKernel::Maker {
                   false};
     gather.hasNeighbors = gather.rank == static_cast<int>(kernel_.domain_.size());
     gather.boundary = static_cast<sk::program::Boundary>(random_.below(4));
-    const Type carrier{carrierOf(gather.type.scalar), gather.type.width};
+    const Type arithmetic{arithmeticScalar(gather.type.scalar), gather.type.width};
     std::string attribute;
     switch (gather.boundary) {
       case sk::program::Boundary::Clamp: attribute = random_.chance(1, 2) ? "[[clamp]] " : ""; break;
@@ -215,7 +217,7 @@ class RandomKernel::Maker {
       case sk::program::Boundary::Border:
         gather.border = randomValue({}, gather.type, random_);
         if (isNormalized(gather.type.scalar)) gather.border = {};
-        attribute = literal(carrier, gather.border);
+        attribute = literal(arithmetic, gather.border);
         if (isNarrow(gather.type.scalar))
           attribute = fmt::format("{}({})", spelling({}, gather.type), attribute);
         attribute = fmt::format("[[border({})]] ", attribute);
@@ -239,7 +241,7 @@ class RandomKernel::Maker {
     const Variable variable = addParameter(Role::Iterator, "i", {random_.pick(scalars), width}, 0);
     Value begin, step;
     for (int i = 0; i < width; ++i) {
-      if (variable.type.scalar == Scalar::Float) {   // small enough that the last value is within `kept`
+      if (variable.type.scalar == Scalar::Float) {  // small enough that the last value is within `kept`
         begin.set(i, static_cast<float>(random_.between(-16, 16)) / 16);
         step.set(i, static_cast<float>(random_.between(-3, 3)) / 16);
       } else {
@@ -253,22 +255,23 @@ class RandomKernel::Maker {
   }
 
   std::string makeVariableOutput(const Type& type) {
-    const Sink sink{names_.fresh("o"), type, static_cast<int>(kernel_.streams_.size()) - 1};
-    kernel_.parameters_.push_back({Role::VariableOutput, {sink.name, type, 0, 0, false}, {}});
+    const AppendOutput output{names_.fresh("o"), type, static_cast<int>(kernel_.streams_.size()) - 1};
+    kernel_.parameters_.push_back({Role::VariableOutput, {output.name, type, 0, 0, false}, {}});
     kernel_.streams_.back() = {type, {0}, {}};
-    sinks_.push_back(sink);
-    return fmt::format("vout {} {}<>", spelling(records(), type), sink.name);
+    appendOutputs_.push_back(output);
+    return fmt::format("vout {} {}<>", spelling(records(), type), output.name);
   }
 
   std::string makeScatter(const Type& type) {
-    const Sink sink{names_.fresh("o"), type, static_cast<int>(kernel_.streams_.size()) - 1,
-                    random_.between(1, 2), randomScatterOp(type, random_)};
-    kernel_.parameters_.push_back({Role::Scatter, {sink.name, type, 0, 0, false}, {}});
+    const AppendOutput output{names_.fresh("o"), type, static_cast<int>(kernel_.streams_.size()) - 1,
+                              random_.between(1, 2), randomScatterOp(type, random_)};
+    kernel_.parameters_.push_back({Role::Scatter, {output.name, type, 0, 0, false}, {}});
     std::vector<std::int64_t> shape;
-    for (int d = 0; d < sink.rank; ++d) shape.push_back(random_.between(leastScattered, 40));
+    for (int d = 0; d < output.rank; ++d) shape.push_back(random_.between(leastScattered, 40));
     fill(type, shape);
-    sinks_.push_back(sink);
-    return fmt::format("out {} {}{}", spelling(records(), type), sink.name, sink.rank == 1 ? "[]" : "[][]");
+    appendOutputs_.push_back(output);
+    return fmt::format("out {} {}{}", spelling(records(), type), output.name,
+                       output.rank == 1 ? "[]" : "[][]");
   }
 
   void fill(const Type& type, const std::vector<std::int64_t>& shape) {
@@ -283,7 +286,7 @@ class RandomKernel::Maker {
 
   void makeBody() {
     // First writes every output, by expressions that read no output. The rest then changes them.
-    Statements statements(scope_, names_, random_, true, sinks_);
+    Statements statements(scope_, names_, random_, true, appendOutputs_);
     std::vector<std::function<Flow(Frame&)>> parts;
     const std::vector<Variable> all = scope_.variables;
     std::erase_if(scope_.variables, [](const Variable& variable) { return variable.isWritable; });
@@ -319,12 +322,12 @@ class RandomKernel::Maker {
   Random& random_;
   Names names_;
   Scope scope_;
-  std::vector<Sink> sinks_;
+  std::vector<AppendOutput> appendOutputs_;
 };
 
 RandomKernel::RandomKernel(std::uint64_t seed, std::uint64_t number) {
   Random random(seed, number);
-  Maker(*this, random).make();
+  Generator(*this, random).make();
 }
 
 }  // namespace fuzz

@@ -14,13 +14,13 @@
 
 namespace skc {
 
-enum class RoundEnd : std::uint8_t {
+enum class IterationEnd : std::uint8_t {
   Completes,  ///< the next iteration follows
   LeavesLoop,  ///< this is the last iteration
   Unknown,  ///< depends on the elements: do not use the iteration
 };
 
 /// Removes the jumps of the surrounding loop from the block of one iteration.
-RoundEnd leaveRound(const ir::Module& module, ir::Block& round);
+IterationEnd removeJumps(const ir::Module& module, ir::Block& iteration);
 
 }  // namespace skc

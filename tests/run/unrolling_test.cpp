@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// rounds.sk: unrolling loops and recognizing neighbors changes no bit, for every boundary mode and shape. The expected results
+// unrolling.sk: unrolling loops and recognizing neighbors changes no bit, for every boundary mode and shape. The expected results
 // come from loops that stay loops because their bounds are arguments.
 #include <algorithm>
 
-#include "rounds.sk.hpp"
 #include "support/devices.hpp"
 #include "support/values.hpp"
+#include "unrolling.sk.hpp"
 
 using namespace run_tests;
 using sk::int4;
@@ -17,8 +17,8 @@ TEST_CASE("an unrolled blur has the bits of its loop") {
     onEveryProfile([&](sk::Device& device) {
       auto a = device.stream<float>(shape), r = device.stream<float>(shape), s = device.stream<float>(shape);
       a.write(x);
-      rounds::unrolled_2(a, r);
-      rounds::rolled(2, a, s);
+      unrolling::unrolled_2(a, r);
+      unrolling::rolled(2, a, s);
       CHECK(r.read() == s.read());
     });
   }
@@ -32,20 +32,20 @@ TEST_CASE(
       auto a = device.stream<int>(shape);
       auto r = device.stream<int4>({9, 12}), s = device.stream<int4>({9, 12});
       a.write(x);
-      rounds::indices(a, a, a, a, r);
-      rounds::hidden(1, a, a, a, a, s);
+      unrolling::indices(a, a, a, a, r);
+      unrolling::hidden(1, a, a, a, a, s);
       CHECK(r.read() == s.read());
     });
   }
 }
 
-TEST_CASE("rounds that are left early leave what they should") {
+TEST_CASE("iterations that are left early leave what they should") {
   const std::vector<float> x = values<float>(101);
   onEveryProfile([&](sk::Device& device) {
     auto a = streamOf<float>(device, x);
     auto r = device.stream<float>({101}), s = device.stream<float>({101});
-    rounds::leaving(a, r);
-    rounds::leavingSlowly(9, a, s);
+    unrolling::leaving(a, r);
+    unrolling::leavingSlowly(9, a, s);
     CHECK(r.read() == s.read());
   });
 }
@@ -54,7 +54,7 @@ TEST_CASE("elements of local arrays keep their numbers") {
   const std::vector<float> x = values<float>(50);
   onEveryProfile([&](sk::Device& device) {
     auto r = device.stream<float>({50});
-    rounds::median(streamOf<float>(device, x), r);
+    unrolling::median(streamOf<float>(device, x), r);
     CHECK(difference(r.read(), [&](std::size_t i) {
             std::vector<float> v;
             for (int d = -2; d <= 2; ++d) {

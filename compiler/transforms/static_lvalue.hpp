@@ -11,7 +11,7 @@
 
 namespace skc {
 
-struct StaticPlace {
+struct StaticLValue {
   ir::VarId root;
   std::vector<std::uint32_t> members;     ///< path from the variable
   ir::Type type;                          ///< of the variable or member
@@ -19,9 +19,9 @@ struct StaticPlace {
 
   /// Bit i is set for component i.
   unsigned mask() const;
-  bool operator==(const StaticPlace&) const = default;
+  bool operator==(const StaticLValue&) const = default;
 };
 
-std::optional<StaticPlace> staticPlace(const ir::Expr& expr);
+std::optional<StaticLValue> staticLValue(const ir::Expr& expr);
 
 }  // namespace skc

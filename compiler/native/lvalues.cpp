@@ -19,7 +19,7 @@ using analysis::Shape;
 LeafMemory FunctionCode::memoryOf(const std::string& name, const Leaf& leaf, Shape shape) const {
   llvm::Type* element = leaf.dimensions.empty() ? l.type(leaf.scalar) : l.stored(leaf.scalar);
   const bool isMask = leaf.scalar == Scalar::Bool && leaf.dimensions.empty() && shape == Shape::Varying;
-  if (isMask && l.count() > 1 && !l.form().hasMaskRegisters) element = l.int32();
+  if (isMask && l.count() > 1 && !l.options().hasMaskRegisters) element = l.int32();
   if (shape == Shape::Varying) element = l.vector(element);
   llvm::Type* type = element;
   if (!leaf.dimensions.empty()) type = llvm::ArrayType::get(element, leaf.count());
@@ -57,11 +57,11 @@ const std::vector<LeafMemory>& FunctionCode::memoryOf(VarId var) const {
   return variables_[isPerRow ? row_ : 0][var];
 }
 
-Place FunctionCode::variable(VarId var) const {
-  Place place{function_.variables[var].type, {}};
+LValue FunctionCode::variable(VarId var) const {
+  LValue lvalue{function_.variables[var].type, {}};
   for (const LeafMemory& memory : memoryOf(var))
-    place.leaves.push_back({&memory, {l.integer(l.int32(), 0)}, 0});
-  return place;
+    lvalue.leaves.push_back({&memory, {l.integer(l.int32(), 0)}, 0});
+  return lvalue;
 }
 
 /// The index, clamped to 0 ... length - 1.
@@ -90,37 +90,37 @@ std::optional<std::uint32_t> literalIndex(const Expr& index, std::uint32_t lengt
 
 /// Returns nullopt if the expression is not an lvalue, or is a component of a vector or a row of a matrix at
 /// a dynamic index.
-std::optional<Place> FunctionCode::placeOf(const Expr& expr) {
+std::optional<LValue> FunctionCode::lvalueOf(const Expr& expr) {
   if (const auto* n = std::get_if<VarRef>(&expr.node)) return variable(n->var);
   if (const auto* n = std::get_if<Member>(&expr.node)) {
-    std::optional<Place> base = placeOf(*n->base);
+    std::optional<LValue> base = lvalueOf(*n->base);
     if (!base) return std::nullopt;
     const std::uint32_t first = leavesBefore(k.module, n->base->type, n->field);
     const auto begin = base->leaves.begin() + first;
     const auto count = static_cast<std::ptrdiff_t>(analysis::leafCount(k.module, expr.type));
-    return Place{expr.type, {begin, begin + count}};
+    return LValue{expr.type, {begin, begin + count}};
   }
   if (const auto* n = std::get_if<Swizzle>(&expr.node)) {
-    std::optional<Place> base = placeOf(*n->base);
+    std::optional<LValue> base = lvalueOf(*n->base);
     if (!base) return std::nullopt;
-    Place place{expr.type, {}};
-    for (const std::uint8_t component : n->components) place.leaves.push_back(base->leaves[component]);
-    return place;
+    LValue lvalue{expr.type, {}};
+    for (const std::uint8_t component : n->components) lvalue.leaves.push_back(base->leaves[component]);
+    return lvalue;
   }
   const auto* n = std::get_if<Index>(&expr.node);
   if (n == nullptr) return std::nullopt;
-  std::optional<Place> place = placeOf(*n->base);
-  if (!place) return std::nullopt;
+  std::optional<LValue> lvalue = lvalueOf(*n->base);
+  if (!lvalue) return std::nullopt;
   const Type type = n->base->type;
   if (type.kind != Type::Kind::Array) {
     const std::optional<std::uint32_t> row = literalIndex(*n->index, type.width);
     if (!row) return std::nullopt;
     const std::uint32_t width = type.isMatrix() ? type.width : 1;
-    const auto begin = place->leaves.begin() + *row * width;
-    return Place{expr.type, {begin, begin + width}};
+    const auto begin = lvalue->leaves.begin() + *row * width;
+    return LValue{expr.type, {begin, begin + width}};
   }
   const Part index = indexInside(*n->index, k.module.arrays[type.index].length);
-  for (Place::Leaf& leaf : place->leaves) {
+  for (LValue::Leaf& leaf : lvalue->leaves) {
     std::uint32_t inner = 1;
     ++leaf.dimensions;
     for (std::size_t d = leaf.dimensions; d < leaf.memory->dimensions.size(); ++d)
@@ -128,13 +128,13 @@ std::optional<Place> FunctionCode::placeOf(const Expr& expr) {
     const Part scaled = binary(l, BinaryOp::Mul, Scalar::Int, index, {l.integer(l.int32(), inner)});
     leaf.offset = binary(l, BinaryOp::Add, Scalar::Int, leaf.offset, scaled);
   }
-  place->type = expr.type;
-  return place;
+  lvalue->type = expr.type;
+  return lvalue;
 }
 
 /// The address of a component. If lanes have different offsets, a vector of addresses of scalars; isScattered
 /// is then set.
-llvm::Value* FunctionCode::addressOf(const Place::Leaf& leaf, std::uint32_t offset, bool* isScattered) {
+llvm::Value* FunctionCode::addressOf(const LValue::Leaf& leaf, std::uint32_t offset, bool* isScattered) {
   const LeafMemory& memory = *leaf.memory;
   *isScattered = false;
   if (memory.dimensions.empty()) return memory.memory;
@@ -147,7 +147,7 @@ llvm::Value* FunctionCode::addressOf(const Place::Leaf& leaf, std::uint32_t offs
   return l.at(l.stored(memory.scalar), memory.memory, b.CreateAdd(scalars, l.laneNumbers(l.int32())));
 }
 
-Part FunctionCode::loadComponent(const Place::Leaf& leaf, std::uint32_t offset) {
+Part FunctionCode::loadComponent(const LValue::Leaf& leaf, std::uint32_t offset) {
   const LeafMemory& memory = *leaf.memory;
   bool isScattered = false;
   llvm::Value* const address = addressOf(leaf, offset, &isScattered);
@@ -164,7 +164,7 @@ Part FunctionCode::loadComponent(const Place::Leaf& leaf, std::uint32_t offset) 
   return {value, memory.shape == Shape::Consecutive};
 }
 
-void FunctionCode::storeComponent(const Place::Leaf& leaf, std::uint32_t offset, const Part& part) {
+void FunctionCode::storeComponent(const LValue::Leaf& leaf, std::uint32_t offset, const Part& part) {
   const LeafMemory& memory = *leaf.memory;
   bool isScattered = false;
   llvm::Value* const address = addressOf(leaf, offset, &isScattered);
@@ -182,36 +182,36 @@ void FunctionCode::storeComponent(const Place::Leaf& leaf, std::uint32_t offset,
   b.CreateStore(value, address);
 }
 
-Parts FunctionCode::load(const Place& place) {
+Parts FunctionCode::load(const LValue& lvalue) {
   Parts parts;
-  for (const Component& component : componentsOf(k.module, place.type)) {
-    parts.push_back(loadComponent(place.leaves[component.leaf], component.offset));
+  for (const Component& component : componentsOf(k.module, lvalue.type)) {
+    parts.push_back(loadComponent(lvalue.leaves[component.leaf], component.offset));
   }
   return parts;
 }
 
-void FunctionCode::store(const Place& place, const Parts& value) {
-  const std::vector<Component> components = componentsOf(k.module, place.type);
+void FunctionCode::store(const LValue& lvalue, const Parts& value) {
+  const std::vector<Component> components = componentsOf(k.module, lvalue.type);
   for (std::size_t i = 0; i < components.size(); ++i) {
-    storeComponent(place.leaves[components[i].leaf], components[i].offset, value[i]);
+    storeComponent(lvalue.leaves[components[i].leaf], components[i].offset, value[i]);
   }
 }
 
-void FunctionCode::assign(const Expr& place, const Parts& value) {
-  if (const std::optional<Place> found = placeOf(place)) return store(*found, value);
-  if (const auto* n = std::get_if<Swizzle>(&place.node)) {
+void FunctionCode::assign(const Expr& lvalue, const Parts& value) {
+  if (const std::optional<LValue> found = lvalueOf(lvalue)) return store(*found, value);
+  if (const auto* n = std::get_if<Swizzle>(&lvalue.node)) {
     Parts whole = expression(*n->base);
     for (std::size_t i = 0; i < n->components.size(); ++i) whole[n->components[i]] = value[i];
     return assign(*n->base, whole);
   }
-  assignComponent(std::get<Index>(place.node), value);
+  assignComponent(std::get<Index>(lvalue.node), value);
 }
 
 /// Assigns a component of a vector, or a row of a matrix, at a dynamic index.
-void FunctionCode::assignComponent(const Index& place, const Parts& value) {
-  Parts whole = expression(*place.base);
-  const std::uint32_t length = place.base->type.width;
-  const Part index = indexInside(*place.index, length);
+void FunctionCode::assignComponent(const Index& lvalue, const Parts& value) {
+  Parts whole = expression(*lvalue.base);
+  const std::uint32_t length = lvalue.base->type.width;
+  const Part index = indexInside(*lvalue.index, length);
   for (std::uint32_t i = 0; i < length; ++i) {
     const Part isHere = binary(l, BinaryOp::Equal, Scalar::Int, index, {l.integer(l.int32(), i)});
     for (std::size_t c = 0; c < value.size(); ++c) {
@@ -219,7 +219,7 @@ void FunctionCode::assignComponent(const Index& place, const Parts& value) {
       part = l.select(isHere, value[c], part);
     }
   }
-  assign(*place.base, whole);
+  assign(*lvalue.base, whole);
 }
 
 }  // namespace skc::native

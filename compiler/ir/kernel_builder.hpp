@@ -24,9 +24,9 @@ inline Module testModule() {
 inline Loc atLine(std::uint32_t line) { return {.token = line, .line = line, .file = 0}; }
 
 /// A kernel builder: declare parameters, then locals, then call finish(body).
-class KernelMaker {
+class KernelBuilder {
  public:
-  KernelMaker(Module& module, std::string name, std::uint32_t line = 1) : module_(module) {
+  KernelBuilder(Module& module, std::string name, std::uint32_t line = 1) : module_(module) {
     kernel_.name = name;
     kernel_.loc = atLine(line);
     function_.name = std::move(name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "transforms/leave_rounds.hpp"
+#include "transforms/remove_jumps.hpp"
 
 #include <iterator>
 #include <optional>
@@ -30,17 +30,17 @@ bool mayLeave(const Stmt& stmt, bool inSwitch = false) {
 /// How part of an iteration ends: control reaches what follows, or all of it leaves.
 enum class End : std::uint8_t { GoesOn, Continues, Breaks, Unknown };
 
-class Leaver {
+class JumpRemover {
  public:
-  explicit Leaver(const Module& module) : module_(module) {}
+  explicit JumpRemover(const Module& module) : module_(module) {}
 
-  /// `endsRound`: the block ends the iteration, so that some elements may leave it earlier than others.
-  End leave(Block& block, bool endsRound) const {
+  /// `endsIteration`: the block ends the iteration, so that some elements may leave it earlier than others.
+  End leave(Block& block, bool endsIteration) const {
     for (std::size_t i = 0; i < block.size(); ++i) {
       decide(block, i);
       if (i == block.size()) break;
       if (!mayLeave(block[i])) continue;
-      const End end = leave(block, i, endsRound);
+      const End end = leave(block, i, endsIteration);
       if (end != End::GoesOn) return end;
     }
     return End::GoesOn;
@@ -61,7 +61,7 @@ class Leaver {
 
   /// Processes statement `i`, which may leave the iteration. GoesOn if the next
   /// one is still to be processed.
-  End leave(Block& block, std::size_t i, bool endsRound) const {
+  End leave(Block& block, std::size_t i, bool endsIteration) const {
     Stmt& stmt = block[i];
     if (std::holds_alternative<Continue>(stmt.node)) return cut(block, i, End::Continues);
     if (std::holds_alternative<Break>(stmt.node)) return cut(block, i, End::Breaks);
@@ -69,7 +69,7 @@ class Leaver {
       const End end = leave(n->body, false);
       return end == End::GoesOn ? end : cut(block, i + 1, end);
     }
-    if (std::holds_alternative<If>(stmt.node)) return divide(block, i, endsRound);
+    if (std::holds_alternative<If>(stmt.node)) return divide(block, i, endsIteration);
     return End::Unknown;
   }
 
@@ -79,14 +79,14 @@ class Leaver {
   }
 
   /// An `if` with one branch that continues: the rest of the iteration moves to the other branch.
-  End divide(Block& block, std::size_t i, bool endsRound) const {
+  End divide(Block& block, std::size_t i, bool endsIteration) const {
     auto& choice = std::get<If>(block[i].node);
     const End then = leave(choice.then, false);
     const End otherwise = leave(choice.otherwise, false);
     if (then == otherwise && then != End::GoesOn) return cut(block, i + 1, then);
     const bool oneContinues = (then == End::Continues && otherwise == End::GoesOn) ||
                               (then == End::GoesOn && otherwise == End::Continues);
-    if (!oneContinues || !endsRound) return End::Unknown;
+    if (!oneContinues || !endsIteration) return End::Unknown;
     Block& rest = then == End::Continues ? choice.otherwise : choice.then;
     const auto next = block.begin() + static_cast<std::ptrdiff_t>(i) + 1;
     rest.insert(rest.end(), std::make_move_iterator(next), std::make_move_iterator(block.end()));
@@ -104,14 +104,14 @@ class Leaver {
 
 }  // namespace
 
-RoundEnd leaveRound(const Module& module, Block& round) {
-  switch (Leaver(module).leave(round, true)) {
+IterationEnd removeJumps(const Module& module, Block& iteration) {
+  switch (JumpRemover(module).leave(iteration, true)) {
     case End::GoesOn:
-    case End::Continues: return RoundEnd::Completes;
-    case End::Breaks: return RoundEnd::LeavesLoop;
+    case End::Continues: return IterationEnd::Completes;
+    case End::Breaks: return IterationEnd::LeavesLoop;
     case End::Unknown: break;
   }
-  return RoundEnd::Unknown;
+  return IterationEnd::Unknown;
 }
 
 }  // namespace skc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The forms of doubles on devices, and test values that every form holds exactly.
+// How devices represent doubles, and test values that every representation holds exactly.
 #pragma once
 
 #include <cmath>
@@ -15,30 +15,31 @@
 
 namespace run_tests {
 
-struct Form {
+struct DoubleConfig {
   std::string profile, doubles;
   bool isNative() const { return doubles == "native"; }
 };
 
-inline sk::Device& deviceOf(const Form& form) {
+inline sk::Device& deviceOf(const DoubleConfig& config) {
   // Never destroyed: some drivers shut down before our static objects are destroyed.
   static auto& devices = *new std::map<std::string, sk::Device>;
-  const std::string key = form.profile + form.doubles;
+  const std::string key = config.profile + config.doubles;
   auto found = devices.find(key);
   if (found == devices.end()) {
-    const sk::DeviceOptions options{.profile = form.profile, .doubles = form.doubles};
-    found = devices.emplace(key, form.profile == "native" ? sk::Device::native() : sk::Device(options)).first;
+    const sk::DeviceOptions options{.profile = config.profile, .doubles = config.doubles};
+    found =
+        devices.emplace(key, config.profile == "native" ? sk::Device::native() : sk::Device(options)).first;
   }
   return found->second;
 }
 
-/// Calls test(device, form) for every form.
+/// Calls test(device, config) for every configuration.
 template <class Test>
-void onEveryForm(const Test& test) {
-  for (const Form& form : {Form{"glsl330", "native"}, Form{"glsl330", "pairs"}, Form{"essl300", "pairs"},
-                           Form{"native", "native"}}) {
-    INFO(form.profile << " with " << form.doubles << " doubles");
-    test(deviceOf(form), form);
+void onEveryDoubleConfig(const Test& test) {
+  for (const DoubleConfig& config : {DoubleConfig{"glsl330", "native"}, DoubleConfig{"glsl330", "pairs"},
+                                     DoubleConfig{"essl300", "pairs"}, DoubleConfig{"native", "native"}}) {
+    INFO(config.profile << " with " << config.doubles << " doubles");
+    test(deviceOf(config), config);
   }
 }
 
@@ -57,6 +58,6 @@ inline std::vector<double> randomDoubles(std::size_t count, std::uint32_t seed, 
 }
 
 /// The error bound of one operation, relative to its result.
-inline long double precisionOf(const Form& form) { return form.isNative() ? 0x1p-52L : 0x1p-45L; }
+inline long double precisionOf(const DoubleConfig& config) { return config.isNative() ? 0x1p-52L : 0x1p-45L; }
 
 }  // namespace run_tests

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frontend/tokens/token_maker.hpp"
+#include "frontend/tokens/token_builder.hpp"
 
 #include <clang/Lex/Preprocessor.h>
 
@@ -11,7 +11,7 @@ namespace skc::frontend {
 using clang::Token;
 namespace tok = clang::tok;
 
-Token TokenMaker::make(tok::TokenKind kind, clang::SourceLocation place) const {
+Token TokenBuilder::make(tok::TokenKind kind, clang::SourceLocation place) const {
   Token token;
   token.startToken();
   token.setKind(kind);
@@ -20,16 +20,16 @@ Token TokenMaker::make(tok::TokenKind kind, clang::SourceLocation place) const {
   return token;
 }
 
-Token TokenMaker::word(llvm::StringRef name, clang::SourceLocation place) const {
+Token TokenBuilder::word(llvm::StringRef name, clang::SourceLocation place) const {
   clang::IdentifierInfo* info = preprocessor_.getIdentifierInfo(name);
   Token token = make(info->getTokenID(), place);
   token.setIdentifierInfo(info);
   return token;
 }
 
-void TokenMaker::constant(const std::string& name, const std::vector<Token>& type,
-                          const std::vector<Token>& value, clang::SourceLocation place,
-                          std::vector<Token>& out) const {
+void TokenBuilder::constant(const std::string& name, const std::vector<Token>& type,
+                            const std::vector<Token>& value, clang::SourceLocation place,
+                            std::vector<Token>& out) const {
   out.push_back(word("static", place));
   out.push_back(word("const", place));
   out.insert(out.end(), type.begin(), type.end());
