@@ -11,6 +11,7 @@
 
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/type_names.hpp"
+#include "ir/operators.hpp"
 #include "support/text.hpp"
 
 namespace skc::emit {
@@ -76,55 +77,6 @@ constexpr Row rows[] = {
 #include "glsl/double_functions.def"
 #undef SKC_DOUBLE_FUNCTION
 };
-
-Intrinsic comparison(BinaryOp op) {
-  switch (op) {
-    case BinaryOp::Less: return Intrinsic::LessThan;
-    case BinaryOp::LessEqual: return Intrinsic::LessThanEqual;
-    case BinaryOp::Greater: return Intrinsic::GreaterThan;
-    case BinaryOp::GreaterEqual: return Intrinsic::GreaterThanEqual;
-    case BinaryOp::NotEqual: return Intrinsic::NotEqualTo;
-    case BinaryOp::Equal:
-    case BinaryOp::Add:
-    case BinaryOp::Sub:
-    case BinaryOp::Mul:
-    case BinaryOp::Div:
-    case BinaryOp::Rem:
-    case BinaryOp::BitAnd:
-    case BinaryOp::BitOr:
-    case BinaryOp::BitXor:
-    case BinaryOp::ShiftLeft:
-    case BinaryOp::ShiftRight:
-    case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: break;
-  }
-  return Intrinsic::EqualTo;
-}
-
-/// The function for an operator whose operands and result have one type; empty for comparisons.
-std::string_view arithmetic(BinaryOp op) {
-  switch (op) {
-    case BinaryOp::Add: return "sk_add";
-    case BinaryOp::Sub: return "sk_sub";
-    case BinaryOp::Mul: return "sk_mul";
-    case BinaryOp::Div: return "sk_div";
-    case BinaryOp::Less:
-    case BinaryOp::LessEqual:
-    case BinaryOp::Greater:
-    case BinaryOp::GreaterEqual:
-    case BinaryOp::Equal:
-    case BinaryOp::NotEqual:
-    case BinaryOp::Rem:
-    case BinaryOp::BitAnd:
-    case BinaryOp::BitOr:
-    case BinaryOp::BitXor:
-    case BinaryOp::ShiftLeft:
-    case BinaryOp::ShiftRight:
-    case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: break;
-  }
-  return {};
-}
 
 /// Calls an intrinsic of double_functions.def.
 std::string byComponent(Polyfills& polyfills, Intrinsic intrinsic, const std::vector<Type>& types,
@@ -259,8 +211,8 @@ std::string doubleNegated(Polyfills& polyfills, Type type, const std::string& op
 
 std::string doubleBinary(Polyfills& polyfills, BinaryOp op, Type lhs, Type rhs, const std::string& a,
                          const std::string& b) {
-  const std::string_view function = arithmetic(op);
-  if (function.empty()) return byComponent(polyfills, comparison(op), {lhs, rhs}, {a, b});
+  const std::string_view function = row(op).doubles;
+  if (function.empty()) return byComponent(polyfills, row(op).vectors.value(), {lhs, rhs}, {a, b});
   defineByComponent(polyfills, function, lhs.isVector() ? lhs : rhs, {lhs, rhs});
   return call(function, {a, b});
 }

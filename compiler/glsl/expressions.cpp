@@ -13,6 +13,7 @@
 #include "glsl/doubles.hpp"
 #include "glsl/float_intrinsics.hpp"
 #include "glsl/partial_operations.hpp"
+#include "ir/operators.hpp"
 #include "ir/print.hpp"
 #include "support/overloaded.hpp"
 #include "support/text.hpp"
@@ -54,31 +55,6 @@ Parts literalText(Type type, std::uint32_t bits) {
   const float value = std::bit_cast<float>(bits);
   if (!std::isfinite(value)) return {fmt::format("uintBitsToFloat(0x{:08x}u)", bits)};
   return signedText(shortestFloat(value));
-}
-
-/// The built-in function that compares vectors; empty for other operators.
-std::string_view comparison(BinaryOp op) {
-  switch (op) {
-    case BinaryOp::Less: return "lessThan";
-    case BinaryOp::LessEqual: return "lessThanEqual";
-    case BinaryOp::Greater: return "greaterThan";
-    case BinaryOp::GreaterEqual: return "greaterThanEqual";
-    case BinaryOp::Equal: return "equal";
-    case BinaryOp::NotEqual: return "notEqual";
-    case BinaryOp::Add:
-    case BinaryOp::Sub:
-    case BinaryOp::Mul:
-    case BinaryOp::Div:
-    case BinaryOp::Rem:
-    case BinaryOp::BitAnd:
-    case BinaryOp::BitOr:
-    case BinaryOp::BitXor:
-    case BinaryOp::ShiftLeft:
-    case BinaryOp::ShiftRight:
-    case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: break;
-  }
-  return {};
 }
 
 bool isNonNegative(const Expr& expr) {
@@ -235,7 +211,9 @@ class GlslExpr {
       return {doubleBinary(context_.polyfills, op, lhs.type, rhs.type, text(lhs), text(rhs))};
     }
     const bool isVector = lhs.type.isVector();
-    if (isVector && !comparison(op).empty()) return {fmt::format("{}{}", comparison(op), pair(lhs, rhs))};
+    if (const std::optional<Intrinsic> function = row(op).vectors; isVector && function) {
+      return {fmt::format("{}{}", row(*function).glsl, pair(lhs, rhs))};
+    }
     if (isVector && (op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr)) {
       return {context_.polyfills.logical(op, type.width) + pair(lhs, rhs)};
     }
@@ -246,7 +224,7 @@ class GlslExpr {
     // GLSL's matrices have our rows as columns: they are transposed, so factors change order
     const Expr& left = isMatrixProduct ? rhs : lhs;
     const Expr& right = isMatrixProduct ? lhs : rhs;
-    const Precedence precedence = precedenceOf(op);
+    const Precedence precedence = row(op).precedence;
     const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
     const std::string second =
         mayShiftTooFar(context_.module, op, rhs) ? "(" + shiftCount(rhs) + ")" : operand(op, right, tighter);

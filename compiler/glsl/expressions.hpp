@@ -10,7 +10,7 @@
 #include "glsl/polyfills.hpp"
 #include "glsl/type_names.hpp"
 #include "ir/ir.hpp"
-#include "ir/precedence.hpp"
+#include "ir/operators.hpp"
 
 namespace skc::emit {
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 
+#include "ir/operators.hpp"
 #include "support/overloaded.hpp"
 
 namespace skc::ir {
@@ -55,30 +56,6 @@ ExprPtr constantRef(const Module& module, ConstantId constant, Loc loc) {
 ExprPtr unary(UnaryOp op, ExprPtr operand, Loc loc) {
   const Type type = operand->type;
   return makeExpr(type, Unary{op, std::move(operand)}, loc);
-}
-
-bool isComparison(BinaryOp op) {
-  switch (op) {
-    case BinaryOp::Less:
-    case BinaryOp::LessEqual:
-    case BinaryOp::Greater:
-    case BinaryOp::GreaterEqual:
-    case BinaryOp::Equal:
-    case BinaryOp::NotEqual: return true;
-    case BinaryOp::Add:
-    case BinaryOp::Sub:
-    case BinaryOp::Mul:
-    case BinaryOp::Div:
-    case BinaryOp::Rem:
-    case BinaryOp::BitAnd:
-    case BinaryOp::BitOr:
-    case BinaryOp::BitXor:
-    case BinaryOp::ShiftLeft:
-    case BinaryOp::ShiftRight:
-    case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: break;
-  }
-  return false;
 }
 
 Type binaryType(BinaryOp op, Type lhs, Type rhs) {

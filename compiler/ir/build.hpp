@@ -49,8 +49,6 @@ ExprPtr extentOf(StreamRef stream, Loc loc = {});
 
 /// The type of a binary operation on operands of these types.
 Type binaryType(BinaryOp op, Type lhs, Type rhs);
-/// True for < <= > >= == !=.
-bool isComparison(BinaryOp op);
 
 /// Collects expressions into a list of arguments.
 template <class... E>

@@ -6,6 +6,7 @@
 #include "ir/assigned.hpp"
 #include "ir/build.hpp"
 #include "ir/evaluate.hpp"
+#include "ir/operators.hpp"
 
 namespace skc::ir {
 namespace {

@@ -76,8 +76,9 @@ enum class UnaryOp : std::uint8_t { Negate, BitNot, LogicalNot };
 struct Unary { UnaryOp op; ExprPtr operand; };   ///< LogicalNot of a bool vector is componentwise
 
 enum class BinaryOp : std::uint8_t {
-  Add, Sub, Mul, Div, Rem, BitAnd, BitOr, BitXor, ShiftLeft, ShiftRight,
-  Less, LessEqual, Greater, GreaterEqual, Equal, NotEqual, LogicalAnd, LogicalOr,
+#define SKC_OPERATOR(Name, spelling, precedence, isAssociative, vectors, doubles, condition) Name,
+#include "ir/operators.def"
+#undef SKC_OPERATOR
 };
 struct Binary { BinaryOp op; ExprPtr lhs, rhs; };
 

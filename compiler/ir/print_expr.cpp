@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "ir/precedence.hpp"
+#include "ir/operators.hpp"
 #include "ir/print.hpp"
 #include "support/overloaded.hpp"
 #include "support/text.hpp"
@@ -101,7 +101,7 @@ class ExprPrinter {
   }
 
   Parts binary(const Binary& n) const {
-    const Precedence precedence = precedenceOf(n.op);
+    const Precedence precedence = row(n.op).precedence;
     const auto tighter = static_cast<Precedence>(static_cast<int>(precedence) + 1);
     return {operand(n.op, *n.lhs, precedence) + " " + std::string(spelling(n.op)) + " " +
                 operand(n.op, *n.rhs, tighter),

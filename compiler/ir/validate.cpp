@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "ir/build.hpp"
+#include "ir/operators.hpp"
 #include "ir/reach.hpp"
 #include "ir/validate_rules.hpp"
 #include "ir/walk.hpp"

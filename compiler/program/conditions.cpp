@@ -2,7 +2,8 @@
 #include "program/conditions.hpp"
 
 #include <algorithm>
-#include <cassert>
+#include <cstddef>
+#include <optional>
 
 namespace skc::emit {
 namespace {
@@ -12,28 +13,14 @@ using sk::program::ConditionOp;
 using sk::program::ConditionStep;
 
 ConditionOp opOf(BinaryOp op) {
-  switch (op) {
-    case BinaryOp::Add: return ConditionOp::Add;
-    case BinaryOp::Sub: return ConditionOp::Sub;
-    case BinaryOp::Mul: return ConditionOp::Mul;
-    case BinaryOp::BitAnd: return ConditionOp::BitAnd;
-    case BinaryOp::BitOr: return ConditionOp::BitOr;
-    case BinaryOp::BitXor: return ConditionOp::BitXor;
-    case BinaryOp::Less: return ConditionOp::Less;
-    case BinaryOp::LessEqual: return ConditionOp::LessEqual;
-    case BinaryOp::Greater: return ConditionOp::Greater;
-    case BinaryOp::GreaterEqual: return ConditionOp::GreaterEqual;
-    case BinaryOp::Equal: return ConditionOp::Equal;
-    case BinaryOp::NotEqual: return ConditionOp::NotEqual;
-    case BinaryOp::LogicalAnd: return ConditionOp::And;
-    case BinaryOp::LogicalOr: return ConditionOp::Or;
-    case BinaryOp::Div:
-    case BinaryOp::Rem:
-    case BinaryOp::ShiftLeft:
-    case BinaryOp::ShiftRight: break;
-  }
-  assert(!"guard-streams follows no such operator");
-  return ConditionOp::Or;
+  using enum ConditionOp;
+  constexpr std::nullopt_t None = std::nullopt;
+  constexpr std::optional<ConditionOp> ops[] = {
+#define SKC_OPERATOR(Name, spelling, precedence, isAssociative, vectors, doubles, condition) condition,
+#include "ir/operators.def"
+#undef SKC_OPERATOR
+  };
+  return ops[static_cast<std::size_t>(op)].value();   // guard-streams follows no other operator
 }
 
 /// The number of a Spec parameter among the kernel's Spec parameters.

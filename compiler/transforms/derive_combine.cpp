@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ir/build.hpp"
+#include "ir/operators.hpp"
 #include "ir/print.hpp"
 #include "ir/reach.hpp"
 #include "transforms/check_folds.hpp"
@@ -96,28 +97,7 @@ KernelId makeCombination(Module& module, KernelId id, const FoldPattern& pattern
 // ---- the cases --------------------------------------------------------------------------------
 
 bool isAssociative(FoldOp op) {
-  if (std::holds_alternative<Intrinsic>(op)) return true;
-  switch (std::get<BinaryOp>(op)) {
-    case BinaryOp::Add:
-    case BinaryOp::Mul:
-    case BinaryOp::BitAnd:
-    case BinaryOp::BitOr:
-    case BinaryOp::BitXor:
-    case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: return true;
-    case BinaryOp::Sub:
-    case BinaryOp::Div:
-    case BinaryOp::Rem:
-    case BinaryOp::ShiftLeft:
-    case BinaryOp::ShiftRight:
-    case BinaryOp::Less:
-    case BinaryOp::LessEqual:
-    case BinaryOp::Greater:
-    case BinaryOp::GreaterEqual:
-    case BinaryOp::Equal:
-    case BinaryOp::NotEqual: break;
-  }
-  return false;
+  return std::holds_alternative<Intrinsic>(op) || row(std::get<BinaryOp>(op)).isAssociative;
 }
 
 class State {

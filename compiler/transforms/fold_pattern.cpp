@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ir/build.hpp"
+#include "ir/operators.hpp"
 #include "ir/walk.hpp"
 #include "transforms/static_lvalue.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "ir/build.hpp"
 #include "ir/evaluate.hpp"
+#include "ir/operators.hpp"
 #include "ir/walk.hpp"
 #include "support/overloaded.hpp"
 #include "transforms/condition.hpp"
@@ -24,27 +25,8 @@ using Values = std::vector<ExprPtr>;
 constexpr int mostCalls = 2000;
 
 bool isFollowed(BinaryOp op, Type operands) {
-  switch (op) {
-    case BinaryOp::Add:
-    case BinaryOp::Sub:
-    case BinaryOp::Mul:
-    case BinaryOp::BitAnd:
-    case BinaryOp::BitOr:
-    case BinaryOp::BitXor: return operands.isInteger();
-    case BinaryOp::Less:
-    case BinaryOp::LessEqual:
-    case BinaryOp::Greater:
-    case BinaryOp::GreaterEqual:
-    case BinaryOp::Equal:
-    case BinaryOp::NotEqual:
-    case BinaryOp::LogicalAnd:
-    case BinaryOp::LogicalOr: return !operands.isDouble();
-    case BinaryOp::Div:   // for some operands, the result depends on the device
-    case BinaryOp::Rem:
-    case BinaryOp::ShiftLeft:
-    case BinaryOp::ShiftRight: return false;
-  }
-  return false;
+  const bool givesBool = isComparison(op) || op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr;
+  return row(op).isInConditions && (givesBool ? !operands.isDouble() : operands.isInteger());
 }
 
 /// True if control never reaches the end of a block.

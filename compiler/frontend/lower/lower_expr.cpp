@@ -9,6 +9,7 @@
 
 #include "frontend/lower/function_lowering.hpp"
 #include "ir/build.hpp"
+#include "ir/operators.hpp"
 
 namespace skc::frontend {
 
