@@ -30,24 +30,8 @@ float nearestNormalized(float x, float least, float scale) {
 }  // namespace
 
 float normalizedScale(Scalar narrow) {
-  switch (narrow) {
-    case Scalar::Unorm8: return 255;
-    case Scalar::Snorm8: return 127;
-    case Scalar::Unorm16: return 65535;
-    case Scalar::Snorm16: return 32767;
-    case Scalar::Bool:
-    case Scalar::Int:
-    case Scalar::Uint:
-    case Scalar::Float:
-    case Scalar::Double:
-    case Scalar::Half:
-    case Scalar::Char:
-    case Scalar::Uchar:
-    case Scalar::Short:
-    case Scalar::Ushort: break;
-  }
-  assert(!"not a normalized scalar");
-  return 1;
+  assert(row(narrow).one > 0 && "not a normalized scalar");
+  return row(narrow).one;
 }
 
 std::uint32_t quantize(Scalar narrow, std::uint32_t bits) {

@@ -3,15 +3,12 @@
 // The spellings that print.hpp declares: operators, roles and types as the .sk file writes them.
 #include <array>
 
+#include "ir/operators.hpp"
 #include "ir/print.hpp"
 
 namespace skc::ir {
 
-std::string_view spelling(BinaryOp op) {
-  constexpr std::array<std::string_view, 18> names = {"+",  "-", "*",  "/", "%",  "&",  "|",  "^",  "<<",
-                                                      ">>", "<", "<=", ">", ">=", "==", "!=", "&&", "||"};
-  return names[static_cast<std::size_t>(op)];
-}
+std::string_view spelling(BinaryOp op) { return row(op).spelling; }
 
 std::string_view spelling(UnaryOp op) {
   constexpr std::array<std::string_view, 3> names = {"-", "~", "!"};
@@ -19,10 +16,7 @@ std::string_view spelling(UnaryOp op) {
 }
 
 std::string spelling(Scalar scalar, int width) {
-  constexpr std::array<std::string_view, 14> names = {"bool",   "int",    "uint",    "float",  "double",
-                                                      "half",   "char",   "uchar",   "short",  "ushort",
-                                                      "unorm8", "snorm8", "unorm16", "snorm16"};
-  std::string name(names[static_cast<std::size_t>(scalar)]);
+  std::string name(row(scalar).spelling);
   if (width == 1) return name;
   const bool endsInDigit = name.back() >= '0' && name.back() <= '9';   // "unorm8x4"
   return name + (endsInDigit ? "x" : "") + std::to_string(width);

@@ -4,8 +4,10 @@
 // by index.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "support/loc.hpp"
@@ -14,45 +16,31 @@ namespace skc::ir {
 
 /// From Half on, the narrow scalars: storage types, whose values are a subset of their arithmetic type's.
 enum class Scalar : std::uint8_t {
-  Bool,
-  Int,
-  Uint,
-  Float,
-  Double,
-  Half,
-  Char,
-  Uchar,
-  Short,
-  Ushort,
-  Unorm8,
-  Snorm8,
-  Unorm16,
-  Snorm16,
+#define SKC_SCALAR(Name, spelling, cpp, arithmetic, bits, one) Name,
+#include "ir/scalars.def"
+#undef SKC_SCALAR
 };
+
+/// A row of scalars.def.
+struct ScalarRow {
+  std::string_view name, spelling, cpp;
+  Scalar arithmetic;
+  std::uint8_t bits;
+  std::uint16_t one;
+};
+inline constexpr ScalarRow scalarRows[] = {
+#define SKC_SCALAR(Name, spelling, cpp, arithmetic, bits, one) \
+  {#Name, spelling, cpp, Scalar::arithmetic, bits, one},
+#include "ir/scalars.def"
+#undef SKC_SCALAR
+};
+constexpr const ScalarRow& row(Scalar scalar) { return scalarRows[static_cast<std::size_t>(scalar)]; }
 
 constexpr bool isNarrow(Scalar scalar) { return scalar >= Scalar::Half; }
 constexpr bool isReal(Scalar scalar) { return scalar == Scalar::Float || scalar == Scalar::Double; }
 
 /// The arithmetic type of a scalar: Int or Float for a narrow one, else the scalar itself.
-constexpr Scalar arithmeticScalar(Scalar scalar) {
-  switch (scalar) {
-    case Scalar::Bool:
-    case Scalar::Int:
-    case Scalar::Uint:
-    case Scalar::Float:
-    case Scalar::Double: return scalar;
-    case Scalar::Char:
-    case Scalar::Uchar:
-    case Scalar::Short:
-    case Scalar::Ushort: return Scalar::Int;
-    case Scalar::Half:
-    case Scalar::Unorm8:
-    case Scalar::Snorm8:
-    case Scalar::Unorm16:
-    case Scalar::Snorm16: break;
-  }
-  return Scalar::Float;
-}
+constexpr Scalar arithmeticScalar(Scalar scalar) { return row(scalar).arithmetic; }
 
 struct Type {
   enum class Kind : std::uint8_t { Void, Scalar, Vector, Matrix, Struct, Array };

@@ -21,26 +21,6 @@ llvm::DIFile* makeFile(llvm::DIBuilder& builder, const std::string& path) {
   return builder.createFile(path, std::filesystem::current_path().string());
 }
 
-const char* nameOf(Scalar scalar) {
-  switch (scalar) {
-    case Scalar::Bool: return "bool";
-    case Scalar::Int: return "int";
-    case Scalar::Uint: return "uint";
-    case Scalar::Float: return "float";
-    case Scalar::Double: return "double";
-    case Scalar::Half: return "half";
-    case Scalar::Char: return "char";
-    case Scalar::Uchar: return "uchar";
-    case Scalar::Short: return "short";
-    case Scalar::Ushort: return "ushort";
-    case Scalar::Unorm8: return "unorm8";
-    case Scalar::Snorm8: return "snorm8";
-    case Scalar::Unorm16: return "unorm16";
-    case Scalar::Snorm16: break;
-  }
-  return "snorm16";
-}
-
 /// Debuggers show a narrow scalar as the integer that memory holds.
 unsigned encodingOf(Scalar scalar) {
   switch (scalar) {
@@ -142,10 +122,10 @@ llvm::DIType* DebugInfo::scalarType(Scalar scalar, std::uint64_t bits) {
     return builder_.createEnumerationType(unit_, "bool", nullptr, 0, bits, 0, values,
                                           builder_.createBasicType("int", bits, llvm::dwarf::DW_ATE_signed));
   }
-  const char* const name = !isReal(scalar) ? nameOf(scalar)
-                           : bits == 32    ? "float"
-                           : bits == 64    ? "double"
-                                           : "__float128";
+  const std::string_view name = !isReal(scalar) ? row(scalar).spelling
+                                : bits == 32    ? "float"
+                                : bits == 64    ? "double"
+                                                : "__float128";
   return builder_.createBasicType(name, bits, encodingOf(scalar));
 }
 
@@ -189,7 +169,7 @@ llvm::DIType* DebugInfo::typeOf(Type type, Leaves& next) {
     case Type::Kind::Scalar: return leafType(*next++);
     case Type::Kind::Vector:
       for (int i = 0; i < type.width; ++i) members.push_back({components[i], leafType(*next++)});
-      return recordType(fmt::format("{}{}", nameOf(type.scalar), type.width), members);
+      return recordType(fmt::format("{}{}", row(type.scalar).spelling, type.width), members);
     case Type::Kind::Matrix:
       for (int row = 0; row < type.width; ++row)
         members.push_back({fmt::format("row{}", row), typeOf(type.indexed(), next)});

@@ -15,26 +15,9 @@ using sk::native::Real;
 // ---- types ----------------------------------------------------------------------------------------
 
 llvm::Type* Lanes::type(Scalar scalar) const {
-  switch (scalar) {
-    case Scalar::Bool: return b.getInt1Ty();
-    case Scalar::Int:
-    case Scalar::Uint: return b.getInt32Ty();
-    case Scalar::Float:
-      if (options_.real == Real::Float) return b.getFloatTy();
-      [[fallthrough]];
-    case Scalar::Double:
-      return options_.real == Real::Quad ? llvm::Type::getFP128Ty(b.getContext()) : b.getDoubleTy();
-    case Scalar::Char:
-    case Scalar::Uchar:
-    case Scalar::Unorm8:
-    case Scalar::Snorm8: return b.getInt8Ty();
-    case Scalar::Half:
-    case Scalar::Short:
-    case Scalar::Ushort:
-    case Scalar::Unorm16:
-    case Scalar::Snorm16: break;
-  }
-  return b.getInt16Ty();
+  if (scalar == Scalar::Float && options_.real == Real::Float) return b.getFloatTy();
+  if (!isReal(scalar)) return b.getIntNTy(row(scalar).bits);
+  return options_.real == Real::Quad ? llvm::Type::getFP128Ty(b.getContext()) : b.getDoubleTy();
 }
 
 llvm::Type* Lanes::stored(Scalar scalar) const {

@@ -20,26 +20,6 @@ std::string camelCase(std::string_view name) {
   return result;
 }
 
-std::string cppScalar(Scalar scalar) {
-  switch (scalar) {
-    case Scalar::Uint: return "unsigned";
-    case Scalar::Char: return "std::int8_t";
-    case Scalar::Uchar: return "std::uint8_t";
-    case Scalar::Short: return "std::int16_t";
-    case Scalar::Ushort: return "std::uint16_t";
-    case Scalar::Half:
-    case Scalar::Unorm8:
-    case Scalar::Snorm8:
-    case Scalar::Unorm16:
-    case Scalar::Snorm16: return "sk::" + spelling(scalar);
-    case Scalar::Bool:
-    case Scalar::Int:
-    case Scalar::Float:
-    case Scalar::Double: break;
-  }
-  return spelling(scalar);
-}
-
 }  // namespace
 
 std::string pascalCase(std::string_view name) {
@@ -107,7 +87,7 @@ std::vector<std::string> tableNames(const Module& module) {
 
 std::string cppType(const Module& module, Type type, const std::vector<std::string>& scope) {
   if (type.isVector() || type.isMatrix()) return "sk::" + print(module, type);
-  if (type.isScalar()) return cppScalar(type.scalar);
+  if (type.isScalar()) return std::string(row(type.scalar).cpp);
   const Struct& entry = module.structs[type.index];
   return entry.scope == scope ? entry.name : qualifier(entry.scope) + entry.name;
 }

@@ -61,7 +61,10 @@ struct Program::Storage {
 
 namespace {
 
-static_assert(static_cast<int>(Scalar::Snorm16) == static_cast<int>(sk::program::Scalar::Snorm16));
+#define SKC_SCALAR(Name, spelling, cpp, arithmetic, bits, one) \
+  static_assert(static_cast<int>(Scalar::Name) == static_cast<int>(sk::program::Scalar::Name));
+#include "ir/scalars.def"
+#undef SKC_SCALAR
 static_assert(static_cast<int>(ParamRole::Spec) == static_cast<int>(sk::program::Role::Spec));
 static_assert(static_cast<int>(ScatterOp::Max) == static_cast<int>(sk::program::ScatterOp::Max));
 static_assert(static_cast<int>(sk::Precision::Double) == 4 && static_cast<int>(sk::Accumulate::Exact) == 4 &&

@@ -125,8 +125,8 @@ class HeaderWriter {
     for (const Plane& plane : elementLayout(module_, types_, type).planes) {
       const std::string part = plane.part < 0 ? "" : fmt::format(", {}", plane.part);
       fields.push_back(fmt::format("      {{\"{}\", sk::program::Scalar::{}, {}, offsetof({}, {}){}}}",
-                                   plane.path, scalarNames[static_cast<std::size_t>(plane.type.scalar)],
-                                   plane.type.width, name, plane.member, part));
+                                   plane.path, ir::row(plane.type.scalar).name, plane.type.width, name,
+                                   plane.member, part));
     }
     const std::string head = "  static constexpr sk::program::Element value{";
     text_ += fmt::format(

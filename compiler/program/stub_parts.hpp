@@ -31,10 +31,10 @@ std::string stubSource(const ir::Module& module, const Program& program, const S
 std::string stubFunctions(const ir::Module& module, const Program& program,
                           const std::vector<Callable>& callables);
 
-/// The names of the enumerators of sk::program::Scalar, in order.
-inline constexpr std::string_view scalarNames[] = {"Bool",   "Int",    "Uint",    "Float",  "Double",
-                                                   "Half",   "Char",   "Uchar",   "Short",  "Ushort",
-                                                   "Unorm8", "Snorm8", "Unorm16", "Snorm16"};
+/// The name of the enumerator.
+inline std::string_view nameOf(sk::program::Scalar scalar) {
+  return ir::row(static_cast<ir::Scalar>(scalar)).name;
+}
 
 /// A callable's functions: a kernel has one, a reduce one that returns a value and one that fills a stream.
 enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream };

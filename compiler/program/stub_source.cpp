@@ -397,8 +397,7 @@ class SourceWriter {
       }
       const std::string bundle = fmt::format("{}Bundle{}", name, i + 1);
       list("ArgumentPlane", bundle, places);
-      bundles.push_back(fmt::format("{{Scalar::{}, {}, {}}}",
-                                    scalarNames[static_cast<std::size_t>(made.bundles[i].scalar)],
+      bundles.push_back(fmt::format("{{Scalar::{}, {}, {}}}", nameOf(made.bundles[i].scalar),
                                     made.bundles[i].width, bundle));
     }
     list("const Element*", name + "Temporaries", temporaries);
@@ -463,8 +462,7 @@ class SourceWriter {
     std::vector<std::string> steps;
     for (const sk::program::ConditionStep& step : param.neededIf.steps) {
       steps.push_back(fmt::format("{{ConditionOp::{}, Scalar::{}, {}u}}",
-                                  ops[static_cast<std::size_t>(step.op)],
-                                  scalarNames[static_cast<std::size_t>(step.scalar)], step.value));
+                                  ops[static_cast<std::size_t>(step.op)], nameOf(step.scalar), step.value));
     }
     const std::string head = fmt::format("constexpr ConditionStep {}[] = {{", conditionName(unit, param));
     text_ += wrapLine(head + join(steps, ", ") + "};", 100, head.size()) + "\n\n";
@@ -479,9 +477,8 @@ class SourceWriter {
     std::vector<std::string> fields;
     for (const sk::program::Field& field : param.element->fields) {
       const std::string part = field.part < 0 ? "" : fmt::format(", {}", field.part);
-      fields.push_back(fmt::format("{{\"{}\", Scalar::{}, {}, {}{}}}", field.path,
-                                   scalarNames[static_cast<std::size_t>(field.scalar)], field.width,
-                                   field.offset, part));
+      fields.push_back(fmt::format("{{\"{}\", Scalar::{}, {}, {}{}}}", field.path, nameOf(field.scalar),
+                                   field.width, field.offset, part));
     }
     const std::string name = elementName(unit, param);
     const std::string head = fmt::format("constexpr Field {}Fields[] = {{", name);
@@ -498,8 +495,7 @@ class SourceWriter {
     for (const Plane& plane : layout.planes) {
       const std::string part = plane.part < 0 ? "" : fmt::format(", {}", plane.part);
       fields.push_back(fmt::format("{{\"{}\", Scalar::{}, {}, {}{}}}", plane.path,
-                                   scalarNames[static_cast<std::size_t>(plane.type.scalar)], plane.type.width,
-                                   plane.offset, part));
+                                   ir::row(plane.type.scalar).name, plane.type.width, plane.offset, part));
     }
     const std::string& name = types.structName(index);
     const std::string head = fmt::format("constexpr Field {}Fields[] = {{", name);
