@@ -13,6 +13,7 @@
 #include "glsl/float_intrinsics.hpp"
 #include "ir/print.hpp"
 #include "program/cpp_literals.hpp"
+#include "program/descriptor_members.hpp"
 #include "program/elements.hpp"
 #include "program/options_text.hpp"
 #include "program/stub_parts.hpp"

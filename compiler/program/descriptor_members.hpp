@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// Private to stub_source.cpp: asserts that it knows every member of the descriptors that it prints. All that C++20
+// tells of the members of an aggregate is their number.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+
+#include "sk/program.hpp"
+
+namespace skc::emit {
+
+/// Stands for any member; only its type is used.
+struct AnyMember {
+  template <class T>
+  operator T() const;
+};
+
+template <class T, std::size_t... I>
+constexpr bool takes(std::index_sequence<I...>) {
+  return requires { T{(static_cast<void>(I), AnyMember{})...}; };
+}
+
+/// The number of members of an aggregate without arrays and base classes.
+template <class T, std::size_t Count = 0>
+constexpr std::size_t memberCount() {
+  if constexpr (takes<T>(std::make_index_sequence<Count + 1>{})) {
+    return memberCount<T, Count + 1>();
+  } else {
+    return Count;
+  }
+}
+
+template <class T, std::size_t Count>
+constexpr bool printsAll = memberCount<T>() == Count;
+
+static_assert(printsAll<sk::program::Field, 5> && printsAll<sk::program::Element, 4> &&
+                  printsAll<sk::program::ConditionStep, 3> && printsAll<sk::program::Condition, 2> &&
+                  printsAll<sk::program::Layer, 3> && printsAll<sk::program::Parameter, 22> &&
+                  printsAll<sk::program::IntrinsicUse, 3> && printsAll<sk::program::Table, 4> &&
+                  printsAll<sk::program::TableUse, 2> && printsAll<sk::program::Kernel, 23> &&
+                  printsAll<sk::program::PassOperand, 2> && printsAll<sk::program::Pass, 2> &&
+                  printsAll<sk::program::ArgumentPlane, 2> && printsAll<sk::program::Bundle, 3> &&
+                  printsAll<sk::program::Plan, 5> && printsAll<sk::program::SumTerm, 2> &&
+                  printsAll<sk::program::Reduction, 11> && printsAll<sk::program::WideReduction, 2> &&
+                  printsAll<sk::program::CompensatedSum, 2> &&
+                  printsAll<sk::program::CompensatedReduction, 4> && printsAll<sk::program::ExactSum, 6>,
+              "a descriptor has another member: print it, then correct its count");
+
+}  // namespace skc::emit
