@@ -185,31 +185,29 @@ Configuration::Configuration(const std::string& file) {
                     Error::Kind::File);
       }
       if (key == "kernels") {
-        kernels_[std::string(name.str())] = optionsOf(file, *choices.as_table());
-        if (name != "*") mentionedKernels_.push_back({std::string(name.str()), placeOf(file, name)});
+        kernels_[std::string(name.str())] = {optionsOf(file, *choices.as_table()), placeOf(file, name)};
       } else if (key == "streams") {
         streams_[std::string(name.str())] = sk::storageOf(file, name, *choices.as_table());
       } else {
         tables_[std::string(name.str())] = sk::rangeOf(file, name, *choices.as_table());
-        mentionedTables_.push_back({std::string(name.str()), placeOf(file, name)});
       }
     }
   }
 }
 
 void Configuration::checkNames(const program::LinkedFile::Names& linked) const {
-  const auto check = [](std::string_view what, std::span<const Mention> mentions,
-                        std::span<const std::string> known) {
-    for (const auto& [name, place] : mentions) {
-      if (std::ranges::find(known, name) != known.end()) continue;
+  const auto check = [](std::string_view what, const auto& choices, std::span<const std::string> known) {
+    for (const auto& [name, choice] : choices) {
+      if (name == "*" || std::ranges::find(known, name) != known.end()) continue;
       const std::string_view meant = linkedNameLike(name, known);
       if (meant.empty()) continue;
-      throw Error(fmt::format("{}: the program has no {} '{}'; did you mean '{}'?", place, what, name, meant),
-                  Error::Kind::File);
+      throw Error(
+          fmt::format("{}: the program has no {} '{}'; did you mean '{}'?", choice.place, what, name, meant),
+          Error::Kind::File);
     }
   };
-  check("kernel", mentionedKernels_, linked.kernels);
-  check("table of", mentionedTables_, linked.tables);
+  check("kernel", kernels_, linked.kernels);
+  check("table of", tables_, linked.tables);
 }
 
 Storage Configuration::storageOf(std::string_view stream) const {
@@ -239,7 +237,7 @@ CallOptions Configuration::resolve(const program::Kernel& kernel, const CallOpti
   CallOptions options = call;
   for (const std::string_view name : {kernel.name, std::string_view("*")}) {
     if (const auto found = kernels_.find(name); found != kernels_.end())
-      options = merged(options, found->second);
+      options = merged(options, found->second.options);
   }
   return merged(options, kernel.options);
 }

@@ -25,7 +25,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "sk/linked_file.hpp"
 #include "sk/options.hpp"
@@ -60,15 +59,14 @@ class Configuration {
   };
 
  private:
-  /// A name in the file, with its FILE:LINE.
-  struct Mention {
-    std::string name, place;
+  struct KernelChoice {
+    CallOptions options;
+    std::string place;  ///< FILE:LINE
   };
 
-  std::map<std::string, CallOptions, std::less<>> kernels_;
+  std::map<std::string, KernelChoice, std::less<>> kernels_;
   std::map<std::string, RangeChoice, std::less<>> tables_;
   std::map<std::string, Storage, std::less<>> streams_;
-  std::vector<Mention> mentionedKernels_, mentionedTables_;
 };
 
 }  // namespace sk

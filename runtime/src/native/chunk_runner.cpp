@@ -70,7 +70,8 @@ void ChunkRunner::run(const Extents& first, std::int64_t count, std::size_t rows
 }
 
 bool ChunkRunner::runRows() {
-  if (!layout_.isFreeOfOrder() || !layout_.isDirect() || hook_.after || together_ != 1 || wanted_ == 1)
+  if (!layout_.hasIndependentElements() || !layout_.isDirect() || hook_.after || together_ != 1 ||
+      wanted_ == 1)
     return false;
   const RowEnds ends = arrays_.ends();
   const std::int64_t end = layout_.width() - ends.right;

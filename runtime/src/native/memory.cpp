@@ -26,7 +26,7 @@ std::size_t nextPlace() {
   return number++ * 21 * cacheLine % smallPage;
 }
 
-/// `requested` is the size for the error message: what the caller was requested for, without the offset in the page.
+/// `requested` is the size for the error message: what the caller requested, without the offset in the page.
 std::byte* aligned(std::size_t alignment, std::size_t bytes, std::size_t requested) {
   void* memory = nullptr;
   if (posix_memalign(&memory, alignment, bytes) != 0) throw NoMemory(requested);

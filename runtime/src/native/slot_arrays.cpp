@@ -79,7 +79,7 @@ SlotLayout::SlotLayout(const program::Kernel& kernel, const native::Call& call, 
   arrays_.reserve(slots.size());
   for (const native::Slot& slot : slots) addSlot(kernel, call, frame, slot, choice.real);
   if (!hasGathers_) return;
-  isFreeOfOrder_ = findsFreedomOfOrder(kernel);
+  hasIndependentElements_ = areElementsIndependent(kernel);
   for (Slot& slot : slots_) slot.below = slotBelow(slot);
   std::ranges::stable_sort(order_, std::ranges::greater(), [&](std::size_t s) { return slots_[s].row[0]; });
   readBorders(kernel, frame, choice);
@@ -136,7 +136,7 @@ void SlotLayout::addSlot(const program::Kernel& kernel, const native::Call& call
   added.arrayCount = arrays_.size() - added.firstArray;
 }
 
-bool SlotLayout::findsFreedomOfOrder(const program::Kernel& kernel) const {
+bool SlotLayout::areElementsIndependent(const program::Kernel& kernel) const {
   if (kernel.usesIndex || kernel.code->isUneven != 0) return false;
   for (const Parameter& parameter : kernel.parameters) {
     const bool hasSlots = parameter.reach >= 0 && parameter.reach <= native::farthestSlot;

@@ -82,7 +82,7 @@ class SlotLayout {
   std::int64_t reach() const { return reach_; }
   /// True if elements may be computed twice, and together with elements of other rows: the code uses no
   /// indices and ends after the same time for all values, and no output is also an input.
-  bool isFreeOfOrder() const { return isFreeOfOrder_; }
+  bool hasIndependentElements() const { return hasIndependentElements_; }
 
  private:
   struct alignas(mostScalarBytes) Value {
@@ -90,7 +90,7 @@ class SlotLayout {
   };
   void addSlot(const program::Kernel& kernel, const native::Call& call, const CodeFrame& frame,
                const native::Slot& slot, RealType real);
-  bool findsFreedomOfOrder(const program::Kernel& kernel) const;
+  bool areElementsIndependent(const program::Kernel& kernel) const;
   std::optional<std::size_t> slotBelow(const Slot& slot) const;
   void readBorders(const program::Kernel& kernel, const CodeFrame& frame, const CodeChoice& choice);
   std::size_t firstBorderOf(const program::Kernel& kernel, std::size_t parameter) const;
@@ -103,7 +103,7 @@ class SlotLayout {
   bool isDirect_ = true;
   bool needsElementwiseCalls_ = false;
   bool hasGathers_ = false;
-  bool isFreeOfOrder_ = false;
+  bool hasIndependentElements_ = false;
   std::int64_t reach_ = 0;
   native::Range inside_{0, std::numeric_limits<std::int64_t>::max()};
 };
