@@ -153,7 +153,7 @@ class SlotArrays {
   /// Copies outputs that were not written in place to their streams.
   void storeOutputs(std::int64_t x, std::int64_t count);
 
-  void* const* get(std::size_t row = 0) const { return &arrays_[row * width_]; }
+  void* const* get(std::size_t row = 0) const { return arrays_.data() + row * width_; }
   /// The elements for which gathers need no copies in any of these rows.
   native::Range inside() const { return isAnyOutside_ ? native::Range{0, 0} : layout_.inside(); }
 

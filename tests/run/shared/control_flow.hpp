@@ -411,7 +411,7 @@ inline int arrayShifted(int x, int y) {
   for (int i = 0; i < n; ++i) a[i] = a[i + 1];
   for (int i = n; i > 1; --i) a[i] = a[i - 1] + i;
   int r = 0;
-  for (int i = 0; i <= n; ++i) r = r * 3 + a[i];
+  for (int i = 0; i <= n; ++i) r = (r & 0xffff) * 3 + a[i];
   return r;
 }
 
@@ -420,7 +420,7 @@ inline int arrayAveraged(int x, int y) {
   const int n = x < 0 ? 3 : x + 3;
   for (int i = 0; i <= n; ++i) a[i] = i * i + y;
   for (int last = n; last > 0; --last) {
-    for (int i = 0; i < last; ++i) a[i] = 2 * a[i] + a[i + 1];
+    for (int i = 0; i < last; ++i) a[i] = (2 * a[i] + a[i + 1]) & 0xffff;
   }
   return a[0] + 5 * a[1];
 }
