@@ -22,5 +22,3 @@ file(MAKE_DIRECTORY "${mesaCache}" "@mesaCacheOfFullWidth@")
 default(MESA_SHADER_CACHE_DIR "${mesaCache}")
 # What is kept of such a driver, as the trial of its arithmetic, is not for the programs of whoever runs the tests.
 default(SK_CACHE "@PROJECT_BINARY_DIR@/tests/cache/unoptimised")
-# Tests ask for more memory than there is: under AddressSanitizer, too, that throws bad_alloc and does not end the program.
-default(ASAN_OPTIONS allocator_may_return_null=1)
