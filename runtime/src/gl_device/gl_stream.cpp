@@ -133,8 +133,7 @@ bool GlStream::writesThroughBuffer(const StreamRegion& region) const {
   return !owner().isSoftware() && region.shape != shape && bytes <= mostBytes;
 }
 
-void GlStream::uploadHeld(const StreamRegion& region, const std::byte* elements) {
-  const bool isBuffered = writesThroughBuffer(region);
+void GlStream::uploadHeld(const StreamRegion& region, const std::byte* elements, bool isBuffered) {
   const TransferRegion what = transferRegion(region);
   if (isBuffered) {
     writeBuffered(owner(), *what.element, planes, what.place, elements, isBroken);
@@ -174,45 +173,28 @@ void GlStream::labelPlanes() const noexcept {
 
 void GlStream::write(const StreamRegion& region, const std::byte* elements) {
   const DeviceScope scope(owner());
-  if (!held_) {
-    uploadHeld(region, elements);
-    return;
-  }
-  const auto count = static_cast<std::size_t>(region.shape.size());
-  std::vector<std::byte> converted(count * held().size);
-  convertElements(*element, elements, held(), converted.data(), count);
-  uploadHeld(region, converted.data());
+  writeDeclared(region, elements, writesThroughBuffer(region));
+}
+
+void GlStream::writeAsync(const StreamRegion& region, const std::byte* elements) {
+  const DeviceScope scope(owner());
+  writeDeclared(region, elements, /*isBuffered=*/true);
+}
+
+void GlStream::writeDeclared(const StreamRegion& region, const std::byte* elements, bool isBuffered) {
+  writeConverted(held(), *element, static_cast<std::size_t>(region.shape.size()), elements,
+                 [&](const std::byte* converted) { uploadHeld(region, converted, isBuffered); });
 }
 
 void GlStream::read(const StreamRegion& region, std::byte* elements) {
   const DeviceScope scope(owner());
-  if (!held_) {
-    downloadHeld(region, elements);
-    return;
-  }
-  const auto count = static_cast<std::size_t>(region.shape.size());
-  std::vector<std::byte> converted(count * held().size);
-  downloadHeld(region, converted.data());
-  convertElements(held(), converted.data(), *element, elements, count);
+  readConverted(held(), *element, static_cast<std::size_t>(region.shape.size()), elements,
+                [&](std::byte* converted) { downloadHeld(region, converted); });
 }
 
 std::unique_ptr<TransferState> GlStream::readAsync(const StreamRegion& region) {
   const DeviceScope scope(owner());
   return std::make_unique<PendingRead>(owner(), *this, region);
-}
-
-void GlStream::writeAsync(const StreamRegion& region, const std::byte* elements) {
-  const DeviceScope scope(owner());
-  std::vector<std::byte> converted;
-  if (held_) {
-    const auto count = static_cast<std::size_t>(region.shape.size());
-    converted.resize(count * held().size);
-    convertElements(*element, elements, held(), converted.data(), count);
-    elements = converted.data();
-  }
-  const TransferRegion what = transferRegion(region);
-  writeBuffered(owner(), *what.element, planes, what.place, elements, isBroken);
-  setWritten();
 }
 
 void GlStream::readReals(const StreamRegion& region, double* values) {
@@ -228,7 +210,7 @@ void GlStream::writeReals(const StreamRegion& region, const double* values) {
   const auto count = static_cast<std::size_t>(region.shape.size());
   std::vector<std::byte> converted(count * held().size);
   writeComponents(held(), converted.data(), count, values);
-  uploadHeld(region, converted.data());
+  uploadHeld(region, converted.data(), writesThroughBuffer(region));
 }
 
 // Runs a copy kernel whose input, one texel with the value, is broadcast to the region.
@@ -236,11 +218,8 @@ void GlStream::fill(const StreamRegion& region, const std::byte* value) {
   const DeviceScope scope(owner());
   const TransferRegion what = transferRegion(region);
   std::vector<std::byte> texel(std::max(what.element->size, held().size));
-  if (held_) {
-    convertElements(*element, value, held(), texel.data(), 1);
-  } else {
-    std::copy_n(value, element->size, texel.begin());
-  }
+  writeConverted(held(), *element, 1, value,
+                 [&](const std::byte* converted) { std::copy_n(converted, held().size, texel.begin()); });
   for (std::size_t at = held().size; at < what.element->size; at += held().size) {
     std::copy_n(texel.begin(), held().size, texel.begin() + static_cast<std::ptrdiff_t>(at));
   }

@@ -77,8 +77,10 @@ class GlStream final : public StreamState {
   GlDevice& owner() const;
   bool writesThroughBuffer(const StreamRegion& region) const;
   /// Transfer all elements of a region, of type held(), from and to host memory.
-  void uploadHeld(const StreamRegion& region, const std::byte* elements);
+  void uploadHeld(const StreamRegion& region, const std::byte* elements, bool isBuffered);
   void downloadHeld(const StreamRegion& region, std::byte* elements);
+  /// Transfers all elements of a region, of type *element, from host memory.
+  void writeDeclared(const StreamRegion& region, const std::byte* elements, bool isBuffered);
   std::vector<RenderTarget> acquirePlanesFor(const Layout& planned);
 
   std::unique_ptr<assemble::HeldElement> held_;  ///< null if the storage is Single

@@ -93,6 +93,10 @@ bool areTexels(const Element& element) {
 
 void packTexels(const Element& element, const Field& field, const std::byte* elements, std::size_t count,
                 std::byte* texels) {
+  if (areTexels(element)) {
+    std::memcpy(texels, elements, count * element.size);
+    return;
+  }
   withBytes(field, [&](auto bytes, auto texelBytes) {
     if constexpr (bytes != texelBytes) {
       std::memset(texels, 0, count * texelBytes);
@@ -103,6 +107,10 @@ void packTexels(const Element& element, const Field& field, const std::byte* ele
 
 void unpackTexels(const Element& element, const Field& field, const std::byte* texels, std::size_t count,
                   std::byte* elements) {
+  if (areTexels(element)) {
+    std::memcpy(elements, texels, count * element.size);
+    return;
+  }
   withBytes(field, [&](auto bytes, auto texelBytes) {
     copyFields<bytes>(field, texels, texelBytes, elements + field.offset, element.size, count);
   });

@@ -10,6 +10,7 @@
 
 #include "assemble/region_layout.hpp"
 #include "gl_device/memory/render_target.hpp"
+#include "gl_device/transfer/copy_regions.hpp"
 #include "gl_device/transfer/transfer_buffers.hpp"
 #include "sk/program.hpp"
 
@@ -46,19 +47,14 @@ class BufferedRead {
   };
   /// A rectangle of a plane's texels, which the buffer holds row by row.
   struct Block {
-    RenderTarget* plane;
+    std::size_t plane;
+    RenderTarget* target;
     const gl::Format* format;
-    const program::Field* field;
     gl::Transfer transfer;  ///< the layout of the texels in the buffer
-    assemble::Rect rect;  ///< rows are numbered across layers
-    std::int64_t first;  ///< number of its first element in the region; wholeRows: it is rowsOf(region)
+    CopyRegion place;
     std::size_t offset;  ///< of its first texel in the buffer, in bytes
   };
-  static constexpr std::int64_t wholeRows = -1;
 
-  void addBlock(RenderTarget& plane, const program::Field& field, const assemble::Rect& rect,
-                std::int64_t first);
-  void readBlock(const Block& block);
   static void unpack(const Part& part, const Block& block, const std::byte* texels, std::byte* elements);
 
   GlDevice& device_;

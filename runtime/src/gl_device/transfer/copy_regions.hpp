@@ -5,16 +5,24 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "assemble/region_layout.hpp"
 
 namespace sk {
 
-/// A rectangle of texels: row by row, they hold the region's elements from number `first` on.
+/// A rectangle of texels: row by row, they hold the region's elements from number `first` on. If `first` is
+/// `wholeRows`, the rectangle is rowsOf(region), and holds other elements as well.
 struct CopyRegion {
+  static constexpr std::int64_t wholeRows = -1;
+
   assemble::Rect rect;
   std::int64_t first;
+
+  std::size_t texels() const {
+    return static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
+  }
 };
 
 /// Divides a rectangle, whose rows are numbered across layers, into parts that lie in one layer each. Calls
@@ -87,5 +95,16 @@ void forEachCopyRegion(const assemble::RegionLayout& region, Visit&& visit) {
 
 /// The whole rows of texels that contain a linearised region.
 assemble::Rect rowsOf(const assemble::RegionLayout& region);
+
+/// Calls visit(const CopyRegion&) for the rows that contain a linearised region, or for rectangles that cover
+/// the region.
+template <class Visit>
+void forEachCopyRegion(const assemble::RegionLayout& region, bool byRows, Visit&& visit) {
+  if (byRows) {
+    visit(CopyRegion{rowsOf(region), CopyRegion::wholeRows});
+  } else {
+    forEachCopyRegion(region, visit);
+  }
+}
 
 }  // namespace sk

@@ -77,10 +77,8 @@ void PendingRead::take(std::byte* elements) {
 }
 
 void PendingRead::copy(std::byte* elements) {
-  std::vector<std::byte> texels;
-  if (held_) texels.resize(count_ * held_->element.size);
-  read_->take(0, held_ ? texels.data() : elements);
-  if (held_) convertElements(held_->element, texels.data(), element_, elements, count_);
+  readConverted(held_ ? held_->element : element_, element_, count_, elements,
+                [&](std::byte* held) { read_->take(0, held); });
 }
 
 void PendingRead::land() noexcept {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Transfers elements between host memory and a region of a stream. A DeviceScope must be open.
+// Transfers elements between host memory and a region of a stream, without a pixel buffer. A DeviceScope must
+// be open.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +14,6 @@
 namespace sk {
 
 class GlDevice;
-
-/// How to read a plane's texels: as Format::tight or, if the driver cannot do that, as Format::wide.
-gl::Transfer readTransferOf(GlDevice& device, RenderTarget& plane);
-
-/// Whether reading the rows that contain a region is cheaper than reading each of its runs.
-bool readsByRows(const assemble::RegionLayout& region, std::size_t texelBytes);
 
 /// Copies all elements of a region, row-major in host memory, to its planes. Sets `isBroken` before they
 /// change.
