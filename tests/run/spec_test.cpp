@@ -50,6 +50,10 @@ TEST_CASE("what is given and not needed is not looked at") {
     auto r = device.stream<float>({3});
     spec::pick(false, x, other, r);
     CHECK(r.read() == std::vector<float>{1, 2, 3});
+    sk::Device native = sk::Device::native();
+    auto ofAnother = native.stream<float>({3});
+    spec::pick(false, x, ofAnother, r);
+    CHECK(r.read() == std::vector<float>{1, 2, 3});
   });
 }
 

@@ -140,6 +140,20 @@ TEST_CASE("structs, vectors, gathers and reduces") {
   });
 }
 
+TEST_CASE("the storage of a stream that a switch leaves out does not matter") {
+  sk::Device device({.profile = "essl300", .limits = "guaranteed"});  // draws to 4 planes
+  auto x = device.stream<float>({2}, Storage::Half);
+  x.write(std::vector<float>{3, 5});
+  auto r = device.stream<float>({2});
+  auto place = device.stream<sk::float3>({2}, Storage::Double);
+  place.write(std::vector<sk::float3>(2));
+  auto moved = device.stream<sk::float3>({2}, Storage::Double);
+  auto back = device.stream<sk::float3>({2}, Storage::Double);
+  CHECK_THROWS_WITH(precision::moveIf(true, x, place, r, moved, back), Catch::Contains("5 planes to write"));
+  precision::moveIf(false, x, place, r, moved, back);
+  CHECK(r.read() == std::vector<float>{3, 5});
+}
+
 TEST_CASE("one stream for both, views") {
   onEveryLayout([](sk::Device& device) {
     auto a = device.stream<float>({6, 5}, Storage::Half);

@@ -325,13 +325,13 @@ void GlDevice::checkOptions(const program::Kernel& kernel, const CallOptions& op
 // Lists of append outputs, bundles and temporaries of plans have the element types that the kernel declares.
 // Other storages may exceed the device's limits: a vector of doubles may have more planes than one of floats.
 void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments,
-                             const program::Plan* plan) const {
+                             const assemble::SpecValues& specs, const program::Plan* plan) const {
   std::size_t written = 0;
   std::size_t read = 0;
   bool isOther = false;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const program::Parameter& parameter = kernel.parameters[i];
-    if (arguments[i].region.stream == nullptr) continue;
+    if (arguments[i].region.stream == nullptr || !assemble::isNeeded(parameter, specs)) continue;
     const GlStream& stream = glStream(arguments[i].region);
     const std::size_t planes = stream.held().fields.size();
     if (parameter.role == program::Role::Output) written += planes;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "assemble/assemble.hpp"
+#include "assemble/condition.hpp"
 #include "device/device_state.hpp"
 #include "gl/bound_state.hpp"
 #include "gl/labels.hpp"
@@ -107,10 +108,10 @@ class GlDevice final : public DeviceState {
   void runUnchecked(const ResolvedCall& call);
   void runUnchecked(const program::Kernel& kernel, std::span<const Argument> arguments,
                     const CallOptions& options);
-  /// Throws sk::Error if a kernel cannot use a stream because of its storage. `plan` has the passes of the
-  /// kernel; null if one pass is enough.
+  /// Throws sk::Error if a kernel cannot use a stream because of its storage. Streams that the kernel does not
+  /// need may be of any storage and device. `plan` has the passes of the kernel; null if one pass is enough.
   void checkStorages(const program::Kernel& kernel, std::span<const Argument> arguments,
-                     const program::Plan* plan = nullptr) const;
+                     const assemble::SpecValues& specs, const program::Plan* plan = nullptr) const;
   /// Selects the program cache for a call with these options, which programs() then returns.
   void selectPrograms(const CallOptions& options, assemble::Stage stage);
   /// The stage that runs a kernel, or the fold of a reduction, in a call with these options. May measure

@@ -132,7 +132,7 @@ void GlDevice::reduce(const ResolvedReduction& call) {
   const Kernel& fold = call.reduction.fold;
   checkOptions(fold, call.options);
   refuseFoldCheck(call.reduction);
-  checkStorages(fold, call.arguments);
+  checkStorages(fold, call.arguments, specsOf(fold, call.arguments));
   const assemble::Stage stage = stageOf(fold, KernelClass::Reduces, call.options);
   const DeviceScope scope(*this);
   const gl::LabelGroup group(labels, fold.name);

@@ -183,7 +183,7 @@ void GlDevice::runUnchecked(const ResolvedCall& called) {
   const DeviceScope scope(*this);
   const gl::LabelGroup group(labels, called.kernel.name);
   selectPrograms(call.options, stage);
-  checkStorages(call.kernel, call.arguments, call.plan);
+  checkStorages(call.kernel, call.arguments, call.specs, call.plan);
   if (!hasAppendOutputs(call.kernel)) {
     KernelCall(*this, call).run();
   } else if (call.domain.size() == 0) {
