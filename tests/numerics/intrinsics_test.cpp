@@ -12,6 +12,7 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -144,13 +145,21 @@ const Case cases[] = {
 };
 // clang-format on
 
+/// The bound in ulp of native code: docs/accuracy.md has 0.51 for skc's own functions; the others are a root, or one or
+/// two operations.
+double nativeBound(std::string_view name) {
+  const bool isOperation = name == "inversesqrt" || name == "radians" || name == "degrees";
+  return isOperation ? 1.5 : 0.51;
+}
+
 TEST_CASE("functions of one float, over all of them") {
   for (const Case& one : cases) {
     const std::vector<float> x = inputs(one.ranges, static_cast<std::uint32_t>(&one - cases) + 1);
     onEveryProfile([&](sk::Device& device) {
       const Worst error = one.measure(device, x);
       INFO(one.name << ": " << error.error << " ulp: " << error.where);
-      CHECK(error.error <= (device.profile() == "native" ? 2.5 : one.bound));
+      CHECK(error.error <=
+            (device.profile() == "native" ? std::min(one.bound, nativeBound(one.name)) : one.bound));
     });
   }
 }
@@ -290,8 +299,9 @@ TEST_CASE("lengths of all vectors") {
       length.add(ulps(gotDistances[i], exact), gotDistances[i], exact, v[i].x);
       unit.add(ulps(gotUnits[i].x, v[i].x / exact), gotUnits[i].x, v[i].x / exact, v[i].x);
     }
-    // Three squares and two sums, whose error the root halves, and the root itself: at most 2.5 ulp. The quotient adds 0.5.
-    CHECK(length.error <= 2.5);
+    // Three squares and two sums, whose error the root halves, and the root itself: below 2.5 ulp.
+    // The quotient adds 0.5. docs/accuracy.md has the largest that were seen.
+    CHECK(length.error <= 2.0);
     CHECK(unit.error <= 3.0);
   });
 }
