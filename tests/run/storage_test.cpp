@@ -141,7 +141,7 @@ TEST_CASE("structs, vectors, gathers and reduces") {
 }
 
 TEST_CASE("the storage of a stream that a switch leaves out does not matter") {
-  sk::Device device({.profile = "essl300", .limits = "guaranteed"});  // draws to 4 planes
+  sk::Device device({.device = "gl", .profile = "essl300", .limits = "guaranteed"});  // draws to 4 planes
   auto x = device.stream<float>({2}, Storage::Half);
   x.write(std::vector<float>{3, 5});
   auto r = device.stream<float>({2});
