@@ -9,6 +9,7 @@
 #include <functional>
 #include <iomanip>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,17 +30,16 @@ namespace fs = std::filesystem;
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
-    const char* old = std::getenv(name);
-    old_ = old == nullptr ? "" : old;
+    if (const char* old = std::getenv(name)) old_ = old;
     ::setenv(name, value.c_str(), 1);
   }
-  ~Variable() { old_.empty() ? ::unsetenv(name_) : ::setenv(name_, old_.c_str(), 1); }
+  ~Variable() { old_ ? ::setenv(name_, old_->c_str(), 1) : ::unsetenv(name_); }
   Variable(const Variable&) = delete;
   Variable& operator=(const Variable&) = delete;
 
  private:
   const char* name_;
-  std::string old_;
+  std::optional<std::string> old_;
 };
 
 std::string contentsOf(const fs::path& file) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,7 @@ class Cache {
   }
   ~Cache() {
     fs::remove_all(folder_);
-    old_.empty() ? ::unsetenv("SK_CACHE") : ::setenv("SK_CACHE", old_.c_str(), 1);
+    old_ ? ::setenv("SK_CACHE", old_->c_str(), 1) : ::unsetenv("SK_CACHE");
   }
   Cache(const Cache&) = delete;
   Cache& operator=(const Cache&) = delete;
@@ -95,7 +96,7 @@ class Cache {
   }
 
   fs::path folder_;
-  std::string old_;
+  std::optional<std::string> old_;
 };
 
 TEST_CASE("every barrier that a device takes for good keeps sums exact") {
