@@ -18,6 +18,7 @@
 #include "assemble/program/plans.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/reduce/reduce_program.hpp"
+#include "assemble/reduce/scan_plan.hpp"
 #include "support/text.hpp"
 
 namespace skc::driver {
@@ -166,8 +167,48 @@ bool readsScalars(const sk::program::Kernel& fold) {
   });
 }
 
-/// Every program that folds a 1024 x 1024 stream to a value, once, for one variant of the reduce.
-std::string formListing(const Profile& profile, const sk::program::Reduction& reduction) {
+/// The same for the accumulators, whose streams a scan writes.
+bool writesScalars(const sk::program::Kernel& fold) {
+  return std::ranges::all_of(fold.parameters, [](const sk::program::Parameter& parameter) {
+    return parameter.role != sk::program::Role::Accumulator || sk::assemble::mayPack(heldBy(parameter));
+  });
+}
+
+/// Every program of these passes, once.
+std::string passListing(const Profile& profile, const sk::program::Reduction& reduction,
+                        std::vector<sk::assemble::ReducePass>&& passes) {
+  std::string text;
+  std::set<sk::assemble::ReduceVariant> seen;
+  for (sk::assemble::ReducePass& pass : passes) {
+    addPlainAccess(reduction, pass.variant);
+    for (const sk::assemble::ReduceVariant& variant : drawnVariants(profile, reduction, pass.variant)) {
+      if (!seen.insert(variant).second) continue;
+      if (!text.empty()) text += "\n";
+      text += sk::assemble::reduceProgram(profile, reduction, variant);
+    }
+  }
+  return text;
+}
+
+/// The passes that scan a stream of 2^20 elements.
+std::vector<sk::assemble::ReducePass> passesOfScan(const sk::program::Reduction& reduction) {
+  constexpr std::int32_t count = 1 << 20;
+  const sk::assemble::ReduceLimits limits{.texture = {16384, 256}, .fanIn = sk::assemble::scanRun};
+  const bool byIndex = sk::assemble::readsElementIndex(reduction.fold);
+  const bool byTexel = !byIndex && readsScalars(reduction.fold) && writesScalars(reduction.fold);
+  sk::assemble::RegionLayout elements =
+      sk::assemble::linearLayout(count, *sk::assemble::linearTexture(count, limits.texture));
+  elements.packed = byTexel;
+  sk::assemble::ScanPlan plan =
+      sk::assemble::planScan(elements, elements, limits, {count, 1}, {byIndex, byTexel}, false);
+  std::vector<sk::assemble::ReducePass> passes = std::move(plan.folds);
+  std::ranges::move(plan.scans, std::back_inserter(passes));
+  return passes;
+}
+
+/// Every program that folds a 1024 x 1024 stream to a value, or scans a stream, for one variant of the reduce.
+std::string formListing(const Profile& profile, const sk::program::Reduction& reduction, bool isScan) {
+  if (isScan) return passListing(profile, reduction, passesOfScan(reduction));
   sk::assemble::RegionLayout input;
   input.extent = {1024, 1024, 1, 1};
   const bool byIndex = sk::assemble::readsElementIndex(reduction.fold);
@@ -181,26 +222,16 @@ std::string formListing(const Profile& profile, const sk::program::Reduction& re
                                         .byTexel = input.packed,
                                         .inAnyOrder = reduction.commutative,
                                         .inGroups = sk::assemble::foldsInGroups(reduction)};
-  std::string text;
-  std::set<sk::assemble::ReduceVariant> seen;
-  for (sk::assemble::ReducePass& pass :
-       sk::assemble::planReduction(input, sk::assemble::valueLayout(), limits, division)) {
-    addPlainAccess(reduction, pass.variant);
-    for (const sk::assemble::ReduceVariant& variant : drawnVariants(profile, reduction, pass.variant)) {
-      if (!seen.insert(variant).second) continue;
-      if (!text.empty()) text += "\n";
-      text += sk::assemble::reduceProgram(profile, reduction, variant);
-    }
-  }
-  return text;
+  return passListing(profile, reduction,
+                     sk::assemble::planReduction(input, sk::assemble::valueLayout(), limits, division));
 }
 
 /// The plain variant, and the one that calls use by default for sums of floats.
-std::string reductionListing(const Profile& profile, const sk::program::Reduction& reduction) {
-  const std::string plain = formListing(profile, reduction);
+std::string reductionListing(const Profile& profile, const sk::program::Reduction& reduction, bool isScan) {
+  const std::string plain = formListing(profile, reduction, isScan);
   return reduction.compensated == nullptr
              ? plain
-             : plain + "\n" + formListing(profile, reduction.compensated->reduction);
+             : plain + "\n" + formListing(profile, reduction.compensated->reduction, isScan);
 }
 
 /// The programs of the passes that a kernel needs within the profile's limits.
@@ -234,15 +265,17 @@ std::string unitListing(const Profile& profile, const emit::Unit& unit, std::str
   const sk::program::Kernel& kernel = unit.kernel;
   const sk::program::Reduction* reduction = unit.reduction;
   if (precision.empty() || precision == "single") {
-    return reduction != nullptr ? reductionListing(profile, *reduction) : wholeListing(profile, kernel);
+    return reduction != nullptr ? reductionListing(profile, *reduction, unit.isScan)
+                                : wholeListing(profile, kernel);
   }
   if (precision == "half") {
-    if (reduction != nullptr && reduction->half != nullptr) return formListing(profile, *reduction->half);
+    if (reduction != nullptr && reduction->half != nullptr)
+      return formListing(profile, *reduction->half, unit.isScan);
     return kernel.half != nullptr ? wholeListing(profile, *kernel.half)
                                   : withoutForm(unit, precision, kernel.whyNotHalf);
   }
   if (reduction != nullptr && reduction->wide != nullptr) {
-    return formListing(profile, reduction->wide->reduction) + "\n" +
+    return formListing(profile, reduction->wide->reduction, unit.isScan) + "\n" +
            wholeListing(profile, reduction->wide->finish);
   }
   return kernel.wide != nullptr ? wholeListing(profile, *kernel.wide)

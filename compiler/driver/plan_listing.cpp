@@ -8,6 +8,7 @@
 
 #include "assemble/assemble.hpp"
 #include "assemble/reduce/reduce_plan.hpp"
+#include "assemble/reduce/scan_plan.hpp"
 #include "ir/print.hpp"
 #include "split/cost.hpp"
 #include "split/demand.hpp"
@@ -32,9 +33,8 @@ class PlanPrinter {
                         limits_.textureUnits);
     for (const Kernel& kernel : module_.kernels) {
       if (kernel.pass || kernel.isSynthesized) continue;
-      text_ += fmt::format("\n{} {}{}: ", kernel.reduction ? "reduce" : "kernel", qualifier(kernel.scope),
-                           kernel.name);
-      kernel.reduction ? printReduce() : printKernel(kernel);
+      text_ += fmt::format("\n{} {}{}: ", ir::wordOf(kernel), qualifier(kernel.scope), kernel.name);
+      kernel.isScan ? printScan() : kernel.reduction ? printReduce() : printKernel(kernel);
       for (const LoopNote& loop : kernel.loops) printLoop(loop);
     }
     return std::move(text_);
@@ -134,6 +134,26 @@ class PlanPrinter {
       text_ += fmt::format("  pass {}: folds {} elements to {}\n", i + 1, left, runs);
       left = runs;
     }
+  }
+
+  /// Prints how a stream of 2^20 elements is scanned.
+  void printScan() {
+    constexpr std::int32_t count = 1 << 20;
+    const sk::assemble::ReduceLimits limits{.texture = {16384, 256}, .fanIn = sk::assemble::scanRun};
+    const auto elements =
+        sk::assemble::linearLayout(count, *sk::assemble::linearTexture(count, limits.texture));
+    const sk::assemble::ScanPlan plan =
+        sk::assemble::planScan(elements, elements, limits, {count, 1}, {}, false);
+    text_ += counted(plan.folds.size() + plan.scans.size(), "pass") + " for 2^20 elements\n";
+    std::int32_t left = count;
+    std::size_t pass = 0;
+    for (std::size_t i = 0; i < plan.folds.size(); ++i) {
+      const std::int32_t runs = (left - 1) / sk::assemble::scanRun + 1;
+      text_ += fmt::format("  pass {}: folds {} elements to {}\n", ++pass, left, runs);
+      left = runs;
+    }
+    for (std::size_t i = plan.scans.size(); i-- > 0; left *= sk::assemble::scanRun)
+      text_ += fmt::format("  pass {}: scans {} in runs of {}\n", ++pass, left, sk::assemble::scanRun);
   }
 
   const Module& module_;

@@ -18,6 +18,7 @@ Kernel clone(const Kernel& kernel) {
               .entry = kernel.entry,
               .params = {},
               .reduction = kernel.reduction,
+              .isScan = kernel.isScan,
               .isSynthesized = kernel.isSynthesized,
               .isNativeOnly = kernel.isNativeOnly,
               .plans = kernel.plans,

@@ -378,7 +378,8 @@ struct Kernel {
       ///< Output and Accumulator InOut, Gather Gather,
       ///< VariableOutput and Scatter AppendOutput
   std::vector<KernelParam> params;
-  std::optional<Reduction> reduction;  ///< set for `reduce`
+  std::optional<Reduction> reduction;  ///< set for `reduce` and `scan`
+  bool isScan = false;  ///< keeps the accumulators after each element
   bool isSynthesized = false;  ///< synthesized by a transform: C++ cannot call it
   bool isNativeOnly = false;  ///< no GLSL program runs it
   std::vector<Plan> plans;  ///< for targets whose limits it exceeds, the most generous first
@@ -388,6 +389,11 @@ struct Kernel {
   std::vector<LoopNote> loops = {};  ///< loops whose counters index neighbours or array elements
   Loc loc;
 };
+
+/// The word that declares a kernel.
+inline std::string_view wordOf(const Kernel& kernel) {
+  return kernel.isScan ? "scan" : kernel.reduction ? "reduce" : "kernel";
+}
 
 /// An extent of a declared stream: a constant, or, if it has a name, an argument of the struct that the stub
 /// declares for the streams of a namespace.

@@ -144,8 +144,8 @@ std::string printParam(const Module& module, const Function& entry, const Kernel
 }
 
 std::string printKernel(const Module& module, const Kernel& kernel) {
-  std::string text = fmt::format("{} {}{}: entry @{}", kernel.reduction ? "reduce" : "kernel",
-                                 qualifier(kernel.scope), kernel.name, kernel.entry);
+  std::string text =
+      fmt::format("{} {}{}: entry @{}", wordOf(kernel), qualifier(kernel.scope), kernel.name, kernel.entry);
   if (kernel.reduction && kernel.reduction->combine) {
     const Kernel& combine = module.kernels[*kernel.reduction->combine];
     text += fmt::format(", combined by {}", &combine == &kernel ? "itself" : combine.name);

@@ -74,7 +74,7 @@ class Compilation {
                     .isUneven = analysis::streamUses(plain_, kernel).loops,
                     .isReordered = isReordered(plain_, kernel),
                     .isLight = isLight(plain_, kernel)};
-    for (const EntryKind kind : entriesOf(plain_, kernel)) {
+    for (const EntryKind kind : entriesOf(plain_, kernel, request.scans)) {
       if (request.onlyCombines && kind != EntryKind::Combine) continue;
       const auto addEntries = [&](Real real) {
         for (const CpuLevel& level : levelsFor(request, kind, real))
@@ -121,14 +121,15 @@ class Compilation {
   /// Returns only the lowest level for code that is seldom run, that computes in another real type than
   /// float, or that has no lanes.
   std::vector<CpuLevel> levelsFor(const KernelRequest& request, EntryKind kind, Real real) const {
-    if (!request.isCold && real == Real::Float && kind != EntryKind::Apply) return target_.levels();
+    const bool hasLanes = kind != EntryKind::Apply && kind != EntryKind::Scan;
+    if (!request.isCold && real == Real::Float && hasLanes) return target_.levels();
     return {target_.levels().front()};
   }
 
   /// Identities and borders are constants, and Apply has no products; cold code is not worth a second entry.
   bool mayContract(const KernelRequest& request, EntryKind kind) const {
     const bool computes = kind == EntryKind::Run || kind == EntryKind::RunRows || kind == EntryKind::Fold ||
-                          kind == EntryKind::Combine;
+                          kind == EntryKind::Combine || kind == EntryKind::Scan;
     return computes && !request.isCold && canContract(plain_, plain_.kernels[request.kernel]);
   }
   void addContracted(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind) {
@@ -205,7 +206,7 @@ class Compilation {
 
   static std::string suffix(const EntryVariant& variant) {
     static constexpr const char* kinds[] = {".run",     ".fold",  ".combine", ".identity",
-                                            ".borders", ".apply", ".rows"};
+                                            ".borders", ".apply", ".rows",    ".scan"};
     static constexpr const char* reals[] = {"", ".double", ".quad"};
     static constexpr const char* levels[] = {"", ".v3", ".v4"};
     return std::string(kinds[static_cast<std::size_t>(variant.kind)]) +

@@ -20,6 +20,12 @@ using sk::native::EntryKind;
 
 namespace {
 
+bool hasIdentities(const Kernel& kernel) {
+  return std::ranges::none_of(kernel.params, [](const KernelParam& param) {
+    return param.role == ParamRole::Accumulator && param.identity == nullptr;
+  });
+}
+
 class EntryWriter {
  public:
   EntryWriter(llvm::Module& code, const EntrySource& source, const std::string& name)
@@ -41,6 +47,7 @@ class EntryWriter {
       case EntryKind::Identity: values(ParamRole::Accumulator, [&] { return identities(); }); break;
       case EntryKind::Borders: values(ParamRole::Gather, [&] { return borders(); }); break;
       case EntryKind::Apply: apply(); break;
+      case EntryKind::Scan: scan(); break;
     }
     return function_;
   }
@@ -300,6 +307,25 @@ class EntryWriter {
     return b_.CreateLShr(b_.CreateLShr(all, b_.CreateSub(number(63), bits)), number(1));
   }
 
+  /// Variables, which LLVM keeps in registers, for one group of lanes of the state.
+  State registersFor(const State& state) {
+    State registers{state.scalars, {}};
+    llvm::IRBuilder<> allocas(prologue_, prologue_->begin());
+    for (const Scalar scalar : state.scalars)
+      registers.arrays.push_back(allocas.CreateAlloca(l_.vector(l_.type(scalar))));
+    return registers;
+  }
+  void keep(const State& registers, const Parts& parts) {
+    for (std::size_t c = 0; c < parts.size(); ++c) b_.CreateStore(parts[c].value, registers.arrays[c]);
+  }
+  Parts kept(const State& registers) {
+    Parts parts;
+    for (std::size_t c = 0; c < registers.arrays.size(); ++c) {
+      parts.push_back({b_.CreateLoad(l_.vector(l_.type(registers.scalars[c])), registers.arrays[c])});
+    }
+    return parts;
+  }
+
   /// Folds the leaf whose first element in the chunk is `first`.
   void foldLeaf(const State& state, llvm::Value* first, llvm::Value* columns, llvm::Value* rounds,
                 llvm::Value* starts) {
@@ -312,34 +338,81 @@ class EntryWriter {
       llvm::BasicBlock* const start = block("begin");
       llvm::BasicBlock* const resume = block("resume");
       llvm::BasicBlock* const fold = block("fold");
-      std::vector<llvm::Value*> memory;
-      llvm::IRBuilder<> allocas(prologue_, prologue_->begin());
-      for (const Scalar scalar : state.scalars)
-        memory.push_back(allocas.CreateAlloca(l_.vector(l_.type(scalar))));
-      const auto keep = [&](const Parts& parts) {
-        for (std::size_t c = 0; c < parts.size(); ++c) b_.CreateStore(parts[c].value, memory[c]);
-      };
-      const auto kept = [&] {
-        Parts parts;
-        for (std::size_t c = 0; c < memory.size(); ++c) {
-          parts.push_back({b_.CreateLoad(l_.vector(l_.type(state.scalars[c])), memory[c])});
-        }
-        return parts;
-      };
+      const State registers = registersFor(state);
       b_.CreateCondBr(starts, start, resume);
       b_.SetInsertPoint(start);
-      keep(startOf(b_.CreateAdd(first, column)));
+      keep(registers, startOf(b_.CreateAdd(first, column)));
       b_.CreateBr(fold);
       b_.SetInsertPoint(resume);
-      keep(loadState(state, column));
+      keep(registers, loadState(state, column));
       b_.CreateBr(fold);
       b_.SetInsertPoint(fold);
       loop(firstRound, rounds, 1, [&](llvm::Value* round) {
         streams_.moveTo(b_.CreateAdd(first, b_.CreateAdd(b_.CreateMul(round, columns), column)));
-        keep(folded(kept(), [&](std::uint32_t i) { return argument(i); }, column, columns));
+        keep(registers,
+             folded(kept(registers), [&](std::uint32_t i) { return argument(i); }, column, columns));
       });
-      storeState(state, column, kept());
+      storeState(state, column, kept(registers));
     });
+  }
+
+  // ---- scans ------------------------------------------------------------------------------------
+
+  void scan() {
+    begin(4, 2);
+    streams_.begin(function_->getArg(0), function_->getArg(1), prologue_);
+    const State state = stateIn(function_->getArg(2));
+    const State results = stateIn(function_->getArg(3));
+    const auto block = [&](const char* name) {
+      return llvm::BasicBlock::Create(b_.getContext(), name, function_);
+    };
+    llvm::BasicBlock* const inclusive = block("inclusive");
+    llvm::BasicBlock* const end = block("end");
+    if (hasIdentities(s_.kernel)) {
+      llvm::BasicBlock* const exclusive = block("exclusive");
+      b_.CreateCondBr(b_.CreateICmpNE(function_->getArg(5), number(0)), exclusive, inclusive);
+      b_.SetInsertPoint(exclusive);
+      scanElements(state, results, /*isExclusive=*/true);
+      b_.CreateBr(end);
+    } else {
+      b_.CreateBr(inclusive);
+    }
+    b_.SetInsertPoint(inclusive);
+    scanElements(state, results, /*isExclusive=*/false);
+    b_.CreateBr(end);
+    b_.SetInsertPoint(end);
+    this->end();
+  }
+
+  /// An element is loaded before its result is stored, which may be in the same place.
+  void scanElements(const State& state, const State& results, bool isExclusive) {
+    const bool isSeeded = s_.kernel.reduction->seeded;
+    llvm::Value* const starts = b_.CreateICmpNE(function_->getArg(4), number(0));
+    llvm::Value* const first = isSeeded ? b_.CreateZExt(starts, b_.getInt64Ty()) : number(0);
+    const auto block = [&](const char* name) {
+      return llvm::BasicBlock::Create(b_.getContext(), name, function_);
+    };
+    llvm::BasicBlock* const start = block("begin");
+    llvm::BasicBlock* const resume = block("resume");
+    llvm::BasicBlock* const elements = block("scan");
+    const State registers = registersFor(state);
+    b_.CreateCondBr(starts, start, resume);
+    b_.SetInsertPoint(start);
+    keep(registers, startOf(number(0)));
+    if (isSeeded) storeState(results, number(0), isExclusive ? identities() : kept(registers));
+    b_.CreateBr(elements);
+    b_.SetInsertPoint(resume);
+    keep(registers, loadState(state, number(0)));
+    b_.CreateBr(elements);
+    b_.SetInsertPoint(elements);
+    loop(first, streams_.chunkCount(), 1, [&](llvm::Value* element) {
+      streams_.moveTo(element);
+      const Parts before = kept(registers);
+      keep(registers,
+           folded(before, [&](std::uint32_t i) { return argument(i); }, element, streams_.chunkCount()));
+      storeState(results, element, isExclusive ? before : kept(registers));
+    });
+    storeState(state, number(0), kept(registers));
   }
 
   void combine() {
@@ -419,12 +492,6 @@ bool combines(const Module& module, const Kernel& kernel) {
   return inputs == accumulators && !usesIndex(module, kernel);
 }
 
-bool hasIdentities(const Kernel& kernel) {
-  return std::ranges::none_of(kernel.params, [](const KernelParam& param) {
-    return param.role == ParamRole::Accumulator && param.identity == nullptr;
-  });
-}
-
 }  // namespace
 
 llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, EntryKind kind,
@@ -432,12 +499,13 @@ llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, EntryK
   return EntryWriter(code, source, name).write(kind);
 }
 
-std::vector<EntryKind> entriesOf(const Module& module, const Kernel& kernel) {
+std::vector<EntryKind> entriesOf(const Module& module, const Kernel& kernel, bool scans) {
   std::vector<EntryKind> kinds;
   if (kernel.reduction) {
     kinds.push_back(EntryKind::Fold);
     if (combines(module, kernel)) kinds.push_back(EntryKind::Combine);
     if (hasIdentities(kernel)) kinds.push_back(EntryKind::Identity);
+    if (scans) kinds.push_back(EntryKind::Scan);
   } else {
     kinds.push_back(EntryKind::Run);
   }

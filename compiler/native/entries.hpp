@@ -38,8 +38,8 @@ llvm::Function* writeEntry(llvm::Module& code, const EntrySource& source, sk::na
                            const std::string& name);
 
 /// The kinds of entries that a kernel needs, apart from RunRows. A reduction needs Fold, Combine if it folds
-/// accumulators into accumulators, and Identity if it has identities. Any other kernel needs Run, and Borders
+/// accumulators into accumulators, Identity if it has identities, and Scan if it `scans`. Any other kernel needs Run, and Borders
 /// if a gather has a border value. Either needs Apply if it scatters.
-std::vector<sk::native::EntryKind> entriesOf(const ir::Module& module, const ir::Kernel& kernel);
+std::vector<sk::native::EntryKind> entriesOf(const ir::Module& module, const ir::Kernel& kernel, bool scans);
 
 }  // namespace skc::native

@@ -15,6 +15,7 @@ struct KernelRequest {
   std::string symbol;  ///< the name of its Code
   bool inDoubles = false;  ///< also compiled with double in place of float
   bool inQuads = false;  ///< also compiled with binary128 in place of float
+  bool scans = false;  ///< a fold of a scan, which stores its accumulators after, or before, each element
   bool isCold = false;  ///< computes few elements: one level of the CPU is enough
   bool onlyCombines = false;  ///< a reduction that only combines partial results of another
 };

@@ -100,6 +100,7 @@ class Builder {
     unit.kernel.whyNotWide = storage_.keep(kernel.variants.whyNotWide);
     if (kernel.reduction) {
       unit.reduction = &storage_.reductions.emplace_back(reduction(kernel, unit.kernel));
+      unit.isScan = kernel.isScan;
       addForms(kernel, storage_.reductions.back());
     } else {
       if (kernel.variants.half) unit.kernel.half = &form(*kernel.variants.half);

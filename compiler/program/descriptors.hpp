@@ -17,7 +17,9 @@ namespace skc::emit {
 struct Unit {
   ir::KernelId id;               ///< index into Module::kernels
   sk::program::Kernel kernel;    ///< the fold of a reduce
-  const sk::program::Reduction* reduction = nullptr;   ///< set for a reduce; its `fold` equals `kernel`
+  const sk::program::Reduction* reduction =
+      nullptr;   ///< set for a reduce and a scan; its `fold` equals `kernel`
+  bool isScan = false;
 };
 
 /// The kinds of GLSL programs that may be assembled.

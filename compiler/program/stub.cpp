@@ -42,6 +42,7 @@ std::string parameter(const Module& module, const KernelParam& param, const std:
 }  // namespace
 
 std::vector<Form> formsOf(const Kernel& kernel) {
+  if (kernel.isScan) return {Form::Scan};
   if (kernel.reduction) return {Form::ReduceToValue, Form::ReduceToStream};
   return {Form::Run};
 }

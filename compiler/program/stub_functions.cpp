@@ -38,8 +38,9 @@ class FunctionWriter {
       case Form::Run: run(kernel, unit); break;
       case Form::ReduceToValue: reduceToValue(kernel, unit); break;
       case Form::ReduceToStream:
-        text_ += fmt::format("  sk::reduce(sk::program::{}Reduction, {}, this->options);\n", names_[unit],
-                             arguments(kernel, form));
+      case Form::Scan:
+        text_ += fmt::format("  sk::{}(sk::program::{}Reduction, {}, this->options);\n", wordOf(kernel),
+                             names_[unit], arguments(kernel, form));
     }
     text_ += "}\n";
   }

@@ -171,6 +171,9 @@ class HeaderWriter {
         return fmt::format("  /// Folds all of {} to {}.\n", from,
                            isOne ? "one value" : fmt::format("a value of each of {}", to));
       case Form::ReduceToStream: break;
+      case Form::Scan:
+        return fmt::format("  /// Folds {}, up to each element, to an element of {}.\n", from,
+                           isOne ? to : "each of " + to);
     }
     return fmt::format(
         "  /// Folds each block of {0} to one element of {1}, whose extents divide those of {0}.\n", from,

@@ -36,8 +36,8 @@ inline std::string_view nameOf(sk::program::Scalar scalar) {
   return ir::row(static_cast<ir::Scalar>(scalar)).name;
 }
 
-/// A callable's functions: a kernel has one, a reduce one that returns a value and one that fills a stream.
-enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream };
+/// A callable's functions: a kernel and a scan have one, a reduce one that returns a value and one that fills a stream.
+enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream, Scan };
 std::vector<Form> formsOf(const ir::Kernel& kernel);
 
 /// A function's result type as written inside namespace `scope`.

@@ -115,6 +115,7 @@ class SourceWriter {
     if (isWritten_[unit]) return;
     isWritten_[unit] = true;
     const Kernel& declared = kernelOf(unit);
+    isScan_ = declared.isScan;  // of the overload that combines, too
     const sk::program::Kernel& whole = program_.units()[unit].kernel;
     if (whole.half != nullptr)
       kernel(*whole.half, *declared.variants.half, names_[unit] + "Half", inFloats(Speed::Any));
@@ -144,6 +145,7 @@ class SourceWriter {
                                  .symbol = {},
                                  .inDoubles = inDoubles,
                                  .inQuads = inDoubles && options_.quad,
+                                 .scans = isScan_,
                                  .isCold = speed == Speed::Any};
   }
 
@@ -246,9 +248,9 @@ class SourceWriter {
     if (!items.empty()) text_ += "\n";
   }
 
-  /// Prints what a sum refers to, and returns its list item. Digits run natively only without a term.
+  /// Prints what a sum refers to, and returns its list item. Digits run natively only in scans, and without a term.
   std::string exactSum(const sk::program::ExactSum& made, const ExactSum& declared, const ExactNames& names) {
-    const auto code = declared.term.isEmpty() ? inFloats(Speed::Any) : std::nullopt;
+    const auto code = declared.term.isEmpty() || isScan_ ? inFloats(Speed::Any) : std::nullopt;
     const Kernel& fold = module_.kernels[declared.fold];
     const std::string combine = exactCombination(made.reduction, *fold.reduction->combine);
     kernel(made.reduction.fold, declared.fold, names.fold, code);
@@ -269,11 +271,12 @@ class SourceWriter {
     return name;
   }
 
-  /// True if one of the sums that this combines has no term, so that native code folds its digits.
+  /// True if one of the sums that this combines has no term or is a scan's, so that native code folds its digits.
   bool foldsDigitsNatively(KernelId combine) const {
     return std::ranges::any_of(module_.kernels, [&](const Kernel& reduce) {
       return reduce.reduction && std::ranges::any_of(reduce.reduction->exact, [&](const ExactSum& sum) {
-               return sum.term.isEmpty() && module_.kernels[sum.fold].reduction->combine == combine;
+               return (sum.term.isEmpty() || reduce.isScan) &&
+                      module_.kernels[sum.fold].reduction->combine == combine;
              });
     });
   }
@@ -581,6 +584,7 @@ class SourceWriter {
   StubOptions options_;
   std::vector<std::string> names_;
   std::vector<std::string> tableNames_;
+  bool isScan_ = false;  ///< of the unit whose descriptors are being printed
   std::vector<bool> isWritten_;  ///< descriptors printed, by unit
   std::set<KernelId> combinations_;  ///< exact sums' combining kernels printed
   std::string text_;

@@ -20,13 +20,13 @@ constexpr Diag all[] = {
 };
 
 TEST_CASE("arguments are put where the row says") {
-  CHECK(format(Diag::ReduceNeedsIdentity, {"sum", "float", "Stats", "total"}) ==
+  CHECK(format(Diag::ReduceNeedsIdentity, {"sum", "float", "Stats", "total", "reduce"}) ==
         "'sum' folds float into 'Stats', so it needs a value to start from; "
         "write 'reduce Stats total<> = ...'");
 }
 
 TEST_CASE("an argument's own percent sign stays as it is") {
-  CHECK(format(Diag::ReduceNeedsIdentity, {"%1", "b", "c", "d"}).rfind("'%1' folds b", 0) == 0);
+  CHECK(format(Diag::ReduceNeedsIdentity, {"%1", "b", "c", "d", "reduce"}).rfind("'%1' folds b", 0) == 0);
 }
 
 TEST_CASE("every message starts in lower case or with a quote and ends without a period") {
@@ -42,7 +42,8 @@ TEST_CASE("every message starts in lower case or with a quote and ends without a
 TEST_CASE("a log keeps its messages and knows errors") {
   DiagnosticLog log;
   CHECK_FALSE(log.hasErrors());
-  log.report(Diag::ReduceNeedsIdentity, Loc{.token = 1, .line = 7, .file = 0}, {"a", "b", "c", "d"});
+  log.report(Diag::ReduceNeedsIdentity, Loc{.token = 1, .line = 7, .file = 0},
+             {"a", "b", "c", "d", "reduce"});
   REQUIRE(log.entries().size() == 1);
   CHECK(log.entries()[0].loc.line == 7);
   CHECK(log.hasErrors());

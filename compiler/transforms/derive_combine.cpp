@@ -201,7 +201,7 @@ class State {
     for (const KernelParam& param : kernel.params) {
       if (param.role != ParamRole::Accumulator || param.identity) continue;
       diagnostics_.report(Diag::ReduceNeedsIdentity, param.loc,
-                          {kernel.name, elements, print(module_, param.type), param.name});
+                          {kernel.name, elements, print(module_, param.type), param.name, wordOf(kernel)});
     }
   }
 
@@ -210,12 +210,13 @@ class State {
     for (const KernelParam& param : kernel.params) {
       if (param.role != ParamRole::Accumulator) continue;
       const std::string type = print(module_, param.type);
-      const std::string total = "reduce " + type + " " + param.name + "<>";
+      const std::string total = fmt::format("{} ", wordOf(kernel)) + type + " " + param.name + "<>";
       parts += type + " " + param.name + "_part<>, ";
       totals += (totals.empty() ? "" : ", ") + total;
       if (!param.identity) identities += "an identity, '" + total + " = ...', and ";
     }
-    diagnostics_.report(Diag::ReduceNeedsCombine, kernel.loc, {kernel.name, parts + totals, identities});
+    diagnostics_.report(Diag::ReduceNeedsCombine, kernel.loc,
+                        {kernel.name, parts + totals, identities, wordOf(kernel)});
   }
 
   Module& module_;

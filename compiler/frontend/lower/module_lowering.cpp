@@ -88,7 +88,7 @@ void ModuleLowering::declarations(const clang::DeclContext* scope) {
 void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const KernelSyntax& syntax) {
   const SourceLocation where = declaration->getLocation();
   if (!declaration->getReturnType()->isVoidType()) {
-    fail(Diag::KernelResult, where, {syntax.isReduce ? "reduce" : "kernel", declaration->getNameAsString()});
+    fail(Diag::KernelResult, where, {wordOf(syntax.kind), declaration->getNameAsString()});
   }
   generated_.clear();
   if (const auto* body = llvm::dyn_cast_or_null<clang::CompoundStmt>(declaration->getBody())) {
@@ -111,7 +111,8 @@ void ModuleLowering::kernel(const clang::FunctionDecl* declaration, const Kernel
   for (unsigned i = 0; i < declaration->getNumParams(); ++i) {
     kernel.params.push_back(kernelParam(declaration->getParamDecl(i), functionAt(kernel.entry).variables[i]));
   }
-  if (syntax.isReduce) kernel.reduction.emplace();
+  if (isFold(syntax.kind)) kernel.reduction.emplace();
+  kernel.isScan = syntax.kind == FunctionKind::Scan;
   checkKernelShape(kernel, where);
   module_.kernels.push_back(std::move(kernel));
 }
@@ -133,7 +134,7 @@ void ModuleLowering::kernelTemplate(const clang::FunctionTemplateDecl* declarati
   }
   if (kernelSyntax && !isUsed && sources().isInMainFile(declaration->getLocation())) {
     diagnostics_.report(Diag::KernelTemplateUnused, locOf(declaration->getLocation()),
-                        {declaration->getNameAsString(), kernelSyntax->isReduce ? "reduce" : "kernel"});
+                        {declaration->getNameAsString(), wordOf(kernelSyntax->kind)});
   }
 }
 
@@ -221,7 +222,7 @@ void ModuleLowering::checkKernelShape(const ir::Kernel& kernel, SourceLocation w
     return;
   }
   if (count(ir::ParamRole::Input) == 0 || count(ir::ParamRole::Accumulator) == 0) {
-    fail(Diag::ReduceParameters, where, {kernel.name});
+    fail(Diag::ReduceParameters, where, {kernel.name, ir::wordOf(kernel)});
   }
 }
 
@@ -264,7 +265,8 @@ void ModuleLowering::pairReductions() {
     if (typesOf(kernel, ir::ParamRole::Input) == accumulators) continue;
     for (ir::KernelId id = 0; id < module_.kernels.size(); ++id) {
       const ir::Kernel& other = module_.kernels[id];
-      if (!other.reduction || other.name != kernel.name || other.scope != kernel.scope) continue;
+      if (!other.reduction || other.isScan != kernel.isScan) continue;
+      if (other.name != kernel.name || other.scope != kernel.scope) continue;
       if (typesOf(other, ir::ParamRole::Input) != accumulators ||
           typesOf(other, ir::ParamRole::Accumulator) != accumulators) {
         continue;

@@ -92,7 +92,7 @@ bool isNamedWord(const Token& token, std::initializer_list<llvm::StringRef> word
 }
 
 bool isQualifier(const Token& token) {
-  return isNamedWord(token, {"out", "inout", "reduce", "iter", "vout", "spec", "kernel"});
+  return isNamedWord(token, {"out", "inout", "reduce", "scan", "iter", "vout", "spec", "kernel"});
 }
 
 std::string repeated(std::string_view text, int times) {
@@ -337,10 +337,10 @@ std::vector<FixIt> ParameterEditor::removedBrackets(const Parts& parts) {
   return {FixIt::remove(locOf(parts.open), locOf(parts.close))};
 }
 
-/// A fix-it that changes `out` to `reduce`, for a parameter that is an accumulator otherwise.
-std::vector<FixIt> ParameterEditor::asAccumulator(const Parts& parts) {
+/// A fix-it that changes the qualifier to the one of accumulators, for a parameter that is one otherwise.
+std::vector<FixIt> ParameterEditor::asAccumulator(const Parts& parts, FunctionKind kind) {
   if (!parts.isElement || parts.rank > 0) return {};
-  return {FixIt::replace(locOf(parts.qualifier), "reduce")};
+  return {FixIt::replace(locOf(parts.qualifier), std::string(wordOf(kind)))};
 }
 
 /// Derives the role from qualifier, `<>` and brackets together, as the language's table of parameters says.
@@ -373,7 +373,8 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
     diagnostics_.report(Diag::BoundaryWithoutGather, locOf(parts.attribute), {nameOf(parts.attribute), name});
     return false;
   }
-  if (!parts.value.empty() && qualifier != "reduce") return fail(Diag::DefaultArgument, {name});
+  const bool isAccumulator = qualifier == "reduce" || qualifier == "scan";
+  if (!parts.value.empty() && !isAccumulator) return fail(Diag::DefaultArgument, {name});
   if (qualifier == "iter" || qualifier == "spec") {
     if (kind == FunctionKind::Helper) {
       diagnostics_.report(Diag::QualifierOutsideKernel, locOf(parts.qualifier), {qualifier, name});
@@ -390,18 +391,21 @@ bool ParameterEditor::resolveRole(Parts& parts, FunctionKind kind) {
   if (kind == FunctionKind::Helper) {
     if (parts.isElement) return fail(Diag::StreamInHelper, {name}, removedBrackets(parts));
     if (parts.rank > 0 && !qualifier.empty()) return fail(Diag::OutputBrackets, {name});
-    if (qualifier == "reduce") return fail(Diag::AccumulatorOutsideReduce, {name});
+    if (isAccumulator) return fail(Diag::AccumulatorOutsideReduce, {name});
     parts.syntax.role = parts.rank > 0      ? ir::ParamRole::Gather
                         : qualifier.empty() ? ir::ParamRole::Uniform
                                             : ir::ParamRole::Output;
   } else if (qualifier == "out" || qualifier == "inout") {
-    if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name}, asAccumulator(parts));
+    if (isFold(kind)) return fail(Diag::OutputInReduce, {name, wordOf(kind)}, asAccumulator(parts, kind));
     if (qualifier == "inout") return fail(Diag::InoutStream, {name});
     if (!parts.isElement) return fail(Diag::OutputBrackets, {name}, addedBrackets(parts));
     parts.syntax.role = ir::ParamRole::Output;
-  } else if (qualifier == "reduce") {
-    if (!parts.isElement) return fail(Diag::AccumulatorBrackets, {name}, addedBrackets(parts));
-    if (kind == FunctionKind::Kernel) return fail(Diag::AccumulatorOutsideReduce, {name});
+  } else if (isAccumulator) {
+    if (!parts.isElement) return fail(Diag::AccumulatorBrackets, {name, qualifier}, addedBrackets(parts));
+    if (!isFold(kind)) return fail(Diag::AccumulatorOutsideReduce, {name});
+    if (qualifier != wordOf(kind)) {
+      return fail(Diag::AccumulatorOfOther, {name, wordOf(kind)}, asAccumulator(parts, kind));
+    }
     parts.syntax.role = ir::ParamRole::Accumulator;
   } else {
     parts.syntax.role = parts.isElement  ? ir::ParamRole::Input
@@ -421,7 +425,7 @@ bool ParameterEditor::resolveAppendOutput(Parts& parts, FunctionKind kind) {
     return false;
   };
   const bool isVariable = nameOf(parts.qualifier) == "vout";
-  if (kind == FunctionKind::Reduce) return fail(Diag::OutputInReduce, {name});
+  if (isFold(kind)) return fail(Diag::OutputInReduce, {name, wordOf(kind)});
   if (isVariable && (!parts.isElement || parts.rank > 0)) {
     return fail(Diag::VariableOutputBrackets, {name}, addedBrackets(parts));
   }

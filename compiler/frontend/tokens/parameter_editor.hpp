@@ -20,8 +20,6 @@ class Preprocessor;
 
 namespace skc::frontend {
 
-enum class FunctionKind : std::uint8_t { Kernel, Reduce, Helper };
-
 class ParameterEditor {
  public:
   /// Appends generated constants to `before`; `constants` numbers them.
@@ -59,7 +57,7 @@ class ParameterEditor {
   bool takeSuffix(const Tokens& parameter, std::size_t& at, Parts& parts);
   static std::vector<FixIt> addedBrackets(const Parts& parts);
   static std::vector<FixIt> removedBrackets(const Parts& parts);
-  static std::vector<FixIt> asAccumulator(const Parts& parts);
+  static std::vector<FixIt> asAccumulator(const Parts& parts, FunctionKind kind);
   bool resolveRole(Parts& parts, FunctionKind kind);
   bool resolveAppendOutput(Parts& parts, FunctionKind kind);
   std::string generateConstant(const Tokens& type, const Tokens& value, clang::SourceLocation place);

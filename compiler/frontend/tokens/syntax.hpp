@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -22,8 +23,25 @@ class IdentifierInfo;
 
 namespace skc::frontend {
 
+enum class FunctionKind : std::uint8_t { Kernel, Reduce, Scan, Helper };
+
+/// Whether it folds elements into accumulators.
+constexpr bool isFold(FunctionKind kind) {
+  return kind == FunctionKind::Reduce || kind == FunctionKind::Scan;
+}
+/// The word that declares it, and, for a fold, its accumulators.
+constexpr std::string_view wordOf(FunctionKind kind) {
+  switch (kind) {
+    case FunctionKind::Kernel: return "kernel";
+    case FunctionKind::Reduce: return "reduce";
+    case FunctionKind::Scan: return "scan";
+    case FunctionKind::Helper: break;
+  }
+  return "function";
+}
+
 struct KernelSyntax {
-  bool isReduce = false;
+  FunctionKind kind = FunctionKind::Kernel;
   ir::Choices choices;
   std::string signature;             ///< the declaration on one line, as written
 };

@@ -50,13 +50,21 @@ class Editor {
 
   /// `kernel` is a keyword only where a declaration starts with it: `kernel void f`.
   bool atDeclarationWord(llvm::StringRef word) const { return atWord(word) && startsType(cursor_.peek(1)); }
+  bool atKernel() const {
+    return atDeclarationWord("kernel") || atDeclarationWord("reduce") || atDeclarationWord("scan");
+  }
+  static FunctionKind kindOf(const Token& word) {
+    return isWord(word, "reduce") ? FunctionKind::Reduce
+           : isWord(word, "scan") ? FunctionKind::Scan
+                                  : FunctionKind::Kernel;
+  }
   static bool startsType(const Token& token) {
     return token.is(tok::identifier) || token.is(tok::coloncolon) || token.getIdentifierInfo() != nullptr;
   }
 
   void editDeclaration() {
     if (const std::size_t behind = endOfChoices(cursor_); behind != 0) return editChoices(behind);
-    if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) return editKernel();
+    if (atKernel()) return editKernel();
     if (atDeclarationWord("stream")) return editStream();
     if (atWord("iter") && listedName() > 1) return refuseIterator();
     if (cursor_.at(tok::kw_namespace)) return copyUntilBodyOrEnd();
@@ -78,7 +86,7 @@ class Editor {
   /// Edits the `template <...>` of the declaration that follows, or `template kernel void f<float>(...);`.
   void editTemplate() {
     copyToken();
-    if (atDeclarationWord("kernel") || atDeclarationWord("reduce")) editInstantiation();
+    if (atKernel()) editInstantiation();
     if (cursor_.at(tok::less)) {
       int depth = 0;
       do {
@@ -105,8 +113,7 @@ class Editor {
     for (const Token& token : head) syntax_.addInstantiation(token.getLocation());
     std::vector<Token> constants;   // unused: the template declares them
     ParameterEditor parameters(preprocessor_, diagnostics_, syntax_, constants_, constants);
-    const std::vector<Token> edited =
-        parameters.edit(declared, isWord(start, "reduce") ? FunctionKind::Reduce : FunctionKind::Kernel);
+    const std::vector<Token> edited = parameters.edit(declared, kindOf(start));
     out_.insert(out_.end(), head.begin(), head.end());
     out_.insert(out_.end(), edited.begin(), edited.end());
     copyToken();
@@ -172,7 +179,7 @@ class Editor {
     const bool isTemplate = !out_.empty() && out_.back().is(tok::greater);
     const std::optional<TableSyntax> table =
         takeTable(cursor_, behind, TokenBuilder(preprocessor_), diagnostics_, constants_, out_);
-    const bool isKernel = atDeclarationWord("kernel") || atDeclarationWord("reduce");
+    const bool isKernel = atKernel();
     const std::optional<Token> name = isKernel || isTemplate ? std::nullopt : copyNamed();
     if (!name) {
       diagnostics_.report(Diag::TablePlace, locOf(attribute));
@@ -185,10 +192,9 @@ class Editor {
   void editChoices(std::size_t behind) {
     if (namesTable(cursor_)) return editTable(behind);
     const Token& declared = cursor_.peek(behind);
-    if (isWord(declared, "kernel") || isWord(declared, "reduce")) {
+    if (isWord(declared, "kernel") || isWord(declared, "reduce") || isWord(declared, "scan")) {
       const ir::Choices choices = takeChoices(cursor_, behind, diagnostics_);
-      return atDeclarationWord("kernel") || atDeclarationWord("reduce") ? editKernel(choices)
-                                                                        : copyDeclaration();
+      return atKernel() ? editKernel(choices) : copyDeclaration();
     }
     if (namesChoice(cursor_))
       diagnostics_.report(Diag::ChoicePlace, locOf(cursor_.peek(2)), {nameOf(cursor_.peek(2))});
@@ -199,13 +205,13 @@ class Editor {
     const Token start = cursor_.take();
     KernelSyntax kernel;
     kernel.choices = choices;
-    kernel.isReduce = isWord(start, "reduce");
+    kernel.kind = kindOf(start);
     std::vector<Token> head;  // result type and name
     while (!cursor_.at(tok::l_paren) && !cursor_.atEndOfDeclaration()) head.push_back(cursor_.take());
     const std::size_t at = nameAt(head);
     if (at == 0 || head[at].isNot(tok::identifier) || !cursor_.at(tok::l_paren)) {
       const Token& place = head.empty() || cursor_.at(tok::l_paren) ? start : cursor_.peek();
-      diagnostics_.report(Diag::KernelHead, locOf(place), {kernel.isReduce ? "reduce" : "kernel"});
+      diagnostics_.report(Diag::KernelHead, locOf(place), {wordOf(kernel.kind)});
       return copyDeclaration();
     }
     std::vector<Token> constants;
@@ -215,8 +221,7 @@ class Editor {
       diagnostics_.report(Diag::UnclosedParameters, locOf(head[at]), {nameOf(head[at])});
       return;
     }
-    const std::vector<Token> edited =
-        parameters.edit(declared, kernel.isReduce ? FunctionKind::Reduce : FunctionKind::Kernel);
+    const std::vector<Token> edited = parameters.edit(declared, kernel.kind);
     kernel.signature = signature(start, head, declared);
     syntax_.add(head[at].getLocation(), std::move(kernel));
     out_.insert(out_.end(), head.begin(), head.end());

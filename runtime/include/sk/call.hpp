@@ -176,4 +176,10 @@ void reduce(const program::Reduction& reduction, std::span<const Argument> argum
 void reduce(const program::Reduction& reduction, std::span<const Argument> arguments,
             const CallOptions& options = {});
 
+/// Folds, for each element of the inputs, all elements up to it (CallOptions::scan, along) to one element of the
+/// arguments of the accumulators, which have the shape of the inputs and may be the same streams. Throws
+/// sk::Error if the arguments do not match, or if an exclusive scan has no identity.
+void scan(const program::Reduction& reduction, std::span<const Argument> arguments,
+          const CallOptions& options = {});
+
 }  // namespace sk

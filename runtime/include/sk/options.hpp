@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 namespace sk {
 
@@ -69,6 +70,13 @@ enum class Target : std::uint8_t {
   Native,  ///< compiled for the CPU; only on native devices
 };
 
+/// Which elements a scan folds to an element of its result.
+enum class Scan : std::uint8_t {
+  Default,  ///< Inclusive
+  Inclusive,  ///< all up to and including the one at the same place
+  Exclusive,  ///< those before it; the first element of the result is the identity
+};
+
 /// Options of one call, as in `sum.with({.accumulate = ...})(x)`.
 struct CallOptions {
   Accumulate accumulate = Accumulate::Default;
@@ -77,6 +85,10 @@ struct CallOptions {
   Tables tables = Tables::Default;
   Target target = Target::Default;
   Contraction contraction = Contraction::Default;
+  Scan scan = Scan::Default;  ///< scans only
+  /// Scans only: scans each line along this dimension by itself (0 is the slowest); by default, the whole stream
+  /// in row-major order.
+  std::optional<int> along = std::nullopt;
 
   bool operator==(const CallOptions&) const = default;
 
@@ -90,7 +102,9 @@ struct CallOptions {
             .intrinsics = chosen(intrinsics, later.intrinsics),
             .tables = chosen(tables, later.tables),
             .target = chosen(target, later.target),
-            .contraction = chosen(contraction, later.contraction)};
+            .contraction = chosen(contraction, later.contraction),
+            .scan = chosen(scan, later.scan),
+            .along = later.along ? later.along : along};
   }
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// sk::reduce: chooses a variant of a reduction, and carries out compensated ones, which add a sum and its
+// sk::reduce and sk::scan: choose a variant of a reduction, and carry out compensated ones, which add a sum and its
 // rounding error (api/exact_reduction.hpp has the exact ones). Must not depend on the kind of device.
 #include <algorithm>
 #include <cmath>
@@ -99,7 +99,7 @@ std::vector<Argument> resultsWithSums(const CompensatedReduction& second,
 /// Whether the call uses the exact variant. An empty domain gives the plain reduction's identity.
 bool isExact(const ResolvedReduction& call) {
   return call.options.accumulate == Accumulate::Exact && call.domain.size() != 0 &&
-         call.device.sumsExactly(call.reduction);
+         call.device.sumsExactly(call);
 }
 
 /// Whether the plain variant in doubles can replace the compensated one: not if a stream has bits that floats
@@ -115,6 +115,7 @@ bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& seco
 /// only to those that sum floats.
 CallOptions resolvedOptions(const ResolvedReduction& checked, const CallOptions& call) {
   const Reduction& reduction = checked.reduction;
+  if (!checked.scan) refuseScanOptions(reduction.fold, call);
   CallOptions options = checked.device.configuration.resolve(reduction.fold, call);
   if (reduction.compensated == nullptr && reduction.exact.empty()) options.accumulate = call.accumulate;
   checkTables(reduction.fold, options);
@@ -172,7 +173,7 @@ void reduceCompensated(const ResolvedReduction& call, const CompensatedReduction
   for (const Parameter& parameter : errorAccumulators(second)) all.push_back(errors.add(*parameter.element));
   std::vector<void*> values(call.values.begin(), call.values.end());
   values.insert(values.end(), errors.values.begin(), errors.values.end());
-  checkReduction(second.reduction, all, values);
+  checkReduction(second.reduction, all, values, call.scan);
   call.device.reduce(call.of(second.reduction, all, values));
   for (std::size_t k = 0; k < errors.values.size(); ++k) {
     const auto& [accumulator, offset] = second.sums[k];
@@ -207,8 +208,9 @@ void reduceResolved(const ResolvedReduction& call) {
 }
 
 void checkAndReduce(const Reduction& reduction, std::span<const Argument> arguments,
-                    std::span<void* const> values, const CallOptions& options) {
-  ResolvedReduction call = checkReduction(reduction, arguments, values);
+                    std::span<void* const> values, const CallOptions& options,
+                    const std::optional<ScanOrder>& scan = {}) {
+  ResolvedReduction call = checkReduction(reduction, arguments, values, scan);
   const TraceScope traced(call.device.trace.get(), "call", reduction.fold.name);
   traced.add("domain", call.domain);
   if (!call.isToValues()) traced.add("blocks", call.blocks);
@@ -225,6 +227,11 @@ void reduce(const Reduction& reduction, std::span<const Argument> arguments, std
 
 void reduce(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
   withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, {}, options); });
+}
+
+void scan(const Reduction& reduction, std::span<const Argument> arguments, const CallOptions& options) {
+  const ScanOrder order{options.along, options.scan == Scan::Exclusive};
+  withHostMemory(reduction.fold.name, [&] { checkAndReduce(reduction, arguments, {}, options, order); });
 }
 
 }  // namespace sk

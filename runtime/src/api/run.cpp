@@ -19,6 +19,7 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   if (options.accumulate != Accumulate::Default) {
     fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
   }
+  refuseScanOptions(kernel, options);
   std::optional<CheckedCall> checked = checkCall(kernel, arguments);
   if (!checked) return;
   DeviceState& device = checked->device;

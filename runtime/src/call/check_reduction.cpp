@@ -31,7 +31,7 @@ class Arguments {
     specs_ = specsOf(fold_, arguments);
   }
 
-  ResolvedReduction check(std::span<void* const> values) {
+  ResolvedReduction check(std::span<void* const> values, const std::optional<ScanOrder>& scan) {
     const bool toStreams = values.empty();
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
       const Role role = fold_.parameters[i].role;
@@ -57,9 +57,14 @@ class Arguments {
     checkElements(fold_, checked.device, domain);
     checked.device.checkProgram(reduction_);
     checkUniforms(fold_, checked.device);
-    checkUnits(checked.device);
+    checkUnits(checked.device, scan.has_value());
+    checked.scan = scan;
+    if (scan) {
+      checked.blocks = checkScan(*scan, domain);
+      return checked;
+    }
     if (toStreams) {
-      checked.blocks = checkResults(domain);
+      checked.blocks = checkBlocks(domain, resultShape());
       if (checked.blocks.size() == 0) {
         return checked;
       }
@@ -94,25 +99,67 @@ class Arguments {
     }
   }
 
-  void checkUnits(const DeviceState& device) const {
+  /// A scan also reads the results of earlier runs.
+  void checkUnits(const DeviceState& device, bool isScan) const {
+    const std::size_t carries = isScan ? accumulatorPlanes() : 0;
     const auto most = static_cast<std::size_t>(device.limits.textureUnits);
-    if (const std::size_t planes = planesRead(fold_, specs_); planes > most) {
+    if (const std::size_t planes = planesRead(fold_, specs_) + carries; planes > most) {
       fail(Error::Kind::Device, fold_,
-           "the inputs and gathers have {} planes (one a scalar, vector, or member of a struct), but this "
-           "device reads {} in one pass; put scalars together in vectors, or divide the reduce",
-           planes, most);
+           "the inputs and gathers{} have {} planes (one a scalar, vector, or member of a struct), but this "
+           "device reads {} in one pass; put scalars together in vectors, or divide the {}",
+           isScan ? ", and the accumulators of earlier elements," : "", planes, most,
+           isScan ? "scan" : "reduce");
     }
-    if (const std::size_t planes = planesRead(reduction_.combine, specs_); planes > most) {
+    if (const std::size_t planes = planesRead(reduction_.combine, specs_) + carries; planes > most) {
       fail(Error::Kind::Device, fold_,
            "to combine partial results, {} planes are read (one a scalar, vector, or member of a struct of "
            "the accumulators), but this device reads {} in one pass; put scalars together in vectors, or "
-           "divide the reduce",
-           planes, most);
+           "divide the {}",
+           planes, most, isScan ? "scan" : "reduce");
     }
   }
 
+  std::size_t accumulatorPlanes() const {
+    std::size_t planes = 0;
+    for (const Parameter& parameter : fold_.parameters) {
+      if (parameter.role == Role::Accumulator) planes += parameter.element->fields.size();
+    }
+    return planes;
+  }
+
   /// Returns the grid of blocks.
-  Shape checkResults(const Shape& domain) const {
+  Shape checkScan(const ScanOrder& scan, const Shape& domain) const {
+    const Shape results = resultShape();
+    if (results != domain) {
+      fail(Error::Kind::Shape, fold_,
+           "{} {}, and the output '{}' has {}; a scan has one result for each element, so give them the same "
+           "shape",
+           inputs(), toString(domain), firstResult().name, toString(results));
+    }
+    if (scan.isExclusive) {
+      for (const Parameter& parameter : fold_.parameters) {
+        if (parameter.role == Role::Accumulator && parameter.identity.empty()) {
+          fail(fold_,
+               "an exclusive scan starts with the identity, and '{}' declares none; write '{} = ...' in its "
+               "declaration, or call it without Scan::Exclusive",
+               parameter.name, parameter.name);
+        }
+      }
+    }
+    if (scan.along && (*scan.along < 0 || *scan.along >= domain.rank())) {
+      fail(Error::Kind::Shape, fold_, "{} {}, which has no dimension {}; along is 0 to {}", inputs(),
+           toString(domain), *scan.along, domain.rank() - 1);
+    }
+    if (domain.size() == 0) return domain;
+    return scan.along ? domain.with(*scan.along, 1) : oneBlock(domain);
+  }
+
+  const Parameter& firstResult() const {
+    return *std::ranges::find(fold_.parameters, Role::Accumulator, &Parameter::role);
+  }
+
+  /// Returns the common shape of the results.
+  Shape resultShape() const {
     const Parameter* first = nullptr;
     Shape shape;
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
@@ -131,7 +178,7 @@ class Arguments {
       }
       checkDisjoint(i);
     }
-    return checkBlocks(domain, *first, shape);
+    return shape;
   }
 
   void checkDisjoint(std::size_t output) const {
@@ -146,7 +193,9 @@ class Arguments {
     }
   }
 
-  Shape checkBlocks(const Shape& domain, const Parameter& result, const Shape& shape) const {
+  /// Returns the grid of blocks.
+  Shape checkBlocks(const Shape& domain, const Shape& shape) const {
+    const Parameter& result = firstResult();
     const std::vector<Shape> grids = blockGrids(domain, shape);
     if (grids.size() == 1) {
       return grids.front();
@@ -200,8 +249,8 @@ std::size_t planesRead(const Kernel& kernel, const assemble::SpecValues& specs) 
 }
 
 ResolvedReduction checkReduction(const Reduction& reduction, std::span<const Argument> arguments,
-                                 std::span<void* const> values) {
-  return Arguments(reduction, arguments).check(values);
+                                 std::span<void* const> values, const std::optional<ScanOrder>& scan) {
+  return Arguments(reduction, arguments).check(values, scan);
 }
 
 }  // namespace sk

@@ -46,6 +46,11 @@ void checkPlanes(const Reduction& plain, const Reduction& wide, const DeviceLimi
 
 }  // namespace
 
+void refuseScanOptions(const Kernel& kernel, const CallOptions& options) {
+  if (options.scan != Scan::Default) fail(kernel, "it is no scan; call it without Scan");
+  if (options.along) fail(kernel, "it is no scan, which alone goes along a dimension; call it without along");
+}
+
 const Reduction& halfVariant(const Reduction& reduction) {
   if (reduction.half != nullptr) return *reduction.half;
   if (!reduction.fold.whyNotHalf.empty())

@@ -40,6 +40,9 @@ const program::Reduction& halfVariant(const program::Reduction& reduction);
 /// Throws sk::Error if a call requests tables in a precision other than float.
 void checkTables(const program::Kernel& kernel, const CallOptions& options);
 
+/// Throws sk::Error if a call of a kernel or a reduce requests what only a scan can do.
+void refuseScanOptions(const program::Kernel& kernel, const CallOptions& options);
+
 /// Reduces with the variant that the options select. Throws sk::Error if there is none.
 void reduceInPrecision(const ResolvedReduction& call);
 

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,13 @@ namespace sk {
 
 class DeviceState;
 
+/// How a scan folds the blocks of a reduction: it keeps the accumulators after, or before, each element.
+struct ScanOrder {
+  std::optional<int> along;  ///< the dimension whose lines are the blocks; by default, there is one block
+  bool isExclusive = false;
+};
+
+/// A scan is a reduction to streams of the shape of the domain.
 struct ResolvedReduction {
   DeviceState& device;
   const program::Reduction& reduction;
@@ -26,6 +34,7 @@ struct ResolvedReduction {
   Shape blocks;  ///< the number of blocks in each dimension of the domain
   std::span<void* const> values = {};  ///< one destination per accumulator; empty if the results are streams
   CallOptions options = {};
+  std::optional<ScanOrder> scan = {};
 
   bool isToValues() const { return !values.empty(); }
   /// The shape of stream results, which may have fewer dimensions than `blocks`.

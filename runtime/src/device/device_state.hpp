@@ -80,7 +80,7 @@ class DeviceState {
   /// There is at least one block. For an empty domain, the results are the identities, which then exist.
   virtual void reduce(const ResolvedReduction& call) = 0;
   /// Whether it adds sums of floats without rounding; otherwise it compensates them in its own precision.
-  virtual bool sumsExactly(const program::Reduction&) const { return true; }
+  virtual bool sumsExactly(const ResolvedReduction&) const { return true; }
   /// The rounded sums of all blocks if the device computes them itself; null if the sum must be folded to
   /// digits.
   virtual std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction&, const program::ExactSum&) {

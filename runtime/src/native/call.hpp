@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,12 +45,21 @@ struct Call {
   std::span<const Table> tables = {};  ///< one per tabulated function; empty if these are computed
 };
 
+/// What a scan stores for each element of its domain.
+struct ScanOf {
+  bool isExclusive = false;  ///< the accumulators before folding it, else those after
+  /// Accumulators are combined with the identity after each run (program::longestRun): those of exact sums have no
+  /// room for more. Others have.
+  bool combinesRuns = false;
+};
+
 /// A reduction of a domain that is divided into equal blocks. Each block is folded to one element of the
 /// accumulators, whose Operands describe the results.
 struct ReduceCall {
   Call fold;
   Call combine;  ///< ignores its Inputs and Accumulators
   Extents block{1, 1, 1, 1};  ///< divides the domain
+  std::optional<ScanOf> scan = std::nullopt;
 };
 
 }  // namespace sk::native

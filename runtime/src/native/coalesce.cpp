@@ -39,8 +39,9 @@ void drop(Operand& operand, std::size_t dimension) {
 
 class Coalesce {
  public:
-  Coalesce(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block)
-      : kernel_(kernel), operands_(operands), domain_(domain), block_(block) {}
+  Coalesce(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block,
+           bool isScan)
+      : kernel_(kernel), operands_(operands), domain_(domain), block_(block), isScan_(isScan) {}
 
   void run() {
     while (domain_[1] * domain_[2] * domain_[3] != 1) {
@@ -59,9 +60,10 @@ class Coalesce {
  private:
   bool isElement(std::size_t i) const {
     const Role role = kernel_.parameters[i].role;
-    return (role == Role::Input || role == Role::Output) && !operands_[i].components.empty();
+    return (role == Role::Input || role == Role::Output || (isScan_ && role == Role::Accumulator)) &&
+           !operands_[i].components.empty();
   }
-  bool isResult(std::size_t i) const { return kernel_.parameters[i].role == Role::Accumulator; }
+  bool isResult(std::size_t i) const { return !isScan_ && kernel_.parameters[i].role == Role::Accumulator; }
 
   /// Drops a dimension of extent 1.
   void dropAll(std::size_t dimension) {
@@ -81,9 +83,16 @@ class Coalesce {
     return true;
   }
 
-  /// True if each row directly follows the one before it in every stream, and a block has whole rows.
+  /// In a scan, rows become one if a block has all of them, or if each has one element of a block.
+  bool areBlocksKept() const {
+    const bool areWhole = block_[0] == domain_[0];
+    if (!isScan_) return areWhole;
+    return block_[1] == 1 ? block_[0] == 1 : areWhole && block_[1] == domain_[1];
+  }
+
+  /// True if each row directly follows the one before it in every stream, and blocks allow it.
   bool areRowsInOne() const {
-    if (block_[0] != domain_[0]) return false;
+    if (!areBlocksKept()) return false;
     for (std::size_t i = 0; i < operands_.size(); ++i) {
       if (!isElement(i)) continue;
       const Operand& o = operands_[i];
@@ -103,25 +112,28 @@ class Coalesce {
         drop(operands_[i], 0);   // there is one block along x
       }
     }
-    const std::int64_t width = domain_[0];
+    const std::int64_t width = domain_[0], blockWidth = block_[0];
     drop(domain_, 0, 1);
     drop(block_, 0, 1);
     domain_[0] *= width;
-    block_[0] *= width;
+    block_[0] *= blockWidth;
   }
 
   const program::Kernel& kernel_;
   std::span<Operand> operands_;
   Extents& domain_;
   Extents& block_;
+  bool isScan_;
 };
 
 }  // namespace
 
-void coalesce(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block) {
+void coalesce(const program::Kernel& kernel, std::span<Operand> operands, Extents& domain, Extents& block,
+              bool isScan) {
   constexpr std::int64_t longest = std::int64_t{1} << 31;   // indices are ints
   const bool isCounted = domain[0] * domain[1] * domain[2] * domain[3] < longest;
-  if (isCounted && isPositionIndependent(kernel, operands)) Coalesce(kernel, operands, domain, block).run();
+  if (isCounted && isPositionIndependent(kernel, operands))
+    Coalesce(kernel, operands, domain, block, isScan).run();
 }
 
 }  // namespace sk

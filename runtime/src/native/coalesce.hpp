@@ -13,8 +13,8 @@
 namespace sk {
 
 /// Changes `domain`, `block` and the operands of the kernel's parameters alike. `block` is that of a
-/// reduction; for a kernel, it is the whole domain.
+/// reduction; for a kernel, it is the whole domain. In a scan, accumulators have the shape of the domain.
 void coalesce(const program::Kernel& kernel, std::span<native::Operand> operands, native::Extents& domain,
-              native::Extents& block);
+              native::Extents& block, bool isScan = false);
 
 }  // namespace sk

@@ -41,6 +41,7 @@ std::string_view nameOf(EntryKind kind) {
     case EntryKind::Fold: return "folds elements";
     case EntryKind::Combine: return "combines partial results";
     case EntryKind::Identity: return "gives its identities";
+    case EntryKind::Scan: return "scans elements";
     case EntryKind::Apply: return "stores what it scatters";
     case EntryKind::Borders: break;
   }

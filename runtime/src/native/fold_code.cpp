@@ -7,6 +7,7 @@
 #include "native/check_fold.hpp"
 #include "native/code_frame.hpp"
 #include "native/fold_program.hpp"
+#include "native/scan_blocks.hpp"
 #include "native/sum_floats.hpp"
 
 namespace sk {
@@ -24,7 +25,7 @@ Bound<Function> bound(const Entry& entry, const CodeFrame& frame) {
 }  // namespace
 
 void foldCode(const program::Reduction& reduction, const native::ReduceCall& call, const CodeChoice& choice) {
-  if (sumsFloats(reduction, call.fold, choice)) {
+  if (!call.scan && sumsFloats(reduction, call.fold, choice)) {
     sumFloats(reduction, call, choice);
     return;
   }
@@ -42,7 +43,18 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
                             .isCommutative = reduction.commutative,
                             .isUneven = reduction.fold.code->isUneven != 0};
   if (checksFolds() && !reduction.commutative) checkFold(reduction, program, call.fold, choice);
-  foldBlocks(program, call.fold.domain, call.block, results);
+  if (!call.scan) {
+    foldBlocks(program, call.fold.domain, call.block, results);
+    return;
+  }
+  native::ValuesFunction* const identities =
+      call.scan->isExclusive || call.scan->combinesRuns
+          ? functionOf<native::ValuesFunction>(entryOf(reduction.fold, EntryKind::Identity, choice))
+          : nullptr;
+  const Entry& scan = entryOf(reduction.fold, EntryKind::Scan, choice);
+  const ScanProgram scanProgram{program, bound<native::ScanFunction>(scan, frame), identities,
+                                call.scan->isExclusive, call.scan->combinesRuns};
+  scanBlocks(scanProgram, call.fold.domain, call.block, results);
 }
 
 void storeIdentities(const program::Reduction& reduction, const native::Call& call,

@@ -54,6 +54,11 @@ class FoldResults {
   /// Stores the results of `count` neighbouring blocks from `block` on, which are the first columns.
   void store(const native::Extents& block, const StateColumns& columns, std::int64_t count) const;
 
+  /// True if all results are stored, and neighbouring blocks' without gaps.
+  bool areRows() const;
+  /// The address of a scalar of a block's result, if it is stored.
+  std::byte* at(std::size_t scalar, const native::Extents& block) const;
+
  private:
   struct Array {
     std::byte* array;  ///< null if the result is omitted

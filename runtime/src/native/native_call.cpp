@@ -73,11 +73,12 @@ bool isSameRegion(const StreamRegion& a, const StreamRegion& b) {
 class Operands {
  public:
   Operands(RealType real, const Kernel& kernel, std::span<const Argument> arguments, const Shape& domain,
-           std::vector<native::Table> tables)
+           std::vector<native::Table> tables, bool isScan = false)
       : real_(real),
         kernel_(kernel),
         arguments_(arguments),
         tables_(std::move(tables)),
+        isScan_(isScan),
         specs_(specsOf(kernel, arguments)),
         domain_(domain),
         list_(arguments.size()) {
@@ -95,7 +96,7 @@ class Operands {
   }
   native::Call call(Extents& block) {
     native::Call call = callAsItIs();
-    coalesce(kernel_, list_, call.domain, block);
+    coalesce(kernel_, list_, call.domain, block, isScan_);
     return call;
   }
   native::Call callAsItIs() const { return {list_, fastestFirst(domain_), tables_}; }
@@ -224,7 +225,8 @@ class Operands {
           arguments_[i].region.stream != arguments_[input].region.stream) {
         continue;
       }
-      const bool readsItself = role == Role::Input && kernel_.parameters[i].role == Role::Output &&
+      const bool isForEachElement = kernel_.parameters[i].role == Role::Output || isScan_;
+      const bool readsItself = role == Role::Input && isForEachElement &&
                                isSameRegion(arguments_[i].region, arguments_[input].region);
       if (!readsItself) return true;
     }
@@ -269,6 +271,7 @@ class Operands {
   const Kernel& kernel_;
   std::span<const Argument> arguments_;
   std::vector<native::Table> tables_;
+  bool isScan_;  ///< accumulators have an element for each of the domain
   const assemble::SpecValues specs_;
   Shape domain_;
   std::vector<Operand> list_;
@@ -295,6 +298,13 @@ CodeChoice codeChoice(RealType real, const CallOptions& options) {
   return {.real = real, .mayContract = options.contraction == Contraction::Fast};
 }
 
+/// Only a reduction to digits has no exact variant of its own in an exact call.
+std::optional<native::ScanOf> scanOf(const ResolvedReduction& call) {
+  if (!call.scan) return std::nullopt;
+  const bool foldsDigits = call.options.accumulate == Accumulate::Exact && call.reduction.exact.empty();
+  return native::ScanOf{.isExclusive = call.scan->isExclusive, .combinesRuns = foldsDigits};
+}
+
 /// The call of a reduction, without its results.
 class Folding {
  public:
@@ -302,11 +312,12 @@ class Folding {
 
   Folding(const CodeChoice& choice, const program::Reduction& reduction, std::span<const Argument> arguments,
           const Shape& domain, std::vector<native::Table> foldTables,
-          std::vector<native::Table> combineTables)
-      : fold(choice.real, reduction.fold, arguments, domain, std::move(foldTables)),
+          std::vector<native::Table> combineTables, const std::optional<native::ScanOf>& scan)
+      : fold(choice.real, reduction.fold, arguments, domain, std::move(foldTables), scan.has_value()),
         choice_(choice),
         reduction_(reduction),
-        combineTables_(std::move(combineTables)) {
+        combineTables_(std::move(combineTables)),
+        scan_(scan) {
     for (const std::uint8_t operand : reduction.combineOperands) {
       combine_.push_back(fold.list()[operand]);
     }
@@ -315,7 +326,7 @@ class Folding {
 
   void run(Extents block) {
     const native::Call whole = fold.call(block);
-    const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block};
+    const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block, scan_};
     foldCode(reduction_, call, choice_);
   }
   /// Stores the identities to all blocks, of which there are `counts` in each dimension; `results` are the
@@ -341,6 +352,7 @@ class Folding {
   CodeChoice choice_;
   const program::Reduction& reduction_;
   std::vector<native::Table> combineTables_;
+  std::optional<native::ScanOf> scan_;
   std::vector<Operand> combine_;
 };
 
@@ -400,7 +412,7 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
   const RealType real = realOf(call.options);
   Folding folding(codeChoice(real, call.options), reduction, call.arguments, call.domain,
                   tablesOf(reduction.fold, real, call.options),
-                  tablesOf(reduction.combine, real, call.options));
+                  tablesOf(reduction.combine, real, call.options), scanOf(call));
   const Extents counts = fastestFirst(call.blocks);
   std::vector<std::size_t> results;
   std::vector<const Components*> values;
@@ -412,7 +424,8 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
       folding.fold.list()[i] = {.components = value.arrays(), .stride = {1, 1, 1, 1}};
       values.push_back(&value);
     } else {
-      folding.fold.list()[i] = resultOperand(folding.fold, call.arguments[i].region, counts);
+      folding.fold.list()[i] = resultOperand(folding.fold, call.arguments[i].region,
+                                             call.scan ? fastestFirst(call.domain) : counts);
     }
     results.push_back(i);
   }
@@ -434,9 +447,10 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
   }
 }
 
-// A sum without a term is folded to digits, which hold only floats.
-bool NativeDevice::sumsExactly(const program::Reduction& reduction) const {
-  return !isReference() || std::ranges::all_of(reduction.exact, [&](const program::ExactSum& sum) {
+// A scan, and a sum without a term, is folded to digits, which hold only floats.
+bool NativeDevice::sumsExactly(const ResolvedReduction& call) const {
+  if (!isReference()) return true;
+  return !call.scan && std::ranges::all_of(call.reduction.exact, [&](const program::ExactSum& sum) {
     const Kernel* const term = sum.term.kernel;
     return hasTerm(sum) && (term == nullptr || (term->code != nullptr && hasCodeFor(*term->code, real_)));
   });
@@ -446,7 +460,7 @@ std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& w
                                                       const program::ExactSum& sum) {
   const program::Reduction& reduction = whole.reduction;
   const std::span<const Argument> arguments = whole.arguments;
-  if (reduction.fold.code == nullptr || !hasTerm(sum)) return nullptr;
+  if (whole.scan || reduction.fold.code == nullptr || !hasTerm(sum)) return nullptr;
   const Kernel& kernel = kernelOfTerm(reduction, sum);
   std::vector<Argument> all;
   if (sum.term.kernel == nullptr) {

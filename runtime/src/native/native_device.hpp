@@ -42,7 +42,7 @@ class NativeDevice final : public DeviceState {
   void makeCurrent() override;
   void run(const ResolvedCall& call) override;
   void reduce(const ResolvedReduction& call) override;
-  bool sumsExactly(const program::Reduction& reduction) const override;
+  bool sumsExactly(const ResolvedReduction& call) const override;
   std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction& call,
                                           const program::ExactSum& sum) override;
 

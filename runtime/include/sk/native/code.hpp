@@ -100,13 +100,19 @@ using FoldFunction = void(const Frame*, const Chunk*, void* const* state, std::i
                           std::int64_t rounds, std::int64_t leaves, std::int64_t starts);
 /// Folds `later` into `state`, column by column.
 using CombineFunction = void(const Frame*, void* const* state, void* const* later, std::int64_t columns);
+/// Folds the elements of a chunk, in order, into the first column of `state`, which starts as in a FoldFunction. Stores
+/// the accumulators after each element, or before it if `isExclusive` is 1, to `results`: one array per scalar, from the
+/// chunk's first element on. An input's array may be a result's, too. Without identities, ignores `isExclusive`; with
+/// them, the first result of an exclusive scan that starts is the identity.
+using ScanFunction = void(const Frame*, const Chunk*, void* const* state, void* const* results,
+                          std::int64_t starts, std::int64_t isExclusive);
 /// Carries out the records of a scatter output, in order. `appendBuffer` has no `elements`.
 using ApplyFunction = void(const Frame*, const AppendBuffer* appendBuffer, std::int64_t parameter);
 /// Writes one element of each array: the identities of a reduction, or the values out of bounds of gathers
 /// with Boundary::Border; all components of one parameter, then the next.
 using ValuesFunction = void(const Frame*, void* const* values);
 
-enum class EntryKind : std::uint8_t { Run, Fold, Combine, Identity, Borders, Apply, RunRows };
+enum class EntryKind : std::uint8_t { Run, Fold, Combine, Identity, Borders, Apply, RunRows, Scan };
 enum class Real : std::uint8_t { Float, Double, Quad };  ///< represents the language's float
 /// Generations of a CPU: x86-64, x86-64-v3, x86-64-v4. Each runs the code of earlier ones. Other CPUs have
 /// one level.
@@ -124,7 +130,7 @@ struct Entry {
 
 /// The native code of one kernel.
 struct Code {
-  static constexpr std::uint32_t currentVersion = 3;
+  static constexpr std::uint32_t currentVersion = 4;
   std::uint32_t version;
   std::uint32_t entryCount;
   const Entry* entries;

@@ -50,20 +50,6 @@ Axes coalesce(const RegionLayout& input, const Index4& division) {
 /// Divides a positive number, rounding up, without overflow.
 std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a - 1) / b + 1; }
 
-/// Sets where a pass writes. `usesIndex`: its program needs more than the number of a result.
-void addDomain(ReducePass& pass, const RegionLayout& domain, bool usesIndex) {
-  pass.variant.domain = domainOf(domain);
-  pass.variant.domainView = !domain.linear && domain.origin != Index4{};
-  pass.variant.domainLayered = domain.layered;
-  if (usesIndex || pass.variant.domain == Domain::LinearBox) pass.variant.domainRank = decodedRank(domain);
-  pass.draws = drawnTexels(domain);
-  pass.uniforms.push_back({"sk_domain_origin", true, domain.origin});
-  pass.uniforms.push_back({"sk_domain_shape", true, domain.extent});
-  pass.uniforms.push_back({"sk_domain_stride", true, domain.stride});
-  pass.uniforms.push_back({"sk_domain_shift", false, {domain.shift}});
-  pass.uniforms.push_back({"sk_domain_step", true, stridesOf(domain.extent)});
-}
-
 class Planner {
  public:
   Planner(const RegionLayout& input, const RegionLayout& result, const ReduceLimits& limits,
@@ -392,6 +378,19 @@ std::vector<ReducePass> planReduction(const RegionLayout& elements, const Region
 std::vector<ReducePass> planReduction(const RegionLayout& elements, const RegionLayout& result,
                                       const ReduceLimits& limits) {
   return planReduction(elements, result, limits, {.blocks = result.extent});
+}
+
+void addDomain(ReducePass& pass, const RegionLayout& domain, bool usesIndex) {
+  pass.variant.domain = domainOf(domain);
+  pass.variant.domainView = !domain.linear && domain.origin != Index4{};
+  pass.variant.domainLayered = domain.layered;
+  if (usesIndex || pass.variant.domain == Domain::LinearBox) pass.variant.domainRank = decodedRank(domain);
+  pass.draws = drawnTexels(domain);
+  pass.uniforms.push_back({"sk_domain_origin", true, domain.origin});
+  pass.uniforms.push_back({"sk_domain_shape", true, domain.extent});
+  pass.uniforms.push_back({"sk_domain_stride", true, domain.stride});
+  pass.uniforms.push_back({"sk_domain_shift", false, {domain.shift}});
+  pass.uniforms.push_back({"sk_domain_step", true, stridesOf(domain.extent)});
 }
 
 ReducePass planIdentities(const RegionLayout& result) {

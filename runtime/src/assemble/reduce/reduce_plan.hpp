@@ -85,6 +85,9 @@ std::vector<ReducePass> planReduction(const RegionLayout& elements, const Region
 std::vector<ReducePass> planReduction(const RegionLayout& elements, const RegionLayout& result,
                                       const ReduceLimits& limits);
 
+/// Sets where a pass writes. `usesIndex`: its program needs more than the number of a result.
+void addDomain(ReducePass& pass, const RegionLayout& domain, bool usesIndex);
+
 /// Plans the pass that writes the identities to `result`, which is not empty.
 ReducePass planIdentities(const RegionLayout& result);
 

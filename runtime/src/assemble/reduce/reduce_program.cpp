@@ -10,12 +10,11 @@
 #include <fmt/format.h>
 
 #include "assemble/elements/arguments.hpp"
-#include "assemble/elements/domain.hpp"
-#include "assemble/elements/gather.hpp"
 #include "assemble/elements/planes.hpp"
-#include "assemble/elements/storage.hpp"
 #include "assemble/glsl/program_text.hpp"
+#include "assemble/reduce/fold_text.hpp"
 #include "assemble/reduce/reduce_names.hpp"
+#include "assemble/reduce/scan_program.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -37,22 +36,10 @@ Kernel kernelOf(const Reduction& reduction, Walk walk) {
   return kernel;
 }
 
-class ReductionText {
+class ReductionText : FoldText {
  public:
   ReductionText(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant)
-      : profile_(profile),
-        reduction_(reduction),
-        variant_(variant),
-        held_(kernelOf(reduction, variant.walk), variant.access),
-        kernel_(held_.kernel()),
-        program_(profile),
-        domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered},
-                "sk_result") {
-    for (const Parameter& parameter : kernel_.parameters) {
-      if (parameter.role == Role::Input) inputs_.push_back(&parameter);
-      if (parameter.role == Role::Accumulator) accumulators_.push_back(&parameter);
-    }
-  }
+      : FoldText(profile, reduction, variant, kernelOf(reduction, variant.walk)) {}
 
   std::string write() {
     if (kernel_.usesLoops && !isByRows() && variant_.walk != Walk::GroupedPartials) domain_.leaveOutside();
@@ -71,86 +58,11 @@ class ReductionText {
       foldRun();
       if (variant_.grouped) combineInGroup();
     }
-    for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
-    if (profile_.stage == Stage::Compute)
-      program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
-    if (variant_.toBuffer) program_.storeInBuffer();
-    const std::string comment =
-        fmt::format("{} for {}: {}{}, {}", reduction_.fold.name, profile_.name,
-                    variant_.packed ? "packed " : "", nameOf(variant_.walk), nameOf(variant_.runs));
-    return program_.finish(profile_, comment, kernel_);
+    return finish(written, fmt::format("{}{}, {}", variant_.packed ? "packed " : "", nameOf(variant_.walk),
+                                       nameOf(variant_.runs)));
   }
 
  private:
-  // ---- parameters -------------------------------------------------------------------------------
-
-  StreamAccess access(std::size_t i) const {
-    return variant_.access.empty() ? StreamAccess{} : variant_.access[i];
-  }
-
-  /// The variable that holds an accumulator.
-  std::string total(const Parameter& accumulator) const {
-    return held(isInPart_ ? "sk_part" : "sk_total", accumulator);
-  }
-  std::string held(std::string_view name, const Parameter& accumulator) const {
-    return accumulators_.size() == 1 ? std::string(name) : fmt::format("{}_{}", name, accumulator.symbol);
-  }
-
-  /// The index of the current element in the domain.
-  std::string item() {
-    program_.variable("ivec4", "sk_item");
-    return "sk_item";
-  }
-
-  std::string itemPosition(int components) {
-    static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
-    return fmt::format("{}{}", item(), swizzles[static_cast<std::size_t>(components - 1)]);
-  }
-
-  void defineParameters() {
-    if (kernel_.usesIndex) program_.function("ivec4 sk_index()", {fmt::format("return {};", item())});
-    if (kernel_.usesExtent) {
-      const std::string shape = program_.uniform("ivec4", "sk_item_shape");
-      program_.function("ivec4 sk_extent()", {fmt::format("return {};", shape)});
-    }
-    std::size_t specs = 0;
-    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
-      const Parameter& parameter = kernel_.parameters[i];
-      if (parameter.role == Role::Spec) {
-        arguments_.push_back(specConstant(program_, parameter, variant_.specs[specs++]));
-      } else if (isNeeded(parameter, variant_.specs)) {
-        defineParameter(parameter, access(i));
-      } else {
-        defineAbsent(program_, parameter);
-      }
-    }
-  }
-
-  void defineParameter(const Parameter& parameter, const StreamAccess& access) {
-    switch (parameter.role) {
-      case Role::Uniform:
-        arguments_.push_back(parameterUniform(program_, parameter.element->glsl, "arg", parameter));
-        return;
-      case Role::Iterator: arguments_.push_back(iteratorValue(program_, parameter, access, item())); return;
-      case Role::Input:
-        declareSamplers(
-            program_, parameter,
-            variant_.walk == Walk::Index ? access.addressing == Addressing::Layered : variant_.sourceLayered);
-        if (variant_.walk == Walk::Index) defineInputIndex(program_, parameter, access, item());
-        defineExtent(program_, parameter);
-        return;
-      case Role::Gather:
-        defineGather(program_, [&](int components) { return itemPosition(components); }, parameter, access);
-        defineExtent(program_, parameter);
-        return;
-      case Role::Spec:
-      case Role::Accumulator:
-      case Role::Output:
-      case Role::VariableOutput:
-      case Role::Scatter: return;
-    }
-  }
-
   // ---- the walk ---------------------------------------------------------------------------------
 
   /// Defines sk_block (its number), sk_first (the run's first element in it) and sk_count, unless constant.
@@ -312,9 +224,10 @@ class ReductionText {
     }
     first_ = {"sk_place(sk_base)"};
     statement("if (sk_i < sk_runs) {");
-    forEachStart([&](const std::string& name, const std::string& value) {
-      statement(fmt::format("  {} = {};", name, value));
-    });
+    for (std::size_t k = 0; k < accumulators_.size(); ++k) {
+      const auto i = static_cast<std::size_t>(inputs_[k] - kernel_.parameters.data());
+      statement(fmt::format("  {} = {};", total(*accumulators_[k]), firstOf(i)));
+    }
     statement("  for (int sk_k = 1; sk_k < sk_count; ++sk_k) {");
     statement("    " + foldingNext());
     statement("  }");
@@ -417,101 +330,22 @@ class ReductionText {
 
   // ---- the fold ---------------------------------------------------------------------------------
 
-  /// The element of an input, at a texel of the walk or at its own address.
-  std::string element(std::size_t i, const Texel& texel) {
-    const Parameter& input = kernel_.parameters[i];
-    if (!isNeeded(input, variant_.specs)) return absentElement(input);
-    if (variant_.walk != Walk::Index) return fetch(program_, input, texel);
-    return fetch(program_, input, inputTexel(program_, input, access(i)));
-  }
-
-  /// The four elements of a packed input at a texel of the walk.
-  static std::string lanesOf(const Parameter& input) { return fmt::format("sk_in_{}", input.symbol); }
-  void fetchLanes(const Texel& texel, std::string_view indent) {
-    for (const Parameter* input : inputs_) {
-      if (!isNeeded(*input, variant_.specs)) continue;
-      statement(fmt::format("{}{} = {};", indent, lanesOf(*input), fetch(program_, fourOf(*input), texel)));
-    }
-  }
-  void declareLanes() {
-    for (const Parameter* input : inputs_) {
-      if (isNeeded(*input, variant_.specs))
-        statement(fmt::format("{} {};", fourOf(*input).element->glsl, lanesOf(*input)));
-    }
-  }
-
   /// Folds an element, or the elements of a packed texel from component `first` on.
   void foldTexel(std::string_view indent, int first = 0) {
     if (!variant_.packed) return statement(fmt::format("{}{}", indent, foldingNext()));
     for (int lane = first; lane < lanes; ++lane) {
       const std::string component = fmt::format(".{}", "xyzw"[lane]);
-      const std::string fold = folding([&](std::size_t i, std::size_t) { return elementOf(i, component); });
+      const std::string fold =
+          calling(kernel_, [&](std::size_t i, std::size_t) { return elementOf(i, component); });
       statement(fmt::format("{}{}", indent, fold));
     }
   }
 
   std::string foldingNext() {
-    return folding([&](std::size_t i, std::size_t) { return element(i, next_); });
+    return calling(kernel_, [&](std::size_t i, std::size_t) { return element(i, next_); });
   }
 
-  template <class ElementOf>
-  std::string folding(const ElementOf& inputElement) {
-    return calling(kernel_, inputElement);
-  }
-
-  /// A call of the entry of this kernel, or of a combining one, with its arguments in order. inputElement(i,
-  /// k) is the argument for parameter i, the k-th input.
-  template <class ElementOf>
-  std::string calling(const Kernel& kernel, const ElementOf& inputElement) {
-    std::vector<std::string> arguments;
-    std::size_t inputs = 0;
-    std::size_t accumulators = 0;
-    std::size_t values = 0;
-    for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
-      const Parameter& parameter = kernel.parameters[i];
-      switch (parameter.role) {
-        case Role::Uniform:
-        case Role::Iterator:
-        case Role::Spec: arguments.push_back(arguments_[values++]); break;
-        case Role::Input: arguments.push_back(inputElement(i, inputs++)); break;
-        case Role::Accumulator: arguments.push_back(total(*accumulators_[accumulators++])); break;
-        case Role::Gather:
-        case Role::Output:
-        case Role::VariableOutput:
-        case Role::Scatter: break;
-      }
-    }
-    return call(kernel.entry, arguments, "        ") + ";";
-  }
-
-  std::string elementOf(std::size_t i, std::string_view lane) const {
-    const Parameter& input = kernel_.parameters[i];
-    return isNeeded(input, variant_.specs) ? fmt::format("{}{}", lanesOf(input), lane) : absentElement(input);
-  }
-
-  void startFromIdentities(std::string_view indent = "") {
-    for (const Parameter* accumulator : accumulators_) {
-      statement(fmt::format("{}{} {} = {};", indent, accumulator->element->glsl, total(*accumulator),
-                            accumulator->identity));
-    }
-  }
-
-  /// Calls visit(accumulator, first value): an accumulator starts as the input at its position among the
-  /// accumulators.
-  template <class Visit>
-  void forEachStart(const Visit& visit) {
-    for (std::size_t k = 0; k < accumulators_.size(); ++k) {
-      const auto i = static_cast<std::size_t>(inputs_[k] - kernel_.parameters.data());
-      visit(total(*accumulators_[k]), variant_.packed ? elementOf(i, ".x") : element(i, first_));
-    }
-  }
-
-  void startFromElements() {
-    std::size_t k = 0;
-    forEachStart([&](const std::string& name, const std::string& value) {
-      statement(fmt::format("{} {} = {};", accumulators_[k++]->element->glsl, name, value));
-    });
-  }
+  std::string firstOf(std::size_t i) { return variant_.packed ? elementOf(i, ".x") : element(i, first_); }
 
   /// Starts a run from its first element or from the identity.
   void foldRun() {
@@ -520,7 +354,7 @@ class ReductionText {
     if (isSeeded) {
       if (variant_.packed) declareLanes();
       if (variant_.packed) fetchLanes(first_, "");
-      startFromElements();
+      startFromElements([&](std::size_t i) { return firstOf(i); });
       if (variant_.packed) foldTexel("", 1);
     } else {
       startFromIdentities();
@@ -544,12 +378,12 @@ class ReductionText {
         variant_.run > 0 ? fmt::format("for (int sk_i = 0; sk_i < {}; ++sk_i) {{", variant_.run / part)
                          : fmt::format("for (; sk_count >= {0}; sk_count -= {0}) {{", part);
     statement((variant_.grouped ? "if (sk_isInside) " : "") + loop);
-    isInPart_ = true;
+    folded_ = "sk_part";
     startFromIdentities("  ");
     statement(fmt::format("  for (int sk_k = 0; sk_k < {}; ++sk_k) {{", part));
     if (variant_.packed) fetchLanes(next_, "    ");
     foldTexel("    ");
-    isInPart_ = false;
+    folded_ = "sk_total";
     statement("  }");
     statement("  " + calling(reduction_.combine,
                              [&](std::size_t, std::size_t k) { return held("sk_part", *accumulators_[k]); }));
@@ -561,39 +395,15 @@ class ReductionText {
     for (const std::string& line : step_) statement("  " + line);
   }
 
-  Texel numberedTexel(std::string_view number) {
-    program_.require(Function::Texel);
-    integers({"sk_shift"});
-    return {fmt::format("sk_texel({}, sk_shift)", number), variant_.sourceLayered ? "sk_shift" : ""};
-  }
-
-  void integers(std::initializer_list<std::string_view> uniforms) {
-    for (const std::string_view uniform : uniforms) program_.uniform("int", uniform);
-  }
-  void vectors(std::initializer_list<std::string_view> uniforms) {
-    for (const std::string_view uniform : uniforms) program_.uniform("ivec4", uniform);
-  }
-  void statement(std::string_view line) { program_.statement(line); }
-
-  const Profile& profile_;
-  const Reduction& reduction_;
-  const ReduceVariant& variant_;
-  const HeldKernel held_;
-  const Kernel& kernel_;
-  std::vector<const Parameter*> inputs_;
-  std::vector<const Parameter*> accumulators_;
-  std::vector<std::string> arguments_;  ///< those that are the same for all elements, and iterators
-  ProgramText program_;
-  DomainText domain_;
   Texel first_;  ///< of the run's first element
   Texel next_;  ///< of its element sk_k
-  bool isInPart_ = false;  ///< accumulators are those of a part of the run
   std::vector<std::string> step_;  ///< statements that advance to the next element
 };
 
 }  // namespace
 
 std::string reduceProgram(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant) {
+  if (variant.scan != ScanPass::None) return scanProgram(profile, reduction, variant);
   return ReductionText(profile, reduction, variant).write();
 }
 

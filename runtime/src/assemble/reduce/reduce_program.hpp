@@ -45,7 +45,15 @@ enum class Runs : std::uint8_t {
   Split,  ///< several runs per block
 };
 
-/// One program of a reduction, which passes with equal variants share. For walks of partial results and for
+/// What a pass of a scan computes (scan_plan.hpp).
+enum class ScanPass : std::uint8_t {
+  None,  ///< it belongs to a reduction
+  Folds,  ///< one result for each run
+  Inclusive,  ///< one for each item: those of its run up to it, after the runs before
+  Exclusive,  ///< the same without the item
+};
+
+/// One program of a reduction or a scan, which passes with equal variants share. For walks of partial results and for
 /// Nothing, `access` does not describe inputs. For Index, no input is aligned; for other walks, all are
 /// aligned and have one layout.
 struct ReduceVariant {
@@ -68,6 +76,9 @@ struct ReduceVariant {
   bool packed = false;  ///< walks of elements: the inputs are packed, and a step is a whole texel
   bool sourceLayered = false;  ///< of what is read, except for Walk::Index
   bool domainLayered = false;
+  ScanPass scan = ScanPass::None;
+  bool carried = false;  ///< scans: reads the results of the runs before
+  bool carryLayered = false;  ///< of these
   bool reshaped = false;  ///< the result has other dimensions than the grid of blocks
   std::uint8_t firstPlane = 0;  ///< among the planes of all accumulators: the first one written,
   std::uint8_t planeCount = 0;  ///< and how many; 0 means all

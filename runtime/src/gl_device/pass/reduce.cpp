@@ -3,6 +3,7 @@
 // GlDevice::reduce: reduces to values in host memory or to streams. reduce_passes.hpp runs the passes.
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "call/check_argument.hpp"
@@ -106,15 +107,22 @@ void reduceToValues(GlDevice& device, const ResolvedReduction& call) {
 void reduceToStreams(GlDevice& device, const ResolvedReduction& call) {
   const Kernel& fold = call.reduction.fold;
   const auto isResult = [](const Parameter& parameter) { return parameter.role == Role::Accumulator; };
-  for (std::size_t i = 0; i < call.arguments.size(); ++i) {
-    if (isResult(fold.parameters[i])) glStream(call.arguments[i].region).unpack();
+  const auto unpackResults = [&] {
+    for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+      if (isResult(fold.parameters[i])) glStream(call.arguments[i].region).unpack();
+    }
+  };
+  if (!call.scan) unpackResults();
+  std::optional<ReducePasses> passes(std::in_place, device, call);
+  if (call.scan && !passes->scansByTexel()) {
+    unpackResults();
+    passes.emplace(device, call);
   }
-  ReducePasses passes(device, call);
   const auto first =
       static_cast<std::size_t>(std::ranges::find_if(fold.parameters, isResult) - fold.parameters.begin());
-  const RegionLayout& layout = passes.operands()[first].regionLayout;
+  const RegionLayout& layout = passes->operands()[first].regionLayout;
   const assemble::SpecValues specs = specsOf(fold, call.arguments);
-  OutputTargets targets(device, fold, call.arguments, specs, passes.operands(), layout,
+  OutputTargets targets(device, fold, call.arguments, specs, passes->operands(), layout,
                         glStream(call.arguments[first].region).layout);
   std::vector<RenderTarget*> drawn;
   for (const std::span<RenderTarget> planes : targets.planesOfOutputs()) {
@@ -122,7 +130,12 @@ void reduceToStreams(GlDevice& device, const ResolvedReduction& call) {
       drawn.push_back(&plane);
     }
   }
-  passes.run(layout, drawn, [&] { targets.begin(); });
+  const auto begin = [&] { targets.begin(); };
+  if (call.scan) {
+    passes->scan(layout, drawn, call.scan->isExclusive, begin);
+  } else {
+    passes->run(layout, drawn, begin);
+  }
   targets.putInPlace();
 }
 

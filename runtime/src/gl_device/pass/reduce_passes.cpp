@@ -2,9 +2,12 @@
 #include "gl_device/pass/reduce_passes.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <utility>
 
 #include "assemble/glsl/program_text.hpp"
+#include "assemble/reduce/scan_plan.hpp"
+#include "assemble/reduce/scan_program.hpp"
 #include "call/check_argument.hpp"
 #include "call/resolved_call.hpp"
 #include "gl_device/gl_stream.hpp"
@@ -70,9 +73,10 @@ ReducePasses::ReducePasses(GlDevice& device, const ResolvedReduction& call)
     : device_(device),
       reduction_(call.reduction),
       specs_(specsOf(call.reduction.fold, call.arguments)),
+      isScan_(call.scan.has_value()),
       blocks_(xFirst(call.blocks)) {
   findOperands(call.arguments, call.domain);
-  byTexel_ = foldsByTexel(blocks_);
+  byTexel_ = isScan_ ? mayScanByTexel(call.arguments) : foldsByTexel(blocks_);
   if (!byTexel_ && call.domain.size() > 0) {
     for (std::size_t i = 0; i < call.arguments.size(); ++i) {
       if (isRead(i)) glStream(call.arguments[i].region).unpack();
@@ -103,20 +107,56 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
                                     .inAnyOrder = reduction_.commutative,
                                     .inGroups = assemble::foldsInGroups(reduction_)};
   const std::vector<ReducePass> passes = assemble::planReduction(elements_, result, limits, division);
-  for (const ReducePass& pass : passes) {
-    if (!start(pass)) break;  // then the other programs exist, too
-  }
+  startAll(passes);
   for (const ReducePass& pass : passes) {
     if (pass.toResult) {
       prepare(pass, targets);
       begin();
-      draw(pass, partials.planes, targets);
+      draw(pass, {partials.planes}, targets);
       continue;
     }
     PlanesLease next(device_);
     takeAccumulators(reduction_.fold, pass.texture, "partial results", next);
-    draw(pass, partials.planes, pointersTo(next.planes));
+    draw(pass, {partials.planes}, pointersTo(next.planes));
     std::swap(partials.planes, next.planes);
+  }
+}
+
+void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* const> targets, bool isExclusive,
+                        const std::function<void()>& begin) {
+  const assemble::ReduceLimits limits{.texture = device_.textureLimits(), .fanIn = assemble::scanRun};
+  const assemble::Lines lines = assemble::linesOf(elements_.extent, blocks_);
+  const assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
+  const assemble::ScanPlan plan = assemble::planScan(elements_, result, limits, lines, access, isExclusive);
+  startAll(plan.folds);
+  startAll(plan.scans);
+  std::deque<PlanesLease> levels;
+  for (const ReducePass& pass : plan.folds) {
+    const std::span<RenderTarget> source =
+        levels.empty() ? std::span<RenderTarget>() : std::span<RenderTarget>(levels.back().planes);
+    PlanesLease& next = levels.emplace_back(device_);
+    takeAccumulators(reduction_.fold, pass.texture, "partial results", next);
+    draw(pass, {source}, pointersTo(next.planes));
+  }
+  PlanesLease carries(device_);
+  for (const ReducePass& pass : plan.scans) {
+    if (pass.toResult) {
+      prepare(pass, targets);
+      begin();
+      draw(pass, {{}, carries.planes}, targets);
+      continue;
+    }
+    PlanesLease next(device_);
+    takeAccumulators(reduction_.fold, pass.texture, "partial results", next);
+    draw(pass, {levels.back().planes, carries.planes}, pointersTo(next.planes));
+    std::swap(carries.planes, next.planes);
+    levels.pop_back();
+  }
+}
+
+void ReducePasses::startAll(std::span<const ReducePass> passes) {
+  for (const ReducePass& pass : passes) {
+    if (!start(pass)) break;  // then the other programs exist, too
   }
 }
 
@@ -154,6 +194,20 @@ bool ReducePasses::mayGroup() const {
 bool ReducePasses::foldsByTexel(const Index4& blocks) const {
   return elements_.packed && !foldsByIndex() && assemble::isWholeTexels(elements_) &&
          elements_.extent[0] / blocks[0] % assemble::lanes == 0;
+}
+
+bool ReducePasses::mayScanByTexel(std::span<const Argument> arguments) const {
+  const assemble::Lines lines = assemble::linesOf(elements_.extent, blocks_);
+  if (!elements_.packed || !assemble::isConsecutive(elements_) || foldsByIndex() || lines.inner != 1 ||
+      lines.length % assemble::lanes != 0 || !assemble::isWholeTexels(elements_)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (reduction_.fold.parameters[i].role != Role::Accumulator) continue;
+    const RegionLayout& result = operands_[i].regionLayout;
+    if (!result.packed || !assemble::isWholeTexels(result)) return false;
+  }
+  return true;
 }
 
 Operand ReducePasses::operandOf(std::size_t i, const Argument& argument, const Shape& domain) const {
@@ -215,11 +269,23 @@ std::vector<Operand> ReducePasses::operandsOfCombine(std::span<RenderTarget> par
   return operands;
 }
 
-void ReducePasses::draw(const ReducePass& pass, std::span<RenderTarget> partials,
+void ReducePasses::addCarries(std::vector<Operand>& operands, std::span<RenderTarget> carries) const {
+  for (const Parameter& parameter : reduction_.fold.parameters) {
+    if (parameter.role != Role::Accumulator) continue;
+    const std::size_t count = parameter.element->fields.size();
+    operands.push_back({.planes = carries.first(count)});
+    carries = carries.subspan(count);
+  }
+}
+
+void ReducePasses::draw(const ReducePass& pass, const Source& source,
                         std::span<RenderTarget* const> targets) {
   const bool isPartial = assemble::isOfPartials(pass.variant.walk);
-  const Kernel& kernel = isPartial ? reduction_.combine : reduction_.fold;
-  const std::vector<Operand> operands = isPartial ? operandsOfCombine(partials) : operands_;
+  const Kernel& own = isPartial ? reduction_.combine : reduction_.fold;
+  const assemble::ContinuedKernel continued(own);
+  const Kernel& kernel = pass.variant.carried ? continued.kernel() : own;
+  std::vector<Operand> operands = isPartial ? operandsOfCombine(source.partials) : operands_;
+  if (pass.variant.carried) addCarries(operands, source.carries);
   if (pass.variant.toBuffer) bindValues();
   forEachPart(
       pass, operands, [&](const assemble::ReduceVariant& variant, std::size_t first, std::size_t count) {
@@ -286,7 +352,7 @@ void ReducePasses::addAccess(assemble::ReduceVariant& variant, const Kernel& ker
                              std::span<const Operand> operands) const {
   assemble::Variant chosen = chooseVariant(kernel, operands, elements_);
   variant.specs = chosen.specs;
-  for (std::size_t i = 0; i < operands.size(); ++i) {
+  for (std::size_t i = 0; i < chosen.access.size(); ++i) {
     StreamAccess& access = chosen.access[i];
     if (variant.walk == Walk::Index && kernel.parameters[i].role == Role::Input) {
       const RegionLayout& regionLayout = operands[i].regionLayout;

@@ -46,8 +46,18 @@ class ReducePasses {
   /// sk::Error before that.
   void run(const assemble::RegionLayout& result, std::span<RenderTarget* const> targets,
            const std::function<void()>& begin);
+  /// Whether a scan also writes packed texels: its results must not be unpacked then.
+  bool scansByTexel() const { return isScan_ && byTexel_; }
+  /// Scans the elements, which are not none, along lines, to `targets`. Calls begin() like run().
+  void scan(const assemble::RegionLayout& result, std::span<RenderTarget* const> targets, bool isExclusive,
+            const std::function<void()>& begin);
 
  private:
+  /// What a pass reads.
+  struct Source {
+    std::span<RenderTarget> partials = {};  ///< of passes over partial results
+    std::span<RenderTarget> carries = {};  ///< of passes of scans that continue from them
+  };
   void findOperands(std::span<const Argument> arguments, const Shape& domain);
   /// The limits for planReduction(). In software, runs are long: a pass costs as much as some thousand
   /// texels, and few invocations are enough for the threads.
@@ -60,6 +70,8 @@ class ReducePasses {
   bool mayGroup() const;
   /// Whether runs step by packed texels: all inputs are packed, and blocks consist of whole texels.
   bool foldsByTexel(const assemble::Index4& blocks) const;
+  /// Whether runs of a scan do: its results, too, are packed, and lines are whole texels that are consecutive.
+  bool mayScanByTexel(std::span<const Argument> arguments) const;
   Operand operandOf(std::size_t i, const Argument& argument, const Shape& domain) const;
   /// The region layout of the first input that has the shape of the domain. If there is none, for example
   /// because all inputs are broadcast, only the extent of the result is meaningful, and elements are read by
@@ -71,9 +83,12 @@ class ReducePasses {
   /// The operands of the combining kernel: the planes of partial results, and operands of the fold.
   /// `partials` may be empty to choose a program.
   std::vector<Operand> operandsOfCombine(std::span<RenderTarget> partials) const;
+  /// The operands of the accumulators' results of earlier runs (assemble::ContinuedKernel).
+  void addCarries(std::vector<Operand>& operands, std::span<RenderTarget> carries) const;
   /// Draws a pass, once for each group of targets that the device can draw to together.
-  void draw(const assemble::ReducePass& pass, std::span<RenderTarget> partials,
-            std::span<RenderTarget* const> targets);
+  void draw(const assemble::ReducePass& pass, const Source& source, std::span<RenderTarget* const> targets);
+  /// Makes the driver start compiling the programs of all passes, up to the first that exists.
+  void startAll(std::span<const assemble::ReducePass> passes);
   /// Prepares what draw() needs: programs, and framebuffers over several planes. Throws sk::Error if the
   /// driver rejects one.
   void prepare(const assemble::ReducePass& pass, std::span<RenderTarget* const> targets);
@@ -93,6 +108,7 @@ class ReducePasses {
   const assemble::SpecValues specs_;
   std::vector<Operand> operands_;  ///< of the fold
   assemble::RegionLayout elements_;
+  const bool isScan_;
   bool byTexel_ = false;
   const assemble::Index4 blocks_;
 };

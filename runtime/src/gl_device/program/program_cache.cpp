@@ -7,6 +7,7 @@
 
 #include "assemble/elements/storage.hpp"
 #include "assemble/glsl/tables.hpp"
+#include "assemble/reduce/scan_program.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/program/shader_log.hpp"
 #include "sk/error.hpp"
@@ -288,7 +289,9 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     finish(result->kernel, kernel, started.empty() ? begin(reduction, variant) : std::move(started.mapped()));
     result->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials;
     if (variant.walk != assemble::Walk::Nothing) {
-      findParameters(result->kernel, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
+      const assemble::HeldKernel held(kernel, variant.access);
+      const assemble::ContinuedKernel continued(held.kernel());
+      findParameters(result->kernel, variant.carried ? continued.kernel() : held.kernel(), variant.specs);
     }
     makeRoom(reductions_, [&](const ReduceKey& other) { return other.first == &reduction; });
     return *reductions_.insert_or_assign(key, Kept<ReduceProgram>{std::move(result), ++clock_})

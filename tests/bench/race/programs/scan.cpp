@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// What comes before each element: the exclusive prefix sums of integers, by Blelloch's two ways through a tree. ints: x.
+// What comes before each element: the exclusive prefix sums of integers. ints: x.
 #include <vector>
 
 #include "our_task.hpp"
-#include "prefix_scan.sk.hpp"
 #include "programs/all.hpp"
+#include "programs/sums.sk.hpp"
 
 namespace race {
 namespace {
@@ -13,33 +13,21 @@ namespace {
 class Scan final : public OurTask {
  public:
   Scan(sk::Device& device, const sk::CallOptions& options, const Problem& p)
-      : OurTask(device), pair_(prefix_scan::pair.with(options)), spread_(prefix_scan::spread.with(options)) {
-    sums_.push_back(filled<std::int32_t>({p.size()}, p.ints[0]));
-    before_.push_back(device.stream<std::int32_t>({p.size()}));
-    while (sums_.back().size() > 1) {
-      const std::int64_t half = (sums_.back().size() + 1) / 2;
-      sums_.push_back(device.stream<std::int32_t>({half}));
-      before_.push_back(device.stream<std::int32_t>({half}));
-    }
-    before_.back().write(std::vector<std::int32_t>{0});
-  }
+      : OurTask(device),
+        prefix_(kernels::prefix.with(options).with({.scan = sk::Scan::Exclusive})),
+        x_(filled<std::int32_t>({p.size()}, p.ints[0])),
+        sums_(device.stream<std::int32_t>({p.size()})) {}
 
   std::vector<float> result() override {
-    const std::vector<std::int32_t> sums = before_.front().read();
+    const std::vector<std::int32_t> sums = sums_.read();
     return {sums.begin(), sums.end()};
   }
 
  private:
-  void once() override {
-    for (std::size_t level = 0; level + 1 < sums_.size(); ++level) pair_(sums_[level], sums_[level + 1]);
-    for (std::size_t level = sums_.size() - 1; level-- > 0;) {
-      spread_(before_[level + 1], sums_[level], before_[level]);
-    }
-  }
+  void once() override { prefix_(x_, sums_); }
 
-  prefix_scan::PairKernel pair_;
-  prefix_scan::SpreadKernel spread_;
-  std::vector<sk::Stream<std::int32_t>> sums_, before_;
+  kernels::PrefixScan prefix_;
+  sk::Stream<std::int32_t> x_, sums_;
 };
 
 }  // namespace

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+#include "assemble/reduce/fold_text.hpp"
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "assemble/elements/arguments.hpp"
+#include "assemble/elements/gather.hpp"
+
+namespace sk::assemble {
+
+using program::Kernel;
+using program::Parameter;
+using program::Role;
+
+FoldText::FoldText(const Profile& profile, const program::Reduction& reduction, const ReduceVariant& variant,
+                   const Kernel& kernel)
+    : profile_(profile),
+      reduction_(reduction),
+      variant_(variant),
+      held_(kernel, variant.access),
+      kernel_(held_.kernel()),
+      program_(profile),
+      domain_(program_, {variant.domain, variant.domainView, variant.domainRank, variant.domainLayered},
+              "sk_result") {
+  for (const Parameter& parameter : kernel_.parameters) {
+    if (parameter.role == Role::Input) inputs_.push_back(&parameter);
+    if (parameter.role == Role::Accumulator) accumulators_.push_back(&parameter);
+  }
+}
+
+std::string FoldText::held(std::string_view name, const Parameter& accumulator) const {
+  return accumulators_.size() == 1 ? std::string(name) : fmt::format("{}_{}", name, accumulator.symbol);
+}
+
+std::string FoldText::item() {
+  program_.variable("ivec4", "sk_item");
+  return "sk_item";
+}
+
+std::string FoldText::itemPosition(int components) {
+  static constexpr std::array<std::string_view, 4> swizzles = {".x", ".xy", ".xyz", ""};
+  return fmt::format("{}{}", item(), swizzles[static_cast<std::size_t>(components - 1)]);
+}
+
+void FoldText::defineParameters() {
+  if (kernel_.usesIndex) program_.function("ivec4 sk_index()", {fmt::format("return {};", item())});
+  if (kernel_.usesExtent) {
+    const std::string shape = program_.uniform("ivec4", "sk_item_shape");
+    program_.function("ivec4 sk_extent()", {fmt::format("return {};", shape)});
+  }
+  std::size_t specs = 0;
+  for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+    const Parameter& parameter = kernel_.parameters[i];
+    if (parameter.role == Role::Spec) {
+      arguments_.push_back(specConstant(program_, parameter, variant_.specs[specs++]));
+    } else if (isNeeded(parameter, variant_.specs)) {
+      defineParameter(parameter, access(i));
+    } else {
+      defineAbsent(program_, parameter);
+    }
+  }
+}
+
+void FoldText::defineParameter(const Parameter& parameter, const StreamAccess& access) {
+  switch (parameter.role) {
+    case Role::Uniform:
+      arguments_.push_back(parameterUniform(program_, parameter.element->glsl, "arg", parameter));
+      return;
+    case Role::Iterator: arguments_.push_back(iteratorValue(program_, parameter, access, item())); return;
+    case Role::Input:
+      declareSamplers(
+          program_, parameter,
+          variant_.walk == Walk::Index ? access.addressing == Addressing::Layered : variant_.sourceLayered);
+      if (variant_.walk == Walk::Index) defineInputIndex(program_, parameter, access, item());
+      defineExtent(program_, parameter);
+      return;
+    case Role::Gather:
+      defineGather(program_, [&](int components) { return itemPosition(components); }, parameter, access);
+      defineExtent(program_, parameter);
+      return;
+    case Role::Spec:
+    case Role::Accumulator:
+    case Role::Output:
+    case Role::VariableOutput:
+    case Role::Scatter: return;
+  }
+}
+
+std::string FoldText::element(std::size_t i, const Texel& texel) {
+  const Parameter& input = kernel_.parameters[i];
+  if (!isNeeded(input, variant_.specs)) return absentElement(input);
+  if (variant_.walk != Walk::Index) return fetch(program_, input, texel);
+  return fetch(program_, input, inputTexel(program_, input, access(i)));
+}
+
+Texel FoldText::numberedTexel(std::string_view number) {
+  program_.require(Function::Texel);
+  integers({"sk_shift"});
+  return {fmt::format("sk_texel({}, sk_shift)", number), variant_.sourceLayered ? "sk_shift" : ""};
+}
+
+namespace {
+
+std::string lanesOf(const Parameter& input) { return fmt::format("sk_in_{}", input.symbol); }
+
+}  // namespace
+
+void FoldText::declareLanes() {
+  for (const Parameter* input : inputs_) {
+    if (isNeeded(*input, variant_.specs))
+      statement(fmt::format("{} {};", fourOf(*input).element->glsl, lanesOf(*input)));
+  }
+}
+
+void FoldText::fetchLanes(const Texel& texel, std::string_view indent) {
+  for (const Parameter* input : inputs_) {
+    if (!isNeeded(*input, variant_.specs)) continue;
+    statement(fmt::format("{}{} = {};", indent, lanesOf(*input), fetch(program_, fourOf(*input), texel)));
+  }
+}
+
+std::string FoldText::elementOf(std::size_t i, std::string_view lane) const {
+  const Parameter& input = kernel_.parameters[i];
+  return isNeeded(input, variant_.specs) ? fmt::format("{}{}", lanesOf(input), lane) : absentElement(input);
+}
+
+void FoldText::startFromIdentities(std::string_view indent) {
+  for (const Parameter* accumulator : accumulators_) {
+    statement(fmt::format("{}{} {} = {};", indent, accumulator->element->glsl, total(*accumulator),
+                          accumulator->identity));
+  }
+}
+
+void FoldText::startFromElements(const std::function<std::string(std::size_t i)>& valueOf) {
+  for (std::size_t k = 0; k < accumulators_.size(); ++k) {
+    const auto i = static_cast<std::size_t>(inputs_[k] - kernel_.parameters.data());
+    statement(
+        fmt::format("{} {} = {};", accumulators_[k]->element->glsl, total(*accumulators_[k]), valueOf(i)));
+  }
+}
+
+std::string FoldText::calling(const Kernel& kernel, const ElementOf& inputElement) {
+  std::vector<std::string> arguments;
+  std::size_t inputs = 0;
+  std::size_t accumulators = 0;
+  std::size_t values = 0;
+  for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
+    switch (kernel.parameters[i].role) {
+      case Role::Uniform:
+      case Role::Iterator:
+      case Role::Spec: arguments.push_back(arguments_[values++]); break;
+      case Role::Input: arguments.push_back(inputElement(i, inputs++)); break;
+      case Role::Accumulator: arguments.push_back(total(*accumulators_[accumulators++])); break;
+      case Role::Gather:
+      case Role::Output:
+      case Role::VariableOutput:
+      case Role::Scatter: break;
+    }
+  }
+  return call(kernel.entry, arguments, "        ") + ";";
+}
+
+void FoldText::integers(std::initializer_list<std::string_view> uniforms) {
+  for (const std::string_view uniform : uniforms) program_.uniform("int", uniform);
+}
+
+void FoldText::vectors(std::initializer_list<std::string_view> uniforms) {
+  for (const std::string_view uniform : uniforms) program_.uniform("ivec4", uniform);
+}
+
+std::string FoldText::finish(std::string_view comment) {
+  if (profile_.stage == Stage::Compute)
+    program_.storeAt(place(program_, domain_.texel()), variant_.domainLayered);
+  if (variant_.toBuffer) program_.storeInBuffer();
+  return program_.finish(profile_, fmt::format("{} for {}: {}", reduction_.fold.name, profile_.name, comment),
+                         kernel_);
+}
+
+}  // namespace sk::assemble

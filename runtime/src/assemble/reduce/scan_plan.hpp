@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+//
+// The passes of a scan, as a pure schedule. To run it:
+//
+//   level 0 = the inputs' planes
+//   for each pass of `folds`: level k + 1 = new planes of the accumulators' types and of pass.texture's shape;
+//                             draw it from level k
+//   for each pass of `scans`: target = pass.toResult ? the results' planes : new planes of pass.texture's shape;
+//                             draw it from the last level, and from the target of the pass before, if
+//                             pass.variant.carried; forget that level
+//
+// Result r of the runs of line l has number r * lines + l in a linearised texture.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "assemble/reduce/reduce_plan.hpp"
+#include "assemble/region_layout.hpp"
+
+namespace sk::assemble {
+
+/// The elements of a run (ReduceLimits::fanIn). An item of a level folds half a run on average, and the results of runs
+/// take passes of their own.
+inline constexpr std::int32_t scanRun = 16;
+
+struct ScanPlan {
+  std::vector<ReducePass> folds;  ///< from the elements to one run in each line
+  std::vector<ReducePass> scans;  ///< one more; the last writes the results
+};
+
+/// The lines of elements that are scanned each by itself.
+struct Lines {
+  std::int32_t length;  ///< elements in each
+  std::int32_t inner;  ///< the distance of its elements, in row-major numbers
+};
+/// The lines along the dimension in which there is one block. If there is one block in every dimension, all elements
+/// are one line.
+Lines linesOf(const Index4& extent, const Index4& blocks);
+
+/// How the elements are addressed.
+struct ScanAccess {
+  bool byIndex = true;  ///< Walk::Index; only the extent of the elements' region layout matters then
+  bool byTexel = false;  ///< elements and results are packed, and lines consist of whole texels
+};
+/// Whether the elements of a region, which have no index, can be scanned by their numbers: they are consecutive in a
+/// linearised stream.
+bool isConsecutive(const RegionLayout& elements);
+
+/// Plans the scan of `elements` to `result`, which has the same extent. It is not empty.
+ScanPlan planScan(const RegionLayout& elements, const RegionLayout& result, const ReduceLimits& limits,
+                  const Lines& lines, const ScanAccess& access, bool isExclusive);
+
+}  // namespace sk::assemble
