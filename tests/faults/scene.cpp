@@ -140,6 +140,8 @@ const std::vector<Scenario>& scenarios() {
       {"reduce to a stream", [](Scene& of) { sum(of.x, of.part); }, false, false, true},
       {"reduce exactly to a stream",
        [](Scene& of) { sum.with({.accumulate = sk::Accumulate::Exact})(of.x, of.part); }, false, false, true},
+      {"scan", [](Scene& of) { running(of.x, of.r); }, false, true},
+      {"scan in place", [](Scene& of) { running.with({.along = 0})(of.r, of.r); }, false, true},
       {"push", [](Scene& of) { positive(of.x, of.pushed); }, false, false, true},
       {"push any number", [](Scene& of) { repeat(of.x, of.pushed, of.s); }},
       {"scatter", [](Scene& of) { histogram(of.indices, of.bins); }},
