@@ -33,7 +33,8 @@ struct Operand {
   Extents extent{1, 1, 1, 1};  ///< of the region
   Extents multiply{1, 1, 1, 1};  ///< an element input's index is the domain's, times this,
   Extents divide{1, 1, 1, 1};  ///< divided by this
-  bool holdsFloats = false;  ///< element inputs: the arrays hold floats, but the code has doubles
+  bool holdsFloats =
+      false;  ///< element inputs, results of scans: the arrays hold floats, but the code has doubles
   bool countsElements = false;  ///< iterators: advances with the element number, else with the index
   Pushed* pushed = nullptr;  ///< variable outputs
 };

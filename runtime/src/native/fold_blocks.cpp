@@ -109,7 +109,10 @@ FoldResults::FoldResults(std::span<const program::Parameter> parameters,
     if (parameters[i].role != program::Role::Accumulator) continue;
     for (std::size_t c = 0; c < scalarsOf(*parameters[i].element); ++c) {
       auto* const array = operands[i].components.empty() ? nullptr : operands[i].components[c];
-      arrays_.push_back({static_cast<std::byte*>(array), &operands[i], shape.bytesOf(arrays_.size())});
+      const std::size_t bytes = shape.bytesOf(arrays_.size());
+      const bool isRounded = operands[i].holdsFloats && bytes == sizeof(double);
+      arrays_.push_back(
+          {static_cast<std::byte*>(array), &operands[i], isRounded ? sizeof(float) : bytes, isRounded});
     }
   }
 }
@@ -121,6 +124,12 @@ void FoldResults::store(const Extents& block, const StateColumns& columns, std::
     const std::int64_t step = array.operand->stride[0];
     const std::size_t together = step == 1 ? static_cast<std::size_t>(count) : 1;
     std::byte* to = at(scalar, block);
+    if (array.isRounded) {
+      const auto* const doubles = reinterpret_cast<const double*>(columns.at(scalar, 0));
+      auto* const floats = reinterpret_cast<float*>(to);
+      for (std::int64_t k = 0; k < count; ++k) floats[k * step] = static_cast<float>(doubles[k]);
+      continue;
+    }
     for (std::int64_t k = 0; k < count; k += static_cast<std::int64_t>(together)) {
       std::memcpy(to, columns.at(scalar, k), together * array.bytes);
       to += step * static_cast<std::int64_t>(array.bytes);
@@ -129,8 +138,9 @@ void FoldResults::store(const Extents& block, const StateColumns& columns, std::
 }
 
 bool FoldResults::areRows() const {
-  return std::ranges::all_of(
-      arrays_, [](const Array& array) { return array.array != nullptr && array.operand->stride[0] == 1; });
+  return std::ranges::all_of(arrays_, [](const Array& array) {
+    return array.array != nullptr && array.operand->stride[0] == 1 && !array.isRounded;
+  });
 }
 
 std::byte* FoldResults::at(std::size_t scalar, const Extents& block) const {

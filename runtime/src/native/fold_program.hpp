@@ -54,7 +54,7 @@ class FoldResults {
   /// Stores the results of `count` neighbouring blocks from `block` on, which are the first columns.
   void store(const native::Extents& block, const StateColumns& columns, std::int64_t count) const;
 
-  /// True if all results are stored, and neighbouring blocks' without gaps.
+  /// True if all results are stored as they are, and neighbouring blocks' without gaps.
   bool areRows() const;
   /// The address of a scalar of a block's result, if it is stored.
   std::byte* at(std::size_t scalar, const native::Extents& block) const;
@@ -63,7 +63,8 @@ class FoldResults {
   struct Array {
     std::byte* array;  ///< null if the result is omitted
     const native::Operand* operand;
-    std::size_t bytes;
+    std::size_t bytes;  ///< of a scalar in the array
+    bool isRounded;  ///< from a double to a float
   };
   std::vector<Array> arrays_;
 };

@@ -154,6 +154,9 @@ class Operands {
         .second.arrays();
   }
 
+  /// True if results go to the stream's floats one by one, rounded from the code's doubles.
+  bool storesFloats(const NativeStream& stream) const { return isScan_ && areWidened(stream); }
+
  private:
   /// True if an argument is written neither to spare arrays nor to a copy.
   bool isWrittenInPlace(std::size_t i) const {
@@ -161,7 +164,7 @@ class Operands {
     const Role role = kernel_.parameters[i].role;
     return isWritten(role) && role != Role::VariableOutput && region.stream != nullptr &&
            assemble::isNeeded(kernel_.parameters[i], specs_) && !isReplaced(region) &&
-           nativeStream(region).components.real() == real_;
+           (nativeStream(region).components.real() == real_ || storesFloats(nativeStream(region)));
   }
 
   Operand operandAt(std::size_t i) {
@@ -368,7 +371,9 @@ Operand resultOperand(Operands& fold, const StreamRegion& region, const Extents&
     operand.extent[d] = own.extent[next];
     operand.stride[d] = own.stride[next++];
   }
-  operand.components = fold.arraysToWrite(nativeStream(region));
+  NativeStream& stream = nativeStream(region);
+  operand.holdsFloats = fold.storesFloats(stream);
+  operand.components = operand.holdsFloats ? stream.components.arrays() : fold.arraysToWrite(stream);
   return operand;
 }
 
