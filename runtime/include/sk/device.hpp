@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "sk/arithmetic.hpp"
+#include "sk/loop.hpp"
 #include "sk/owner.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
@@ -131,6 +133,18 @@ class Device {
   /// elements as bytes. `element` must outlive the stream.
   detail::StreamOwner createStream(const program::Element& element, const Shape& shape,
                                    Storage storage = Storage::Default, std::string_view name = {});
+
+  /// Records the calls of kernels, reductions to streams, scans, fill() and copyTo() that `calls` makes on this
+  /// device, without running them. Code of the application between the calls runs now and never again: uniform
+  /// arguments keep their values. Streams of this device that `calls` swaps (std::swap(u, v)) are swapped in each
+  /// iteration; after record() they are where they were. Throws sk::Error if `calls` reads or writes a stream,
+  /// asks for a value, or pushes to a variable output, or if an argument does not match.
+  template <class Calls>
+  Loop record(Calls&& calls) {
+    detail::Recording recording(state());
+    std::forward<Calls>(calls)();
+    return Loop(recording.finish());
+  }
 
   /// The renderer's name, as reported by the driver.
   const std::string& name() const;

@@ -6,13 +6,14 @@
 
 namespace sk::detail {
 
-/// Move-only. The destructor calls Delete with the object, if there is one.
+/// Move-only. The destructor calls Delete with the object, if there is one. Delete::moved, if it exists, is called
+/// with the object and its new owner.
 template <class State, class Delete>
 class Owner {
  public:
   Owner() = default;
-  explicit Owner(State* state) noexcept : state_(state) {}
-  Owner(Owner&& other) noexcept : state_(other.release()) {}
+  explicit Owner(State* state) noexcept : state_(state) { notify(); }
+  Owner(Owner&& other) noexcept : state_(other.release()) { notify(); }
   Owner& operator=(Owner&& other) noexcept {
     if (this != &other) reset(other.release());
     return *this;
@@ -35,7 +36,14 @@ class Owner {
   void reset(State* state) noexcept {
     State* const old = state_;
     state_ = state;
+    notify();
     if (old != nullptr) Delete()(old);
+  }
+
+  void notify() noexcept {
+    if constexpr (requires { Delete::moved(state_, this); }) {
+      if (state_ != nullptr) Delete::moved(state_, this);
+    }
   }
 
   State* state_ = nullptr;

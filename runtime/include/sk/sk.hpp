@@ -9,6 +9,7 @@
 #include "sk/error.hpp"
 #include "sk/iter.hpp"
 #include "sk/limits.hpp"
+#include "sk/loop.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
 #include "sk/table.hpp"

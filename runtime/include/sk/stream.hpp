@@ -59,7 +59,9 @@ using HostElement = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>
 namespace detail {
 
 struct StreamDeleter {
+  /// A loop may keep the stream for its calls.
   void operator()(StreamState* state) const noexcept;
+  static void moved(StreamState* state, Owner<StreamState, StreamDeleter>* holder) noexcept;
 };
 using StreamOwner = Owner<StreamState, StreamDeleter>;
 

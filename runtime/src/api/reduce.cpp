@@ -13,6 +13,7 @@
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
+#include "device/loop_state.hpp"
 #include "sk/call.hpp"
 #include "support/checked_size.hpp"
 
@@ -207,15 +208,39 @@ void reduceResolved(const ResolvedReduction& call) {
   reduceInPrecision(inDoubles);
 }
 
+void runResolved(const ResolvedReduction& call) {
+  const TraceScope traced(call.device.trace.get(), "call", call.reduction.fold.name);
+  traced.add("domain", call.domain);
+  if (!call.isToValues()) traced.add("blocks", call.blocks);
+  if (call.blocks.size() != 0) reduceResolved(call);
+}
+
+class RecordedReduction final : public RecordedCall {
+ public:
+  explicit RecordedReduction(const ResolvedReduction& call)
+      : arguments_(call.reduction.fold, call.arguments), call_(call) {
+    call_.arguments = arguments_.get();
+    arguments_.noteUses(*call.device.recording);
+  }
+
+  void run() override { runResolved(call_); }
+
+ private:
+  const OwnedArguments arguments_;
+  ResolvedReduction call_;
+};
+
 void checkAndReduce(const Reduction& reduction, std::span<const Argument> arguments,
                     std::span<void* const> values, const CallOptions& options,
                     const std::optional<ScanOrder>& scan = {}) {
   ResolvedReduction call = checkReduction(reduction, arguments, values, scan);
-  const TraceScope traced(call.device.trace.get(), "call", reduction.fold.name);
-  traced.add("domain", call.domain);
-  if (!call.isToValues()) traced.add("blocks", call.blocks);
   call.options = resolvedOptions(call, options);
-  if (call.blocks.size() != 0) reduceResolved(call);
+  if (call.device.recording == nullptr) return runResolved(call);
+  if (call.isToValues()) {
+    fail(reduction.fold,
+         "its value is not known while the device records calls; give it a stream of one element for the result");
+  }
+  call.device.recording->add(std::make_unique<RecordedReduction>(call));
 }
 
 }  // namespace

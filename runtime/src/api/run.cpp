@@ -6,6 +6,7 @@
 #include "call/check_call.hpp"
 #include "call/precision.hpp"
 #include "device/device_state.hpp"
+#include "device/loop_state.hpp"
 #include "sk/call.hpp"
 #include "support/checked_size.hpp"
 
@@ -15,6 +16,40 @@ using program::Kernel;
 
 namespace {
 
+void runResolved(DeviceState& device, const ResolvedCall& call) {
+  const TraceScope traced(device.trace.get(), "call", call.kernel.name);
+  traced.add("domain", call.domain);
+  device.run(call);
+}
+
+class RecordedKernel final : public RecordedCall {
+ public:
+  RecordedKernel(DeviceState& device, const ResolvedCall& call)
+      : device_(device), arguments_(call.kernel, call.arguments), call_(call) {
+    call_.arguments = arguments_.get();
+    arguments_.noteUses(*device.recording);
+  }
+
+  void run() override { runResolved(device_, call_); }
+
+ private:
+  DeviceState& device_;
+  const OwnedArguments arguments_;
+  ResolvedCall call_;
+};
+
+/// What is pushed decides the shapes of later calls, which are checked before.
+void record(DeviceState& device, const ResolvedCall& call) {
+  for (const program::Parameter& parameter : call.kernel.parameters) {
+    if (parameter.role != program::Role::VariableOutput) continue;
+    fail(call.kernel,
+         "'{}' is a variable output, and how many elements are pushed to it is not known before it runs; call the "
+         "kernel outside of Device::record",
+         parameter.name);
+  }
+  device.recording->add(std::make_unique<RecordedKernel>(device, call));
+}
+
 void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, const CallOptions& options) {
   if (options.accumulate != Accumulate::Default) {
     fail(kernel, "it is no reduce, which alone accumulates; call it without Accumulate");
@@ -23,11 +58,10 @@ void checkAndRun(const Kernel& kernel, std::span<const Argument> arguments, cons
   std::optional<CheckedCall> checked = checkCall(kernel, arguments);
   if (!checked) return;
   DeviceState& device = checked->device;
-  const TraceScope traced(device.trace.get(), "call", kernel.name);
-  traced.add("domain", checked->call.domain);
   checked->call.options = device.configuration.resolve(kernel, options);
   checkTables(kernel, checked->call.options);
-  device.run(checked->call);
+  if (device.recording != nullptr) return record(device, checked->call);
+  runResolved(device, checked->call);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "device/device_state.hpp"
+#include "device/loop_state.hpp"
 #include "device/stream_state.hpp"
 #include "sk/error.hpp"
 #include "sk/limits.hpp"
@@ -20,6 +21,7 @@ namespace {
 /// Checks a transfer of `count` elements. Returns the stream, or null if there is nothing to transfer.
 StreamState* checkTransfer(const StreamRegion& region, std::size_t count, bool isWritten, const char* what) {
   StreamState& stream = liveStream(region, what);
+  refuseInRecording(*stream.device, what);
   checkElementsOf(region, isWritten, what);
   const std::int64_t size = region.shape.size();
   if (static_cast<std::size_t>(size) != count) {
@@ -136,8 +138,6 @@ void checkElementsOf(const StreamRegion& region, bool isWritten, std::string_vie
       Error::Kind::Lost);
 }
 
-void detail::StreamDeleter::operator()(StreamState* state) const noexcept { delete state; }
-
 StreamRegion detail::wholeRegion(StreamState* state) {
   if (state == nullptr) {
     return {};
@@ -205,6 +205,7 @@ void detail::TransferDeleter::operator()(TransferState* state) const noexcept { 
 detail::TransferOwner detail::readAsync(const StreamRegion& region) {
   return withHostMemory("readAsync", [&] {
     StreamState& stream = liveStream(region, "readAsync");
+    refuseInRecording(*stream.device, "readAsync");
     checkElementsOf(region, false, "readAsync");
     if (region.shape.size() == 0) {
       return TransferOwner(new ReadyTransfer({}));
@@ -266,6 +267,7 @@ std::size_t realsIn(const StreamRegion& region, const program::Element& element,
 void detail::writeReals(const StreamRegion& region, std::span<const double> values) {
   withHostMemory("writeReals", [&] {
     StreamState& stream = liveStream(region, "writeReals");
+    refuseInRecording(*stream.device, "writeReals");
     checkElementsOf(region, true, "writeReals");
     const std::size_t components = realsIn(region, *stream.element, "writeReals");
     if (values.size() != components) {
@@ -282,6 +284,7 @@ void detail::writeReals(const StreamRegion& region, std::span<const double> valu
 std::vector<double> detail::readReals(const StreamRegion& region) {
   return withHostMemory("readReals", [&] {
     StreamState& stream = liveStream(region, "readReals");
+    refuseInRecording(*stream.device, "readReals");
     checkElementsOf(region, false, "readReals");
     std::vector<double> values = detail::hostVector<double>(realsIn(region, *stream.element, "readReals"));
     if (!values.empty()) {
@@ -292,13 +295,39 @@ std::vector<double> detail::readReals(const StreamRegion& region) {
   });
 }
 
+namespace {
+
+void runFill(const StreamRegion& region, const std::byte* element) {
+  const TransferScope traced(*region.stream, "fill", region);
+  region.stream->fill(region, element);
+}
+
+class RecordedFill final : public RecordedCall {
+ public:
+  RecordedFill(const StreamRegion& region, const std::byte* element)
+      : region_(region), element_(element, element + region.stream->element->size) {
+    region.stream->device->recording->use(region.stream);
+  }
+
+  void run() override { runFill(region_, element_.data()); }
+
+ private:
+  StreamRegion region_;
+  std::vector<std::byte> element_;
+};
+
+}  // namespace
+
 void detail::fill(const StreamRegion& region, const void* element) {
   withHostMemory("fill", [&] {
     StreamState& stream = liveStream(region, "fill");
     checkElementsOf(region, true, "fill");
     if (region.shape.size() == 0) return;
-    const TransferScope traced(stream, "fill", region);
-    stream.fill(region, static_cast<const std::byte*>(element));
+    const auto* const bytes = static_cast<const std::byte*>(element);
+    if (LoopState* recording = stream.device->recording) {
+      return recording->add(std::make_unique<RecordedFill>(region, bytes));
+    }
+    runFill(region, bytes);
   });
 }
 
@@ -320,6 +349,27 @@ void copyByHost(const StreamRegion& from, const StreamRegion& to) {
   to.stream->write(to, elements.data());
 }
 
+void runCopy(const StreamRegion& from, const StreamRegion& to) {
+  const TransferScope traced(*to.stream, "copy", to);
+  const bool isDone = from.stream->device == to.stream->device && to.stream->copyFrom(from, to);
+  if (!isDone) copyByHost(from, to);
+}
+
+class RecordedCopy final : public RecordedCall {
+ public:
+  RecordedCopy(const StreamRegion& from, const StreamRegion& to) : from_(from), to_(to) {
+    LoopState& recording = *to.stream->device->recording;
+    recording.use(from.stream);
+    recording.use(to.stream);
+  }
+
+  void run() override { runCopy(from_, to_); }
+
+ private:
+  StreamRegion from_;
+  StreamRegion to_;
+};
+
 }  // namespace
 
 void detail::copy(const StreamRegion& from, const StreamRegion& to) {
@@ -335,9 +385,14 @@ void detail::copy(const StreamRegion& from, const StreamRegion& to) {
     checkElementsOf(from, false, "copyTo");
     checkElementsOf(to, true, "copyTo");
     if (from.shape.size() == 0) return;
-    const TransferScope traced(target, "copy", to);
-    const bool isDone = source.device == target.device && target.copyFrom(from, to);
-    if (!isDone) copyByHost(from, to);
+    if (source.device != target.device) {
+      refuseInRecording(*source.device, "copyTo another device");
+      refuseInRecording(*target.device, "copyTo from another device");
+    }
+    if (LoopState* recording = target.device->recording) {
+      return recording->add(std::make_unique<RecordedCopy>(from, to));
+    }
+    runCopy(from, to);
   });
 }
 
@@ -356,6 +411,7 @@ void checkPlane(const StreamState& stream, int plane, std::string_view what) {
 StreamTexture detail::textureOf(StreamState* state, int plane) {
   return withHostMemory("texture", [&] {
     StreamState& stream = liveStream({state, {}, {}}, "texture");
+    refuseInRecording(*stream.device, "texture");
     checkElementsOf({state, {}, {}}, false, "texture");
     checkPlane(stream, plane, "texture");
     return stream.texture(plane);
@@ -365,6 +421,7 @@ StreamTexture detail::textureOf(StreamState* state, int plane) {
 void detail::fillBuffer(StreamState* state, std::uint32_t buffer, std::int64_t byteOffset, int plane) {
   withHostMemory("fillBuffer", [&] {
     StreamState& stream = liveStream({state, {}, {}}, "fillBuffer");
+    refuseInRecording(*stream.device, "fillBuffer");
     checkElementsOf({state, {}, {}}, false, "fillBuffer");
     checkPlane(stream, plane, "fillBuffer");
     if (byteOffset < 0 || byteOffset % 4 != 0) {

@@ -22,6 +22,7 @@
 
 namespace sk {
 
+class LoopState;
 struct ResolvedCall;
 struct ResolvedReduction;
 
@@ -41,7 +42,7 @@ class RoundedSums {
 
 class DeviceState {
  public:
-  virtual ~DeviceState() = default;
+  virtual ~DeviceState();  // device/loop_state.cpp
   DeviceState(const DeviceState&) = delete;
   DeviceState& operator=(const DeviceState&) = delete;
 
@@ -60,6 +61,8 @@ class DeviceState {
   virtual bool usesPrecisionVariants() const = 0;
   /// Whether summing in doubles is cheaper than compensated sums of floats.
   virtual bool sumsInDoubles() const { return false; }
+  /// Whether calls return before they have run, so that to read a result means to wait.
+  virtual bool hasQueue() const = 0;
   /// Whether it computes in double wherever kernels say float.
   virtual bool isReference() const { return false; }
   /// Throws sk::Error if this device has no program for the kernel.
@@ -92,11 +95,13 @@ class DeviceState {
   FunctionTables tables;
   std::optional<PassCount> passCount;  ///< empty unless counting is on
   std::unique_ptr<Trace> trace;  ///< null unless SK_TRACE names a file
+  LoopState* recording = nullptr;  ///< records calls instead of running them; or null
+  std::vector<LoopState*> loops;  ///< that use the device's streams
+
+  StreamState* firstStream() const { return firstStream_; }
 
  protected:
   DeviceState() = default;
-
-  StreamState* firstStream() const { return firstStream_; }
 
  private:
   friend class StreamState;

@@ -45,6 +45,8 @@ class StreamState {
   /// be this stream. Returns false, without any effect, if the device cannot copy the elements as they are
   /// stored.
   virtual bool copyFrom(const StreamRegion& from, const StreamRegion& to) = 0;
+  /// Exchanges all elements with a stream of the same device, element type, shape and storage. Both are settled.
+  virtual void exchangeElements(StreamState& other) noexcept = 0;
   /// Throws sk::Error if the device has no textures.
   virtual StreamTexture texture(int plane) = 0;
   /// The plane exists, the offset is valid for it, and the stream is not empty. Throws sk::Error if the
@@ -67,6 +69,7 @@ class StreamState {
   /// Its elements are lost, because an operation failed while writing them. The next operation must overwrite
   /// all of them.
   bool isBroken = false;
+  detail::StreamOwner* holder = nullptr;  ///< the application's handle, or null
 
  protected:
   /// Adds the stream to its device's list.

@@ -73,6 +73,7 @@ class GlDevice final : public DeviceState {
   bool isSoftware() const override { return capabilities.isSoftware; }
   const Arithmetic& arithmetic() override;
   std::vector<TargetTrial> trialTargets() override;
+  bool hasQueue() const override { return true; }
   bool combinesScattered() const override { return capabilities.blendsFloats; }
   bool usesPrecisionVariants() const override { return true; }
   void checkProgram(const program::Kernel& kernel) override;

@@ -265,6 +265,16 @@ bool GlStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   return true;
 }
 
+void GlStream::exchangeElements(StreamState& other) noexcept {
+  auto& with = static_cast<GlStream&>(other);
+  std::swap(planes, with.planes);
+  std::swap(layout, with.layout);
+  std::swap(period_, with.period_);
+  std::swap(isBroken, with.isBroken);
+  labelPlanes();
+  with.labelPlanes();
+}
+
 StreamTexture GlStream::texture(int plane) {
   static_cast<void>(owner().livingContext());
   if (planes.empty()) {

@@ -32,6 +32,7 @@ class GlStream final : public StreamState {
   void writeReals(const StreamRegion& region, const double* values) override;
   void fill(const StreamRegion& region, const std::byte* value) override;
   bool copyFrom(const StreamRegion& from, const StreamRegion& to) override;
+  void exchangeElements(StreamState& other) noexcept override;
   StreamTexture texture(int plane) override;
   void fillBuffer(std::uint32_t buffer, std::int64_t byteOffset, int plane) override;
   void setName(std::string_view given) override;

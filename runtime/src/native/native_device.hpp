@@ -28,6 +28,7 @@ class NativeDevice final : public DeviceState {
   std::string_view profileName() const override { return "native"; }
   bool isSoftware() const override { return true; }
   const Arithmetic& arithmetic() override { return arithmetic_; }
+  bool hasQueue() const override { return false; }
   bool combinesScattered() const override { return true; }
   bool usesPrecisionVariants() const override { return false; }
   bool sumsInDoubles() const override { return real_ == RealType::Float; }

@@ -116,6 +116,14 @@ void NativeStream::fill(const StreamRegion& region, const std::byte* value) {
   keepStorage();
 }
 
+void NativeStream::exchangeElements(StreamState& other) noexcept {
+  auto& with = static_cast<NativeStream&>(other);
+  std::swap(components, with.components);
+  std::swap(spare_, with.spare_);
+  std::swap(bytes_, with.bytes_);
+  std::swap(isBroken, with.isBroken);
+}
+
 bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   const NativeStream& source = nativeStream(from);
   std::vector<std::int64_t> starts;

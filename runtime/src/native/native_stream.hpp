@@ -27,6 +27,7 @@ class NativeStream final : public StreamState {
   void writeReals(const StreamRegion& region, const double* values) override;
   void fill(const StreamRegion& region, const std::byte* value) override;
   bool copyFrom(const StreamRegion& from, const StreamRegion& to) override;
+  void exchangeElements(StreamState& other) noexcept override;
   /// Writes the scalar that is `offset` bytes from the start of each element in host memory; `values` have
   /// the type of the arrays.
   void writeScalars(const StreamRegion& region, std::size_t offset, const std::byte* values);

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "device/loop_state.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "device/device_state.hpp"
+#include "sk/error.hpp"
+
+namespace sk {
+
+DeviceState::~DeviceState() {
+  for (LoopState* loop : loops) loop->leave();
+}
+
+void detail::StreamDeleter::operator()(StreamState* state) const noexcept {
+  state->holder = nullptr;
+  if (state->device != nullptr) {
+    for (LoopState* loop : state->device->loops) {
+      if (loop->keep(state)) return;
+    }
+  }
+  delete state;
+}
+
+void detail::StreamDeleter::moved(StreamState* state, StreamOwner* holder) noexcept {
+  state->holder = holder;
+}
+
+LoopState::LoopState(DeviceState& device) : device_(&device) {
+  refuseInRecording(device, "record");
+  for (StreamState* stream = device.firstStream(); stream != nullptr; stream = stream->next()) {
+    if (stream->holder != nullptr) held_.push_back({stream, stream->holder});
+  }
+  device.loops.push_back(this);
+  device.recording = this;
+}
+
+LoopState::~LoopState() {
+  endRecording();
+  if (device_ != nullptr) std::erase(device_->loops, this);
+  for (StreamState* stream : kept_) detail::StreamDeleter()(stream);  // another loop may use it
+}
+
+bool LoopState::isRecording() const { return device_ != nullptr && device_->recording == this; }
+
+void LoopState::endRecording() noexcept {
+  if (isRecording()) device_->recording = nullptr;
+  held_.clear();
+}
+
+bool LoopState::uses(const StreamState* stream) const {
+  return std::ranges::any_of(used_, [&](const Used& used) { return used.stream == stream; });
+}
+
+void LoopState::use(StreamState* stream) {
+  if (stream == nullptr || uses(stream)) return;
+  kept_.reserve(kept_.size() + used_.size() + held_.size() + 1);  // so that keep() never allocates
+  used_.push_back({stream, stream->shape});
+}
+
+bool LoopState::keep(StreamState* stream) noexcept {
+  if (!uses(stream)) return false;
+  kept_.push_back(stream);
+  return true;
+}
+
+void LoopState::finish() {
+  std::unordered_map<const detail::StreamOwner*, StreamState*> now;
+  for (StreamState* stream = device_->firstStream(); stream != nullptr; stream = stream->next()) {
+    if (stream->holder != nullptr) now.emplace(stream->holder, stream);
+  }
+  std::vector<std::pair<StreamState*, StreamState*>> moved;  // what a handle held before, and holds now
+  for (const Held& before : held_) {
+    const auto found = now.find(before.holder);
+    if (found != now.end() && found->second != before.stream) moved.emplace_back(before.stream, found->second);
+  }
+  findExchanges(moved);
+  std::vector<std::pair<detail::StreamOwner*, StreamState*>> holders;
+  for (const auto& [before, after] : moved) holders.emplace_back(after->holder, before);
+  for (const auto& [holder, before] : holders) static_cast<void>(holder->release());
+  for (const auto& [holder, before] : holders) *holder = detail::StreamOwner(before);
+  endRecording();
+}
+
+/// Writes a permutation as exchanges of two: for the cycle s0, s1, s2, where the handle of s0 now holds s1, first
+/// s0 and s1, then s1 and s2.
+void LoopState::findExchanges(std::span<const std::pair<StreamState*, StreamState*>> moved) {
+  std::unordered_map<StreamState*, StreamState*> next(moved.begin(), moved.end());
+  for (const auto& [before, after] : moved) {
+    if (!next.contains(after)) {
+      throw Error(
+          "record: another stream was assigned to a stream; only swaps of streams that existed before, as by "
+          "std::swap(u, v), can be repeated",
+          Error::Kind::Misuse);
+    }
+    if (before->shape != after->shape || before->element != after->element ||
+        before->storage != after->storage) {
+      throw Error(fmt::format("record: streams of shapes {} and {}, or of other storage, were swapped; a loop "
+                              "exchanges elements only of streams that are made alike",
+                              toString(before->shape), toString(after->shape)),
+                  Error::Kind::Shape);
+    }
+    use(before);
+  }
+  while (!next.empty()) {
+    StreamState* at = next.begin()->first;
+    for (auto found = next.find(at); found != next.end(); found = next.find(at)) {
+      StreamState* const after = found->second;
+      next.erase(found);
+      if (next.contains(after)) exchanges_.emplace_back(at, after);
+      at = after;
+    }
+  }
+}
+
+void LoopState::checkBeforeRun() const {
+  if (device_ == nullptr) {
+    throw Error("a loop: its device has been destroyed; keep the device for as long as its loops are used",
+                Error::Kind::Lost);
+  }
+  refuseInRecording(*device_, "a loop");
+  for (const Used& used : used_) {
+    used.stream->settle();
+    if (used.stream->shape != used.shape) {
+      throw Error(fmt::format("a loop: a stream of shape {} has shape {} now, since a kernel has pushed to it; "
+                              "record the calls again",
+                              toString(used.shape), toString(used.stream->shape)),
+                  Error::Kind::Shape);
+    }
+    checkElementsOf({used.stream, {}, {}}, false, "a loop");
+  }
+}
+
+void LoopState::runOnce() {
+  for (const std::unique_ptr<RecordedCall>& call : calls_) call->run();
+  for (const auto& [a, b] : exchanges_) a->exchangeElements(*b);
+}
+
+void refuseInRecording(const DeviceState& device, std::string_view what) {
+  if (device.recording == nullptr) return;
+  throw Error(fmt::format("{}: the device is recording calls, none of which has run yet; do this before "
+                          "Device::record, or after Loop::repeat",
+                          what),
+              Error::Kind::Misuse);
+}
+
+OwnedArguments::OwnedArguments(const program::Kernel& kernel, std::span<const Argument> arguments)
+    : arguments_(arguments.begin(), arguments.end()) {
+  for (std::size_t i = 0; i < arguments_.size(); ++i) {
+    if (arguments_[i].value == nullptr) continue;
+    const program::Parameter& parameter = kernel.parameters[i];
+    const std::size_t ends = parameter.role == program::Role::Iterator ? 2 : 1;
+    const std::size_t bytes = ends * parameter.element->size;
+    values_.push_back(std::make_unique<std::byte[]>(bytes));
+    std::memcpy(values_.back().get(), arguments_[i].value, bytes);
+    arguments_[i].value = values_.back().get();
+  }
+}
+
+}  // namespace sk

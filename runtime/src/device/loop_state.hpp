@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+//
+// The calls of an sk::Loop, and what its recording finds out: which streams they use, and which streams the
+// application has swapped meanwhile. Knows neither what a call does nor the kind of device.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "device/stream_state.hpp"
+#include "sk/call.hpp"
+#include "sk/stream.hpp"
+
+namespace sk {
+
+/// A call whose arguments have been checked, with copies of all that it refers to except streams.
+class RecordedCall {
+ public:
+  RecordedCall() = default;
+  virtual ~RecordedCall() = default;
+  RecordedCall(const RecordedCall&) = delete;
+  RecordedCall& operator=(const RecordedCall&) = delete;
+
+  virtual void run() = 0;
+};
+
+class LoopState {
+ public:
+  /// Starts to record the calls on a device. Throws sk::Error if it is recording already.
+  explicit LoopState(DeviceState& device);
+  ~LoopState();
+  LoopState(const LoopState&) = delete;
+  LoopState& operator=(const LoopState&) = delete;
+
+  void add(std::unique_ptr<RecordedCall> call) { calls_.push_back(std::move(call)); }
+  /// Notes a stream that the recorded call uses; null is ignored.
+  void use(StreamState* stream);
+
+  /// Ends the recording. Streams that have been swapped return to the handles that held them before. Throws
+  /// sk::Error if streams have changed places that cannot exchange their elements.
+  void finish();
+
+  /// Throws sk::Error unless the calls can run now.
+  void checkBeforeRun() const;
+  /// Runs all calls once, and exchanges the elements of the streams that were swapped.
+  void runOnce();
+
+  /// Keeps a stream that its owner has destroyed, if a call uses it or may have recorded it. Returns whether it
+  /// does.
+  bool keep(StreamState* stream) noexcept;
+
+  /// The device has ended.
+  void leave() noexcept { device_ = nullptr; }
+  DeviceState& device() const { return *device_; }
+
+ private:
+  /// A stream, and the handle that held it when recording began.
+  struct Held {
+    StreamState* stream;
+    detail::StreamOwner* holder;
+  };
+  struct Used {
+    StreamState* stream;
+    Shape shape;
+  };
+
+  bool isRecording() const;
+  void endRecording() noexcept;
+  bool uses(const StreamState* stream) const;
+  void dropUnused() noexcept;
+  void findExchanges(std::span<const std::pair<StreamState*, StreamState*>> moved);
+
+  DeviceState* device_;  ///< null after the device has ended
+  std::vector<Held> held_;  ///< all streams of the device, while it records
+  std::vector<std::unique_ptr<RecordedCall>> calls_;
+  std::vector<Used> used_;
+  std::vector<std::pair<StreamState*, StreamState*>> exchanges_;  ///< carried out in order
+  std::vector<StreamState*> kept_;  ///< streams that it owns
+};
+
+/// Throws sk::Error if the device records calls: `what` needs a result that only a call that runs has.
+void refuseInRecording(const DeviceState& device, std::string_view what);
+
+/// Copies of a call's arguments, with their values.
+class OwnedArguments {
+ public:
+  OwnedArguments(const program::Kernel& kernel, std::span<const Argument> arguments);
+  std::span<const Argument> get() const { return arguments_; }
+  void noteUses(LoopState& loop) const {
+    for (const Argument& argument : arguments_) loop.use(argument.region.stream);
+  }
+
+ private:
+  std::vector<Argument> arguments_;
+  std::vector<std::unique_ptr<std::byte[]>> values_;
+};
+
+}  // namespace sk

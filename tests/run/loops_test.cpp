@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: a loop does what its calls would do one after the other, with the same bits; streams that are swapped in it
+// are swapped in each iteration; it ends where its condition says; and what cannot be repeated is refused.
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "error_of.hpp"
+#include "loops.sk.hpp"
+#include "sk/sk.hpp"
+#include "support/devices.hpp"
+
+namespace run_tests {
+namespace {
+
+using Catch::Matchers::Contains;
+
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
+  auto stream = device.stream<T>({static_cast<std::int64_t>(values.size())});
+  stream.write(values);
+  return stream;
+}
+
+std::vector<float> wave(int count) {
+  std::vector<float> x;
+  for (int i = 0; i < count; ++i) x.push_back(static_cast<float>((i * 37) % 11));
+  return x;
+}
+
+TEST_CASE("a loop swaps the streams that its calls swap") {
+  onEveryProfile([](sk::Device& device) {
+    for (const int times : {0, 1, 2, 7}) {
+      INFO(times << " iterations");
+      auto u = streamOf(device, wave(101)), v = streamOf(device, wave(101));
+      for (int i = 0; i < times; ++i) {
+        loops::smooth(u, v);
+        std::swap(u, v);
+      }
+      auto a = streamOf(device, wave(101)), b = streamOf(device, wave(101));
+      sk::Loop loop = device.record([&] {
+        loops::smooth(a, b);
+        std::swap(a, b);
+      });
+      CHECK(a.read() == wave(101));
+      loop.repeat(times);
+      CHECK(a.read() == u.read());
+      CHECK(b.read() == v.read());
+    }
+  });
+}
+
+TEST_CASE("a loop rotates three streams") {
+  onEveryProfile([](sk::Device& device) {
+    const auto rotate = [](auto& a, auto& b, auto& c) {
+      std::swap(a, b);
+      std::swap(b, c);
+    };
+    std::vector<sk::Stream<float>> one, other;
+    for (int i = 0; i < 3; ++i) {
+      one.push_back(streamOf(device, wave(10)));
+      other.push_back(streamOf(device, wave(10)));
+    }
+    for (int i = 0; i < 5; ++i) {
+      loops::add(1, one[0], one[1]);
+      loops::add(10, one[1], one[2]);
+      rotate(one[0], one[1], one[2]);
+    }
+    sk::Loop loop = device.record([&] {
+      loops::add(1, other[0], other[1]);
+      loops::add(10, other[1], other[2]);
+      rotate(other[0], other[1], other[2]);
+    });
+    loop.repeat(2);
+    loop.repeat(3);
+    for (std::size_t i = 0; i < 3; ++i) CHECK(other[i].read() == one[i].read());
+  });
+}
+
+TEST_CASE("a loop repeats every kind of call") {
+  onEveryProfile([](sk::Device& device) {
+    auto x = streamOf<float>(device, {1, 2, 3, 4}), kept = streamOf<float>(device, {0, 0, 0, 0});
+    auto sum = device.stream<float>({1});
+    auto n = streamOf<int>(device, {1, 1, 2, 3});
+    auto bins = streamOf<int>(device, {0, 0, 0, 0});
+    auto ones = device.stream<int>({3});
+    float c = 1;
+    sk::Loop loop = device.record([&] {
+      loops::add(c, x, x);
+      loops::total(x, sum);
+      x.copyTo(kept);
+      ones.fill(1);
+      loops::running(ones, ones);
+      loops::count(n, bins);
+    });
+    c = 100;  // is read when the call is recorded
+    CHECK(x.read() == std::vector<float>{1, 2, 3, 4});
+    loop.repeat(3);
+    CHECK(x.read() == std::vector<float>{4, 5, 6, 7});
+    CHECK(kept.read() == x.read());
+    CHECK(sum.read() == std::vector<float>{22});
+    CHECK(ones.read() == std::vector<int>{1, 2, 3});
+    CHECK(bins.read() == std::vector<int>{0, 6, 3, 3});
+    x.write(std::vector<float>{0, 0, 0, 0});  // between two runs of a loop, everything is allowed
+    loop.repeat(1);
+    CHECK(sum.read() == std::vector<float>{4});
+  });
+}
+
+TEST_CASE("a loop ends after the iteration that makes its condition true") {
+  onEveryProfile([](sk::Device& device) {
+    auto x = streamOf<float>(device, {0, 0});
+    auto sum = device.stream<float>({1});
+    auto done = device.stream<bool>({1});
+    sk::Loop loop = device.record([&] {
+      loops::add(1, x, x);
+      loops::total(x, sum);
+      loops::reached(sum, 20, done);
+    });
+    const bool isNative = device.profile() == "native";
+    CHECK(loop.until(done, {.every = 4}) == (isNative ? 10 : 12));
+    CHECK(x.read().front() == (isNative ? 10.0f : 12.0f));
+    CHECK(loop.until(done, {.every = 1}) == 1);
+    x.fill(0);
+    CHECK(loop.until(done, {.every = 1}) == 10);
+    x.fill(0);
+    CHECK(loop.until(done, {.every = 4, .most = 7}) == 7);
+    CHECK(x.read().front() == 7);
+    CHECK(loop.until(done, {.most = 0}) == 0);
+  });
+}
+
+TEST_CASE("a loop keeps the streams of its calls") {
+  onEveryProfile([](sk::Device& device) {
+    auto result = streamOf<float>(device, {0, 0, 0});
+    std::optional<sk::Loop> loop, second;
+    {
+      auto input = streamOf<float>(device, {1, 2, 3});
+      loop = device.record([&] {
+        auto between = device.stream<float>({3});
+        loops::add(1, input, between);
+        loops::add(1, between, result);
+      });
+      second = device.record([&] { loops::add(5, input, result); });
+    }
+    loop->repeat(2);
+    CHECK(result.read() == std::vector<float>{3, 4, 5});
+    loop.reset();
+    second->repeat(1);
+    CHECK(result.read() == std::vector<float>{6, 7, 8});
+  });
+}
+
+TEST_CASE("what a loop cannot repeat is refused, and the device goes on") {
+  onEveryProfile([](sk::Device& device) {
+    auto x = streamOf<float>(device, {1, 2, 3}), longer = device.stream<float>({4});
+    auto n = streamOf<int>(device, {1, 2, 3}), pushed = device.stream<int>({3});
+    const auto refusal = [&](auto&& calls) { return errorOf([&] { device.record(calls); }); };
+    CHECK_THAT(refusal([&] { x.read(); }), Contains("read: the device is recording calls"));
+    CHECK_THAT(refusal([&] { x.write(std::vector<float>{1, 2, 3}); }), Contains("write: the device is"));
+    CHECK_THAT(refusal([&] { x.readReals(); }), Contains("readReals: the device is"));
+    CHECK_THAT(refusal([&] { static_cast<void>(loops::total(x)); }), Contains("a stream of one element"));
+    CHECK_THAT(refusal([&] { loops::evens(n, pushed); }), Contains("'y' is a variable output"));
+    CHECK_THAT(refusal([&] { std::swap(x, longer); }), Contains("were swapped"));
+    std::swap(x, longer);
+    CHECK_THAT(refusal([&] { x = device.stream<float>({3}); }), Contains("std::swap(u, v)"));
+    x = streamOf<float>(device, {1, 2, 3});
+    CHECK_THAT(refusal([&] { loops::add(1, x, longer); }), Contains("add"));
+    CHECK_THAT(refusal([&] { device.record([] {}); }), Contains("record: the device is recording"));
+    sk::Loop loop = device.record([&] { loops::add(1, x, x); });
+    CHECK_THAT(refusal([&] { loop.repeat(1); }), Contains("a loop: the device is recording"));
+    CHECK_THAT(errorOf([&] { loop.repeat(-1); }), Contains("-1 is no number of iterations"));
+    auto done = device.stream<bool>({2});
+    CHECK_THAT(errorOf([&] { loop.until(done); }), Contains("has shape {2}"));
+    sk::Loop nothing;
+    CHECK_THAT(errorOf([&] { nothing.repeat(1); }), Contains("device.record"));
+    loop.repeat(2);
+    CHECK(x.read() == std::vector<float>{3, 4, 5});
+  });
+}
+
+TEST_CASE("a loop refuses a stream that has another shape, and a device that has ended") {
+  std::optional<sk::Device> device(sk::Device::native());
+  auto n = streamOf<int>(*device, {1, 2, 3}), even = device->stream<int>({3}), halves = device->stream<int>({3});
+  sk::Loop loop = device->record([&] { loops::halve(even, halves); });
+  loops::evens(n, even);
+  CHECK_THAT(errorOf([&] { loop.repeat(1); }), Contains("a stream of shape {3} has shape {1} now"));
+  device.reset();
+  CHECK_THAT(errorOf([&] { loop.repeat(1); }), Contains("its device has been destroyed"));
+}
+
+}  // namespace
+}  // namespace run_tests
