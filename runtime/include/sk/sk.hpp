@@ -4,6 +4,7 @@
 // headers that `skc` generates.
 #pragma once
 
+#include "sk/algorithm.hpp"
 #include "sk/arithmetic.hpp"
 #include "sk/device.hpp"
 #include "sk/error.hpp"

@@ -23,6 +23,9 @@ namespace sk {
 
 class StreamState;  // the runtime's own
 class Device;
+namespace detail {
+struct TypedStreams;
+}  // namespace detail
 template <ElementType T>
 class Stream;
 
@@ -278,6 +281,7 @@ class Stream {
 
  private:
   friend class Device;
+  friend struct detail::TypedStreams;
   explicit Stream(detail::StreamOwner state) : state_(std::move(state)) {}
 
   View<T> all() { return View<T>(region()); }

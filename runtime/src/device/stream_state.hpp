@@ -47,6 +47,9 @@ class StreamState {
   virtual bool copyFrom(const StreamRegion& from, const StreamRegion& to) = 0;
   /// Exchanges all elements with a stream of the same device, element type, shape and storage. Both are settled.
   virtual void exchangeElements(StreamState& other) noexcept = 0;
+  /// Element i of the region, in row-major order, becomes what element number sources[i] was. The region is not
+  /// empty. The default goes through host memory.
+  virtual void permute(const StreamRegion& region, std::span<const std::int32_t> sources);
   /// Throws sk::Error if the device has no textures.
   virtual StreamTexture texture(int plane) = 0;
   /// The plane exists, the offset is valid for it, and the stream is not empty. Throws sk::Error if the

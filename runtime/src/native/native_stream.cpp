@@ -9,6 +9,7 @@
 #include "native/native_device.hpp"
 #include "sk/error.hpp"
 #include "sk/limits.hpp"
+#include "sk/native/parallel.hpp"
 #include "support/checked_size.hpp"
 
 namespace sk {
@@ -137,6 +138,58 @@ bool NativeStream::copyFrom(const StreamRegion& from, const StreamRegion& to) {
   });
   keepStorage();
   return true;
+}
+
+namespace {
+
+/// Values of one array; __float128 is two of 64 bits.
+template <class T, std::size_t Count = 1>
+struct Bits {
+  T bits[Count];
+};
+
+template <class T>
+void permuteValues(const void* from, void* to, std::span<const std::int32_t> sources,
+                   std::span<const std::int64_t> places) {
+  const T* const before = static_cast<const T*>(from);
+  T* const after = static_cast<T*>(to);
+  native::inParallel(static_cast<std::int64_t>(sources.size()), 2, native::Deal::Evenly,
+                     [&](native::Range range) {
+                       for (auto i = static_cast<std::size_t>(range.begin);
+                            i < static_cast<std::size_t>(range.end); ++i) {
+                         const auto source = static_cast<std::size_t>(sources[i]);
+                         if (places.empty()) {
+                           after[i] = before[source];
+                         } else {
+                           after[places[i]] = before[places[source]];
+                         }
+                       }
+                     });
+}
+
+}  // namespace
+
+void NativeStream::permute(const StreamRegion& region, std::span<const std::int32_t> sources) {
+  Components& to = spare();
+  std::vector<std::int64_t> places;  // empty if the region is the whole stream
+  if (region.shape != shape) {
+    to.assign(components, shape.size());
+    forEachRun(region, [&](std::int64_t first, std::int64_t, std::int64_t count) {
+      for (std::int64_t i = 0; i < count; ++i) places.push_back(first + i);
+    });
+  }
+  for (std::size_t c = 0; c < components.arrays().size(); ++c) {
+    const void* const before = components.arrays()[c];
+    void* const after = to.arrays()[c];
+    switch (components.types()[c].storedBytes) {
+      case 1: permuteValues<Bits<std::uint8_t>>(before, after, sources, places); break;
+      case 2: permuteValues<Bits<std::uint16_t>>(before, after, sources, places); break;
+      case 4: permuteValues<Bits<std::uint32_t>>(before, after, sources, places); break;
+      case 8: permuteValues<Bits<std::uint64_t>>(before, after, sources, places); break;
+      default: permuteValues<Bits<std::uint64_t, 2>>(before, after, sources, places); break;
+    }
+  }
+  exchange();
 }
 
 void NativeStream::writeScalars(const StreamRegion& region, std::size_t offset, const std::byte* values) {

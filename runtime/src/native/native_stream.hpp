@@ -26,6 +26,7 @@ class NativeStream final : public StreamState {
   void readReals(const StreamRegion& region, double* values) override;
   void writeReals(const StreamRegion& region, const double* values) override;
   void fill(const StreamRegion& region, const std::byte* value) override;
+  void permute(const StreamRegion& region, std::span<const std::int32_t> sources) override;
   bool copyFrom(const StreamRegion& from, const StreamRegion& to) override;
   void exchangeElements(StreamState& other) noexcept override;
   /// Writes the scalar that is `offset` bytes from the start of each element in host memory; `values` have
