@@ -55,6 +55,25 @@ TEST_CASE("a loop swaps the streams that its calls swap") {
   });
 }
 
+TEST_CASE("calls before and after a swap, and on views, use the streams that they name then") {
+  onEveryProfile([](sk::Device& device) {
+    auto u = streamOf(device, wave(16)), v = streamOf(device, wave(16));
+    auto a = streamOf(device, wave(16)), b = streamOf(device, wave(16));
+    const auto calls = [](auto& from, auto& to) {
+      loops::smooth(from, to);
+      std::swap(from, to);
+      loops::add(2, from, to);
+      loops::add(3, to.domain({4}, {9}), from.domain({5}, {10}));
+      to.domain({0}, {2}).fill(7);
+    };
+    for (int i = 0; i < 5; ++i) calls(u, v);
+    sk::Loop loop = device.record([&] { calls(a, b); });
+    loop.repeat(5);
+    CHECK(a.read() == u.read());
+    CHECK(b.read() == v.read());
+  });
+}
+
 TEST_CASE("a loop rotates three streams") {
   onEveryProfile([](sk::Device& device) {
     const auto rotate = [](auto& a, auto& b, auto& c) {
@@ -190,6 +209,9 @@ TEST_CASE("a loop refuses a stream that has another shape, and a device that has
   sk::Loop loop = device->record([&] { loops::halve(even, halves); });
   loops::evens(n, even);
   CHECK_THAT(errorOf([&] { loop.repeat(1); }), Contains("a stream of shape {3} has shape {1} now"));
+  sk::Device another = sk::Device::native();
+  CHECK_THAT(errorOf([&] { another.record([&] { another = sk::Device::native(); }); }),
+             Contains("its device has been destroyed"));
   device.reset();
   CHECK_THAT(errorOf([&] { loop.repeat(1); }), Contains("its device has been destroyed"));
 }

@@ -70,6 +70,7 @@ bool LoopState::keep(StreamState* stream) noexcept {
 }
 
 void LoopState::finish() {
+  failIfLost();
   std::unordered_map<const detail::StreamOwner*, StreamState*> now;
   for (StreamState* stream = device_->firstStream(); stream != nullptr; stream = stream->next()) {
     if (stream->holder != nullptr) now.emplace(stream->holder, stream);
@@ -118,11 +119,14 @@ void LoopState::findExchanges(std::span<const std::pair<StreamState*, StreamStat
   }
 }
 
+void LoopState::failIfLost() const {
+  if (device_ != nullptr) return;
+  throw Error("a loop: its device has been destroyed; keep the device for as long as its loops are used",
+              Error::Kind::Lost);
+}
+
 void LoopState::checkBeforeRun() const {
-  if (device_ == nullptr) {
-    throw Error("a loop: its device has been destroyed; keep the device for as long as its loops are used",
-                Error::Kind::Lost);
-  }
+  failIfLost();
   refuseInRecording(*device_, "a loop");
   for (const Used& used : used_) {
     used.stream->settle();

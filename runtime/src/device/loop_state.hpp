@@ -67,6 +67,7 @@ class LoopState {
     Shape shape;
   };
 
+  void failIfLost() const;
   bool isRecording() const;
   void endRecording() noexcept;
   bool uses(const StreamState* stream) const;
