@@ -2,6 +2,9 @@
 //
 // sk::run: checks and resolves a call of a kernel and passes it to its device. Must not depend on the kind of
 // device.
+#include <memory>
+#include <utility>
+
 #include "call/check_argument.hpp"
 #include "call/check_call.hpp"
 #include "call/precision.hpp"
@@ -16,10 +19,15 @@ using program::Kernel;
 
 namespace {
 
-void runResolved(DeviceState& device, const ResolvedCall& call) {
+/// Runs the call, as it was prepared unless `prepared` is null.
+void runResolved(DeviceState& device, const ResolvedCall& call, RecordedCall* prepared = nullptr) {
   const TraceScope traced(device.trace.get(), "call", call.kernel.name);
   traced.add("domain", call.domain);
-  device.run(call);
+  if (prepared != nullptr) {
+    prepared->run();
+  } else {
+    device.run(call);
+  }
 }
 
 class RecordedKernel final : public RecordedCall {
@@ -30,12 +38,17 @@ class RecordedKernel final : public RecordedCall {
     arguments_.noteUses(*device.recording);
   }
 
-  void run() override { runResolved(device_, call_); }
+  void run() override {
+    if (!std::exchange(isPrepared_, true)) prepared_ = device_.prepare(call_);
+    runResolved(device_, call_, prepared_.get());
+  }
 
  private:
   DeviceState& device_;
   const OwnedArguments arguments_;
   ResolvedCall call_;
+  bool isPrepared_ = false;
+  std::unique_ptr<RecordedCall> prepared_;
 };
 
 /// What is pushed decides the shapes of later calls, which are checked before.

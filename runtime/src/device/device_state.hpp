@@ -14,6 +14,7 @@
 
 #include "device/configuration.hpp"
 #include "device/function_table.hpp"
+#include "device/recorded_call.hpp"
 #include "device/stream_state.hpp"
 #include "sk/call.hpp"
 #include "sk/device.hpp"
@@ -80,6 +81,9 @@ class DeviceState {
 
   /// The domain may be empty only if there are variable outputs: they become empty.
   virtual void run(const ResolvedCall& call) = 0;
+  /// The same call, prepared to run many times; null if that saves nothing. `call` must outlive it. The streams keep
+  /// their shapes, but not the memory of their elements.
+  virtual std::unique_ptr<RecordedCall> prepare(const ResolvedCall&) { return nullptr; }
   /// There is at least one block. For an empty domain, the results are the identities, which then exist.
   virtual void reduce(const ResolvedReduction& call) = 0;
   /// Whether it adds sums of floats without rounding; otherwise it compensates them in its own precision.

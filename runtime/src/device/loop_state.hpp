@@ -10,22 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "device/recorded_call.hpp"
 #include "device/stream_state.hpp"
 #include "sk/call.hpp"
 #include "sk/stream.hpp"
 
 namespace sk {
-
-/// A call whose arguments have been checked, with copies of all that it refers to except streams.
-class RecordedCall {
- public:
-  RecordedCall() = default;
-  virtual ~RecordedCall() = default;
-  RecordedCall(const RecordedCall&) = delete;
-  RecordedCall& operator=(const RecordedCall&) = delete;
-
-  virtual void run() = 0;
-};
 
 class LoopState {
  public:

@@ -106,6 +106,19 @@ class Operands {
     return kept_.emplace_back(element, real_, count);
   }
 
+  /// True if another run needs no more than refresh(): there are no copies of streams, and no pushes.
+  bool mayRunAgain() const { return copies_.empty() && written_.empty() && pushed_.empty(); }
+  /// Takes the arrays of all streams anew, which calls may have exchanged meanwhile.
+  void refresh() {
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      const StreamRegion& region = arguments_[i].region;
+      if (region.stream == nullptr || list_[i].components.empty()) continue;
+      NativeStream& stream = nativeStream(region);
+      const bool isSpare = isWritten(kernel_.parameters[i].role) && isReplaced(region);
+      list_[i].components = (isSpare ? stream.spare() : stream.components).arrays();
+    }
+  }
+
   /// Marks the streams that are written in place as broken until settle().
   void begin() noexcept {
     for (std::size_t i = 0; i < list_.size(); ++i) {
@@ -408,6 +421,53 @@ void NativeDevice::run(const ResolvedCall& call) {
     runCode(kernel, nativeCall, codeChoice(real, call.options));
   }
   operands.settle();
+}
+
+namespace {
+
+/// A kernel's call that keeps its operands for the next run.
+class PreparedRun final : public RecordedCall {
+ public:
+  PreparedRun(NativeDevice& device, const ResolvedCall& call, const Kernel& kernel, RealType real,
+              std::vector<native::Table> tables)
+      : device_(device),
+        resolved_(call),
+        kernel_(kernel),
+        choice_(codeChoice(real, call.options)),
+        operands_(real, kernel, call.arguments, call.domain, std::move(tables)),
+        call_(operands_.call()) {}
+
+  bool mayRun() const { return operands_.mayRunAgain(); }
+
+  void run() override {
+    {
+      const NativePass traced(device_, kernel_, {}, resolved_.arguments, resolved_.domain);
+      operands_.refresh();
+      operands_.begin();
+      runCode(kernel_, call_, choice_);
+    }
+    operands_.settle();
+  }
+
+ private:
+  NativeDevice& device_;
+  const ResolvedCall& resolved_;
+  const Kernel& kernel_;
+  const CodeChoice choice_;
+  Operands operands_;
+  const native::Call call_;
+};
+
+}  // namespace
+
+std::unique_ptr<RecordedCall> NativeDevice::prepare(const ResolvedCall& call) {
+  checkTarget(call.kernel, call.options.target);
+  const Kernel& kernel =
+      computesInHalf(call.options) ? precisionVariant(call.kernel, call.options) : call.kernel;
+  const RealType real = realOf(call.options);
+  auto prepared =
+      std::make_unique<PreparedRun>(*this, call, kernel, real, tablesOf(kernel, real, call.options));
+  return prepared->mayRun() ? std::move(prepared) : nullptr;
 }
 
 void NativeDevice::reduce(const ResolvedReduction& call) {

@@ -42,6 +42,7 @@ class NativeDevice final : public DeviceState {
   void release() override {}
   void makeCurrent() override;
   void run(const ResolvedCall& call) override;
+  std::unique_ptr<RecordedCall> prepare(const ResolvedCall& call) override;
   void reduce(const ResolvedReduction& call) override;
   bool sumsExactly(const ResolvedReduction& call) const override;
   std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction& call,
