@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "program/stub.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "program/stub_parts.hpp"
@@ -11,7 +13,12 @@ namespace {
 
 using namespace ir;
 
-std::string parameter(const Module& module, const KernelParam& param, const std::vector<std::string>& scope) {
+bool mayBeStream(const KernelParam& param) {
+  return param.role == ParamRole::Uniform && param.type.kind != Type::Kind::Array;
+}
+
+std::string parameter(const Module& module, const KernelParam& param, Uniforms uniforms,
+                      const std::vector<std::string>& scope) {
   if (param.type.kind == Type::Kind::Array) {
     const Array& array = module.arrays[param.type.index];
     return fmt::format("std::span<const {}, {}> {}", cppType(module, array.element, scope), array.length,
@@ -27,6 +34,7 @@ std::string parameter(const Module& module, const KernelParam& param, const std:
     case ParamRole::Spec: return fmt::format("{} {}", type, param.name);
     case ParamRole::Iterator: return fmt::format("const sk::Iter<{}>& {}", type, param.name);
     case ParamRole::Uniform:
+      if (uniforms == Uniforms::Streams) return fmt::format("const sk::Uniform<{}>& {}", type, param.name);
       return param.type.isArithmetic() ? fmt::format("{} {}", type, param.name)
                                        : fmt::format("const {}& {}", type, param.name);
     case ParamRole::Input: return stream("ElementIn");
@@ -47,6 +55,11 @@ std::vector<Form> formsOf(const Kernel& kernel) {
   return {Form::Run};
 }
 
+std::vector<Uniforms> uniformsOf(const Kernel& kernel) {
+  if (std::ranges::none_of(kernel.params, mayBeStream)) return {Uniforms::Values};
+  return {Uniforms::Values, Uniforms::Streams};
+}
+
 std::string resultType(const Module& module, const Kernel& kernel, Form form,
                        const std::vector<std::string>& scope) {
   if (form != Form::ReduceToValue) return "void";
@@ -57,12 +70,12 @@ std::string resultType(const Module& module, const Kernel& kernel, Form form,
   return types.size() == 1 ? types.front() : fmt::format("std::tuple<{}>", join(types, ", "));
 }
 
-std::string parameterList(const Module& module, const Kernel& kernel, Form form,
+std::string parameterList(const Module& module, const Kernel& kernel, Form form, Uniforms uniforms,
                           const std::vector<std::string>& scope) {
   std::vector<std::string> list;
   for (const KernelParam& param : kernel.params) {
     const bool isReturned = param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
-    if (!isReturned) list.push_back(parameter(module, param, scope));
+    if (!isReturned) list.push_back(parameter(module, param, uniforms, scope));
   }
   return join(list, ", ") + ") const";
 }

@@ -22,40 +22,44 @@ class FunctionWriter {
   std::string text(const std::vector<Callable>& callables) {
     for (const Callable& callable : callables) {
       for (std::size_t unit : callable.units) {
-        for (Form form : formsOf(kernelOf(unit))) function(callable, unit, form);
+        for (Form form : formsOf(kernelOf(unit))) {
+          for (Uniforms uniforms : uniformsOf(kernelOf(unit))) function(callable, unit, form, uniforms);
+        }
       }
     }
     return std::move(text_);
   }
 
  private:
-  void function(const Callable& callable, std::size_t unit, Form form) {
+  void function(const Callable& callable, std::size_t unit, Form form, Uniforms uniforms) {
     const Kernel& kernel = kernelOf(unit);
     const std::string head = fmt::format("{} {}{}::operator()(", resultType(module_, kernel, form, {}),
                                          qualifier(callable.scope), callable.type);
-    text_ += "\n" + wrapLine(head + parameterList(module_, kernel, form, {}) + " {", 100, head.size()) + "\n";
+    text_ += "\n" +
+             wrapLine(head + parameterList(module_, kernel, form, uniforms, {}) + " {", 100, head.size()) +
+             "\n";
     switch (form) {
-      case Form::Run: run(kernel, unit); break;
-      case Form::ReduceToValue: reduceToValue(kernel, unit); break;
+      case Form::Run: run(kernel, unit, uniforms); break;
+      case Form::ReduceToValue: reduceToValue(kernel, unit, uniforms); break;
       case Form::ReduceToStream:
       case Form::Scan:
         text_ += fmt::format("  sk::{}(sk::program::{}Reduction, {}, this->options);\n", wordOf(kernel),
-                             names_[unit], arguments(kernel, form));
+                             names_[unit], arguments(kernel, form, uniforms));
     }
     text_ += "}\n";
   }
 
-  void run(const Kernel& kernel, std::size_t unit) {
+  void run(const Kernel& kernel, std::size_t unit, Uniforms uniforms) {
     text_ += fmt::format("  sk::run(sk::program::{}Kernel, {}, this->options);\n", names_[unit],
-                         arguments(kernel, Form::Run));
+                         arguments(kernel, Form::Run, uniforms));
   }
 
   /// Writes the array of arguments, and returns its name.
-  std::string arguments(const Kernel& kernel, Form form) {
+  std::string arguments(const Kernel& kernel, Form form, Uniforms uniforms) {
     std::vector<std::string> items;
     for (const KernelParam& param : kernel.params) {
       const bool isReturned = param.role == ParamRole::Accumulator && form == Form::ReduceToValue;
-      items.push_back(isReturned ? "{}" : argument(param));
+      items.push_back(isReturned ? "{}" : argument(param, uniforms));
     }
     const std::string list = localName(kernel, "arguments");
     const std::string head = fmt::format("  const sk::Argument {}[] = {{", list);
@@ -63,16 +67,17 @@ class FunctionWriter {
     return list;
   }
 
-  static std::string argument(const KernelParam& param) {
+  static std::string argument(const KernelParam& param, Uniforms uniforms) {
     if (param.role == ParamRole::Iterator) return fmt::format("sk::argumentOf({})", param.name);
     if (param.type.kind == Type::Kind::Array) return fmt::format("{{.value = {}.data()}}", param.name);
-    if (param.role == ParamRole::Uniform || param.role == ParamRole::Spec) {
+    const bool isValue = param.role == ParamRole::Uniform && uniforms == Uniforms::Values;
+    if (isValue || param.role == ParamRole::Spec) {
       return fmt::format("{{.value = &{}}}", param.name);
     }
     return param.name + ".argument()";
   }
 
-  void reduceToValue(const Kernel& kernel, std::size_t unit) {
+  void reduceToValue(const Kernel& kernel, std::size_t unit, Uniforms uniforms) {
     const auto count =
         std::count_if(kernel.params.begin(), kernel.params.end(),
                       [](const KernelParam& param) { return param.role == ParamRole::Accumulator; });
@@ -82,7 +87,7 @@ class FunctionWriter {
       places.push_back(count == 1 ? "&" + value : fmt::format("&std::get<{}>({})", i, value));
     }
     text_ += fmt::format("  {} {};\n", resultType(module_, kernel, Form::ReduceToValue, {}), value);
-    const std::string list = arguments(kernel, Form::ReduceToValue);
+    const std::string list = arguments(kernel, Form::ReduceToValue, uniforms);
     const std::string results = localName(kernel, "results");
     const std::string head = fmt::format("  void* const {}[] = {{", results);
     text_ += wrapLine(head + join(places, ", ") + "};", 100, head.size()) + "\n";

@@ -154,7 +154,13 @@ class HeaderWriter {
       for (Form form : formsOf(kernel)) {
         text_ += purpose(kernel, form);
         const std::string head = fmt::format("  {} operator()(", resultType(module_, kernel, form, scope_));
-        text_ += wrapLine(head + parameterList(module_, kernel, form, scope_) + ";", 100, head.size()) + "\n";
+        for (Uniforms uniforms : uniformsOf(kernel)) {
+          if (uniforms == Uniforms::Streams)
+            text_ += "  /// The same, with streams of one element for uniforms.\n";
+          text_ += wrapLine(head + parameterList(module_, kernel, form, uniforms, scope_) + ";", 100,
+                            head.size()) +
+                   "\n";
+        }
       }
     }
     text_ += fmt::format("}};\ninline constexpr {} {}{{}};\n", callable.type, callable.object);

@@ -40,11 +40,16 @@ inline std::string_view nameOf(sk::program::Scalar scalar) {
 enum class Form : std::uint8_t { Run, ReduceToValue, ReduceToStream, Scan };
 std::vector<Form> formsOf(const ir::Kernel& kernel);
 
+/// Each function of a kernel with uniform parameters is declared twice: for values, and for calls where streams of
+/// one element stand for some of them. The first is preferred by C++ wherever it fits.
+enum class Uniforms : std::uint8_t { Values, Streams };
+std::vector<Uniforms> uniformsOf(const ir::Kernel& kernel);
+
 /// A function's result type as written inside namespace `scope`.
 std::string resultType(const ir::Module& module, const ir::Kernel& kernel, Form form,
                        const std::vector<std::string>& scope);
 /// The text after "(": "float k, const sk::In<float>& u, const sk::Out<float>& v) const".
-std::string parameterList(const ir::Module& module, const ir::Kernel& kernel, Form form,
+std::string parameterList(const ir::Module& module, const ir::Kernel& kernel, Form form, Uniforms uniforms,
                           const std::vector<std::string>& scope);
 
 }  // namespace skc::emit

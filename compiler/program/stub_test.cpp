@@ -51,6 +51,9 @@ namespace heat {
 /// kernel void diffuse(float k, [[wrap]] float u[][], out float v<>)
 struct DiffuseKernel : sk::WithOptions<DiffuseKernel> {
   void operator()(float k, const sk::In<float>& u, const sk::Out<float>& v) const;
+  /// The same, with streams of one element for uniforms.
+  void operator()(const sk::Uniform<float>& k, const sk::In<float>& u,
+                  const sk::Out<float>& v) const;
 };
 inline constexpr DiffuseKernel diffuse{};
 

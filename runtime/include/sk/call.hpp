@@ -7,6 +7,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -20,9 +21,10 @@ namespace sk {
 /// An argument of a call, in order of declaration: a host value or a region of a stream.
 struct Argument {
   /// Uniforms and spec parameters: the value, laid out as Element says. Iterators: both ends, one after the
-  /// other.
+  /// other. Null for a uniform that a stream of one element holds.
   const void* value = nullptr;
-  StreamRegion region = {};  ///< all other arguments; of an iterator only the shape, if any
+  StreamRegion region =
+      {};  ///< all other arguments, and such uniforms; of an iterator only the shape, if any
   bool isNone = false;  ///< sk::none
   program::Fit fit = program::Fit::Same;  ///< element inputs
 };
@@ -126,6 +128,25 @@ class Optional {
 
  private:
   Argument argument_;
+};
+
+/// A uniform parameter in calls where a stream or view of one element stands for one of them: such a stream, or
+/// a value.
+template <class T>
+class Uniform {
+ public:
+  Uniform(const T& value) : value_(value) {}
+  template <class V>
+    requires(std::is_arithmetic_v<V> && std::is_arithmetic_v<T> && !std::same_as<V, T>)
+  Uniform(V value) : value_(static_cast<T>(value)) {}
+  template <StreamOf<T> S>
+  Uniform(const S& stream) : region_(regionOf(stream)) {}
+  /// A pointer into this object, unless it is a stream.
+  Argument argument() const { return value_ ? Argument{.value = &*value_} : Argument{.region = region_}; }
+
+ private:
+  std::optional<T> value_;
+  StreamRegion region_;
 };
 
 template <class T>

@@ -7,12 +7,14 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "sk/arithmetic.hpp"
 #include "sk/loop.hpp"
 #include "sk/owner.hpp"
+#include "sk/scalar.hpp"
 #include "sk/shape.hpp"
 #include "sk/stream.hpp"
 #include "sk/table.hpp"
@@ -127,6 +129,20 @@ class Device {
   template <ElementType T>
   Stream<T> stream(const Shape& shape, Storage storage = Storage::Default, std::string_view name = {}) {
     return Stream<T>(createStream(ElementTraits<T>::element(), shape, storage, name));
+  }
+
+  /// Creates a scalar: a value on the device, undefined until something writes it, or `value`. Throws sk::Error if the
+  /// device is out of memory.
+  template <ElementType T>
+  Scalar<T> scalar() {
+    return Scalar<T>(
+        detail::ScalarHandle(createStream(ElementTraits<T>::element(), {1}, Storage::Single, {})));
+  }
+  template <ElementType T>
+  Scalar<T> scalar(const std::type_identity_t<T>& value) {
+    Scalar<T> made = scalar<T>();
+    made.assign(value);
+    return made;
   }
 
   /// Creates a stream whose element type is known only at run time; detail::write() and read() copy its

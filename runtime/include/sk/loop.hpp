@@ -76,6 +76,7 @@ class Recording {
   LoopOwner finish();
 
  private:
+  DeviceState& device_;
   LoopOwner state_;
 };
 

@@ -27,7 +27,6 @@ namespace sk {
 
 namespace {
 
-using program::Scalar;
 using Permutation = std::vector<std::int32_t>;
 
 StreamState& checked(const StreamRegion& region, std::string_view what) {
@@ -77,10 +76,10 @@ std::vector<T> readAs(const StreamRegion& region) {
 template <class Use>
 auto withKeys(const StreamRegion& keys, Use&& use) {
   const StreamState& stream = *keys.stream;
-  const Scalar scalar = stream.element->fields[0].scalar;
-  if (scalar == Scalar::Int) return use(readAs<std::int32_t>(keys));
-  if (scalar == Scalar::Uint) return use(readAs<std::uint32_t>(keys));
-  if (scalar == Scalar::Double) return use(readAs<double>(keys));
+  const program::Scalar scalar = stream.element->fields[0].scalar;
+  if (scalar == program::Scalar::Int) return use(readAs<std::int32_t>(keys));
+  if (scalar == program::Scalar::Uint) return use(readAs<std::uint32_t>(keys));
+  if (scalar == program::Scalar::Double) return use(readAs<double>(keys));
   if (!stream.device->isReference() && stream.storage < Storage::Extended) return use(readAs<float>(keys));
   auto values = detail::hostVector<double>(static_cast<std::size_t>(keys.shape.size()));
   if (!values.empty()) keys.stream->readReals(keys, values.data());
@@ -131,7 +130,7 @@ void permute(const StreamRegion& region, const Permutation& order) {
 
 void StreamState::permute(const StreamRegion& region, std::span<const std::int32_t> sources) {
   const bool isOfFloats = std::ranges::all_of(
-      element->fields, [](const program::Field& field) { return field.scalar == Scalar::Float; });
+      element->fields, [](const program::Field& field) { return field.scalar == program::Scalar::Float; });
   const auto move = [&](auto& from, auto& to, std::size_t width) {
     for (std::size_t i = 0; i < sources.size(); ++i) {
       std::copy_n(&from[static_cast<std::size_t>(sources[i]) * width], width, &to[i * width]);
@@ -199,7 +198,7 @@ std::int64_t detail::partition(const StreamRegion& flags, const StreamRegion& va
     const auto orderBy = [&](const auto& all) {
       return firstOf(all.size(), count, [&](std::size_t i) { return all[i] != 0; });
     };
-    const bool isBool = flags.stream->element->fields[0].scalar == Scalar::Bool;
+    const bool isBool = flags.stream->element->fields[0].scalar == program::Scalar::Bool;
     permute(values, isBool ? orderBy(readAs<std::uint8_t>(flags)) : orderBy(readAs<std::uint32_t>(flags)));
     return count;
   });

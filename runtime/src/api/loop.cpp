@@ -23,6 +23,7 @@ LoopState& stateOf(const detail::LoopOwner& loop) {
                 Error::Kind::Lost);
   }
   loop->checkBeforeRun();
+  flushScalars(loop->device());
   return *loop;
 }
 
@@ -52,12 +53,16 @@ void checkEnd(const LoopState& loop, const StreamRegion& done, const LoopEnd& en
 void detail::LoopDeleter::operator()(LoopState* state) const noexcept { delete state; }
 
 detail::Recording::Recording(DeviceState& device)
-    : state_(withHostMemory("record", [&] { return LoopOwner(new LoopState(device)); })) {}
+    : device_(device), state_(withHostMemory("record", [&] {
+        if (device.recording == nullptr) flushScalars(device);
+        return LoopOwner(new LoopState(device));
+      })) {}
 
 detail::Recording::~Recording() = default;
 
 detail::LoopOwner detail::Recording::finish() {
   return withHostMemory("record", [&] {
+    flushScalars(device_);
     state_->finish();
     return std::move(state_);
   });

@@ -81,7 +81,9 @@ enum class Addressing : std::uint8_t {
 
 struct StreamAccess {
   Addressing addressing = Addressing::Aligned;
-  bool view = false;  ///< a region of its stream, so that an origin is added
+  /// A region of its stream, so that an origin is added. Uniforms: a stream holds the value, at texel `origin` (in a
+  /// packed stream, x counts elements).
+  bool view = false;
   /// Gathers: Parameter::reach is known and less than every extent, and the domain's extents do not exceed
   /// the gather's, so that a neighbour's index wraps or mirrors at most once.
   bool nearby = false;
@@ -123,8 +125,8 @@ struct Task {
   auto operator<=>(const Task&) const = default;
 };
 
-/// One choice of layouts for a kernel. `access` has one entry per parameter, in order. Entries of Uniform,
-/// Spec and Output parameters, and of streams that `specs` switches off, are ignored. The entry of a scatter
+/// One choice of layouts for a kernel. `access` has one entry per parameter, in order. Entries of Spec
+/// and Output parameters, and of streams that `specs` switches off, are ignored. The entry of a scatter
 /// output gives the layout of its elements, for Work::List.
 struct Variant {
   Task task = {};

@@ -155,8 +155,30 @@ bool overlap(const StreamRegion& a, const StreamRegion& b) {
   return true;
 }
 
-bool isValue(const Parameter& parameter) {
-  return parameter.role == Role::Uniform || parameter.role == Role::Iterator || parameter.role == Role::Spec;
+bool isValue(const Parameter& parameter, const Argument& argument) {
+  const bool isStream = parameter.role == Role::Uniform && argument.value == nullptr;
+  return !isStream && (parameter.role == Role::Uniform || parameter.role == Role::Iterator ||
+                       parameter.role == Role::Spec);
+}
+
+void checkUniformShape(const Kernel& kernel, const Parameter& uniform, const Shape& shape) {
+  if (shape.size() == 1) return;
+  fail(Error::Kind::Shape, kernel,
+       "'{}' is one value for all elements, but its stream has shape {}; give a value, or a stream or view "
+       "of one "
+       "element",
+       uniform.name, toString(shape));
+}
+
+std::size_t uniformPlanes(const Kernel& kernel, std::span<const Argument> arguments) {
+  std::size_t planes = 0;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const Parameter& parameter = kernel.parameters[i];
+    if (parameter.role == Role::Uniform && arguments[i].value == nullptr) {
+      planes += parameter.element->fields.size();
+    }
+  }
+  return planes;
 }
 
 void checkValue(const Kernel& kernel, const Parameter& parameter, const Argument& argument,

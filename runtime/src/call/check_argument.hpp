@@ -45,8 +45,14 @@ void checkGatherShape(const program::Kernel& kernel, const program::Parameter& g
 /// Whether two regions share an element.
 bool overlap(const StreamRegion& a, const StreamRegion& b);
 
-/// Whether the parameter takes a value instead of a stream.
-bool isValue(const program::Parameter& parameter);
+/// Whether the argument is a value instead of a stream; streams of one element may stand for uniforms.
+bool isValue(const program::Parameter& parameter, const Argument& argument);
+
+/// Checks that a stream which stands for a uniform has one element.
+void checkUniformShape(const program::Kernel& kernel, const program::Parameter& uniform, const Shape& shape);
+
+/// The planes of streams that stand for uniforms.
+std::size_t uniformPlanes(const program::Kernel& kernel, std::span<const Argument> arguments);
 
 /// Checks arguments that are not streams: values must exist, and iterators must fit the domain.
 void checkValue(const program::Kernel& kernel, const program::Parameter& parameter, const Argument& argument,

@@ -87,6 +87,30 @@ void checkPlanes(const Kernel& kernel, const DeviceState& device, std::size_t wr
   }
 }
 
+/// Checks that the passes of a plan have room for streams that stand for uniforms: plans count on values.
+void checkPlan(const ResolvedCall& call, const DeviceState& device) {
+  for (const program::Pass& pass : call.plan->passes) {
+    std::size_t units = call.plan->bundles.size();
+    for (std::size_t i = 0; i < pass.operands.size(); ++i) {
+      const Parameter& parameter = pass.kernel.parameters[i];
+      const bool isHeld = parameter.role == Role::Uniform && !pass.operands[i].isTemporary &&
+                          call.arguments[pass.operands[i].index].value == nullptr;
+      if (isHeld || parameter.role == Role::Input || parameter.role == Role::Gather) {
+        units +=
+            parameter.layers.empty()
+                ? parameter.element->fields.size()
+                : static_cast<std::size_t>(std::ranges::count(parameter.layers, -1, &program::Layer::bundle));
+      }
+    }
+    if (units > static_cast<std::size_t>(device.limits.textureUnits)) {
+      fail(Error::Kind::Device, call.kernel,
+           "a pass reads {} planes, with those of streams that stand for uniforms, but this device reads {}; "
+           "give values for uniforms",
+           units, device.limits.textureUnits);
+    }
+  }
+}
+
 /// The planes that an append output adds to passes: those of its list and, if its elements are counted, one
 /// of counts for the pass that writes the other outputs, and two of the histogram pyramid for the inputs of
 /// the list's pass.
@@ -144,7 +168,7 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& parameter = parameters[i];
     const StreamRegion& region = arguments[i].region;
-    if (isValue(parameter)) {
+    if (isValue(parameter, arguments[i])) {
       checkValue(kernel, parameter, arguments[i], domain);
       continue;
     }
@@ -179,6 +203,9 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
         checkInputShape(kernel, parameter, arguments[i], parameters[first], domain);
         break;
       case Role::Uniform:
+        read += parameter.element->fields.size();
+        checkUniformShape(kernel, parameter, region.shape);
+        break;
       case Role::Iterator:
       case Role::Spec:
       case Role::Accumulator: break;
@@ -189,6 +216,8 @@ std::optional<CheckedCall> checkCall(const Kernel& kernel, std::span<const Argum
     checkUniforms(kernel, device);
     checkPlanes(kernel, device, std::max(written + appendOutputs.counts, appendOutputs.list),
                 read + appendOutputs.pyramid);
+  } else if (uniformPlanes(kernel, arguments) > 0) {
+    checkPlan(call, device);
   }
   const bool hasAppendOutputs = appendOutputs.list > 0;  // these are emptied if the domain is empty
   if (domain.size() == 0 && !hasAppendOutputs) return std::nullopt;

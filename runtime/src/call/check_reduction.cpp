@@ -35,8 +35,9 @@ class Arguments {
     const bool toStreams = values.empty();
     for (std::size_t i = 0; i < arguments_.size(); ++i) {
       const Role role = fold_.parameters[i].role;
-      const bool isStream =
-          role == Role::Input || role == Role::Gather || (toStreams && role == Role::Accumulator);
+      const bool isStream = role == Role::Input || role == Role::Gather ||
+                            (toStreams && role == Role::Accumulator) ||
+                            (role == Role::Uniform && arguments_[i].value == nullptr);
       if (isStream && assemble::isNeeded(fold_.parameters[i], specs_)) {
         checkLives(i);
       }
@@ -88,10 +89,12 @@ class Arguments {
 
   void checkShape(std::size_t i, const Shape& domain) const {
     const Parameter& parameter = fold_.parameters[i];
-    if (isValue(parameter)) {
+    if (isValue(parameter, arguments_[i])) {
       checkValue(fold_, parameter, arguments_[i], domain);
     } else if (!assemble::isNeeded(parameter, specs_)) {
       return;
+    } else if (parameter.role == Role::Uniform) {
+      checkUniformShape(fold_, parameter, arguments_[i].region.shape);
     } else if (parameter.role == Role::Input) {
       checkInputShape(fold_, parameter, arguments_[i], parameter, domain);
     } else if (parameter.role == Role::Gather) {
@@ -101,7 +104,7 @@ class Arguments {
 
   /// A scan also reads the results of earlier runs.
   void checkUnits(const DeviceState& device, bool isScan) const {
-    const std::size_t carries = isScan ? accumulatorPlanes() : 0;
+    const std::size_t carries = (isScan ? accumulatorPlanes() : 0) + uniformPlanes(fold_, arguments_);
     const auto most = static_cast<std::size_t>(device.limits.textureUnits);
     if (const std::size_t planes = planesRead(fold_, specs_) + carries; planes > most) {
       fail(Error::Kind::Device, fold_,

@@ -12,7 +12,6 @@ namespace sk {
 
 namespace {
 
-using program::Scalar;
 
 std::uint32_t componentOf(const void* ends, int width, int end, int component) {
   std::uint32_t bits = 0;
@@ -25,8 +24,8 @@ std::int64_t stepsOf(const program::Parameter& parameter, const Shape& domain, i
   return countsElements(parameter, domain.rank()) ? domain.size() : domain[domain.rank() - 1 - component];
 }
 
-std::int64_t integerOf(Scalar scalar, std::uint32_t bits) {
-  return scalar == Scalar::Int ? std::int64_t{static_cast<std::int32_t>(bits)} : std::int64_t{bits};
+std::int64_t integerOf(program::Scalar scalar, std::uint32_t bits) {
+  return scalar == program::Scalar::Int ? std::int64_t{static_cast<std::int32_t>(bits)} : std::int64_t{bits};
 }
 
 }  // namespace
@@ -45,7 +44,7 @@ void checkIterator(const program::Kernel& kernel, const program::Parameter& para
                     kernel.name, parameter.name, field.width, toString(domain), domain.rank()),
         Error::Kind::Shape);
   }
-  if (field.scalar == Scalar::Float) {
+  if (field.scalar == program::Scalar::Float) {
     return;
   }
   for (int c = 0; c < field.width; ++c) {
@@ -70,7 +69,7 @@ IteratorStep stepOf(const program::Parameter& parameter, const void* ends, const
     const std::uint32_t begin = componentOf(ends, field.width, 0, c);
     const std::uint32_t end = componentOf(ends, field.width, 1, c);
     const std::int64_t steps = stepsOf(parameter, domain, c);
-    if (field.scalar == Scalar::Float) {
+    if (field.scalar == program::Scalar::Float) {
       const double difference = double{std::bit_cast<float>(end)} - double{std::bit_cast<float>(begin)};
       step[static_cast<std::size_t>(c)] =
           std::bit_cast<std::uint32_t>(static_cast<float>(difference / static_cast<double>(steps)));

@@ -15,6 +15,7 @@
 #include "device/configuration.hpp"
 #include "device/function_table.hpp"
 #include "device/recorded_call.hpp"
+#include "device/scalar_pass.hpp"
 #include "device/stream_state.hpp"
 #include "sk/call.hpp"
 #include "sk/device.hpp"
@@ -84,6 +85,8 @@ class DeviceState {
   /// The same call, prepared to run many times; null if that saves nothing. `call` must outlive it. The streams keep
   /// their shapes, but not the memory of their elements.
   virtual std::unique_ptr<RecordedCall> prepare(const ResolvedCall&) { return nullptr; }
+  /// Operations with scalars, prepared to run any number of times.
+  virtual std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) = 0;
   /// There is at least one block. For an empty domain, the results are the identities, which then exist.
   virtual void reduce(const ResolvedReduction& call) = 0;
   /// Whether it adds sums of floats without rounding; otherwise it compensates them in its own precision.
@@ -101,6 +104,7 @@ class DeviceState {
   std::unique_ptr<Trace> trace;  ///< null unless SK_TRACE names a file
   LoopState* recording = nullptr;  ///< records calls instead of running them; or null
   std::vector<LoopState*> loops;  ///< that use the device's streams
+  PendingScalars pendingScalars;
 
   StreamState* firstStream() const { return firstStream_; }
 

@@ -15,6 +15,7 @@ namespace sk {
 
 DeviceState::~DeviceState() {
   for (LoopState* loop : loops) loop->leave();
+  for (const std::shared_ptr<ScalarNode>& node : pendingScalars.nodes) node->device = nullptr;
 }
 
 void detail::StreamDeleter::operator()(StreamState* state) const noexcept {

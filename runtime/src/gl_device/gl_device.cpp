@@ -335,7 +335,9 @@ void GlDevice::checkStorages(const program::Kernel& kernel, std::span<const Argu
     const GlStream& stream = glStream(arguments[i].region);
     const std::size_t planes = stream.held().fields.size();
     if (parameter.role == program::Role::Output) written += planes;
-    if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather) read += planes;
+    const bool isRead = parameter.role == program::Role::Input || parameter.role == program::Role::Gather ||
+                        parameter.role == program::Role::Uniform;
+    if (isRead) read += planes;
     if (stream.storage == Storage::Single) continue;
     isOther = true;
     if (assemble::isAppendOutput(parameter)) {

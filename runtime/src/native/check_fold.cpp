@@ -31,29 +31,28 @@ double valueAt(const std::byte* bytes) {
 
 /// The value of an accumulator's scalar; 0 if its type rounds what it stores.
 double numberOf(const ComponentType& type, const std::byte* bytes) {
-  using program::Scalar;
   switch (type.scalar) {
-    case Scalar::Bool:
-    case Scalar::Uint:
-    case Scalar::Uchar:
-    case Scalar::Ushort:
+    case program::Scalar::Bool:
+    case program::Scalar::Uint:
+    case program::Scalar::Uchar:
+    case program::Scalar::Ushort:
       return type.storedBytes == 1   ? valueAt<std::uint8_t>(bytes)
              : type.storedBytes == 2 ? valueAt<std::uint16_t>(bytes)
                                      : valueAt<std::uint32_t>(bytes);
-    case Scalar::Int:
-    case Scalar::Char:
-    case Scalar::Short:
+    case program::Scalar::Int:
+    case program::Scalar::Char:
+    case program::Scalar::Short:
       return type.storedBytes == 1   ? valueAt<std::int8_t>(bytes)
              : type.storedBytes == 2 ? valueAt<std::int16_t>(bytes)
                                      : valueAt<std::int32_t>(bytes);
-    case Scalar::Float:
-    case Scalar::Double:
+    case program::Scalar::Float:
+    case program::Scalar::Double:
       return type.storedBytes == sizeof(float) ? valueAt<float>(bytes) : valueAt<double>(bytes);
-    case Scalar::Half:
-    case Scalar::Unorm8:
-    case Scalar::Snorm8:
-    case Scalar::Unorm16:
-    case Scalar::Snorm16: break;
+    case program::Scalar::Half:
+    case program::Scalar::Unorm8:
+    case program::Scalar::Snorm8:
+    case program::Scalar::Unorm16:
+    case program::Scalar::Snorm16: break;
   }
   return 0;
 }

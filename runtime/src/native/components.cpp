@@ -14,7 +14,6 @@ namespace sk {
 
 namespace {
 
-using program::Scalar;
 
 /// Copies `count` values of Bytes bytes from one stride to another.
 template <std::size_t Bytes>
@@ -72,8 +71,9 @@ void move(const Values<const std::byte>& from, const Values<std::byte>& to, std:
 
 }  // namespace
 
-std::size_t storedBytes(Scalar scalar, RealType real) {
-  const bool isReal = scalar == Scalar::Float || (scalar == Scalar::Double && real == RealType::Quad);
+std::size_t storedBytes(program::Scalar scalar, RealType real) {
+  const bool isReal =
+      scalar == program::Scalar::Float || (scalar == program::Scalar::Double && real == RealType::Quad);
   if (!isReal) return program::hostBytes(scalar);
   return real == RealType::Float    ? sizeof(float)
          : real == RealType::Double ? sizeof(double)
@@ -149,7 +149,7 @@ void Components::write(std::int64_t first, std::int64_t count, const std::byte* 
   for (std::size_t c = 0; c < types_.size(); ++c) {
     const Values<std::byte> held = valuesFrom(c, first);
     move({elements + types_[c].offset, elementBytes, types_[c].hostBytes}, held, count);
-    if (types_[c].scalar == Scalar::Bool) {   // any byte that is not 0 is true
+    if (types_[c].scalar == program::Scalar::Bool) {   // any byte that is not 0 is true
       std::transform(held.first, held.first + count, held.first,
                      [](std::byte value) { return std::byte{value != std::byte{0}}; });
     }
@@ -185,7 +185,7 @@ void Components::writeScalars(std::size_t component, std::int64_t first, std::in
 
 void Components::roundToHalf(std::int64_t count) {
   for (std::size_t c = 0; c < types_.size(); ++c) {
-    if (types_[c].scalar != Scalar::Float) continue;
+    if (types_[c].scalar != program::Scalar::Float) continue;
     auto* floats = reinterpret_cast<float*>(arrays_[c].get());
     std::transform(floats, floats + count, floats, [](float x) { return float{half(x)}; });
   }

@@ -108,13 +108,15 @@ class Operands {
 
   /// True if another run needs no more than refresh(): there are no copies of streams, and no pushes.
   bool mayRunAgain() const { return copies_.empty() && written_.empty() && pushed_.empty(); }
-  /// Takes the arrays of all streams anew, which calls may have exchanged meanwhile.
+  /// Takes the arrays of all streams, and the values in streams, anew, which calls may have exchanged meanwhile.
   void refresh() {
+    for (const Held& held : held_) copyHeld(held);
     for (std::size_t i = 0; i < list_.size(); ++i) {
       const StreamRegion& region = arguments_[i].region;
-      if (region.stream == nullptr || list_[i].components.empty()) continue;
+      const Role role = kernel_.parameters[i].role;
+      if (region.stream == nullptr || role == Role::Uniform || list_[i].components.empty()) continue;
       NativeStream& stream = nativeStream(region);
-      const bool isSpare = isWritten(kernel_.parameters[i].role) && isReplaced(region);
+      const bool isSpare = isWritten(role) && isReplaced(region);
       list_[i].components = (isSpare ? stream.spare() : stream.components).arrays();
     }
   }
@@ -171,6 +173,11 @@ class Operands {
   bool storesFloats(const NativeStream& stream) const { return isScan_ && areWidened(stream); }
 
  private:
+  struct Held {
+    StreamRegion region;
+    Components& value;
+  };
+
   /// True if an argument is written neither to spare arrays nor to a copy.
   bool isWrittenInPlace(std::size_t i) const {
     const StreamRegion& region = arguments_[i].region;
@@ -185,6 +192,8 @@ class Operands {
     const Argument& argument = arguments_[i];
     switch (parameter.role) {
       case Role::Uniform:
+        if (argument.value == nullptr) return heldOperand(parameter, argument.region);
+        return valueOperand(parameter, argument.value, 1);
       case Role::Spec: return valueOperand(parameter, argument.value, 1);
       case Role::Iterator: {
         Operand operand = valueOperand(parameter, argument.value, 2);
@@ -223,6 +232,24 @@ class Operands {
     Components& components = this->value(*parameter.element, count);
     components.write(0, count, static_cast<const std::byte*>(value), parameter.element->size);
     return {.components = components.arrays()};
+  }
+
+  /// The value of a uniform that a stream holds, copied, since the call may write the stream.
+  Operand heldOperand(const Parameter& parameter, const StreamRegion& region) {
+    Held& held = held_.emplace_back(region, value(*parameter.element));
+    copyHeld(held);
+    return {.components = held.value.arrays()};
+  }
+  void copyHeld(const Held& held) const {
+    const NativeStream& stream = nativeStream(held.region);
+    const std::int64_t number = operandOf(held.region).first;
+    if (stream.components.real() == real_) {
+      held.value.copy(stream.components, number, 0, 1);
+      return;
+    }
+    std::vector<std::byte> bytes(stream.element->size);
+    stream.components.read(number, 1, bytes.data(), bytes.size());
+    held.value.write(0, 1, bytes.data(), bytes.size());
   }
 
   /// True if the code has a double for each float that the stream holds, and for nothing else.
@@ -292,6 +319,7 @@ class Operands {
   Shape domain_;
   std::vector<Operand> list_;
   std::list<Components> kept_;
+  std::vector<Held> held_;  ///< uniforms
   std::list<native::Pushed> pushed_;
   std::vector<std::pair<const NativeStream*, const Components*>> copies_;  ///< for reading
   std::list<std::pair<NativeStream*, Components>> written_;

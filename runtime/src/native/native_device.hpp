@@ -43,6 +43,7 @@ class NativeDevice final : public DeviceState {
   void makeCurrent() override;
   void run(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepare(const ResolvedCall& call) override;
+  std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   void reduce(const ResolvedReduction& call) override;
   bool sumsExactly(const ResolvedReduction& call) const override;
   std::unique_ptr<RoundedSums> sumExactly(const ResolvedReduction& call,

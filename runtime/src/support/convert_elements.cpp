@@ -12,11 +12,10 @@ namespace sk {
 namespace {
 
 using program::Element;
-using program::Scalar;
 
 struct Component {
   std::size_t offset;
-  Scalar scalar;
+  program::Scalar scalar;
 };
 
 std::vector<Component> componentsOf(const Element& element) {
@@ -41,9 +40,9 @@ void keep(std::byte* place, T value) {
   std::memcpy(place, &value, sizeof value);
 }
 
-double loadReal(Scalar scalar, const std::byte* place) {
-  if (scalar == Scalar::Double) return load<double>(place);
-  return scalar == Scalar::Half ? float{load<half>(place)} : load<float>(place);
+double loadReal(program::Scalar scalar, const std::byte* place) {
+  if (scalar == program::Scalar::Double) return load<double>(place);
+  return scalar == program::Scalar::Half ? float{load<half>(place)} : load<float>(place);
 }
 
 /// Rounds a double to float, to odd, so that a second rounding to half gives the correctly rounded result.
@@ -59,9 +58,9 @@ float toOdd(double value) {
   return odd;
 }
 
-void keepReal(Scalar scalar, std::byte* place, double value) {
-  if (scalar == Scalar::Double) return keep(place, value);
-  if (scalar == Scalar::Half) return keep(place, half(toOdd(value)));
+void keepReal(program::Scalar scalar, std::byte* place, double value) {
+  if (scalar == program::Scalar::Double) return keep(place, value);
+  if (scalar == program::Scalar::Half) return keep(place, half(toOdd(value)));
   keep(place, static_cast<float>(value));
 }
 

@@ -19,6 +19,18 @@ std::string parameterUniform(ProgramText& program, std::string_view type, std::s
   return program.uniform(type, fmt::format("sk_{}_{}", kind, parameter.symbol));
 }
 
+std::string uniformValue(ProgramText& program, const Parameter& uniform, const StreamAccess& access) {
+  const std::string_view type = uniform.element->glsl;
+  if (!access.view) return parameterUniform(program, type, "arg", uniform);
+  const bool isLayered = access.addressing == Addressing::Layered;
+  declareSamplers(program, uniform, isLayered);
+  const Texel texel{parameterUniform(program, "ivec4", "origin", uniform) + ".xy",
+                    isLayered ? parameterUniform(program, "int", "shift", uniform) : "", access.packed};
+  const std::string name = fmt::format("sk_arg_{}", uniform.symbol);
+  program.statement(fmt::format("{} {} = {};", type, name, fetch(program, uniform, texel)));
+  return name;
+}
+
 void defineGetter(ProgramText& program, std::string_view kind, const Parameter& parameter,
                   std::string_view value) {
   program.function(fmt::format("ivec4 sk_{}_{}()", kind, parameter.symbol),

@@ -19,6 +19,9 @@ namespace sk::assemble {
 std::string parameterUniform(ProgramText& program, std::string_view type, std::string_view kind,
                              const program::Parameter& parameter);
 
+/// The value of a uniform: a GLSL uniform, or a variable with an element of a stream.
+std::string uniformValue(ProgramText& program, const program::Parameter& uniform, const StreamAccess& access);
+
 /// Defines the function `sk_index_p` or `sk_extent_p` for the body.
 void defineGetter(ProgramText& program, std::string_view kind, const program::Parameter& parameter,
                   std::string_view value);

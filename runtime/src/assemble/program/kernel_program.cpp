@@ -64,6 +64,10 @@ std::string describe(const Profile& profile, const Kernel& kernel, const Variant
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
     const bool isRead = parameter.role == Role::Input || parameter.role == Role::Gather;
+    if (parameter.role == Role::Uniform) {
+      if (variant.access[i].view) text += fmt::format("; {} in a stream", parameter.name);
+      continue;
+    }
     if (!isNeeded(parameter, variant.specs)) {
       text += fmt::format("; no {}", parameter.name);
       continue;
@@ -152,9 +156,10 @@ class KernelText {
   /// Relays the uniforms that change most often first, because room is limited.
   void relayUniforms() {
     program_.relayUniforms();
-    for (const Parameter& parameter : kernel_.parameters) {
+    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+      const Parameter& parameter = kernel_.parameters[i];
       if (!isNeeded(parameter, variant_.specs)) continue;
-      if (parameter.role == Role::Uniform) {
+      if (parameter.role == Role::Uniform && !variant_.access[i].view) {
         parameterUniform(program_, parameter.element->glsl, "arg", parameter);
       } else if (parameter.role == Role::Iterator) {
         parameterUniform(program_, parameter.element->glsl, "begin", parameter);
@@ -171,9 +176,7 @@ class KernelText {
   void defineAccess(std::size_t i, const StreamAccess& access) {
     const Parameter& parameter = kernel_.parameters[i];
     switch (parameter.role) {
-      case Role::Uniform:
-        arguments_.push_back({parameterUniform(program_, parameter.element->glsl, "arg", parameter)});
-        break;
+      case Role::Uniform: arguments_.push_back({uniformValue(program_, parameter, access)}); break;
       case Role::Input: defineInput(parameter, access); break;
       case Role::Output: defineOutput(parameter); break;
       case Role::Gather:

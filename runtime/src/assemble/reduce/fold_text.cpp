@@ -65,9 +65,7 @@ void FoldText::defineParameters() {
 
 void FoldText::defineParameter(const Parameter& parameter, const StreamAccess& access) {
   switch (parameter.role) {
-    case Role::Uniform:
-      arguments_.push_back(parameterUniform(program_, parameter.element->glsl, "arg", parameter));
-      return;
+    case Role::Uniform: arguments_.push_back(uniformValue(program_, parameter, access)); return;
     case Role::Iterator: arguments_.push_back(iteratorValue(program_, parameter, access, item())); return;
     case Role::Input:
       declareSamplers(

@@ -13,7 +13,6 @@ namespace sk {
 namespace {
 
 using assemble::PointStep;
-using program::Scalar;
 using program::ScatterOp;
 
 constexpr const char* whatFor = "a scatter output of integers";
@@ -29,7 +28,7 @@ const program::Element& floatsOf(int width) {
 }
 
 bool isOfFloats(const program::Parameter& appendOutput) {
-  return appendOutput.element->fields.front().scalar == Scalar::Float;
+  return appendOutput.element->fields.front().scalar == program::Scalar::Float;
 }
 
 /// The steps of a scatter output, in order.

@@ -15,7 +15,6 @@ namespace {
 
 using program::Element;
 using program::Field;
-using program::Scalar;
 
 /// Calls loop(bytes, texelBytes) with the sizes of a field and of its texel as constants.
 template <class Loop>
@@ -51,7 +50,7 @@ void copyField(const std::byte* from, std::byte* to) {
 template <std::size_t Bytes>
 void copyFields(const Field& field, const std::byte* from, std::size_t fromStep, std::byte* to,
                 std::size_t toStep, std::size_t count) {
-  if (field.scalar == Scalar::Bool) {
+  if (field.scalar == program::Scalar::Bool) {
     if constexpr (Bytes <= 4) {
       for (std::size_t i = 0; i < count; ++i) {
         copyField<Bytes, true>(from + i * fromStep, to + i * toStep);
@@ -87,7 +86,7 @@ void narrowChannel(const gl::Transfer& tight, const std::byte* wide, std::byte* 
 
 bool areTexels(const Element& element) {
   const Field& field = element.fields[0];
-  return element.fields.size() == 1 && field.scalar != Scalar::Bool && field.width != 3 &&
+  return element.fields.size() == 1 && field.scalar != program::Scalar::Bool && field.width != 3 &&
          field.offset == 0 && element.size == gl::hostBytes(field);
 }
 

@@ -45,7 +45,8 @@ OutputTargets::Placement OutputTargets::placementOf(std::size_t output) const {
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     const Role role = kernel_.parameters[i].role;
     const bool isSame = arguments_[i].region.stream == arguments_[output].region.stream;
-    isAlsoRead = isAlsoRead || (isSame && isNeeded(i) && (role == Role::Input || role == Role::Gather));
+    const bool isRead = role == Role::Input || role == Role::Gather || role == Role::Uniform;
+    isAlsoRead = isAlsoRead || (isSame && isNeeded(i) && isRead);
     isWrittenBefore = isWrittenBefore || (isSame && isOutput(i) && i < output);
   }
   const RegionLayout& regionLayout = operands_[output].regionLayout;

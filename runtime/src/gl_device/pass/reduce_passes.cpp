@@ -213,7 +213,7 @@ bool ReducePasses::mayScanByTexel(std::span<const Argument> arguments) const {
 Operand ReducePasses::operandOf(std::size_t i, const Argument& argument, const Shape& domain) const {
   const Parameter& parameter = reduction_.fold.parameters[i];
   switch (parameter.role) {
-    case Role::Uniform:
+    case Role::Uniform: return uniformOperand(argument);
     case Role::Spec: return {.value = argument.value};
     case Role::Iterator: return domain.size() == 0 ? Operand{} : iteration(parameter, argument.value, domain);
     case Role::Input:

@@ -138,9 +138,8 @@ class KernelCall {
   Operand operandOf(std::size_t i) const {
     const Parameter& parameter = kernel_.parameters[i];
     const Argument& argument = arguments_[i];
-    if (parameter.role == Role::Uniform || parameter.role == Role::Spec) {
-      return {.value = argument.value};
-    }
+    if (parameter.role == Role::Uniform) return uniformOperand(argument);
+    if (parameter.role == Role::Spec) return {.value = argument.value};
     if (parameter.role == Role::Iterator) {
       return iteration(parameter, argument.value, arguments_[first_].region.shape);
     }

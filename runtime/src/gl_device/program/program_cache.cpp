@@ -104,7 +104,8 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
   result->isPacked = variant.domainPacked;
   finish(*result, kernel, std::move(begun));
   result->domain = LayoutUniforms(result->program, "sk_domain_*");
-  findParameters(*result, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs);
+  findParameters(*result, assemble::HeldKernel(kernel, variant.access).kernel(), variant.specs,
+                 variant.access);
   for (KernelProgram::Read& read : result->reads) {
     const bool isFiltered = variant.access[read.parameter].filtered;
     read.sampler = isFiltered ? device_.samplers.linear(kernel.parameters[read.parameter].boundary) : 0;
@@ -116,7 +117,8 @@ std::unique_ptr<KernelProgram> ProgramCache::makeKernelProgram(const program::Ke
 }
 
 void ProgramCache::findParameters(KernelProgram& result, const program::Kernel& kernel,
-                                  const assemble::SpecValues& specs) {
+                                  const assemble::SpecValues& specs,
+                                  std::span<const assemble::StreamAccess> access) {
   int unit = 0;
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const program::Parameter& parameter = kernel.parameters[i];
@@ -132,9 +134,10 @@ void ProgramCache::findParameters(KernelProgram& result, const program::Kernel& 
       result.values.push_back({i, find("begin")});
       result.steps.push_back({i, find("step")});
       result.reads.push_back(readOf(result.program, i, parameter));
-    } else if (parameter.role == program::Role::Uniform) {
+    } else if (parameter.role == program::Role::Uniform && !access[i].view) {
       findValue(result, i, parameter);
-    } else if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather) {
+    } else if (parameter.role == program::Role::Input || parameter.role == program::Role::Gather ||
+               parameter.role == program::Role::Uniform) {
       result.reads.push_back(readOf(result.program, i, parameter));
       bindSamplers(result.program, parameter, unit);
     }
@@ -291,7 +294,8 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     if (variant.walk != assemble::Walk::Nothing) {
       const assemble::HeldKernel held(kernel, variant.access);
       const assemble::ContinuedKernel continued(held.kernel());
-      findParameters(result->kernel, variant.carried ? continued.kernel() : held.kernel(), variant.specs);
+      findParameters(result->kernel, variant.carried ? continued.kernel() : held.kernel(), variant.specs,
+                     variant.access);
     }
     makeRoom(reductions_, [&](const ReduceKey& other) { return other.first == &reduction; });
     return *reductions_.insert_or_assign(key, Kept<ReduceProgram>{std::move(result), ++clock_})

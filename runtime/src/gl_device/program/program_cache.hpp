@@ -113,8 +113,8 @@ class ProgramCache {
 
   std::unique_ptr<KernelProgram> makeKernelProgram(const program::Kernel& kernel,
                                                    const assemble::Variant& variant, ProgramBuild&& begun);
-  void findParameters(KernelProgram& result, const program::Kernel& kernel,
-                      const assemble::SpecValues& specs);
+  void findParameters(KernelProgram& result, const program::Kernel& kernel, const assemble::SpecValues& specs,
+                      std::span<const assemble::StreamAccess> access);
   void findTables(KernelProgram& result, const program::Kernel& kernel, int& unit);
   void findValue(KernelProgram& result, std::size_t number, const program::Parameter& parameter);
   void addDoubles(KernelProgram& result, std::size_t number, const std::string& name,

@@ -32,6 +32,11 @@ bool hasAccess(const program::Kernel& kernel, std::size_t i, const Task& task) {
          (role == Role::Scatter && task.work == Work::List && task.appendOutput == i);
 }
 
+/// Whether a stream holds the value of a uniform.
+bool isHeld(const Parameter& parameter, const Operand& operand) {
+  return parameter.role == Role::Uniform && operand.value == nullptr;
+}
+
 assemble::Domain domainOf(const RegionLayout& domain, const Task& task) {
   return task.work == Work::List ? assemble::Domain::Entry : assemble::domainOf(domain);
 }
@@ -171,6 +176,21 @@ Operand regionOperand(const Argument& argument, const Shape& domain) {
   return operand;
 }
 
+Operand uniformOperand(const Argument& argument) {
+  if (argument.value != nullptr) return {.value = argument.value};
+  Operand operand = regionOperand(argument, argument.region.shape);
+  RegionLayout& region = operand.regionLayout;
+  if (!region.linear) return operand;
+  std::int64_t number = 0;
+  for (std::size_t d = 0; d < region.origin.size(); ++d) {
+    number += std::int64_t{region.origin[d]} * region.stride[d];
+  }
+  const std::int32_t shift = region.shift + (region.packed ? 2 : 0);
+  region.origin = {static_cast<std::int32_t>(number & ((std::int64_t{1} << shift) - 1)),
+                   static_cast<std::int32_t>(number >> shift), 0, 0};
+  return operand;
+}
+
 Operand iteration(const Parameter& iterator, const void* ends, const Shape& domain) {
   RegionLayout regionLayout;
   regionLayout.extent = xFirst(domain);
@@ -195,7 +215,12 @@ assemble::Variant chooseVariant(const program::Kernel& kernel, std::span<const O
   for (std::size_t i = 0; i < kernel.parameters.size(); ++i) {
     const Parameter& parameter = kernel.parameters[i];
     StreamAccess access;
-    if (parameter.role == Role::Iterator) {
+    if (isHeld(parameter, operands[i])) {
+      access = {.addressing = addressingOf(operands[i].regionLayout),
+                .view = true,
+                .storage = operands[i].storage,
+                .packed = operands[i].regionLayout.packed};
+    } else if (parameter.role == Role::Iterator) {
       access = chooseIteration(parameter, operands[i], domain);
     } else if (hasAccess(kernel, i, task) && isNeeded(parameter, variant.specs)) {
       access = chooseAccess(parameter, operands[i], domain, task, filtersFloats);
@@ -220,9 +245,11 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
            4);
   bits.add(task.appendOutput & 15u, 4);
   bits.add(task.appendOutput >> 4, 4);
-  const bool hasStorages = std::ranges::any_of(operands, [](const Operand& operand) {
-    return operand.storage != Storage::Single || operand.regionLayout.packed;
-  });
+  bool hasStorages = false;
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    hasStorages = hasStorages || operands[i].storage != Storage::Single || operands[i].regionLayout.packed ||
+                  isHeld(kernel.parameters[i], operands[i]);
+  }
   bits.add(static_cast<std::uint64_t>(assemble::decodedRank(domain)) | std::uint64_t{hasStorages} << 3, 4);
   if (kernel.usesLoops) {
     bits.add(isEven(kernel, domain, task), 4);
@@ -240,7 +267,15 @@ ProgramKey variantKey(const program::Kernel& kernel, std::span<const Operand> op
       const Addressing addressing = access.filtered ? Addressing::Aligned : access.addressing;
       bits.add(static_cast<std::uint64_t>(addressing) | choiceBits(access) << 2, 4);
     }
-    if (hasStorages && parameter.role != Role::Uniform && parameter.role != Role::Spec) {
+    if (hasStorages && parameter.role == Role::Uniform) {
+      // no operand has Storage::Default, which stands for a value
+      const bool isStream = isHeld(parameter, operands[i]);
+      bits.add(isStream ? static_cast<std::uint64_t>(operands[i].storage) |
+                              std::uint64_t{operands[i].regionLayout.packed} << 3
+                        : 0,
+               4);
+      if (isStream) bits.add(std::uint64_t{operands[i].regionLayout.layered}, 4);
+    } else if (hasStorages && parameter.role != Role::Spec) {
       bits.add(static_cast<std::uint64_t>(operands[i].storage) |
                    std::uint64_t{operands[i].regionLayout.packed} << 3,
                4);

@@ -20,7 +20,8 @@
 namespace sk {
 
 /// One argument of a pass. Operands of Uniform and Spec parameters have a value; those of iterators have the
-/// first value, the step, and the domain as region layout; all others have a region layout and planes.
+/// first value, the step, and the domain as region layout; all others, and those of uniforms that a stream holds, have
+/// a region layout and planes.
 struct Operand {
   const void* value = nullptr;
   assemble::RegionLayout regionLayout = {};
@@ -52,6 +53,10 @@ assemble::Addressing addressingOf(const assemble::RegionLayout& regionLayout);
 
 /// The operand for a region, an argument of a call over a domain of this shape.
 Operand regionOperand(const Argument& argument, const Shape& domain);
+
+/// The operand for a uniform: a value or, if a stream of one element holds it, that element, with the texel as origin
+/// (StreamAccess::view).
+Operand uniformOperand(const Argument& argument);
 
 /// The operand for an iterator with these ends over a domain of this shape.
 Operand iteration(const program::Parameter& iterator, const void* ends, const Shape& domain);

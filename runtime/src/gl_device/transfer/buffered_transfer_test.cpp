@@ -28,11 +28,11 @@ struct Mixed {
 };
 
 const program::Element& mixed() {
-  using program::Scalar;
-  static constexpr std::array<program::Field, 4> fields{{{"t", Scalar::Float, 1, offsetof(Mixed, t)},
-                                                         {"isHit", Scalar::Bool, 1, offsetof(Mixed, isHit)},
-                                                         {"id", Scalar::Int, 2, offsetof(Mixed, id)},
-                                                         {"at", Scalar::Float, 3, offsetof(Mixed, at)}}};
+  static constexpr std::array<program::Field, 4> fields{
+      {{"t", program::Scalar::Float, 1, offsetof(Mixed, t)},
+       {"isHit", program::Scalar::Bool, 1, offsetof(Mixed, isHit)},
+       {"id", program::Scalar::Int, 2, offsetof(Mixed, id)},
+       {"at", program::Scalar::Float, 3, offsetof(Mixed, at)}}};
   static constexpr program::Element element{"Mixed", "Mixed", sizeof(Mixed), fields};
   return element;
 }

@@ -19,22 +19,22 @@ constexpr int scalars = 14;
 
 /// A field with the same texel format, so that the kernel copies bits instead of converting values.
 program::Field texelField(const program::Field& field) {
-  using program::Scalar;
   switch (field.scalar) {
-    case Scalar::Double: return {"", Scalar::Uint, static_cast<std::uint8_t>(2 * field.width), 0};
-    case Scalar::Snorm8: return {"", Scalar::Char, field.width, 0};
-    case Scalar::Snorm16: return {"", Scalar::Short, field.width, 0};
-    case Scalar::Unorm16: return {"", Scalar::Ushort, field.width, 0};
-    case Scalar::Bool:
-    case Scalar::Int:
-    case Scalar::Uint:
-    case Scalar::Float:
-    case Scalar::Half:
-    case Scalar::Char:
-    case Scalar::Uchar:
-    case Scalar::Short:
-    case Scalar::Ushort:
-    case Scalar::Unorm8: break;
+    case program::Scalar::Double:
+      return {"", program::Scalar::Uint, static_cast<std::uint8_t>(2 * field.width), 0};
+    case program::Scalar::Snorm8: return {"", program::Scalar::Char, field.width, 0};
+    case program::Scalar::Snorm16: return {"", program::Scalar::Short, field.width, 0};
+    case program::Scalar::Unorm16: return {"", program::Scalar::Ushort, field.width, 0};
+    case program::Scalar::Bool:
+    case program::Scalar::Int:
+    case program::Scalar::Uint:
+    case program::Scalar::Float:
+    case program::Scalar::Half:
+    case program::Scalar::Char:
+    case program::Scalar::Uchar:
+    case program::Scalar::Short:
+    case program::Scalar::Ushort:
+    case program::Scalar::Unorm8: break;
   }
   return {"", field.scalar, field.width, 0};
 }

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "gl_device/pass/scalar_kernel.hpp"
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "call/resolved_call.hpp"
+#include "device/device_state.hpp"
+#include "device/stream_state.hpp"
+#include "gl_device/gl_device.hpp"
+
+namespace sk {
+
+namespace {
+
+using detail::ScalarOp;
+using program::Intrinsic;
+using program::Parameter;
+using program::Role;
+
+/// What kernels' text has for these operations (compiler/glsl), too.
+constexpr std::string_view helpers =
+    "int sk_div(int a, int b) {\n"
+    "  int d = b == 0 || (b == -1 && a == -2147483647 - 1) ? 1 : b;\n"
+    "  return a / d;\n"
+    "}\n"
+    "uint sk_div(uint a, uint b) { return a / (b == 0u ? 1u : b); }\n";
+constexpr std::string_view doubleHelpers =
+    "sk_double sk_max(sk_double a, sk_double b) { return sk_less(a, b) || sk_isnan(a) ? b : a; }\n"
+    "sk_double sk_min(sk_double a, sk_double b) { return sk_less(b, a) || sk_isnan(a) ? b : a; }\n";
+
+std::string_view patternOfDoubles(ScalarOp op) {
+  switch (op) {
+    case ScalarOp::Copy: return "{0}";
+    case ScalarOp::Negate: return "sk_neg({0})";
+    case ScalarOp::Absolute: return "sk_abs({0})";
+    case ScalarOp::SquareRoot: return "sk_sqrt({0})";
+    case ScalarOp::Add: return "sk_add({0}, {1})";
+    case ScalarOp::Subtract: return "sk_sub({0}, {1})";
+    case ScalarOp::Multiply: return "sk_mul({0}, {1})";
+    case ScalarOp::Divide: return "sk_div({0}, {1})";
+    case ScalarOp::Minimum: return "sk_min({0}, {1})";
+    case ScalarOp::Maximum: return "sk_max({0}, {1})";
+    case ScalarOp::Less: return "sk_less({0}, {1})";
+    case ScalarOp::LessEqual: return "sk_less_equal({0}, {1})";
+    case ScalarOp::Equal: return "sk_equal({0}, {1})";
+    case ScalarOp::Select: return "{0} ? {1} : {2}";
+    case ScalarOp::Not:
+    case ScalarOp::And:
+    case ScalarOp::Or: break;  // of bools only
+  }
+  return {};
+}
+
+std::string_view patternOf(ScalarOp op, program::Scalar type) {
+  if (type == program::Scalar::Double) return patternOfDoubles(op);
+  const bool isFloat = type == program::Scalar::Float;
+  switch (op) {
+    case ScalarOp::Copy: return "{0}";
+    case ScalarOp::Negate: return "-{0}";
+    case ScalarOp::Absolute: return "abs({0})";
+    case ScalarOp::SquareRoot: return "sqrt({0})";
+    case ScalarOp::Not: return "!{0}";
+    case ScalarOp::Add: return "{0} + {1}";
+    case ScalarOp::Subtract: return "{0} - {1}";
+    case ScalarOp::Multiply: return "{0} * {1}";
+    case ScalarOp::Divide: return isFloat ? "{0} / {1}" : "sk_div({0}, {1})";
+    case ScalarOp::Minimum: return isFloat ? "sk_min({0}, {1})" : "min({0}, {1})";
+    case ScalarOp::Maximum: return isFloat ? "sk_max({0}, {1})" : "max({0}, {1})";
+    case ScalarOp::Less: return "{0} < {1}";
+    case ScalarOp::LessEqual: return "{0} <= {1}";
+    case ScalarOp::Equal: return "{0} == {1}";
+    case ScalarOp::And: return "{0} && {1}";
+    case ScalarOp::Or: return "{0} || {1}";
+    case ScalarOp::Select: return "{0} ? {1} : {2}";
+  }
+  return {};
+}
+
+/// A kernel and what it refers to.
+struct KeptKernel {
+  std::string body;
+  std::deque<std::string> names;
+  std::vector<Parameter> parameters;
+  program::Kernel kernel;
+};
+
+class KernelText {
+ public:
+  explicit KernelText(const ScalarPass& pass) : pass_(pass) {}
+
+  std::unique_ptr<KeptKernel> make() && {
+    for (std::size_t i = 0; i < pass_.reads.size(); ++i)
+      add("r", i, Role::Uniform, *pass_.reads[i].stream->element);
+    for (std::size_t i = 0; i < pass_.numbers.size(); ++i)
+      add("n", i, Role::Uniform, *pass_.numbers[i].element);
+    for (std::size_t i = 0; i < pass_.outputs.size(); ++i) {
+      add("o", i, Role::Output, *pass_.steps[pass_.outputs[i].step].result);
+    }
+    made_->body = text();
+    made_->kernel = {.name = "scalars",
+                     .entry = "scalars",
+                     .declarations = {},
+                     .body = made_->body,
+                     .parameters = made_->parameters,
+                     .sources = {},
+                     .usesDoubles = usesDoubles_,
+                     .intrinsics = intrinsics};
+    return std::move(made_);
+  }
+
+ private:
+  static constexpr program::IntrinsicUse intrinsics[] = {{Intrinsic::Max, 1}, {Intrinsic::Min, 1}};
+
+  void add(std::string_view prefix, std::size_t number, Role role, const program::Element& element) {
+    const std::string& name = made_->names.emplace_back(fmt::format("{}{}", prefix, number));
+    made_->parameters.push_back({.name = name, .symbol = name, .role = role, .element = &element});
+    usesDoubles_ = usesDoubles_ || element.fields.front().scalar == program::Scalar::Double;
+  }
+
+  std::string text() const {
+    std::string list;
+    for (const Parameter& parameter : made_->parameters) {
+      list += fmt::format("{}{}{} {}", list.empty() ? "" : ", ", parameter.role == Role::Output ? "out " : "",
+                          parameter.element->glsl, parameter.name);
+    }
+    std::string body(helpers);
+    if (usesDoubles_) body += doubleHelpers;
+    body += fmt::format("void scalars({}) {{\n", list);
+    for (std::size_t i = 0; i < pass_.steps.size(); ++i) {
+      const ScalarStep& step = pass_.steps[i];
+      body += fmt::format("  {} s{} = {};\n", step.result->glsl, i,
+                          fmt::format(fmt::runtime(patternOf(step.op, step.type)), nameOf(step.operands[0]),
+                                      nameOf(step.operands[1]), nameOf(step.operands[2])));
+    }
+    for (std::size_t i = 0; i < pass_.outputs.size(); ++i) {
+      body += fmt::format("  o{} = s{};\n", i, pass_.outputs[i].step);
+    }
+    return body + "}\n";
+  }
+
+  static std::string nameOf(const ScalarRef& ref) {
+    switch (ref.kind) {
+      case ScalarRef::Kind::Read: return fmt::format("r{}", ref.index);
+      case ScalarRef::Kind::Number: return fmt::format("n{}", ref.index);
+      case ScalarRef::Kind::Step: break;
+    }
+    return fmt::format("s{}", ref.index);
+  }
+
+  const ScalarPass& pass_;
+  std::unique_ptr<KeptKernel> made_ = std::make_unique<KeptKernel>();
+  bool usesDoubles_ = false;
+};
+
+/// A pass with its kernel.
+class PreparedScalars final : public RecordedCall {
+ public:
+  PreparedScalars(GlDevice& device, ScalarPass pass)
+      : device_(device), pass_(std::move(pass)), kernel_(scalarKernel(pass_)) {
+    for (const StreamRegion& read : pass_.reads) arguments_.push_back({.region = read});
+    for (const ScalarPass::Number& number : pass_.numbers)
+      arguments_.push_back({.value = number.value.data()});
+    for (const ScalarPass::Output& output : pass_.outputs) {
+      const Shape& shape = output.stream->shape;
+      arguments_.push_back({.region = {output.stream, Index::origin(shape.rank()), shape}});
+    }
+  }
+
+  void run() override { device_.runUnchecked(resolveCall(kernel_, arguments_, device_.limits)); }
+
+ private:
+  GlDevice& device_;
+  const ScalarPass pass_;
+  const program::Kernel& kernel_;
+  std::vector<Argument> arguments_;
+};
+
+}  // namespace
+
+const program::Kernel& scalarKernel(const ScalarPass& pass) {
+  static std::mutex mutex;
+  static std::map<std::string, std::unique_ptr<KeptKernel>> kernels;  // by their text, which has all types
+  std::unique_ptr<KeptKernel> made = KernelText(pass).make();
+  const std::lock_guard lock(mutex);
+  return kernels.try_emplace(made->body, std::move(made)).first->second->kernel;
+}
+
+std::unique_ptr<RecordedCall> GlDevice::prepareScalars(ScalarPass pass) {
+  return std::make_unique<PreparedScalars>(*this, std::move(pass));
+}
+
+}  // namespace sk

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+//
+// Promises: scalars compute what the same numbers in C++ give, of the values that they had when the operation was asked
+// for; they go wherever a result or a uniform does; and a loop repeats what is done with them.
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "error_of.hpp"
+#include "scalars.sk.hpp"
+#include "sk/sk.hpp"
+#include "support/devices.hpp"
+
+namespace run_tests {
+namespace {
+
+using Catch::Matchers::Contains;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+const float nan = std::nanf("");
+
+bool isSame(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+template <class T>
+sk::Stream<T> streamOf(sk::Device& device, const std::vector<T>& values) {
+  auto stream = device.stream<T>({static_cast<std::int64_t>(values.size())});
+  stream.write(values);
+  return stream;
+}
+
+TEST_CASE("operations with floats") {
+  onEveryProfile([](sk::Device& device) {
+    for (const auto& [x, y] :
+         {std::pair{6.0f, 1.5f}, {-2.0f, 8.0f}, {0.0f, 0.0f}, {1.0f, infinity}, {3.0f, nan}}) {
+      INFO(x << " and " << y);
+      const auto a = device.scalar<float>(x), b = device.scalar<float>(y);
+      CHECK(isSame((a + b).read(), x + y));
+      CHECK(isSame((a - b).read(), x - y));
+      CHECK(isSame((a * b).read(), x * y));
+      CHECK(isSame((a / b).read(), x / y));
+      CHECK(isSame(min(a, b).read(), std::fmin(x, y)));
+      CHECK(isSame(sk::max(a, b).read(), std::fmax(x, y)));
+      CHECK((a < b).read() == (x < y));
+      CHECK((a <= b).read() == (x <= y));
+      CHECK((a > b).read() == (x > y));
+      CHECK((a >= b).read() == (x >= y));
+      CHECK((a == b).read() == (x == y));
+      CHECK((a != b).read() == (x != y));
+      CHECK(isSame(sqrt(a).read(), std::sqrt(x)));
+      CHECK(isSame(abs(a).read(), std::abs(x)));
+      CHECK(isSame((-a).read(), -x));
+      CHECK(isSame(sk::select(a < b, b, a).read() + 1, (x < y ? y : x) + 1));
+      CHECK(isSame(sk::select(a < b, 1, b).read(), x < y ? 1 : y));
+      CHECK(sk::select(a < b || a == b, 1.0f, 2.0f).read() == (x < y || x == y ? 1 : 2));
+      CHECK((!(a < b) && a == a).read() == (!(x < y) && x == x));
+      CHECK(isSame((2 - a / 4).read(), 2 - x / 4));
+      CHECK(isSame(max(2, a).read(), std::fmax(2.0f, x)));
+    }
+  });
+}
+
+TEST_CASE("operations with doubles and integers") {
+  onEveryProfile([](sk::Device& device) {
+    const auto third = device.scalar<double>(1.0 / 3);
+    CHECK((third * 3 - 1e-9).read() == Approx(1 - 1e-9).epsilon(1e-13));
+    CHECK(sqrt(third * third).read() == Approx(1.0 / 3).epsilon(1e-13));
+    CHECK(max(min(third, 0.25), -third).read() == 0.25);
+    CHECK((third < 0.34 && third > 0.33).read());
+    constexpr int least = std::numeric_limits<int>::min();
+    const auto seven = device.scalar<int>(-7), zero = device.scalar<int>(0);
+    CHECK((seven / 2).read() == -3);
+    CHECK((seven / zero).read() == -7);
+    CHECK((device.scalar<int>(least) / -1).read() == least);
+    CHECK((abs(seven) * 3 - 1).read() == 20);
+    CHECK((device.scalar<int>(least) - 1).read() == std::numeric_limits<int>::max());
+    const auto big = device.scalar<unsigned>(4000000000u);
+    CHECK((big / 3u).read() == 1333333333u);
+    CHECK((big + big).read() == 3705032704u);
+    CHECK((big > 5u).read());
+    CHECK(min(big, 5u).read() == 5u);
+  });
+  sk::Device reference = sk::Device::reference();
+  auto tenth = reference.scalar<float>();
+  scalars::weighted(1.0f, streamOf<float>(reference, {1, 3}), tenth);
+  const sk::Scalar<float> third = 1 / (tenth - 1);
+  CHECK(sk::View<float>(third.region()).readReals()[0] == 1.0 / 3);
+}
+
+TEST_CASE("an operation uses the values of its time") {
+  onEveryProfile([](sk::Device& device) {
+    auto a = device.scalar<float>(3), b = device.scalar<float>(4);
+    sk::Scalar<float> sum = a + b, product = a * b;
+    a.assign(b);
+    b.assign(100);
+    CHECK(sum.read() == 7);
+    CHECK(product.read() == 12);
+    CHECK(a.read() == 4);
+    CHECK(b.read() == 100);
+    sk::Scalar<float> quotient = b / a;
+    scalars::weighted(1.0f, streamOf<float>(device, {1, 2, 3}), a);
+    CHECK(a.read() == 6);
+    CHECK(quotient.read() == 25);
+    {
+      const auto gone = device.scalar<float>(9);
+      quotient = gone + a;
+    }
+    CHECK(quotient.read() == 15);
+    a = a * a;  // keeps its place
+    a = a - 1;
+    std::swap(a, b);
+    CHECK(a.read() == 100);
+    CHECK(b.read() == 35);
+    std::vector<sk::Scalar<float>> many;
+    for (int i = 0; i < 30; ++i) many.push_back(i == 0 ? b + 1 : many.back() + b);
+    for (int i = 0; i < 30; ++i)
+      CHECK(many[static_cast<std::size_t>(i)].read() == static_cast<float>(35 * (i + 1) + 1));
+    sk::Scalar<float> power = b + 0;
+    for (int i = 0; i < 1000; ++i) power = power + 1;
+    CHECK(power.read() == 1035);
+    std::vector<sk::Scalar<float>> ring;
+    for (int i = 0; i < 7; ++i) ring.push_back(device.scalar<float>(static_cast<float>(i)));
+    const sk::Scalar<float> first = ring[0] + 0;
+    for (std::size_t i = 0; i < 6; ++i) ring[i].assign(ring[i + 1]);
+    ring[6].assign(first);
+    for (std::size_t i = 0; i < 7; ++i) CHECK(ring[i].read() == static_cast<float>((i + 1) % 7));
+  });
+}
+
+TEST_CASE("scalars are results and uniforms") {
+  onEveryProfile([](sk::Device& device) {
+    const auto x = streamOf<float>(device, {1, 2, 3, 4});
+    auto y = device.stream<float>({4});
+    auto total = device.scalar<float>();
+    scalars::weighted(1.0f, x, total);
+    scalars::scale(1 / total, x, y);
+    CHECK(y.read()[3] == 0.4f);
+    scalars::weighted(total, x, total);
+    CHECK(total.read() == 100);
+    auto line = device.scalar<scalars::Line>(scalars::Line{2, {1, 0}, 0.5});
+    auto other = device.scalar<scalars::Line>();
+    other.assign(line);
+    CHECK(other.read().bias == 0.5);
+    auto doubles = device.stream<double>({4});
+    scalars::line(other, x, doubles);
+    CHECK(doubles.read()[1] == 5.5);
+  });
+}
+
+TEST_CASE("a loop repeats operations with scalars") {
+  onEveryProfile([](sk::Device& device) {
+    auto x = streamOf<float>(device, {1, 2, 3, 2});
+    auto old = device.scalar<float>(1), now = device.scalar<float>(), ratio = device.scalar<float>();
+    auto done = device.scalar<bool>();
+    sk::Loop loop = device.record([&] {
+      scalars::weighted(1.0f, x, now);
+      const sk::Scalar<float> factor = 2 * old / now;
+      scalars::scale(factor, x, x);
+      ratio.assign(now / old);
+      std::swap(old, now);
+      done = ratio < 3;
+    });
+    CHECK(old.read() == 1);
+    float first = 1, second = 0, quotient = 0;
+    std::vector<float> values = {1, 2, 3, 2};
+    std::int64_t iterations = 0;
+    do {
+      second = values[0] + values[1] + values[2] + values[3];
+      for (float& value : values) value = 2 * first / second * value;
+      quotient = second / first;
+      std::swap(first, second);
+      ++iterations;
+    } while (!(quotient < 3) && iterations < 50);
+    CHECK(loop.until(done, {.every = 1, .most = 50}) == iterations);
+    CHECK(ratio.read() == quotient);
+    CHECK(old.read() == first);
+    CHECK(x.read() == values);
+  });
+}
+
+TEST_CASE("mistakes with scalars are refused") {
+  sk::Device device = sk::Device::native(), other = sk::Device::native();
+  auto a = device.scalar<float>(1), b = other.scalar<float>(2);
+  CHECK_THAT(errorOf([&] { static_cast<void>(a + b); }), Contains("two devices"));
+  CHECK_THAT(errorOf([&] { a.assign(b); }), Contains("another device"));
+  CHECK(a.read() == 1);
+  sk::Scalar<float> none;
+  CHECK_THAT(errorOf([&] { static_cast<void>(none + a); }), Contains("holds no value"));
+  CHECK_THAT(errorOf([&] { static_cast<void>(none.read()); }), Contains("no stream"));
+  CHECK_THAT(errorOf([&] { none.assign(a); }), Contains("holds no value"));
+  sk::Scalar<float> orphan, pending;
+  {
+    sk::Device brief = sk::Device::native();
+    orphan = brief.scalar<float>(1);
+    pending = orphan + 1;
+  }
+  CHECK_THAT(errorOf([&] { static_cast<void>(orphan + 1); }), Contains("device has been destroyed"));
+  CHECK_THAT(errorOf([&] { static_cast<void>(orphan.read()); }), Contains("device"));
+  CHECK_THAT(errorOf([&] { static_cast<void>(pending.read()); }), Contains("device has been destroyed"));
+  CHECK_THAT(errorOf([&] { static_cast<void>(device.record([&] { static_cast<void>((a + 1).read()); })); }),
+             Contains("record"));
+  CHECK((a + 1).read() == 2);
+}
+
+}  // namespace
+}  // namespace run_tests
