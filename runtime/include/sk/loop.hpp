@@ -76,7 +76,6 @@ class Recording {
   LoopOwner finish();
 
  private:
-  DeviceState& device_;
   LoopOwner state_;
 };
 

@@ -18,9 +18,10 @@ namespace {
 
 LoopState& stateOf(const detail::LoopOwner& loop) {
   if (!loop) {
-    throw Error("a loop: it has no calls, since it was default-constructed or moved from; make one by "
-                "device.record(...)",
-                Error::Kind::Lost);
+    throw Error(
+        "a loop: it has no calls, since it was default-constructed or moved from; make one by "
+        "device.record(...)",
+        Error::Kind::Lost);
   }
   loop->checkBeforeRun();
   flushScalars(loop->device());
@@ -37,14 +38,15 @@ void checkEnd(const LoopState& loop, const StreamRegion& done, const LoopEnd& en
     throw Error("until: the condition is a stream of another device than the loop");
   }
   if (done.shape.size() != 1) {
-    throw Error(fmt::format("until: the condition has shape {}; give a stream of one bool",
-                            toString(done.shape)),
-                Error::Kind::Shape);
+    throw Error(
+        fmt::format("until: the condition has shape {}; give a stream of one bool", toString(done.shape)),
+        Error::Kind::Shape);
   }
   if (end.every < 1 || end.most < 0) {
-    throw Error(fmt::format("until: a condition cannot be asked for every {} iterations, {} at the most; give "
-                            "numbers from 1 and from 0 on",
-                            end.every, end.most));
+    throw Error(
+        fmt::format("until: a condition cannot be asked for every {} iterations, {} at the most; give "
+                    "numbers from 1 and from 0 on",
+                    end.every, end.most));
   }
 }
 
@@ -53,7 +55,7 @@ void checkEnd(const LoopState& loop, const StreamRegion& done, const LoopEnd& en
 void detail::LoopDeleter::operator()(LoopState* state) const noexcept { delete state; }
 
 detail::Recording::Recording(DeviceState& device)
-    : device_(device), state_(withHostMemory("record", [&] {
+    : state_(withHostMemory("record", [&] {
         if (device.recording == nullptr) flushScalars(device);
         return LoopOwner(new LoopState(device));
       })) {}
@@ -62,7 +64,6 @@ detail::Recording::~Recording() = default;
 
 detail::LoopOwner detail::Recording::finish() {
   return withHostMemory("record", [&] {
-    flushScalars(device_);
     state_->finish();
     return std::move(state_);
   });

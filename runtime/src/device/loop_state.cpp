@@ -72,6 +72,7 @@ bool LoopState::keep(StreamState* stream) noexcept {
 
 void LoopState::finish() {
   failIfLost();
+  flushScalars(*device_);
   std::unordered_map<const detail::StreamOwner*, StreamState*> now;
   for (StreamState* stream = device_->firstStream(); stream != nullptr; stream = stream->next()) {
     if (stream->holder != nullptr) now.emplace(stream->holder, stream);
