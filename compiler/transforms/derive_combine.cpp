@@ -210,7 +210,7 @@ class State {
     for (const KernelParam& param : kernel.params) {
       if (param.role != ParamRole::Accumulator) continue;
       const std::string type = print(module_, param.type);
-      const std::string total = fmt::format("{} ", wordOf(kernel)) + type + " " + param.name + "<>";
+      const std::string total = std::string(wordOf(kernel)) + " " + type + " " + param.name + "<>";
       parts += type + " " + param.name + "_part<>, ";
       totals += (totals.empty() ? "" : ", ") + total;
       if (!param.identity) identities += "an identity, '" + total + " = ...', and ";

@@ -61,10 +61,10 @@ std::optional<TableSyntax> takeTable(TokenCursor& cursor, std::size_t tokens, co
     return std::nullopt;
   }
   const auto constant = [&](llvm::StringRef type, const std::vector<Token>& value) {
-    const std::string name = fmt::format("__sk_constant{}", constants++);
-    builder.constant(name, {builder.word(type, value.front().getLocation())}, value,
+    const std::string constantName = fmt::format("__sk_constant{}", constants++);
+    builder.constant(constantName, {builder.word(type, value.front().getLocation())}, value,
                      value.front().getLocation(), out);
-    return name;
+    return constantName;
   };
   TableSyntax table;
   table.low = constant("float", arguments[0]);

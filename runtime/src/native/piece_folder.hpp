@@ -40,7 +40,7 @@ class PieceFolder {
         orderedColumns_(program.shape, program.isCommutative ? 0 : group_) {}
 
   /// Folds a piece of a block, which has at least one element, to one column.
-  const StateColumns& fold(const Extents& block, std::int64_t piece);
+  const StateColumns& fold(const native::Extents& block, std::int64_t piece);
 
  private:
   void foldColumns(std::int64_t x, std::int64_t count);
