@@ -298,7 +298,7 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
         device_.bound.program(program.kernel.program.name());
         bindOperands(device_, program.kernel, kernel, operands);
         for (const assemble::UniformValue& value : pass.uniforms) {
-          program.uniform(value).set(value.value);
+          program.uniform(value).set(device_.bound, value.value);
         }
         writeRects(device_, preparedPass(device_, program.kernel, planes), planes, pass.draws);
       });

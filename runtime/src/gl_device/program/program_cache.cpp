@@ -216,11 +216,11 @@ void ProgramCache::findListUniforms(KernelProgram& result, const program::Parame
   result.program.setSampler("sk_even", result.units + 1);
 }
 
-void KernelProgram::Pyramid::set(const assemble::PyramidPlan& plan) {
-  shift.set(plan.shift);
-  levels.set(static_cast<std::int32_t>(plan.levels.size()));
+void KernelProgram::Pyramid::set(gl::BoundState& bound, const assemble::PyramidPlan& plan) {
+  shift.set(bound, plan.shift);
+  levels.set(bound, static_cast<std::int32_t>(plan.levels.size()));
   for (std::size_t level = 0; level < plan.levels.size(); ++level) {
-    rows[level + 1].set(plan.levels[level].row);
+    rows[level + 1].set(bound, plan.levels[level].row);
   }
 }
 
