@@ -17,6 +17,7 @@
 #include "call/resolved_reduction.hpp"
 #include "native/coalesce.hpp"
 #include "native/entries.hpp"
+#include "native/extents.hpp"
 #include "native/fold_code.hpp"
 #include "native/native_device.hpp"
 #include "native/native_stream.hpp"
@@ -31,32 +32,9 @@ namespace {
 
 using native::Extents;
 using native::Operand;
-using program::Fit;
 using program::Kernel;
 using program::Parameter;
 using program::Role;
-
-/// Extents with x first; missing dimensions have extent 1.
-Extents fastestFirst(const Shape& shape) {
-  Extents extents{1, 1, 1, 1};
-  for (int d = 0; d < shape.rank(); ++d) {
-    extents[static_cast<std::size_t>(shape.rank() - 1 - d)] = shape[d];
-  }
-  return extents;
-}
-
-/// Sets how the index in an element input follows from that in the domain.
-void fit(Operand& operand, Fit way, const Extents& domain) {
-  for (std::size_t d = 0; d < domain.size(); ++d) {
-    const std::int64_t extent = operand.extent[d];
-    if (way == Fit::Same) {
-      operand.multiply[d] = extent == 1 ? 0 : 1;
-    } else {  // one of the two is 1
-      operand.divide[d] = std::max<std::int64_t>(domain[d] / extent, 1);
-      operand.multiply[d] = std::max<std::int64_t>(extent / domain[d], 1);
-    }
-  }
-}
 
 bool isWritten(Role role) {
   return role == Role::Output || role == Role::Scatter || role == Role::VariableOutput ||
@@ -106,18 +84,36 @@ class Operands {
     return kept_.emplace_back(element, real_, count);
   }
 
-  /// True if another run needs no more than refresh(): there are no copies of streams, and no pushes.
-  bool mayRunAgain() const { return copies_.empty() && written_.empty() && pushed_.empty(); }
-  /// Takes the arrays of all streams, and the values in streams, anew, which calls may have exchanged meanwhile.
-  void refresh() {
-    for (const Held& held : held_) copyHeld(held);
+  /// True if another run needs no more than beginAgain() and settleAgain(), and finds out what these need.
+  bool mayRunAgain() {
+    if (!copies_.empty() || !written_.empty() || !pushed_.empty()) return false;
     for (std::size_t i = 0; i < list_.size(); ++i) {
       const StreamRegion& region = arguments_[i].region;
       const Role role = kernel_.parameters[i].role;
-      if (region.stream == nullptr || role == Role::Uniform || list_[i].components.empty()) continue;
+      if (region.stream == nullptr) continue;
       NativeStream& stream = nativeStream(region);
-      const bool isSpare = isWritten(role) && isReplaced(region);
-      list_[i].components = (isSpare ? stream.spare() : stream.components).arrays();
+      if (isWrittenInPlace(i)) writtenInPlace_.push_back(&stream);
+      if (writesWholeStream(i) && isReplaced(region)) replaced_.push_back(&stream);
+      if (isWritten(role)) results_.push_back(&stream);
+      if (role == Role::Uniform || list_[i].components.empty()) continue;
+      lent_.push_back({i, &stream, isWritten(role) && isReplaced(region)});
+    }
+    return true;
+  }
+  bool readsValuesInStreams() const { return !held_.empty(); }
+  /// begin(), with the arrays and values that streams have now.
+  void beginAgain() {
+    for (const Held& held : held_) copyHeld(held);
+    for (const Lent& lent : lent_) {
+      list_[lent.operand].components = (lent.isSpare ? lent.stream->spare() : lent.stream->components).arrays();
+    }
+    for (NativeStream* const stream : writtenInPlace_) stream->isBroken = true;
+  }
+  void settleAgain() {
+    for (NativeStream* const stream : replaced_) stream->exchange();
+    for (NativeStream* const stream : results_) {
+      stream->keepStorage();
+      stream->isBroken = false;
     }
   }
 
@@ -176,6 +172,11 @@ class Operands {
   struct Held {
     StreamRegion region;
     Components& value;
+  };
+  struct Lent {
+    std::size_t operand;  ///< whose arrays are a stream's
+    NativeStream* stream;
+    bool isSpare;
   };
 
   /// True if an argument is written neither to spare arrays nor to a copy.
@@ -320,6 +321,8 @@ class Operands {
   std::vector<Operand> list_;
   std::list<Components> kept_;
   std::vector<Held> held_;  ///< uniforms
+  std::vector<Lent> lent_;  ///< this and the next three: for beginAgain() and settleAgain()
+  std::vector<NativeStream*> writtenInPlace_, replaced_, results_;
   std::list<native::Pushed> pushed_;
   std::vector<std::pair<const NativeStream*, const Components*>> copies_;  ///< for reading
   std::list<std::pair<NativeStream*, Components>> written_;
@@ -463,18 +466,18 @@ class PreparedRun final : public RecordedCall {
         kernel_(kernel),
         choice_(codeChoice(real, call.options)),
         operands_(real, kernel, call.arguments, call.domain, std::move(tables)),
-        call_(operands_.call()) {}
+        call_(operands_.call()),
+        code_(kernel, choice_, operands_.readsValuesInStreams()) {}
 
-  bool mayRun() const { return operands_.mayRunAgain(); }
+  bool mayRun() { return operands_.mayRunAgain(); }
 
   void run() override {
     {
       const NativePass traced(device_, kernel_, {}, resolved_.arguments, resolved_.domain);
-      operands_.refresh();
-      operands_.begin();
-      runCode(kernel_, call_, choice_);
+      operands_.beginAgain();
+      code_.run(call_);
     }
-    operands_.settle();
+    operands_.settleAgain();
   }
 
  private:
@@ -484,6 +487,7 @@ class PreparedRun final : public RecordedCall {
   const CodeChoice choice_;
   Operands operands_;
   const native::Call call_;
+  RepeatedCode code_;
 };
 
 }  // namespace
