@@ -10,10 +10,12 @@
 #include "api/exact_reduction.hpp"
 #include "call/check_argument.hpp"
 #include "call/check_reduction.hpp"
+#include "call/check_rows.hpp"
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "device/device_state.hpp"
 #include "device/loop_state.hpp"
+#include "device/rows_state.hpp"
 #include "sk/call.hpp"
 #include "support/checked_size.hpp"
 
@@ -53,7 +55,8 @@ const CompensatedReduction* compensated(const ResolvedReduction& call) {
     }
     return nullptr;
   }
-  const auto room = static_cast<std::size_t>(call.device.limits.textureUnits);
+  const std::size_t taken = call.rows == nullptr ? 0 : rowTables;
+  const std::size_t room = static_cast<std::size_t>(call.device.limits.textureUnits) - taken;
   const bool fits = planesRead(second->reduction.combine, specsOf(reduction.fold, call.arguments)) <= room;
   return fits || requested == Accumulate::Compensated ? second : nullptr;
 }
@@ -218,7 +221,7 @@ void runResolved(const ResolvedReduction& call) {
 class RecordedReduction final : public RecordedCall {
  public:
   explicit RecordedReduction(const ResolvedReduction& call)
-      : arguments_(call.reduction.fold, call.arguments), call_(call) {
+      : arguments_(call.reduction.fold, call.arguments), rows_(call.rows), call_(call) {
     call_.arguments = arguments_.get();
     arguments_.noteUses(*call.device.recording);
   }
@@ -227,6 +230,7 @@ class RecordedReduction final : public RecordedCall {
 
  private:
   const OwnedArguments arguments_;
+  const SharedRows rows_;
   ResolvedReduction call_;
 };
 

@@ -15,6 +15,7 @@
 #include "call/precision.hpp"
 #include "call/resolved_call.hpp"
 #include "call/resolved_reduction.hpp"
+#include "device/rows_state.hpp"
 #include "native/coalesce.hpp"
 #include "native/entries.hpp"
 #include "native/extents.hpp"
@@ -352,19 +353,50 @@ std::optional<native::ScanOf> scanOf(const ResolvedReduction& call) {
   return native::ScanOf{.isExclusive = call.scan->isExclusive, .combinesRuns = foldsDigits};
 }
 
+bool hasDoubles(const program::Element& element) {
+  return std::ranges::any_of(element.fields,
+                             [](const program::Field& field) { return field.scalar == program::Scalar::Double; });
+}
+
+/// Whether rows are folded in doubles from operands that hold floats: none has doubles, and the code that combines
+/// accumulators reads no operands of its own.
+bool foldsFloatRows(const program::Reduction& reduction, std::span<const Argument> arguments,
+                    const CodeChoice& choice) {
+  if (choice.real != RealType::Double || reduction.fold.code == nullptr ||
+      findEntry(*reduction.fold.code, native::EntryKind::FoldFloatRows, choice) == nullptr) {
+    return false;
+  }
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (hasDoubles(*reduction.fold.parameters[i].element)) return false;
+    const StreamState* const stream = arguments[i].region.stream;
+    if (stream != nullptr && nativeStream(arguments[i].region).components.real() != RealType::Float) return false;
+  }
+  return std::ranges::all_of(reduction.combine.parameters, [](const Parameter& parameter) {
+    return parameter.role == Role::Input || parameter.role == Role::Accumulator;
+  });
+}
+
+/// The rows of a reduction, if its blocks are rows of different lengths.
+struct RowsOfCall {
+  const RowPieces* pieces = nullptr;
+  bool holdsFloats = false;  ///< native::ReduceCall::holdsFloats
+};
+
 /// The call of a reduction, without its results.
 class Folding {
  public:
   Operands fold;
 
   Folding(const CodeChoice& choice, const program::Reduction& reduction, std::span<const Argument> arguments,
-          const Shape& domain, std::vector<native::Table> foldTables,
-          std::vector<native::Table> combineTables, const std::optional<native::ScanOf>& scan)
-      : fold(choice.real, reduction.fold, arguments, domain, std::move(foldTables), scan.has_value()),
+          const Shape& domain, std::vector<native::Table> foldTables, std::vector<native::Table> combineTables,
+          const std::optional<native::ScanOf>& scan, const RowsOfCall& rows)
+      : fold(rows.holdsFloats ? RealType::Float : choice.real, reduction.fold, arguments, domain,
+             std::move(foldTables), scan.has_value()),
         choice_(choice),
         reduction_(reduction),
         combineTables_(std::move(combineTables)),
-        scan_(scan) {
+        scan_(scan),
+        rows_(rows) {
     for (const std::uint8_t operand : reduction.combineOperands) {
       combine_.push_back(fold.list()[operand]);
     }
@@ -372,8 +404,9 @@ class Folding {
   }
 
   void run(Extents block) {
-    const native::Call whole = fold.call(block);
-    const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block, scan_};
+    const native::Call whole = rows_.pieces == nullptr ? fold.call(block) : fold.callAsItIs();
+    const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block, scan_, rows_.pieces,
+                                  rows_.holdsFloats};
     foldCode(reduction_, call, choice_);
   }
   /// Stores the identities to all blocks, of which there are `counts` in each dimension; `results` are the
@@ -400,6 +433,7 @@ class Folding {
   const program::Reduction& reduction_;
   std::vector<native::Table> combineTables_;
   std::optional<native::ScanOf> scan_;
+  RowsOfCall rows_;
   std::vector<Operand> combine_;
 };
 
@@ -507,9 +541,13 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
   const program::Reduction& reduction =
       computesInHalf(call.options) ? halfVariant(call.reduction) : call.reduction;
   const RealType real = realOf(call.options);
-  Folding folding(codeChoice(real, call.options), reduction, call.arguments, call.domain,
-                  tablesOf(reduction.fold, real, call.options),
-                  tablesOf(reduction.combine, real, call.options), scanOf(call));
+  const CodeChoice choice = codeChoice(real, call.options);
+  RowsOfCall rows;
+  if (call.rows != nullptr) {
+    rows = {&call.rows->pieces(), !call.scan && foldsFloatRows(reduction, call.arguments, choice)};
+  }
+  Folding folding(choice, reduction, call.arguments, call.domain, tablesOf(reduction.fold, real, call.options),
+                  tablesOf(reduction.combine, real, call.options), scanOf(call), rows);
   const Extents counts = fastestFirst(call.blocks);
   std::vector<std::size_t> results;
   std::vector<const Components*> values;
@@ -523,13 +561,14 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
     } else {
       folding.fold.list()[i] = resultOperand(folding.fold, call.arguments[i].region,
                                              call.scan ? fastestFirst(call.domain) : counts);
+      if (rows.holdsFloats) folding.fold.list()[i].holdsFloats = true;
     }
     results.push_back(i);
   }
   {
     const NativePass traced(*this, reduction.fold, "fold", call.arguments, call.domain);
     folding.fold.begin();
-    if (call.domain.size() == 0) {
+    if (call.domain.size() == 0 && call.rows == nullptr) {
       folding.storeIdentities(results, counts);
     } else {
       Extents block = fastestFirst(call.domain);
@@ -553,6 +592,25 @@ bool NativeDevice::sumsExactly(const ResolvedReduction& call) const {
   });
 }
 
+namespace {
+
+template <class Real>
+std::unique_ptr<RoundedSums> sumsOf(const ResolvedReduction& whole, const program::ExactSum& sum,
+                                    Operands& operands, RealType real) {
+  const CodeChoice choice{.real = real};  // the same bits on every device: never contracted
+  if (whole.rows != nullptr) {
+    return std::make_unique<NativeSums<Real>>(
+        sumRowsExactly<Real>(whole.reduction, sum, operands.callAsItIs(), whole.rows->pieces(), choice));
+  }
+  const Extents counts = fastestFirst(whole.blocks);
+  Extents block = fastestFirst(whole.domain);
+  for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
+  const native::Call call = operands.call(block);
+  return std::make_unique<NativeSums<Real>>(sk::sumExactly<Real>(whole.reduction, sum, call, block, choice));
+}
+
+}  // namespace
+
 std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& whole,
                                                       const program::ExactSum& sum) {
   const program::Reduction& reduction = whole.reduction;
@@ -570,22 +628,13 @@ std::unique_ptr<RoundedSums> NativeDevice::sumExactly(const ResolvedReduction& w
   }
   const RealType real = realOf(whole.options);
   Operands operands(real, kernel, all, whole.domain, tablesOf(kernel, real, whole.options));
-  const Extents counts = fastestFirst(whole.blocks);
-  Extents block = fastestFirst(whole.domain);
-  for (std::size_t d = 0; d < block.size(); ++d) block[d] /= counts[d];
   const NativePass traced(*this, kernel, "fold", all, whole.domain);
-  const native::Call call = operands.call(block);
-  const CodeChoice choice{.real = real};  // the same bits on every device: never contracted
   switch (real) {
     case RealType::Float: break;
-    case RealType::Double:
-      return std::make_unique<NativeSums<double>>(
-          sk::sumExactly<double>(reduction, sum, call, block, choice));
-    case RealType::Quad:
-      return std::make_unique<NativeSums<native::Quad>>(
-          sk::sumExactly<native::Quad>(reduction, sum, call, block, choice));
+    case RealType::Double: return sumsOf<double>(whole, sum, operands, real);
+    case RealType::Quad: return sumsOf<native::Quad>(whole, sum, operands, real);
   }
-  return std::make_unique<NativeSums<float>>(sk::sumExactly<float>(reduction, sum, call, block, choice));
+  return sumsOf<float>(whole, sum, operands, real);
 }
 
 }  // namespace sk

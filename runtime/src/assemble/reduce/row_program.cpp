@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+//
+// A piece has consecutive items. RowPass::Groups first brings the elements of many pieces to shared memory, so that
+// neighbouring invocations fetch neighbouring elements, or texels, and then folds each piece in an invocation of its own
+// (CSR-Stream: J. L. Greathouse and M. Daga, "Efficient sparse matrix-vector multiplication on GPUs using the CSR storage
+// format", 2014).
+#include "assemble/reduce/row_program.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "assemble/elements/arguments.hpp"
+#include "assemble/reduce/fold_text.hpp"
+#include "assemble/reduce/scan_program.hpp"
+#include "sk/types.hpp"
+
+namespace sk::assemble {
+
+using program::Kernel;
+using program::Parameter;
+using program::Reduction;
+using program::Role;
+
+RowKernel::RowKernel(const Kernel& kernel, RowPass pass)
+    : parameters_(kernel.parameters.begin(), kernel.parameters.end()),
+      ownParameters_(parameters_.size()),
+      kernel_(kernel) {
+  const auto add = [&](std::string_view name, const program::Element& element) {
+    parameters_.push_back({.name = name, .symbol = name, .role = Role::Input, .element = &element});
+  };
+  add("sk_rows", ElementTraits<int2>::element());
+  if (pass == RowPass::Groups) add("sk_groups", ElementTraits<int4>::element());
+  kernel_.parameters = parameters_;
+}
+
+namespace {
+
+class RowText : FoldText {
+ public:
+  RowText(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant)
+      : FoldText(profile, reduction, variant, isOfPartials(variant.walk) ? reduction.combine : reduction.fold),
+        continued_(kernel_),
+        inRows_(kernel_, variant.rows) {}
+
+  std::string write() {
+    if (variant_.rows != RowPass::Groups) domain_.leaveOutside();  // loops end where tables say
+    defineParameters();
+    if (variant_.carried) {
+      for (const Parameter& carry : continued_.carries())
+        declareSamplers(program_, carry, variant_.carryLayered);
+    }
+    declareSamplers(program_, inRows_.table(), variant_.tableLayered);
+    const std::vector<Parameter> written =
+        withPlanes(accumulators_, variant_.firstPlane, variant_.planeCount);
+    for (const Parameter& parameter : written) declareOutputs(program_, parameter);
+    switch (variant_.rows) {
+      case RowPass::None: break;
+      case RowPass::Folds: foldPiece(); break;
+      case RowPass::Groups: return foldGroup(written);
+      case RowPass::Inclusive:
+      case RowPass::Exclusive: scanItem(); break;
+    }
+    return finish(written, fmt::format("{} of rows", isOfPartials(variant_.walk) ? "partial results" : "elements"));
+  }
+
+ private:
+  std::string tableEntry(std::string_view number) {
+    program_.require(Function::Texel);
+    integers({"sk_rows_shift"});
+    return fetch(program_, inRows_.table(),
+                 {fmt::format("sk_texel({}, sk_rows_shift)", number), variant_.tableLayered ? "sk_rows_shift" : ""});
+  }
+
+  /// Sets the index of the current element.
+  void moveTo(std::string_view number, std::string_view indent) {
+    if (!isOfPartials(variant_.walk))
+      statement(fmt::format("{}{} = ivec4({}, 0, 0, 0);", indent, item(), number));
+  }
+  std::string elementAt(std::size_t i, std::string_view number) {
+    return element(i, isOfPartials(variant_.walk) ? numberedTexel(number) : Texel{});
+  }
+  std::string foldAt(std::string_view number) {
+    return calling(kernel_, [&](std::size_t i, std::size_t) { return elementAt(i, number); });
+  }
+
+  bool startsFromElement() const { return isOfPartials(variant_.walk) || reduction_.seeded; }
+  bool hasIdentities() const {
+    return std::ranges::none_of(accumulators_,
+                                [](const Parameter* accumulator) { return accumulator->identity.empty(); });
+  }
+
+  /// Folds the items of sk_run, of which the first k are at(k).
+  void foldItems(const std::function<std::string(std::size_t i, std::string_view k)>& at, std::string_view first) {
+    if (!startsFromElement()) {
+      startFromIdentities();
+    } else if (isOfPartials(variant_.walk) || !hasIdentities()) {  // each row has a partial result
+      moveTo(first, "");
+      startFromElements([&](std::size_t i) { return at(i, "0"); });
+    } else {
+      startFromIdentities();
+      statement("if (sk_run.y > 0) {");
+      moveTo(first, "  ");
+      for (std::size_t k = 0; k < accumulators_.size(); ++k) {
+        const auto i = static_cast<std::size_t>(inputs_[k] - kernel_.parameters.data());
+        statement(fmt::format("  {} = {};", total(*accumulators_[k]), at(i, "0")));
+      }
+      statement("}");
+    }
+    statement(fmt::format("for (int sk_k = {}; sk_k < sk_run.y; ++sk_k) {{", startsFromElement() ? 1 : 0));
+    moveTo(fmt::format("{} + sk_k", first), "  ");
+    statement("  " + calling(kernel_, [&](std::size_t i, std::size_t) { return at(i, "sk_k"); }));
+    statement("}");
+  }
+
+  void foldPiece() {
+    statement("int sk_number = " + domain_.number() + ";");
+    statement("ivec2 sk_run = " + tableEntry("sk_number") + ";");
+    foldItems([&](std::size_t i, std::string_view k) { return elementAt(i, fmt::format("sk_run.x + {}", k)); },
+              "sk_run.x");
+  }
+
+  // ---- groups -----------------------------------------------------------------------------------
+
+  std::string foldGroup(const std::vector<Parameter>& written) {
+    program_.dispatchGroups(rowGroupSize, 1, /*storesApart=*/true);
+    declareSamplers(program_, inRows_.groups(), false);
+    vectors({"sk_group_shape"});
+    integers({"sk_groups_shift"});
+    statement("int sk_i = int(gl_LocalInvocationIndex), sk_group = sk_pixel.y * sk_group_shape.x + sk_pixel.x;");
+    const std::string entry = fetch(program_, inRows_.groups(), {"sk_texel(sk_group, sk_groups_shift)"});
+    statement(fmt::format("ivec4 sk_some = sk_group < sk_group_shape.y ? {} : ivec4(0);", entry));
+    statement(fmt::format("ivec2 sk_run = sk_i < sk_some.y ? {} : ivec2(0);", tableEntry("sk_some.x + sk_i")));
+    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+      const Parameter& input = kernel_.parameters[i];
+      if (input.role == Role::Input && isNeeded(input, variant_.specs)) stage(i);
+    }
+    statement("memoryBarrierShared();");
+    statement("barrier();");
+    statement("if (sk_i >= sk_some.y) return;");
+    statement("int sk_at = sk_run.x - sk_some.z;");
+    foldItems([&](std::size_t i, std::string_view k) { return staged(i, k); }, "sk_run.x");
+    for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
+    program_.storeAt(place(program_, result()), variant_.domainLayered);
+    return program_.finish(profile_, fmt::format("{} for {}: groups of rows", reduction_.fold.name, profile_.name),
+                           kernel_);
+  }
+
+  std::string nameOfStaged(const Parameter& input) const { return fmt::format("sk_staged_{}", input.symbol); }
+  std::string origin(std::size_t i) {
+    if (!access(i).view) return "0";
+    return parameterUniform(program_, "ivec4", "origin", kernel_.parameters[i]) + ".x";
+  }
+
+  /// Brings the elements of a group to shared memory: whole texels of a packed stream, of which the first may begin
+  /// with elements of the group before.
+  void stage(std::size_t i) {
+    const Parameter& input = kernel_.parameters[i];
+    const std::string name = nameOfStaged(input);
+    if (!access(i).packed) {
+      program_.variable(fmt::format("shared {}", input.element->glsl), fmt::format("{}[{}]", name, rowGroupItems));
+      statement(fmt::format("for (int sk_k = sk_i; sk_k < sk_some.w; sk_k += {}) {{", rowGroupSize));
+      moveTo("sk_some.z + sk_k", "  ");
+      statement(fmt::format("  {}[sk_k] = {};", name, element(i, {})));
+      statement("}");
+      return;
+    }
+    const Parameter four = fourOf(input);
+    program_.variable(fmt::format("shared {}", four.element->glsl),
+                      fmt::format("{}[{}]", name, rowGroupItems / lanes + 1));
+    statement(fmt::format("int sk_first_{0} = {1} + sk_some.z, sk_skip_{0} = sk_first_{0} & {2};", input.symbol,
+                          origin(i), lanes - 1));
+    statement(fmt::format("for (int sk_k = sk_i; sk_k * {} < sk_some.w + sk_skip_{}; sk_k += {}) {{", lanes,
+                          input.symbol, rowGroupSize));
+    const std::string number = fmt::format("(sk_first_{} >> 2) + sk_k", input.symbol);
+    statement(fmt::format("  {}[sk_k] = {};", name, fetch(program_, four, packedTexel(i, number))));
+    statement("}");
+  }
+
+  /// The texel with a number in a packed one-dimensional stream.
+  Texel packedTexel(std::size_t i, const std::string& number) {
+    if (access(i).addressing == Addressing::Plane) return {fmt::format("ivec2({}, 0)", number)};
+    program_.require(Function::Texel);
+    const std::string shift = parameterUniform(program_, "int", "shift", kernel_.parameters[i]);
+    return {fmt::format("sk_texel({}, {})", number, shift),
+            access(i).addressing == Addressing::Layered ? shift : ""};
+  }
+
+  /// Element k of the piece.
+  std::string staged(std::size_t i, std::string_view k) {
+    const Parameter& input = kernel_.parameters[i];
+    if (!isNeeded(input, variant_.specs)) return absentElement(input);
+    const std::string name = nameOfStaged(input);
+    if (!access(i).packed) return fmt::format("{}[sk_at + {}]", name, k);
+    const std::string number = fmt::format("sk_at + sk_skip_{} + {}", input.symbol, k);
+    return fmt::format("{0}[({1}) >> 2][({1}) & {2}]", name, number, lanes - 1);
+  }
+
+  /// The texel of the result of this invocation's piece.
+  Texel result() {
+    vectors({"sk_domain_origin"});
+    const std::string number = "sk_some.x + sk_i + sk_domain_origin.x";
+    if (variant_.domain == Domain::Plane) return {fmt::format("ivec2({}, sk_domain_origin.y)", number)};
+    program_.require(Function::Texel);
+    integers({"sk_domain_shift"});
+    return {fmt::format("sk_texel({}, sk_domain_shift)", number), variant_.domainLayered ? "sk_domain_shift" : ""};
+  }
+
+  // ---- scans ------------------------------------------------------------------------------------
+
+  /// Folds the items of a piece up to this one, after the pieces before.
+  void scanItem() {
+    const bool isExclusive = variant_.rows == RowPass::Exclusive;
+    const bool isSeeded = !isExclusive && startsFromElement();
+    statement("int sk_number = " + domain_.number() + ";");
+    statement("ivec2 sk_run = " + tableEntry("sk_number") + ";");
+    statement(fmt::format("int sk_at = sk_number - sk_run.x, sk_count = sk_run.x{};", isExclusive ? "" : " + 1"));
+    if (isSeeded) {
+      moveTo("sk_at", "");
+      startFromElements([&](std::size_t i) { return elementAt(i, "sk_at"); });
+    } else {
+      startFromIdentities();
+    }
+    if (variant_.carried) continueFromCarry(isSeeded);
+    statement(fmt::format("for (int sk_k = {}; sk_k < sk_count; ++sk_k) {{", isSeeded ? 1 : 0));
+    moveTo("sk_at + sk_k", "  ");
+    statement("  " + foldAt("sk_at + sk_k"));
+    statement("}");
+  }
+
+  void continueFromCarry(bool isSeeded) {
+    integers({"sk_carry_shift"});
+    program_.require(Function::Texel);
+    statement("if (sk_run.y >= 0) {");
+    const Texel texel{"sk_texel(sk_run.y, sk_carry_shift)", variant_.carryLayered ? "sk_carry_shift" : ""};
+    for (std::size_t k = 0; k < accumulators_.size(); ++k) {
+      statement(
+          fmt::format("  {} = {};", total(*accumulators_[k]), fetch(program_, continued_.carries()[k], texel)));
+    }
+    if (isSeeded) statement("  " + foldAt("sk_at"));
+    statement("}");
+  }
+
+  ContinuedKernel continued_;
+  RowKernel inRows_;
+};
+
+}  // namespace
+
+bool mayStageRows(const Kernel& fold, const SpecValues& specs) {
+  std::size_t bytes = 0;
+  for (const Parameter& parameter : fold.parameters) {
+    if (parameter.role != Role::Input || !isNeeded(parameter, specs)) continue;
+    constexpr std::size_t whole = 4 * sizeof(float);  // of a vector
+    for (const program::Field& field : parameter.element->fields) {
+      if (field.scalar == program::Scalar::Double) return false;  // packed texels of floats would become doubles
+      bytes += (rowGroupItems + lanes) * (field.width == 1 ? sizeof(float) : whole);
+    }
+  }
+  return bytes <= groupBytes;
+}
+
+std::string rowProgram(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant) {
+  return RowText(profile, reduction, variant).write();
+}
+
+}  // namespace sk::assemble
