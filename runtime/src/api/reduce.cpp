@@ -109,7 +109,9 @@ bool isExact(const ResolvedReduction& call) {
 /// Whether the plain variant in doubles can replace the compensated one: not if a stream has bits that floats
 /// drop.
 bool isInDoubles(const ResolvedReduction& call, const CompensatedReduction& second) {
-  return second.inDoubles && call.device.sumsInDoubles() &&
+  // without rows, gathers would have to be copied to doubles
+  const bool readsInputs = !call.reduction.term.factors.empty() || call.rows != nullptr;
+  return second.inDoubles && readsInputs && call.device.sumsInDoubles() &&
          std::ranges::none_of(call.arguments, [](const Argument& argument) {
            return argument.region.stream != nullptr && argument.region.stream->storage >= Storage::Extended;
          });

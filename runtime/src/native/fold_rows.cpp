@@ -60,150 +60,135 @@ class RunFolder {
   native::Chunk chunk_{};
 };
 
-/// Folds rows in two steps: pieces by themselves, then the results of those that share a row.
+/// Folds rows of one piece by groups, and long rows by batches of pieces, which several threads may fold.
 class RowFold {
  public:
   RowFold(const RowsProgram& program, const RowPieces& pieces, const FoldResults& results)
       : program_(program), pieces_(pieces), results_(results), bytes_(program.fold.shape.bytes()) {
-    std::int64_t states = 0;
     for (const RowPieces::LongRow& row : pieces.longRows()) {
-      firstStates_.push_back(states);
-      states += row.pieces;
+      firstBatches_.push_back(static_cast<std::int64_t>(batches_.size()));
+      for (std::int32_t first = 0; first < row.pieces; first += ofBatch)
+        batches_.push_back({row.row, row.firstPiece + first, std::min(ofBatch, row.pieces - first), row.pieces <= ofBatch});
     }
-    states_.resize(static_cast<std::size_t>(states) * bytes_);
+    firstBatches_.push_back(static_cast<std::int64_t>(batches_.size()));
+    states_.resize(batches_.size() * bytes_);
   }
 
   void run() {
     const std::span<const RowPieces::Group> groups = pieces_.groups();
-    const auto count = static_cast<std::int64_t>(groups.size());
-    native::inParallel(count, RowPieces::groupElements, dealOfRows(program_.fold), [&](Range range) {
+    const Deal deal = batches_.empty() ? dealOfRows(program_.fold) : Deal::AsTheyCome;
+    native::inParallel(static_cast<std::int64_t>(groups.size()), RowPieces::groupElements, deal, [&](Range range) {
       RunFolder folder(program_);
       for (std::int64_t i = range.begin; i < range.end; ++i) {
         const RowPieces::Group& group = groups[static_cast<std::size_t>(i)];
-        foldPieces(folder, {group.firstPiece, group.firstPiece + group.pieces});
+        foldShortRows(folder, {group.firstPiece, group.firstPiece + group.pieces});
       }
     });
-    combineBatches();
-    combineRows();
+    native::inParallel(static_cast<std::int64_t>(batches_.size()), ofBatch * program::longestRun, Deal::AsTheyCome,
+                       [&](Range range) {
+                         BatchFolder folder(program_);
+                         for (std::int64_t i = range.begin; i < range.end; ++i) foldBatch(folder, i);
+                       });
+    native::inParallel(static_cast<std::int64_t>(pieces_.longRows().size()), ofBatch, Deal::AsTheyCome,
+                       [&](Range range) { combineRows(range); });
   }
 
  private:
-  /// The pieces of a row that one thread combines, a power of 2: a tree of batches is the tree of their pieces.
-  static constexpr std::int64_t batch = 1024;
+  /// The pieces of a batch, a power of 2.
+  static constexpr std::int32_t ofBatch = 64;
 
-  std::byte* stateOf(std::int64_t number) { return states_.data() + static_cast<std::size_t>(number) * bytes_; }
-  std::int64_t longRows() const { return static_cast<std::int64_t>(pieces_.longRows().size()); }
+  struct Batch {
+    std::int32_t row, firstPiece, pieces;
+    bool isWhole;  ///< a whole row
+  };
 
-  /// Folds a range of pieces. Those of long rows are stored with their states, others are results.
-  void foldPieces(RunFolder& folder, Range range) {
-    const std::int32_t* const starts = pieces_.pieceStarts().data();
-    const std::span<const RowPieces::LongRow> rows = pieces_.longRows();
-    auto next = static_cast<std::size_t>(
-        std::ranges::lower_bound(rows, range.begin, {},
-                                 [](const RowPieces::LongRow& row) -> std::int64_t {
-                                   return row.firstPiece + row.pieces - 1;
-                                 }) -
-        rows.begin());
-    while (range.begin < range.end) {
-      const RowPieces::LongRow* const row = next < rows.size() ? &rows[next] : nullptr;
-      if (row == nullptr || range.begin < row->firstPiece) {
-        const std::int64_t end = row == nullptr ? range.end : std::min<std::int64_t>(range.end, row->firstPiece);
-        // long rows before these have more pieces than rows
-        const std::int64_t more = next == 0 ? 0 : endOf(rows[next - 1]) - (rows[next - 1].row + 1);
-        folder.fold(starts, {range.begin, end},
-                    [&](std::int64_t first, const StateColumns& columns, std::int64_t count) {
-                      results_.store({first - more, 0, 0, 0}, columns, count);
-                    });
-        range.begin = end;
-        continue;
-      }
-      const std::int64_t end = std::min<std::int64_t>(range.end, endOf(*row));
-      const std::int64_t state = firstStates_[next] - row->firstPiece;
-      folder.fold(starts, {range.begin, end},
-                  [&](std::int64_t first, const StateColumns& columns, std::int64_t count) {
-                    for (std::int64_t k = 0; k < count; ++k) columns.pack(k, stateOf(state + first + k));
-                  });
-      range.begin = end;
-      if (end == endOf(*row)) ++next;
-    }
-  }
+  std::byte* stateOf(std::int64_t batch) { return states_.data() + static_cast<std::size_t>(batch) * bytes_; }
   static std::int64_t endOf(const RowPieces::LongRow& row) { return row.firstPiece + row.pieces; }
 
-  /// Combines states that are one after the other, a tree.
-  class Combiner {
-   public:
-    explicit Combiner(const FoldProgram& program)
-        : combiner_(combinerOf(program)),
-          runs_(program.shape, combiner_, 1),
-          columns_(program.shape, groupOf(program.shape)),
-          most_(groupOf(program.shape)),
-          bytes_(program.shape.bytes()) {}
+  /// Folds those of the pieces that are whole rows.
+  void foldShortRows(RunFolder& folder, Range range) {
+    const std::int32_t* const starts = pieces_.pieceStarts().data();
+    const std::span<const RowPieces::LongRow> rows = pieces_.longRows();
+    auto next = static_cast<std::size_t>(std::ranges::upper_bound(rows, range.begin, {}, endOf) - rows.begin());
+    while (range.begin < range.end) {
+      const RowPieces::LongRow* const row = next < rows.size() ? &rows[next] : nullptr;
+      if (row != nullptr && range.begin >= row->firstPiece) {
+        range.begin = endOf(*row);
+        ++next;
+        continue;
+      }
+      const std::int64_t end = row == nullptr ? range.end : std::min<std::int64_t>(range.end, row->firstPiece);
+      // long rows before these have more pieces than rows
+      const std::int64_t more = next == 0 ? 0 : endOf(rows[next - 1]) - (rows[next - 1].row + 1);
+      folder.fold(starts, {range.begin, end},
+                  [&](std::int64_t first, const StateColumns& columns, std::int64_t count) {
+                    results_.store({first - more, 0, 0, 0}, columns, count);
+                  });
+      range.begin = end;
+    }
+  }
 
-    void add(const std::byte* states, std::int64_t count) {
-      for (std::int64_t together = 0; count > 0; count -= together) {
-        together = powerUpTo(std::min({count, runs_.mostTogether(), most_}));
-        columns_.unpackReversed(states, together);
+  /// Folds the pieces of batches and combines their results, a tree. Each thread has its own.
+  class BatchFolder {
+   public:
+    explicit BatchFolder(const RowsProgram& program)
+        : folder_(program),
+          combiner_(combinerOf(program.fold)),
+          runs_(program.fold.shape, combiner_, 1),
+          columns_(program.fold.shape, ofBatch) {}
+
+    const StateColumns& fold(const std::int32_t* starts, std::int64_t count) {
+      for (std::int64_t together = 0; count > 0; count -= together, starts += together) {
+        together = powerUpTo(count);
+        if (folder_.mustStage()) together = std::min(together, mostStaged / program::longestRun);
+        folder_.fold(starts, {0, together}, [&](std::int64_t, const StateColumns& columns, std::int64_t) {
+          columns_.assignReversed(columns, together);
+        });
         combiner_.gather(columns_, together);
         runs_.next().assign(0, columns_, 0, 1);
         runs_.add(together);
-        states += static_cast<std::size_t>(together) * bytes_;
       }
+      return runs_.take();
     }
-    const StateColumns& take() { return runs_.take(); }
 
    private:
+    RunFolder folder_;
     ColumnCombiner combiner_;
     StateRuns runs_;
     StateColumns columns_;
-    std::int64_t most_;
-    std::size_t bytes_;
   };
 
-  /// Combines the batches of rows that have more than one. The result replaces the first state of each.
-  void combineBatches() {
-    struct Batch {
-      std::int64_t first, count;
-    };
-    std::vector<Batch> batches;
-    for (std::int64_t i = 0; i < longRows(); ++i) {
-      const std::int64_t pieces = pieces_.longRows()[static_cast<std::size_t>(i)].pieces;
-      for (std::int64_t first = 0; pieces > batch && first < pieces; first += batch)
-        batches.push_back({firstStates_[static_cast<std::size_t>(i)] + first, std::min(batch, pieces - first)});
+  void foldBatch(BatchFolder& folder, std::int64_t i) {
+    const Batch& batch = batches_[static_cast<std::size_t>(i)];
+    const StateColumns& state = folder.fold(pieces_.pieceStarts().data() + batch.firstPiece, batch.pieces);
+    if (batch.isWhole) {
+      results_.store({batch.row, 0, 0, 0}, state, 1);
+    } else {
+      state.pack(0, stateOf(i));
     }
-    native::inParallel(static_cast<std::int64_t>(batches.size()), batch, Deal::Evenly, [&](Range range) {
-      Combiner combiner(program_.fold);
-      for (std::int64_t i = range.begin; i < range.end; ++i) {
-        const auto& [first, count] = batches[static_cast<std::size_t>(i)];
-        combiner.add(stateOf(first), count);
-        combiner.take().pack(0, stateOf(first));
-      }
-    });
   }
 
-  void combineRows() {
-    const std::int64_t rows = longRows();
-    const std::int64_t cost = rows == 0 ? 1 : static_cast<std::int64_t>(states_.size() / bytes_) / rows;
-    native::inParallel(rows, cost, Deal::Evenly, [&](Range range) {
-      Combiner combiner(program_.fold);
-      for (std::int64_t i = range.begin; i < range.end; ++i) {
-        const RowPieces::LongRow& row = pieces_.longRows()[static_cast<std::size_t>(i)];
-        const std::int64_t first = firstStates_[static_cast<std::size_t>(i)];
-        if (row.pieces <= batch) {
-          combiner.add(stateOf(first), row.pieces);
-        } else {
-          for (std::int64_t k = 0; k < row.pieces; k += batch) combiner.add(stateOf(first + k), 1);
-        }
-        results_.store({row.row, 0, 0, 0}, combiner.take(), 1);
+  /// Combines the batches of rows that have several.
+  void combineRows(Range range) {
+    ColumnCombiner combiner = combinerOf(program_.fold);
+    StateRuns runs(program_.fold.shape, combiner, 1);
+    for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end); ++i) {
+      if (pieces_.longRows()[i].pieces <= ofBatch) continue;
+      for (std::int64_t batch = firstBatches_[i]; batch < firstBatches_[i + 1]; ++batch) {
+        runs.next().unpack(0, stateOf(batch));
+        runs.add();
       }
-    });
+      results_.store({pieces_.longRows()[i].row, 0, 0, 0}, runs.take(), 1);
+    }
   }
 
   const RowsProgram& program_;
   const RowPieces& pieces_;
   const FoldResults& results_;
   std::size_t bytes_;  ///< of a state
-  std::vector<std::int64_t> firstStates_;  ///< of each long row
-  std::vector<std::byte> states_;  ///< of the pieces of long rows
+  std::vector<Batch> batches_;  ///< of all long rows
+  std::vector<std::int64_t> firstBatches_;  ///< of each long row, then their number
+  std::vector<std::byte> states_;  ///< of batches
 };
 
 /// Scans rows in parts. Those of a long row first fold all that is before them.

@@ -12,6 +12,7 @@
 
 #include "assemble/elements/arguments.hpp"
 #include "assemble/reduce/fold_text.hpp"
+#include "assemble/reduce/reduce_plan.hpp"
 #include "assemble/reduce/scan_program.hpp"
 #include "sk/types.hpp"
 
@@ -72,13 +73,30 @@ class RowText : FoldText {
                  {fmt::format("sk_texel({}, sk_rows_shift)", number), variant_.tableLayered ? "sk_rows_shift" : ""});
   }
 
-  /// Sets the index of the current element.
+  /// Sets the index of the current element, if anything reads it.
   void moveTo(std::string_view number, std::string_view indent) {
-    if (!isOfPartials(variant_.walk))
-      statement(fmt::format("{}{} = ivec4({}, 0, 0, 0);", indent, item(), number));
+    if (usesItem_) statement(fmt::format("{}{} = ivec4({}, 0, 0, 0);", indent, item(), number));
   }
   std::string elementAt(std::size_t i, std::string_view number) {
-    return element(i, isOfPartials(variant_.walk) ? numberedTexel(number) : Texel{});
+    if (isOfPartials(variant_.walk)) return element(i, numberedTexel(number));
+    const Parameter& input = kernel_.parameters[i];
+    if (!isNeeded(input, variant_.specs)) return absentElement(input);
+    Texel texel = texelOf(i, fmt::format("{} + {}", origin(i), number), access(i).packed ? " + 2" : "");
+    texel.packed = access(i).packed;  // then x counts elements
+    return fetch(program_, input, texel);
+  }
+  /// The number of an input's first element in its stream.
+  std::string origin(std::size_t i) {
+    if (!access(i).view) return "0";
+    return parameterUniform(program_, "ivec4", "origin", kernel_.parameters[i]) + ".x";
+  }
+  /// The texel with a number in a one-dimensional stream; `inTexel` is added to log2 of its width.
+  Texel texelOf(std::size_t i, const std::string& number, std::string_view inTexel = "") {
+    if (access(i).addressing == Addressing::Plane) return {fmt::format("ivec2({}, 0)", number)};
+    program_.require(Function::Texel);
+    const std::string shift = parameterUniform(program_, "int", "shift", kernel_.parameters[i]);
+    return {fmt::format("sk_texel({}, {}{})", number, shift, inTexel),
+            access(i).addressing == Addressing::Layered ? shift : ""};
   }
   std::string foldAt(std::string_view number) {
     return calling(kernel_, [&](std::size_t i, std::size_t) { return elementAt(i, number); });
@@ -147,10 +165,6 @@ class RowText : FoldText {
   }
 
   std::string nameOfStaged(const Parameter& input) const { return fmt::format("sk_staged_{}", input.symbol); }
-  std::string origin(std::size_t i) {
-    if (!access(i).view) return "0";
-    return parameterUniform(program_, "ivec4", "origin", kernel_.parameters[i]) + ".x";
-  }
 
   /// Brings the elements of a group to shared memory: whole texels of a packed stream, of which the first may begin
   /// with elements of the group before.
@@ -160,8 +174,7 @@ class RowText : FoldText {
     if (!access(i).packed) {
       program_.variable(fmt::format("shared {}", input.element->glsl), fmt::format("{}[{}]", name, rowGroupItems));
       statement(fmt::format("for (int sk_k = sk_i; sk_k < sk_some.w; sk_k += {}) {{", rowGroupSize));
-      moveTo("sk_some.z + sk_k", "  ");
-      statement(fmt::format("  {}[sk_k] = {};", name, element(i, {})));
+      statement(fmt::format("  {}[sk_k] = {};", name, elementAt(i, "sk_some.z + sk_k")));
       statement("}");
       return;
     }
@@ -173,17 +186,8 @@ class RowText : FoldText {
     statement(fmt::format("for (int sk_k = sk_i; sk_k * {} < sk_some.w + sk_skip_{}; sk_k += {}) {{", lanes,
                           input.symbol, rowGroupSize));
     const std::string number = fmt::format("(sk_first_{} >> 2) + sk_k", input.symbol);
-    statement(fmt::format("  {}[sk_k] = {};", name, fetch(program_, four, packedTexel(i, number))));
+    statement(fmt::format("  {}[sk_k] = {};", name, fetch(program_, four, texelOf(i, number))));
     statement("}");
-  }
-
-  /// The texel with a number in a packed one-dimensional stream.
-  Texel packedTexel(std::size_t i, const std::string& number) {
-    if (access(i).addressing == Addressing::Plane) return {fmt::format("ivec2({}, 0)", number)};
-    program_.require(Function::Texel);
-    const std::string shift = parameterUniform(program_, "int", "shift", kernel_.parameters[i]);
-    return {fmt::format("sk_texel({}, {})", number, shift),
-            access(i).addressing == Addressing::Layered ? shift : ""};
   }
 
   /// Element k of the piece.
@@ -243,6 +247,7 @@ class RowText : FoldText {
 
   ContinuedKernel continued_;
   RowKernel inRows_;
+  const bool usesItem_ = !isOfPartials(variant_.walk) && readsElementIndex(kernel_);
 };
 
 }  // namespace
