@@ -14,7 +14,7 @@ namespace sk {
 class RowPieces {
  public:
   /// The most elements and pieces of a group.
-  static constexpr std::int32_t groupElements = 2048, groupPieces = 128;
+  static constexpr std::int32_t groupElements = 1024, groupPieces = 256;
 
   struct LongRow {
     std::int32_t row, firstPiece, pieces;

@@ -2,7 +2,6 @@
 #include "native/sum_exactly.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "native/chunk_runner.hpp"
@@ -119,15 +118,10 @@ std::vector<std::size_t> outputArrays(const Kernel& kernel, const SlotLayout& la
   return arrays;
 }
 
-/// The scalar's identity; nullopt if there is none.
+/// The scalar's identity, which must exist.
 template <class Real>
-std::optional<Real> identityOf(const program::Reduction& reduction, const program::ExactSum& sum,
-                               const CodeChoice& choice) {
+Real identityOf(const program::Reduction& reduction, const program::ExactSum& sum, const CodeChoice& choice) {
   const std::span<const program::Parameter> parameters = reduction.fold.parameters;
-  const bool hasIdentities = std::ranges::none_of(parameters, [](const program::Parameter& parameter) {
-    return parameter.role == Role::Accumulator && parameter.identity.empty();
-  });
-  if (!hasIdentities) return std::nullopt;
   const StateShape shape(parameters, choice.real);
   const StateColumns identities(shape, 1);
   const std::vector<native::Operand> none(parameters.size());
@@ -232,9 +226,10 @@ template <class Real, class SumAll>
 std::vector<Real> withAdder(const program::Reduction& reduction, const program::ExactSum& sum, const Call& call,
                             const CodeChoice& choice, SumAll&& sumAll) {
   Accumulator<Real> start = Summing<Real>::of(sum.ofProducts);
-  const std::optional<Real> identity =
-      reduction.seeded ? std::nullopt : identityOf<Real>(reduction, sum, choice);
-  if (identity) start.add(1, &*identity);
+  if (!reduction.seeded) {  // the identity is one of the terms
+    const Real identity = identityOf<Real>(reduction, sum, choice);
+    start.add(1, &identity);
+  }
   if (sum.term.kernel == nullptr) {
     const FactorKernel factors(reduction.fold, sum.term.factors, call);
     const CodeFrame frame(factors.kernel(), factors.call());
@@ -270,7 +265,8 @@ std::vector<Real> sumExactly(const program::Reduction& reduction, const program:
 template <class Real>
 std::vector<Real> sumRowsExactly(const program::Reduction& reduction, const program::ExactSum& sum,
                                  const Call& call, const RowPieces& rows, const CodeChoice& choice) {
-  const Real ofNone = identityOf<Real>(reduction, sum, choice).value_or(Real(0));
+  const bool hasEmptyRows = std::ranges::adjacent_find(rows.starts()) != rows.starts().end();
+  const Real ofNone = hasEmptyRows ? identityOf<Real>(reduction, sum, choice) : Real(0);
   return withAdder<Real>(reduction, sum, call, choice,
                          [&](const Accumulator<Real>& start, native::Deal, auto&& make) {
                            return sumRows<Real>(rows, start, ofNone, native::Deal::AsTheyCome, make);

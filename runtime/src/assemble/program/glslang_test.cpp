@@ -324,23 +324,25 @@ TEST_CASE("glslang accepts passes over rows of different lengths, and blocks by 
       for (const StreamAccess& x : {packed, plane}) {
         const std::vector<StreamAccess> access = {{}, x, plane, {Addressing::Plane}, {}, {}};
         ReduceVariant variant{.walk = Walk::Index, .domain = domain, .domainView = view, .domainRank = 4, .access = access};
-        for (const RowPass pass : {RowPass::Folds, RowPass::Groups, RowPass::Inclusive, RowPass::Exclusive}) {
-          if (pass == RowPass::Groups && !isCompute) continue;
+        for (const RowPass pass : {RowPass::Folds, RowPass::Inclusive, RowPass::Exclusive}) {
           variant.rows = pass;
           variant.carried = pass == RowPass::Inclusive;
           variant.tableLayered = variant.carryLayered = variant.carried && domain == Domain::Linear;
           programs.add(profile, reduceProgram(profile, samples::weigh, variant));
         }
-        if (isCompute) {
-          Reduction added = samples::weigh;
-          added.addition = added.combine.body;
+        variant.carried = variant.tableLayered = variant.carryLayered = false;
+        if (!isCompute) continue;
+        Reduction added = samples::weigh;
+        added.addition = added.combine.body;
+        for (const bool inOrder : {false, true}) {
+          added.commutative = !inOrder;
+          variant.rows = RowPass::Groups;
+          variant.grouped = false;
+          programs.add(profile, reduceProgram(profile, added, variant));
           variant.rows = RowPass::None;
           variant.grouped = true;
           variant.axes = 4;
-          for (const bool inOrder : {false, true}) {
-            added.commutative = !inOrder;
-            programs.add(profile, reduceProgram(profile, added, variant));
-          }
+          programs.add(profile, reduceProgram(profile, added, variant));
         }
       }
       for (const Reduction* reduction : {&samples::sum, &samples::firstHit, &samples::countTrue}) {

@@ -57,7 +57,7 @@ enum class ScanPass : std::uint8_t {
 enum class RowPass : std::uint8_t {
   None,  ///< it has nothing to do with rows
   Folds,  ///< one result for each piece of a row
-  Groups,  ///< the same; a work group stages the elements of several pieces
+  Groups,  ///< the same; a work group folds several pieces together; packed: all inputs begin at the same lane
   Inclusive,  ///< scans: one result for each item, up to it
   Exclusive,  ///< the same without the item
 };

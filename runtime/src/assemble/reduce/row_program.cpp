@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// A piece has consecutive items. RowPass::Groups first brings the elements of many pieces to shared memory, so that
-// neighbouring invocations fetch neighbouring elements, or texels, and then folds each piece in an invocation of its own
-// (CSR-Stream: J. L. Greathouse and M. Daga, "Efficient sparse matrix-vector multiplication on GPUs using the CSR storage
-// format", 2014).
+// A piece has consecutive items. RowPass::Groups first folds each element of many pieces by itself, to shared memory, so
+// that neighbouring invocations fetch neighbouring elements, or texels, and then combines those of each piece in an
+// invocation of its own (CSR-Stream: J. L. Greathouse and M. Daga, "Efficient sparse matrix-vector multiplication on GPUs
+// using the CSR storage format", 2014).
 #include "assemble/reduce/row_program.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -140,64 +142,104 @@ class RowText : FoldText {
 
   // ---- groups -----------------------------------------------------------------------------------
 
+  /// Folds each element of the group by itself, then combines those of each piece.
   std::string foldGroup(const std::vector<Parameter>& written) {
     program_.dispatchGroups(rowGroupSize, 1, /*storesApart=*/true);
+    program_.foreign(reduction_.addition);
     declareSamplers(program_, inRows_.groups(), false);
     vectors({"sk_group_shape"});
     integers({"sk_groups_shift"});
     statement("int sk_i = int(gl_LocalInvocationIndex), sk_group = sk_pixel.y * sk_group_shape.x + sk_pixel.x;");
     const std::string entry = fetch(program_, inRows_.groups(), {"sk_texel(sk_group, sk_groups_shift)"});
     statement(fmt::format("ivec4 sk_some = sk_group < sk_group_shape.y ? {} : ivec4(0);", entry));
-    statement(fmt::format("ivec2 sk_run = sk_i < sk_some.y ? {} : ivec2(0);", tableEntry("sk_some.x + sk_i")));
-    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
-      const Parameter& input = kernel_.parameters[i];
-      if (input.role == Role::Input && isNeeded(input, variant_.specs)) stage(i);
+    for (const Parameter* accumulator : accumulators_) {
+      program_.variable(fmt::format("shared {}", accumulator->element->glsl),
+                        fmt::format("{}[{}]", nameOfFolded(*accumulator), rowGroupItems));
     }
+    variant_.packed ? foldTexels() : foldElements();
     statement("memoryBarrierShared();");
     statement("barrier();");
     statement("if (sk_i >= sk_some.y) return;");
-    statement("int sk_at = sk_run.x - sk_some.z;");
-    foldItems([&](std::size_t i, std::string_view k) { return staged(i, k); }, "sk_run.x");
+    statement("ivec2 sk_run = " + tableEntry("sk_some.x + sk_i") + ";");
+    combinePiece();
     for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
     program_.storeAt(place(program_, result()), variant_.domainLayered);
-    return program_.finish(profile_, fmt::format("{} for {}: groups of rows", reduction_.fold.name, profile_.name),
+    return program_.finish(profile_, fmt::format("{} for {}: {}groups of rows", reduction_.fold.name, profile_.name,
+                                                 variant_.packed ? "packed " : ""),
                            kernel_);
   }
 
-  std::string nameOfStaged(const Parameter& input) const { return fmt::format("sk_staged_{}", input.symbol); }
+  static std::string nameOfFolded(const Parameter& accumulator) {
+    return fmt::format("sk_folded_{}", accumulator.symbol);
+  }
+  void keepFolded(std::string_view number, std::string_view indent) {
+    for (const Parameter* accumulator : accumulators_)
+      statement(fmt::format("{}{}[{}] = {};", indent, nameOfFolded(*accumulator), number, total(*accumulator)));
+  }
 
-  /// Brings the elements of a group to shared memory: whole texels of a packed stream, of which the first may begin
-  /// with elements of the group before.
-  void stage(std::size_t i) {
-    const Parameter& input = kernel_.parameters[i];
-    const std::string name = nameOfStaged(input);
-    if (!access(i).packed) {
-      program_.variable(fmt::format("shared {}", input.element->glsl), fmt::format("{}[{}]", name, rowGroupItems));
-      statement(fmt::format("for (int sk_k = sk_i; sk_k < sk_some.w; sk_k += {}) {{", rowGroupSize));
-      statement(fmt::format("  {}[sk_k] = {};", name, elementAt(i, "sk_some.z + sk_k")));
-      statement("}");
-      return;
-    }
-    const Parameter four = fourOf(input);
-    program_.variable(fmt::format("shared {}", four.element->glsl),
-                      fmt::format("{}[{}]", name, rowGroupItems / lanes + 1));
-    statement(fmt::format("int sk_first_{0} = {1} + sk_some.z, sk_skip_{0} = sk_first_{0} & {2};", input.symbol,
-                          origin(i), lanes - 1));
-    statement(fmt::format("for (int sk_k = sk_i; sk_k * {} < sk_some.w + sk_skip_{}; sk_k += {}) {{", lanes,
-                          input.symbol, rowGroupSize));
-    const std::string number = fmt::format("(sk_first_{} >> 2) + sk_k", input.symbol);
-    statement(fmt::format("  {}[sk_k] = {};", name, fetch(program_, four, texelOf(i, number))));
+  void foldElements() {
+    statement(fmt::format("for (int sk_k = sk_i; sk_k < sk_some.w; sk_k += {}) {{", rowGroupSize));
+    moveTo("sk_some.z + sk_k", "  ");
+    startFromIdentities("  ");
+    statement("  " + foldAt("sk_some.z + sk_k"));
+    keepFolded("sk_k", "  ");
     statement("}");
   }
 
-  /// Element k of the piece.
-  std::string staged(std::size_t i, std::string_view k) {
-    const Parameter& input = kernel_.parameters[i];
-    if (!isNeeded(input, variant_.specs)) return absentElement(input);
-    const std::string name = nameOfStaged(input);
-    if (!access(i).packed) return fmt::format("{}[sk_at + {}]", name, k);
-    const std::string number = fmt::format("sk_at + sk_skip_{} + {}", input.symbol, k);
-    return fmt::format("{0}[({1}) >> 2][({1}) & {2}]", name, number, lanes - 1);
+  /// The first texel may begin with elements of the group before, the last one end with those of the next; they are
+  /// folded, and not kept. The elements of a texel are folded before any is kept, so that their gathers overlap.
+  void foldTexels() {
+    static constexpr std::array<std::string_view, lanes> names = {"sk_of_x", "sk_of_y", "sk_of_z", "sk_of_w"};
+    bool isFirst = true;
+    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+      if (!isFetched(i)) continue;
+      const std::string_view symbol = kernel_.parameters[i].symbol;
+      statement(fmt::format("int sk_first_{} = {} + sk_some.z;", symbol, origin(i)));
+      // the same for all inputs
+      if (std::exchange(isFirst, false)) statement(fmt::format("int sk_skip = sk_first_{} & {};", symbol, lanes - 1));
+    }
+    statement(fmt::format("for (int sk_k = sk_i; sk_k * {} < sk_some.w + sk_skip; sk_k += {}) {{", lanes, rowGroupSize));
+    for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
+      if (!isFetched(i)) continue;
+      const Parameter& input = kernel_.parameters[i];
+      const Parameter four = fourOf(input);
+      const std::string number = fmt::format("(sk_first_{} >> 2) + sk_k", input.symbol);
+      statement(fmt::format("  {} sk_in_{} = {};", four.element->glsl, input.symbol,
+                            fetch(program_, four, texelOf(i, number))));
+    }
+    statement(fmt::format("  int sk_at = sk_k * {} - sk_skip;", lanes));
+    for (int lane = 0; lane < lanes; ++lane) {
+      folded_ = names[static_cast<std::size_t>(lane)];
+      moveTo(fmt::format("sk_some.z + sk_at + {}", lane), "  ");
+      startFromIdentities("  ");
+      const std::string component = fmt::format(".{}", "xyzw"[lane]);
+      statement("  " + calling(kernel_, [&](std::size_t i, std::size_t) { return elementOf(i, component); }));
+    }
+    for (int lane = 0; lane < lanes; ++lane) {
+      folded_ = names[static_cast<std::size_t>(lane)];
+      statement(fmt::format("  if (uint(sk_at + {}) < uint(sk_some.w)) {{", lane));
+      keepFolded(fmt::format("sk_at + {}", lane), "    ");
+      statement("  }");
+    }
+    statement("}");
+    folded_ = "sk_total";
+  }
+  bool isFetched(std::size_t i) const {
+    return kernel_.parameters[i].role == Role::Input && isNeeded(kernel_.parameters[i], variant_.specs);
+  }
+
+  void combinePiece() {
+    statement("int sk_at = sk_run.x - sk_some.z;");
+    startFromIdentities();
+    statement("if (sk_run.y > 0) {");
+    for (const Parameter* accumulator : accumulators_)
+      statement(fmt::format("  {} = {}[sk_at];", total(*accumulator), nameOfFolded(*accumulator)));
+    statement("}");
+    statement("for (int sk_k = 1; sk_k < sk_run.y; ++sk_k) {");
+    statement("  " + calling(reduction_.combine, [&](std::size_t, std::size_t k) {
+                return fmt::format("{}[sk_at + sk_k]", nameOfFolded(*accumulators_[k]));
+              }));
+    statement("}");
   }
 
   /// The texel of the result of this invocation's piece.
@@ -252,17 +294,17 @@ class RowText : FoldText {
 
 }  // namespace
 
-bool mayStageRows(const Kernel& fold, const SpecValues& specs) {
-  std::size_t bytes = 0;
-  for (const Parameter& parameter : fold.parameters) {
-    if (parameter.role != Role::Input || !isNeeded(parameter, specs)) continue;
-    constexpr std::size_t whole = 4 * sizeof(float);  // of a vector
+bool mayGroupRows(const Reduction& reduction) {
+  if (!foldsInGroups(reduction)) return false;
+  std::size_t bytes = 0;  // of the accumulators of an element
+  for (const Parameter& parameter : reduction.fold.parameters) {
+    if (parameter.role != Role::Accumulator) continue;
     for (const program::Field& field : parameter.element->fields) {
-      if (field.scalar == program::Scalar::Double) return false;  // packed texels of floats would become doubles
-      bytes += (rowGroupItems + lanes) * (field.width == 1 ? sizeof(float) : whole);
+      const std::size_t aligned = field.width == 3 ? 4 : field.width;
+      bytes += aligned * (field.scalar == program::Scalar::Double ? sizeof(double) : sizeof(float));
     }
   }
-  return bytes <= groupBytes;
+  return bytes * rowGroupItems <= groupBytes;
 }
 
 std::string rowProgram(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant) {

@@ -16,7 +16,7 @@
 namespace sk::assemble {
 
 /// The invocations of a work group that folds a group of pieces, and the most items of such a group.
-inline constexpr std::int32_t rowGroupSize = 128, rowGroupItems = 2048;
+inline constexpr std::int32_t rowGroupSize = 256, rowGroupItems = 1024;
 
 /// A kernel of a reduction whose program also reads tables, which are Inputs behind all its parameters:
 ///   Folds   for each piece, the first item and their number (int2)
@@ -42,8 +42,9 @@ class RowKernel {
   program::Kernel kernel_;
 };
 
-/// Whether work groups have the shared memory to stage the items of RowPass::Groups.
-bool mayStageRows(const program::Kernel& fold, const SpecValues& specs);
+/// Whether work groups can fold the items of RowPass::Groups: they start from identities, are combined by the same
+/// program, and have room in shared memory.
+bool mayGroupRows(const program::Reduction& reduction);
 
 /// The program of one pass (ReduceVariant::rows is not None). Its outputs, and the values of its uniforms, are as in
 /// reduceProgram().

@@ -101,6 +101,8 @@ class ReducePasses {
   void addCarries(std::vector<Operand>& operands, std::span<RenderTarget> carries) const;
   /// A pass over rows at a level: it reads elements, or partial results of this layout.
   assemble::ReducePass passOverRows(const assemble::RegionLayout& partials, bool ofElements) const;
+  /// Whether all inputs are packed, and begin at the same component of a texel.
+  bool beginAtOneLane() const;
   /// Writes the identities, since there are no elements.
   void writeIdentities(const assemble::RegionLayout& result, std::span<RenderTarget* const> targets,
                        const std::function<void()>& begin);

@@ -77,11 +77,23 @@ ReducePass ReducePasses::passOverRows(const RegionLayout& partials, bool ofEleme
   return pass;
 }
 
+bool ReducePasses::beginAtOneLane() const {
+  std::optional<std::int32_t> lane;
+  for (std::size_t i = 0; i < operands_.size(); ++i) {
+    if (!isRead(i)) continue;
+    const RegionLayout& input = operands_[i].regionLayout;
+    const std::int32_t own = input.origin[0] % assemble::lanes;
+    if (!input.packed || lane.value_or(own) != own) return false;
+    lane = own;
+  }
+  return lane.has_value();
+}
+
 void ReducePasses::foldRows(const RowsState& rows, const RegionLayout& result,
                             std::span<RenderTarget* const> targets, const std::function<void()>& begin) {
   if (assemble::elements(elements_.extent) == 0) return writeIdentities(result, targets, begin);
-  const bool mayStage = device_.programs().stage() == assemble::Stage::Compute &&
-                        assemble::mayStageRows(reduction_.fold, specs_);
+  const bool mayGroupRows =
+      device_.programs().stage() == assemble::Stage::Compute && assemble::mayGroupRows(reduction_);
   PlanesLease partials(device_);
   RegionLayout source;
   for (const RowsState::Level& level : rows.levels()) {
@@ -95,9 +107,10 @@ void ReducePasses::foldRows(const RowsState& rows, const RegionLayout& result,
     } else {
       source = writePartials(pass, level.pieces.count(), device_.textureLimits());
     }
-    if (isFirst && mayStage) {
+    if (isFirst && mayGroupRows) {
       tables.push_back(tableOperand(level.groups));
       useGroups(pass, tables.back());
+      pass.variant.packed = beginAtOneLane();
     }
     if (isLast) {
       prepare(pass, targets);
