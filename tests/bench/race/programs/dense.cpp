@@ -28,12 +28,12 @@ class Gemv final : public OurTask {
   sk::Stream<float> a_, x_, y_;
 };
 
-/// A reduce of the rows, which reads each once.
+/// A reduce of the rows. Sums are plain, as the peers' are.
 class GemvInRows final : public OurTask {
  public:
   GemvInRows(sk::Device& device, const sk::CallOptions& options, const Problem& p)
       : OurTask(device),
-        gemv_(kernels::gemvRow.with(options)),
+        gemv_(kernels::gemvRow.with(options).with({.accumulate = sk::Accumulate::Tree})),
         a_(filled<float>({p.rows, p.columns}, p.floats[0])),
         x_(filled<float>({1, p.columns}, p.floats[1])),
         y_(device.stream<float>({p.rows, 1})) {}

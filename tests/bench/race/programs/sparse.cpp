@@ -36,12 +36,12 @@ class Sparse final : public OurTask {
   sk::Stream<float> values_, x_, y_;
 };
 
-/// The rows are prepared once, as a solver does.
+/// The rows are prepared once, as a solver does. Sums are plain, as the peers' are.
 class SparseInRows final : public OurTask {
  public:
   SparseInRows(sk::Device& device, const sk::CallOptions& options, const Problem& p)
       : OurTask(device),
-        sparse_(kernels::sparseRow.with(options)),
+        sparse_(kernels::sparseRow.with(options).with({.accumulate = sk::Accumulate::Tree})),
         rows_(filled<std::int32_t>({p.size() + 1}, p.ints[0])),
         columns_(filled<std::int32_t>({static_cast<std::int64_t>(p.ints[1].size())}, p.ints[1])),
         values_(filled<float>({static_cast<std::int64_t>(p.floats[0].size())}, p.floats[0])),
