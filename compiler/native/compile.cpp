@@ -131,7 +131,8 @@ class Compilation {
   /// Identities and borders are constants, and Apply has no products; cold code is not worth a second entry.
   bool mayContract(const KernelRequest& request, EntryKind kind) const {
     const bool computes = kind == EntryKind::Run || kind == EntryKind::RunRows || kind == EntryKind::Fold ||
-                          kind == EntryKind::Combine || kind == EntryKind::Scan || kind == EntryKind::FoldRows;
+                          kind == EntryKind::Combine || kind == EntryKind::Scan ||
+                          kind == EntryKind::FoldRows;
     return computes && !request.isCold && canContract(plain_, plain_.kernels[request.kernel]);
   }
   void addContracted(CodeTable& table, const KernelRequest& request, const SlotPlan& slots, EntryKind kind) {
@@ -208,7 +209,7 @@ class Compilation {
   }
 
   static std::string suffix(const EntryVariant& variant) {
-    static constexpr const char* kinds[] = {".run",   ".fold", ".combine", ".identity",  ".borders",
+    static constexpr const char* kinds[] = {".run",   ".fold", ".combine", ".identity", ".borders",
                                             ".apply", ".rows", ".scan",    ".foldrows", ".floatrows"};
     static constexpr const char* reals[] = {"", ".double", ".quad"};
     static constexpr const char* levels[] = {"", ".v3", ".v4"};

@@ -418,7 +418,8 @@ class EntryWriter {
       if (state.scalars[c] == Scalar::Float) {
         b_.CreateStore(l_.broadcast(parts[c]), l_.at(l_.real(), state.arrays[c], row));
       } else {
-        l_.storeNeighbors(state.scalars[c], parts[c], l_.at(l_.stored(state.scalars[c]), state.arrays[c], row));
+        l_.storeNeighbors(state.scalars[c], parts[c],
+                          l_.at(l_.stored(state.scalars[c]), state.arrays[c], row));
       }
     }
   }

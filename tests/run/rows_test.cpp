@@ -61,11 +61,13 @@ std::vector<int> numbers(std::size_t count, unsigned seed = 1) {
 
 /// Folds each row by a plain loop.
 template <class T, class X, class Fold>
-std::vector<T> foldedRows(const Starts& starts, const std::vector<X>& x, const T& identity, const Fold& fold) {
+std::vector<T> foldedRows(const Starts& starts, const std::vector<X>& x, const T& identity,
+                          const Fold& fold) {
   std::vector<T> results;
   for (std::size_t row = 0; row < rowsIn(starts); ++row) {
     T total = identity;
-    for (std::int32_t i = starts[row]; i < starts[row + 1]; ++i) total = fold(total, x[static_cast<std::size_t>(i)]);
+    for (std::int32_t i = starts[row]; i < starts[row + 1]; ++i)
+      total = fold(total, x[static_cast<std::size_t>(i)]);
     results.push_back(total);
   }
   return results;
@@ -98,7 +100,15 @@ std::vector<std::vector<int>> manyLengths() {
   std::vector<int> sparse(3000, 0);
   sparse[1500] = 33;
   sparse[2999] = 1;
-  return {{1}, {0}, {33}, {0, 0, 5}, {100003}, {1024 * 32 + 1, 0, 31, 32, 33}, std::vector<int>(20000, 0), mixed, sparse,
+  return {{1},
+          {0},
+          {33},
+          {0, 0, 5},
+          {100003},
+          {1024 * 32 + 1, 0, 31, 32, 33},
+          std::vector<int>(20000, 0),
+          mixed,
+          sparse,
           randomLengths(5000, 24)};
 }
 
@@ -151,8 +161,9 @@ TEST_CASE("a sparse matrix times a vector") {
     const auto a = streamOf(device, values), vector = streamOf(device, x);
     const auto column = streamOf(device, columns);
     auto y = device.stream<float>({3000});
-    for (const sk::Accumulate how : {sk::Accumulate::Default, sk::Accumulate::Tree, sk::Accumulate::Compensated,
-                                     sk::Accumulate::Exact, sk::Accumulate::Extended}) {
+    for (const sk::Accumulate how :
+         {sk::Accumulate::Default, sk::Accumulate::Tree, sk::Accumulate::Compensated, sk::Accumulate::Exact,
+          sk::Accumulate::Extended}) {
       INFO("accumulate " << static_cast<int>(how));
       rows::product.with({.accumulate = how})(rows(a), rows(column), vector, y);
       const std::vector<float> got = y.read();
@@ -160,14 +171,15 @@ TEST_CASE("a sparse matrix times a vector") {
       std::size_t wrong = 0;
       for (std::size_t row = 0; row < rowsIn(starts); ++row) {
         double sum = 0, magnitude = 0;
-        for (auto i = static_cast<std::size_t>(starts[row]); i < static_cast<std::size_t>(starts[row + 1]); ++i) {
+        for (auto i = static_cast<std::size_t>(starts[row]); i < static_cast<std::size_t>(starts[row + 1]);
+             ++i) {
           const double term = double{values[i]} * x[static_cast<std::size_t>(columns[i])];
           sum += term;
           magnitude += std::fabs(term);
         }
         // on GL, products are rounded before sums are compensated
-        const double allowed =
-            how == sk::Accumulate::Exact ? bound * std::fabs(sum) + 0x1p-60 : bound * (std::fabs(sum) + magnitude);
+        const double allowed = how == sk::Accumulate::Exact ? bound * std::fabs(sum) + 0x1p-60
+                                                            : bound * (std::fabs(sum) + magnitude);
         wrong += std::fabs(got[row] - sum) <= allowed ? 0 : 1;
       }
       CHECK(wrong == 0);
@@ -300,7 +312,8 @@ TEST_CASE("views are in rows, and results may be views") {
       rows::prefix(whole(part), scanned.domain({30 - offset}, {30 - offset + starts.back()}));
       CHECK(scanned.domain({30 - offset}, {30 - offset + starts.back()}).read() ==
             scannedRows(starts, x, 0, plus));
-      CHECK(scanned.domain({0}, {30 - offset}).read() == std::vector<int>(all.begin(), all.begin() + 30 - offset));
+      CHECK(scanned.domain({0}, {30 - offset}).read() ==
+            std::vector<int>(all.begin(), all.begin() + 30 - offset));
     }
   });
 }
@@ -419,7 +432,8 @@ TEST_CASE("sums of floats in rows are compensated, plain, exact or in other prec
         const auto isNear = [&](float value) {
           return std::fabs(value - sum) <= relative * std::fabs(sum) + absolute * magnitude;
         };
-        for (auto i = static_cast<std::size_t>(starts[row]); i < static_cast<std::size_t>(starts[row + 1]); ++i) {
+        for (auto i = static_cast<std::size_t>(starts[row]); i < static_cast<std::size_t>(starts[row + 1]);
+             ++i) {
           sum += x[i];
           magnitude += std::fabs(x[i]);
           if (!isNear(gotEach[i])) return false;
@@ -527,12 +541,14 @@ TEST_CASE("rows that cannot be, and wrong calls in rows, say why") {
                Contains("row 2 starts at 7, and ends before at 5"));
     CHECK_THAT(errorOf([&] { sk::Rows(streamOf(device, Starts{-1, 3})); }), Contains("row 0 starts at -1"));
     CHECK_THAT(errorOf([&] { sk::Rows(device.stream<int>({0})); }), Contains("the starts have shape {0}"));
-    CHECK_THAT(errorOf([&] { sk::Rows(device.stream<int>({2, 2})); }), Contains("the starts have shape {2, 2}"));
+    CHECK_THAT(errorOf([&] { sk::Rows(device.stream<int>({2, 2})); }),
+               Contains("the starts have shape {2, 2}"));
     const sk::Rows rows(streamOf(device, Starts{0, 3, 3, 9})), others(streamOf(device, Starts{0, 3, 3, 9}));
     auto x = streamOf(device, numbers(9)), few = streamOf(device, numbers(8)), y = device.stream<int>({3});
     auto m = device.stream<int>({3}), square = device.stream<int>({3, 3});
     square.fill(0);
-    CHECK_THAT(errorOf([&] { rows::total(rows(few), y); }), Contains("row 2 ends at 9, but 'x' has 8 elements"));
+    CHECK_THAT(errorOf([&] { rows::total(rows(few), y); }),
+               Contains("row 2 ends at 9, but 'x' has 8 elements"));
     CHECK_THAT(errorOf([&] { rows::total(rows(x), few); }),
                Contains("there are 3 rows, but the output 's' has shape {8}; give it shape {3}"));
     CHECK_THAT(errorOf([&] { (void)rows::total(rows(x)); }), Contains("give a stream for 's'"));

@@ -28,7 +28,7 @@ struct Argument {
       {};  ///< all other arguments, and such uniforms; of an iterator only the shape, if any
   bool isNone = false;  ///< sk::none
   program::Fit fit = program::Fit::Same;  ///< element inputs
-  const RowsState* rows = nullptr;  ///< element inputs of reduces and scans: rows of different lengths, or null
+  const RowsState* rows = nullptr;  ///< element inputs of reduces and scans: the rows they are in, or null
 };
 
 /// Passed for a stream that the values of a kernel's spec parameters switch off.
@@ -202,7 +202,8 @@ void reduce(const program::Reduction& reduction, std::span<const Argument> argum
 
 /// Folds, for each element of the inputs, all elements up to it (CallOptions::scan, along) to one element of the
 /// arguments of the accumulators, which have the shape of the inputs and may be the same streams. Inputs in rows
-/// (sk::Rows) are scanned row by row. Throws sk::Error if the arguments do not match, or if an exclusive scan has no identity.
+/// (sk::Rows) are scanned row by row. Throws sk::Error if the arguments do not match, or if an exclusive scan
+/// has no identity.
 void scan(const program::Reduction& reduction, std::span<const Argument> arguments,
           const CallOptions& options = {});
 

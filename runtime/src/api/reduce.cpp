@@ -244,7 +244,8 @@ void checkAndReduce(const Reduction& reduction, std::span<const Argument> argume
   if (call.device.recording == nullptr) return runResolved(call);
   if (call.isToValues()) {
     fail(reduction.fold,
-         "its value is not known while the device records calls; give it a stream of one element for the result");
+         "its value is not known while the device records calls; give it a stream of one element for the "
+         "result");
   }
   call.device.recording->add(std::make_unique<RecordedReduction>(call));
 }

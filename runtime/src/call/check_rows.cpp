@@ -16,13 +16,13 @@ using program::Role;
 
 namespace {
 
-const Parameter& firstOf(const Kernel& fold, Role role) {
+const Parameter& firstWith(const Kernel& fold, Role role) {
   return *std::ranges::find(fold.parameters, role, &Parameter::role);
 }
 
 void checkDomain(const CallInRows& call, const RowsState& rows) {
   const Kernel& fold = call.reduction.fold;
-  const std::string_view input = firstOf(fold, Role::Input).name;
+  const std::string_view input = firstWith(fold, Role::Input).name;
   if (call.domain.rank() != 1) {
     fail(Error::Kind::Shape, fold, "'{}' has shape {}; streams in rows have one dimension", input,
          toString(call.domain));
@@ -31,8 +31,9 @@ void checkDomain(const CallInRows& call, const RowsState& rows) {
     const Parameter& parameter = fold.parameters[i];
     const Shape& shape = call.arguments[i].region.shape;
     if (parameter.role != Role::Input || call.arguments[i].rows == nullptr || shape == call.domain) continue;
-    fail(Error::Kind::Shape, fold, "'{}' has shape {}, but the streams in rows together have {}; give them one shape",
-         parameter.name, toString(shape), toString(call.domain));
+    fail(Error::Kind::Shape, fold,
+         "'{}' has shape {}, but the streams in rows together have {}; give them one shape", parameter.name,
+         toString(shape), toString(call.domain));
   }
   const std::int64_t size = call.domain.size();
   if (const std::int64_t row = rows.rowBeyond(size); row >= 0) {
@@ -41,7 +42,8 @@ void checkDomain(const CallInRows& call, const RowsState& rows) {
   }
   if (call.scan && (rows.begin() != 0 || rows.end() != size)) {
     fail(Error::Kind::Shape, fold,
-         "the rows have elements {} to {}, and '{}' has {}; a scan has a result for each element, so give it a view "
+         "the rows have elements {} to {}, and '{}' has {}; a scan has a result for each element, so give it "
+         "a view "
          "of those in rows",
          rows.begin(), rows.end(), input, size);
   }
@@ -87,12 +89,12 @@ const RowsState* rowsOf(const Kernel& fold, std::span<const Argument> arguments,
 
 Shape checkRows(const CallInRows& call, const RowsState& rows, const Shape& results) {
   const Kernel& fold = call.reduction.fold;
-  const std::string_view result = firstOf(fold, Role::Accumulator).name;
+  const std::string_view result = firstWith(fold, Role::Accumulator).name;
   if (rows.device() != &call.device) {
     fail(rows.device() == nullptr ? Error::Kind::Lost : Error::Kind::Device, fold,
          "the rows are {}; make them from a stream of the same device as '{}'",
          rows.device() == nullptr ? "of a device that has ended" : "of another device",
-         firstOf(fold, Role::Input).name);
+         firstWith(fold, Role::Input).name);
   }
   checkDomain(call, rows);
   if (results.rank() == 0) {
@@ -101,8 +103,8 @@ Shape checkRows(const CallInRows& call, const RowsState& rows, const Shape& resu
   const Shape expected = call.scan ? call.domain : Shape{rows.rows()};
   if (results != expected) {
     fail(Error::Kind::Shape, fold, "there are {} {}, but the output '{}' has shape {}; give it shape {}",
-         call.scan ? call.domain.size() : rows.rows(), call.scan ? "elements" : "rows", result, toString(results),
-         toString(expected));
+         call.scan ? call.domain.size() : rows.rows(), call.scan ? "elements" : "rows", result,
+         toString(results), toString(expected));
   }
   if (call.scan && call.scan->along) fail(fold, "rows are scanned each on its own; call it without along");
   checkIdentities(call, rows);

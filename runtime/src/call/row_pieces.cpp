@@ -26,7 +26,8 @@ void RowPieces::cutLongRows() {
   for (std::size_t row = 0; row + 1 < starts_.size(); ++row) {
     cut_.push_back(starts_[row]);
     const std::int32_t end = starts_[row + 1];
-    for (std::int32_t length = end - starts_[row]; length > program::longestRun; length -= program::longestRun)
+    for (std::int32_t length = end - starts_[row]; length > program::longestRun;
+         length -= program::longestRun)
       cut_.push_back(cut_.back() + program::longestRun);
   }
   cut_.push_back(starts_.back());

@@ -74,7 +74,8 @@ TEST_CASE("rows of any lengths are cut into pieces, and these are grouped") {
   std::vector<std::int32_t> lengths(3000);
   for (std::int32_t& length : lengths) length = static_cast<std::int32_t>(random() % 50);
   checkPieces(lengths);
-  for (std::int32_t& length : lengths) length = random() % 100 == 0 ? static_cast<std::int32_t>(random() % 9000) : 0;
+  for (std::int32_t& length : lengths)
+    length = random() % 100 == 0 ? static_cast<std::int32_t>(random() % 9000) : 0;
   checkPieces(lengths, 11);
 }
 

@@ -38,7 +38,8 @@ const DeviceState* RowsState::device() const { return anchor_.get()->device; }
 
 std::int64_t RowsState::rowBeyond(std::int64_t elements) const {
   const std::span<const std::int32_t> ends = pieces().starts().subspan(1);
-  const auto beyond = std::ranges::upper_bound(ends, elements, {}, [](std::int32_t end) -> std::int64_t { return end; });
+  const auto beyond =
+      std::ranges::upper_bound(ends, elements, {}, [](std::int32_t end) -> std::int64_t { return end; });
   return beyond == ends.end() ? -1 : beyond - ends.begin();
 }
 
@@ -54,8 +55,10 @@ void RowsState::makePieces(Level& level) const {
   const std::span<const std::int32_t> starts = level.pieces.pieceStarts();
   std::vector<int2> pieces;
   pieces.reserve(starts.size());
-  for (std::size_t i = 0; i + 1 < starts.size(); ++i) pieces.push_back({starts[i], starts[i + 1] - starts[i]});
-  level.table = streamOf(*anchor_.get()->device, ElementTraits<int2>::element(), pieces.size(), pieces.data());
+  for (std::size_t i = 0; i + 1 < starts.size(); ++i)
+    pieces.push_back({starts[i], starts[i + 1] - starts[i]});
+  level.table =
+      streamOf(*anchor_.get()->device, ElementTraits<int2>::element(), pieces.size(), pieces.data());
 }
 
 void RowsState::makeGroups(Level& level) const {
@@ -63,7 +66,8 @@ void RowsState::makeGroups(Level& level) const {
   groups.reserve(level.pieces.groups().size());
   for (const RowPieces::Group& group : level.pieces.groups())
     groups.push_back({group.firstPiece, group.pieces, group.firstElement, group.elements});
-  level.groups = streamOf(*anchor_.get()->device, ElementTraits<int4>::element(), groups.size(), groups.data());
+  level.groups =
+      streamOf(*anchor_.get()->device, ElementTraits<int4>::element(), groups.size(), groups.data());
 }
 
 void RowsState::makePlaces(Level& level) const {
@@ -79,7 +83,8 @@ void RowsState::makePlaces(Level& level) const {
       for (std::int32_t i = begin; i < end; ++i) places.push_back({i - begin, carry});
     }
   }
-  level.places = streamOf(*anchor_.get()->device, ElementTraits<int2>::element(), places.size(), places.data());
+  level.places =
+      streamOf(*anchor_.get()->device, ElementTraits<int2>::element(), places.size(), places.data());
 }
 
 }  // namespace sk

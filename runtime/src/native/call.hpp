@@ -65,7 +65,7 @@ struct ReduceCall {
   Call combine;  ///< ignores its Inputs and Accumulators
   Extents block{1, 1, 1, 1};  ///< divides the domain
   std::optional<ScanOf> scan = std::nullopt;
-  const RowPieces* rows = nullptr;  ///< blocks are rows of different lengths of a one-dimensional domain; or null
+  const RowPieces* rows = nullptr;  ///< the blocks of a one-dimensional domain, if their lengths differ
   bool holdsFloats = false;  ///< rows: all operands hold floats, but the code computes in double
 };
 

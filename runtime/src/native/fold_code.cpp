@@ -47,7 +47,8 @@ void foldCode(const program::Reduction& reduction, const native::ReduceCall& cal
   if (checksFolds() && !reduction.commutative) checkFold(reduction, program, call.fold, choice);
   const auto rowsOf = [&] {
     const EntryKind kind = call.holdsFloats ? EntryKind::FoldFloatRows : EntryKind::FoldRows;
-    return RowsProgram{program, bound<native::FoldRowsFunction>(entryOf(reduction.fold, kind, choice), frame)};
+    return RowsProgram{program,
+                       bound<native::FoldRowsFunction>(entryOf(reduction.fold, kind, choice), frame)};
   };
   if (!call.scan && call.rows != nullptr) {
     foldRows(rowsOf(), *call.rows, results);

@@ -16,9 +16,7 @@ namespace {
 using native::Deal;
 using native::Range;
 
-Deal dealOfRows(const FoldProgram& program) {
-  return program.isUneven ? Deal::AsTheyCome : Deal::Evenly;
-}
+Deal dealOfRows(const FoldProgram& program) { return program.isUneven ? Deal::AsTheyCome : Deal::Evenly; }
 
 /// Folds consecutive rows or pieces to columns. Each thread has its own.
 class RunFolder {
@@ -68,7 +66,8 @@ class RowFold {
     for (const RowPieces::LongRow& row : pieces.longRows()) {
       firstBatches_.push_back(static_cast<std::int64_t>(batches_.size()));
       for (std::int32_t first = 0; first < row.pieces; first += ofBatch)
-        batches_.push_back({row.row, row.firstPiece + first, std::min(ofBatch, row.pieces - first), row.pieces <= ofBatch});
+        batches_.push_back(
+            {row.row, row.firstPiece + first, std::min(ofBatch, row.pieces - first), row.pieces <= ofBatch});
     }
     firstBatches_.push_back(static_cast<std::int64_t>(batches_.size()));
     states_.resize(batches_.size() * bytes_);
@@ -77,15 +76,16 @@ class RowFold {
   void run() {
     const std::span<const RowPieces::Group> groups = pieces_.groups();
     const Deal deal = batches_.empty() ? dealOfRows(program_.fold) : Deal::AsTheyCome;
-    native::inParallel(static_cast<std::int64_t>(groups.size()), RowPieces::groupElements, deal, [&](Range range) {
-      RunFolder folder(program_);
-      for (std::int64_t i = range.begin; i < range.end; ++i) {
-        const RowPieces::Group& group = groups[static_cast<std::size_t>(i)];
-        foldShortRows(folder, {group.firstPiece, group.firstPiece + group.pieces});
-      }
-    });
-    native::inParallel(static_cast<std::int64_t>(batches_.size()), ofBatch * program::longestRun, Deal::AsTheyCome,
+    native::inParallel(static_cast<std::int64_t>(groups.size()), RowPieces::groupElements, deal,
                        [&](Range range) {
+                         RunFolder folder(program_);
+                         for (std::int64_t i = range.begin; i < range.end; ++i) {
+                           const RowPieces::Group& group = groups[static_cast<std::size_t>(i)];
+                           foldShortRows(folder, {group.firstPiece, group.firstPiece + group.pieces});
+                         }
+                       });
+    native::inParallel(static_cast<std::int64_t>(batches_.size()), ofBatch * program::longestRun,
+                       Deal::AsTheyCome, [&](Range range) {
                          BatchFolder folder(program_);
                          for (std::int64_t i = range.begin; i < range.end; ++i) foldBatch(folder, i);
                        });
@@ -109,7 +109,8 @@ class RowFold {
   void foldShortRows(RunFolder& folder, Range range) {
     const std::int32_t* const starts = pieces_.pieceStarts().data();
     const std::span<const RowPieces::LongRow> rows = pieces_.longRows();
-    auto next = static_cast<std::size_t>(std::ranges::upper_bound(rows, range.begin, {}, endOf) - rows.begin());
+    auto next =
+        static_cast<std::size_t>(std::ranges::upper_bound(rows, range.begin, {}, endOf) - rows.begin());
     while (range.begin < range.end) {
       const RowPieces::LongRow* const row = next < rows.size() ? &rows[next] : nullptr;
       if (row != nullptr && range.begin >= row->firstPiece) {
@@ -117,7 +118,8 @@ class RowFold {
         ++next;
         continue;
       }
-      const std::int64_t end = row == nullptr ? range.end : std::min<std::int64_t>(range.end, row->firstPiece);
+      const std::int64_t end =
+          row == nullptr ? range.end : std::min<std::int64_t>(range.end, row->firstPiece);
       // long rows before these have more pieces than rows
       const std::int64_t more = next == 0 ? 0 : endOf(rows[next - 1]) - (rows[next - 1].row + 1);
       folder.fold(starts, {range.begin, end},
@@ -228,7 +230,9 @@ class RowScan {
     states_.resize(static_cast<std::size_t>(carries_) * bytes_);
   }
 
-  std::byte* carryOf(const Part& part) { return states_.data() + static_cast<std::size_t>(part.carry) * bytes_; }
+  std::byte* carryOf(const Part& part) {
+    return states_.data() + static_cast<std::size_t>(part.carry) * bytes_;
+  }
 
   template <class Work>
   void inParallel(Work&& work) const {

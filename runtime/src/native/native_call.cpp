@@ -354,8 +354,8 @@ std::optional<native::ScanOf> scanOf(const ResolvedReduction& call) {
 }
 
 bool hasDoubles(const program::Element& element) {
-  return std::ranges::any_of(element.fields,
-                             [](const program::Field& field) { return field.scalar == program::Scalar::Double; });
+  return std::ranges::any_of(
+      element.fields, [](const program::Field& field) { return field.scalar == program::Scalar::Double; });
 }
 
 /// Whether rows are folded in doubles from operands that hold floats: none has doubles, and the code that combines
@@ -369,7 +369,8 @@ bool foldsFloatRows(const program::Reduction& reduction, std::span<const Argumen
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (hasDoubles(*reduction.fold.parameters[i].element)) return false;
     const StreamState* const stream = arguments[i].region.stream;
-    if (stream != nullptr && nativeStream(arguments[i].region).components.real() != RealType::Float) return false;
+    if (stream != nullptr && nativeStream(arguments[i].region).components.real() != RealType::Float)
+      return false;
   }
   return std::ranges::all_of(reduction.combine.parameters, [](const Parameter& parameter) {
     return parameter.role == Role::Input || parameter.role == Role::Accumulator;
@@ -388,8 +389,9 @@ class Folding {
   Operands fold;
 
   Folding(const CodeChoice& choice, const program::Reduction& reduction, std::span<const Argument> arguments,
-          const Shape& domain, std::vector<native::Table> foldTables, std::vector<native::Table> combineTables,
-          const std::optional<native::ScanOf>& scan, const RowsOfCall& rows)
+          const Shape& domain, std::vector<native::Table> foldTables,
+          std::vector<native::Table> combineTables, const std::optional<native::ScanOf>& scan,
+          const RowsOfCall& rows)
       : fold(rows.holdsFloats ? RealType::Float : choice.real, reduction.fold, arguments, domain,
              std::move(foldTables), scan.has_value()),
         choice_(choice),
@@ -405,8 +407,8 @@ class Folding {
 
   void run(Extents block) {
     const native::Call whole = rows_.pieces == nullptr ? fold.call(block) : fold.callAsItIs();
-    const native::ReduceCall call{whole, {combine_, {1, 1, 1, 1}, combineTables_}, block, scan_, rows_.pieces,
-                                  rows_.holdsFloats};
+    const native::ReduceCall call{
+        whole, {combine_, {1, 1, 1, 1}, combineTables_}, block, scan_, rows_.pieces, rows_.holdsFloats};
     foldCode(reduction_, call, choice_);
   }
   /// Stores the identities to all blocks, of which there are `counts` in each dimension; `results` are the
@@ -546,7 +548,8 @@ void NativeDevice::reduce(const ResolvedReduction& call) {
   if (call.rows != nullptr) {
     rows = {&call.rows->pieces(), !call.scan && foldsFloatRows(reduction, call.arguments, choice)};
   }
-  Folding folding(choice, reduction, call.arguments, call.domain, tablesOf(reduction.fold, real, call.options),
+  Folding folding(choice, reduction, call.arguments, call.domain,
+                  tablesOf(reduction.fold, real, call.options),
                   tablesOf(reduction.combine, real, call.options), scanOf(call), rows);
   const Extents counts = fastestFirst(call.blocks);
   std::vector<std::size_t> results;

@@ -173,8 +173,8 @@ std::vector<Real> sumBlocks(const BlockPieces& pieces, const Accumulator<Real>& 
 
 /// Likewise, of all rows; those without elements have the value `ofNone`. Sums are exact in any order.
 template <class Real, class Make>
-std::vector<Real> sumRows(const RowPieces& rows, const Accumulator<Real>& start, Real ofNone, native::Deal deal,
-                          Make&& make) {
+std::vector<Real> sumRows(const RowPieces& rows, const Accumulator<Real>& start, Real ofNone,
+                          native::Deal deal, Make&& make) {
   struct Part {
     std::int64_t row, begin, end;
     bool isAlone;  ///< a whole row
@@ -185,7 +185,8 @@ std::vector<Real> sumRows(const RowPieces& rows, const Accumulator<Real>& start,
     const std::int64_t first = rows.starts()[static_cast<std::size_t>(row)];
     const std::int64_t end = rows.starts()[static_cast<std::size_t>(row) + 1];
     for (std::int64_t begin = first; begin < end; begin += BlockPieces::most)
-      parts.push_back({row, begin, std::min(begin + BlockPieces::most, end), end - first <= BlockPieces::most});
+      parts.push_back(
+          {row, begin, std::min(begin + BlockPieces::most, end), end - first <= BlockPieces::most});
   }
   std::vector<std::size_t> shared;  // parts of rows that have several
   std::vector<std::size_t> place(parts.size());
@@ -223,8 +224,8 @@ std::vector<Real> sumRows(const RowPieces& rows, const Accumulator<Real>& start,
 
 /// Calls sumAll(start, deal, make), which returns the sums, with what sumBlocks() takes.
 template <class Real, class SumAll>
-std::vector<Real> withAdder(const program::Reduction& reduction, const program::ExactSum& sum, const Call& call,
-                            const CodeChoice& choice, SumAll&& sumAll) {
+std::vector<Real> withAdder(const program::Reduction& reduction, const program::ExactSum& sum,
+                            const Call& call, const CodeChoice& choice, SumAll&& sumAll) {
   Accumulator<Real> start = Summing<Real>::of(sum.ofProducts);
   if (!reduction.seeded) {  // the identity is one of the terms
     const Real identity = identityOf<Real>(reduction, sum, choice);
@@ -281,11 +282,12 @@ template std::vector<native::Quad> sumExactly<native::Quad>(const program::Reduc
                                                             const program::ExactSum&, const Call&,
                                                             const Extents&, const CodeChoice&);
 
-template std::vector<float> sumRowsExactly<float>(const program::Reduction&, const program::ExactSum&, const Call&,
-                                                  const RowPieces&, const CodeChoice&);
-template std::vector<double> sumRowsExactly<double>(const program::Reduction&, const program::ExactSum&, const Call&,
-                                                    const RowPieces&, const CodeChoice&);
-template std::vector<native::Quad> sumRowsExactly<native::Quad>(const program::Reduction&, const program::ExactSum&,
-                                                                const Call&, const RowPieces&, const CodeChoice&);
+template std::vector<float> sumRowsExactly<float>(const program::Reduction&, const program::ExactSum&,
+                                                  const Call&, const RowPieces&, const CodeChoice&);
+template std::vector<double> sumRowsExactly<double>(const program::Reduction&, const program::ExactSum&,
+                                                    const Call&, const RowPieces&, const CodeChoice&);
+template std::vector<native::Quad> sumRowsExactly<native::Quad>(const program::Reduction&,
+                                                                const program::ExactSum&, const Call&,
+                                                                const RowPieces&, const CodeChoice&);
 
 }  // namespace sk

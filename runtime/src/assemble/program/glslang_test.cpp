@@ -323,7 +323,8 @@ TEST_CASE("glslang accepts passes over rows of different lengths, and blocks by 
     for (const auto [domain, view] : domains) {
       for (const StreamAccess& x : {packed, plane}) {
         const std::vector<StreamAccess> access = {{}, x, plane, {Addressing::Plane}, {}, {}};
-        ReduceVariant variant{.walk = Walk::Index, .domain = domain, .domainView = view, .domainRank = 4, .access = access};
+        ReduceVariant variant{
+            .walk = Walk::Index, .domain = domain, .domainView = view, .domainRank = 4, .access = access};
         for (const RowPass pass : {RowPass::Folds, RowPass::Inclusive, RowPass::Exclusive}) {
           variant.rows = pass;
           variant.carried = pass == RowPass::Inclusive;

@@ -62,12 +62,14 @@ class BlockText : FoldText {
     if (reduction_.commutative) {
       statement(fmt::format("for (int sk_k = sk_i; sk_k < sk_count; sk_k += {}) {{", groupSize));
     } else {
-      statement(fmt::format("int sk_each = (sk_count + {}) / {}, sk_end = min((sk_i + 1) * sk_each, sk_count);",
-                            groupSize - 1, groupSize));
+      statement(
+          fmt::format("int sk_each = (sk_count + {}) / {}, sk_end = min((sk_i + 1) * sk_each, sk_count);",
+                      groupSize - 1, groupSize));
       statement("for (int sk_k = sk_i * sk_each; sk_k < sk_end; ++sk_k) {");
     }
     const std::string_view inElements = variant_.packed ? " * ivec4(4, 1, 1, 1)" : "";
-    statement(fmt::format("  {} = (sk_corner + {}){};", item(), unravel("sk_first + sk_k", "sk_block_step"), inElements));
+    statement(fmt::format("  {} = (sk_corner + {}){};", item(), unravel("sk_first + sk_k", "sk_block_step"),
+                          inElements));
     if (variant_.packed) {
       foldTexel();
     } else {
@@ -84,7 +86,8 @@ class BlockText : FoldText {
       const Texel element = inputTexel(program_, input, access(i));
       statement(fmt::format("  ivec2 sk_at_{} = {};", input.symbol, element.at));
       const Texel texel{fmt::format("ivec2(sk_at_{0}.x >> 2, sk_at_{0}.y)", input.symbol), element.shift};
-      statement(fmt::format("  {} sk_in_{} = {};", four.element->glsl, input.symbol, fetch(program_, four, texel)));
+      statement(
+          fmt::format("  {} sk_in_{} = {};", four.element->glsl, input.symbol, fetch(program_, four, texel)));
     }
     for (int lane = 0; lane < lanes; ++lane) {
       const std::string component = fmt::format(".{}", "xyzw"[lane]);

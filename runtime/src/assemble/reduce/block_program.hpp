@@ -18,6 +18,7 @@ inline bool isByGroupsOfBlocks(const ReduceVariant& variant) {
 }
 
 /// The program of one pass. Its outputs, and the values of its uniforms, are as in reduceProgram().
-std::string blockProgram(const Profile& profile, const program::Reduction& reduction, const ReduceVariant& variant);
+std::string blockProgram(const Profile& profile, const program::Reduction& reduction,
+                         const ReduceVariant& variant);
 
 }  // namespace sk::assemble

@@ -42,7 +42,8 @@ namespace {
 class RowText : FoldText {
  public:
   RowText(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant)
-      : FoldText(profile, reduction, variant, isOfPartials(variant.walk) ? reduction.combine : reduction.fold),
+      : FoldText(profile, reduction, variant,
+                 isOfPartials(variant.walk) ? reduction.combine : reduction.fold),
         continued_(kernel_),
         inRows_(kernel_, variant.rows) {}
 
@@ -64,15 +65,17 @@ class RowText : FoldText {
       case RowPass::Inclusive:
       case RowPass::Exclusive: scanItem(); break;
     }
-    return finish(written, fmt::format("{} of rows", isOfPartials(variant_.walk) ? "partial results" : "elements"));
+    return finish(written,
+                  fmt::format("{} of rows", isOfPartials(variant_.walk) ? "partial results" : "elements"));
   }
 
  private:
   std::string tableEntry(std::string_view number) {
     program_.require(Function::Texel);
     integers({"sk_rows_shift"});
-    return fetch(program_, inRows_.table(),
-                 {fmt::format("sk_texel({}, sk_rows_shift)", number), variant_.tableLayered ? "sk_rows_shift" : ""});
+    return fetch(
+        program_, inRows_.table(),
+        {fmt::format("sk_texel({}, sk_rows_shift)", number), variant_.tableLayered ? "sk_rows_shift" : ""});
   }
 
   /// Sets the index of the current element, if anything reads it.
@@ -111,7 +114,8 @@ class RowText : FoldText {
   }
 
   /// Folds the items of sk_run, of which the first k are at(k).
-  void foldItems(const std::function<std::string(std::size_t i, std::string_view k)>& at, std::string_view first) {
+  void foldItems(const std::function<std::string(std::size_t i, std::string_view k)>& at,
+                 std::string_view first) {
     if (!startsFromElement()) {
       startFromIdentities();
     } else if (isOfPartials(variant_.walk) || !hasIdentities()) {  // each row has a partial result
@@ -136,8 +140,9 @@ class RowText : FoldText {
   void foldPiece() {
     statement("int sk_number = " + domain_.number() + ";");
     statement("ivec2 sk_run = " + tableEntry("sk_number") + ";");
-    foldItems([&](std::size_t i, std::string_view k) { return elementAt(i, fmt::format("sk_run.x + {}", k)); },
-              "sk_run.x");
+    foldItems(
+        [&](std::size_t i, std::string_view k) { return elementAt(i, fmt::format("sk_run.x + {}", k)); },
+        "sk_run.x");
   }
 
   // ---- groups -----------------------------------------------------------------------------------
@@ -149,7 +154,8 @@ class RowText : FoldText {
     declareSamplers(program_, inRows_.groups(), false);
     vectors({"sk_group_shape"});
     integers({"sk_groups_shift"});
-    statement("int sk_i = int(gl_LocalInvocationIndex), sk_group = sk_pixel.y * sk_group_shape.x + sk_pixel.x;");
+    statement(
+        "int sk_i = int(gl_LocalInvocationIndex), sk_group = sk_pixel.y * sk_group_shape.x + sk_pixel.x;");
     const std::string entry = fetch(program_, inRows_.groups(), {"sk_texel(sk_group, sk_groups_shift)"});
     statement(fmt::format("ivec4 sk_some = sk_group < sk_group_shape.y ? {} : ivec4(0);", entry));
     for (const Parameter* accumulator : accumulators_) {
@@ -164,8 +170,9 @@ class RowText : FoldText {
     combinePiece();
     for (const Parameter& parameter : written) store(program_, parameter, total(parameter));
     program_.storeAt(place(program_, result()), variant_.domainLayered);
-    return program_.finish(profile_, fmt::format("{} for {}: {}groups of rows", reduction_.fold.name, profile_.name,
-                                                 variant_.packed ? "packed " : ""),
+    return program_.finish(profile_,
+                           fmt::format("{} for {}: {}groups of rows", reduction_.fold.name, profile_.name,
+                                       variant_.packed ? "packed " : ""),
                            kernel_);
   }
 
@@ -174,7 +181,8 @@ class RowText : FoldText {
   }
   void keepFolded(std::string_view number, std::string_view indent) {
     for (const Parameter* accumulator : accumulators_)
-      statement(fmt::format("{}{}[{}] = {};", indent, nameOfFolded(*accumulator), number, total(*accumulator)));
+      statement(
+          fmt::format("{}{}[{}] = {};", indent, nameOfFolded(*accumulator), number, total(*accumulator)));
   }
 
   void foldElements() {
@@ -196,9 +204,11 @@ class RowText : FoldText {
       const std::string_view symbol = kernel_.parameters[i].symbol;
       statement(fmt::format("int sk_first_{} = {} + sk_some.z;", symbol, origin(i)));
       // the same for all inputs
-      if (std::exchange(isFirst, false)) statement(fmt::format("int sk_skip = sk_first_{} & {};", symbol, lanes - 1));
+      if (std::exchange(isFirst, false))
+        statement(fmt::format("int sk_skip = sk_first_{} & {};", symbol, lanes - 1));
     }
-    statement(fmt::format("for (int sk_k = sk_i; sk_k * {} < sk_some.w + sk_skip; sk_k += {}) {{", lanes, rowGroupSize));
+    statement(fmt::format("for (int sk_k = sk_i; sk_k * {} < sk_some.w + sk_skip; sk_k += {}) {{", lanes,
+                          rowGroupSize));
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
       if (!isFetched(i)) continue;
       const Parameter& input = kernel_.parameters[i];
@@ -249,7 +259,8 @@ class RowText : FoldText {
     if (variant_.domain == Domain::Plane) return {fmt::format("ivec2({}, sk_domain_origin.y)", number)};
     program_.require(Function::Texel);
     integers({"sk_domain_shift"});
-    return {fmt::format("sk_texel({}, sk_domain_shift)", number), variant_.domainLayered ? "sk_domain_shift" : ""};
+    return {fmt::format("sk_texel({}, sk_domain_shift)", number),
+            variant_.domainLayered ? "sk_domain_shift" : ""};
   }
 
   // ---- scans ------------------------------------------------------------------------------------
@@ -260,7 +271,8 @@ class RowText : FoldText {
     const bool isSeeded = !isExclusive && startsFromElement();
     statement("int sk_number = " + domain_.number() + ";");
     statement("ivec2 sk_run = " + tableEntry("sk_number") + ";");
-    statement(fmt::format("int sk_at = sk_number - sk_run.x, sk_count = sk_run.x{};", isExclusive ? "" : " + 1"));
+    statement(
+        fmt::format("int sk_at = sk_number - sk_run.x, sk_count = sk_run.x{};", isExclusive ? "" : " + 1"));
     if (isSeeded) {
       moveTo("sk_at", "");
       startFromElements([&](std::size_t i) { return elementAt(i, "sk_at"); });
@@ -280,8 +292,8 @@ class RowText : FoldText {
     statement("if (sk_run.y >= 0) {");
     const Texel texel{"sk_texel(sk_run.y, sk_carry_shift)", variant_.carryLayered ? "sk_carry_shift" : ""};
     for (std::size_t k = 0; k < accumulators_.size(); ++k) {
-      statement(
-          fmt::format("  {} = {};", total(*accumulators_[k]), fetch(program_, continued_.carries()[k], texel)));
+      statement(fmt::format("  {} = {};", total(*accumulators_[k]),
+                            fetch(program_, continued_.carries()[k], texel)));
     }
     if (isSeeded) statement("  " + foldAt("sk_at"));
     statement("}");

@@ -48,6 +48,7 @@ bool mayGroupRows(const program::Reduction& reduction);
 
 /// The program of one pass (ReduceVariant::rows is not None). Its outputs, and the values of its uniforms, are as in
 /// reduceProgram().
-std::string rowProgram(const Profile& profile, const program::Reduction& reduction, const ReduceVariant& variant);
+std::string rowProgram(const Profile& profile, const program::Reduction& reduction,
+                       const ReduceVariant& variant);
 
 }  // namespace sk::assemble

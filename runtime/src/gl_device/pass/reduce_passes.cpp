@@ -212,12 +212,13 @@ bool ReducePasses::foldsByGroups() const {
   constexpr std::int32_t leastAcross = 64, least = 512;
   const std::int64_t blocks = assemble::elements(blocks_);
   return blocks > 1 && elements_.extent[0] / blocks_[0] >= leastAcross &&
-         assemble::elements(elements_.extent) / blocks >= least && assemble::foldsInGroups(reduction_) && mayGroup();
+         assemble::elements(elements_.extent) / blocks >= least && assemble::foldsInGroups(reduction_) &&
+         mayGroup();
 }
 
 bool ReducePasses::readsTexelsTogether() const {
-  if (assemble::readsElementIndex(reduction_.fold) || !elements_.packed || !assemble::isWholeTexels(elements_) ||
-      elements_.extent[0] / blocks_[0] % assemble::lanes != 0) {
+  if (assemble::readsElementIndex(reduction_.fold) || !elements_.packed ||
+      !assemble::isWholeTexels(elements_) || elements_.extent[0] / blocks_[0] % assemble::lanes != 0) {
     return false;
   }
   for (std::size_t i = 0; i < operands_.size(); ++i) {
@@ -397,7 +398,8 @@ void ReducePasses::addAccess(assemble::ReduceVariant& variant, const Kernel& ker
       access.addressing = addressingOf(regionLayout);
       access.fitted = operands[i].fitted;
       access.view = regionLayout.origin != Index4{};
-      access.packed = (isInRows_ || byGroups_) && regionLayout.packed;  // the inputs of others have been unpacked
+      access.packed =
+          (isInRows_ || byGroups_) && regionLayout.packed;  // the inputs of others have been unpacked
     }
   }
   variant.access = std::move(chosen.access);

@@ -102,7 +102,8 @@ Check sparseCheck(const Problem& p) {
 
 std::unique_ptr<Task> sparseOurs(sk::Device& device, const sk::CallOptions& options, const Problem& p) {
   // in software, both read elements one by one, and the kernel draws once
-  if (device.isSoftware() && device.profile() != "native") return std::make_unique<Sparse>(device, options, p);
+  if (device.isSoftware() && device.profile() != "native")
+    return std::make_unique<Sparse>(device, options, p);
   return std::make_unique<SparseInRows>(device, options, p);
 }
 
