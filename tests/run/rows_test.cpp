@@ -517,7 +517,7 @@ TEST_CASE("a loop repeats calls in rows, also after the rows are gone") {
     });
     rows.reset();
     out.fill(0);
-    loop.repeat(2);
+    loop.repeat(5);
     CHECK(out.read() == foldedRows(starts, x, 0, plus));
     CHECK(each.read() == scannedRows(starts, x, 0, plus));
   });
