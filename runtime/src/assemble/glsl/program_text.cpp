@@ -116,6 +116,21 @@ void ProgramText::storeInBuffer() { isInBuffer_ = true; }
 
 void ProgramText::dispatchGroups(std::int32_t width, std::int32_t height) { group_ = {width, height}; }
 
+std::vector<std::string> ProgramText::storing(std::string_view place, bool isArray) {
+  storesItself_ = true;
+  isArray_ = isArray;
+  std::vector<std::string> statements;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    statements.push_back(storeStatement(i, place));
+  }
+  return statements;
+}
+
+std::string ProgramText::storeStatement(std::size_t output, std::string_view place) const {
+  const auto& [type, name] = outputs_[output];
+  return fmt::format("imageStore(sk_image{}, {}, {});", output, place, wholeTexel(type, name));
+}
+
 void ProgramText::variable(std::string_view type, std::string_view name) {
   addOnce(variables_, fmt::format("{} {};", type, name));
 }
@@ -222,8 +237,9 @@ std::string ProgramText::mainOf(const std::string& body) const {
   std::string text =
       fmt::format("\nlayout(local_size_x = {}, local_size_y = {}) in;\n\nvoid main() {{\n", width, height);
   if (isGrouped) {
-    text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body +
-            "  if (gl_LocalInvocationIndex != 0u) return;\n";
+    text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body;
+    if (storesItself_) return text + "}\n";
+    text += "  if (gl_LocalInvocationIndex != 0u) return;\n";
   } else if (together_.empty()) {
     text += "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n";
     text += "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n" + body;
@@ -238,8 +254,7 @@ std::string ProgramText::mainOf(const std::string& body) const {
     if (isInBuffer_) {
       fmt::format_to(std::back_inserter(text), "  sk_value{} = {};\n", i, wholeTexel(type, name));
     } else {
-      fmt::format_to(std::back_inserter(text), "  imageStore(sk_image{}, {}, {});\n", i, place_,
-                     wholeTexel(type, name));
+      fmt::format_to(std::back_inserter(text), "  {}\n", storeStatement(i, place_));
     }
   }
   return text + "}\n";

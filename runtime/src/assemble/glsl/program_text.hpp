@@ -70,6 +70,9 @@ class ProgramText {
   void storeInBuffer();
   /// For compute programs: a work group of this size computes one texel, which its first invocation stores.
   void dispatchGroups(std::int32_t width, std::int32_t height);
+  /// For compute programs whose invocations store any number of texels: the statements that store the outputs' present
+  /// values at a place, an ivec2, or an ivec3 in array textures. main() stores nothing by itself then.
+  std::vector<std::string> storing(std::string_view place, bool isArray);
   /// Declares a global variable.
   void variable(std::string_view type, std::string_view name);
   /// Defines a shared function on first use.
@@ -103,6 +106,7 @@ class ProgramText {
   bool isDrawn() const { return stage_ == Stage::Fragment; }
   std::string declarationOfOutputs() const;
   std::string declarationOfBuffer() const;
+  std::string storeStatement(std::size_t output, std::string_view place) const;
   std::string mainOf(const std::string& body) const;
 
   Stage stage_ = Stage::Fragment;
@@ -111,6 +115,7 @@ class ProgramText {
   std::string place_;  ///< of storeAt()
   bool isArray_ = false;
   bool isInBuffer_ = false;  ///< storeInBuffer()
+  bool storesItself_ = false;  ///< storing()
   std::pair<std::int32_t, std::int32_t> group_{};  ///< the size for each texel; 0: one invocation per texel
   bool relaysUniforms_ = false;
   RelayedValues relayed_;

@@ -53,6 +53,13 @@ enum class ScanPass : std::uint8_t {
   Exclusive,  ///< the same without the item
 };
 
+/// What an invocation of a pass of a scan computes (scan_plan.hpp).
+enum class ScanUnit : std::uint8_t {
+  Item,  ///< one result; it folds the items before it in its run again
+  Run,  ///< all results of a run
+  Tile,  ///< those of a run, which is one of a work group's tile: the group combines the results of its runs
+};
+
 /// One program of a reduction or a scan, which passes with equal variants share. For walks of partial results and for
 /// Nothing, `access` does not describe inputs. For Index, no input is aligned; for other walks, all are
 /// aligned and have one layout.
@@ -63,7 +70,8 @@ struct ReduceVariant {
   bool domainView = false;  ///< Domain::Plane: the domain's origin is not (0, 0)
   std::uint8_t domainRank = 1;  ///< Domain::LinearBox: rank of its stream
   std::uint8_t axes = 1;  ///< Walk::Box and Walk::Index
-  /// Walk::Rows: texels of a run, if all runs have the same number, of one row or column; else 0.
+  /// Walk::Rows: texels of a run, if all runs have the same number, of one row or column; else 0. Scans: the items of a
+  /// run.
   std::uint8_t run = 0;
   bool column = false;  ///< Walk::Rows: runs are parts of columns; the last may be longer by one texel
   /// Walk::Rows, columns: texels that are folded separately and then combined; a known run is a multiple of
@@ -77,6 +85,7 @@ struct ReduceVariant {
   bool sourceLayered = false;  ///< of what is read, except for Walk::Index
   bool domainLayered = false;
   ScanPass scan = ScanPass::None;
+  ScanUnit unit = ScanUnit::Item;
   bool carried = false;  ///< scans: reads the results of the runs before
   bool carryLayered = false;  ///< of these
   bool reshaped = false;  ///< the result has other dimensions than the grid of blocks

@@ -124,9 +124,12 @@ void ReducePasses::run(const RegionLayout& result, std::span<RenderTarget* const
 
 void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* const> targets, bool isExclusive,
                         const std::function<void()>& begin) {
-  const assemble::ReduceLimits limits{.texture = device_.textureLimits(), .fanIn = assemble::scanRun};
+  const bool isDispatched = device_.programs().stage() == assemble::Stage::Compute;
+  const assemble::ReduceLimits limits{
+      .texture = device_.textureLimits(), .fanIn = assemble::scanRun, .grouped = isDispatched};
   const assemble::Lines lines = assemble::linesOf(elements_.extent, blocks_);
-  const assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
+  assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
+  if (isDispatched) assemble::addTiles(access, reduction_);
   const assemble::ScanPlan plan = assemble::planScan(elements_, result, limits, lines, access, isExclusive);
   startAll(plan.folds);
   startAll(plan.scans);
@@ -300,7 +303,9 @@ void ReducePasses::draw(const ReducePass& pass, const Source& source,
         for (const assemble::UniformValue& value : pass.uniforms) {
           program.uniform(value).set(value.value);
         }
-        writeRects(device_, preparedPass(device_, program.kernel, planes), planes, pass.draws);
+        const bool storesItself = pass.groups.width > 0;
+        writeRects(device_, preparedPass(device_, program.kernel, planes), planes,
+                   storesItself ? std::span(&pass.groups, 1) : std::span(pass.draws));
       });
 }
 

@@ -290,7 +290,8 @@ ReduceProgram& ProgramCache::reduceProgram(const program::Reduction& reduction,
     const program::Kernel& kernel = isPartial ? reduction.combine : reduction.fold;
     auto started = startedReductions_.extract(key);
     finish(result->kernel, kernel, started.empty() ? begin(reduction, variant) : std::move(started.mapped()));
-    result->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials;
+    result->kernel.isGrouped = variant.grouped || variant.walk == assemble::Walk::GroupedPartials ||
+                               variant.unit != assemble::ScanUnit::Item;
     if (variant.walk != assemble::Walk::Nothing) {
       const assemble::HeldKernel held(kernel, variant.access);
       const assemble::ContinuedKernel continued(held.kernel());
