@@ -79,8 +79,11 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       framebuffers(bound),
       pool(bound, framebuffers),
       appendPrograms(*this),
+      sortPrograms(*this),
       binaries(cache, capabilities, driverKey(name(), driver(), profileName())),
-      sharesContext_(choices.sharesContext) {
+      sharesContext_(choices.sharesContext),
+      sortsByDispatches_(choices.target != Target::Fragment && capabilities.hasCompute &&
+                         choices.sortsByDispatches.value_or(!capabilities.isSoftware)) {
   if (target == Target::Compute && !capabilities.hasCompute) {
     throw Error(
         fmt::format("'{}' runs no compute programs, which take OpenGL 4.3; leave profile glsl430 (option or "

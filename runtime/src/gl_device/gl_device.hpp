@@ -28,6 +28,7 @@
 #include "gl_device/program/program_binaries.hpp"
 #include "gl_device/program/program_cache.hpp"
 #include "gl_device/program/variant.hpp"
+#include "gl_device/sort/device_sort.hpp"
 #include "gl_device/transfer/buffered_transfer.hpp"
 #include "gl_device/transfer/transfer_buffers.hpp"
 #include "native/rest_threads.hpp"
@@ -47,6 +48,7 @@ struct DeviceChoices {
   Target target = Target::Default;  ///< Fragment or Compute; Default: whichever is faster
   bool sharesContext = false;  ///< the application draws in the device's own context
   std::optional<bool> sharesTexels = {};  ///< assemble::Profile::sharesTexels; nullopt: only on GPUs
+  std::optional<bool> sortsByDispatches = {};  ///< if there are compute programs; nullopt: only on GPUs
 };
 
 /// The options of a call that affect all of its programs: a program cache's key.
@@ -87,6 +89,7 @@ class GlDevice final : public DeviceState {
   void run(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
   void reduce(const ResolvedReduction& call) override;
+  std::optional<std::int64_t> reorder(const Reordering& reordering) override;
 
   /// Acquires the planes of an element type from the pool, with undefined texels. Throws sk::Error, which names
   /// their purpose `whatFor`, if memory is exhausted.
@@ -158,6 +161,7 @@ class GlDevice final : public DeviceState {
   FramebufferCache framebuffers;
   TexturePool pool;
   AppendPrograms appendPrograms;
+  SortPrograms sortPrograms;
   gl::Samplers samplers{bound.deletions};
   gl::ValueBuffer values;
   gl::VertexArray vertexArray;
@@ -183,6 +187,7 @@ class GlDevice final : public DeviceState {
 
   std::int64_t period_ = 1;
   const bool sharesContext_;
+  const bool sortsByDispatches_;
   std::map<ProgramCacheKey, ProgramCache> caches_;
   std::map<const FunctionTable*, gl::Texture> tableTextures_;
   ProgramCache* programs_ = nullptr;  ///< the selected cache
