@@ -202,7 +202,7 @@ std::vector<sk::assemble::ReducePass> passesOfScan(const Profile& profile, const
       sk::assemble::linearLayout(count, *sk::assemble::linearTexture(count, limits.texture));
   elements.packed = byTexel;
   sk::assemble::ScanAccess access{byIndex, byTexel};
-  if (isDispatched) sk::assemble::addTiles(access, reduction);
+  if (isDispatched) sk::assemble::addTiles(access, reduction, true);
   sk::assemble::ScanPlan plan =
       sk::assemble::planScan(elements, elements, limits, {count, 1}, access, false);
   std::vector<sk::assemble::ReducePass> passes = std::move(plan.folds);

@@ -75,6 +75,8 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       profile(profileOf(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", capabilities, choices)),
       computeProfile(profileOf("glsl430", capabilities, choices)),
       target(choices.target),
+      chainsScans(choices.chainsScans.value_or(!capabilities.isSoftware)),
+      scanPatience(choices.scanPatience),
       barrier(barrierOf(capabilities, choices)),
       framebuffers(bound),
       pool(bound, framebuffers),

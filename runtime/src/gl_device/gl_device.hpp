@@ -16,6 +16,7 @@
 #include "assemble/condition.hpp"
 #include "device/device_state.hpp"
 #include "gl/bound_state.hpp"
+#include "gl/chain_buffer.hpp"
 #include "gl/labels.hpp"
 #include "gl/open_context.hpp"
 #include "gl/samplers.hpp"
@@ -48,6 +49,8 @@ struct DeviceChoices {
   Target target = Target::Default;  ///< Fragment or Compute; Default: whichever is faster
   bool sharesContext = false;  ///< the application draws in the device's own context
   std::optional<bool> sharesTexels = {};  ///< assemble::Profile::sharesTexels; nullopt: only on GPUs
+  std::optional<bool> chainsScans = {};  ///< dispatched scans of integers take one pass; nullopt: only on GPUs
+  std::optional<std::int32_t> scanPatience = {};  ///< ScanAccess::patience of such scans
   std::optional<bool> sortsByDispatches = {};  ///< if there are compute programs; nullopt: only on GPUs
 };
 
@@ -146,6 +149,8 @@ class GlDevice final : public DeviceState {
   const assemble::Profile profile;  ///< of fragment programs: the table's row, adapted to the device
   const assemble::Profile computeProfile;  ///< of compute programs; unused if the device has none
   const Target target;  ///< Fragment or Compute; Default: whichever is faster
+  const bool chainsScans;  ///< DeviceChoices::chainsScans
+  const std::optional<std::int32_t> scanPatience;
   Barrier barrier;  ///< of programs; arithmetic() tests whether it is effective
   gl::BoundState bound;
 
@@ -164,6 +169,7 @@ class GlDevice final : public DeviceState {
   SortPrograms sortPrograms;
   gl::Samplers samplers{bound.deletions};
   gl::ValueBuffer values;
+  gl::ChainBuffer chain;
   gl::VertexArray vertexArray;
   const std::shared_ptr<PendingReads> pendingReads = std::make_shared<PendingReads>();
   TransferBuffers transferBuffers{bound.deletions};

@@ -131,6 +131,10 @@ std::string ProgramText::storeStatement(std::size_t output, std::string_view pla
   return fmt::format("imageStore(sk_image{}, {}, {});", output, place, wholeTexel(type, name));
 }
 
+void ProgramText::buffer(std::string_view declaration) {
+  addOnce(variables_, fmt::format("layout(std430, binding = 0) {};", declaration));
+}
+
 void ProgramText::variable(std::string_view type, std::string_view name) {
   addOnce(variables_, fmt::format("{} {};", type, name));
 }

@@ -73,6 +73,8 @@ class ProgramText {
   /// For compute programs whose invocations store any number of texels: the statements that store the outputs' present
   /// values at a place, an ivec2, or an ivec3 in array textures. main() stores nothing by itself then.
   std::vector<std::string> storing(std::string_view place, bool isArray);
+  /// Declares a buffer at binding 0, "buffer name {...}", with qualifiers.
+  void buffer(std::string_view declaration);
   /// Declares a global variable.
   void variable(std::string_view type, std::string_view name);
   /// Defines a shared function on first use.

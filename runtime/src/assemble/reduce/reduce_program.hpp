@@ -86,6 +86,9 @@ struct ReduceVariant {
   bool domainLayered = false;
   ScanPass scan = ScanPass::None;
   ScanUnit unit = ScanUnit::Item;
+  /// ScanUnit::Tile: the only pass; its groups share a buffer at binding 0, which is 0 at first: a word, then two for each
+  /// accumulator and tile.
+  bool chained = false;
   bool carried = false;  ///< scans: reads the results of the runs before
   bool carryLayered = false;  ///< of these
   bool reshaped = false;  ///< the result has other dimensions than the grid of blocks

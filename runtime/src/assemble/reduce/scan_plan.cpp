@@ -35,7 +35,10 @@ class ScanPlanner {
 
   ScanPlan plan(bool isExclusive) {
     ScanPlan plan;
-    while (levels_.back().length > levels_.back().folded()) {
+    const Level& elements = levels_.front();
+    const bool isChained = access_.chained && lines_ == 1 && elements.unit == ScanUnit::Tile &&
+                           elements.length > elements.folded();
+    while (!isChained && levels_.back().length > levels_.back().folded()) {
       const std::size_t from = levels_.size() - 1;
       levels_.push_back(partials((levels_.back().length - 1) / levels_.back().folded() + 1));
       divide(levels_.back());
@@ -51,6 +54,7 @@ class ScanPlanner {
     }
     ReducePass pass = passOver(0, isExclusive ? ScanPass::Exclusive : ScanPass::Inclusive);
     pass.toResult = true;
+    pass.variant.chained = isChained;
     addDomain(pass, result_, false);
     setGroups(pass, levels_[0]);
     plan.scans.push_back(std::move(pass));
@@ -156,6 +160,7 @@ class ScanPlanner {
     const std::int64_t width = std::min<std::int64_t>(count, std::int64_t{1} << groupRowShift);
     pass.groups = {0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>((count - 1) / width + 1)};
     pass.uniforms.push_back({"sk_groups", false, {static_cast<std::int32_t>(count)}});
+    pass.uniforms.push_back({"sk_patience", false, {access_.patience}});
   }
 
   const Index4 extent_;
@@ -179,8 +184,9 @@ Lines linesOf(const Index4& extent, const Index4& blocks) {
   return {1, 1};
 }
 
-void addTiles(ScanAccess& access, const program::Reduction& reduction) {
+void addTiles(ScanAccess& access, const program::Reduction& reduction, bool chains) {
   access.partialRun = longestRunInTile(reduction, false);
+  access.chained = chains && mayChain(reduction);
   if (combinesInFold(reduction)) access.elementRun = longestRunInTile(reduction, access.byTexel);
 }
 

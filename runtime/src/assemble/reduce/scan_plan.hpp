@@ -47,9 +47,11 @@ struct ScanAccess {
   /// The most items of a run in a tile of elements, and of results of runs; 0: they are not folded in tiles, which only
   /// dispatches can (longestRunInTile()).
   std::int32_t elementRun = 0, partialRun = 0;
+  bool chained = false;  ///< one pass scans all tiles of the elements, if they are one line
+  std::int32_t patience = 1024;  ///< how often a group looks for the result of a tile before it folds it itself
 };
-/// Chooses the runs of tiles for a reduction.
-void addTiles(ScanAccess& access, const program::Reduction& reduction);
+/// Chooses tiles for a reduction. `chains`: the device scans them in one pass, if it can.
+void addTiles(ScanAccess& access, const program::Reduction& reduction, bool chains);
 /// Whether the elements of a region, which have no index, can be scanned by their numbers: they are consecutive in a
 /// linearised stream, or in the rows of a plane.
 bool isConsecutive(const RegionLayout& elements);

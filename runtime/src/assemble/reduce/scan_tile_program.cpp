@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -45,6 +46,7 @@ class TileScanText : ScanText {
     if (isTile() && !isOfPartials(variant_.walk)) program_.foreign(reduction_.addition);
     program_.dispatchGroups(tileGroup, 1);
     statement("int sk_i = int(gl_LocalInvocationIndex);");
+    if (variant_.chained) return writeChained(written);
     if (isTile()) {
       findTile();
     } else {
@@ -95,6 +97,10 @@ class TileScanText : ScanText {
       integers({"sk_lines"});
       statement("int sk_tile = sk_group / sk_lines, sk_line = sk_group - sk_tile * sk_lines;");
     }
+    findRunOfTile();
+  }
+
+  void findRunOfTile() {
     const int items = tileGroup * run();
     statement(fmt::format("int sk_left = sk_length - sk_tile * {};", items));
     statement(fmt::format("int sk_runs = min((sk_left + {}) / {}, {});", run() - 1, run(), tileGroup));
@@ -139,6 +145,7 @@ class TileScanText : ScanText {
       isNone = false;
     }
     if (isNone) return;
+    if (const Parameter* input = inputThroughTile()) return loadTile(*input);
     statement(fmt::format("for (int sk_k = 0; sk_k < {}; ++sk_k) {{", run()));
     statement("  if (sk_k < sk_count) {");
     const std::string number = numberOf("sk_first + sk_k");
@@ -151,6 +158,46 @@ class TileScanText : ScanText {
                                             : elementAt(i, number)));
     }
     statement("  }");
+    statement("}");
+  }
+
+  /// The only input, if its items fit into the shared memory of the results.
+  const Parameter* inputThroughTile() const {
+    if (!isTile() || run() == 1 || inputs_.size() != 1) return nullptr;
+    return inputs_.front()->element == accumulators_.front()->element ? inputs_.front() : nullptr;
+  }
+
+  std::string_view typeOfItem(const Parameter& parameter) const {
+    return variant_.packed ? fourOf(parameter).element->glsl : parameter.element->glsl;
+  }
+
+  /// Declares shared memory for one item of each invocation's run.
+  std::string tileOf(const Parameter& accumulator) {
+    const int items = tileGroup * run();
+    const std::string name = fmt::format("sk_tile_{}", accumulator.symbol);
+    program_.variable(fmt::format("shared {}", typeOfItem(accumulator)),
+                      fmt::format("{}[{}]", name, items + items / (variant_.packed ? 8 : 16)));
+    return name;
+  }
+
+  /// Fetches the items of all runs, neighbouring ones by neighbouring invocations.
+  void loadTile(const Parameter& input) {
+    const auto i = static_cast<std::size_t>(&input - kernel_.parameters.data());
+    const std::string tile = tileOf(*accumulators_.front());
+    statement(fmt::format("for (int sk_k = 0; sk_k < {}; ++sk_k) {{", run()));
+    statement(fmt::format("  int sk_n = sk_k * {} + sk_i;", tileGroup));
+    statement("  if (sk_n < sk_left) {");
+    const std::string number = numberOf(fmt::format("sk_tile * {} + sk_n", tileGroup * run()));
+    moveTo(number, "    ");
+    statement(fmt::format("    {}[{}] = {};", tile, slotOf("sk_n"),
+                          variant_.packed ? fetch(program_, fourOf(input), numbered(number))
+                                          : elementAt(i, number)));
+    statement("  }");
+    statement("}");
+    wait();
+    statement(fmt::format("for (int sk_k = 0; sk_k < {}; ++sk_k) {{", run()));
+    statement(fmt::format("  int sk_n = sk_i * {} + sk_k;", run()));
+    statement(fmt::format("  {}[sk_k] = {}[{}];", itemsOf(input), tile, slotOf("sk_n")));
     statement("}");
   }
 
@@ -295,17 +342,193 @@ class TileScanText : ScanText {
     statement("}");
   }
 
+  // ---- a chain of tiles -------------------------------------------------------------------------
+
+  /// One pass: a tile takes the result of the tiles before from what their work groups publish, first their own total
+  /// and then that of all tiles up to theirs (decoupled look-back; D. Merrill and M. Garland, "Single-pass parallel
+  /// prefix scan with decoupled look-back", 2016). Groups take their tiles in the order in which they start. A group
+  /// that waits too long for a tile folds it, so that the pass ends on every device (T. Smith, R. Levien and J. Owens,
+  /// "Decoupled fallback: a portable single-pass GPU scan", 2025).
+  std::string writeChained(const std::vector<Parameter>& written) {
+    integers({"sk_length", "sk_groups"});
+    declareChain();
+    statement("if (sk_i == 0) sk_taken = int(atomicAdd(sk_ticket, 1u));");
+    wait();
+    statement("int sk_tile = sk_taken;");
+    statement("if (sk_tile >= sk_groups) return;");
+    foldTile(written);
+    for (const Parameter* accumulator : accumulators_) {
+      statement(fmt::format("{} {} = {}[max(sk_i - 1, 0)], {} = {}[sk_runs - 1];", accumulator->element->glsl,
+                            held("sk_own", *accumulator), sharedName(*accumulator), held("sk_all", *accumulator),
+                            sharedName(*accumulator)));
+    }
+    statement("if (sk_i == 0) sk_publish(sk_tile, sk_tile == 0 ? 2u : 1u" + listOf("sk_all") + ");");
+    for (const Parameter* accumulator : accumulators_) declareHeld("sk_before", *accumulator);
+    statement("if (sk_tile > 0) {");
+    lookBack(written);
+    startFrom("sk_carried", "sk_before", "  ");
+    combineInto("sk_carried", "sk_all", "  ");
+    statement("  if (sk_i == 0) sk_publish(sk_tile, 2u" + listOf("sk_carried") + ");");
+    statement("}");
+    statement("sk_isStarted = sk_tile > 0 || sk_i > 0;");
+    statement("if (sk_tile > 0) {");
+    assign("sk_total", "sk_before", "  ");
+    statement("  if (sk_i > 0) {");
+    combineInto("sk_total", "sk_own", "    ");
+    statement("  }");
+    statement("} else if (sk_i > 0) {");
+    assign("sk_total", "sk_own", "  ");
+    if (!isSeeded()) {
+      statement("} else {");
+      for (const Parameter* accumulator : accumulators_)
+        statement(fmt::format("  {} = {};", total(*accumulator), accumulator->identity));
+    }
+    statement("}");
+    foldRun(true, written);
+    if (keepsTile()) storeTile(written);
+    return finish(comment());
+  }
+
+  /// The variables of all accumulators as arguments behind others.
+  std::string listOf(std::string_view name) const {
+    std::string list;
+    for (const Parameter* accumulator : accumulators_) list += ", " + held(name, *accumulator);
+    return list;
+  }
+  void declareHeld(std::string_view name, const Parameter& accumulator) {
+    statement(fmt::format("{} {};", accumulator.element->glsl, held(name, accumulator)));
+  }
+  void startFrom(std::string_view name, std::string_view value, std::string_view indent) {
+    for (const Parameter* accumulator : accumulators_) {
+      statement(fmt::format("{}{} {} = {};", indent, accumulator->element->glsl, held(name, *accumulator),
+                            held(value, *accumulator)));
+    }
+  }
+  void assign(std::string_view name, std::string_view value, std::string_view indent) {
+    for (const Parameter* accumulator : accumulators_)
+      statement(fmt::format("{}{} = {};", indent, held(name, *accumulator), held(value, *accumulator)));
+  }
+  /// Folds `value`, which comes later, into `name`.
+  void combineInto(std::string_view name, std::string_view value, std::string_view indent) {
+    const std::string_view folded = std::exchange(folded_, name);
+    statement(fmt::format("{}{}", indent, calling(reduction_.combine, [&](std::size_t, std::size_t k) {
+                            return held(value, *accumulators_[k]);
+                          })));
+    folded_ = folded;
+  }
+
+  /// Folds tile sk_tile: the shared totals become those of all runs up to each.
+  void foldTile(const std::vector<Parameter>& written) {
+    findRunOfTile();
+    declareTotals();
+    loadRun();
+    statement("bool sk_isStarted = false;");
+    foldRun(false, written);
+    scanTotals();
+  }
+
+  /// A tile has two words for each accumulator. Each holds 16 bits of the value, and in the highest bits what it is: 1
+  /// the tile's total, 2 that of all tiles up to it, 0 nothing yet. Words with different bits are not complete.
+  void declareChain() {
+    const std::size_t words = 2 * accumulators_.size();
+    program_.buffer("coherent volatile buffer sk_chain {\n  uint sk_ticket;\n  uint sk_states[];\n}");
+    program_.variable("shared int", "sk_taken");
+    program_.variable("shared int", "sk_nearest");
+    program_.variable("shared int", "sk_missing");
+    std::string parameters;
+    std::vector<std::string> lines;
+    for (std::size_t k = 0; k < accumulators_.size(); ++k) {
+      const Parameter& accumulator = *accumulators_[k];
+      program_.variable(fmt::format("shared {}", accumulator.element->glsl),
+                        fmt::format("{}[{}]", windowOf(accumulator), window));
+      parameters += fmt::format(", {} sk_v{}", accumulator.element->glsl, k);
+      lines.push_back(fmt::format("sk_states[sk_t * {} + {}] = sk_flag << 30 | (uint(sk_v{}) & 0xffffu);", words,
+                                  2 * k, k));
+      lines.push_back(
+          fmt::format("sk_states[sk_t * {} + {}] = sk_flag << 30 | uint(sk_v{}) >> 16;", words, 2 * k + 1, k));
+    }
+    program_.function(fmt::format("void sk_publish(int sk_t, uint sk_flag{})", parameters), lines);
+  }
+
+  static constexpr int window = 32;  ///< the tiles that a group looks at together
+  std::string windowOf(const Parameter& accumulator) const {
+    return fmt::format("sk_window_{}", accumulator.symbol);
+  }
+
+  /// Sets sk_before to the fold of the tiles before.
+  void lookBack(const std::vector<Parameter>& written) {
+    integers({"sk_patience"});
+    statement("  bool sk_hasBefore = false;");
+    statement("  for (int sk_at = sk_tile - 1, sk_tries = 0; sk_at >= 0;) {");
+    statement(fmt::format("    if (sk_i == 0) sk_nearest = sk_missing = {};", window));
+    wait("    ");
+    statement(fmt::format("    if (sk_i < {} && sk_i <= sk_at) {{", window));
+    readWindow();
+    statement("    }");
+    wait("    ");
+    statement("    int sk_ready = min(sk_nearest + 1, sk_missing);");
+    statement("    bool sk_isFound = sk_nearest < sk_missing;");
+    statement("    for (int sk_w = 0; sk_w < sk_ready; ++sk_w) {");
+    takeBefore("sk_w", "      ", [&](const Parameter& accumulator) { return windowOf(accumulator); });
+    statement("    }");
+    statement("    if (sk_isFound) break;");
+    statement("    sk_at -= sk_ready;");
+    statement("    sk_tries = sk_ready > 0 ? 0 : sk_tries + 1;");
+    wait("    ");
+    statement("    if (sk_tries > sk_patience) {");
+    statement("      int sk_tile = sk_at;");
+    margin_ = "      ";
+    foldTile(written);
+    margin_ = "";
+    takeBefore("sk_runs - 1", "      ", [&](const Parameter& accumulator) { return sharedName(accumulator); });
+    wait("      ");
+    statement("      --sk_at;");
+    statement("      sk_tries = 0;");
+    statement("    }");
+    statement("  }");
+  }
+
+  void readWindow() {
+    const std::size_t words = 2 * accumulators_.size();
+    statement(fmt::format("      int sk_word = (sk_at - sk_i) * {};", words));
+    statement("      uint sk_flag = sk_states[sk_word] >> 30;");
+    for (std::size_t k = 0; k < accumulators_.size(); ++k) {
+      statement(fmt::format("      uint sk_low{0} = sk_states[sk_word + {1}], sk_high{0} = sk_states[sk_word + {2}];",
+                            k, 2 * k, 2 * k + 1));
+      statement(fmt::format("      if (sk_low{0} >> 30 != sk_flag || sk_high{0} >> 30 != sk_flag) sk_flag = 0u;", k));
+      statement(fmt::format("      {}[sk_i] = {}((sk_low{} & 0xffffu) | sk_high{} << 16);",
+                            windowOf(*accumulators_[k]), accumulators_[k]->element->glsl, k, k));
+    }
+    statement("      if (sk_flag == 0u) atomicMin(sk_missing, sk_i);");
+    statement("      if (sk_flag == 2u) atomicMin(sk_nearest, sk_i);");
+  }
+
+  /// Puts a result in shared memory before sk_before.
+  template <class NameOf>
+  void takeBefore(std::string_view at, std::string_view indent, NameOf&& nameOf) {
+    for (const Parameter* accumulator : accumulators_) {
+      statement(fmt::format("{}{} {} = {}[{}];", indent, accumulator->element->glsl, held("sk_earlier", *accumulator),
+                            nameOf(*accumulator), at));
+    }
+    statement(fmt::format("{}if (sk_hasBefore) {{", indent));
+    combineInto("sk_earlier", "sk_before", fmt::format("{}  ", indent));
+    statement(fmt::format("{}}}", indent));
+    assign("sk_before", "sk_earlier", indent);
+    statement(fmt::format("{}sk_hasBefore = true;", indent));
+  }
+
   // ---- results ----------------------------------------------------------------------------------
 
   /// Whether results go through shared memory; else each invocation stores its own.
   bool keepsTile() const { return isTile() && run() > 1; }
 
+  const Parameter& accumulatorOf(const Parameter& result) const {
+    return **std::ranges::find(accumulators_, result.symbol, &Parameter::symbol);
+  }
+
   /// The variable that holds the result of item sk_k.
   std::string resultOf(const Parameter& accumulator) const {
     return variant_.packed ? keptOf(accumulator) : total(accumulator);
-  }
-  static std::string tileName(const Parameter& accumulator) {
-    return fmt::format("sk_tile_{}", accumulator.symbol);
   }
   /// The place of an item in shared memory, where runs are a bank apart.
   std::string slotOf(std::string_view item) const {
@@ -317,12 +540,9 @@ class TileScanText : ScanText {
     if (!keepsTile()) return storeItem(written, "sk_first + sk_k", "    ", [&](const Parameter& result) {
       return resultOf(result);
     });
-    const int items = tileGroup * run();
     statement(fmt::format("    int sk_n = sk_i * {} + sk_k, sk_slot = {};", run(), slotOf("sk_n")));
     for (const Parameter& result : written) {
-      program_.variable("shared " + std::string(result.element->glsl),
-                        fmt::format("{}[{}]", tileName(result), items + items / (variant_.packed ? 8 : 16)));
-      statement(fmt::format("    {}[sk_slot] = {};", tileName(result), resultOf(result)));
+      statement(fmt::format("    {}[sk_slot] = {};", tileOf(accumulatorOf(result)), resultOf(result)));
     }
   }
 
@@ -333,7 +553,7 @@ class TileScanText : ScanText {
     statement("  if (sk_n < sk_left) {");
     const int items = tileGroup * run();
     storeItem(written, fmt::format("sk_tile * {} + sk_n", items), "    ", [&](const Parameter& result) {
-      return fmt::format("{}[{}]", tileName(result), slotOf("sk_n"));
+      return fmt::format("{}[{}]", tileOf(accumulatorOf(result)), slotOf("sk_n"));
     });
     statement("  }");
     statement("}");
@@ -397,6 +617,20 @@ std::int32_t longestRunInTile(const Reduction& reduction, bool packed) {
   const std::size_t most = packed ? 4 : 16;
   return static_cast<std::int32_t>(
       std::clamp<std::size_t>(std::bit_floor(runBytes / (packed ? lanes * bytes : bytes)), 1, most));
+}
+
+bool mayChain(const Reduction& reduction) {
+  constexpr std::size_t mostAccumulators = 4;
+  std::size_t count = 0;
+  for (const Parameter& parameter : reduction.fold.parameters) {
+    if (parameter.role != program::Role::Accumulator) continue;
+    const auto fields = parameter.element->fields;
+    const program::Scalar scalar = fields.front().scalar;
+    if (isStruct(*parameter.element) || fields.front().width != 1) return false;
+    if (scalar != program::Scalar::Int && scalar != program::Scalar::Uint) return false;
+    ++count;
+  }
+  return count <= mostAccumulators && combinesInFold(reduction);
 }
 
 bool combinesInFold(const Reduction& reduction) {

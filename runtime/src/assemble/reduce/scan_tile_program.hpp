@@ -31,6 +31,10 @@ std::int32_t longestRunInTile(const program::Reduction& reduction, bool packed);
 /// Whether a program that folds elements can also combine its results.
 bool combinesInFold(const program::Reduction& reduction);
 
+/// Whether one pass may scan a line (ReduceVariant::chained): tiles find the result of those before in an order that
+/// depends on time, so that accumulators must be integers, whose results do not depend on it.
+bool mayChain(const program::Reduction& reduction);
+
 /// The program of a pass whose unit is Run or Tile (scanProgram()). A pass that folds tiles computes one texel in each
 /// work group; any other stores its results by itself.
 std::string scanTileProgram(const Profile& profile, const program::Reduction& reduction,

@@ -129,7 +129,8 @@ void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* cons
       .texture = device_.textureLimits(), .fanIn = assemble::scanRun, .grouped = isDispatched};
   const assemble::Lines lines = assemble::linesOf(elements_.extent, blocks_);
   assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
-  if (isDispatched) assemble::addTiles(access, reduction_);
+  if (isDispatched) assemble::addTiles(access, reduction_, device_.chainsScans);
+  access.patience = device_.scanPatience.value_or(access.patience);
   const assemble::ScanPlan plan = assemble::planScan(elements_, result, limits, lines, access, isExclusive);
   startAll(plan.folds);
   startAll(plan.scans);
@@ -145,6 +146,7 @@ void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* cons
   for (const ReducePass& pass : plan.scans) {
     if (pass.toResult) {
       prepare(pass, targets);
+      if (pass.variant.chained) bindChain(pass);
       begin();
       draw(pass, {{}, carries.planes}, targets);
       continue;
@@ -322,6 +324,14 @@ void ReducePasses::bindValues() {
   if (device_.values.bind(device_.bound)) return;
   device_.throwIfLost();
   fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for its value", device_.name());
+}
+
+void ReducePasses::bindChain(const ReducePass& pass) {
+  const auto groups = static_cast<std::size_t>(pass.groups.width) * static_cast<std::size_t>(pass.groups.height);
+  const std::size_t words = 1 + 2 * accumulatorPlanes(reduction_.fold) * groups;
+  if (device_.chain.bindCleared(device_.bound, sizeof(std::uint32_t) * words)) return;
+  device_.throwIfLost();
+  fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for the results of tiles", device_.name());
 }
 
 bool ReducePasses::start(const ReducePass& pass) {
