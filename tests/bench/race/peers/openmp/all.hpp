@@ -19,6 +19,7 @@ void gemvOpenMp(const Problem& p, float* y);
 void gemmOpenMp(const Problem& p, float* c);
 std::unique_ptr<Task> scanOpenMp(const Problem& p);
 void sortOpenMp(const Problem& p, float* sorted);
+void sortPairsOpenMp(const Problem& p, float* sorted);
 void bodiesOpenMp(const Problem& p, float* accelerations);
 std::unique_ptr<Task> fourierOpenMp(const Problem& p);
 std::unique_ptr<Task> reactionOpenMp(const Problem& p);

@@ -20,6 +20,7 @@ RACE_ADD_PEERS(std::vector<race::Contender>& contenders) {
   add("sgemm", asMany, gemmOpenMp);
   contenders.push_back({"prefix scan", "OpenMP", scanOpenMp});
   add("sort", asMany, sortOpenMp);
+  add("sort of pairs", asMany, sortPairsOpenMp);
   add("n-body", [](const Problem& p) { return 3 * p.size(); }, bodiesOpenMp);
   contenders.push_back({"fft", "OpenMP", fourierOpenMp});
   contenders.push_back({"gray-scott", "OpenMP", reactionOpenMp});
