@@ -16,13 +16,13 @@
 #include "assemble/condition.hpp"
 #include "device/device_state.hpp"
 #include "gl/bound_state.hpp"
-#include "gl/chain_buffer.hpp"
 #include "gl/labels.hpp"
 #include "gl/open_context.hpp"
 #include "gl/samplers.hpp"
 #include "gl/saved_state.hpp"
 #include "gl/value_buffer.hpp"
 #include "gl/vertex_array.hpp"
+#include "gl/work_buffer.hpp"
 #include "gl_device/append/append_programs.hpp"
 #include "gl_device/memory/framebuffer_cache.hpp"
 #include "gl_device/memory/render_target.hpp"
@@ -169,7 +169,7 @@ class GlDevice final : public DeviceState {
   SortPrograms sortPrograms;
   gl::Samplers samplers{bound.deletions};
   gl::ValueBuffer values;
-  gl::ChainBuffer chain;
+  gl::WorkBuffer tileResults;  ///< of scans in one pass
   gl::VertexArray vertexArray;
   const std::shared_ptr<PendingReads> pendingReads = std::make_shared<PendingReads>();
   TransferBuffers transferBuffers{bound.deletions};
@@ -212,6 +212,7 @@ class DeviceScope {
       device.hasDrawn = true;  // by the application
     }
     device.pool.trim();
+    device.tileResults.trim();
     device.transferBuffers.trim();
     if (device.isSoftware()) native::restThreads();
   }

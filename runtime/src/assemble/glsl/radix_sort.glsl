@@ -61,40 +61,51 @@ uniform usampler2D sk_counts;
 layout(binding = 0) writeonly uniform uimage2D sk_sums;
 layout(binding = 1) writeonly uniform uimage2D sk_totals;
 
+shared uint sk_kept[4096 + 128];
+
+int sk_slot(int n) { return n + (n >> 5); }
+
 void main() {
   int i = int(gl_LocalInvocationIndex), tile = sk_group();
   if (tile >= sk_tiles) return;
-  int first = tile * sk_tile + i * sk_run;
-  uint counts[sk_run];
-  uint sum = 0u;
+  int first = tile * sk_tile;
   for (int k = 0; k < sk_run; ++k) {
-    counts[k] = first + k < sk_length ? texelFetch(sk_counts, sk_texel(first + k, sk_counts_shift), 0).x : 0u;
-    sum += counts[k];
+    int n = k * 256 + i;
+    sk_kept[sk_slot(n)] =
+        first + n < sk_length ? texelFetch(sk_counts, sk_texel(first + n, sk_counts_shift), 0).x : 0u;
   }
-  uint total;
+  sk_wait();
+  uint sum = 0u, total;
+  for (int k = 0; k < sk_run; ++k) sum += sk_kept[sk_slot(i * sk_run + k)];
   sum = sk_sums_before(sum, total);
   for (int k = 0; k < sk_run; ++k) {
-    if (first + k < sk_length) imageStore(sk_sums, sk_texel(first + k, sk_counts_shift), uvec4(sum));
-    sum += counts[k];
+    int slot = sk_slot(i * sk_run + k);
+    uint count = sk_kept[slot];
+    sk_kept[slot] = sum;
+    sum += count;
+  }
+  sk_wait();
+  for (int k = 0; k < sk_run; ++k) {
+    int n = k * 256 + i;
+    if (first + n < sk_length)
+      imageStore(sk_sums, sk_texel(first + n, sk_counts_shift), uvec4(sk_kept[sk_slot(n)]));
   }
   if (i == 0) imageStore(sk_totals, sk_texel(tile, sk_totals_shift), uvec4(total));
 }
 
 //// moveKeys
+// With SK_PLACES, a texel holds a key and the place where it was at first. GPUs scatter few texels a cycle, so that one of
+// two words takes less time than two of one. With SK_FIRST, texels that are read hold a key only, whose place is its number.
 uniform usampler2D sk_keys;
-uniform usampler2D sk_places;  // where each key was at first, unless SK_FIRST: then each is at its number
 uniform usampler2D sk_sums;
 uniform usampler2D sk_totals;  // of the tiles of sums, themselves summed
-layout(binding = 0) writeonly uniform uimage2D sk_moved_keys;
-#ifdef SK_PLACES
-layout(binding = 1) writeonly uniform uimage2D sk_moved_places;
-#endif
+layout(binding = 0) writeonly uniform uimage2D sk_moved;
 
 // Marks of 8 rows and 256 digits, for even and odd steps; later the tile's words in the order of their ranks.
 shared uint sk_words[4096];
 shared uint sk_counts[8 * 256];
 shared uint sk_starts[256];  // of the digits among the tile's ranks
-shared uint sk_moves[256];   // from a rank to a place
+shared uint sk_moves[256];  // from a rank to a number
 
 uint sk_digitOf(uint key) { return key >> sk_digit & 255u; }
 
@@ -106,9 +117,18 @@ void main() {
   int count = min(sk_length - tile * sk_tile, sk_tile);
   uint keys[sk_run];
   uint ranks[sk_run];
+#ifdef SK_PLACES
+  uint places[sk_run];
+#endif
   for (int k = 0; k < sk_run; ++k) {
     int n = first + k * 32;
-    keys[k] = n < sk_length ? texelFetch(sk_keys, sk_texel(n, sk_keys_shift), 0).x : 0xffffffffu;
+    uvec2 texel = n < sk_length ? texelFetch(sk_keys, sk_texel(n, sk_keys_shift), 0).xy : uvec2(0xffffffffu);
+    keys[k] = texel.x;
+#ifdef SK_FIRST
+    places[k] = uint(n);
+#elif defined(SK_PLACES)
+    places[k] = texel.y;
+#endif
     sk_words[k * 256 + i] = 0u;
   }
   for (int r = 0; r < 8; ++r) sk_counts[r * 256 + i] = 0u;
@@ -127,13 +147,12 @@ void main() {
     }
   }
   sk_wait();
-  uint sum = 0u;
+  uint sum = 0u, total;
   for (int r = 0; r < 8; ++r) {
     uint inRow = sk_counts[r * 256 + i];
     sk_counts[r * 256 + i] = sum;
     sum += inRow;
   }
-  uint total;
   uint start = sk_sums_before(sum, total);
   int number = i * sk_tiles + tile;
   sk_starts[i] = start;
@@ -146,26 +165,21 @@ void main() {
   }
   for (int k = 0; k < sk_run; ++k) sk_words[ranks[k]] = keys[k];
   sk_wait();
-  for (int k = 0; k < sk_run; ++k) {
-    int rank = k * 256 + i;
-    uint key = sk_words[rank];
-    keys[k] = sk_moves[sk_digitOf(key)] + uint(rank);
-    if (rank < count) imageStore(sk_moved_keys, sk_texel(int(keys[k]), sk_keys_shift), uvec4(key));
-  }
+  for (int k = 0; k < sk_run; ++k) keys[k] = sk_words[k * 256 + i];
 #ifdef SK_PLACES
   sk_wait();
-  for (int k = 0; k < sk_run; ++k) {
-    int n = first + k * 32;
-#ifdef SK_FIRST
-    sk_words[ranks[k]] = uint(n);
-#else
-    sk_words[ranks[k]] = n < sk_length ? texelFetch(sk_places, sk_texel(n, sk_keys_shift), 0).x : 0u;
-#endif
-  }
+  for (int k = 0; k < sk_run; ++k) sk_words[ranks[k]] = places[k];
   sk_wait();
+  for (int k = 0; k < sk_run; ++k) places[k] = sk_words[k * 256 + i];
+#endif
   for (int k = 0; k < sk_run; ++k) {
     int rank = k * 256 + i;
-    if (rank < count) imageStore(sk_moved_places, sk_texel(int(keys[k]), sk_keys_shift), uvec4(sk_words[rank]));
-  }
+    if (rank >= count) continue;
+    ivec2 to = sk_texel(int(sk_moves[sk_digitOf(keys[k])]) + rank, sk_keys_shift);
+#ifdef SK_PLACES
+    imageStore(sk_moved, to, uvec4(keys[k], places[k], 0u, 0u));
+#else
+    imageStore(sk_moved, to, uvec4(keys[k]));
 #endif
+  }
 }

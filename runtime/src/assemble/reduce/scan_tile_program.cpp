@@ -439,8 +439,6 @@ class TileScanText : ScanText {
     std::vector<std::string> lines;
     for (std::size_t k = 0; k < accumulators_.size(); ++k) {
       const Parameter& accumulator = *accumulators_[k];
-      program_.variable(fmt::format("shared {}", accumulator.element->glsl),
-                        fmt::format("{}[{}]", windowOf(accumulator), window));
       parameters += fmt::format(", {} sk_v{}", accumulator.element->glsl, k);
       lines.push_back(fmt::format("sk_states[sk_t * {} + {}] = sk_flag << 30 | (uint(sk_v{}) & 0xffffu);", words,
                                   2 * k, k));
@@ -450,26 +448,24 @@ class TileScanText : ScanText {
     program_.function(fmt::format("void sk_publish(int sk_t, uint sk_flag{})", parameters), lines);
   }
 
-  static constexpr int window = 32;  ///< the tiles that a group looks at together
-  std::string windowOf(const Parameter& accumulator) const {
-    return fmt::format("sk_window_{}", accumulator.symbol);
-  }
-
-  /// Sets sk_before to the fold of the tiles before.
+  /// Sets sk_before to the fold of the tiles before. Each invocation looks at one of them: fewer at a time would keep a
+  /// large GPU waiting, as the front of tiles whose results are known advances by as many in each look. Their results
+  /// take the place of the totals of runs in shared memory.
   void lookBack(const std::vector<Parameter>& written) {
     integers({"sk_patience"});
     statement("  bool sk_hasBefore = false;");
     statement("  for (int sk_at = sk_tile - 1, sk_tries = 0; sk_at >= 0;) {");
-    statement(fmt::format("    if (sk_i == 0) sk_nearest = sk_missing = {};", window));
+    statement(fmt::format("    if (sk_i == 0) sk_nearest = sk_missing = {};", tileGroup));
     wait("    ");
-    statement(fmt::format("    if (sk_i < {} && sk_i <= sk_at) {{", window));
+    statement("    if (sk_i <= sk_at) {");
     readWindow();
     statement("    }");
     wait("    ");
     statement("    int sk_ready = min(sk_nearest + 1, sk_missing);");
     statement("    bool sk_isFound = sk_nearest < sk_missing;");
-    statement("    for (int sk_w = 0; sk_w < sk_ready; ++sk_w) {");
-    takeBefore("sk_w", "      ", [&](const Parameter& accumulator) { return windowOf(accumulator); });
+    foldWindow();
+    statement("    if (sk_ready > 0) {");
+    takeBefore("0", "      ");
     statement("    }");
     statement("    if (sk_isFound) break;");
     statement("    sk_at -= sk_ready;");
@@ -480,7 +476,7 @@ class TileScanText : ScanText {
     margin_ = "      ";
     foldTile(written);
     margin_ = "";
-    takeBefore("sk_runs - 1", "      ", [&](const Parameter& accumulator) { return sharedName(accumulator); });
+    takeBefore("sk_runs - 1", "      ");
     wait("      ");
     statement("      --sk_at;");
     statement("      sk_tries = 0;");
@@ -497,18 +493,35 @@ class TileScanText : ScanText {
                             k, 2 * k, 2 * k + 1));
       statement(fmt::format("      if (sk_low{0} >> 30 != sk_flag || sk_high{0} >> 30 != sk_flag) sk_flag = 0u;", k));
       statement(fmt::format("      {}[sk_i] = {}((sk_low{} & 0xffffu) | sk_high{} << 16);",
-                            windowOf(*accumulators_[k]), accumulators_[k]->element->glsl, k, k));
+                            sharedName(*accumulators_[k]), accumulators_[k]->element->glsl, k, k));
     }
     statement("      if (sk_flag == 0u) atomicMin(sk_missing, sk_i);");
     statement("      if (sk_flag == 2u) atomicMin(sk_nearest, sk_i);");
   }
 
+  /// Folds the first sk_ready results of the window, of which later ones are of earlier tiles, to the first.
+  void foldWindow() {
+    statement("    for (int sk_s = 1; sk_s < sk_ready; sk_s *= 2) {");
+    statement("      if ((sk_i & (2 * sk_s - 1)) == 0 && sk_i + sk_s < sk_ready) {");
+    for (const Parameter* accumulator : accumulators_) {
+      statement(fmt::format("        {} {} = {}[sk_i + sk_s], {} = {}[sk_i];", accumulator->element->glsl,
+                            held("sk_earlier", *accumulator), sharedName(*accumulator),
+                            held("sk_later", *accumulator), sharedName(*accumulator)));
+    }
+    combineInto("sk_earlier", "sk_later", "        ");
+    for (const Parameter* accumulator : accumulators_) {
+      statement(fmt::format("        {}[sk_i] = {};", sharedName(*accumulator), held("sk_earlier", *accumulator)));
+    }
+    statement("      }");
+    wait("      ");
+    statement("    }");
+  }
+
   /// Puts a result in shared memory before sk_before.
-  template <class NameOf>
-  void takeBefore(std::string_view at, std::string_view indent, NameOf&& nameOf) {
+  void takeBefore(std::string_view at, std::string_view indent) {
     for (const Parameter* accumulator : accumulators_) {
       statement(fmt::format("{}{} {} = {}[{}];", indent, accumulator->element->glsl, held("sk_earlier", *accumulator),
-                            nameOf(*accumulator), at));
+                            sharedName(*accumulator), at));
     }
     statement(fmt::format("{}if (sk_hasBefore) {{", indent));
     combineInto("sk_earlier", "sk_before", fmt::format("{}  ", indent));

@@ -16,7 +16,7 @@ std::string_view definitionsOf(RadixStep step) {
     case RadixStep::Sum:
     case RadixStep::Move: return "";
     case RadixStep::MoveFirst: return "#define SK_PLACES\n#define SK_FIRST\n";
-    case RadixStep::MovePlaces: return "#define SK_PLACES\n";
+    case RadixStep::MovePairs: return "#define SK_PLACES\n";
   }
   return {};
 }
@@ -27,7 +27,7 @@ std::string_view bodyOf(RadixStep step) {
     case RadixStep::Sum: return library::sumCounts;
     case RadixStep::Move:
     case RadixStep::MoveFirst:
-    case RadixStep::MovePlaces: return library::moveKeys;
+    case RadixStep::MovePairs: return library::moveKeys;
   }
   return {};
 }

@@ -19,13 +19,13 @@ enum class RadixStep : std::uint8_t {
   Count,  ///< keys to counts: digit d of tile t has number d * tiles + t
   Sum,  ///< counts to the sums before them in their tile, and the tile's totals
   Move,  ///< keys, sums and totals to keys
-  MoveFirst,  ///< the same, and each key's number: where it came from
-  MovePlaces,  ///< the same, and what came with each key
+  MoveFirst,  ///< the same to pairs of keys and their numbers: the places where they came from
+  MovePairs,  ///< pairs, sums and totals to pairs
 };
 
 /// The program of a step. It is dispatched in rows of 2^15 groups (tileGroup's), one for each tile, and has the uniforms
 /// sk_rect, sk_length, sk_tiles, sk_keys_shift, sk_counts_shift, sk_totals_shift and sk_digit; its samplers are sk_keys,
-/// sk_places, sk_counts, sk_sums and sk_totals.
+/// of keys or pairs, sk_counts, sk_sums and sk_totals. All textures are linearised.
 std::string radixProgram(const Profile& profile, RadixStep step);
 
 }  // namespace sk::assemble

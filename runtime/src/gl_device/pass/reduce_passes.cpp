@@ -328,10 +328,12 @@ void ReducePasses::bindValues() {
 
 void ReducePasses::bindChain(const ReducePass& pass) {
   const auto groups = static_cast<std::size_t>(pass.groups.width) * static_cast<std::size_t>(pass.groups.height);
-  const std::size_t words = 1 + 2 * accumulatorPlanes(reduction_.fold) * groups;
-  if (device_.chain.bindCleared(device_.bound, sizeof(std::uint32_t) * words)) return;
-  device_.throwIfLost();
-  fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for the results of tiles", device_.name());
+  const std::size_t bytes = sizeof(std::uint32_t) * (1 + 2 * accumulatorPlanes(reduction_.fold) * groups);
+  if (!device_.tileResults.bind(device_.bound, bytes)) {
+    device_.throwIfLost();
+    fail(Error::Kind::Memory, reduction_.fold, "'{}' has no memory for the results of tiles", device_.name());
+  }
+  gl::WorkBuffer::clear(bytes);
 }
 
 bool ReducePasses::start(const ReducePass& pass) {

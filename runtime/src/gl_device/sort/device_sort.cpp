@@ -37,14 +37,16 @@ const program::Element& words() { return ElementTraits<std::uint32_t>::element()
 
 std::int32_t divideUp(std::int32_t a, std::int32_t b) { return (a - 1) / b + 1; }
 
-/// A linearised texture of words.
+const program::Element& wordPairs() { return ElementTraits<uint2>::element(); }
+
+/// A linearised texture of words, or of pairs of them.
 class Words {
  public:
-  Words(GlDevice& device, std::int32_t count)
+  Words(GlDevice& device, std::int32_t count, const program::Element& element = words())
       : texture_(*assemble::linearTexture(count, device.textureLimits())),
         shift_(assemble::linearLayout(count, texture_).shift),
         lease_(device) {
-    lease_.planes = device.acquirePlanes(words(), texture_, whatFor);
+    lease_.planes = device.acquirePlanes(element, texture_, whatFor);
   }
 
   std::int32_t shift() const { return shift_; }
@@ -91,75 +93,77 @@ void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name, std:
   gl::dispatch(groups.width, groups.height);
 }
 
-/// Sorts words, and the places that they come from, digit by digit.
+/// Sorts words, or pairs of words and the places that they come from, digit by digit.
 class WordSort {
  public:
   WordSort(GlDevice& device, std::int32_t count, bool keepsPlaces)
       : device_(device),
         count_(count),
         tiles_(divideUp(count, assemble::radixTile)),
-        keys(device, count),
-        moved_(device, count),
         counts_(device, tiles_ * assemble::radixDigits),
         sums_(device, tiles_ * assemble::radixDigits),
         totals_(device, divideUp(tiles_ * assemble::radixDigits, assemble::radixTile)),
         totalSums_(device, divideUp(tiles_ * assemble::radixDigits, assemble::radixTile)),
-        all_(device, 1) {
-    if (!keepsPlaces) return;
-    places.emplace(device, count);
-    movedPlaces_.emplace(device, count);
+        all_(device, 1),
+        keys(device, count) {
+    if (keepsPlaces) {
+      pairs.emplace(device, count, wordPairs());
+      moved_.emplace(device, count, wordPairs());
+    } else {
+      moved_.emplace(device, count);
+    }
   }
 
-  /// The number of digits of 8 bits in a word.
-  static constexpr int digits = 4;
-
+  /// Sorts `keys` to `pairs`, or to `keys` if there are no pairs.
   void sort() {
-    for (int digit = 0; digit < digits; ++digit) sortBy(digit);
+    sortBy(0, true);
+    sortByRest();
+  }
+  /// Sorts `pairs`.
+  void sortAgain() {
+    sortBy(0, false);
+    sortByRest();
   }
 
-  void sortBy(int digit) {
-    const Uniform shift{"sk_digit", 8 * digit};
-    const Uniform keyShift{"sk_keys_shift", keys.shift()}, countShift{"sk_counts_shift", counts_.shift()};
-    const Uniform totalShift{"sk_totals_shift", totals_.shift()}, length{"sk_length", count_};
-    const std::int32_t counts = tiles_ * assemble::radixDigits;
-    const std::int32_t groups = divideUp(counts, assemble::radixTile);
-    run(RadixStep::Count, "count digits", {&keys}, {&counts_}, {shift, keyShift, countShift, length}, tiles_);
-    run(RadixStep::Sum, "sum counts", {&counts_}, {&sums_, &totals_},
-        {{"sk_length", counts}, countShift, totalShift}, groups);
-    run(RadixStep::Sum, "sum counts", {&totals_}, {&totalSums_, &all_},
-        {{"sk_length", groups}, {"sk_counts_shift", totals_.shift()}, {"sk_totals_shift", all_.shift()}}, 1);
-    move({shift, keyShift, countShift, totalShift, length});
-    keys.swap(moved_);
-    if (places) places->swap(*movedPlaces_);
-    hasPlaces_ = places.has_value();
-  }
-
-  /// After sortBy(0): the number of keys whose digit is 0. Waits for the device.
-  std::int64_t zeros() {
+  /// Divides `keys`, each 0 or 1, to `pairs`. Returns the number of zeros; waits for the device.
+  std::int64_t divide() {
+    sortBy(0, true);
     const TraceScope traced(device_.trace.get(), "transfer", "read number of elements");
-    const std::int32_t number = tiles_;  // of digit 1 in the first tile
-    const std::uint32_t inTile = read(sums_, number);
-    const std::uint32_t before = read(totalSums_, number / assemble::radixTile);
+    const std::int32_t ones = tiles_;  // the sum before the ones of the first tile
+    const std::uint32_t inTile = read(sums_, ones);
+    const std::uint32_t before = read(totalSums_, ones / assemble::radixTile);
     device_.throwPendingError();
     return std::int64_t{inTile} + before;
   }
 
  private:
+  void sortByRest() {
+    constexpr int digits = 4;  // of 8 bits in a word
+    for (int digit = 1; digit < digits; ++digit) sortBy(digit, !pairs);
+  }
+
+  void sortBy(int digit, bool readsKeys) {
+    const Uniform shift{"sk_digit", 8 * digit};
+    const Uniform keyShift{"sk_keys_shift", keys.shift()}, countShift{"sk_counts_shift", counts_.shift()};
+    const Uniform totalShift{"sk_totals_shift", totals_.shift()}, length{"sk_length", count_};
+    const std::int32_t counts = tiles_ * assemble::radixDigits;
+    const std::int32_t groups = divideUp(counts, assemble::radixTile);
+    Words& from = readsKeys ? keys : *pairs;
+    run(RadixStep::Count, "count digits", {&from}, {&counts_}, {shift, keyShift, countShift, length}, tiles_);
+    run(RadixStep::Sum, "sum counts", {&counts_}, {&sums_, &totals_},
+        {{"sk_length", counts}, countShift, totalShift}, groups);
+    run(RadixStep::Sum, "sum counts", {&totals_}, {&totalSums_, &all_},
+        {{"sk_length", groups}, {"sk_counts_shift", totals_.shift()}, {"sk_totals_shift", all_.shift()}}, 1);
+    const RadixStep move = !pairs ? RadixStep::Move : readsKeys ? RadixStep::MoveFirst : RadixStep::MovePairs;
+    run(move, "move keys", {&from, &sums_, &totalSums_}, {&*moved_},
+        {shift, keyShift, countShift, totalShift, length}, tiles_);
+    (pairs ? *pairs : keys).swap(*moved_);
+  }
+
   void run(RadixStep step, std::string_view name, std::initializer_list<Words*> read,
            std::initializer_list<Words*> written, std::initializer_list<Uniform> uniforms, std::int32_t tiles) {
     dispatchTiles(device_, step, name, {read.begin(), read.size()}, {written.begin(), written.size()},
                   {uniforms.begin(), uniforms.size()}, tiles);
-  }
-
-  void move(std::initializer_list<Uniform> uniforms) {
-    constexpr std::string_view name = "move keys";
-    if (!places) return run(RadixStep::Move, name, {&keys, &sums_, &totalSums_}, {&moved_}, uniforms, tiles_);
-    if (!hasPlaces_) {
-      return run(RadixStep::MoveFirst, name, {&keys, &sums_, &totalSums_}, {&moved_, &*movedPlaces_}, uniforms,
-                 tiles_);
-    }
-    run(RadixStep::MovePlaces, name, {&keys, &sums_, &totalSums_, &*places}, {&moved_, &*movedPlaces_}, uniforms,
-        tiles_);
   }
 
   std::uint32_t read(Words& words, std::int32_t number) {
@@ -173,16 +177,14 @@ class WordSort {
 
   GlDevice& device_;
   const std::int32_t count_, tiles_;
+  Words counts_, sums_, totals_, totalSums_, all_;
 
  public:
   Words keys;
-  std::optional<Words> places;  ///< of the keys, after a sort; if it keeps them
+  std::optional<Words> pairs;  ///< of keys and places; if it keeps places
 
  private:
-  Words moved_;
-  Words counts_, sums_, totals_, totalSums_, all_;
-  std::optional<Words> movedPlaces_;
-  bool hasPlaces_ = false;
+  std::optional<Words> moved_;
 };
 
 /// The streams of a reordering. New elements are in new planes until all passes have run.
@@ -197,8 +199,7 @@ class StreamSort {
 
   std::int64_t run() {
     WordSort sort(device_, count_, needsPlaces());
-    sortWords(sort);
-    const std::int64_t first = reordering_.choosesFirst() ? sort.zeros() : count_;
+    const std::int64_t first = sortWords(sort);
     std::deque<Moved> moved;
     for (const StreamRegion& region : reordering_.moved) moveTo(moved.emplace_back(device_, region), sort);
     if (reordering_.places != nullptr) storePlaces(sort);
@@ -225,14 +226,15 @@ class StreamSort {
 
   // ---- words ------------------------------------------------------------------------------------
 
-  void sortWords(WordSort& sort) {
+  /// Returns the number of elements that come first.
+  std::int64_t sortWords(WordSort& sort) {
     switch (reordering_.by) {
       case Reordering::By::Keys:
-      case Reordering::By::DescendingKeys: return sortKeys(sort);
+      case Reordering::By::DescendingKeys: sortKeys(sort); return count_;
       case Reordering::By::Changes: findRepeats(sort); break;
       case Reordering::By::Flags: makeWords(flagKernel(scalar_), {&sort.keys}); break;
     }
-    sort.sortBy(0);
+    return sort.divide();
   }
 
   void sortKeys(WordSort& sort) {
@@ -243,9 +245,11 @@ class StreamSort {
     Words upper(device_, count_);
     makeWords(wordKernel(scalar_, isDescending()), {&sort.keys, &upper});
     sort.sort();
-    const Operand operands[] = {operandOf(*sort.places), operandOf(upper), {}};
-    runOver(moveKernel(words().fields.front(), 1), operands, sort.keys);
-    sort.sort();
+    Words byUpper(device_, count_, wordPairs());
+    const Operand operands[] = {operandOf(*sort.pairs), operandOf(upper), {}};
+    runOver(upperWordKernel(), operands, byUpper);
+    sort.pairs->swap(byUpper);
+    sort.sortAgain();
   }
 
   void findRepeats(WordSort& sort) {
@@ -340,19 +344,16 @@ class StreamSort {
         restoreKeys(from, domain, rects, targets, sort, rank);
         continue;
       }
-      const Operand operands[] = {shapedOperandOf(*sort.places), from, {}};
+      const Operand operands[] = {shapedOperandOf(*sort.pairs), from, {}};
       runKernel(device_, moveKernel(fields[plane], rank), operands, domain, rects, targets);
     }
   }
 
   void restoreKeys(const Operand& keys, const RegionLayout& domain, std::span<const Rect> rects,
                    std::span<RenderTarget* const> targets, WordSort& sort, int rank) {
-    const program::Kernel& kernel = restoreKernel(scalar_, isDescending(), rank);
-    std::vector<Operand> operands{shapedOperandOf(sort.keys)};
-    if (scalar_ == program::Scalar::Float) {
-      operands.push_back(shapedOperandOf(*sort.places));
-      operands.push_back(keys);
-    }
+    const program::Kernel& kernel = restoreKernel(scalar_, isDescending(), sort.pairs.has_value(), rank);
+    std::vector<Operand> operands{shapedOperandOf(sort.pairs ? *sort.pairs : sort.keys)};
+    if (scalar_ == program::Scalar::Float) operands.push_back(keys);
     operands.emplace_back();
     runKernel(device_, kernel, operands, domain, rects, targets);
   }
@@ -361,7 +362,7 @@ class StreamSort {
   void storePlaces(WordSort& sort) {
     GlStream& stream = glStream(*reordering_.places);
     const RegionLayout& domain = stream.layout.whole;
-    const Operand operands[] = {shapedOperandOf(*sort.places), {}};
+    const Operand operands[] = {shapedOperandOf(*sort.pairs), {}};
     RenderTarget* const targets[] = {&stream.planes.front()};
     runKernel(device_, placeKernel(), operands, domain, stream.layout.draws, targets);
     stream.setWritten();
@@ -394,7 +395,7 @@ AppendProgram& SortPrograms::of(RadixStep step) {
   if (step == RadixStep::Sum) {
     linked.setSampler("sk_counts", unit);
   } else {
-    for (const char* name : {"sk_keys", "sk_sums", "sk_totals", "sk_places"}) linked.setSampler(name, unit++);
+    for (const char* name : {"sk_keys", "sk_sums", "sk_totals"}) linked.setSampler(name, unit++);
   }
   return *known;
 }

@@ -68,9 +68,9 @@ const Kernel& kept(std::string&& body, std::vector<Parameter>&& parameters, bool
   return known->kernel;
 }
 
-/// The element of gather `x` with number `o`.
+/// The element of gather `x` at the place of pair `k`.
 std::string elementAt(int rank) {
-  return rank == 1 ? "sk_at_x(int(o))" : "sk_at_x(sort_index(int(o), sk_extent_x()))";
+  return rank == 1 ? "sk_at_x(int(k.y))" : "sk_at_x(sort_index(int(k.y), sk_extent_x()))";
 }
 std::string_view indexFunction(int rank) {
   if (rank == 1) return "";
@@ -162,31 +162,37 @@ const Kernel& flagKernel(Scalar flags) {
 
 const Kernel& moveKernel(const program::Field& field, int rank) {
   const Element& element = *copyKernel(field).parameters[0].element;
-  return kept(fmt::format("// {}\n{}void sort_kernel(uint o, out {} r) {{ r = {}; }}\n", element.name,
+  return kept(fmt::format("// {}\n{}void sort_kernel(uvec2 k, out {} r) {{ r = {}; }}\n", element.name,
                           indexFunction(rank), element.glsl, elementAt(rank)),
-              {input("o", words()), gather("x", element, rank), output("r", element)});
+              {input("k", wordPairs()), gather("x", element, rank), output("r", element)});
 }
 
-const Kernel& restoreKernel(Scalar keys, bool isDescending, int rank) {
+const Kernel& upperWordKernel() {
+  return kept("void sort_kernel(uvec2 k, out uvec2 r) { r = uvec2(sk_at_x(int(k.y)), k.y); }\n",
+              {input("k", wordPairs()), gather("x", words(), 1), output("r", wordPairs())});
+}
+
+const Kernel& restoreKernel(Scalar keys, bool isDescending, bool fromPairs, int rank) {
   const Element& element = elementOf(keys);
   const std::string_view inverted = isDescending ? "~" : "";
   if (keys != Scalar::Float) {
-    return kept(fmt::format("void sort_kernel(uint k, out {0} r) {{ r = {0}({1}k{2}); }}\n", element.glsl,
-                            inverted, keys == Scalar::Int ? " ^ 0x80000000u" : ""),
-                {input("k", words()), output("r", element)});
+    const Element& from = fromPairs ? wordPairs() : words();
+    return kept(fmt::format("void sort_kernel({0} k, out {1} r) {{ r = {1}({2}k{3}{4}); }}\n", from.glsl, element.glsl,
+                            inverted, fromPairs ? ".x" : "", keys == Scalar::Int ? " ^ 0x80000000u" : ""),
+                {input("k", from), output("r", element)});
   }
-  return kept(fmt::format("{}void sort_kernel(uint k, uint o, out float r) {{\n"
-                          "  uint b = {}k;\n"
+  return kept(fmt::format("{}void sort_kernel(uvec2 k, out float r) {{\n"
+                          "  uint b = {}k.x;\n"
                           "  b = (b >> 31) != 0u ? b & 0x7fffffffu : ~b;\n"
-                          "  r = k == 0xffffffffu || b == 0u ? {} : uintBitsToFloat(b);\n"
+                          "  r = k.x == 0xffffffffu || b == 0u ? {} : uintBitsToFloat(b);\n"
                           "}}\n",
                           indexFunction(rank), inverted, elementAt(rank)),
-              {input("k", words()), input("o", words()), gather("x", element, rank), output("r", element)});
+              {input("k", wordPairs()), gather("x", element, rank), output("r", element)});
 }
 
 const Kernel& placeKernel() {
-  return kept("void sort_kernel(uint o, out int r) { r = int(o); }\n",
-              {input("o", words()), output("r", elementOf(Scalar::Int))});
+  return kept("void sort_kernel(uvec2 k, out int r) { r = int(k.y); }\n",
+              {input("k", wordPairs()), output("r", elementOf(Scalar::Int))});
 }
 
 }  // namespace sk

@@ -20,12 +20,14 @@ const program::Kernel& wordKernel(program::Scalar keys, bool isDescending);
 const program::Kernel& repeatKernel(program::Scalar keys);
 /// (flag) -> 0 if it is true, or not 0, else 1.
 const program::Kernel& flagKernel(program::Scalar flags);
-/// (place, elements[]) -> the texel of a plane at this number; the elements have one dimension or, by rank 4, any.
+/// ((word, place), elements[]) -> the texel of a plane at this place; the elements have one dimension or, by rank 4, any.
 const program::Kernel& moveKernel(const program::Field& field, int rank);
-/// (word, place, keys[]) -> the key of a word; it takes a NaN or a zero, whose words do not say which, from its place.
-/// The keys are int, uint or float, and have one dimension or, by rank 4, any.
-const program::Kernel& restoreKernel(program::Scalar keys, bool isDescending, int rank);
-/// (place) -> the same number as an int.
+/// ((word, place), upper words[]) -> the upper word at this place, and the place.
+const program::Kernel& upperWordKernel();
+/// (word) or ((word, place)) -> the int or uint key of a word; ((word, place), keys[]) -> the float key, which is taken from
+/// its place if it is a NaN or a zero, whose words do not say which. The keys have one dimension or, by rank 4, any.
+const program::Kernel& restoreKernel(program::Scalar keys, bool isDescending, bool fromPairs, int rank);
+/// ((word, place)) -> the place as an int.
 const program::Kernel& placeKernel();
 
 }  // namespace sk

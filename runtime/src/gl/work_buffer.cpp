@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "gl/chain_buffer.hpp"
+#include "gl/work_buffer.hpp"
 
 #include <utility>
 
 namespace sk::gl {
 
-bool ChainBuffer::bindCleared(BoundState& bound, std::size_t bytes) {
+bool WorkBuffer::bind(BoundState& bound, std::size_t bytes) {
+  idle_ = 0;
   if (bytes > bytes_) {
     ObjectName<deleteBuffer> buffer(bound.deletions, [] { return generated(glGenBuffers); });
     bound.storage(buffer.get());
@@ -16,10 +17,19 @@ bool ChainBuffer::bindCleared(BoundState& bound, std::size_t bytes) {
     bytes_ = bytes;
   }
   bound.storage(name_.get());
+  return true;
+}
+
+void WorkBuffer::clear(std::size_t bytes) {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
   glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER,
                        GL_UNSIGNED_INT, nullptr);
-  return true;
+}
+
+void WorkBuffer::trim() {
+  if (bytes_ == 0 || ++idle_ <= keptCalls) return;
+  name_ = {};
+  bytes_ = 0;
 }
 
 }  // namespace sk::gl
