@@ -150,15 +150,13 @@ TEST_CASE("keys of each type are sorted by dispatches as by the host") {
       if (algorithm != Algorithm::Order) compare(devices, algorithm, keys, nullptr, shape);
     }
   };
-  for (const std::int64_t n : {1, 2, 13, 4096, 4097}) {
-    compareAll(dataOf(keysOf<float>(n)), {n});
-    compareAll(dataOf(keysOf<std::int32_t>(n)), {n});
-  }
-  compareAll(dataOf(keysOf<std::uint32_t>(9001)), {9001});
-  compareAll(dataOf(keysOf<double>(9001)), {9001});
+  for (const std::int64_t n : {1, 13, 4096, 4097}) compareAll(dataOf(keysOf<float>(n)), {n});
+  for (const std::int64_t n : {2, 4099}) compareAll(dataOf(keysOf<std::int32_t>(n)), {n});
+  compareAll(dataOf(keysOf<std::uint32_t>(4099)), {4099});
+  compareAll(dataOf(keysOf<double>(4099)), {4099});
   compareAll(dataOf(keysOf<float>(70 * 128)), {70, 128});  // packed
   compareAll(dataOf(keysOf<double>(7 * 6 * 5)), {7, 6, 5});
-  compareAll(dataOf(std::vector<int>(20000, -3)), {20000});
+  compareAll(dataOf(std::vector<int>(8200, -3)), {8200});
 }
 
 TEST_CASE("more tiles than one sum holds are sorted") {
