@@ -191,7 +191,8 @@ std::string passListing(const Profile& profile, const sk::program::Reduction& re
 }
 
 /// The passes that scan a stream of 2^20 elements.
-std::vector<sk::assemble::ReducePass> passesOfScan(const Profile& profile, const sk::program::Reduction& reduction) {
+std::vector<sk::assemble::ReducePass> passesOfScan(const Profile& profile,
+                                                   const sk::program::Reduction& reduction) {
   constexpr std::int32_t count = 1 << 20;
   const bool isDispatched = profile.stage == sk::assemble::Stage::Compute;
   const sk::assemble::ReduceLimits limits{
@@ -203,8 +204,7 @@ std::vector<sk::assemble::ReducePass> passesOfScan(const Profile& profile, const
   elements.packed = byTexel;
   sk::assemble::ScanAccess access{byIndex, byTexel};
   if (isDispatched) sk::assemble::addTiles(access, reduction, true);
-  sk::assemble::ScanPlan plan =
-      sk::assemble::planScan(elements, elements, limits, {count, 1}, access, false);
+  sk::assemble::ScanPlan plan = sk::assemble::planScan(elements, elements, limits, {count, 1}, access, false);
   std::vector<sk::assemble::ReducePass> passes = std::move(plan.folds);
   std::ranges::move(plan.scans, std::back_inserter(passes));
   return passes;

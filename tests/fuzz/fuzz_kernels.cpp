@@ -153,8 +153,7 @@ int fuzzKernels(const Options& options) {
   campaign.onFinding = [&](const fuzz::Finding& finding) {
     const bool isDrivers = isDriversDeath(finding);
     driverDeaths += isDrivers;
-    const fs::path file =
-        options.keep("kernel", finding, textOf(options, finding.number));
+    const fs::path file = options.keep("kernel", finding, textOf(options, finding.number));
     fuzz::tell(isDrivers ? "the driver died of kernel" : "kernel", finding,
                "fuzz_kernels --seed " + std::to_string(options.seed) + " --first " +
                    std::to_string(finding.number) + " --count 1   (" + file.string() + ")");

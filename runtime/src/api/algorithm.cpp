@@ -108,8 +108,7 @@ auto rankOf(T key, bool isDescending) {
 Permutation orderOf(const StreamRegion& keys, const SortOptions& options) {
   return withKeys(keys, [&](const auto& values) {
     auto ranks = detail::hostVector<decltype(rankOf(values[0], false))>(values.size());
-    std::ranges::transform(values, ranks.begin(),
-                           [&](auto key) { return rankOf(key, options.descending); });
+    std::ranges::transform(values, ranks.begin(), [&](auto key) { return rankOf(key, options.descending); });
     return radixOrder(std::move(ranks));
   });
 }

@@ -49,7 +49,8 @@ struct DeviceChoices {
   Target target = Target::Default;  ///< Fragment or Compute; Default: whichever is faster
   bool sharesContext = false;  ///< the application draws in the device's own context
   std::optional<bool> sharesTexels = {};  ///< assemble::Profile::sharesTexels; nullopt: only on GPUs
-  std::optional<bool> chainsScans = {};  ///< dispatched scans of integers take one pass; nullopt: only on GPUs
+  std::optional<bool> chainsScans =
+      {};  ///< dispatched scans of integers take one pass; nullopt: only on GPUs
   std::optional<std::int32_t> scanPatience = {};  ///< ScanAccess::patience of such scans
   std::optional<bool> sortsByDispatches = {};  ///< if there are compute programs; nullopt: only on GPUs
 };

@@ -36,7 +36,8 @@ constexpr Operator operators[] = {
      }},
     {"{0} ^= {1}", "0", "0u", 0, 0, [](std::uint32_t a, std::uint32_t b, bool) { return a ^ b; }},
     {"{0} |= {1}", "0", "0u", 0, 0, [](std::uint32_t a, std::uint32_t b, bool) { return a | b; }},
-    {"{0} &= {1}", "-1", "4294967295u", ~0u, ~0u, [](std::uint32_t a, std::uint32_t b, bool) { return a & b; }},
+    {"{0} &= {1}", "-1", "4294967295u", ~0u, ~0u,
+     [](std::uint32_t a, std::uint32_t b, bool) { return a & b; }},
 };
 
 /// What is folded, in terms of inputs 0 and 1, the factor c and the index in the fastest dimension.
@@ -47,8 +48,10 @@ struct Term {
 constexpr Term terms[] = {
     {"{0}(x0)", [](std::uint32_t x, std::uint32_t, std::uint32_t, std::uint32_t) { return x; }},
     {"{0}(x1)", [](std::uint32_t, std::uint32_t y, std::uint32_t, std::uint32_t) { return y; }},
-    {"{0}(x0) * {0}(x1)", [](std::uint32_t x, std::uint32_t y, std::uint32_t, std::uint32_t) { return x * y; }},
-    {"({0}(x0) ^ {0}(c))", [](std::uint32_t x, std::uint32_t, std::uint32_t c, std::uint32_t) { return x ^ c; }},
+    {"{0}(x0) * {0}(x1)",
+     [](std::uint32_t x, std::uint32_t y, std::uint32_t, std::uint32_t) { return x * y; }},
+    {"({0}(x0) ^ {0}(c))",
+     [](std::uint32_t x, std::uint32_t, std::uint32_t c, std::uint32_t) { return x ^ c; }},
     {"({0}(x1) + {0}(indexof(x0).x))",
      [](std::uint32_t, std::uint32_t y, std::uint32_t, std::uint32_t index) { return y + index; }},
 };
@@ -77,7 +80,8 @@ RandomScan::RandomScan(std::uint64_t seed, std::uint64_t number) {
   isExclusive_ = random.chance(1, 3);
   elements_.resize(inputsAreSigned_.size());
   for (Words& words : elements_) {
-    for (std::int64_t i = 0; i < shape_.size(); ++i) words.push_back(static_cast<std::uint32_t>(random.next()));
+    for (std::int64_t i = 0; i < shape_.size(); ++i)
+      words.push_back(static_cast<std::uint32_t>(random.next()));
   }
   text_ += fmt::format("// over {} elements of rank {}, along {}{}\n", shape_.size(), shape_.rank(), along_,
                        isExclusive_ ? ", without the element" : "");
@@ -94,7 +98,8 @@ void RandomScan::makeOperators(Random& random) {
     const Term& term = random.pick(terms);
     const bool isSigned = random.chance(1, 2);
     const std::string name = fmt::format("s{}", accumulators_.size());
-    parameters += fmt::format(", scan {} {}<> = {}", typeOf(isSigned), name, isSigned ? by.identity : by.unsignedIdentity);
+    parameters += fmt::format(", scan {} {}<> = {}", typeOf(isSigned), name,
+                              isSigned ? by.identity : by.unsignedIdentity);
     const std::string value = fmt::format(fmt::runtime(term.text), typeOf(isSigned));
     body += fmt::format("  {};\n", fmt::format(fmt::runtime(by.text), name, value));
     accumulators_.push_back({isSigned, isSigned ? by.identityBits : by.unsignedBits});
@@ -152,8 +157,9 @@ std::string RandomScan::difference(sk::Device& device, const sk::program::Reduct
   std::vector<sk::Argument> arguments;
   if (hasFactor_) arguments.push_back({.value = &factor_});
   const auto add = [&](bool isSigned) {
-    const sk::StreamRegion region = isSigned ? ints.emplace_back(device.stream<std::int32_t>(shape_)).region()
-                                             : uints.emplace_back(device.stream<std::uint32_t>(shape_)).region();
+    const sk::StreamRegion region = isSigned
+                                        ? ints.emplace_back(device.stream<std::int32_t>(shape_)).region()
+                                        : uints.emplace_back(device.stream<std::uint32_t>(shape_)).region();
     arguments.push_back({.region = region});
     return region;
   };
@@ -170,7 +176,8 @@ std::string RandomScan::difference(sk::Device& device, const sk::program::Reduct
     sk::detail::read(outputs[a], got.data(), got.size());
     const auto [wrong, right] = std::ranges::mismatch(got, expected[a]);
     if (wrong == got.end()) continue;
-    return fmt::format("accumulator {} at element {}: {:#x}, not {:#x}\n", a, wrong - got.begin(), *wrong, *right);
+    return fmt::format("accumulator {} at element {}: {:#x}, not {:#x}\n", a, wrong - got.begin(), *wrong,
+                       *right);
   }
   return {};
 }

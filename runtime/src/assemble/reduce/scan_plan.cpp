@@ -6,7 +6,7 @@
 #include <cassert>
 #include <optional>
 
-#include "assemble/reduce/scan_tile_program.hpp"
+#include "assemble/reduce/scan_tiles.hpp"
 
 namespace sk::assemble {
 namespace {
@@ -117,12 +117,13 @@ class ScanPlanner {
     const Level& source = levels_[level];
     ReducePass pass{};
     pass.variant.scan = scan;
-    pass.variant.walk = level > 0           ? Walk::Partials
-                        : access_.byIndex   ? Walk::Index
+    pass.variant.walk = level > 0          ? Walk::Partials
+                        : access_.byIndex  ? Walk::Index
                         : elements_.linear ? Walk::Line
-                                            : Walk::Plane;
+                                           : Walk::Plane;
     pass.variant.runs = lines_ == 1 ? Runs::OneBlock : Runs::Split;
-    pass.variant.unit = scan == ScanPass::Folds && source.unit == ScanUnit::Run ? ScanUnit::Item : source.unit;
+    pass.variant.unit =
+        scan == ScanPass::Folds && source.unit == ScanUnit::Run ? ScanUnit::Item : source.unit;
     pass.variant.run = static_cast<std::uint8_t>(source.run);
     pass.variant.packed = level == 0 && access_.byTexel;
     pass.variant.axes = decodedRank({.extent = extent_});
@@ -158,7 +159,8 @@ class ScanPlanner {
                                    ? std::int64_t{runs} * lines_
                                    : (std::int64_t{runs} * lines_ - 1) / tileGroup + 1;
     const std::int64_t width = std::min<std::int64_t>(count, std::int64_t{1} << groupRowShift);
-    pass.groups = {0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>((count - 1) / width + 1)};
+    pass.groups = {0, 0, static_cast<std::int32_t>(width),
+                   static_cast<std::int32_t>((count - 1) / width + 1)};
     pass.uniforms.push_back({"sk_groups", false, {static_cast<std::int32_t>(count)}});
     pass.uniforms.push_back({"sk_patience", false, {access_.patience}});
   }

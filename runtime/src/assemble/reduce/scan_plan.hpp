@@ -45,10 +45,11 @@ struct ScanAccess {
   bool byIndex = true;  ///< Walk::Index; only the extent of the elements' region layout matters then
   bool byTexel = false;  ///< elements and results are packed, and lines consist of whole texels
   /// The most items of a run in a tile of elements, and of results of runs; 0: they are not folded in tiles, which only
-  /// dispatches can (longestRunInTile()).
+  /// dispatches can (scan_tiles.hpp).
   std::int32_t elementRun = 0, partialRun = 0;
   bool chained = false;  ///< one pass scans all tiles of the elements, if they are one line
-  std::int32_t patience = 1024;  ///< how often a group looks for the result of a tile before it folds it itself
+  std::int32_t patience =
+      1024;  ///< how often a group looks for the result of a tile before it folds it itself
 };
 /// Chooses tiles for a reduction. `chains`: the device scans them in one pass, if it can.
 void addTiles(ScanAccess& access, const program::Reduction& reduction, bool chains);

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "assemble/reduce/scan_plan.hpp"
-#include "assemble/reduce/scan_tile_program.hpp"
+#include "assemble/reduce/scan_tiles.hpp"
 
 using namespace sk::assemble;
 
@@ -53,8 +53,9 @@ TEST_CASE("a line is scanned in tiles, in one pass or three") {
 
 TEST_CASE("more groups than fit into a row are dispatched in rows") {
   constexpr std::int32_t count = 40000 * 4096;
-  const ScanPlan scan = plan(packedLine(count), {count, 1},
-                             {.byIndex = false, .byTexel = true, .elementRun = 4, .partialRun = 16, .chained = true});
+  const ScanPlan scan =
+      plan(packedLine(count), {count, 1},
+           {.byIndex = false, .byTexel = true, .elementRun = 4, .partialRun = 16, .chained = true});
   CHECK(scan.scans[0].groups.width == 1 << groupRowShift);
   CHECK(scan.scans[0].groups.height == 2);
 }
@@ -62,7 +63,8 @@ TEST_CASE("more groups than fit into a row are dispatched in rows") {
 TEST_CASE("lines across rows are walked side by side, and short lines item by item") {
   RegionLayout plane;
   plane.extent = {100, 1000, 1, 1};
-  const ScanAccess access{.byIndex = false, .byTexel = false, .elementRun = 16, .partialRun = 16, .chained = true};
+  const ScanAccess access{
+      .byIndex = false, .byTexel = false, .elementRun = 16, .partialRun = 16, .chained = true};
   const ScanPlan across = plan(plane, {1000, 100}, access);
   REQUIRE(across.folds.size() == 1);
   CHECK(across.folds[0].variant.unit == ScanUnit::Item);  // an invocation for each run

@@ -25,8 +25,7 @@ ContinuedKernel::ContinuedKernel(const Kernel& kernel)
 }
 
 ScanText::ScanText(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant)
-    : FoldText(profile, reduction, variant,
-               isOfPartials(variant.walk) ? reduction.combine : reduction.fold),
+    : FoldText(profile, reduction, variant, isOfPartials(variant.walk) ? reduction.combine : reduction.fold),
       continued_(kernel_) {}
 
 std::vector<Parameter> ScanText::declareParameters() {
@@ -77,8 +76,9 @@ Texel ScanText::numbered(std::string_view number) {
   if (variant_.walk == Walk::Plane) {
     integers({"sk_width"});
     vectors({"sk_origin"});
-    program_.function("ivec2 sk_in_rows(int sk_n)", {"int sk_y = sk_n / sk_width;",
-                                                     "return sk_origin.xy + ivec2(sk_n - sk_y * sk_width, sk_y);"});
+    program_.function(
+        "ivec2 sk_in_rows(int sk_n)",
+        {"int sk_y = sk_n / sk_width;", "return sk_origin.xy + ivec2(sk_n - sk_y * sk_width, sk_y);"});
     return {fmt::format("sk_in_rows({})", number)};
   }
   if (variant_.walk != Walk::Line) return numberedTexel(number);
@@ -95,6 +95,42 @@ void ScanText::takeCarry(std::string_view number, std::string_view indent) {
     statement(fmt::format("{}{} = {};", indent, total(*accumulators_[k]),
                           fetch(program_, continued_.carries()[k], texel)));
   }
+}
+
+Texel ScanText::resultTexel(const std::string& number) {
+  const auto uniform = [&](std::string_view type, std::string_view name) {
+    return program_.uniform(type, name);
+  };
+  switch (variant_.domain) {
+    case Domain::Plane: {
+      const std::string origin =
+          variant_.domainView ? uniform("ivec4", "sk_domain_origin") + ".xy + " : std::string();
+      const std::string width = uniform("ivec4", "sk_domain_shape") + ".x";
+      program_.function("ivec2 sk_place_of(int sk_n)",
+                        {fmt::format("int sk_y = sk_n / {};", width),
+                         fmt::format("return {}ivec2(sk_n - sk_y * {}, sk_y);", origin, width)});
+      return {fmt::format("sk_place_of({})", number)};
+    }
+    case Domain::LinearBox: {
+      program_.require(variant_.domainRank <= 2   ? Function::Unravel2
+                       : variant_.domainRank == 3 ? Function::Unravel3
+                                                  : Function::Unravel4);
+      program_.require(Function::Ravel);
+      program_.require(Function::Texel);
+      const std::string shift = uniform("int", "sk_domain_shift");
+      const std::string index = variant_.domainRank == 1 ? fmt::format("ivec4({}, 0, 0, 0)", number)
+                                                         : fmt::format("sk_unravel({}, {})", number,
+                                                                       uniform("ivec4", "sk_domain_step"));
+      return {fmt::format("sk_texel(sk_ravel({} + {}, {}), {})", index, uniform("ivec4", "sk_domain_origin"),
+                          uniform("ivec4", "sk_domain_stride"), shift),
+              variant_.domainLayered ? shift : ""};
+    }
+    case Domain::Linear:
+    case Domain::Entry: break;
+  }
+  program_.require(Function::Texel);
+  const std::string shift = uniform("int", "sk_domain_shift");
+  return {fmt::format("sk_texel({}, {})", number, shift), variant_.domainLayered ? shift : ""};
 }
 
 }  // namespace sk::assemble

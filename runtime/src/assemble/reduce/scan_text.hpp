@@ -26,9 +26,7 @@ class ScanText : protected FoldText {
   bool isOneLine() const { return variant_.runs == Runs::OneBlock; }
   bool isExclusive() const { return variant_.scan == ScanPass::Exclusive; }
   /// Whether folds start from their first item.
-  bool isSeeded() const {
-    return !isExclusive() && (isOfPartials(variant_.walk) || reduction_.seeded);
-  }
+  bool isSeeded() const { return !isExclusive() && (isOfPartials(variant_.walk) || reduction_.seeded); }
   /// Whether the result is packed, too: the accumulators after, or before, each of the four elements.
   bool keepsLanes() const { return variant_.packed && variant_.scan != ScanPass::Folds; }
   std::string keptOf(const program::Parameter& accumulator) const { return held("sk_kept", accumulator); }
@@ -39,6 +37,8 @@ class ScanText : protected FoldText {
   std::string elementAt(std::size_t i, std::string_view number);
   /// The texel of an item. A line of elements begins anywhere in its stream.
   Texel numbered(std::string_view number);
+  /// The texel of the result with a number, for programs whose invocations store several.
+  Texel resultTexel(const std::string& number);
   /// Sets the accumulators to a result of the level above.
   void takeCarry(std::string_view number, std::string_view indent);
 

@@ -2,13 +2,13 @@
 #include "assemble/reduce/scan_tile_program.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "assemble/elements/arguments.hpp"
 #include "assemble/reduce/scan_text.hpp"
+#include "assemble/reduce/scan_tiles.hpp"
 
 namespace sk::assemble {
 
@@ -17,24 +17,6 @@ using program::Parameter;
 using program::Reduction;
 
 namespace {
-
-/// The bytes of shared memory that an accumulator takes, or more.
-std::size_t sharedBytes(const program::Element& element) {
-  std::size_t bytes = 0;
-  for (const program::Field& field : element.fields) {
-    const std::size_t scalar = field.scalar == program::Scalar::Double ? 8 : 4;
-    bytes += scalar * std::bit_ceil(std::size_t{field.width});
-  }
-  return bytes;
-}
-
-std::size_t sharedBytes(const Kernel& fold) {
-  std::size_t bytes = 0;
-  for (const Parameter& parameter : fold.parameters) {
-    if (parameter.role == program::Role::Accumulator) bytes += sharedBytes(*parameter.element);
-  }
-  return bytes;
-}
 
 class TileScanText : ScanText {
  public:
@@ -104,8 +86,9 @@ class TileScanText : ScanText {
     const int items = tileGroup * run();
     statement(fmt::format("int sk_left = sk_length - sk_tile * {};", items));
     statement(fmt::format("int sk_runs = min((sk_left + {}) / {}, {});", run() - 1, run(), tileGroup));
-    statement(fmt::format("int sk_first = sk_tile * {} + sk_i * {}, sk_count = clamp(sk_length - sk_first, 0, {});",
-                          items, run(), run()));
+    statement(
+        fmt::format("int sk_first = sk_tile * {} + sk_i * {}, sk_count = clamp(sk_length - sk_first, 0, {});",
+                    items, run(), run()));
     setStart();
   }
 
@@ -153,9 +136,9 @@ class TileScanText : ScanText {
     for (std::size_t i = 0; i < kernel_.parameters.size(); ++i) {
       const Parameter& input = kernel_.parameters[i];
       if (input.role != program::Role::Input || !isNeeded(input, variant_.specs)) continue;
-      statement(fmt::format("    {}[sk_k] = {};", itemsOf(input),
-                            variant_.packed ? fetch(program_, fourOf(input), numbered(number))
-                                            : elementAt(i, number)));
+      statement(fmt::format(
+          "    {}[sk_k] = {};", itemsOf(input),
+          variant_.packed ? fetch(program_, fourOf(input), numbered(number)) : elementAt(i, number)));
     }
     statement("  }");
     statement("}");
@@ -189,9 +172,9 @@ class TileScanText : ScanText {
     statement("  if (sk_n < sk_left) {");
     const std::string number = numberOf(fmt::format("sk_tile * {} + sk_n", tileGroup * run()));
     moveTo(number, "    ");
-    statement(fmt::format("    {}[{}] = {};", tile, slotOf("sk_n"),
-                          variant_.packed ? fetch(program_, fourOf(input), numbered(number))
-                                          : elementAt(i, number)));
+    statement(fmt::format(
+        "    {}[{}] = {};", tile, slotOf("sk_n"),
+        variant_.packed ? fetch(program_, fourOf(input), numbered(number)) : elementAt(i, number)));
     statement("  }");
     statement("}");
     wait();
@@ -222,7 +205,8 @@ class TileScanText : ScanText {
       statement("bool sk_isStarted = false;");
       return;
     }
-    statement(isTile() ? "bool sk_isStarted = sk_tile > 0 && sk_i == 0;" : "bool sk_isStarted = sk_tile > 0;");
+    statement(isTile() ? "bool sk_isStarted = sk_tile > 0 && sk_i == 0;"
+                       : "bool sk_isStarted = sk_tile > 0;");
     statement("if (sk_isStarted) {");
     takeCarry(isOneLine() ? "sk_tile - 1" : "(sk_tile - 1) * sk_lines + sk_line", "  ");
     if (isTile()) keepStart();
@@ -359,8 +343,8 @@ class TileScanText : ScanText {
     foldTile(written);
     for (const Parameter* accumulator : accumulators_) {
       statement(fmt::format("{} {} = {}[max(sk_i - 1, 0)], {} = {}[sk_runs - 1];", accumulator->element->glsl,
-                            held("sk_own", *accumulator), sharedName(*accumulator), held("sk_all", *accumulator),
-                            sharedName(*accumulator)));
+                            held("sk_own", *accumulator), sharedName(*accumulator),
+                            held("sk_all", *accumulator), sharedName(*accumulator)));
     }
     statement("if (sk_i == 0) sk_publish(sk_tile, sk_tile == 0 ? 2u : 1u" + listOf("sk_all") + ");");
     for (const Parameter* accumulator : accumulators_) declareHeld("sk_before", *accumulator);
@@ -440,10 +424,10 @@ class TileScanText : ScanText {
     for (std::size_t k = 0; k < accumulators_.size(); ++k) {
       const Parameter& accumulator = *accumulators_[k];
       parameters += fmt::format(", {} sk_v{}", accumulator.element->glsl, k);
-      lines.push_back(fmt::format("sk_states[sk_t * {} + {}] = sk_flag << 30 | (uint(sk_v{}) & 0xffffu);", words,
-                                  2 * k, k));
-      lines.push_back(
-          fmt::format("sk_states[sk_t * {} + {}] = sk_flag << 30 | uint(sk_v{}) >> 16;", words, 2 * k + 1, k));
+      lines.push_back(fmt::format("sk_states[sk_t * {} + {}] = sk_flag << 30 | (uint(sk_v{}) & 0xffffu);",
+                                  words, 2 * k, k));
+      lines.push_back(fmt::format("sk_states[sk_t * {} + {}] = sk_flag << 30 | uint(sk_v{}) >> 16;", words,
+                                  2 * k + 1, k));
     }
     program_.function(fmt::format("void sk_publish(int sk_t, uint sk_flag{})", parameters), lines);
   }
@@ -489,9 +473,11 @@ class TileScanText : ScanText {
     statement(fmt::format("      int sk_word = (sk_at - sk_i) * {};", words));
     statement("      uint sk_flag = sk_states[sk_word] >> 30;");
     for (std::size_t k = 0; k < accumulators_.size(); ++k) {
-      statement(fmt::format("      uint sk_low{0} = sk_states[sk_word + {1}], sk_high{0} = sk_states[sk_word + {2}];",
-                            k, 2 * k, 2 * k + 1));
-      statement(fmt::format("      if (sk_low{0} >> 30 != sk_flag || sk_high{0} >> 30 != sk_flag) sk_flag = 0u;", k));
+      statement(fmt::format(
+          "      uint sk_low{0} = sk_states[sk_word + {1}], sk_high{0} = sk_states[sk_word + {2}];", k, 2 * k,
+          2 * k + 1));
+      statement(fmt::format(
+          "      if (sk_low{0} >> 30 != sk_flag || sk_high{0} >> 30 != sk_flag) sk_flag = 0u;", k));
       statement(fmt::format("      {}[sk_i] = {}((sk_low{} & 0xffffu) | sk_high{} << 16);",
                             sharedName(*accumulators_[k]), accumulators_[k]->element->glsl, k, k));
     }
@@ -510,7 +496,8 @@ class TileScanText : ScanText {
     }
     combineInto("sk_earlier", "sk_later", "        ");
     for (const Parameter* accumulator : accumulators_) {
-      statement(fmt::format("        {}[sk_i] = {};", sharedName(*accumulator), held("sk_earlier", *accumulator)));
+      statement(
+          fmt::format("        {}[sk_i] = {};", sharedName(*accumulator), held("sk_earlier", *accumulator)));
     }
     statement("      }");
     wait("      ");
@@ -520,8 +507,8 @@ class TileScanText : ScanText {
   /// Puts a result in shared memory before sk_before.
   void takeBefore(std::string_view at, std::string_view indent) {
     for (const Parameter* accumulator : accumulators_) {
-      statement(fmt::format("{}{} {} = {}[{}];", indent, accumulator->element->glsl, held("sk_earlier", *accumulator),
-                            sharedName(*accumulator), at));
+      statement(fmt::format("{}{} {} = {}[{}];", indent, accumulator->element->glsl,
+                            held("sk_earlier", *accumulator), sharedName(*accumulator), at));
     }
     statement(fmt::format("{}if (sk_hasBefore) {{", indent));
     combineInto("sk_earlier", "sk_before", fmt::format("{}  ", indent));
@@ -550,9 +537,9 @@ class TileScanText : ScanText {
 
   /// Keeps or stores the results of item sk_k.
   void keepItem(const std::vector<Parameter>& written) {
-    if (!keepsTile()) return storeItem(written, "sk_first + sk_k", "    ", [&](const Parameter& result) {
-      return resultOf(result);
-    });
+    if (!keepsTile())
+      return storeItem(written, "sk_first + sk_k", "    ",
+                       [&](const Parameter& result) { return resultOf(result); });
     statement(fmt::format("    int sk_n = sk_i * {} + sk_k, sk_slot = {};", run(), slotOf("sk_n")));
     for (const Parameter& result : written) {
       statement(fmt::format("    {}[sk_slot] = {};", tileOf(accumulatorOf(result)), resultOf(result)));
@@ -581,77 +568,12 @@ class TileScanText : ScanText {
       statement(fmt::format("{}{}", indent, line));
     }
   }
-
-  /// The texel of the result with a number.
-  Texel resultTexel(const std::string& number) {
-    const auto uniform = [&](std::string_view type, std::string_view name) {
-      return program_.uniform(type, name);
-    };
-    switch (variant_.domain) {
-      case Domain::Plane: {
-        const std::string origin =
-            variant_.domainView ? uniform("ivec4", "sk_domain_origin") + ".xy + " : std::string();
-        const std::string width = uniform("ivec4", "sk_domain_shape") + ".x";
-        program_.function("ivec2 sk_place_of(int sk_n)",
-                          {fmt::format("int sk_y = sk_n / {};", width),
-                           fmt::format("return {}ivec2(sk_n - sk_y * {}, sk_y);", origin, width)});
-        return {fmt::format("sk_place_of({})", number)};
-      }
-      case Domain::LinearBox: {
-        program_.require(variant_.domainRank <= 2   ? Function::Unravel2
-                         : variant_.domainRank == 3 ? Function::Unravel3
-                                                    : Function::Unravel4);
-        program_.require(Function::Ravel);
-        program_.require(Function::Texel);
-        const std::string shift = uniform("int", "sk_domain_shift");
-        const std::string index =
-            variant_.domainRank == 1
-                ? fmt::format("ivec4({}, 0, 0, 0)", number)
-                : fmt::format("sk_unravel({}, {})", number, uniform("ivec4", "sk_domain_step"));
-        return {fmt::format("sk_texel(sk_ravel({} + {}, {}), {})", index, uniform("ivec4", "sk_domain_origin"),
-                            uniform("ivec4", "sk_domain_stride"), shift),
-                variant_.domainLayered ? shift : ""};
-      }
-      case Domain::Linear:
-      case Domain::Entry: break;
-    }
-    program_.require(Function::Texel);
-    const std::string shift = uniform("int", "sk_domain_shift");
-    return {fmt::format("sk_texel({}, {})", number, shift), variant_.domainLayered ? shift : ""};
-  }
 };
 
 }  // namespace
 
-std::int32_t longestRunInTile(const Reduction& reduction, bool packed) {
-  constexpr std::size_t runBytes = 64;  // a tile of such runs takes half of groupBytes
-  const std::size_t bytes = sharedBytes(reduction.fold);
-  if (bytes * tileGroup > groupBytes / 2) return 0;
-  const std::size_t most = packed ? 4 : 16;
-  return static_cast<std::int32_t>(
-      std::clamp<std::size_t>(std::bit_floor(runBytes / (packed ? lanes * bytes : bytes)), 1, most));
-}
-
-bool mayChain(const Reduction& reduction) {
-  constexpr std::size_t mostAccumulators = 4;
-  std::size_t count = 0;
-  for (const Parameter& parameter : reduction.fold.parameters) {
-    if (parameter.role != program::Role::Accumulator) continue;
-    const auto fields = parameter.element->fields;
-    const program::Scalar scalar = fields.front().scalar;
-    if (isStruct(*parameter.element) || fields.front().width != 1) return false;
-    if (scalar != program::Scalar::Int && scalar != program::Scalar::Uint) return false;
-    ++count;
-  }
-  return count <= mostAccumulators && combinesInFold(reduction);
-}
-
-bool combinesInFold(const Reduction& reduction) {
-  return !reduction.addition.empty() ||
-         (reduction.combine.entry == reduction.fold.entry && reduction.combine.body == reduction.fold.body);
-}
-
-std::string scanTileProgram(const Profile& profile, const Reduction& reduction, const ReduceVariant& variant) {
+std::string scanTileProgram(const Profile& profile, const Reduction& reduction,
+                            const ReduceVariant& variant) {
   return TileScanText(profile, reduction, variant).write();
 }
 

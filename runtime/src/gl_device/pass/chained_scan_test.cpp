@@ -26,12 +26,13 @@ constexpr const program::Element& ints = ElementTraits<std::int32_t>::element();
 /// Sums and the largest of two streams. It must outlive the devices, which identify it by its address.
 struct SumAndMost {
   SumAndMost() {
-    reduction.fold = {.name = "sumAndMost",
-                      .entry = "sumAndMost",
-                      .declarations = {},
-                      .body = "void sumAndMost(int x, int y, inout int s, inout int m) { s += x; m = max(m, y); }\n",
-                      .parameters = parameters,
-                      .sources = {}};
+    reduction.fold = {
+        .name = "sumAndMost",
+        .entry = "sumAndMost",
+        .declarations = {},
+        .body = "void sumAndMost(int x, int y, inout int s, inout int m) { s += x; m = max(m, y); }\n",
+        .parameters = parameters,
+        .sources = {}};
     reduction.combine = reduction.fold;
     reduction.combineOperands = operands;
     reduction.seeded = true;
@@ -41,7 +42,11 @@ struct SumAndMost {
       {{.name = "x", .symbol = "x", .role = Role::Input, .element = &ints},
        {.name = "y", .symbol = "y", .role = Role::Input, .element = &ints},
        {.name = "s", .symbol = "s", .role = Role::Accumulator, .element = &ints, .identity = "0"},
-       {.name = "m", .symbol = "m", .role = Role::Accumulator, .element = &ints, .identity = "-2147483647 - 1"}}};
+       {.name = "m",
+        .symbol = "m",
+        .role = Role::Accumulator,
+        .element = &ints,
+        .identity = "-2147483647 - 1"}}};
   std::array<std::uint8_t, 4> operands{0, 1, 2, 3};
   program::Reduction reduction{};
 };
@@ -62,13 +67,15 @@ TEST_CASE("scans of integers take one pass, whether groups wait or not") {
       for (const bool isExclusive : {false, true}) {
         CAPTURE(n, isExclusive, patience);
         const std::vector<int> x = numbers(n, 1), y = numbers(n, 2);
-        const auto a = device.createStream(ints, {n}, Storage::Single), b = device.createStream(ints, {n}, Storage::Single);
+        const auto a = device.createStream(ints, {n}, Storage::Single),
+                   b = device.createStream(ints, {n}, Storage::Single);
         detail::write(detail::wholeRegion(a.get()), x.data(), x.size());
         detail::write(detail::wholeRegion(b.get()), y.data(), y.size());
-        const Argument first{.region = detail::wholeRegion(a.get())}, second{.region = detail::wholeRegion(b.get())};
+        const Argument first{.region = detail::wholeRegion(a.get())},
+            second{.region = detail::wholeRegion(b.get())};
         const std::array arguments{first, second, second, first};  // crosswise
-        ResolvedReduction call =
-            checkReduction(sumAndMost.reduction, arguments, {}, ScanOrder{.along = {}, .isExclusive = isExclusive});
+        ResolvedReduction call = checkReduction(sumAndMost.reduction, arguments, {},
+                                                ScanOrder{.along = {}, .isExclusive = isExclusive});
         const std::int64_t before = device.passCount.emplace().passes;
         device.reduce(call);
         CHECK(device.passCount->passes - before == 1);

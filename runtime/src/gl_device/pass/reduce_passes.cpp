@@ -327,7 +327,8 @@ void ReducePasses::bindValues() {
 }
 
 void ReducePasses::bindChain(const ReducePass& pass) {
-  const auto groups = static_cast<std::size_t>(pass.groups.width) * static_cast<std::size_t>(pass.groups.height);
+  const auto groups =
+      static_cast<std::size_t>(pass.groups.width) * static_cast<std::size_t>(pass.groups.height);
   const std::size_t bytes = sizeof(std::uint32_t) * (1 + 2 * accumulatorPlanes(reduction_.fold) * groups);
   if (!device_.tileResults.bind(device_.bound, bytes)) {
     device_.throwIfLost();

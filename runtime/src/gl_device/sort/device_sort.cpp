@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "assemble/elements/planes.hpp"
-#include "assemble/reduce/scan_tile_program.hpp"
+#include "assemble/reduce/scan_tiles.hpp"
 #include "gl/commands.hpp"
 #include "gl_device/gl_device.hpp"
 #include "gl_device/gl_stream.hpp"
@@ -75,7 +75,8 @@ void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name, std:
   AppendProgram& program = device.sortPrograms.of(step);
   constexpr std::int32_t mostInRow = std::int32_t{1} << assemble::groupRowShift;
   const Rect groups{0, 0, std::min(tiles, mostInRow), divideUp(tiles, mostInRow)};
-  const std::int64_t bytes = std::int64_t{tiles} * assemble::radixTile * 4 * static_cast<std::int64_t>(read.size());
+  const std::int64_t bytes =
+      std::int64_t{tiles} * assemble::radixTile * 4 * static_cast<std::int64_t>(read.size());
   const PassScope traced(device, {name, "sort", "dispatch"}, bytes, std::span<const Rect>(&groups, 1),
                          std::size_t{assemble::radixTile} * 4);
   device.bound.program(program.program().name());
@@ -161,7 +162,8 @@ class WordSort {
   }
 
   void run(RadixStep step, std::string_view name, std::initializer_list<Words*> read,
-           std::initializer_list<Words*> written, std::initializer_list<Uniform> uniforms, std::int32_t tiles) {
+           std::initializer_list<Words*> written, std::initializer_list<Uniform> uniforms,
+           std::int32_t tiles) {
     dispatchTiles(device_, step, name, {read.begin(), read.size()}, {written.begin(), written.size()},
                   {uniforms.begin(), uniforms.size()}, tiles);
   }
@@ -213,9 +215,7 @@ class StreamSort {
   bool isKeys(const StreamRegion& region) const { return region.stream == reordering_.keys.stream; }
   bool isHalf() const { return reordering_.keys.stream->storage == Storage::Half; }
   /// Whether sorted words give the keys back.
-  bool restoresKeys() const {
-    return !reordering_.choosesFirst() && !hasTwoWords(scalar_) && !isHalf();
-  }
+  bool restoresKeys() const { return !reordering_.choosesFirst() && !hasTwoWords(scalar_) && !isHalf(); }
   bool needsPlaces() const {
     const auto isWithout = [&](const StreamRegion& region) {
       return isKeys(region) && restoresKeys() && scalar_ != program::Scalar::Float;
@@ -267,8 +267,7 @@ class StreamSort {
 
   /// Makes words of the keys.
   void makeWords(const program::Kernel& kernel, std::initializer_list<Words*> to) {
-    std::vector<Operand> operands{
-        regionOperand({.region = reordering_.keys}, reordering_.keys.shape)};
+    std::vector<Operand> operands{regionOperand({.region = reordering_.keys}, reordering_.keys.shape)};
     std::vector<RenderTarget*> targets;
     for (Words* words : to) {
       operands.emplace_back();
@@ -385,7 +384,8 @@ AppendProgram& SortPrograms::of(RadixStep step) {
       ProgramBuild(device_, {{}, assemble::radixProgram(device_.computeProfile, step)}).finish(device_, log);
   if (!program) {
     device_.throwIfLost();
-    throw Error(fmt::format("the driver of '{}' refuses a program of sk::sort:\n{}", device_.capabilities.renderer, log),
+    throw Error(fmt::format("the driver of '{}' refuses a program of sk::sort:\n{}",
+                            device_.capabilities.renderer, log),
                 Error::Kind::Compile);
   }
   known = std::make_unique<AppendProgram>(std::move(program));
@@ -402,8 +402,9 @@ AppendProgram& SortPrograms::of(RadixStep step) {
 
 bool maySortByDispatches(const GlDevice& device, const Reordering& reordering) {
   const StreamState& keys = *reordering.keys.stream;
-  const bool isStoredSo = keys.storage == Storage::Single ||
-                          (keys.storage == Storage::Half && !hasTwoWords(keys.element->fields.front().scalar));
+  const bool isStoredSo =
+      keys.storage == Storage::Single ||
+      (keys.storage == Storage::Half && !hasTwoWords(keys.element->fields.front().scalar));
   const std::int64_t count = reordering.keys.shape.size();
   constexpr std::int64_t most = std::int64_t{assemble::radixTile} * assemble::radixTile *
                                 (assemble::radixTile / assemble::radixDigits);  // the totals are one tile

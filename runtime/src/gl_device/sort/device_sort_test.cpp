@@ -72,8 +72,8 @@ struct Outcome {
 
 enum class Algorithm { Sort, SortDescending, Order, Unique, Partition };
 
-Outcome carryOut(GlDevice& device, Algorithm algorithm, const Data& keys, const Data* values, const Shape& shape,
-                 const Box* box) {
+Outcome carryOut(GlDevice& device, Algorithm algorithm, const Data& keys, const Data* values,
+                 const Shape& shape, const Box* box) {
   const auto k = streamOf(device, keys, shape);
   const auto v = values != nullptr ? streamOf(device, *values, shape) : nullptr;
   const auto regionOf = [&](StreamState* stream) {
@@ -125,7 +125,8 @@ std::vector<T> keysOf(std::int64_t count) {
     if (bits % 16 < 4) {
       key = special[bits / 16 % special.size()];
     } else if constexpr (std::is_floating_point_v<T>) {
-      key = std::ldexp(static_cast<T>(static_cast<std::int64_t>(random())), static_cast<int>(bits / 16 % 60) - 90);
+      key = std::ldexp(static_cast<T>(static_cast<std::int64_t>(random())),
+                       static_cast<int>(bits / 16 % 60) - 90);
     } else {
       key = static_cast<T>(random() >> (bits / 16 % 33));
     }
@@ -139,7 +140,8 @@ std::vector<int> iota(std::int64_t count) {
   return numbers;
 }
 
-constexpr Algorithm byKeys[] = {Algorithm::Sort, Algorithm::SortDescending, Algorithm::Order, Algorithm::Unique};
+constexpr Algorithm byKeys[] = {Algorithm::Sort, Algorithm::SortDescending, Algorithm::Order,
+                                Algorithm::Unique};
 
 TEST_CASE("keys of each type are sorted by dispatches as by the host") {
   Devices devices;
@@ -191,8 +193,10 @@ TEST_CASE("values of any type and views follow their keys") {
     fours.push_back({static_cast<float>(i), 1, 2, std::numeric_limits<float>::quiet_NaN()});
     bools.push_back(static_cast<std::uint8_t>(i % 3 == 0));
   }
-  const Data values[] = {dataOf(fours), {ElementTraits<bool>::element(), bytesOf(bools)},
-                         dataOf(keysOf<double>(shape.size())), halves};
+  const Data values[] = {dataOf(fours),
+                         {ElementTraits<bool>::element(), bytesOf(bools)},
+                         dataOf(keysOf<double>(shape.size())),
+                         halves};
   const Box whole{{8, 4}, {20, 24}}, odd{{3, 1}, {20, 23}};
   for (const Data& data : values) {
     compare(devices, Algorithm::Sort, keys, &data, shape);

@@ -144,20 +144,22 @@ const Kernel& repeatKernel(Scalar keys) {
                             isNumber),
                 {input("k", words()), gather("x", words(), 1), output("r", words())}, true);
   }
-  return kept("void sort_kernel(uint k, uint l, out uint r) {\n"
-              "  int n = sk_index().x;\n"
-              "  bool isNan = (k & l) == 0xffffffffu;\n"
-              "  r = n > 0 && sk_at_x(n - 1) == k && sk_at_y(n - 1) == l && !isNan ? 1u : 0u;\n"
-              "}\n",
-              {input("k", words()), gather("x", words(), 1), input("l", words()), gather("y", words(), 1),
-               output("r", words())},
-              true);
+  return kept(
+      "void sort_kernel(uint k, uint l, out uint r) {\n"
+      "  int n = sk_index().x;\n"
+      "  bool isNan = (k & l) == 0xffffffffu;\n"
+      "  r = n > 0 && sk_at_x(n - 1) == k && sk_at_y(n - 1) == l && !isNan ? 1u : 0u;\n"
+      "}\n",
+      {input("k", words()), gather("x", words(), 1), input("l", words()), gather("y", words(), 1),
+       output("r", words())},
+      true);
 }
 
 const Kernel& flagKernel(Scalar flags) {
   const Element& element = elementOf(flags);
-  return kept(fmt::format("void sort_kernel({0} k, out uint r) {{ r = k == {0}(0) ? 1u : 0u; }}\n", element.glsl),
-              {input("k", element), output("r", words())});
+  return kept(
+      fmt::format("void sort_kernel({0} k, out uint r) {{ r = k == {0}(0) ? 1u : 0u; }}\n", element.glsl),
+      {input("k", element), output("r", words())});
 }
 
 const Kernel& moveKernel(const program::Field& field, int rank) {
@@ -177,8 +179,9 @@ const Kernel& restoreKernel(Scalar keys, bool isDescending, bool fromPairs, int 
   const std::string_view inverted = isDescending ? "~" : "";
   if (keys != Scalar::Float) {
     const Element& from = fromPairs ? wordPairs() : words();
-    return kept(fmt::format("void sort_kernel({0} k, out {1} r) {{ r = {1}({2}k{3}{4}); }}\n", from.glsl, element.glsl,
-                            inverted, fromPairs ? ".x" : "", keys == Scalar::Int ? " ^ 0x80000000u" : ""),
+    return kept(fmt::format("void sort_kernel({0} k, out {1} r) {{ r = {1}({2}k{3}{4}); }}\n", from.glsl,
+                            element.glsl, inverted, fromPairs ? ".x" : "",
+                            keys == Scalar::Int ? " ^ 0x80000000u" : ""),
                 {input("k", from), output("r", element)});
   }
   return kept(fmt::format("{}void sort_kernel(uvec2 k, out float r) {{\n"

@@ -20,10 +20,10 @@ void sortPairsOpenMp(const Problem& p, float* sorted) {
   };
   static std::vector<Pair> pairs;  // as the streams of ours, kept between runs
   pairs.resize(static_cast<std::size_t>(p.size()));
-  std::transform(p.floats[0].begin(), p.floats[0].end(), pairs.begin(), [](float key) {
-    return Pair{key, 2 * key};
-  });
-  __gnu_parallel::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.key < b.key; });
+  std::transform(p.floats[0].begin(), p.floats[0].end(), pairs.begin(),
+                 [](float key) { return Pair{key, 2 * key}; });
+  __gnu_parallel::stable_sort(pairs.begin(), pairs.end(),
+                              [](const Pair& a, const Pair& b) { return a.key < b.key; });
   std::transform(pairs.begin(), pairs.end(), sorted, [](const Pair& pair) { return pair.value; });
 }
 
