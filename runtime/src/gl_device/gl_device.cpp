@@ -75,6 +75,7 @@ GlDevice::GlDevice(gl::OpenedContext&& opened, const DeviceChoices& choices)
       profile(profileOf(capabilities.api == gl::Api::Gl ? "glsl330" : "essl300", capabilities, choices)),
       computeProfile(profileOf("glsl430", capabilities, choices)),
       target(choices.target),
+      tilesScans(choices.tilesScans.value_or(!capabilities.isSoftware)),
       chainsScans(choices.chainsScans.value_or(!capabilities.isSoftware)),
       scanPatience(choices.scanPatience),
       barrier(barrierOf(capabilities, choices)),

@@ -49,6 +49,7 @@ struct DeviceChoices {
   Target target = Target::Default;  ///< Fragment or Compute; Default: whichever is faster
   bool sharesContext = false;  ///< the application draws in the device's own context
   std::optional<bool> sharesTexels = {};  ///< assemble::Profile::sharesTexels; nullopt: only on GPUs
+  std::optional<bool> tilesScans = {};  ///< work groups scan tiles; nullopt: only on GPUs
   std::optional<bool> chainsScans =
       {};  ///< dispatched scans of integers take one pass; nullopt: only on GPUs
   std::optional<std::int32_t> scanPatience = {};  ///< ScanAccess::patience of such scans
@@ -150,6 +151,7 @@ class GlDevice final : public DeviceState {
   const assemble::Profile profile;  ///< of fragment programs: the table's row, adapted to the device
   const assemble::Profile computeProfile;  ///< of compute programs; unused if the device has none
   const Target target;  ///< Fragment or Compute; Default: whichever is faster
+  const bool tilesScans;  ///< DeviceChoices::tilesScans: in software, groups that wait take longer
   const bool chainsScans;  ///< DeviceChoices::chainsScans
   const std::optional<std::int32_t> scanPatience;
   Barrier barrier;  ///< of programs; arithmetic() tests whether it is effective

@@ -129,7 +129,7 @@ void ReducePasses::scan(const RegionLayout& result, std::span<RenderTarget* cons
       .texture = device_.textureLimits(), .fanIn = assemble::scanRun, .grouped = isDispatched};
   const assemble::Lines lines = assemble::linesOf(elements_.extent, blocks_);
   assemble::ScanAccess access{foldsByIndex() || !assemble::isConsecutive(elements_), byTexel_};
-  if (isDispatched) assemble::addTiles(access, reduction_, device_.chainsScans);
+  if (isDispatched && device_.tilesScans) assemble::addTiles(access, reduction_, device_.chainsScans);
   access.patience = device_.scanPatience.value_or(access.patience);
   const assemble::ScanPlan plan = assemble::planScan(elements_, result, limits, lines, access, isExclusive);
   startAll(plan.folds);
