@@ -84,7 +84,7 @@ TEST_CASE("docs/api.md lists what the public headers declare", "[text]") {
   static const std::regex declared(
       R"re(^(?:(?:class|struct|enum class) (\w+)|  (?:[\w:<>&*]+ )+(\w+)\([^()]*\)(?: const| noexcept)*(?:;| \{.*)).*$)re");
   for (const char* header : {"algorithm", "arithmetic", "call", "device", "error", "future", "iter", "loop", "narrow",
-                             "options", "scalar", "shape", "stream", "table"}) {
+                             "options", "rows", "scalar", "shape", "stream", "table"}) {
     const std::string file = fmt::format("runtime/include/sk/{}.hpp", header);
     std::string space = "sk";
     bool isPrivate = false;

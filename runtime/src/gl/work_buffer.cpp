@@ -6,6 +6,7 @@
 namespace sk::gl {
 
 bool WorkBuffer::bind(BoundState& bound, std::size_t bytes) {
+  bound.spoil();
   idle_ = 0;
   if (bytes > bytes_) {
     ObjectName<deleteBuffer> buffer(bound.deletions, [] { return generated(glGenBuffers); });

@@ -93,6 +93,7 @@ class GlDevice final : public DeviceState {
   void makeCurrent() override;
   void run(const ResolvedCall& call) override;
   std::unique_ptr<RecordedCall> prepareScalars(ScalarPass pass) override;
+  std::unique_ptr<LoopRunner> makeLoopRunner() override;
   void reduce(const ResolvedReduction& call) override;
   std::optional<std::int64_t> reorder(const Reordering& reordering) override;
 

@@ -114,7 +114,10 @@ void ProgramText::storeAt(std::string_view place, bool isArray) {
 
 void ProgramText::storeInBuffer() { isInBuffer_ = true; }
 
-void ProgramText::dispatchGroups(std::int32_t width, std::int32_t height) { group_ = {width, height}; }
+void ProgramText::dispatchGroups(std::int32_t width, std::int32_t height, bool storesApart) {
+  group_ = {width, height};
+  storesApart_ = storesApart;
+}
 
 std::vector<std::string> ProgramText::storing(std::string_view place, bool isArray) {
   storesItself_ = true;
@@ -243,7 +246,7 @@ std::string ProgramText::mainOf(const std::string& body) const {
   if (isGrouped) {
     text += "  sk_pixel = sk_rect.xy + ivec2(gl_WorkGroupID.xy);\n" + body;
     if (storesItself_) return text + "}\n";
-    text += "  if (gl_LocalInvocationIndex != 0u) return;\n";
+    if (!storesApart_) text += "  if (gl_LocalInvocationIndex != 0u) return;\n";
   } else if (together_.empty()) {
     text += "  sk_pixel = sk_rect.xy + ivec2(gl_GlobalInvocationID.xy);\n";
     text += "  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), sk_rect.zw))) return;\n" + body;

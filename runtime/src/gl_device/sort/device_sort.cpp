@@ -87,11 +87,11 @@ void dispatchTiles(GlDevice& device, RadixStep step, std::string_view name, std:
     const gl::Texture& texture = words->plane().texture;
     device.bound.image(unit++, texture.name(), texture.format().internalFormat);
   }
-  for (const Uniform& uniform : uniforms) program.set(uniform.name, uniform.value);
-  program.set("sk_tiles", tiles);
-  program.set("sk_rect", gl::Int4{groups.x, groups.y, groups.width, groups.height});
-  if (std::exchange(device.hasDrawn, false)) gl::finishDraws();
-  gl::dispatch(groups.width, groups.height);
+  for (const Uniform& uniform : uniforms) program.set(device.bound, uniform.name, uniform.value);
+  program.set(device.bound, "sk_tiles", tiles);
+  program.set(device.bound, "sk_rect", gl::Int4{groups.x, groups.y, groups.width, groups.height});
+  if (std::exchange(device.hasDrawn, false)) gl::finishDraws(device.bound);
+  gl::dispatch(device.bound, groups.width, groups.height);
 }
 
 /// Sorts words, or pairs of words and the places that they come from, digit by digit.
